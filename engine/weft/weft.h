@@ -1,0 +1,257 @@
+/// weft: a cloth kernel. The whole public interface is this header.
+///
+///   describe -> validate -> create -> step -> read
+///
+///   weft::SceneDescription scene = ...;                    // plain vectors, SI units
+///   auto model = weft::build_model(scene);                 // validates; immutable, shareable
+///   auto cloth = weft::Cloth::create(model.value(), {});   // mutable state and its workspace
+///   auto report = cloth.value().step(0.01);                // one time step, with the error it reached
+///   cloth.value().read_positions(out);                     // in the numbering of the description
+///
+/// Design:
+///  1. The user asks for an error, not for an iteration count. Every step reports the error it
+///     reached, recomputed from the positions that it committed.
+///  2. Only what the scene needs runs: no spheres, no contact code; no velocity correction, no
+///     velocity loop.
+///  3. A Model is immutable and may be shared by any number of Cloths and threads. A Cloth is not
+///     synchronised: one thread at a time.
+///  4. weft owns no threads and no globals. Parallel work runs in the caller's oneTBB arena.
+///  5. A step allocates nothing once warm (contact lists grow to their largest size and stay).
+///  6. Errors are values. Bad input yields one line that names the field, the index and the value,
+///     and nothing is built or changed. weft throws only what the standard allocator throws.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace weft {
+
+// ---------------------------------------------------------------------------------------- errors
+
+/// One line that names the field, the index and the value that were refused.
+struct Error {
+  std::string message;
+};
+
+/// A value or an Error. Test it before use; value() of a failed result is undefined.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : value_(std::move(value)) {}
+  Result(Error error) : error_(std::move(error)) {}
+  explicit operator bool() const { return value_.has_value(); }
+  T& value() { return *value_; }
+  const T& value() const { return *value_; }
+  const std::string& error() const { return error_.message; }
+
+ private:
+  std::optional<T> value_;
+  Error error_;
+};
+
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)) {}
+  explicit operator bool() const { return !error_.has_value(); }
+  const std::string& error() const { return error_->message; }
+
+ private:
+  std::optional<Error> error_;
+};
+
+// --------------------------------------------------------------------------------------- describe
+
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+};
+
+/// distance: |a - b| = rest_length. rope: |a - b| <= rest_length (pulls only).
+enum class ConstraintKind : std::uint8_t { distance, rope };
+
+struct Constraint {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  double rest_length = 0;  ///< m, > 0
+  ConstraintKind kind = ConstraintKind::distance;
+};
+
+/// What is simulated. Lengths in m, masses in kg, times in s.
+/// At most one constraint may join the same two particles. A constraint between two fixed particles
+/// is legal but inert: nothing can move it, so it is neither solved nor measured.
+struct SceneDescription {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> velocities;  ///< empty: at rest; else one per particle
+  std::vector<double> masses;    ///< one per particle, > 0, fixed particles included
+  std::vector<std::uint32_t> fixed;  ///< particles of infinite inertia; move them with move_fixed()
+  std::vector<Constraint> constraints;
+  Vec3 gravity{0, -10, 0};
+
+  /// Contacts exist only where `spheres` names particles. Each of those collides with every other
+  /// particle at the distance radii[i] + radii[j]; particles outside the list do not collide among
+  /// themselves. radii: empty without spheres, else one per particle, >= 0.
+  std::vector<std::uint32_t> spheres;
+  std::vector<double> radii;
+};
+
+// --------------------------------------------------------------------------------------- validate
+
+/// Topology, colours, rest lengths, masses: all that does not change while the cloth moves.
+class Model;
+
+/// Checks the description and prepares it. On error nothing is built.
+Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description);
+
+struct ModelInfo {
+  std::size_t particles = 0;
+  std::size_t constraints = 0;  ///< active ones, without contacts
+  std::size_t inert_constraints = 0;
+  std::size_t ropes = 0;
+  std::size_t spheres = 0;
+  std::size_t colours = 0;
+  std::size_t bytes = 0;
+};
+ModelInfo describe(const Model& model);
+
+// ----------------------------------------------------------------------------------------- create
+
+/// gauss_seidel: the impulse loop of the paper (section 3.2), one constraint after the other.
+enum class Solver : std::uint8_t { gauss_seidel };
+/// paper: impulses along the directions of the previewed state; first order.
+enum class Scheme : std::uint8_t { paper };
+/// each: directions renewed before every iteration (sections 3.2, 4.1).
+/// frozen: only once all errors along them are within tolerance (section 4.4).
+enum class Directions : std::uint8_t { each, frozen };
+/// reference: scalar, double, the oracle for everything else.
+enum class Backend : std::uint8_t { reference };
+
+/// How a cloth is solved. The defaults converge to 1 % with all of the paper's optimisations.
+struct Settings {
+  double tolerance = 0.01;  ///< strain, | |a-b| - rest | / rest, that every step must reach; > 0
+  /// 0: iterate to the tolerance. K > 0: exactly K iterations per step whatever the error, nothing
+  /// skipped, frozen directions renewed once per step.
+  int iterations = 0;
+  int max_iterations = 1'000'000;  ///< bound on the work of one step; > 0
+  double contact_tolerance = 1e-4;  ///< m of penetration left; > 0
+  double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
+  double impulse_limit = 0;  ///< N s, the largest impulse of one correction; 0: no limit
+  Solver solver = Solver::gauss_seidel;
+  Scheme scheme = Scheme::paper;
+  Backend backend = Backend::reference;
+  Directions directions = Directions::frozen;
+  bool anticipate = true;  ///< section 4.2: errors are updated, not recomputed
+  bool skip = true;        ///< section 4.3: satisfied constraints are passed over
+  bool velocity_correction = false;  ///< sections 3.2, 3.3: a second loop, on velocities
+};
+
+/// converged: every constraint is within its tolerance.
+/// fixed_iterations: Settings::iterations were done; the error is what the report says.
+/// iteration_limit: max_iterations were done and some constraint is still out of tolerance. The
+///   state is committed.
+/// non_finite: a position or velocity would have become NaN or infinite. The state is unchanged.
+enum class Status : std::uint8_t { converged, fixed_iterations, iteration_limit, non_finite };
+
+/// The stages of a step, in order.
+enum class Stage : std::uint8_t {
+  predict,
+  find_contacts,
+  solve_positions,
+  commit,
+  correct_velocities,
+  report
+};
+inline constexpr std::size_t kStageCount = 6;
+
+std::string_view name(Solver);
+std::string_view name(Scheme);
+std::string_view name(Directions);
+std::string_view name(Backend);
+std::string_view name(Status);
+std::string_view name(Stage);
+
+inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
+
+/// What one step did and what it reached.
+struct StepReport {
+  Status status = Status::converged;
+  int iterations = 0;          ///< passes over the position constraints
+  int direction_updates = 0;   ///< renewals of the constraint directions
+  int velocity_iterations = 0;  ///< passes of the velocity loop
+  std::int64_t visits = 0;      ///< constraints whose error was looked at, both loops
+  std::int64_t corrections = 0;  ///< impulses applied, both loops
+  int contacts = 0;              ///< pairs near enough to be watched
+  double max_strain = 0;         ///< over all constraints, recomputed from the positions
+  double rms_strain = 0;
+  std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
+  double max_penetration = 0;                 ///< m, 0 without contacts
+  std::array<double, kStageCount> stage_seconds{};
+};
+
+struct Strain {
+  double max = 0;
+  double rms = 0;
+  std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
+};
+
+struct Energy {
+  double kinetic = 0;    ///< J
+  double potential = 0;  ///< J, of gravity, zero at the origin
+  double total() const { return kinetic + potential; }
+};
+
+/// One moving cloth: the state of a Model and the workspace of its solver. Movable, not copyable;
+/// particle numbers are those of the description.
+class Cloth {
+ public:
+  /// Checks the settings. The state starts as described.
+  static Result<Cloth> create(std::shared_ptr<const Model> model, const Settings& settings);
+  Cloth(Cloth&&) noexcept;
+  Cloth& operator=(Cloth&&) noexcept;
+  ~Cloth();
+
+  /// Advances by dt seconds (finite, > 0). An error means that dt was refused.
+  Result<StepReport> step(double dt);
+
+  std::size_t particle_count() const;
+  const Model& model() const;
+  const Settings& settings() const;
+
+  Vec3 position(std::uint32_t particle) const;
+  Vec3 velocity(std::uint32_t particle) const;
+  /// Copies one Vec3 per particle; out.size() must be particle_count() (else nothing is copied).
+  Result<void> read_positions(std::span<Vec3> out) const;
+  Result<void> read_velocities(std::span<Vec3> out) const;
+  /// Packed x y z floats for a vertex buffer; out.size() must be 3 * particle_count().
+  Result<void> read_positions(std::span<float> out) const;
+
+  /// Replace the state; finite values, one per particle.
+  Result<void> write_positions(std::span<const Vec3> in);
+  Result<void> write_velocities(std::span<const Vec3> in);
+  /// External forces in N besides gravity, kept until replaced. Empty: none.
+  Result<void> write_forces(std::span<const Vec3> in);
+  /// Places a fixed particle; the constraints follow it at the next step.
+  Result<void> move_fixed(std::uint32_t particle, Vec3 position);
+
+  Strain strain() const;           ///< recomputed from the positions
+  double max_penetration() const;  ///< m, over all sphere pairs; 0 without spheres
+  Energy energy() const;           ///< of the particles that are not fixed
+  /// FNV-1a over the bits of all positions and velocities, in the description's order.
+  std::uint64_t state_hash() const;
+  std::size_t bytes() const;  ///< held by this cloth, the shared model not included
+
+ private:
+  struct Impl;
+  explicit Cloth(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace weft
