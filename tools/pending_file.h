@@ -1,0 +1,39 @@
+/// A file that appears under its name only when it is complete: it is written beside its place
+/// under a temporary name, and renamed by commit().
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace weft::tools {
+
+class PendingFile {
+ public:
+  /// An error if nothing can be written at this place.
+  static Result<PendingFile> open(const std::string& path);
+  PendingFile(PendingFile&&) noexcept;
+  PendingFile& operator=(PendingFile&&) noexcept;
+  ~PendingFile();
+
+  const std::string& path() const;
+  std::FILE* stream() const;
+  void write(std::string_view bytes) const;
+
+  /// Flushes, closes and renames. An error if any write before it failed. Without a commit the
+  /// temporary file is removed when this object goes, or when the program is interrupted.
+  Result<void> commit();
+
+ private:
+  struct State;
+  explicit PendingFile(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// On SIGINT and SIGTERM: remove all pending files, say so in one line, exit with 128 + signal.
+void install_interrupt_handler();
+
+}  // namespace weft::tools

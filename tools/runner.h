@@ -1,0 +1,75 @@
+/// Runs a cloth for a number of frames and gathers every figure that the program reports.
+/// One frame is one time step. Only the calls of Cloth::step() are timed: what the caller does with
+/// a frame, and what is measured here after it, costs no reported time.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+namespace weft::tools {
+
+struct RunPlan {
+  double dt = 0.01;  ///< s
+  int steps = 200;   ///< frames to run
+  /// Runs of which the fastest is reported. Above 1 an untimed run goes first, to warm up.
+  int repeat = 1;
+};
+
+/// Called once per frame, frames counted from 1, with the state that the frame reached.
+/// With repeats it is called in the first (warm-up) run only.
+using FrameCallback = std::function<void(int frame, const Cloth&, const StepReport&)>;
+
+/// All figures of a run. Counts and seconds are sums over its frames; strains are fractions,
+/// recomputed from the positions after every frame.
+struct RunSummary {
+  int frames = 0;  ///< computed; below RunPlan::steps only if status is non_finite
+  Status status = Status::converged;  ///< the worst of all frames
+
+  double step_seconds = 0;    ///< wall time in step()
+  double solver_seconds = 0;  ///< of all stages but `report`, as the steps themselves measured it
+  std::array<double, kStageCount> stage_seconds{};
+
+  std::int64_t iterations = 0;
+  std::int64_t velocity_iterations = 0;
+  std::int64_t direction_updates = 0;
+  std::int64_t visits = 0;
+  std::int64_t corrections = 0;
+  int max_contacts = 0;  ///< most pairs watched in one frame
+
+  double max_strain = 0;       ///< over all frames and constraints
+  double mean_max_strain = 0;  ///< mean over the frames of each frame's largest strain
+  double rms_strain = 0;       ///< over all frames and constraints
+  double max_penetration = 0;  ///< m, over all frames and sphere pairs
+
+  double energy_start = 0;  ///< J, before the first frame
+  double energy_end = 0;    ///< J, after the last frame
+  double energy_gain = 0;   ///< J, largest over the frames of energy - energy_start
+  double lowest_y = 0;      ///< m, over all frames and particles
+
+  std::uint64_t state_hash = 0;  ///< of the last frame
+  std::size_t bytes = 0;         ///< of the cloth and its model
+  ModelInfo model;
+
+  bool reached_tolerance() const {
+    return status == Status::converged || status == Status::fixed_iterations;
+  }
+  double seconds_per_frame() const { return frames > 0 ? step_seconds / frames : 0; }
+  double iterations_per_step() const {
+    return frames > 0 ? static_cast<double>(iterations) / frames : 0;
+  }
+};
+
+/// Every repeat starts from the model's own state. A frame that ends non_finite ends the run. An
+/// error means that the settings or dt were refused.
+Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& settings,
+                       const RunPlan& plan, const FrameCallback& on_frame = {});
+
+/// The same from a description, which is validated first.
+Result<RunSummary> run(const SceneDescription& scene, const Settings& settings, const RunPlan& plan,
+                       const FrameCallback& on_frame = {});
+
+}  // namespace weft::tools
