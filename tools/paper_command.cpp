@@ -1,0 +1,182 @@
+#include "tools/paper_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "engine/scenes.h"
+#include "tools/json_output.h"
+#include "tools/paper_results.h"
+#include "tools/paper_study.h"
+#include "tools/pending_file.h"
+#include "tools/plotting.h"
+
+namespace weft::tools {
+namespace {
+
+constexpr int kExitBadInput = 2;
+constexpr int kExitNotConverged = 3;
+
+struct PaperOptions {
+  std::string json;
+  std::string out;
+  bool quick = false;
+  int repeat = 5;
+};
+
+/// One line on stderr, redrawn in place on a terminal; elsewhere one line per cell.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::size_t cells) : cells_(cells), redraws_(isatty(STDERR_FILENO) != 0) {}
+  ~ProgressLine() {
+    if (redraws_) fmt::print(stderr, "\r\033[K");
+  }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void next_cell(const paper::Cell& cell) {
+    ++cell_;
+    if (!redraws_) fmt::print(stderr, "{}\n", describe(cell));
+  }
+
+  void frame(const paper::Cell& cell, const paper::Variant& variant, int done, int total) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!redraws_ || now - drawn_ < std::chrono::milliseconds(100)) return;
+    drawn_ = now;
+    fmt::print(stderr, "\r{}  {:11} {:5}  frame {}/{}\033[K", describe(cell), variant.method,
+               name(variant.directions), done, total);
+    std::fflush(stderr);
+  }
+
+ private:
+  std::string describe(const paper::Cell& cell) const {
+    constexpr std::size_t kWidth = 20;
+    const std::size_t full = kWidth * (cell_ - 1) / cells_;
+    return fmt::format("[{:#<{}}{:.<{}}] {}/{} {} {}x{} at {:g} %{}", "", full, "", kWidth - full,
+                       cell_, cells_, cell.scene, cell.size, cell.size, 100 * cell.strain,
+                       cell.velocity_correction ? " + velocity correction" : "");
+  }
+
+  std::size_t cells_;
+  std::size_t cell_ = 0;
+  bool redraws_;
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+Result<paper::Study> carry_out(const PaperOptions& options) {
+  paper::Study study;
+  study.quick = options.quick;
+  study.repeat = options.repeat;
+  study.sphere_mass = scenes::Options{}.sphere_mass;
+  const auto table = paper::table_cells(options.quick);
+  const auto figure_4 = paper::figure_4_cells(options.quick);
+  ProgressLine line(table.size() + figure_4.size());
+  const auto progress = [&](const paper::Cell& cell, const paper::Variant& variant, int done,
+                            int total) { line.frame(cell, variant, done, total); };
+
+  for (const auto& [cells, rows] : {std::pair{&table, &study.rows}, {&figure_4, &study.figure_4}}) {
+    for (const paper::Cell& cell : *cells) {
+      line.next_cell(cell);
+      auto measured = paper::measure(cell, options.repeat, progress);
+      if (!measured) return Error{measured.error()};
+      for (paper::Row& row : measured.value()) rows->push_back(std::move(row));
+    }
+  }
+  return study;
+}
+
+Result<void> write_file(const std::filesystem::path& path, const std::string& content) {
+  auto file = PendingFile::open(path);
+  if (!file) return Error{file.error()};
+  file.value().write(content);
+  return file.value().commit();
+}
+
+Result<void> write_json(const std::string& destination, const Json& json) {
+  auto output = JsonOutput::open(destination);
+  if (!output) return Error{output.error()};
+  return output.value().write(json);
+}
+
+/// The data first: the pictures are drawn from it, and a machine without matplotlib keeps it.
+Result<void> write_folder(const std::filesystem::path& folder, const paper::Study& study) {
+  if (auto done = write_file(folder / "rows.csv", paper::rows_csv(study.rows)); !done) return done;
+  if (auto done = write_file(folder / "figure4.csv", paper::rows_csv(study.figure_4)); !done) {
+    return done;
+  }
+  if (auto done = write_file(folder / "summary.csv", paper::summary_csv(study)); !done) return done;
+  const std::string json = folder / "paper.json";
+  if (auto done = write_json(json, paper::to_json(study)); !done) return done;
+  const auto drawn = plot("paper_figures.py", {json, "--out", folder});
+  if (!drawn)
+    fmt::print(stderr, "weft paper: {}; the data is in {}\n", drawn.error(), folder.c_str());
+  return {};
+}
+
+Result<void> make_folder(const std::string& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem) return Error{fmt::format("--out {}: {}", folder, problem.message())};
+  // Opened and dropped: a folder that cannot be written is refused now.
+  const auto probe = PendingFile::open(std::filesystem::path(folder) / "paper.json");
+  return probe ? Result<void>{} : Result<void>{Error{probe.error()}};
+}
+
+int fail(const std::string& message) {
+  fmt::print(stderr, "weft paper: {}\n", message);
+  return kExitBadInput;
+}
+
+int run_paper(const PaperOptions& options) {
+  // Destinations are opened before minutes of work, not after.
+  std::optional<JsonOutput> json;
+  if (!options.json.empty()) {
+    auto opened = JsonOutput::open(options.json);
+    if (!opened) return fail(opened.error());
+    json = std::move(opened.value());
+  }
+  if (!options.out.empty()) {
+    if (const auto made = make_folder(options.out); !made) return fail(made.error());
+  }
+
+  const auto study = carry_out(options);
+  if (!study) return fail(study.error());
+
+  if (!json || !json->is_stdout()) fmt::print("{}", paper::to_text(study.value()));
+  if (json) {
+    if (const auto done = json->write(paper::to_json(study.value())); !done)
+      return fail(done.error());
+  }
+  if (!options.out.empty()) {
+    if (const auto done = write_folder(options.out, study.value()); !done)
+      return fail(done.error());
+  }
+  return paper::all_reached_tolerance(study.value()) ? 0 : kExitNotConverged;
+}
+
+}  // namespace
+
+void add_paper_command(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<PaperOptions>();
+  CLI::App* command = app.add_subcommand(
+      "paper", "Measure every combination of the paper's section 5 and print its Table 1");
+  command->add_option("--json", options->json, "Write the results as JSON; - for standard output");
+  command->add_option("--out", options->out,
+                      "Write CSV, JSON and the figures 2, 3, 4 into a folder");
+  command->add_flag("--quick", options->quick, "Fewer steps: under a minute, less to be trusted");
+  command->add_option("--repeat", options->repeat, "Most runs of one combination, fastest counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = run_paper(*options); });
+}
+
+}  // namespace weft::tools
