@@ -13,10 +13,10 @@
 namespace weft::scenes {
 
 struct Options {
-  int size = 20;              ///< N; particles in a line for "chain"
-  double slack = 0.05;        ///< sphere_drop: how much longer the sheet is than the gap it spans
-  double sphere_mass = 1;     ///< sphere_drop, kg
-  double end_mass = 1;        ///< chain, kg of the last particle
+  int size = 20;           ///< N; particles in a line for "chain"
+  double slack = 0.05;     ///< sphere_drop: how much longer the sheet is than the gap it spans
+  double sphere_mass = 1;  ///< sphere_drop, kg
+  double end_mass = 1;     ///< chain, kg of the last particle
 };
 
 struct BuiltIn {

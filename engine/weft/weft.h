@@ -5,8 +5,9 @@
 ///   weft::SceneDescription scene = ...;                    // plain vectors, SI units
 ///   auto model = weft::build_model(scene);                 // validates; immutable, shareable
 ///   auto cloth = weft::Cloth::create(model.value(), {});   // mutable state and its workspace
-///   auto report = cloth.value().step(0.01);                // one time step, with the error it reached
-///   cloth.value().read_positions(out);                     // in the numbering of the description
+///   auto report = cloth.value().step(0.01);                // one time step, with the error it
+///   reached cloth.value().read_positions(out);                     // in the numbering of the
+///   description
 ///
 /// Design:
 ///  1. The user asks for an error, not for an iteration count. Every step reports the error it
@@ -90,8 +91,8 @@ struct Constraint {
 /// is legal but inert: nothing can move it, so it is neither solved nor measured.
 struct SceneDescription {
   std::vector<Vec3> positions;
-  std::vector<Vec3> velocities;  ///< empty: at rest; else one per particle
-  std::vector<double> masses;    ///< one per particle, > 0, fixed particles included
+  std::vector<Vec3> velocities;      ///< empty: at rest; else one per particle
+  std::vector<double> masses;        ///< one per particle, > 0, fixed particles included
   std::vector<std::uint32_t> fixed;  ///< particles of infinite inertia; move them with move_fixed()
   std::vector<Constraint> constraints;
   Vec3 gravity{0, -10, 0};
@@ -140,16 +141,16 @@ struct Settings {
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per step whatever the error, nothing
   /// skipped, frozen directions renewed once per step.
   int iterations = 0;
-  int max_iterations = 1'000'000;  ///< bound on the work of one step; > 0
-  double contact_tolerance = 1e-4;  ///< m of penetration left; > 0
+  int max_iterations = 1'000'000;    ///< bound on the work of one step; > 0
+  double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
-  double impulse_limit = 0;  ///< N s, the largest impulse of one correction; 0: no limit
+  double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit
   Solver solver = Solver::gauss_seidel;
   Scheme scheme = Scheme::paper;
   Backend backend = Backend::reference;
   Directions directions = Directions::frozen;
-  bool anticipate = true;  ///< section 4.2: errors are updated, not recomputed
-  bool skip = true;        ///< section 4.3: satisfied constraints are passed over
+  bool anticipate = true;            ///< section 4.2: errors are updated, not recomputed
+  bool skip = true;                  ///< section 4.3: satisfied constraints are passed over
   bool velocity_correction = false;  ///< sections 3.2, 3.3: a second loop, on velocities
 };
 
@@ -183,10 +184,10 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 /// What one step did and what it reached.
 struct StepReport {
   Status status = Status::converged;
-  int iterations = 0;          ///< passes over the position constraints
-  int direction_updates = 0;   ///< renewals of the constraint directions
-  int velocity_iterations = 0;  ///< passes of the velocity loop
-  std::int64_t visits = 0;      ///< constraints whose error was looked at, both loops
+  int iterations = 0;            ///< passes over the position constraints
+  int direction_updates = 0;     ///< renewals of the constraint directions
+  int velocity_iterations = 0;   ///< passes of the velocity loop
+  std::int64_t visits = 0;       ///< constraints whose error was looked at, both loops
   std::int64_t corrections = 0;  ///< impulses applied, both loops
   int contacts = 0;              ///< pairs near enough to be watched
   double max_strain = 0;         ///< over all constraints, recomputed from the positions

@@ -1,0 +1,42 @@
+#include "engine/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft {
+
+Strain measure_strain(const Model& m, const kernels::Vectors& x) {
+  const ConstraintStore& s = m.constraints;
+  Strain strain;
+  double sum = 0;
+  for (std::size_t c = 0; c < s.size(); ++c) {
+    const double l = length(x[s.a[c]] - x[s.b[c]]);
+    const double stretch = (l - s.rest_length[c]) / s.rest_length[c];
+    const double error = c < s.bilateral ? std::abs(stretch) : std::max(0.0, stretch);
+    sum += error * error;
+    if (error > strain.max || strain.worst_constraint == kNoIndex) {
+      strain.max = error;
+      strain.worst_constraint = s.described[c];
+    }
+  }
+  if (s.size() > 0) strain.rms = std::sqrt(sum / static_cast<double>(s.size()));
+  return strain;
+}
+
+Energy measure_energy(const Model& m, const kernels::Vectors& x, const kernels::Vectors& v) {
+  Energy energy;
+  for (std::size_t i = 0; i < m.particles; ++i) {
+    if (m.inverse_mass[i] == 0) continue;
+    energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
+    energy.potential -= m.mass[i] * dot(m.gravity, x[i]);
+  }
+  return energy;
+}
+
+bool all_finite(const kernels::Vectors& v) {
+  double sum = 0;  // of zeros, unless some component is NaN or infinite
+  for (std::size_t i = 0; i < v.size(); ++i) sum += 0 * v.x[i] + 0 * v.y[i] + 0 * v.z[i];
+  return sum == 0;
+}
+
+}  // namespace weft

@@ -1,0 +1,16 @@
+/// What is measured on a state: always from positions and velocities, never from the solver.
+#pragma once
+
+#include <weft/weft.h>
+
+#include "engine/model.h"
+
+namespace weft {
+
+/// | |a-b| - rest | / rest over all active constraints; a slack rope has none.
+Strain measure_strain(const Model& model, const kernels::Vectors& position);
+Energy measure_energy(const Model& model, const kernels::Vectors& position,
+                      const kernels::Vectors& velocity);
+bool all_finite(const kernels::Vectors& vectors);
+
+}  // namespace weft

@@ -1,0 +1,72 @@
+/// One word per choice and per stage, the same in reports, options, benchmarks and tests.
+#include <weft/weft.h>
+
+namespace weft {
+
+std::string_view name(Solver solver) {
+  switch (solver) {
+    case Solver::gauss_seidel:
+      return "gauss_seidel";
+  }
+  return "unknown";
+}
+
+std::string_view name(Scheme scheme) {
+  switch (scheme) {
+    case Scheme::paper:
+      return "paper";
+  }
+  return "unknown";
+}
+
+std::string_view name(Directions directions) {
+  switch (directions) {
+    case Directions::each:
+      return "each";
+    case Directions::frozen:
+      return "frozen";
+  }
+  return "unknown";
+}
+
+std::string_view name(Backend backend) {
+  switch (backend) {
+    case Backend::reference:
+      return "reference";
+  }
+  return "unknown";
+}
+
+std::string_view name(Status status) {
+  switch (status) {
+    case Status::converged:
+      return "converged";
+    case Status::fixed_iterations:
+      return "fixed_iterations";
+    case Status::iteration_limit:
+      return "iteration_limit";
+    case Status::non_finite:
+      return "non_finite";
+  }
+  return "unknown";
+}
+
+std::string_view name(Stage stage) {
+  switch (stage) {
+    case Stage::predict:
+      return "predict";
+    case Stage::find_contacts:
+      return "find_contacts";
+    case Stage::solve_positions:
+      return "solve_positions";
+    case Stage::commit:
+      return "commit";
+    case Stage::correct_velocities:
+      return "correct_velocities";
+    case Stage::report:
+      return "report";
+  }
+  return "unknown";
+}
+
+}  // namespace weft

@@ -1,0 +1,187 @@
+#include "engine/validate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+namespace weft {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+std::string element(std::string_view field, std::size_t index) {
+  return std::string(field) + "[" + std::to_string(index) + "]";
+}
+
+Error refuse(std::string_view what, std::string_view reason, const std::string& value) {
+  return Error{std::string(what) + ": " + std::string(reason) + " (" + value + ")"};
+}
+
+bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+std::string text(Vec3 v) { return number(v.x) + ", " + number(v.y) + ", " + number(v.z); }
+
+Result<void> validate_positive(std::string_view field, double value) {
+  if (!std::isfinite(value) || value <= 0) {
+    return refuse(field, "must be finite and greater than 0", number(value));
+  }
+  return {};
+}
+
+Result<void> validate_particle(const std::string& field, std::uint32_t particle,
+                               std::size_t particles) {
+  if (particle < particles) return {};
+  return refuse(field, "no such particle, the scene has " + std::to_string(particles),
+                std::to_string(particle));
+}
+
+Result<void> validate_index_list(std::string_view field, std::span<const std::uint32_t> list,
+                                 std::size_t particles) {
+  std::vector<bool> seen(particles);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (auto r = validate_particle(element(field, i), list[i], particles); !r) return r;
+    if (seen[list[i]]) {
+      return refuse(element(field, i), "particle is listed twice", std::to_string(list[i]));
+    }
+    seen[list[i]] = true;
+  }
+  return {};
+}
+
+Result<void> validate_constraint(std::size_t index, const Constraint& c, std::size_t particles) {
+  const std::string field = element("constraints", index);
+  if (auto r = validate_particle(field + ".a", c.a, particles); !r) return r;
+  if (auto r = validate_particle(field + ".b", c.b, particles); !r) return r;
+  if (c.a == c.b) return refuse(field, "joins a particle to itself", std::to_string(c.a));
+  if (c.kind != ConstraintKind::distance && c.kind != ConstraintKind::rope) {
+    return refuse(field + ".kind", "unknown", std::to_string(static_cast<int>(c.kind)));
+  }
+  return validate_positive(field + ".rest_length", c.rest_length);
+}
+
+std::uint64_t key(const Constraint& c) {
+  const auto [low, high] = std::minmax(c.a, c.b);
+  return (std::uint64_t{low} << 32) | high;
+}
+
+Result<void> validate_no_duplicates(std::span<const Constraint> constraints) {
+  std::vector<std::uint32_t> order(constraints.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+    return std::pair(key(constraints[i]), i) < std::pair(key(constraints[j]), j);
+  });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const Constraint& c = constraints[order[k]];
+    if (key(c) != key(constraints[order[k - 1]])) continue;
+    return refuse(element("constraints", order[k]),
+                  "joins the same particles as " + element("constraints", order[k - 1]),
+                  std::to_string(c.a) + ", " + std::to_string(c.b));
+  }
+  return {};
+}
+
+Result<void> validate_constraints(std::span<const Constraint> constraints, std::size_t particles) {
+  if (constraints.size() >= kNoIndex) {
+    return refuse("constraints", "too many", std::to_string(constraints.size()));
+  }
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    if (auto r = validate_constraint(i, constraints[i], particles); !r) return r;
+  }
+  return validate_no_duplicates(constraints);
+}
+
+Result<void> validate_contacts(const SceneDescription& d) {
+  if (d.spheres.empty() && d.radii.empty()) return {};
+  if (d.spheres.empty()) {
+    return refuse("radii", "given without spheres, nothing would collide",
+                  std::to_string(d.radii.size()));
+  }
+  if (auto r = validate_size("radii", d.radii.size(), d.positions.size()); !r) return r;
+  for (std::size_t i = 0; i < d.radii.size(); ++i) {
+    if (!std::isfinite(d.radii[i]) || d.radii[i] < 0) {
+      return refuse(element("radii", i), "must be finite and at least 0", number(d.radii[i]));
+    }
+  }
+  if (auto r = validate_index_list("spheres", d.spheres, d.positions.size()); !r) return r;
+  for (std::size_t i = 0; i < d.spheres.size(); ++i) {
+    if (d.radii[d.spheres[i]] <= 0) {
+      return refuse(element("radii", d.spheres[i]), "a sphere needs a radius greater than 0",
+                    number(d.radii[d.spheres[i]]));
+    }
+  }
+  return {};
+}
+
+Result<void> validate_count(std::string_view field, int value, int least) {
+  if (value >= least) return {};
+  return refuse(field, "must be at least " + std::to_string(least), std::to_string(value));
+}
+
+template <class Enum>
+Result<void> validate_choice(std::string_view field, Enum value, Enum last) {
+  if (value <= last) return {};
+  return refuse(field, "unknown choice", std::to_string(static_cast<int>(value)));
+}
+
+}  // namespace
+
+Result<void> validate_size(std::string_view field, std::size_t size, std::size_t expected) {
+  if (size == expected) return {};
+  return refuse(field, "needs " + std::to_string(expected) + " elements", std::to_string(size));
+}
+
+Result<void> validate_vector(std::string_view field, std::size_t index, Vec3 vector) {
+  if (finite(vector)) return {};
+  return refuse(element(field, index), "must be finite", text(vector));
+}
+
+Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vectors,
+                              std::size_t particles) {
+  if (auto r = validate_size(field, vectors.size(), particles); !r) return r;
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    if (auto r = validate_vector(field, i, vectors[i]); !r) return r;
+  }
+  return {};
+}
+
+Result<void> validate_time_step(double dt) { return validate_positive("dt", dt); }
+
+Result<void> validate(const SceneDescription& d) {
+  const std::size_t particles = d.positions.size();
+  if (particles == 0) return refuse("positions", "a scene needs at least one particle", "0");
+  if (particles >= kNoIndex) return refuse("positions", "too many", std::to_string(particles));
+  if (auto r = validate_vectors("positions", d.positions, particles); !r) return r;
+  if (!d.velocities.empty()) {
+    if (auto r = validate_vectors("velocities", d.velocities, particles); !r) return r;
+  }
+  if (auto r = validate_size("masses", d.masses.size(), particles); !r) return r;
+  for (std::size_t i = 0; i < particles; ++i) {
+    if (auto r = validate_positive(element("masses", i), d.masses[i]); !r) return r;
+  }
+  if (!finite(d.gravity)) return refuse("gravity", "must be finite", text(d.gravity));
+  if (auto r = validate_index_list("fixed", d.fixed, particles); !r) return r;
+  if (auto r = validate_constraints(d.constraints, particles); !r) return r;
+  return validate_contacts(d);
+}
+
+Result<void> validate(const Settings& s) {
+  if (auto r = validate_positive("tolerance", s.tolerance); !r) return r;
+  if (auto r = validate_count("iterations", s.iterations, 0); !r) return r;
+  if (auto r = validate_count("max_iterations", s.max_iterations, 1); !r) return r;
+  if (auto r = validate_positive("contact_tolerance", s.contact_tolerance); !r) return r;
+  if (auto r = validate_positive("velocity_tolerance", s.velocity_tolerance); !r) return r;
+  if (!std::isfinite(s.impulse_limit) || s.impulse_limit < 0) {
+    return refuse("impulse_limit", "must be finite and at least 0", number(s.impulse_limit));
+  }
+  if (auto r = validate_choice("solver", s.solver, Solver::gauss_seidel); !r) return r;
+  if (auto r = validate_choice("scheme", s.scheme, Scheme::paper); !r) return r;
+  if (auto r = validate_choice("backend", s.backend, Backend::reference); !r) return r;
+  return validate_choice("directions", s.directions, Directions::frozen);
+}
+
+}  // namespace weft

@@ -1,0 +1,17 @@
+/// What is refused, and how it is said: one line of the form "field[index]: reason (value)".
+#pragma once
+
+#include <weft/weft.h>
+
+namespace weft {
+
+Result<void> validate(const SceneDescription& description);
+Result<void> validate(const Settings& settings);
+Result<void> validate_time_step(double dt);
+/// One finite vector per particle.
+Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vectors,
+                              std::size_t particles);
+Result<void> validate_vector(std::string_view field, std::size_t index, Vec3 vector);
+Result<void> validate_size(std::string_view field, std::size_t size, std::size_t expected);
+
+}  // namespace weft

@@ -1,0 +1,34 @@
+#include "kernels/reference/integrate.h"
+
+namespace weft::reference {
+
+using kernels::Vector;
+
+namespace {
+
+Vector acceleration(const Motion& m, std::size_t i) {
+  if (m.inverse_mass[i] == 0) return {0, 0, 0};
+  if (m.force.x == nullptr) return m.gravity;
+  return m.gravity + m.inverse_mass[i] * m.force[i];
+}
+
+}  // namespace
+
+void predict(const Motion& m, double h) {
+  for (std::size_t i = 0; i < m.particles; ++i) {
+    const Vector p = m.position[i] + h * m.velocity[i] + (0.5 * h * h) * acceleration(m, i);
+    m.predicted.set(i, p);
+    m.solved.set(i, p);
+  }
+}
+
+void commit(const Motion& m, double h, const kernels::VectorsView& next_position,
+            const kernels::VectorsView& next_velocity) {
+  for (std::size_t i = 0; i < m.particles; ++i) {
+    const Vector displacement = m.solved[i] - m.predicted[i];
+    next_position.set(i, m.solved[i]);
+    next_velocity.set(i, m.velocity[i] + h * acceleration(m, i) + (1 / h) * displacement);
+  }
+}
+
+}  // namespace weft::reference

@@ -1,0 +1,30 @@
+/// The first and the fourth stage of a step, in double.
+#pragma once
+
+#include <cstddef>
+
+#include "kernels/vectors.h"
+
+namespace weft::reference {
+
+/// The particles of a step. force may be null (x == nullptr): none besides gravity.
+struct Motion {
+  std::size_t particles = 0;
+  const double* inverse_mass = nullptr;  // 0: fixed, does not move
+  kernels::Vector gravity{};
+  kernels::VectorsView force{};
+  kernels::VectorsView position{}, velocity{};
+  kernels::VectorsView predicted{};  // p + h v + h^2 a / 2
+  kernels::VectorsView solved{};     // where the position loop works; starts as predicted
+};
+
+/// predicted = solved = p + h v + h^2/2 (g + F/m)            (paper eq. 2)
+void predict(const Motion& motion, double h);
+
+/// Writes the next state; position and velocity are only read. With D = solved - predicted
+///     p(t+h) = solved,   v(t+h) = v + h (g + F/m) + D / h.
+/// (The paper prints p(t) + D and h F: without the preview and without 1/m.)
+void commit(const Motion& motion, double h, const kernels::VectorsView& next_position,
+            const kernels::VectorsView& next_velocity);
+
+}  // namespace weft::reference

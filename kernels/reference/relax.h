@@ -1,0 +1,89 @@
+/// The impulse loops of the paper, in double, one constraint after the other: the oracle for every
+/// faster kernel. Each method is one class of two verbs,
+///
+///   renew()  take new directions (and errors) from the present x
+///   sweep()  one iteration: visit the constraints in order, correct those out of tolerance
+///
+/// and the loop around them is the same for all (relax.cpp).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "kernels/reference/relaxation.h"
+
+namespace weft::reference {
+
+/// Who is joined to whom, for anticipation and masks. Immutable; one per model.
+struct Topology {
+  /// Constraint c in [0, plain) shares a particle p, not a hub, with the constraints
+  /// row_constraint[k], k in [row_begin[c], row_begin[c+1]), in ascending order; row_later[c] is
+  /// the first k with row_constraint[k] > c. row_weight[k] = s w_p, s = +1 if p is the same end in
+  /// both.
+  const std::uint32_t* row_begin = nullptr;
+  const std::uint32_t* row_later = nullptr;
+  const std::uint32_t* row_constraint = nullptr;
+  const double* row_weight = nullptr;
+
+  /// Constraints at particle p: adjacent_constraint[k], k in [adjacent_begin[p],
+  /// adjacent_begin[p+1]); contacts are not among them.
+  const std::uint32_t* adjacent_begin = nullptr;
+  const std::uint32_t* adjacent_constraint = nullptr;
+
+  const std::uint8_t* hub = nullptr;     // per particle
+  const std::uint8_t* colour = nullptr;  // per plain constraint; < 64
+};
+
+/// Which contacts a particle is in: a linked list through the contacts. null: no contacts.
+struct ContactLists {
+  const std::uint32_t* first = nullptr;  // per particle; kNoContact ends a list
+  const std::uint32_t* next = nullptr;   // per contact (constraint index minus `pulling`)
+};
+inline constexpr std::uint32_t kNoContact = 0xffffffffu;
+
+/// Memory that the methods need, sized by the caller; contents need not survive a call. Only the
+/// arrays of the method in use are touched.
+struct Workspace {
+  double* error = nullptr;            // anticipation: per constraint
+  double* pending = nullptr;          // anticipation: impulse not yet in x, per constraint
+  double* row_product = nullptr;      // anticipation: per row entry, s w_p n_i . n_j
+  std::uint8_t* row_ready = nullptr;  // anticipation: per plain constraint
+  VectorsView hub_motion;             // anticipation: per particle, hubs only
+  std::span<const std::uint32_t> hubs;
+  std::uint8_t* unsatisfied = nullptr;  // anticipation + skip: per constraint, padded by 8
+  std::uint64_t* mask = nullptr;        // skip without anticipation: per particle
+  std::uint8_t* moved = nullptr;        // skip: per particle, since its directions were renewed
+};
+
+struct Method {
+  bool anticipate = false;         // 4.2
+  bool skip = false;               // 4.3: flags with anticipation, 64-bit masks without
+  bool frozen_directions = false;  // 4.4
+  int fixed_iterations = 0;        // > 0: exactly so many, to whatever error
+  int max_iterations = 1;
+};
+
+struct LoopResult {
+  int iterations = 0;
+  int direction_updates = 0;
+  std::int64_t visits = 0;
+  std::int64_t corrections = 0;
+  bool converged = false;
+};
+
+/// Position loop (3.2, 4.4): moves r.x until every true error is within tolerance.
+LoopResult relax_positions(const Relaxation& r, const Topology& topology,
+                           const ContactLists& contacts, const Workspace& workspace,
+                           const Method& method);
+
+/// Velocity loop (3.2, 3.3): r.x are velocities, r.n the directions at the committed positions,
+/// which stay: the problem is linear and one run along fixed directions solves it.
+LoopResult relax_velocities(const Relaxation& r, const Topology& topology,
+                            const ContactLists& contacts, const Workspace& workspace,
+                            const Method& method);
+
+/// Directions of all constraints from the given positions.
+void renew_all_directions(const Relaxation& r, VectorsView positions);
+
+}  // namespace weft::reference

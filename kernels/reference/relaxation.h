@@ -1,0 +1,101 @@
+/// The problem that every impulse loop of the reference solves, and the visit of one constraint.
+///
+/// Unknowns x: predicted positions (position loop) or velocities (velocity loop). Constraint c
+/// joins the particles a and b along the unit direction n = (p_a - p_b) / |p_a - p_b|. Its error is
+///
+///     e = n . (x_a - x_b) - target            (paper 4.1; target = rest length, r1 + r2, or 0)
+///
+/// and the impulse lambda that removes it, with w = 1/m (paper 3.2, 3.3; in the position loop
+/// lambda is an impulse times h, a mass times a length):
+///
+///     lambda = e / (w_a + w_b);   x_a -= w_a lambda n;   x_b += w_b lambda n
+///
+/// (The paper prints this magnitude as p' and then adds p' n to the positions; w is missing there.)
+///
+/// Unilateral constraints bound the accumulated impulse, not each change of it: an early over-push
+/// must be able to be taken back. With lambda > 0 shortening: ropes keep lambda >= 0, contacts
+/// keep lambda <= 0.
+///
+/// Constraints stand in four ranges, so that the common kind is solved without a question asked:
+///
+///   [0, plain)            distance, no hub at either end
+///   [plain, bilateral)    distance, a hub at one end or both
+///   [bilateral, pulling)  ropes
+///   [pulling, count)      contacts; a is the sphere
+///
+/// A hub is a particle of so many constraints (kHubDegree, or any sphere) that telling every
+/// neighbour of a change costs more than every neighbour asking for it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "kernels/vectors.h"
+
+namespace weft::reference {
+
+using kernels::Vector;
+using kernels::VectorsView;
+
+inline constexpr std::size_t kHubDegree = 16;
+inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+struct Relaxation {
+  std::size_t particles = 0;
+  std::size_t plain = 0, bilateral = 0, pulling = 0, count = 0;
+
+  const std::uint32_t* a = nullptr;
+  const std::uint32_t* b = nullptr;
+  const double* target = nullptr;
+  const double* tolerance = nullptr;       // |e| up to here is satisfied
+  const double* effective_mass = nullptr;  // 1 / (w_a + w_b)
+  const double* inverse_mass = nullptr;    // per particle
+
+  VectorsView x;              // per particle, changed
+  VectorsView n;              // per constraint, unit
+  double* impulse = nullptr;  // per constraint, accumulated lambda; read for unilateral ones only
+  double limit = kUnlimited;  // largest |lambda| of one correction (paper 4.2)
+};
+
+/// The change of constraint c's impulse that its error e calls for; 0 if it is satisfied or may not
+/// act. `impulse` is what it has accumulated.
+inline double impulse_change(const Relaxation& r, std::size_t c, double e, double impulse) {
+  if (std::abs(e) <= r.tolerance[c]) return 0;
+  double change = e * r.effective_mass[c];
+  if (r.limit < kUnlimited) change = std::clamp(change, -r.limit, r.limit);
+  if (c < r.bilateral) return change;
+  if (c < r.pulling) return std::max(change, -impulse);
+  return std::min(change, -impulse);
+}
+
+inline double error(const Relaxation& r, std::size_t c) {
+  return dot(r.n[c], r.x[r.a[c]] - r.x[r.b[c]]) - r.target[c];
+}
+
+/// Moves both ends of c by an impulse.
+inline void apply(const Relaxation& r, std::size_t c, double impulse) {
+  const std::size_t a = r.a[c], b = r.b[c];
+  const Vector j = impulse * r.n[c];
+  r.x.add(a, -r.inverse_mass[a] * j);
+  r.x.add(b, r.inverse_mass[b] * j);
+}
+
+/// Sets n_c from the positions x and returns the error along it, which is then the true error
+/// (paper 4.2: l = |n|, e = l - dist, n = n / l). Particles that coincide have no direction; any
+/// unit vector separates them.
+inline double renew_direction(const Relaxation& r, std::size_t c) {
+  const Vector d = r.x[r.a[c]] - r.x[r.b[c]];
+  const double l = length(d);
+  r.n.set(c, l > 0 ? (1 / l) * d : Vector{0, 1, 0});
+  return l - r.target[c];
+}
+
+/// What one pass over the constraints did.
+struct Sweep {
+  std::int64_t visits = 0;
+  std::int64_t corrections = 0;
+};
+
+}  // namespace weft::reference
