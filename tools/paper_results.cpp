@@ -70,7 +70,7 @@ void write_heading(Text out, const Study& study) {
   fmt::format_to(out, "Section 5 of the paper, scalar reference backend, steps of 0.01 s.\n");
   if (study.quick) {
     fmt::format_to(out,
-                   "QUICK: 40 steps instead of 200 at 10 % and 1 %, 20 at 0.001 % (the sphere of "
+                   "QUICK: 60 steps instead of 200 at 10 % and 1 %, 20 at 0.001 % (the sphere of "
                    "sphere_drop\nlands after the 24th), figure 4 up to 20 x 20. No substitute for "
                    "the whole.\n");
   }
@@ -120,7 +120,7 @@ void write_rows(Text out, const std::vector<Row>& rows, std::string_view title) 
                  "corrections", "max strain", "status");
   for (const Row& row : rows) {
     const Cell& cell = row.cell;
-    fmt::format_to(out, "{:12}{:>8}{:>9}  {:10}{:13}{:10.4f}{:8.2f}{:11.1f}{:14}{:>13}  {}\n",
+    fmt::format_to(out, "{:12}{:>8}{:>9}  {:10}{:13}{:10.6f}{:8.2f}{:11.1f}{:14}{:>13}  {}\n",
                    cell.scene, fmt::format("{0} x {0}", cell.size), percent(cell.strain),
                    cell.velocity_correction ? "corrected" : "-", row.variant.label(), row.seconds,
                    row.times_faster, row.summary.iterations_per_step(), row.summary.corrections,

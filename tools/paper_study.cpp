@@ -31,11 +31,11 @@ constexpr double kDt = 0.01;  // s
 /// Runs of one variant stop when they have taken this long together.
 constexpr double kEnoughSeconds = 0.3;
 
-/// The sphere lands after 0.24 s: 40 steps show every scene at work. At 0.001 % the time goes into
+/// The sphere lands after 0.24 s: 60 steps show every scene at work. At 0.001 % the time goes into
 /// the landing, so there the quick version stops before it.
 int steps_of(double strain, bool quick) {
   if (!quick) return kSteps;
-  return strain < 0.001 ? 20 : 40;
+  return strain < 0.001 ? 20 : 60;
 }
 
 Settings settings_of(const Cell& cell, const Variant& variant) {
