@@ -4,6 +4,7 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -14,13 +15,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The source tree's folder, or one named `plots` beside the program if it has moved.
-fs::path plots_folder() {
+/// Where the scripts may lie: in the source tree that the program was built from, or beside it.
+std::vector<fs::path> plots_folders() {
   std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  std::vector<fs::path> folders;
 #ifdef WEFT_PLOTS_DIR
-  if (fs::exists(WEFT_PLOTS_DIR, ignored)) return WEFT_PLOTS_DIR;
+  folders.emplace_back(WEFT_PLOTS_DIR);
 #endif
-  return fs::read_symlink("/proc/self/exe", ignored).parent_path() / "plots";
+  folders.push_back(program / "plots");
+  folders.push_back(program.parent_path() / "tools" / "plots");
+  return folders;
 }
 
 /// The exit status of a program, or -1 if it could not be started or was killed.
@@ -40,11 +45,13 @@ int run_program(std::vector<std::string> words) {
 }  // namespace
 
 Result<void> plot(const std::string& script, const std::vector<std::string>& arguments) {
-  const fs::path folder = plots_folder();
-  std::error_code ignored;
-  if (!fs::exists(folder / script, ignored)) {
-    return Error{fmt::format("no pictures: {} not found", (folder / script).string())};
-  }
+  const auto folders = plots_folders();
+  const auto found = std::ranges::find_if(folders, [&](const fs::path& folder) {
+    std::error_code ignored;
+    return fs::exists(folder / script, ignored);
+  });
+  if (found == folders.end()) return Error{fmt::format("no pictures: {} not found", script)};
+  const fs::path& folder = *found;
   std::vector<std::string> words{folder / "python", folder / script};
   words.insert(words.end(), arguments.begin(), arguments.end());
   if (run_program(std::move(words)) == 0) return {};

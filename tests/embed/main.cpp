@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
 
 int fail(const std::string& message) { return std::puts(message.c_str()), 1; }
 

@@ -70,7 +70,31 @@ def read_obj(path):
     if not groups:
         raise ValueError(f"{path}: no faces")
     vertices = np.array(vertices)
-    return [Mesh(vertices, faces, name.startswith("sphere")) for name, faces in groups.items()]
+    meshes = [Mesh(vertices, faces, name.startswith("sphere")) for name, faces in groups.items()]
+    # The longest distance across a face of the cloth.
+    across = max((np.linalg.norm(vertices[face[0]] - vertices[face[len(face) // 2]])
+                  for name, faces in groups.items() if not name.startswith("sphere")
+                  for face in faces), default=0.0)
+    return [smooth_sphere(mesh, across) if mesh.is_sphere else mesh for mesh in meshes]
+
+
+def smooth_sphere(mesh, cloth_faces):
+    """A finer sphere in place of the file's, drawn smaller by as much as the flat faces between
+    particles that touch it would otherwise cut into it."""
+    centre = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
+    radius = float(np.linalg.norm(mesh.vertices - centre, axis=1).max())
+    radius = 0.995 * np.sqrt(max(radius**2 - (cloth_faces / 2)**2, (0.8 * radius)**2))
+    rows, columns = 28, 56
+    theta = np.repeat(np.linspace(0, np.pi, rows + 1), columns)
+    phi = np.tile(np.arange(columns) * 2 * np.pi / columns, rows + 1)
+    vertices = centre + radius * np.stack(
+        [np.sin(theta) * np.cos(phi), np.cos(theta), np.sin(theta) * np.sin(phi)], 1)
+    faces = []
+    for r in range(rows):
+        for c in range(columns):
+            a, b = r * columns + c, r * columns + (c + 1) % columns
+            faces.append([a, b, b + columns, a + columns])
+    return Mesh(vertices, faces, True)
 
 
 class View:
@@ -242,7 +266,7 @@ def main():
     parser.add_argument("--out", required=True, help="the PNG to write")
     parser.add_argument("--size", type=int, default=440, help="pixels of one picture's side")
     parser.add_argument("--azimuth", type=float, default=38, help="degrees from +z towards +x")
-    parser.add_argument("--elevation", type=float, default=18, help="degrees above the horizon")
+    parser.add_argument("--elevation", type=float, default=24, help="degrees above the horizon")
     options = parser.parse_args()
 
     import matplotlib

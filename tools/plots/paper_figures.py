@@ -118,7 +118,7 @@ def figure_4(study):
     seconds = {(r["method"], r["directions"], r["strain"], r["size"]): r["seconds"] for r in rows}
     steps = {entry["strain"]: entry["steps"] for entry in study["steps"]}
 
-    figure, axes = plt.subplots(figsize=(9.4, 4.8))
+    figure, axes = plt.subplots(figsize=(9.4, 5.2))
     width = 0.84 / len(sets)
     for k, (method, directions, strain, colour) in enumerate(sets):
         xs = [x + (k - (len(sets) - 1) / 2) * width for x in range(len(sizes))]
@@ -132,13 +132,14 @@ def figure_4(study):
                   color="#b3261e", fontsize=8.5)
     axes.set_yscale("log")
     axes.set_ylabel("seconds per simulated second")
-    axes.set_xticks(range(len(sizes)), [f"{size} x {size}" for size in sizes])
+    axes.set_xticks(range(len(sizes)), [f"{size} x {size} particles" for size in sizes])
     axes.tick_params(axis="x", length=0)
-    axes.set_xlabel("particles")
     axes.grid(axis="y", color="0.9", linewidth=0.8)
     axes.set_xlim(-0.5, len(sizes) - 0.5)
-    axes.legend(ncol=2, loc="upper left", title="method, largest strain", title_fontsize=9,
-                bbox_to_anchor=(0.0, 1.0), alignment="left")
+    bars, names = axes.get_legend_handles_labels()
+    by_strain = [k for pair in zip(range(len(strains)), range(len(strains), len(sets))) for k in pair]
+    figure.legend([bars[k] for k in by_strain], [names[k] for k in by_strain], loc="lower center",
+                  ncol=len(strains), columnspacing=2.5)
     figure.suptitle("Figure 4: absolute runtime of hang by size", x=0.08, ha="left", fontweight="bold",
                     fontsize=11.5)
     reached = all(row["status"] == "converged" for row in rows)
@@ -146,7 +147,7 @@ def figure_4(study):
                 + ("reached in every step" if reached else "NOT reached in every step")
                 + ("; QUICK run, few steps" if study.get("quick") else ""),
                 fontsize=8.5, color="0.35")
-    figure.subplots_adjust(left=0.08, right=0.985, top=0.88, bottom=0.11)
+    figure.subplots_adjust(left=0.08, right=0.985, top=0.88, bottom=0.165)
     return figure
 
 
