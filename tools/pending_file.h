@@ -19,7 +19,7 @@ class PendingFile {
   PendingFile& operator=(PendingFile&&) noexcept;
   ~PendingFile();
 
-  const std::string& path() const;
+  /// For seeking; write with write(), which remembers a failure.
   std::FILE* stream() const;
   void write(std::string_view bytes) const;
 

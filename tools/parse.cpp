@@ -1,0 +1,45 @@
+#include "tools/parse.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace weft::tools {
+namespace {
+
+template <class Number>
+std::optional<Number> parse_whole(std::string_view text) {
+  Number number{};
+  const char* end = text.data() + text.size();
+  const auto [stop, failure] = std::from_chars(text.data(), end, number);
+  if (failure != std::errc{} || stop != end) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view text) {
+  const auto number = parse_whole<double>(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::optional<long long> parse_count(std::string_view text) {
+  const auto count = parse_whole<long long>(text);
+  return count && *count >= 0 ? count : std::nullopt;
+}
+
+Result<double> parse_tolerance(std::string_view option, std::string_view text) {
+  const bool percent = text.ends_with('%');
+  const auto number = parse_number(percent ? text.substr(0, text.size() - 1) : text);
+  if (!number || *number <= 0) {
+    return Error{fmt::format("{}: '{}' is not a strain above 0, like 1% or 0.01", option, text)};
+  }
+  return percent ? *number / 100 : *number;
+}
+
+Result<bool> parse_switch(std::string_view option, std::string_view text) {
+  if (text == "on") return true;
+  if (text == "off") return false;
+  return Error{fmt::format("{}: '{}' is not one of on, off", option, text)};
+}
+
+}  // namespace weft::tools

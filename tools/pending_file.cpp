@@ -1,0 +1,117 @@
+#include "tools/pending_file.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+namespace weft::tools {
+namespace {
+
+// The temporary names that a signal handler must remove. A handler may neither lock nor allocate,
+// hence this table of plain pointers. A file beyond its end is only not removed on an interrupt.
+std::array<std::atomic<const char*>, 32> pending_names{};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+// Asked before any signal can come.
+bool stderr_is_terminal = false;
+
+void remember(const char* name) {
+  for (auto& slot : pending_names) {
+    const char* expected = nullptr;
+    if (slot.compare_exchange_strong(expected, name)) return;
+  }
+}
+
+void forget(const char* name) {
+  for (auto& slot : pending_names) {
+    const char* expected = name;
+    if (slot.compare_exchange_strong(expected, nullptr)) return;
+  }
+}
+
+extern "C" void remove_pending_and_exit(int signal) {
+  for (auto& slot : pending_names) {
+    if (const char* name = slot.load()) unlink(name);
+  }
+  constexpr char kLine[] = "\nweft: interrupted\n";
+  const std::size_t begin = stderr_is_terminal ? 0 : 1;  // there may be a progress line to leave
+  [[maybe_unused]] const auto written =
+      write(STDERR_FILENO, kLine + begin, sizeof kLine - 1 - begin);
+  _exit(128 + signal);
+}
+
+}  // namespace
+
+struct PendingFile::State {
+  std::string path;
+  std::string temporary;  ///< empty for a device or pipe, which is written in place
+  std::FILE* stream = nullptr;
+  int failure = 0;  ///< errno of the first failed write
+
+  ~State() {
+    if (stream != nullptr) std::fclose(stream);
+    if (temporary.empty()) return;
+    unlink(temporary.c_str());
+    forget(temporary.c_str());
+  }
+};
+
+PendingFile::PendingFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PendingFile::PendingFile(PendingFile&&) noexcept = default;
+PendingFile& PendingFile::operator=(PendingFile&&) noexcept = default;
+PendingFile::~PendingFile() = default;
+
+Result<PendingFile> PendingFile::open(const std::string& path) {
+  const auto refused = [&] {
+    return Error{fmt::format("cannot write '{}': {}", path, std::strerror(errno))};
+  };
+  struct stat place {};
+  const bool exists = stat(path.c_str(), &place) == 0;
+  auto state = std::make_unique<State>();
+  state->path = path;
+  if (!exists || S_ISREG(place.st_mode)) {
+    state->temporary = fmt::format("{}.{}.part", path, getpid());
+    remember(state->temporary.c_str());
+  }
+  const std::string& name = state->temporary.empty() ? path : state->temporary;
+  state->stream = std::fopen(name.c_str(), "wbe");
+  if (state->stream == nullptr) return refused();
+  return PendingFile(std::move(state));
+}
+
+std::FILE* PendingFile::stream() const { return state_->stream; }
+
+void PendingFile::write(std::string_view bytes) const {
+  const bool complete = std::fwrite(bytes.data(), 1, bytes.size(), state_->stream) == bytes.size();
+  if (!complete && state_->failure == 0) state_->failure = errno;
+}
+
+Result<void> PendingFile::commit() {
+  State& state = *state_;
+  const auto refused = [&](int failure) {
+    return Error{fmt::format("cannot write '{}': {}", state.path, std::strerror(failure))};
+  };
+  if (state.failure != 0) return refused(state.failure);
+  if (std::fflush(state.stream) != 0) return refused(errno);
+  if (state.temporary.empty()) return {};
+  if (std::rename(state.temporary.c_str(), state.path.c_str()) != 0) return refused(errno);
+  forget(state.temporary.c_str());
+  state.temporary.clear();
+  return {};
+}
+
+void install_interrupt_handler() {
+  stderr_is_terminal = isatty(STDERR_FILENO) == 1;
+  struct sigaction action {};
+  action.sa_handler = remove_pending_and_exit;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+}  // namespace weft::tools

@@ -1,0 +1,29 @@
+#include "tools/text_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+namespace weft::tools {
+
+Result<std::string> read_text_file(const std::string& path) {
+  const auto refused = [&] {
+    return Error{fmt::format("cannot read '{}': {}", path, std::strerror(errno))};
+  };
+  const auto close = [](std::FILE* stream) { std::fclose(stream); };
+  const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rbe"), close);
+  if (!file) return refused();
+  std::string text;
+  std::array<char, 1 << 16> block{};
+  while (const std::size_t size = std::fread(block.data(), 1, block.size(), file.get())) {
+    text.append(block.data(), size);
+  }
+  if (std::ferror(file.get())) return refused();
+  return text;
+}
+
+}  // namespace weft::tools
