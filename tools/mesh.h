@@ -1,0 +1,28 @@
+/// What a picture of a cloth needs beside its particles: which vertices and faces they carry. A
+/// mesh keeps the numbering of the file that it came from, so that saved frames fit that file.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace weft::tools {
+
+struct Mesh {
+  std::vector<Vec3> vertices;  ///< where they start
+  /// One per vertex; vertices of one particle move as one. kNoIndex: no particle, it stays.
+  std::vector<std::uint32_t> particle_of_vertex;
+  std::vector<std::vector<std::uint32_t>> faces;  ///< vertex numbers, in order around the face
+  std::vector<std::vector<std::uint32_t>> lines;  ///< vertex numbers along each line
+};
+
+/// Size x size particles, particle (i, j) numbered i * size + j, as in the built-in scenes.
+Mesh grid_mesh(const SceneDescription& scene, std::uint32_t size);
+/// One vertex per particle and one line per constraint.
+Mesh line_mesh(const SceneDescription& scene);
+
+/// Where the mesh's vertices are now.
+std::vector<Vec3> vertex_positions(const Mesh& mesh, const Cloth& cloth);
+
+}  // namespace weft::tools

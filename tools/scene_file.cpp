@@ -1,0 +1,215 @@
+#include "tools/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/text_file.h"
+
+namespace weft::tools {
+namespace {
+
+// --------------------------------------------------------------------------------------- reading
+
+/// Thrown while reading, caught in parse_scene(): a file nests, and its errors end everything.
+struct Refused {
+  std::string message;
+};
+
+[[noreturn]] void refuse(const std::string& place, std::string_view expected, const Json& found) {
+  std::string text = found.dump();
+  if (text.size() > 40) text = text.substr(0, 40) + "...";
+  throw Refused{fmt::format("{}: expected {}, not {}", place, expected, text)};
+}
+
+double read_number(const Json& json, const std::string& place) {
+  if (!json.is_number()) refuse(place, "a number", json);
+  return json.get<double>();
+}
+
+std::uint32_t read_index(const Json& json, const std::string& place) {
+  if (!json.is_number_unsigned() || json.get<std::uint64_t>() >= kNoIndex) {
+    refuse(place, "a particle number", json);
+  }
+  return json.get<std::uint32_t>();
+}
+
+Vec3 read_vector(const Json& json, const std::string& place) {
+  if (!json.is_array() || json.size() != 3) refuse(place, "[x, y, z]", json);
+  const auto component = [&](std::size_t i) {
+    return read_number(json[i], fmt::format("{}[{}]", place, i));
+  };
+  return {component(0), component(1), component(2)};
+}
+
+template <class Read>
+auto read_array(const Json& json, const std::string& place, Read read) {
+  if (!json.is_array()) refuse(place, "an array", json);
+  std::vector<decltype(read(json, place))> values;
+  values.reserve(json.size());
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    values.push_back(read(json[i], fmt::format("{}[{}]", place, i)));
+  }
+  return values;
+}
+
+ConstraintKind read_kind(const Json& json, const std::string& place) {
+  if (json == "distance") return ConstraintKind::distance;
+  if (json == "rope") return ConstraintKind::rope;
+  refuse(place, "\"distance\" or \"rope\"", json);
+}
+
+/// A rest length that the file leaves out becomes 0 here: legal lengths are above 0.
+constexpr double kMeasured = 0;
+
+double read_rest_length(const Json& json, const std::string& place) {
+  if (json.is_null()) return kMeasured;
+  const double length = read_number(json, place);
+  if (!(length > 0)) refuse(place, "a length above 0", json);
+  return length;
+}
+
+Constraint read_constraint(const Json& json, const std::string& place) {
+  if (!json.is_array() || json.size() < 2 || json.size() > 4) {
+    refuse(place, "[a, b, rest length, kind]", json);
+  }
+  Constraint constraint;
+  constraint.a = read_index(json[0], place + "[0]");
+  constraint.b = read_index(json[1], place + "[1]");
+  constraint.rest_length = json.size() > 2 ? read_rest_length(json[2], place + "[2]") : kMeasured;
+  if (json.size() > 3) constraint.kind = read_kind(json[3], place + "[3]");
+  return constraint;
+}
+
+void measure_rest_lengths(SceneDescription& scene) {
+  for (std::size_t i = 0; i < scene.constraints.size(); ++i) {
+    Constraint& constraint = scene.constraints[i];
+    if (constraint.rest_length != kMeasured) continue;
+    for (const std::uint32_t end : {constraint.a, constraint.b}) {
+      if (end < scene.positions.size()) continue;
+      throw Refused{fmt::format("constraints[{}]: there is no particle {}", i, end)};
+    }
+    const Vec3 a = scene.positions[constraint.a];
+    const Vec3 b = scene.positions[constraint.b];
+    constraint.rest_length = std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+  }
+}
+
+void share_total_mass(SceneDescription& scene, double total) {
+  const auto count = static_cast<double>(scene.positions.size());
+  scene.masses.assign(scene.positions.size(), total / count);
+}
+
+void read_key(const std::string& key, const Json& json, SceneDescription& scene) {
+  if (key == "gravity") {
+    scene.gravity = read_vector(json, key);
+  } else if (key == "positions") {
+    scene.positions = read_array(json, key, read_vector);
+  } else if (key == "velocities") {
+    scene.velocities = read_array(json, key, read_vector);
+  } else if (key == "masses") {
+    scene.masses = read_array(json, key, read_number);
+  } else if (key == "fixed") {
+    scene.fixed = read_array(json, key, read_index);
+  } else if (key == "constraints") {
+    scene.constraints = read_array(json, key, read_constraint);
+  } else if (key == "spheres") {
+    scene.spheres = read_array(json, key, read_index);
+  } else if (key == "radii") {
+    scene.radii = read_array(json, key, read_number);
+  } else if (key != "total_mass") {
+    throw Refused{fmt::format("unknown key '{}'", key)};
+  }
+}
+
+SceneDescription read_scene(const Json& json) {
+  if (!json.is_object()) throw Refused{"expected an object with the key 'positions'"};
+  SceneDescription scene;
+  for (const auto& [key, value] : json.items()) read_key(key, value, scene);
+  if (!json.contains("positions")) throw Refused{"the key 'positions' is missing"};
+  if (json.contains("masses") == json.contains("total_mass")) {
+    throw Refused{"expected one of the keys 'masses' and 'total_mass'"};
+  }
+  if (json.contains("total_mass")) {
+    share_total_mass(scene, read_number(json["total_mass"], "total_mass"));
+  }
+  measure_rest_lengths(scene);
+  return scene;
+}
+
+/// "[json.exception.parse_error.101] parse error at line 2, ..." without the brackets.
+std::string plain_message(const Json::exception& exception) {
+  const std::string_view text = exception.what();
+  const std::size_t bracket = text.find("] ");
+  return std::string(bracket == std::string_view::npos ? text : text.substr(bracket + 2));
+}
+
+// --------------------------------------------------------------------------------------- writing
+
+std::string vector_row(const Vec3& v) { return Json{v.x, v.y, v.z}.dump(); }
+
+std::string constraint_row(const Constraint& constraint) {
+  Json row{constraint.a, constraint.b, constraint.rest_length};
+  if (constraint.kind == ConstraintKind::rope) row.push_back("rope");
+  return row.dump();
+}
+
+template <class Value, class Row>
+void add_rows(std::string& text, std::string_view key, const std::vector<Value>& values, Row row) {
+  if (values.empty()) return;
+  text += fmt::format(",\n\"{}\": [", key);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += i == 0 ? "\n" : ",\n";
+    text += row(values[i]);
+  }
+  text += "\n]";
+}
+
+template <class Number>
+void add_numbers(std::string& text, std::string_view key, const std::vector<Number>& values) {
+  if (!values.empty()) text += fmt::format(",\n\"{}\": {}", key, Json(values).dump());
+}
+
+}  // namespace
+
+Result<SceneDescription> parse_scene(std::string_view text) {
+  try {
+    return read_scene(Json::parse(text));
+  } catch (const Refused& refused) {
+    return Error{refused.message};
+  } catch (const Json::exception& exception) {
+    return Error{plain_message(exception)};
+  }
+}
+
+Result<SceneDescription> read_scene_file(const std::string& path) {
+  const auto text = read_text_file(path);
+  if (!text) return Error{text.error()};
+  auto scene = parse_scene(text.value());
+  if (!scene) return Error{fmt::format("{}: {}", path, scene.error())};
+  return scene;
+}
+
+std::string scene_text(const SceneDescription& scene) {
+  std::string text = fmt::format("{{\n\"gravity\": {}", vector_row(scene.gravity));
+  add_rows(text, "positions", scene.positions, vector_row);
+  add_rows(text, "velocities", scene.velocities, vector_row);
+  add_numbers(text, "masses", scene.masses);
+  add_numbers(text, "fixed", scene.fixed);
+  add_rows(text, "constraints", scene.constraints, constraint_row);
+  add_numbers(text, "spheres", scene.spheres);
+  add_numbers(text, "radii", scene.radii);
+  return text + "\n}\n";
+}
+
+SceneDescription present_scene(const SceneDescription& scene, const Cloth& cloth) {
+  SceneDescription present = scene;
+  present.velocities.resize(scene.positions.size());
+  for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
+    present.positions[i] = cloth.position(i);
+    present.velocities[i] = cloth.velocity(i);
+  }
+  return present;
+}
+
+}  // namespace weft::tools
