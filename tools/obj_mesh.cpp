@@ -1,0 +1,277 @@
+#include "tools/obj_mesh.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <tuple>
+#include <unordered_set>
+
+#include "tools/parse.h"
+#include "tools/pin_rule.h"
+#include "tools/text_file.h"
+
+#define TINYOBJLOADER_IMPLEMENTATION
+#define TINYOBJLOADER_USE_DOUBLE
+#include <tiny_obj_loader.h>
+
+namespace weft::tools {
+namespace {
+
+// --------------------------------------------------------------------------------------- reading
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  constexpr std::string_view kBlanks = " \t\r";
+  std::vector<std::string_view> words;
+  for (std::size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kBlanks, end);
+  }
+  return words;
+}
+
+bool is_vertex(std::span<const std::string_view> words) {
+  return words.size() >= 4 && parse_number(words[1]) && parse_number(words[2]) &&
+         parse_number(words[3]);
+}
+
+/// What the loader would accept in silence: it reads a broken number as 0, and counts the corners
+/// of a face in a byte.
+Result<void> check_lines(const std::string& text) {
+  constexpr std::size_t kMostCorners = 255;
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const auto words = words_of(line);
+    if (words.empty()) continue;
+    if (words[0] == "v" && !is_vertex(words)) {
+      return Error{fmt::format("line {}: '{}': a vertex needs three finite numbers", number, line)};
+    }
+    if (words[0] == "f" && words.size() - 1 > kMostCorners) {
+      return Error{fmt::format("line {}: a face of {} vertices; at most {} can be read", number,
+                               words.size() - 1, kMostCorners)};
+    }
+  }
+  return {};
+}
+
+/// Cuts a flat list of corners into its faces or lines.
+template <class Count>
+Result<void> add_parts(const std::vector<tinyobj::index_t>& corners,
+                       const std::vector<Count>& counts, std::size_t vertex_count,
+                       std::vector<std::vector<std::uint32_t>>& parts) {
+  auto corner = corners.begin();
+  for (const Count count : counts) {
+    std::vector<std::uint32_t> part;
+    for (Count i = 0; i < count; ++i, ++corner) {
+      const auto vertex = static_cast<std::size_t>(corner->vertex_index);
+      if (corner->vertex_index < 0 || vertex >= vertex_count) {
+        return Error{fmt::format("a face or line uses vertex {} of {}", corner->vertex_index + 1,
+                                 vertex_count)};
+      }
+      part.push_back(static_cast<std::uint32_t>(vertex));
+    }
+    parts.push_back(std::move(part));
+  }
+  return {};
+}
+
+Result<Mesh> load_mesh(const std::string& text) {
+  if (auto checked = check_lines(text); !checked) return Error{checked.error()};
+  tinyobj::attrib_t attributes;
+  std::vector<tinyobj::shape_t> shapes;
+  std::vector<tinyobj::material_t> materials;
+  std::string warning;
+  std::string error;
+  std::istringstream stream(text);
+  constexpr bool kTriangulate = false;
+  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, nullptr,
+                        kTriangulate)) {
+    return Error{error.substr(0, error.find('\n'))};
+  }
+  Mesh mesh;
+  for (std::size_t i = 0; i + 2 < attributes.vertices.size(); i += 3) {
+    const double* v = &attributes.vertices[i];
+    mesh.vertices.push_back({v[0], v[1], v[2]});
+  }
+  for (const tinyobj::shape_t& shape : shapes) {
+    const std::size_t count = mesh.vertices.size();
+    auto added = add_parts(shape.mesh.indices, shape.mesh.num_face_vertices, count, mesh.faces);
+    if (!added) return Error{added.error()};
+    added = add_parts(shape.lines.indices, shape.lines.num_line_vertices, count, mesh.lines);
+    if (!added) return Error{added.error()};
+  }
+  if (mesh.faces.empty() && mesh.lines.empty()) return Error{"no face and no line in the file"};
+  return mesh;
+}
+
+// --------------------------------------------------------------------------------------- welding
+
+std::vector<bool> used_vertices(const Mesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const auto* parts : {&mesh.faces, &mesh.lines}) {
+    for (const auto& part : *parts) {
+      for (const std::uint32_t vertex : part) used[vertex] = true;
+    }
+  }
+  return used;
+}
+
+/// Numbers the particles in the order of their first vertices. Returns their positions.
+std::vector<Vec3> weld(Mesh& mesh) {
+  const std::vector<bool> used = used_vertices(mesh);
+  std::map<std::tuple<double, double, double>, std::uint32_t> particle_at;
+  std::vector<Vec3> positions;
+  mesh.particle_of_vertex.assign(mesh.vertices.size(), kNoIndex);
+  for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
+    if (!used[vertex]) continue;
+    const Vec3 v = mesh.vertices[vertex];
+    const auto next = static_cast<std::uint32_t>(positions.size());
+    const auto [entry, is_new] = particle_at.try_emplace({v.x, v.y, v.z}, next);
+    if (is_new) positions.push_back(v);
+    mesh.particle_of_vertex[vertex] = entry->second;
+  }
+  return positions;
+}
+
+// --------------------------------------------------------------------------------------- joining
+
+/// Adds constraints at their present lengths, the first of any two particles only.
+class Joiner {
+ public:
+  Joiner(const Mesh& mesh, SceneDescription& scene) : mesh_(mesh), scene_(scene) {}
+
+  void join(std::uint32_t first_vertex, std::uint32_t second_vertex, ConstraintKind kind) {
+    const std::uint32_t a = mesh_.particle_of_vertex[first_vertex];
+    const std::uint32_t b = mesh_.particle_of_vertex[second_vertex];
+    if (a == b || !joined_.insert(std::uint64_t{std::min(a, b)} << 32 | std::max(a, b)).second) {
+      return;
+    }
+    const Vec3 p = scene_.positions[a];
+    const Vec3 q = scene_.positions[b];
+    scene_.constraints.push_back({a, b, std::hypot(p.x - q.x, p.y - q.y, p.z - q.z), kind});
+  }
+
+ private:
+  const Mesh& mesh_;
+  SceneDescription& scene_;
+  std::unordered_set<std::uint64_t> joined_;
+};
+
+/// Ropes come last: an edge that some face already has stays a distance constraint.
+void add_constraints(const Mesh& mesh, bool rope_diagonals, SceneDescription& scene) {
+  Joiner joiner(mesh, scene);
+  for (const auto& face : mesh.faces) {
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      joiner.join(face[i], face[(i + 1) % face.size()], ConstraintKind::distance);
+    }
+  }
+  for (const auto& line : mesh.lines) {
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      joiner.join(line[i], line[i + 1], ConstraintKind::distance);
+    }
+  }
+  if (!rope_diagonals) return;
+  for (const auto& face : mesh.faces) {
+    if (face.size() != 4) continue;
+    joiner.join(face[0], face[2], ConstraintKind::rope);
+    joiner.join(face[1], face[3], ConstraintKind::rope);
+  }
+}
+
+void scale_all(std::vector<Vec3>& points, double scale) {
+  for (Vec3& point : points) point = {point.x * scale, point.y * scale, point.z * scale};
+}
+
+Result<void> check_positive(std::string_view option, double value) {
+  if (std::isfinite(value) && value > 0) return {};
+  return Error{fmt::format("{}: {} is not a number above 0", option, value)};
+}
+
+// --------------------------------------------------------------------------------------- writing
+
+constexpr int kSphereRings = 12;
+constexpr int kSphereSegments = 24;
+
+/// Rows of segments from pole to pole; every ring between has kSphereSegments vertices, and the
+/// poles have as many at one place, so that all faces are numbered alike.
+void add_sphere_text(std::string& text, std::uint32_t particle, Vec3 centre, double radius,
+                     std::size_t first_vertex) {
+  text += fmt::format("o sphere_{}\n", particle);
+  for (int ring = 0; ring <= kSphereRings; ++ring) {
+    const double polar = std::numbers::pi * ring / kSphereRings;
+    for (int segment = 0; segment < kSphereSegments; ++segment) {
+      const double around = 2 * std::numbers::pi * segment / kSphereSegments;
+      text += fmt::format("v {} {} {}\n", centre.x + radius * std::sin(polar) * std::cos(around),
+                          centre.y + radius * std::cos(polar),
+                          centre.z + radius * std::sin(polar) * std::sin(around));
+    }
+  }
+  const auto vertex = [&](int ring, int segment) {
+    const int offset = ring * kSphereSegments + segment % kSphereSegments;
+    return first_vertex + static_cast<std::size_t>(offset);
+  };
+  for (int ring = 0; ring < kSphereRings; ++ring) {
+    for (int segment = 0; segment < kSphereSegments; ++segment) {
+      text += fmt::format("f {} {} {} {}\n", vertex(ring, segment), vertex(ring, segment + 1),
+                          vertex(ring + 1, segment + 1), vertex(ring + 1, segment));
+    }
+  }
+}
+
+void add_part_text(std::string& text, char kind, const std::vector<std::uint32_t>& part) {
+  text += kind;
+  for (const std::uint32_t vertex : part) text += fmt::format(" {}", vertex + 1);
+  text += '\n';
+}
+
+}  // namespace
+
+Result<ObjScene> parse_obj(const std::string& text, const ObjOptions& options) {
+  if (auto mass = check_positive("--mass", options.mass); !mass) return Error{mass.error()};
+  if (auto scale = check_positive("--scale", options.scale); !scale) return Error{scale.error()};
+  auto loaded = load_mesh(text);
+  if (!loaded) return Error{loaded.error()};
+
+  ObjScene scene;
+  scene.mesh = std::move(loaded.value());
+  scene.description.positions = weld(scene.mesh);
+  auto fixed = pinned_particles(options.pin, scene.mesh);
+  if (!fixed) return Error{fixed.error()};
+  scene.description.fixed = std::move(fixed.value());
+
+  scale_all(scene.mesh.vertices, options.scale);
+  scale_all(scene.description.positions, options.scale);
+  const std::size_t count = scene.description.positions.size();
+  scene.description.masses.assign(count, options.mass / static_cast<double>(count));
+  add_constraints(scene.mesh, options.rope_diagonals, scene.description);
+  return scene;
+}
+
+Result<ObjScene> read_obj_file(const std::string& path, const ObjOptions& options) {
+  const auto text = read_text_file(path);
+  if (!text) return Error{text.error()};
+  auto scene = parse_obj(text.value(), options);
+  if (!scene) return Error{fmt::format("{}: {}", path, scene.error())};
+  return scene;
+}
+
+std::string obj_text(const Mesh& mesh, const SceneDescription& scene, const Cloth& cloth) {
+  std::string text = "o cloth\n";
+  for (const Vec3& v : vertex_positions(mesh, cloth)) {
+    text += fmt::format("v {} {} {}\n", v.x, v.y, v.z);
+  }
+  for (const auto& face : mesh.faces) add_part_text(text, 'f', face);
+  for (const auto& line : mesh.lines) add_part_text(text, 'l', line);
+  std::size_t next_vertex = mesh.vertices.size() + 1;
+  for (const std::uint32_t sphere : scene.spheres) {
+    add_sphere_text(text, sphere, cloth.position(sphere), scene.radii[sphere], next_vertex);
+    next_vertex += (kSphereRings + 1) * kSphereSegments;
+  }
+  return text;
+}
+
+}  // namespace weft::tools

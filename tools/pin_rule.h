@@ -1,0 +1,18 @@
+/// Which vertices of a mesh are fixed: the rules of --pin, see ObjOptions::pin.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "tools/mesh.h"
+
+namespace weft::tools {
+
+/// The numbers of the fixed particles, ascending. A rule that cannot be read or that matches no
+/// particle (other than "none") is an error.
+Result<std::vector<std::uint32_t>> pinned_particles(std::string_view rule, const Mesh& mesh);
+
+}  // namespace weft::tools
