@@ -1,0 +1,128 @@
+#include "tools/scene_source.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/scenes.h"
+#include "tools/obj_mesh.h"
+#include "tools/scene_file.h"
+
+namespace weft::tools {
+namespace {
+
+/// The smallest odd size from the usual 20 up: `corners` has a middle row.
+constexpr int kDefaultCornersSize = 21;
+
+std::string built_in_names() {
+  std::string names;
+  for (const scenes::BuiltIn& scene : scenes::list()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", scene.name);
+  }
+  return names;
+}
+
+bool is_built_in(std::string_view name) {
+  return std::ranges::any_of(scenes::list(), [&](const auto& scene) { return scene.name == name; });
+}
+
+/// The kinds of scene that options belong to, for their errors.
+constexpr std::string_view kBuiltIn = "built-in scenes";
+constexpr std::string_view kSphereDrop = "sphere_drop";
+constexpr std::string_view kChain = "chain";
+constexpr std::string_view kObj = ".obj meshes";
+
+/// Refuses what was given but belongs to another kind of scene.
+Result<void> check_options(const SceneOptions& options, std::span<const std::string_view> kinds) {
+  struct Given {
+    std::string_view option;
+    bool is_given;
+    std::string_view kind;
+  };
+  const Given all[] = {
+      {"--size", options.size.has_value(), kBuiltIn},
+      {"--slack", options.slack.has_value(), kSphereDrop},
+      {"--sphere-mass", options.sphere_mass.has_value(), kSphereDrop},
+      {"--end-mass", options.end_mass.has_value(), kChain},
+      {"--pin", options.pin.has_value(), kObj},
+      {"--mass", options.mass.has_value(), kObj},
+      {"--scale", options.scale.has_value(), kObj},
+      {"--ropes", options.ropes, kObj},
+  };
+  for (const Given& given : all) {
+    if (!given.is_given || std::ranges::find(kinds, given.kind) != kinds.end()) continue;
+    return Error{
+        fmt::format("{}: only for {}, not for '{}'", given.option, given.kind, options.scene)};
+  }
+  return {};
+}
+
+Result<SceneSource> load_built_in(const SceneOptions& options) {
+  const std::string_view kinds[] = {kBuiltIn, options.scene};
+  if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
+  scenes::Options values;
+  if (options.scene == "corners") values.size = kDefaultCornersSize;
+  values.size = options.size.value_or(values.size);
+  values.slack = options.slack.value_or(values.slack);
+  values.sphere_mass = options.sphere_mass.value_or(values.sphere_mass);
+  values.end_mass = options.end_mass.value_or(values.end_mass);
+  auto scene = scenes::make(options.scene, values);
+  if (!scene) return Error{scene.error()};
+  const auto size = static_cast<std::uint32_t>(values.size);
+  Mesh mesh = options.scene == "chain" ? line_mesh(scene.value()) : grid_mesh(scene.value(), size);
+  return SceneSource{options.scene, std::move(scene.value()), std::move(mesh)};
+}
+
+Result<SceneSource> load_scene_file(const SceneOptions& options) {
+  if (auto checked = check_options(options, {}); !checked) return Error{checked.error()};
+  auto scene = read_scene_file(options.scene);
+  if (!scene) return Error{scene.error()};
+  Mesh mesh = line_mesh(scene.value());
+  return SceneSource{options.scene, std::move(scene.value()), std::move(mesh)};
+}
+
+Result<SceneSource> load_obj(const SceneOptions& options) {
+  const std::string_view kinds[] = {kObj};
+  if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
+  ObjOptions values;
+  values.pin = options.pin.value_or(values.pin);
+  values.mass = options.mass.value_or(values.mass);
+  values.scale = options.scale.value_or(values.scale);
+  values.rope_diagonals = options.ropes;
+  auto scene = read_obj_file(options.scene, values);
+  if (!scene) return Error{scene.error()};
+  ObjScene& obj = scene.value();
+  return SceneSource{options.scene, std::move(obj.description), std::move(obj.mesh)};
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& verb, SceneOptions& options) {
+  verb.add_option("SCENE", options.scene,
+                  fmt::format("{}, a .json scene or an .obj mesh", built_in_names()))
+      ->required();
+  verb.add_option("--size", options.size,
+                  "particles along a side of a built-in scene (default 20; corners: 21)");
+  verb.add_option("--slack", options.slack, "sphere_drop: slack of the sheet (default 0.05)");
+  verb.add_option("--sphere-mass", options.sphere_mass, "sphere_drop: kg (default 1)");
+  verb.add_option("--end-mass", options.end_mass, "chain: kg of the last particle (default 1)");
+  verb.add_option("--pin", options.pin,
+                  ".obj: fixed vertices; none (default), top, a comparison of the file's "
+                  "coordinates like 'y>0.9' or 'x<=-1', or vertex numbers from 0 like 0,5,7-9");
+  verb.add_option("--mass", options.mass, ".obj: kg of the whole mesh (default 1)");
+  verb.add_option("--scale", options.scale, ".obj: multiplies all coordinates (default 1)");
+  verb.add_flag("--ropes", options.ropes, ".obj: both diagonals of four-sided faces become ropes");
+}
+
+Result<SceneSource> load_scene(const SceneOptions& options) {
+  if (is_built_in(options.scene)) return load_built_in(options);
+  const auto ending = std::filesystem::path(options.scene).extension();
+  if (ending == ".json") return load_scene_file(options);
+  if (ending == ".obj") return load_obj(options);
+  return Error{fmt::format("SCENE: '{}' is not one of {}, nor a .json or .obj file", options.scene,
+                           built_in_names())};
+}
+
+}  // namespace weft::tools
