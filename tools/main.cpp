@@ -1,0 +1,42 @@
+/// The `weft` program. Exit codes: 0 done, 2 something given was refused, 3 a run did not reach its
+/// tolerance, 130 interrupted.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <new>
+
+#include "tools/paper_command.h"
+#include "tools/pending_file.h"
+#include "tools/run_command.h"
+#include "tools/scene_command.h"
+
+namespace {
+
+constexpr int kRefused = 2;
+
+int refuse(const char* message) {
+  fmt::print(stderr, "weft: {}\n", message);
+  return kRefused;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  weft::tools::install_interrupt_handler();
+  CLI::App app("weft: a cloth kernel that reports its error beside its time");
+  app.require_subcommand(1);
+  int exit_code = 0;
+  weft::tools::add_run_command(app, exit_code);
+  weft::tools::add_scene_command(app, exit_code);
+  weft::tools::add_paper_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return error.get_exit_code() == 0 ? app.exit(error) : refuse(error.what());
+  } catch (const std::bad_alloc&) {
+    return refuse("not enough memory for this scene");
+  } catch (const std::exception& error) {
+    return refuse(error.what());
+  }
+  return exit_code;
+}

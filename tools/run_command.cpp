@@ -1,0 +1,125 @@
+#include "tools/run_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "tools/json_output.h"
+#include "tools/outputs.h"
+#include "tools/progress.h"
+#include "tools/run_report.h"
+#include "tools/runner.h"
+#include "tools/scene_source.h"
+#include "tools/solver_options.h"
+
+namespace weft::tools {
+namespace {
+
+constexpr int kRefused = 2;
+constexpr int kNotReached = 3;
+
+struct RunOptions {
+  SceneOptions scene;
+  SolverOptions solver;
+  RunPlan plan;
+  std::vector<std::string> out;
+  std::optional<std::string> json;
+};
+
+Result<void> check_plan(const RunPlan& plan) {
+  if (!std::isfinite(plan.dt) || plan.dt <= 0) {
+    return Error{fmt::format("--dt: {} is not a number above 0", plan.dt)};
+  }
+  if (plan.steps < 1) return Error{fmt::format("--steps: {} is below 1", plan.steps)};
+  if (plan.repeat < 1) return Error{fmt::format("--repeat: {} is below 1", plan.repeat)};
+  return {};
+}
+
+/// Two outputs of one name would overwrite each other.
+Result<void> check_destinations(const RunOptions& options) {
+  std::vector<std::string> paths = options.out;
+  if (options.json) paths.push_back(*options.json);
+  std::ranges::sort(paths);
+  const auto twice = std::ranges::adjacent_find(paths);
+  if (twice == paths.end()) return {};
+  return Error{fmt::format("--out, --json: '{}' is named twice", *twice)};
+}
+
+/// What is known to be possible before anything runs.
+struct Prepared {
+  SceneSource source;
+  Settings settings;
+  std::optional<JsonOutput> json;
+};
+
+Result<Prepared> prepare(const RunOptions& options) {
+  if (auto plan = check_plan(options.plan); !plan) return Error{plan.error()};
+  if (auto names = check_destinations(options); !names) return Error{names.error()};
+  const auto settings = settings_of(options.solver);
+  if (!settings) return Error{settings.error()};
+  auto source = load_scene(options.scene);
+  if (!source) return Error{source.error()};
+  Prepared prepared{std::move(source.value()), settings.value(), std::nullopt};
+  if (options.json) {
+    auto json = JsonOutput::open(*options.json);
+    if (!json) return Error{fmt::format("--json: {}", json.error())};
+    prepared.json = std::move(json.value());
+  }
+  return prepared;
+}
+
+Result<RunSummary> run_and_record(const Prepared& prepared, const RunPlan& plan, Outputs& outputs) {
+  Progress progress(plan.steps);
+  const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
+    const bool is_last = frame == plan.steps || report.status == Status::non_finite;
+    outputs.add_frame(cloth, is_last);
+    progress.show(frame, report.max_strain);
+  };
+  return run(prepared.source.description, prepared.settings, plan, on_frame);
+}
+
+Result<int> run_verb(const RunOptions& options) {
+  auto prepared = prepare(options);
+  if (!prepared) return Error{prepared.error()};
+  auto& [source, settings, json] = prepared.value();
+  auto outputs = Outputs::open(options.out, source);
+  if (!outputs) return Error{outputs.error()};
+  auto summary = run_and_record(prepared.value(), options.plan, outputs.value());
+  if (!summary) return Error{summary.error()};
+
+  const RunReport report{source.name, settings, options.plan, summary.value()};
+  if (auto finished = outputs.value().finish(); !finished) return Error{finished.error()};
+  if (json) {
+    if (auto written = json->write(to_json(report)); !written) return Error{written.error()};
+  }
+  if (!json || !json->is_stdout()) fmt::print("{}", to_table(report));
+  return summary.value().reached_tolerance() ? 0 : kNotReached;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  CLI::App* verb = app.add_subcommand("run", "Run a scene; report time beside error");
+  auto options = std::make_shared<RunOptions>();
+  add_scene_options(*verb, options->scene);
+  verb->add_option("--dt", options->plan.dt, "s, one frame (default 0.01)");
+  verb->add_option("--steps", options->plan.steps, "frames to run (default 200)");
+  verb->add_option("--repeat", options->plan.repeat,
+                   "report the fastest of this many runs, after one to warm up (default 1: a "
+                   "single run)");
+  add_solver_options(*verb, options->solver);
+  verb->add_option("--out", options->out,
+                   "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
+                   "frames, .json the last state as a scene")
+      ->allow_extra_args(false);
+  verb->add_option("--json", options->json, "write the report to a file, or - for stdout");
+  verb->callback([options, &exit_code] {
+    const auto result = run_verb(*options);
+    exit_code = result ? result.value() : kRefused;
+    if (!result) fmt::print(stderr, "weft: {}\n", result.error());
+  });
+}
+
+}  // namespace weft::tools

@@ -1,0 +1,149 @@
+#include "tools/run_report.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+namespace weft::tools {
+namespace {
+
+constexpr int kThreads = 1;
+constexpr int kSubsteps = 1;
+
+double mean(std::int64_t total, int frames) {
+  return frames > 0 ? static_cast<double>(total) / frames : 0;
+}
+
+double milliseconds_per_frame(const RunSummary& summary, double seconds) {
+  return summary.frames > 0 ? 1e3 * seconds / summary.frames : 0;
+}
+
+double real_time_factor(const RunReport& report) {
+  const double seconds = report.summary.seconds_per_frame();
+  return seconds > 0 ? report.plan.dt / seconds : 0;
+}
+
+double nanoseconds_per_constraint_iteration(const RunSummary& summary) {
+  const double visits =
+      static_cast<double>(summary.model.constraints) * static_cast<double>(summary.iterations);
+  const auto stage = static_cast<std::size_t>(Stage::solve_positions);
+  return visits > 0 ? 1e9 * summary.stage_seconds[stage] / visits : 0;
+}
+
+double bytes_per_particle(const RunSummary& summary) {
+  return static_cast<double>(summary.bytes) / static_cast<double>(summary.model.particles);
+}
+
+/// The instruction set that the backend's loops are compiled for.
+std::string_view isa(Backend) { return "scalar"; }
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+Json stages_json(const RunSummary& summary) {
+  Json stages = Json::object();
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    stages[std::string(name(static_cast<Stage>(i)))] =
+        milliseconds_per_frame(summary, summary.stage_seconds[i]);
+  }
+  return stages;
+}
+
+std::string percent(double strain) { return fmt::format("{:.3g} %", 100 * strain); }
+
+std::string stages_text(const RunSummary& summary) {
+  std::string text;
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", name(static_cast<Stage>(i)),
+                        milliseconds_per_frame(summary, summary.stage_seconds[i]));
+  }
+  return text;
+}
+
+std::string goal_text(const Settings& settings) {
+  return settings.iterations > 0 ? fmt::format("{} iterations per step", settings.iterations)
+                                 : fmt::format("tolerance {}", percent(settings.tolerance));
+}
+
+}  // namespace
+
+Json to_json(const RunReport& report) {
+  const RunSummary& summary = report.summary;
+  const Settings& settings = report.settings;
+  return {
+      {"scene", report.scene},
+      {"particles", summary.model.particles},
+      {"constraints", summary.model.constraints},
+      {"solver", name(settings.solver)},
+      {"scheme", name(settings.scheme)},
+      {"backend", name(settings.backend)},
+      {"isa", isa(settings.backend)},
+      {"threads", kThreads},
+      {"dt", report.plan.dt},
+      {"steps", report.plan.steps},
+      {"frames", summary.frames},
+      {"substeps", kSubsteps},
+      {"tolerance", settings.tolerance},
+      {"status", name(summary.status)},
+      {"ms_per_frame", 1e3 * summary.seconds_per_frame()},
+      {"real_time_factor", real_time_factor(report)},
+      {"max_strain", summary.max_strain},
+      {"mean_max_strain", summary.mean_max_strain},
+      {"rms_strain", summary.rms_strain},
+      {"max_penetration", summary.max_penetration},
+      {"iterations_per_step", summary.iterations_per_step()},
+      {"velocity_iterations_per_step", mean(summary.velocity_iterations, summary.frames)},
+      {"direction_updates_per_step", mean(summary.direction_updates, summary.frames)},
+      {"visits", summary.visits},
+      {"corrections", summary.corrections},
+      {"ns_per_constraint_iteration", nanoseconds_per_constraint_iteration(summary)},
+      {"energy_start", summary.energy_start},
+      {"energy_end", summary.energy_end},
+      {"energy_gain", summary.energy_gain},
+      {"lowest_y", summary.lowest_y},
+      {"state_hash", fmt::format("{:016x}", summary.state_hash)},
+      {"bytes_per_particle", bytes_per_particle(summary)},
+      {"stages", stages_json(summary)},
+      {"peak_rss_mb", peak_rss_mb()},
+  };
+}
+
+std::string to_table(const RunReport& report) {
+  const RunSummary& summary = report.summary;
+  const Settings& settings = report.settings;
+  std::string text;
+  const auto row = [&text](std::string_view label, const std::string& value) {
+    text += fmt::format("{:<10}{}\n", label, value);
+  };
+  row("scene",
+      fmt::format("{}: {} particles, {} constraints, {} spheres", report.scene,
+                  summary.model.particles, summary.model.constraints, summary.model.spheres));
+  row("solver", fmt::format("{}, scheme {}, backend {}, {}", name(settings.solver),
+                            name(settings.scheme), name(settings.backend), goal_text(settings)));
+  row("frames",
+      fmt::format("{} of {} s, status {}", summary.frames, report.plan.dt, name(summary.status)));
+  row("time", fmt::format("{:.4g} ms per frame, {:.3g} times real time, at max strain {}",
+                          1e3 * summary.seconds_per_frame(), real_time_factor(report),
+                          percent(summary.max_strain)));
+  row("stages",
+      fmt::format("{} ms at max strain {}", stages_text(summary), percent(summary.max_strain)));
+  row("strain",
+      fmt::format("max {}, mean of the frames' max {}, rms {}", percent(summary.max_strain),
+                  percent(summary.mean_max_strain), percent(summary.rms_strain)));
+  if (summary.model.spheres > 0) {
+    row("contacts", fmt::format("{:.3g} m deepest penetration", summary.max_penetration));
+  }
+  row("work",
+      fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {} visits, "
+                  "{} corrections",
+                  summary.iterations_per_step(), mean(summary.direction_updates, summary.frames),
+                  summary.visits, summary.corrections));
+  row("energy", fmt::format("{:.6g} J to {:.6g} J, largest gain {:.3g} J", summary.energy_start,
+                            summary.energy_end, summary.energy_gain));
+  row("state", fmt::format("{:016x}, lowest y {:.6g} m", summary.state_hash, summary.lowest_y));
+  return text;
+}
+
+}  // namespace weft::tools

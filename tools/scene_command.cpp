@@ -1,0 +1,48 @@
+#include "tools/scene_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "tools/pending_file.h"
+#include "tools/scene_file.h"
+#include "tools/scene_source.h"
+
+namespace weft::tools {
+namespace {
+
+struct WriteOptions {
+  SceneOptions scene;
+  std::string out;
+};
+
+Result<void> write_scene(const WriteOptions& options) {
+  if (std::filesystem::path(options.out).extension() != ".json") {
+    return Error{fmt::format("--out: '{}' does not end in .json", options.out)};
+  }
+  const auto source = load_scene(options.scene);
+  if (!source) return Error{source.error()};
+  if (auto model = build_model(source.value().description); !model) return Error{model.error()};
+  auto file = PendingFile::open(options.out);
+  if (!file) return Error{fmt::format("--out: {}", file.error())};
+  file.value().write(scene_text(source.value().description));
+  return file.value().commit();
+}
+
+}  // namespace
+
+void add_scene_command(CLI::App& app, int& exit_code) {
+  CLI::App* verb = app.add_subcommand("scene", "Write a scene as a JSON file");
+  auto options = std::make_shared<WriteOptions>();
+  add_scene_options(*verb, options->scene);
+  verb->add_option("--out", options->out, "the .json file to write")->required();
+  verb->callback([options, &exit_code] {
+    if (const auto written = write_scene(*options); !written) {
+      fmt::print(stderr, "weft: {}\n", written.error());
+      exit_code = 2;
+    }
+  });
+}
+
+}  // namespace weft::tools

@@ -1,0 +1,129 @@
+#include "tools/solver_options.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+
+#include "tools/parse.h"
+
+namespace weft::tools {
+namespace {
+
+constexpr std::array<Choice<Solver>, 4> kSolvers{{
+    {"gauss_seidel", Solver::gauss_seidel},
+    {"yarn", std::nullopt},
+    {"direct", std::nullopt},
+    {"auto", std::nullopt},
+}};
+constexpr std::array<Choice<Scheme>, 2> kSchemes{{
+    {"paper", Scheme::paper},
+    {"rattle", std::nullopt},
+}};
+constexpr std::array<Choice<Directions>, 2> kDirections{{
+    {"each", Directions::each},
+    {"frozen", Directions::frozen},
+}};
+constexpr std::array<Choice<Backend>, 2> kBackends{{
+    {"reference", Backend::reference},
+    {"simd", std::nullopt},
+}};
+
+/// Sets the field from the text, if there is one.
+template <class Value, std::size_t kCount>
+Result<void> choose(std::string_view option, const std::optional<std::string>& text,
+                    const std::array<Choice<Value>, kCount>& table, Value& field) {
+  if (!text) return {};
+  const auto value = parse_choice<Value>(option, *text, table);
+  if (!value) return Error{value.error()};
+  field = value.value();
+  return {};
+}
+
+Result<void> choose_switch(std::string_view option, const std::optional<std::string>& text,
+                           bool& field) {
+  if (!text) return {};
+  const auto value = parse_switch(option, *text);
+  if (!value) return Error{value.error()};
+  field = value.value();
+  return {};
+}
+
+Result<void> choose_tolerance(const std::optional<std::string>& text, double& field) {
+  if (!text) return {};
+  const auto value = parse_tolerance("--tolerance", *text);
+  if (!value) return Error{value.error()};
+  field = value.value();
+  return {};
+}
+
+/// A count of which only 1 is available yet.
+Result<void> check_one(std::string_view option, const std::optional<std::string>& text,
+                       bool accepts_auto) {
+  if (!text) return {};
+  const auto count = parse_count(*text);
+  if (count == 1) return {};
+  if (count > 1 || (accepts_auto && text == "auto")) {
+    return Error{fmt::format("{} {}: not available yet", option, *text)};
+  }
+  return Error{fmt::format("{}: '{}' is not a whole number above 0", option, *text)};
+}
+
+Result<void> check_isa(const std::optional<std::string>& text) {
+  if (!text) return {};
+  return Error{fmt::format("--isa {}: not available yet", *text)};
+}
+
+}  // namespace
+
+void add_solver_options(CLI::App& verb, SolverOptions& options) {
+  Settings& settings = options.settings;
+  verb.add_option("--tolerance", options.tolerance,
+                  "strain that every step must reach, 1% or 0.01 (default 1%)");
+  verb.add_option("--iterations", settings.iterations,
+                  "exactly this many iterations per step, instead of a tolerance");
+  verb.add_option("--max-iterations", settings.max_iterations,
+                  "most iterations of one step (default 1000000)");
+  verb.add_option("--contact-tolerance", settings.contact_tolerance,
+                  "m of penetration left (default 1e-4)");
+  verb.add_option("--velocity-tolerance", settings.velocity_tolerance,
+                  "m/s left along a constraint (default 0.01)");
+  verb.add_option("--impulse-limit", settings.impulse_limit,
+                  "N s, largest impulse of one correction (default 0: no limit)");
+  verb.add_option("--solver", options.solver, "gauss_seidel (default)");
+  verb.add_option("--scheme", options.scheme, "paper (default)");
+  verb.add_option("--anticipate", options.anticipate,
+                  "on (default) or off: update errors instead of recomputing them");
+  verb.add_option("--skip", options.skip, "on (default) or off: pass over satisfied constraints");
+  verb.add_option("--directions", options.directions,
+                  "frozen (default) until all errors along them are within tolerance, or each: "
+                  "renewed before each iteration");
+  verb.add_option("--velocity-correction", options.velocity_correction,
+                  "on or off (default): a second loop, on velocities");
+  verb.add_option("--backend", options.backend, "reference");
+  verb.add_option("--isa", options.isa, "instruction set (not available yet)");
+  verb.add_option("--threads", options.threads, "1");
+  verb.add_option("--substeps", options.substeps, "1");
+}
+
+Result<Settings> settings_of(const SolverOptions& options) {
+  Settings settings = options.settings;
+  const Result<void> checks[] = {
+      choose_tolerance(options.tolerance, settings.tolerance),
+      choose("--solver", options.solver, kSolvers, settings.solver),
+      choose("--scheme", options.scheme, kSchemes, settings.scheme),
+      choose_switch("--anticipate", options.anticipate, settings.anticipate),
+      choose_switch("--skip", options.skip, settings.skip),
+      choose("--directions", options.directions, kDirections, settings.directions),
+      choose_switch("--velocity-correction", options.velocity_correction,
+                    settings.velocity_correction),
+      choose("--backend", options.backend, kBackends, settings.backend),
+      check_isa(options.isa),
+      check_one("--threads", options.threads, false),
+      check_one("--substeps", options.substeps, true),
+  };
+  for (const Result<void>& check : checks) {
+    if (!check) return Error{check.error()};
+  }
+  return settings;
+}
+
+}  // namespace weft::tools
