@@ -1,0 +1,109 @@
+/// What a Cloth reads, writes and keeps, beside stepping.
+#include <doctest/doctest.h>
+
+#include <utility>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+TEST_CASE("a cloth starts as described") {
+  SceneDescription scene = scene_of("hang", 4);
+  scene.velocities.assign(16, {0, 0, 0});
+  scene.velocities[9] = {1, 2, 3};
+  Cloth cloth = cloth_of(scene, {});
+  CHECK(cloth.particle_count() == 16);
+  CHECK(largest_distance(positions(cloth), scene.positions) == 0);
+  CHECK(largest_distance(velocities(cloth), scene.velocities) == 0);
+  CHECK(distance(cloth.velocity(9), {1, 2, 3}) == 0);
+  CHECK(cloth.settings().tolerance == 0.01);
+  CHECK(describe(cloth.model()).particles == 16);
+}
+
+TEST_CASE("packed floats are the positions, x y z") {
+  Cloth cloth = cloth_of(scene_of("corners", 5), {});
+  run(cloth, 0.01, 3);
+  std::vector<float> packed(75);
+  REQUIRE(cloth.read_positions(std::span<float>(packed)));
+  for (std::uint32_t i = 0; i < 25; ++i) {
+    const Vec3 p = cloth.position(i);
+    CHECK(packed[3 * i] == static_cast<float>(p.x));
+    CHECK(packed[3 * i + 1] == static_cast<float>(p.y));
+    CHECK(packed[3 * i + 2] == static_cast<float>(p.z));
+  }
+}
+
+TEST_CASE("a state that is read and written into another cloth goes on bit for bit") {
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    Settings settings = with({}, method);
+    settings.velocity_correction = true;
+    const SceneDescription scene = scene_of("hang_sphere", 8);
+    Cloth first = cloth_of(scene, settings);
+    run(first, 0.01, 60);
+    Cloth second = cloth_of(scene, settings);
+    REQUIRE(second.write_positions(positions(first)));
+    REQUIRE(second.write_velocities(velocities(first)));
+    CHECK(second.state_hash() == first.state_hash());
+    run(first, 0.01, 20);
+    run(second, 0.01, 20);
+    CHECK(second.state_hash() == first.state_hash());
+  }
+}
+
+TEST_CASE("the hash sees every particle's position and velocity") {
+  Cloth cloth = cloth_of(scene_of("hang", 4), {});
+  const std::uint64_t start = cloth.state_hash();
+  std::vector<Vec3> v(16);
+  v[15].z = 1e-300;
+  REQUIRE(cloth.write_velocities(v));
+  CHECK(cloth.state_hash() != start);
+  v[15].z = 0;
+  REQUIRE(cloth.write_velocities(v));
+  CHECK(cloth.state_hash() == start);
+  REQUIRE(cloth.move_fixed(0, {0, 1e-300, 0}));
+  CHECK(cloth.state_hash() != start);
+}
+
+TEST_CASE("a moved cloth goes on where it was") {
+  Cloth first = cloth_of(scene_of("hang", 5), {});
+  Cloth other = cloth_of(scene_of("hang", 5), {});
+  run(first, 0.01, 10);
+  run(other, 0.01, 10);
+  Cloth moved = std::move(first);
+  run(moved, 0.01, 10);
+  run(other, 0.01, 10);
+  CHECK(moved.state_hash() == other.state_hash());
+  other = std::move(moved);
+  CHECK(other.particle_count() == 25);
+  CHECK(step(other, 0.01).status == Status::converged);
+}
+
+TEST_CASE("a fixed particle has no velocity, whatever is written") {
+  SceneDescription scene = scene_of("hang", 4);
+  scene.velocities.assign(16, {1, 1, 1});
+  Cloth cloth = cloth_of(scene, {});
+  CHECK(length(cloth.velocity(0)) == 0);
+  REQUIRE(cloth.write_velocities(scene.velocities));
+  CHECK(length(cloth.velocity(0)) == 0);
+  CHECK(distance(cloth.velocity(4), {1, 1, 1}) == 0);
+}
+
+TEST_CASE("teleported pins inject no more than the correction they ask for") {
+  // A bar whose pin jumps by 0.1 m along it is pulled 0.1 m in one step and no further.
+  SceneDescription scene = free_bar(1, 1);
+  scene.fixed = {0};
+  Settings settings = tight(1e-10);
+  settings.velocity_correction = true;
+  Cloth cloth = cloth_of(scene, settings);
+  REQUIRE(cloth.move_fixed(0, {0.1, 0, 0}));
+  step(cloth, 0.01);
+  CHECK(distance(cloth.position(1), {1.1, 0, 0}) < 1e-9);
+  CHECK(length(cloth.velocity(1)) < 1e-9);
+}
+
+}  // namespace
+}  // namespace weft::test

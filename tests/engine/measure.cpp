@@ -1,0 +1,63 @@
+/// describe(), strain(), max_penetration(), bytes(): what is measured outside of steps.
+#include <doctest/doctest.h>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+
+namespace weft::test {
+namespace {
+
+TEST_CASE("a model describes what it holds") {
+  SceneDescription scene = scene_of("hang_sphere", 5);
+  scene.constraints.push_back({24, 4, 3.0, ConstraintKind::rope});
+  scene.constraints.push_back({0, 4, 1.0});
+  const ModelInfo info = describe(*model_of(scene));
+  CHECK(info.particles == 26);
+  CHECK(info.constraints == 37);
+  CHECK(info.inert_constraints == 1);
+  CHECK(info.ropes == 1);
+  CHECK(info.spheres == 1);
+  CHECK(info.bytes > 26 * 10 * sizeof(double));
+}
+
+TEST_CASE("an inert constraint is neither solved nor measured") {
+  SceneDescription scene = scene_of("hang", 5);
+  scene.constraints.insert(scene.constraints.begin(), {0, 4, 7.0});
+  Cloth cloth = cloth_of(scene, {});
+  CHECK(cloth.strain().max < 1e-12);
+  const StepReport report = step(cloth, 0.01);
+  CHECK(report.status == Status::converged);
+  CHECK(report.max_strain <= 0.01);
+}
+
+TEST_CASE("the worst constraint is named by its number in the description") {
+  SceneDescription scene = scene_of("hang", 5);
+  scene.constraints.insert(scene.constraints.begin(), {0, 24, 5.0, ConstraintKind::rope});
+  scene.constraints.insert(scene.constraints.begin() + 1, {0, 4, 7.0});
+  scene.constraints[20].rest_length *= 2;
+  CHECK(cloth_of(scene, {}).strain().worst_constraint == 20);
+  CHECK(cloth_of(scene, {}).strain().max == doctest::Approx(0.5).epsilon(1e-12));
+}
+
+TEST_CASE("penetration is measured over all sphere pairs") {
+  SceneDescription scene = scene_of("hang_sphere", 5);
+  scene.positions[12] = {0.5, -0.4, 0.5};
+  scene.radii[12] = 0.01;
+  CHECK(cloth_of(scene, {}).max_penetration() == doctest::Approx(0.06).epsilon(1e-12));
+  CHECK(max_penetration(scene, scene.positions) == doctest::Approx(0.06).epsilon(1e-12));
+  CHECK(cloth_of(scene_of("hang", 5), {}).max_penetration() == 0);
+}
+
+TEST_CASE("a cloth holds memory only for what it runs") {
+  const SceneDescription scene = scene_of("hang", 20);
+  Settings lean;
+  lean.anticipate = lean.skip = false;
+  Settings full;
+  full.velocity_correction = true;
+  const std::size_t little = cloth_of(scene, lean).bytes();
+  CHECK(little > 400 * 2 * 3 * sizeof(double));
+  CHECK(little < cloth_of(scene, full).bytes());
+}
+
+}  // namespace
+}  // namespace weft::test

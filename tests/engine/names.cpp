@@ -1,0 +1,33 @@
+#include <doctest/doctest.h>
+#include <weft/weft.h>
+
+#include <set>
+#include <string>
+
+namespace weft::test {
+namespace {
+
+TEST_CASE("every choice bears its enumerator's name") {
+  CHECK(name(Solver::gauss_seidel) == "gauss_seidel");
+  CHECK(name(Scheme::paper) == "paper");
+  CHECK(name(Directions::each) == "each");
+  CHECK(name(Directions::frozen) == "frozen");
+  CHECK(name(Backend::reference) == "reference");
+  CHECK(name(Status::converged) == "converged");
+  CHECK(name(Status::fixed_iterations) == "fixed_iterations");
+  CHECK(name(Status::iteration_limit) == "iteration_limit");
+  CHECK(name(Status::non_finite) == "non_finite");
+  CHECK(name(Stage::find_contacts) == "find_contacts");
+}
+
+TEST_CASE("all stages have names, and no two the same") {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    names.insert(std::string(name(static_cast<Stage>(i))));
+  }
+  CHECK(names.size() == kStageCount);
+  CHECK(names.count("unknown") == 0);
+}
+
+}  // namespace
+}  // namespace weft::test

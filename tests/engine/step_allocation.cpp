@@ -1,0 +1,69 @@
+/// A step allocates nothing once warm.
+#include <doctest/doctest.h>
+
+#include <memory>
+
+#include "tests/support/clothes.h"
+#include "tests/support/counting_new.h"
+
+namespace weft::test {
+namespace {
+
+/// The allocations of the second of two equal runs of 200 steps.
+std::size_t allocations_when_warm(const char* name, const Settings& settings) {
+  const SceneDescription scene = scene_of(name, 7);
+  const std::vector<Vec3> at_rest(scene.positions.size());
+  Cloth cloth = cloth_of(scene, settings);
+  const auto run_200 = [&cloth] {
+    std::size_t failed = 0;
+    for (int k = 0; k < 200; ++k) failed += !cloth.step(0.01);
+    return failed;
+  };
+  REQUIRE(run_200() == 0);
+  const std::uint64_t end = cloth.state_hash();
+  REQUIRE(cloth.write_positions(scene.positions));
+  REQUIRE(cloth.write_velocities(at_rest));
+  const std::size_t before = allocations();
+  const std::size_t failed = run_200();
+  const std::size_t after = allocations();
+  REQUIRE(failed == 0);
+  REQUIRE(cloth.state_hash() == end);
+  return after - before;
+}
+
+TEST_CASE("the counter counts") {
+  const std::size_t before = allocations();
+  const auto kept = std::make_unique<std::vector<int>>(100);
+  CHECK(kept->size() == 100);
+  CHECK(allocations() - before == 2);
+}
+
+TEST_CASE("a warm step allocates nothing") {
+  for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners"}) {
+    for (const Method& method : kMethods) {
+      for (const bool velocity_correction : {false, true}) {
+        CAPTURE(name);
+        CAPTURE(text(method));
+        CAPTURE(velocity_correction);
+        Settings settings = with({}, method);
+        settings.velocity_correction = velocity_correction;
+        CHECK(allocations_when_warm(name, settings) == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("without contacts even the first step allocates nothing") {
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    Cloth cloth = cloth_of(scene_of("hang", 7), with({}, method));
+    const std::size_t before = allocations();
+    const auto report = cloth.step(0.01);
+    const std::size_t after = allocations();
+    CHECK(report);
+    CHECK(after == before);
+  }
+}
+
+}  // namespace
+}  // namespace weft::test

@@ -1,0 +1,146 @@
+/// Settings::iterations: exactly so many, nothing skipped, whatever the error; and the limits on
+/// one correction and on one step.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "tests/support/clothes.h"
+#include "tests/support/random.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+TEST_CASE("a fixed number of iterations visits every constraint so many times") {
+  const SceneDescription scene = scene_of("hang", 6);
+  const auto constraints = static_cast<std::int64_t>(scene.constraints.size());
+  for (const Method& method : kMethods) {
+    for (const int iterations : {1, 7}) {
+      CAPTURE(text(method));
+      CAPTURE(iterations);
+      Settings settings = with({}, method);
+      settings.iterations = iterations;
+      Cloth cloth = cloth_of(scene, settings);
+      for (int k = 0; k < 20; ++k) {
+        const StepReport report = step(cloth, 0.01);
+        REQUIRE(report.status == Status::fixed_iterations);
+        REQUIRE(report.iterations == iterations);
+        REQUIRE(report.visits == iterations * constraints);
+        REQUIRE(report.velocity_iterations == 0);
+        REQUIRE(report.direction_updates ==
+                (method.directions == Directions::frozen ? 1 : iterations));
+      }
+    }
+  }
+}
+
+TEST_CASE("fixed iterations are spent even where nothing is left to correct") {
+  Settings settings;
+  settings.iterations = 5;
+  Cloth cloth = cloth_of(free_bar(1, 1), settings);
+  const StepReport report = step(cloth, 0.01);
+  CHECK(report.iterations == 5);
+  CHECK(report.visits == 5);
+  CHECK(report.max_strain == 0);
+}
+
+TEST_CASE("skip and the tolerance have no say in a fixed number of iterations") {
+  const SceneDescription scene = scene_of("hang_sphere", 8);
+  Settings settings;
+  settings.iterations = 10;
+  settings.velocity_correction = true;
+  for (const bool anticipate : {false, true}) {
+    settings.anticipate = anticipate;
+    settings.skip = false;
+    settings.tolerance = 1e-6;
+    Cloth plain = cloth_of(scene, settings);
+    settings.skip = true;
+    settings.tolerance = 0.5;
+    Cloth loose = cloth_of(scene, settings);
+    run(plain, 0.01, 100);
+    run(loose, 0.01, 100);
+    CHECK(plain.state_hash() == loose.state_hash());
+  }
+}
+
+TEST_CASE("more iterations leave a smaller error") {
+  double before = 1;
+  for (const int iterations : {1, 10, 100, 1000}) {
+    Settings settings;
+    settings.iterations = iterations;
+    Cloth cloth = cloth_of(scene_of("hang", 6), settings);
+    double worst = 0;
+    for (int k = 0; k < 50; ++k) worst = std::max(worst, step(cloth, 0.01).max_strain);
+    CHECK(worst < 0.7 * before);
+    before = worst;
+  }
+}
+
+TEST_CASE("an iteration limit is reported, and the state is committed") {
+  Settings settings = tight(1e-9);
+  settings.max_iterations = 3;
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    Cloth cloth = cloth_of(scene_of("hang", 6), with(settings, method));
+    const std::uint64_t before = cloth.state_hash();
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::iteration_limit);
+    CHECK(report.iterations == 3);
+    CHECK(report.max_strain > 1e-9);
+    CHECK(cloth.state_hash() != before);
+  }
+}
+
+TEST_CASE("no correction exceeds the impulse limit") {
+  // The bar is 0.4 m too long; in 0.01 s, with 1 / (w_a + w_b) = 0.75 kg, it asks for 30 N s.
+  SceneDescription scene = free_bar(3, 1);
+  scene.constraints[0].rest_length = 0.6;
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    Settings settings = with(tight(1e-9), method);
+    settings.impulse_limit = 7;
+    Cloth cloth = cloth_of(scene, settings);
+    CHECK(step(cloth, 0.01).corrections == 5);
+    CHECK(distance(cloth.velocity(1), {-30, 0, 0}) < 1e-9);
+
+    settings.iterations = 2;
+    Cloth stopped = cloth_of(scene, settings);
+    CHECK(step(stopped, 0.01).corrections == 2);
+    CHECK(distance(stopped.velocity(1), {-14, 0, 0}) < 1e-11);
+    CHECK(distance(stopped.velocity(0), {14.0 / 3, 0, 0}) < 1e-11);
+  }
+}
+
+TEST_CASE("the impulse limit holds in the velocity loop too") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.velocities[1] = {2, 0, 0};
+  Settings settings = tight(0.1);
+  settings.velocity_tolerance = 1e-9;
+  settings.velocity_correction = true;
+  settings.impulse_limit = 0.3;
+  Cloth cloth = cloth_of(scene, settings);
+  CHECK(step(cloth, 0.01).corrections == 4);
+  CHECK(distance(cloth.velocity(1), {1, 0, 0}) < 1e-9);
+}
+
+TEST_CASE("with an impulse limit, no method changes the result") {
+  const SceneDescription scene = drifting_sheet(5, 21);
+  for (const Directions directions : {Directions::each, Directions::frozen}) {
+    Settings settings = tight(1e-6);
+    settings.impulse_limit = 0.01;
+    settings.directions = directions;
+    settings.anticipate = settings.skip = false;
+    Cloth plain = cloth_of(scene, settings);
+    run(plain, 0.01, 20);
+    for (const Method& method : kMethods) {
+      if (method.directions != directions) continue;
+      CAPTURE(text(method));
+      Cloth cloth = cloth_of(scene, with(settings, method));
+      run(cloth, 0.01, 20);
+      CHECK(largest_distance(positions(cloth), positions(plain)) < 1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::test

@@ -1,0 +1,85 @@
+/// Particles of many constraints: 65 is one more than a 64-bit mask has bits.
+#include <doctest/doctest.h>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+/// One particle of 1 kg in the middle of `spokes` particles that weigh 1 kg together, each on a bar
+/// of its own length, flying apart; every spoke is also tied to the next.
+SceneDescription wheel(std::uint32_t spokes) {
+  Random random(spokes);
+  SceneDescription scene;
+  scene.gravity = {0, 0, 0};
+  scene.positions = {{0, 0, 0}};
+  scene.velocities = {{0, 0, 0}};
+  scene.masses = {1};
+  for (std::uint32_t k = 1; k <= spokes; ++k) {
+    scene.positions.push_back(random.in_box(1));
+    scene.velocities.push_back(random.in_box(2));
+    scene.masses.push_back(random.between(0.5, 1.5) / spokes);
+    scene.constraints.push_back({0, k, length(scene.positions[k])});
+    if (k % 2 == 0) {
+      const double apart = distance(scene.positions[k - 1], scene.positions[k]);
+      scene.constraints.push_back({k - 1, k, apart});
+    }
+  }
+  return scene;
+}
+
+TEST_CASE("a hub of 65 and of 1,000 constraints works with every method, and all agree") {
+  for (const std::uint32_t spokes : {65u, 1000u}) {
+    const SceneDescription scene = wheel(spokes);
+    for (const Directions directions : {Directions::each, Directions::frozen}) {
+      std::vector<Vec3> first;
+      for (const Method& method : kMethods) {
+        if (method.directions != directions) continue;
+        CAPTURE(spokes);
+        CAPTURE(text(method));
+        Cloth cloth = cloth_of(scene, with(tight(1e-6), method));
+        for (int k = 0; k < 20; ++k) {
+          const StepReport report = step(cloth, 0.01);
+          REQUIRE(report.status == Status::converged);
+          REQUIRE(report.corrections > 0);
+          REQUIRE(max_strain(scene, positions(cloth)) <= 1e-6 * (1 + 1e-9));
+        }
+        if (first.empty()) first = positions(cloth);
+        CHECK(largest_distance(positions(cloth), first) < 1e-9);
+      }
+    }
+  }
+}
+
+TEST_CASE("skipping at a hub changes no bit") {
+  for (const std::uint32_t spokes : {16u, 17u, 64u, 65u}) {
+    for (std::size_t m = 0; m < kMethods.size(); m += 2) {
+      CAPTURE(spokes);
+      CAPTURE(text(kMethods[m]));
+      Cloth all = cloth_of(wheel(spokes), with(tight(1e-6), kMethods[m]));
+      Cloth skipping = cloth_of(wheel(spokes), with(tight(1e-6), kMethods[m + 1]));
+      run(all, 0.01, 20);
+      run(skipping, 0.01, 20);
+      CHECK(all.state_hash() == skipping.state_hash());
+    }
+  }
+}
+
+TEST_CASE("a fixed hub holds its spokes") {
+  SceneDescription scene = wheel(100);
+  scene.fixed = {0};
+  scene.gravity = {0, -10, 0};
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    Cloth cloth = cloth_of(scene, with(tight(1e-6), method));
+    for (int k = 0; k < 20; ++k) REQUIRE(step(cloth, 0.01).status == Status::converged);
+    CHECK(length(cloth.position(0)) == 0);
+    CHECK(max_strain(scene, positions(cloth)) <= 1e-6 * (1 + 1e-9));
+  }
+}
+
+}  // namespace
+}  // namespace weft::test

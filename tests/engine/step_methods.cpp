@@ -1,0 +1,140 @@
+/// The paper's claims about its optimisations: 4.2 and 4.3 do not change what is simulated, and 4.4
+/// still ends with every true error within tolerance.
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+constexpr double kStep = 0.01;
+constexpr int kSteps = 200;
+
+struct Case {
+  const char* scene;
+  int size;
+};
+constexpr Case kCases[]{{"hang", 8}, {"hang_sphere", 9}, {"sphere_drop", 8}};
+
+struct Motion {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> velocities;
+  std::uint64_t hash = 0;
+  std::int64_t visits = 0;
+  std::int64_t corrections = 0;
+  std::int64_t iterations = 0;
+};
+
+Motion simulate(const SceneDescription& scene, const Settings& settings, int steps = kSteps) {
+  Cloth cloth = cloth_of(scene, settings);
+  Motion motion;
+  for (int k = 0; k < steps; ++k) {
+    const StepReport report = step(cloth, kStep);
+    REQUIRE(report.status == Status::converged);
+    motion.visits += report.visits;
+    motion.corrections += report.corrections;
+    motion.iterations += report.iterations + report.velocity_iterations;
+  }
+  motion.positions = positions(cloth);
+  motion.velocities = velocities(cloth);
+  motion.hash = cloth.state_hash();
+  return motion;
+}
+
+/// f(scene, settings) for every scene, directions, and velocity correction.
+template <class F>
+void for_every_setting(F f) {
+  for (const Case& c : kCases) {
+    const SceneDescription scene = scene_of(c.scene, c.size);
+    for (const Directions directions : {Directions::each, Directions::frozen}) {
+      for (const bool velocity_correction : {false, true}) {
+        const std::string setting = std::string(c.scene) + ", " + std::string(name(directions)) +
+                                    (velocity_correction ? ", velocity correction" : "");
+        CAPTURE(setting);
+        Settings settings;
+        settings.directions = directions;
+        settings.velocity_correction = velocity_correction;
+        f(scene, settings);
+      }
+    }
+  }
+}
+
+TEST_CASE("skipping satisfied constraints changes no bit of 200 steps") {
+  for_every_setting([](const SceneDescription& scene, Settings settings) {
+    for (const bool anticipate : {false, true}) {
+      CAPTURE(anticipate);
+      settings.anticipate = anticipate;
+      settings.skip = false;
+      const Motion all = simulate(scene, settings);
+      settings.skip = true;
+      const Motion skipped = simulate(scene, settings);
+      CHECK(skipped.hash == all.hash);
+      CHECK(largest_distance(skipped.positions, all.positions) == 0);
+      CHECK(largest_distance(skipped.velocities, all.velocities) == 0);
+      CHECK(skipped.corrections == all.corrections);
+      CHECK(skipped.iterations == all.iterations);
+      CHECK(skipped.visits < all.visits);
+    }
+  });
+}
+
+TEST_CASE("anticipating errors does not change 200 steps") {
+  for_every_setting([](const SceneDescription& scene, Settings settings) {
+    settings.anticipate = false;
+    const Motion recomputed = simulate(scene, settings);
+    settings.anticipate = true;
+    const Motion anticipated = simulate(scene, settings);
+    CHECK(largest_distance(anticipated.positions, recomputed.positions) < 1e-9);
+    CHECK(largest_distance(anticipated.velocities, recomputed.velocities) < 1e-7);
+    CHECK(anticipated.iterations == recomputed.iterations);
+    CHECK(anticipated.corrections == recomputed.corrections);
+  });
+}
+
+TEST_CASE("every method ends every step with every true error within tolerance") {
+  for (const Case& c : kCases) {
+    const SceneDescription scene = scene_of(c.scene, c.size);
+    for (const Method& method : kMethods) {
+      CAPTURE(c.scene);
+      CAPTURE(text(method));
+      Settings settings = with({}, method);
+      settings.tolerance = 0.002;
+      Cloth cloth = cloth_of(scene, settings);
+      for (int k = 0; k < kSteps; ++k) {
+        const StepReport report = step(cloth, kStep);
+        REQUIRE(report.status == Status::converged);
+        const std::vector<Vec3> now = positions(cloth);
+        REQUIRE(max_strain(scene, now) <= 0.002 * (1 + 1e-9));
+        REQUIRE(max_penetration(scene, now) <= 1e-4 * (1 + 1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE("renewed and frozen directions tend to the same motion as dt does to 0") {
+  const SceneDescription scene = scene_of("hang", 5);
+  double before = 0;
+  for (const int steps : {10, 20, 40, 80}) {
+    std::vector<Vec3> ends[2];
+    for (const Directions directions : {Directions::each, Directions::frozen}) {
+      Settings settings = tight(1e-10);
+      settings.directions = directions;
+      Cloth cloth = cloth_of(scene, settings);
+      run(cloth, 0.2 / steps, steps);
+      ends[directions == Directions::each] = positions(cloth);
+    }
+    const double apart = largest_distance(ends[0], ends[1]);
+    if (steps > 10) CHECK(apart < 0.6 * before);
+    before = apart;
+  }
+  CHECK(before > 0);
+  CHECK(before < 1e-3);
+}
+
+}  // namespace
+}  // namespace weft::test

@@ -1,0 +1,101 @@
+/// Steps that overflow: the state stays as it was, and the report says so.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+/// Spoils a hanging sheet, steps it, and expects the refusal; then heals it and expects a step.
+void check_overflow(const std::function<void(Cloth&)>& spoil) {
+  for (const Method& method : kMethods) {
+    for (const bool velocity_correction : {false, true}) {
+      CAPTURE(text(method));
+      CAPTURE(velocity_correction);
+      Settings settings = with({}, method);
+      settings.velocity_correction = velocity_correction;
+      settings.max_iterations = 1000;
+      const SceneDescription scene = scene_of("hang_sphere", 4);
+      Cloth cloth = cloth_of(scene, settings);
+      run(cloth, 0.01, 3);
+      const std::vector<Vec3> healthy = velocities(cloth);
+      spoil(cloth);
+      const std::uint64_t before = cloth.state_hash();
+      const StepReport report = step(cloth, 0.01);
+      CHECK(report.status == Status::non_finite);
+      CHECK(cloth.state_hash() == before);
+      CHECK(std::isfinite(report.max_strain));
+      CHECK(report.iterations < 100);
+
+      REQUIRE(cloth.write_velocities(healthy));
+      REQUIRE(cloth.write_forces({}));
+      CHECK(step(cloth, 0.01).status == Status::converged);
+      CHECK(cloth.state_hash() != before);
+      CHECK(std::isfinite(cloth.strain().max));
+    }
+  }
+}
+
+TEST_CASE("a velocity that overflows changes nothing") {
+  for (const double huge : {1e200, 1e308}) {
+    CAPTURE(huge);
+    check_overflow([huge](Cloth& cloth) {
+      std::vector<Vec3> v = velocities(cloth);
+      v[6] = {huge, -huge, huge};
+      REQUIRE(cloth.write_velocities(v));
+    });
+  }
+}
+
+TEST_CASE("a force that overflows changes nothing") {
+  check_overflow([](Cloth& cloth) {
+    std::vector<Vec3> forces(cloth.particle_count());
+    forces[5] = {1e308, 0, 0};
+    REQUIRE(cloth.write_forces(forces));
+  });
+}
+
+TEST_CASE("an unconstrained particle that overflows changes nothing") {
+  SceneDescription scene;
+  scene.positions = {{1e308, 0, 0}};
+  scene.velocities = {{1e308, 0, 0}};
+  scene.masses = {1};
+  Cloth cloth = cloth_of(scene, {});
+  const std::uint64_t before = cloth.state_hash();
+  CHECK(step(cloth, 10).status == Status::non_finite);
+  CHECK(cloth.state_hash() == before);
+}
+
+TEST_CASE("an overflow in a fixed number of iterations is seen too") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.velocities[1] = {1e300, 0, 0};
+  Settings settings;
+  settings.iterations = 3;
+  Cloth cloth = cloth_of(scene, settings);
+  const std::uint64_t before = cloth.state_hash();
+  CHECK(step(cloth, 0.01).status == Status::non_finite);
+  CHECK(cloth.state_hash() == before);
+}
+
+TEST_CASE("particles that coincide are parted") {
+  for (const Method& method : kMethods) {
+    for (const double apart : {0.0, 1e-320, 1e-170, 1e-161, 1e-30}) {
+      CAPTURE(text(method));
+      CAPTURE(apart);
+      SceneDescription scene = free_bar(1, 1);
+      scene.positions[1].x = apart;
+      Cloth cloth = cloth_of(scene, with(tight(1e-9), method));
+      const StepReport report = step(cloth, 0.01);
+      CHECK(report.status == Status::converged);
+      CHECK(max_strain(scene, positions(cloth)) <= 1e-9 * (1 + 1e-6));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::test

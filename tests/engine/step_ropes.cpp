@@ -1,0 +1,99 @@
+/// Ropes: they pull when taut, and do nothing else.
+#include <doctest/doctest.h>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+SceneDescription free_rope(double start_distance) {
+  SceneDescription scene = free_bar(1, 1);
+  scene.positions[1] = {start_distance, 0, 0};
+  scene.constraints[0].kind = ConstraintKind::rope;
+  return scene;
+}
+
+TEST_CASE("a slack rope lets its ends fly free") {
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    SceneDescription scene = free_rope(0.2);
+    scene.velocities = {{0, 0, 0}, {0.5, 0.5, 0}};
+    Settings settings = with(tight(1e-12), method);
+    settings.velocity_correction = true;
+    Cloth cloth = cloth_of(scene, settings);
+    for (int k = 0; k < 100; ++k) CHECK(step(cloth, 0.01).corrections == 0);
+    CHECK(distance(cloth.position(1), {0.7, 0.5, 0}) < 1e-14);
+    CHECK(distance(cloth.position(0), {0, 0, 0}) == 0);
+  }
+}
+
+TEST_CASE("a rope runs taut and shares the momentum") {
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    SceneDescription scene = free_rope(0.95);
+    scene.velocities = {{0, 0, 0}, {10, 0, 0}};
+    Settings settings = with(tight(1e-12), method);
+    settings.velocity_correction = true;
+    Cloth cloth = cloth_of(scene, settings);
+    step(cloth, 0.01);
+    CHECK(distance(cloth.position(0), cloth.position(1)) == doctest::Approx(1).epsilon(1e-12));
+    CHECK(distance(cloth.velocity(0), {5, 0, 0}) < 1e-9);
+    CHECK(distance(cloth.velocity(1), {5, 0, 0}) < 1e-9);
+  }
+}
+
+TEST_CASE("a taut rope does not push its ends apart") {
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    SceneDescription scene = free_rope(1);
+    scene.velocities = {{2, 0, 0}, {-3, 0, 0}};
+    Settings settings = with(tight(1e-12), method);
+    settings.velocity_correction = true;
+    Cloth cloth = cloth_of(scene, settings);
+    CHECK(step(cloth, 0.01).corrections == 0);
+    CHECK(distance(cloth.velocity(0), {2, 0, 0}) == 0);
+    CHECK(distance(cloth.velocity(1), {-3, 0, 0}) == 0);
+  }
+}
+
+// On one line: A fixed at 0, Q at 0.5 on a bar to A, P at 1.4 and R at -0.4 on ropes of 1 to Q. Q
+// and P fly to +x and are previewed at 1.5 and 2.4. In truth the bar holds Q at 0.5, and P's rope
+// holds P at 1.5; R's rope stays slack. But until the bar has brought Q back, R's rope looks
+// overstretched and pulls, all of which must be taken back.
+SceneDescription early_pull() {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0.5, 0, 0}, {1.4, 0, 0}, {-0.4, 0, 0}};
+  scene.velocities = {{0, 0, 0}, {100, 0, 0}, {100, 0, 0}, {0, 0, 0}};
+  scene.masses = {1, 1, 2, 1};
+  scene.fixed = {0};
+  scene.constraints = {{3, 1, 1.0, ConstraintKind::rope},
+                       {1, 2, 1.0, ConstraintKind::rope},
+                       {0, 1, 0.5, ConstraintKind::distance}};
+  scene.gravity = {0, 0, 0};
+  return scene;
+}
+
+TEST_CASE("a rope's early pull is taken back") {
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    Cloth cloth = cloth_of(early_pull(), with(tight(1e-12), method));
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::converged);
+    CHECK(distance(cloth.position(1), {0.5, 0, 0}) < 1e-10);
+    CHECK(distance(cloth.position(2), {1.5, 0, 0}) < 1e-10);
+    CHECK(distance(cloth.position(3), {-0.4, 0, 0}) < 1e-10);
+    CHECK(length(cloth.velocity(3)) < 1e-8);
+  }
+}
+
+TEST_CASE("a rope's strain is its excess alone") {
+  SceneDescription scene = free_rope(0.5);
+  CHECK(cloth_of(scene, {}).strain().max == 0);
+  scene.positions[1].x = 1.25;
+  CHECK(cloth_of(scene, {}).strain().max == doctest::Approx(0.25).epsilon(1e-15));
+}
+
+}  // namespace
+}  // namespace weft::test

@@ -1,0 +1,170 @@
+/// Every setting, time step and state that a Cloth refuses, and that a refusal changes nothing.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <string>
+
+#include "tests/support/clothes.h"
+
+namespace weft::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void check_message(const std::string& message, std::initializer_list<const char*> parts) {
+  CAPTURE(message);
+  CHECK(message.find('\n') == std::string::npos);
+  for (const char* part : parts) {
+    CAPTURE(part);
+    CHECK(message.find(part) != std::string::npos);
+  }
+}
+
+void check_setting(const std::function<void(Settings&)>& spoil,
+                   std::initializer_list<const char*> parts) {
+  Settings settings;
+  spoil(settings);
+  const auto cloth = Cloth::create(model_of(scene_of("hang", 4)), settings);
+  REQUIRE_FALSE(cloth);
+  check_message(cloth.error(), parts);
+}
+
+TEST_CASE("tolerances must be finite and positive") {
+  for (const auto& [name, field] :
+       {std::pair{"tolerance", &Settings::tolerance},
+        std::pair{"contact_tolerance", &Settings::contact_tolerance},
+        std::pair{"velocity_tolerance", &Settings::velocity_tolerance}}) {
+    const auto set = [field = field](double value) {
+      return [=](Settings& s) { s.*field = value; };
+    };
+    check_setting(set(0), {name, "0"});
+    check_setting(set(-0.25), {name, "-0.25"});
+    check_setting(set(kNan), {name, "nan"});
+    check_setting(set(kInfinity), {name, "inf"});
+  }
+}
+
+TEST_CASE("iterations, their bound and the impulse limit must be in range") {
+  check_setting([](auto& s) { s.iterations = -3; }, {"iterations", "-3"});
+  check_setting([](auto& s) { s.max_iterations = 0; }, {"max_iterations", "0"});
+  check_setting([](auto& s) { s.max_iterations = -1; }, {"max_iterations", "-1"});
+  check_setting([](auto& s) { s.impulse_limit = -0.5; }, {"impulse_limit", "-0.5"});
+  check_setting([](auto& s) { s.impulse_limit = kNan; }, {"impulse_limit", "nan"});
+  check_setting([](auto& s) { s.impulse_limit = kInfinity; }, {"impulse_limit", "inf"});
+}
+
+TEST_CASE("choices that do not exist are refused") {
+  check_setting([](auto& s) { s.solver = static_cast<Solver>(200); }, {"solver", "200"});
+  check_setting([](auto& s) { s.scheme = static_cast<Scheme>(200); }, {"scheme", "200"});
+  check_setting([](auto& s) { s.backend = static_cast<Backend>(200); }, {"backend", "200"});
+  check_setting([](auto& s) { s.directions = static_cast<Directions>(200); },
+                {"directions", "200"});
+}
+
+TEST_CASE("a missing model is refused") {
+  const auto cloth = Cloth::create(nullptr, {});
+  REQUIRE_FALSE(cloth);
+  check_message(cloth.error(), {"model"});
+}
+
+/// A moving cloth, a call on it that must fail, and its state before and after.
+void check_refusal(const std::function<Result<void>(Cloth&)>& call,
+                   std::initializer_list<const char*> parts) {
+  Cloth cloth = cloth_of(scene_of("hang", 4), {});
+  run(cloth, 0.01, 5);
+  const std::uint64_t before = cloth.state_hash();
+  const auto result = call(cloth);
+  REQUIRE_FALSE(result);
+  check_message(result.error(), parts);
+  CHECK(cloth.state_hash() == before);
+
+  Cloth untouched = cloth_of(scene_of("hang", 4), {});
+  run(untouched, 0.01, 10);
+  run(cloth, 0.01, 5);
+  CHECK(cloth.state_hash() == untouched.state_hash());
+}
+
+Result<void> try_step(Cloth& cloth, double dt) {
+  auto report = cloth.step(dt);
+  if (!report) return Error{report.error()};
+  return {};
+}
+
+TEST_CASE("time steps must be finite and positive") {
+  check_refusal([](Cloth& c) { return try_step(c, 0); }, {"dt", "0"});
+  check_refusal([](Cloth& c) { return try_step(c, -0.01); }, {"dt", "-0.01"});
+  check_refusal([](Cloth& c) { return try_step(c, kNan); }, {"dt", "nan"});
+  check_refusal([](Cloth& c) { return try_step(c, kInfinity); }, {"dt", "inf"});
+}
+
+using Write = Result<void> (Cloth::*)(std::span<const Vec3>);
+
+void check_write(Write write, const char* field) {
+  const auto sized = [write](std::size_t size) {
+    return [=](Cloth& c) { return (c.*write)(std::vector<Vec3>(size, Vec3{1, 2, 3})); };
+  };
+  check_refusal(sized(15), {field, "16", "15"});
+  check_refusal(sized(17), {field, "16", "17"});
+  using Member = double Vec3::*;
+  for (const Member component : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    const auto spoilt = [=](double value) {
+      return [=](Cloth& c) {
+        std::vector<Vec3> in(16, Vec3{1, 2, 3});
+        in[11].*component = value;
+        return (c.*write)(in);
+      };
+    };
+    check_refusal(spoilt(kNan), {field, "[11]", "nan"});
+    check_refusal(spoilt(-kInfinity), {field, "[11]", "-inf"});
+  }
+}
+
+TEST_CASE("writes must be finite, one vector per particle, and fail as a whole") {
+  check_write(&Cloth::write_positions, "positions");
+  check_write(&Cloth::write_velocities, "velocities");
+  check_write(&Cloth::write_forces, "forces");
+  check_refusal([](Cloth& c) { return c.write_positions({}); }, {"positions", "16", "0"});
+  check_refusal([](Cloth& c) { return c.write_velocities({}); }, {"velocities", "16", "0"});
+}
+
+TEST_CASE("only fixed particles are placed, and only where one can be") {
+  check_refusal([](Cloth& c) { return c.move_fixed(16, {0, 0, 0}); }, {"particle", "16"});
+  check_refusal(
+      [](Cloth& c) {
+        return c.move_fixed(kNoIndex, {0, 0, 0});
+      },
+      {"particle", "4294967295"});
+  check_refusal([](Cloth& c) { return c.move_fixed(9, {0, 0, 0}); }, {"fixed", "9"});
+  check_refusal([](Cloth& c) { return c.move_fixed(2, {0, kNan, 0}); }, {"position", "2", "nan"});
+  check_refusal(
+      [](Cloth& c) {
+        return c.move_fixed(2, {0, 0, kInfinity});
+      },
+      {"position", "2", "inf"});
+}
+
+TEST_CASE("reads into a span of the wrong size copy nothing") {
+  Cloth cloth = cloth_of(scene_of("hang", 4), {});
+  for (const std::size_t size : {0u, 15u, 17u}) {
+    std::vector<Vec3> out(size, Vec3{7, 7, 7});
+    const auto p = cloth.read_positions(std::span<Vec3>(out));
+    const auto v = cloth.read_velocities(out);
+    REQUIRE_FALSE(p);
+    REQUIRE_FALSE(v);
+    check_message(p.error(), {"16", std::to_string(size).c_str()});
+    check_message(v.error(), {"16", std::to_string(size).c_str()});
+    for (const Vec3& x : out) CHECK((x.x == 7 && x.y == 7 && x.z == 7));
+  }
+  std::vector<float> packed(47, 7.0f);
+  const auto f = cloth.read_positions(std::span<float>(packed));
+  REQUIRE_FALSE(f);
+  check_message(f.error(), {"48", "47"});
+  for (const float x : packed) CHECK(x == 7.0f);
+}
+
+}  // namespace
+}  // namespace weft::test

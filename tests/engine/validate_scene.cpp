@@ -1,0 +1,148 @@
+/// Every description that build_model refuses, and that it says which field, index and value.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <string>
+
+#include "tests/support/clothes.h"
+
+namespace weft::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using Spoil = std::function<void(SceneDescription&)>;
+
+/// A scene with something in every field; it builds.
+SceneDescription full_scene() {
+  SceneDescription scene = scene_of("hang_sphere", 4);
+  scene.velocities.assign(scene.positions.size(), Vec3{});
+  scene.constraints.push_back({5, 15, 1.0, ConstraintKind::rope});
+  return scene;
+}
+
+/// One line, with every one of `parts` in it.
+void check_refused(const Spoil& spoil, std::initializer_list<const char*> parts) {
+  SceneDescription scene = full_scene();
+  spoil(scene);
+  const auto model = build_model(scene);
+  REQUIRE_FALSE(model);
+  const std::string& message = model.error();
+  CAPTURE(message);
+  CHECK(message.find('\n') == std::string::npos);
+  for (const char* part : parts) {
+    CAPTURE(part);
+    CHECK(message.find(part) != std::string::npos);
+  }
+}
+
+TEST_CASE("the scene to be spoilt is a good one") { CHECK(build_model(full_scene())); }
+
+TEST_CASE("a scene without particles is refused") {
+  const auto model = build_model({});
+  REQUIRE_FALSE(model);
+  CHECK(model.error().find("positions") != std::string::npos);
+}
+
+TEST_CASE("vectors that are not finite are refused, whichever component it is") {
+  using Member = double Vec3::*;
+  for (const Member component : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    check_refused([=](auto& s) { s.positions[3].*component = kNan; }, {"positions[3]", "nan"});
+    check_refused([=](auto& s) { s.positions[16].*component = -kInfinity; },
+                  {"positions[16]", "-inf"});
+    check_refused([=](auto& s) { s.velocities[9].*component = kNan; }, {"velocities[9]", "nan"});
+    check_refused([=](auto& s) { s.velocities[0].*component = kInfinity; },
+                  {"velocities[0]", "inf"});
+    check_refused([=](auto& s) { s.gravity.*component = kNan; }, {"gravity", "nan"});
+    check_refused([=](auto& s) { s.gravity.*component = kInfinity; }, {"gravity", "inf"});
+  }
+}
+
+TEST_CASE("masses must be finite and positive, one per particle") {
+  check_refused([](auto& s) { s.masses[7] = 0; }, {"masses[7]", "0"});
+  check_refused([](auto& s) { s.masses[7] = -2.5; }, {"masses[7]", "-2.5"});
+  check_refused([](auto& s) { s.masses[7] = kNan; }, {"masses[7]", "nan"});
+  check_refused([](auto& s) { s.masses[0] = kInfinity; }, {"masses[0]", "inf"});
+  check_refused([](auto& s) { s.masses.pop_back(); }, {"masses", "17", "16"});
+  check_refused([](auto& s) { s.masses.push_back(1); }, {"masses", "17", "18"});
+  check_refused([](auto& s) { s.masses.clear(); }, {"masses", "17", "0"});
+}
+
+TEST_CASE("a mass whose inverse overflows is refused") {
+  check_refused([](auto& s) { s.masses[7] = 1e-310; }, {"masses[7]", "1e-310"});
+}
+
+TEST_CASE("velocities are none or one per particle") {
+  check_refused([](auto& s) { s.velocities.pop_back(); }, {"velocities", "17", "16"});
+  check_refused([](auto& s) { s.velocities.push_back({}); }, {"velocities", "17", "18"});
+  SceneDescription scene = full_scene();
+  scene.velocities.clear();
+  CHECK(build_model(scene));
+}
+
+TEST_CASE("fixed particles must exist, once") {
+  check_refused([](auto& s) { s.fixed[2] = 17; }, {"fixed[2]", "17"});
+  check_refused([](auto& s) { s.fixed[2] = 0xffffffffu; }, {"fixed[2]", "4294967295"});
+  check_refused([](auto& s) { s.fixed.push_back(3); }, {"fixed[5]", "3"});
+}
+
+TEST_CASE("constraints must join two particles that exist") {
+  check_refused([](auto& s) { s.constraints[4].a = 17; }, {"constraints[4]", ".a", "17"});
+  check_refused([](auto& s) { s.constraints[4].b = 99; }, {"constraints[4]", ".b", "99"});
+  check_refused([](auto& s) { s.constraints[4].b = s.constraints[4].a = 6; },
+                {"constraints[4]", "6"});
+}
+
+TEST_CASE("rest lengths must be finite and positive") {
+  check_refused([](auto& s) { s.constraints[4].rest_length = 0; },
+                {"constraints[4]", "rest_length", "0"});
+  check_refused([](auto& s) { s.constraints[4].rest_length = -0.5; },
+                {"constraints[4]", "rest_length", "-0.5"});
+  check_refused([](auto& s) { s.constraints[4].rest_length = kNan; },
+                {"constraints[4]", "rest_length", "nan"});
+  check_refused([](auto& s) { s.constraints[4].rest_length = kInfinity; },
+                {"constraints[4]", "rest_length", "inf"});
+}
+
+TEST_CASE("unknown kinds are refused") {
+  check_refused([](auto& s) { s.constraints[4].kind = static_cast<ConstraintKind>(9); },
+                {"constraints[4]", "kind", "9"});
+}
+
+TEST_CASE("only one constraint may join the same two particles, in whatever order") {
+  const auto repeat = [](std::size_t which, bool swapped, ConstraintKind kind) {
+    return [=](SceneDescription& s) {
+      Constraint c = s.constraints[which];
+      if (swapped) std::swap(c.a, c.b);
+      c.kind = kind;
+      s.constraints.push_back(c);
+    };
+  };
+  for (const bool swapped : {false, true}) {
+    for (const auto kind : {ConstraintKind::distance, ConstraintKind::rope}) {
+      check_refused(repeat(4, swapped, kind), {"constraints[22]", "constraints[4]"});
+      check_refused(repeat(21, swapped, kind), {"constraints[22]", "constraints[21]"});
+    }
+  }
+}
+
+TEST_CASE("radii come with spheres, one per particle, finite and not negative") {
+  check_refused([](auto& s) { s.radii.pop_back(); }, {"radii", "17", "16"});
+  check_refused([](auto& s) { s.radii.clear(); }, {"radii", "17", "0"});
+  check_refused([](auto& s) { s.spheres.clear(); }, {"radii", "spheres", "17"});
+  check_refused([](auto& s) { s.radii[8] = -0.1; }, {"radii[8]", "-0.1"});
+  check_refused([](auto& s) { s.radii[8] = kNan; }, {"radii[8]", "nan"});
+  check_refused([](auto& s) { s.radii[16] = kInfinity; }, {"radii[16]", "inf"});
+}
+
+TEST_CASE("spheres must exist, once") {
+  check_refused([](auto& s) { s.spheres[0] = 17; }, {"spheres[0]", "17"});
+  check_refused([](auto& s) { s.spheres.push_back(16); }, {"spheres[1]", "16"});
+}
+
+}  // namespace
+}  // namespace weft::test

@@ -1,0 +1,91 @@
+#include "tests/support/clothes.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+
+SceneDescription scene_of(std::string_view name, int size) {
+  scenes::Options options;
+  options.size = size;
+  auto scene = scenes::make(name, options);
+  REQUIRE_MESSAGE(scene, scene.error());
+  return scene.value();
+}
+
+std::shared_ptr<const Model> model_of(const SceneDescription& scene) {
+  auto model = build_model(scene);
+  REQUIRE_MESSAGE(model, model.error());
+  return model.value();
+}
+
+Cloth cloth_of(const SceneDescription& scene, const Settings& settings) {
+  auto cloth = Cloth::create(model_of(scene), settings);
+  REQUIRE_MESSAGE(cloth, cloth.error());
+  return std::move(cloth.value());
+}
+
+StepReport step(Cloth& cloth, double dt) {
+  auto report = cloth.step(dt);
+  REQUIRE_MESSAGE(report, report.error());
+  return report.value();
+}
+
+void run(Cloth& cloth, double dt, int steps) {
+  for (int i = 0; i < steps; ++i) step(cloth, dt);
+}
+
+std::vector<Vec3> positions(const Cloth& cloth) {
+  std::vector<Vec3> out(cloth.particle_count());
+  REQUIRE(cloth.read_positions(std::span<Vec3>(out)));
+  return out;
+}
+
+std::vector<Vec3> velocities(const Cloth& cloth) {
+  std::vector<Vec3> out(cloth.particle_count());
+  REQUIRE(cloth.read_velocities(out));
+  return out;
+}
+
+double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  REQUIRE(a.size() == b.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, distance(a[i], b[i]));
+  return largest;
+}
+
+SceneDescription free_bar(double mass_a, double mass_b) {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}};
+  scene.velocities = {{0, 0, 0}, {0, 0, 0}};
+  scene.masses = {mass_a, mass_b};
+  scene.constraints = {{0, 1, 1.0}};
+  scene.gravity = {0, 0, 0};
+  return scene;
+}
+
+std::string text(const Method& method) {
+  return std::string(name(method.directions)) + (method.anticipate ? ", anticipate" : "") +
+         (method.skip ? ", skip" : "");
+}
+
+Settings with(Settings settings, const Method& method) {
+  settings.directions = method.directions;
+  settings.anticipate = method.anticipate;
+  settings.skip = method.skip;
+  return settings;
+}
+
+Settings tight(double tolerance) {
+  Settings settings;
+  settings.tolerance = tolerance;
+  settings.contact_tolerance = tolerance;
+  settings.velocity_tolerance = tolerance;
+  return settings;
+}
+
+}  // namespace weft::test

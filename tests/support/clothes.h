@@ -1,0 +1,51 @@
+/// Scenes, cloths and settings, with a failed test instead of an error to handle.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/scenes.h"
+
+namespace weft::test {
+
+SceneDescription scene_of(std::string_view name, int size);
+std::shared_ptr<const Model> model_of(const SceneDescription& scene);
+Cloth cloth_of(const SceneDescription& scene, const Settings& settings);
+StepReport step(Cloth& cloth, double dt);
+void run(Cloth& cloth, double dt, int steps);
+
+std::vector<Vec3> positions(const Cloth& cloth);
+std::vector<Vec3> velocities(const Cloth& cloth);
+double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
+
+/// Two free particles a bar of length 1 apart along x, without gravity.
+SceneDescription free_bar(double mass_a, double mass_b);
+
+/// One of the paper's ways to compute a step.
+struct Method {
+  Directions directions;
+  bool anticipate;
+  bool skip;
+};
+/// All eight; a method's neighbour at index ^ 1 differs in skip alone, at index ^ 2 in anticipate.
+inline constexpr std::array<Method, 8> kMethods{{
+    {Directions::each, false, false},
+    {Directions::each, false, true},
+    {Directions::each, true, false},
+    {Directions::each, true, true},
+    {Directions::frozen, false, false},
+    {Directions::frozen, false, true},
+    {Directions::frozen, true, false},
+    {Directions::frozen, true, true},
+}};
+std::string text(const Method& method);
+Settings with(Settings settings, const Method& method);
+/// Every constraint, contact and velocity to the same small error.
+Settings tight(double tolerance);
+
+}  // namespace weft::test

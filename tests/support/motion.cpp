@@ -1,0 +1,71 @@
+#include "tests/support/motion.h"
+
+#include <algorithm>
+
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+bool is_fixed(const SceneDescription& scene, std::size_t particle) {
+  return std::find(scene.fixed.begin(), scene.fixed.end(), particle) != scene.fixed.end();
+}
+
+}  // namespace
+
+Vec3 momentum(const std::vector<double>& masses, const std::vector<Vec3>& velocities) {
+  Vec3 sum;
+  for (std::size_t i = 0; i < masses.size(); ++i) sum = sum + masses[i] * velocities[i];
+  return sum;
+}
+
+Vec3 angular_momentum(const std::vector<double>& masses, const std::vector<Vec3>& positions,
+                      const std::vector<Vec3>& velocities) {
+  Vec3 sum;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    sum = sum + masses[i] * cross(positions[i], velocities[i]);
+  }
+  return sum;
+}
+
+std::vector<double> strains(const SceneDescription& scene, const std::vector<Vec3>& positions) {
+  std::vector<double> strains;
+  for (const Constraint& c : scene.constraints) {
+    const double excess = distance(positions[c.a], positions[c.b]) - c.rest_length;
+    const bool inert = is_fixed(scene, c.a) && is_fixed(scene, c.b);
+    const double error = c.kind == ConstraintKind::rope ? std::max(excess, 0.0) : std::abs(excess);
+    strains.push_back(inert ? 0.0 : error / c.rest_length);
+  }
+  return strains;
+}
+
+double max_strain(const SceneDescription& scene, const std::vector<Vec3>& positions) {
+  double largest = 0;
+  for (const double strain : strains(scene, positions)) largest = std::max(largest, strain);
+  return largest;
+}
+
+double max_penetration(const SceneDescription& scene, const std::vector<Vec3>& positions) {
+  double deepest = 0;
+  for (const std::uint32_t s : scene.spheres) {
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      if (i == s || (is_fixed(scene, s) && is_fixed(scene, i))) continue;
+      const double gap = distance(positions[s], positions[i]) - scene.radii[s] - scene.radii[i];
+      deepest = std::max(deepest, -gap);
+    }
+  }
+  return deepest;
+}
+
+double energy(const SceneDescription& scene, const std::vector<Vec3>& positions,
+              const std::vector<Vec3>& velocities) {
+  double sum = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (is_fixed(scene, i)) continue;
+    sum += scene.masses[i] *
+           (dot(velocities[i], velocities[i]) / 2 - dot(scene.gravity, positions[i]));
+  }
+  return sum;
+}
+
+}  // namespace weft::test
