@@ -30,7 +30,7 @@ struct PaperOptions {
   std::string json;
   std::string out;
   bool quick = false;
-  int repeat = 5;
+  std::optional<int> repeat;  // 5; 2 if quick
 };
 
 /// One line on stderr, redrawn in place on a terminal; elsewhere one line per cell.
@@ -75,7 +75,7 @@ class ProgressLine {
 Result<paper::Study> carry_out(const PaperOptions& options) {
   paper::Study study;
   study.quick = options.quick;
-  study.repeat = options.repeat;
+  study.repeat = options.repeat.value_or(options.quick ? 2 : 5);
   study.sphere_mass = scenes::Options{}.sphere_mass;
   const auto table = paper::table_cells(options.quick);
   const auto figure_4 = paper::figure_4_cells(options.quick);
@@ -86,7 +86,7 @@ Result<paper::Study> carry_out(const PaperOptions& options) {
   for (const auto& [cells, rows] : {std::pair{&table, &study.rows}, {&figure_4, &study.figure_4}}) {
     for (const paper::Cell& cell : *cells) {
       line.next_cell(cell);
-      auto measured = paper::measure(cell, options.repeat, progress);
+      auto measured = paper::measure(cell, study.repeat, progress);
       if (!measured) return Error{measured.error()};
       for (paper::Row& row : measured.value()) rows->push_back(std::move(row));
     }
@@ -117,8 +117,7 @@ Result<void> write_folder(const std::filesystem::path& folder, const paper::Stud
   const std::string json = folder / "paper.json";
   if (auto done = write_json(json, paper::to_json(study)); !done) return done;
   const auto drawn = plot("paper_figures.py", {json, "--out", folder});
-  if (!drawn)
-    fmt::print(stderr, "weft paper: {}; the data is in {}\n", drawn.error(), folder.c_str());
+  if (!drawn) fmt::print(stderr, "weft: {}; the data is in {}\n", drawn.error(), folder.c_str());
   return {};
 }
 
@@ -132,7 +131,7 @@ Result<void> make_folder(const std::string& folder) {
 }
 
 int fail(const std::string& message) {
-  fmt::print(stderr, "weft paper: {}\n", message);
+  fmt::print(stderr, "weft: {}\n", message);
   return kExitBadInput;
 }
 
@@ -173,9 +172,10 @@ void add_paper_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out,
                       "Write CSV, JSON and the figures 2, 3, 4 into a folder");
   command->add_flag("--quick", options->quick, "Fewer steps: under a minute, less to be trusted");
-  command->add_option("--repeat", options->repeat, "Most runs of one combination, fastest counts")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  command
+      ->add_option("--repeat", options->repeat,
+                   "Most runs of one combination, fastest counts (default 5, quick 2)")
+      ->check(CLI::Range(1, 1000));
   command->callback([options, &exit_code] { exit_code = run_paper(*options); });
 }
 
