@@ -71,7 +71,7 @@ void State::size_method_memory(std::size_t size) {
   if (!settings.anticipate) return;
   reference.error.resize(size);
   reference.pending.resize(size);
-  if (settings.skip) reference.unsatisfied.resize(size + kFlagPadding);
+  if (settings.skip) reference.changed.resize(size + kFlagPadding);
 }
 
 reference::Relaxation State::problem() {
@@ -119,7 +119,7 @@ reference::Workspace State::workspace() {
   w.row_ready = reference.row_ready.data();
   w.hub_motion = reference.hub_motion.view();
   w.hubs = model->hubs;
-  w.unsatisfied = reference.unsatisfied.data();
+  w.changed = reference.changed.data();
   w.mask = reference.mask.data();
   w.moved = reference.moved.data();
   return w;
@@ -143,7 +143,7 @@ std::size_t State::bytes() const {
          bytes_of(c.tolerance) + bytes_of(c.velocity_tolerance) + bytes_of(c.zero) +
          bytes_of(c.impulse) + bytes_of(contacts.first) + bytes_of(contacts.next) +
          bytes_of(r.error) + bytes_of(r.pending) + bytes_of(r.row_product) + bytes_of(r.row_ready) +
-         bytes_of(r.unsatisfied) + bytes_of(r.moved) + bytes_of(r.mask);
+         bytes_of(r.changed) + bytes_of(r.moved) + bytes_of(r.mask);
 }
 
 }  // namespace weft

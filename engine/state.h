@@ -44,7 +44,7 @@ struct ContactStore {
 /// What the methods of the reference need; only the arrays of the chosen method are allocated.
 struct ReferenceMemory {
   std::vector<double> error, pending, row_product;
-  std::vector<std::uint8_t> row_ready, unsatisfied, moved;
+  std::vector<reference::Flag> row_ready, changed, moved;
   kernels::Vectors hub_motion;
   std::vector<std::uint64_t> mask;
 };

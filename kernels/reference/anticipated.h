@@ -23,23 +23,17 @@
 
 namespace weft::reference {
 
-/// Which neighbours are told of a correction. If directions are renewed before every iteration,
-/// only those still to come in this one (paper 4.2): the errors of the others will be computed
-/// anew.
-enum class Push { later, all };
-
-template <bool kSkip, bool kConstantDirections>
+/// each: directions live for one iteration, so only constraints still to come in it are told (paper
+/// 4.2), the errors of the others will be computed anew. frozen: many iterations, all are told.
+/// constant: the same, and the directions are given (velocity loop).
+template <bool kSkip, Directions kDirections>
 class AnticipatedLoop {
  public:
   AnticipatedLoop(const Relaxation& r, const Topology& t, const ContactLists& contacts,
-                  const Workspace& w, Push push)
-      : r_(r),
-        t_(t),
-        contacts_(contacts),
-        w_(w),
-        row_first_(push == Push::all ? t.row_begin : t.row_later) {
+                  const Workspace& w)
+      : r_(r), t_(t), contacts_(contacts), w_(w) {
     std::fill_n(w_.pending, r_.count, 0.0);
-    if constexpr (kSkip) std::fill_n(w_.moved, r_.particles, std::uint8_t{1});
+    if constexpr (kSkip) std::fill_n(w_.moved, r_.particles, Flag::set);
   }
 
   void renew() {
@@ -47,12 +41,12 @@ class AnticipatedLoop {
     begun_ = true;
     for (const std::uint32_t hub : w_.hubs) w_.hub_motion.set(hub, {0, 0, 0});
     for (std::size_t c = 0; c < r_.count; ++c) {
-      if (kSkip && !w_.moved[r_.a[c]] && !w_.moved[r_.b[c]]) continue;
-      w_.error[c] = kConstantDirections ? error(r_, c) : renew_direction(r_, c);
-      if constexpr (kSkip) update_flag(c);
+      if (kSkip && !is_set(w_.moved[r_.a[c]]) && !is_set(w_.moved[r_.b[c]])) continue;
+      w_.error[c] = kDirections == Directions::constant ? error(r_, c) : renew_direction(r_, c);
+      remind(c);
     }
-    std::fill_n(w_.row_ready, r_.plain, std::uint8_t{0});
-    if constexpr (kSkip) std::fill_n(w_.moved, r_.particles, std::uint8_t{0});
+    std::fill_n(w_.row_ready, r_.plain, Flag::clear);
+    if constexpr (kSkip) std::fill_n(w_.moved, r_.particles, Flag::clear);
   }
 
   Sweep sweep() {
@@ -74,16 +68,16 @@ class AnticipatedLoop {
   static constexpr std::size_t kFlagsPerWord = 8;
 
   /// Eight flags are read as one word: where all are clear, eight constraints are passed over at
-  /// once.
+  /// once. Where some are set all eight are compared, which is quicker than asking each.
   void sweep_flagged(Sweep& sweep) {
     for (std::size_t first = 0; first < r_.plain; first += kFlagsPerWord) {
       std::uint64_t flags;
-      std::memcpy(&flags, w_.unsatisfied + first, sizeof flags);
+      std::memcpy(&flags, w_.changed + first, sizeof flags);
       if (flags == 0) continue;
       const std::size_t last = std::min(first + kFlagsPerWord, r_.plain);
+      sweep.visits += static_cast<std::int64_t>(last - first);
       for (std::size_t c = first; c < last; ++c) {
-        if (!w_.unsatisfied[c]) continue;
-        ++sweep.visits;
+        w_.changed[c] = Flag::clear;
         sweep.corrections += visit_plain(c);
       }
     }
@@ -95,8 +89,12 @@ class AnticipatedLoop {
     if (change == 0) return false;
     w_.pending[c] += change;
     w_.error[c] = r_.limit < kUnlimited ? e - change / r_.effective_mass[c] : 0.0;
-    if constexpr (kSkip) update_flag(c);
-    push_row(c, change);
+    if (r_.limit < kUnlimited) remind(c);
+    if constexpr (kDirections == Directions::each) {
+      push_later(c, change);
+    } else {
+      push_row(c, change);
+    }
     if (contacts_.first != nullptr) {
       push_contacts(c, r_.a[c], -change);
       push_contacts(c, r_.b[c], change);
@@ -104,26 +102,38 @@ class AnticipatedLoop {
     return true;
   }
 
-  void push_row(std::size_t c, double change) {
-    if (!w_.row_ready[c]) build_row(c);
+  void push_later(std::size_t c, double change) {
+    const Vector d = change * r_.n[c];
     const std::size_t end = t_.row_begin[c + 1];
-    for (std::size_t k = row_first_[c]; k < end; ++k) {
+    for (std::size_t k = t_.row_later[c]; k < end; ++k) {
+      const std::size_t j = t_.row_constraint[k];
+      w_.error[j] -= t_.row_weight[k] * dot(d, r_.n[j]);
+      remind(j);
+    }
+  }
+
+  void push_row(std::size_t c, double change) {
+    if (!is_set(w_.row_ready[c])) build_row(c);
+    const std::size_t end = t_.row_begin[c + 1];
+    for (std::size_t k = t_.row_begin[c]; k < end; ++k) {
       const std::size_t j = t_.row_constraint[k];
       w_.error[j] -= w_.row_product[k] * change;
-      if constexpr (kSkip) update_flag(j);
+      remind(j);
     }
   }
 
   void build_row(std::size_t c) {
     const Vector n = r_.n[c];
     const std::size_t end = t_.row_begin[c + 1];
-    for (std::size_t k = row_first_[c]; k < end; ++k) {
+    for (std::size_t k = t_.row_begin[c]; k < end; ++k) {
       w_.row_product[k] = t_.row_weight[k] * dot(n, r_.n[t_.row_constraint[k]]);
     }
-    w_.row_ready[c] = 1;
+    w_.row_ready[c] = Flag::set;
   }
 
-  void update_flag(std::size_t c) { w_.unsatisfied[c] = std::abs(w_.error[c]) > r_.tolerance[c]; }
+  void remind(std::size_t c) {
+    if constexpr (kSkip) w_.changed[c] = Flag::set;
+  }
 
   /// Hubs, ropes and contacts: the error is what was anticipated plus what the hubs did since.
   bool visit_general(std::size_t c) {
@@ -166,9 +176,7 @@ class AnticipatedLoop {
   void push(std::size_t j, std::size_t p, Vector d) {
     const double change = dot(r_.n[j], d);
     w_.error[j] += r_.a[j] == p ? change : -change;
-    if constexpr (kSkip) {
-      if (j < r_.plain) update_flag(j);
-    }
+    remind(j);
   }
 
   /// x' = x - sigma w lambda n for every impulse that has waited (paper 4.2, end).
@@ -178,7 +186,7 @@ class AnticipatedLoop {
       apply(r_, c, w_.pending[c]);
       if (c >= r_.bilateral) r_.impulse[c] += w_.pending[c];
       w_.pending[c] = 0;
-      if constexpr (kSkip) w_.moved[r_.a[c]] = w_.moved[r_.b[c]] = 1;
+      if constexpr (kSkip) w_.moved[r_.a[c]] = w_.moved[r_.b[c]] = Flag::set;
     }
   }
 
@@ -186,7 +194,6 @@ class AnticipatedLoop {
   const Topology& t_;
   const ContactLists& contacts_;
   const Workspace& w_;
-  const std::uint32_t* row_first_;
   bool begun_ = false;
 };
 

@@ -6,13 +6,13 @@
 
 namespace weft::reference {
 
-template <bool kConstantDirections>
+template <Directions kDirections>
 class DirectLoop {
  public:
   explicit DirectLoop(const Relaxation& r) : r_(r) {}
 
   void renew() {
-    if constexpr (kConstantDirections) return;
+    if constexpr (kDirections == Directions::constant) return;
     for (std::size_t c = 0; c < r_.count; ++c) renew_direction(r_, c);
   }
 

@@ -21,20 +21,20 @@
 
 namespace weft::reference {
 
-template <bool kConstantDirections>
+template <Directions kDirections>
 class MaskedLoop {
  public:
   MaskedLoop(const Relaxation& r, const Topology& t, const Workspace& w)
       : r_(r), colour_(t.colour), mask_(w.mask), moved_(w.moved) {
-    std::fill_n(moved_, r_.particles, std::uint8_t{1});
+    std::fill_n(moved_, r_.particles, Flag::set);
   }
 
   void renew() {
     for (std::size_t p = 0; p < r_.particles; ++p) {
-      if (moved_[p]) mask_[p] = ~std::uint64_t{0};
-      moved_[p] = 0;
+      if (is_set(moved_[p])) mask_[p] = ~std::uint64_t{0};
+      moved_[p] = Flag::clear;
     }
-    if constexpr (kConstantDirections) return;
+    if constexpr (kDirections == Directions::constant) return;
     for (std::size_t c = 0; c < r_.plain; ++c) {
       if (marks(c) & bit(c)) renew_direction(r_, c);
     }
@@ -86,13 +86,13 @@ class MaskedLoop {
 
   void mark_moved(std::size_t p, std::uint64_t bits) {
     mask_[p] = bits;
-    moved_[p] = 1;
+    moved_[p] = Flag::set;
   }
 
   const Relaxation& r_;
   const std::uint8_t* colour_;
   std::uint64_t* mask_;
-  std::uint8_t* moved_;
+  Flag* moved_;
 };
 
 }  // namespace weft::reference

@@ -1,8 +1,6 @@
-/// The loop around all methods. One iteration is one sweep; the directions are renewed
-///   each:   before every iteration (paper 3.2, 4.1),
-///   frozen: when an iteration found nothing left to correct along them (paper 4.4).
-/// Either way the loop ends when an iteration along fresh directions corrects nothing: then every
-/// true error is within tolerance, because n points along the connecting line.
+/// The loop around all methods. One iteration is one sweep. However often directions are renewed,
+/// the loop ends when an iteration along fresh directions corrects nothing: then every true error
+/// is within tolerance, because n points along the connecting line.
 #include "kernels/reference/relax.h"
 
 #include "kernels/reference/anticipated.h"
@@ -11,8 +9,6 @@
 
 namespace weft::reference {
 namespace {
-
-enum class Directions { each, frozen, constant };
 
 void count(LoopResult& result, const Sweep& sweep) {
   ++result.iterations;
@@ -57,38 +53,37 @@ LoopResult iterate_fixed(Loop& loop, Directions directions, int iterations) {
   return result;
 }
 
-template <class Loop>
-LoopResult run(Loop&& loop, Directions directions, const Method& method) {
-  if (method.fixed_iterations > 0) {
-    return iterate_fixed(loop, directions, method.fixed_iterations);
-  }
-  return iterate_to_tolerance(loop, directions, method.max_iterations);
+template <Directions kDirections, class Loop>
+LoopResult run(Loop&& loop, const Method& method) {
+  if (method.fixed_iterations > 0) return iterate_fixed(loop, kDirections, method.fixed_iterations);
+  return iterate_to_tolerance(loop, kDirections, method.max_iterations);
 }
 
-template <bool kConstant>
+template <Directions kDirections>
 LoopResult relax(const Relaxation& r, const Topology& t, const ContactLists& c, const Workspace& w,
-                 const Method& method, Directions directions) {
+                 const Method& method) {
   const bool skip = method.skip && method.fixed_iterations == 0;
-  if (method.anticipate) {
-    const auto scope = directions == Directions::each ? Push::later : Push::all;
-    if (skip) return run(AnticipatedLoop<true, kConstant>(r, t, c, w, scope), directions, method);
-    return run(AnticipatedLoop<false, kConstant>(r, t, c, w, scope), directions, method);
+  if (method.anticipate && skip) {
+    return run<kDirections>(AnticipatedLoop<true, kDirections>(r, t, c, w), method);
   }
-  if (skip) return run(MaskedLoop<kConstant>(r, t, w), directions, method);
-  return run(DirectLoop<kConstant>(r), directions, method);
+  if (method.anticipate) {
+    return run<kDirections>(AnticipatedLoop<false, kDirections>(r, t, c, w), method);
+  }
+  if (skip) return run<kDirections>(MaskedLoop<kDirections>(r, t, w), method);
+  return run<kDirections>(DirectLoop<kDirections>(r), method);
 }
 
 }  // namespace
 
 LoopResult relax_positions(const Relaxation& r, const Topology& t, const ContactLists& c,
                            const Workspace& w, const Method& method) {
-  const auto directions = method.frozen_directions ? Directions::frozen : Directions::each;
-  return relax<false>(r, t, c, w, method, directions);
+  if (method.frozen_directions) return relax<Directions::frozen>(r, t, c, w, method);
+  return relax<Directions::each>(r, t, c, w, method);
 }
 
 LoopResult relax_velocities(const Relaxation& r, const Topology& t, const ContactLists& c,
                             const Workspace& w, const Method& method) {
-  return relax<true>(r, t, c, w, method, Directions::constant);
+  return relax<Directions::constant>(r, t, c, w, method);
 }
 
 void renew_all_directions(const Relaxation& r, VectorsView positions) {

@@ -45,15 +45,15 @@ inline constexpr std::uint32_t kNoContact = 0xffffffffu;
 /// Memory that the methods need, sized by the caller; contents need not survive a call. Only the
 /// arrays of the method in use are touched.
 struct Workspace {
-  double* error = nullptr;            // anticipation: per constraint
-  double* pending = nullptr;          // anticipation: impulse not yet in x, per constraint
-  double* row_product = nullptr;      // anticipation: per row entry, s w_p n_i . n_j
-  std::uint8_t* row_ready = nullptr;  // anticipation: per plain constraint
-  VectorsView hub_motion;             // anticipation: per particle, hubs only
+  double* error = nullptr;        // anticipation: per constraint
+  double* pending = nullptr;      // anticipation: impulse not yet in x, per constraint
+  double* row_product = nullptr;  // anticipation: per row entry, s w_p n_i . n_j
+  Flag* row_ready = nullptr;      // anticipation: per plain constraint
+  VectorsView hub_motion;         // anticipation: per particle, hubs only
   std::span<const std::uint32_t> hubs;
-  std::uint8_t* unsatisfied = nullptr;  // anticipation + skip: per constraint, padded by 8
-  std::uint64_t* mask = nullptr;        // skip without anticipation: per particle
-  std::uint8_t* moved = nullptr;        // skip: per particle, since its directions were renewed
+  Flag* changed = nullptr;        // anticipation + skip: per constraint, padded by 8
+  std::uint64_t* mask = nullptr;  // skip without anticipation: per particle
+  Flag* moved = nullptr;          // skip: per particle, since its directions were renewed
 };
 
 struct Method {

@@ -42,6 +42,14 @@ using kernels::VectorsView;
 inline constexpr std::size_t kHubDegree = 16;
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
+/// When directions are renewed: before each iteration (paper 3.2, 4.1); when an iteration found
+/// nothing left to correct along them (4.4); or never, they are given (velocity loop).
+enum class Directions : std::uint8_t { each, frozen, constant };
+
+/// A flag of one byte that, unlike std::uint8_t, cannot alias the pointers around it.
+enum class Flag : std::uint8_t { clear, set };
+inline bool is_set(Flag flag) { return flag == Flag::set; }
+
 struct Relaxation {
   std::size_t particles = 0;
   std::size_t plain = 0, bilateral = 0, pulling = 0, count = 0;
