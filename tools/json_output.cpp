@@ -1,7 +1,6 @@
 #include "tools/json_output.h"
 
-#include <cerrno>
-#include <cstring>
+#include "tools/text_file.h"
 
 namespace weft::tools {
 
@@ -16,14 +15,9 @@ Result<JsonOutput> JsonOutput::open(const std::string& destination) {
 
 Result<void> JsonOutput::write(const Json& json) {
   const std::string text = json.dump(2) + '\n';
-  if (file_) {
-    file_->write(text);
-    return file_->commit();
-  }
-  const bool complete =
-      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (!complete) return Error{std::string("cannot write to stdout: ") + std::strerror(errno)};
-  return {};
+  if (!file_) return print_text(text);
+  file_->write(text);
+  return file_->commit();
 }
 
 }  // namespace weft::tools

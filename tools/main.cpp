@@ -24,13 +24,14 @@ int refuse(const char* message) {
 int main(int argc, char** argv) {
   weft::tools::install_interrupt_handler();
   CLI::App app("weft: a cloth kernel that reports its error beside its time");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // none is refused below, in words that name the cure
   int exit_code = 0;
   weft::tools::add_run_command(app, exit_code);
   weft::tools::add_scene_command(app, exit_code);
   weft::tools::add_paper_command(app, exit_code);
   try {
     app.parse(argc, argv);
+    if (app.get_subcommands().empty()) return refuse("a verb is missing: run, scene or paper");
   } catch (const CLI::ParseError& error) {
     return error.get_exit_code() == 0 ? app.exit(error) : refuse(error.what());
   } catch (const std::bad_alloc&) {

@@ -248,6 +248,7 @@ Result<ObjScene> parse_obj(const std::string& text, const ObjOptions& options) {
   const std::size_t count = scene.description.positions.size();
   scene.description.masses.assign(count, options.mass / static_cast<double>(count));
   add_constraints(scene.mesh, options.rope_diagonals, scene.description);
+  if (scene.description.constraints.empty()) return Error{"every edge of the mesh has length 0"};
   return scene;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "tools/json_output.h"
@@ -13,6 +14,7 @@
 #include "tools/runner.h"
 #include "tools/scene_source.h"
 #include "tools/solver_options.h"
+#include "tools/text_file.h"
 
 namespace weft::tools {
 namespace {
@@ -39,12 +41,13 @@ Result<void> check_plan(const RunPlan& plan) {
 
 /// Two outputs of one name would overwrite each other.
 Result<void> check_destinations(const RunOptions& options) {
-  std::vector<std::string> paths = options.out;
-  if (options.json) paths.push_back(*options.json);
+  std::vector<std::filesystem::path> paths(options.out.begin(), options.out.end());
+  if (options.json) paths.emplace_back(*options.json);
+  for (auto& path : paths) path = path.lexically_normal();
   std::ranges::sort(paths);
   const auto twice = std::ranges::adjacent_find(paths);
   if (twice == paths.end()) return {};
-  return Error{fmt::format("--out, --json: '{}' is named twice", *twice)};
+  return Error{fmt::format("--out, --json: '{}' is named twice", twice->string())};
 }
 
 /// What is known to be possible before anything runs.
@@ -94,7 +97,9 @@ Result<int> run_verb(const RunOptions& options) {
   if (json) {
     if (auto written = json->write(to_json(report)); !written) return Error{written.error()};
   }
-  if (!json || !json->is_stdout()) fmt::print("{}", to_table(report));
+  if (!json || !json->is_stdout()) {
+    if (auto printed = print_text(to_table(report)); !printed) return Error{printed.error()};
+  }
   return summary.value().reached_tolerance() ? 0 : kNotReached;
 }
 

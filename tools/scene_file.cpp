@@ -95,7 +95,9 @@ void measure_rest_lengths(SceneDescription& scene) {
   }
 }
 
-void share_total_mass(SceneDescription& scene, double total) {
+void share_total_mass(SceneDescription& scene, const Json& json) {
+  const double total = read_number(json, "total_mass");
+  if (!(total > 0)) refuse("total_mass", "a mass above 0", json);
   const auto count = static_cast<double>(scene.positions.size());
   scene.masses.assign(scene.positions.size(), total / count);
 }
@@ -131,7 +133,7 @@ SceneDescription read_scene(const Json& json) {
     throw Refused{"expected one of the keys 'masses' and 'total_mass'"};
   }
   if (json.contains("total_mass")) {
-    share_total_mass(scene, read_number(json["total_mass"], "total_mass"));
+    share_total_mass(scene, json["total_mass"]);
   }
   measure_rest_lengths(scene);
   return scene;

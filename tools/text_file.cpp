@@ -26,4 +26,11 @@ Result<std::string> read_text_file(const std::string& path) {
   return text;
 }
 
+Result<void> print_text(std::string_view text) {
+  const bool complete =
+      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (!complete) return Error{fmt::format("cannot write to stdout: {}", std::strerror(errno))};
+  return {};
+}
+
 }  // namespace weft::tools
