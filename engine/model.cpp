@@ -29,6 +29,7 @@ Model::Model(const SceneDescription& description) {
   colour_constraints();
   list_adjacent();
   build_rows();
+  list_block_neighbours();
 }
 
 void Model::store_particles(const SceneDescription& d) {
@@ -139,12 +140,32 @@ void Model::build_rows() {
   }
 }
 
+void Model::list_block_neighbours() {
+  using reference::kBlock;
+  std::vector<std::uint32_t> blocks;
+  block_neighbours.begin.push_back(0);
+  for (std::size_t first = 0; first < constraints.plain; first += kBlock) {
+    blocks.assign(1, static_cast<std::uint32_t>(first / kBlock));
+    for (std::size_t c = first; c < std::min(first + kBlock, constraints.plain); ++c) {
+      for (const std::uint32_t j : rows[c]) {
+        if (j < constraints.plain) blocks.push_back(static_cast<std::uint32_t>(j / kBlock));
+      }
+    }
+    std::sort(blocks.begin(), blocks.end());
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+    block_neighbours.items.insert(block_neighbours.items.end(), blocks.begin(), blocks.end());
+    block_neighbours.begin.push_back(static_cast<std::uint32_t>(block_neighbours.items.size()));
+  }
+}
+
 reference::Topology Model::topology() const {
   reference::Topology t;
   t.row_begin = rows.begin.data();
   t.row_later = row_later.data();
   t.row_constraint = rows.items.data();
   t.row_weight = row_weight.data();
+  t.block_begin = block_neighbours.begin.data();
+  t.block_neighbour = block_neighbours.items.data();
   t.adjacent_begin = adjacent.begin.data();
   t.adjacent_constraint = adjacent.items.data();
   t.hub = hub.data();
@@ -159,6 +180,7 @@ std::size_t Model::bytes() const {
          bytes_of(s.effective_mass) + bytes_of(s.colour) + bytes_of(s.described) +
          bytes_of(adjacent.begin) + bytes_of(adjacent.items) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(rows.begin) + bytes_of(rows.items) + bytes_of(row_later) + bytes_of(row_weight) +
+         bytes_of(block_neighbours.begin) + bytes_of(block_neighbours.items) +
          bytes_of(plain_colour) + bytes_of(spheres) + bytes_of(radius);
 }
 

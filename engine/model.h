@@ -55,6 +55,7 @@ class Model {
   std::vector<std::uint32_t> row_later;  // first entry of the row beyond the constraint itself
   std::vector<double> row_weight;        // s w_p of each entry
   std::vector<std::uint8_t> plain_colour;
+  Lists block_neighbours;  // per block of plain constraints, see kernels/reference
 
   std::vector<std::uint32_t> spheres;
   std::vector<double> radius;  // empty without spheres
@@ -70,6 +71,7 @@ class Model {
   void colour_constraints();
   void list_adjacent();
   void build_rows();
+  void list_block_neighbours();
 };
 
 }  // namespace weft

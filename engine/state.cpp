@@ -10,8 +10,6 @@ std::size_t bytes_of(const T& vector) {
   return vector.capacity() * sizeof(vector[0]);
 }
 
-constexpr std::size_t kFlagPadding = 8;  // flags are read eight at a time
-
 }  // namespace
 
 State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
@@ -41,6 +39,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   if (settings.anticipate) {
     reference.row_product.resize(m.rows.items.size());
     reference.row_ready.resize(s.plain);
+    if (settings.skip) reference.changed.resize(m.block_neighbours.begin.size() - 1);
     if (!m.hubs.empty()) reference.hub_motion.resize(m.particles);
   }
 }
@@ -71,7 +70,6 @@ void State::size_method_memory(std::size_t size) {
   if (!settings.anticipate) return;
   reference.error.resize(size);
   reference.pending.resize(size);
-  if (settings.skip) reference.changed.resize(size + kFlagPadding);
 }
 
 reference::Relaxation State::problem() {

@@ -26,6 +26,11 @@ struct Topology {
   const std::uint32_t* row_constraint = nullptr;
   const double* row_weight = nullptr;
 
+  /// Blocks of kBlock plain constraints that share a particle with one of block i, itself included:
+  /// block_neighbour[k], k in [block_begin[i], block_begin[i+1]).
+  const std::uint32_t* block_begin = nullptr;
+  const std::uint32_t* block_neighbour = nullptr;
+
   /// Constraints at particle p: adjacent_constraint[k], k in [adjacent_begin[p],
   /// adjacent_begin[p+1]); contacts are not among them.
   const std::uint32_t* adjacent_begin = nullptr;
@@ -51,14 +56,14 @@ struct Workspace {
   Flag* row_ready = nullptr;      // anticipation: per plain constraint
   VectorsView hub_motion;         // anticipation: per particle, hubs only
   std::span<const std::uint32_t> hubs;
-  Flag* changed = nullptr;        // anticipation + skip: per constraint, padded by 8
+  Flag* changed = nullptr;        // anticipation + skip: per block
   std::uint64_t* mask = nullptr;  // skip without anticipation: per particle
   Flag* moved = nullptr;          // skip: per particle, since its directions were renewed
 };
 
 struct Method {
   bool anticipate = false;         // 4.2
-  bool skip = false;               // 4.3: flags with anticipation, 64-bit masks without
+  bool skip = false;               // 4.3: block flags with anticipation, else 64-bit masks
   bool frozen_directions = false;  // 4.4
   int fixed_iterations = 0;        // > 0: exactly so many, to whatever error
   int max_iterations = 1;

@@ -40,6 +40,7 @@ using kernels::Vector;
 using kernels::VectorsView;
 
 inline constexpr std::size_t kHubDegree = 16;
+inline constexpr std::size_t kBlock = 16;  // plain constraints per flag of the anticipated loop
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 /// When directions are renewed: before each iteration (paper 3.2, 4.1); when an iteration found
