@@ -52,18 +52,17 @@ class ProgressLine {
     const auto now = std::chrono::steady_clock::now();
     if (!redraws_ || now - drawn_ < std::chrono::milliseconds(100)) return;
     drawn_ = now;
-    fmt::print(stderr, "\r{}  {:11} {:5}  frame {}/{}\033[K", describe(cell), variant.method,
-               name(variant.directions), done, total);
+    fmt::print(stderr, "\r{} {} {}/{}\033[K", describe(cell), variant.label(), done, total);
     std::fflush(stderr);
   }
 
  private:
   std::string describe(const paper::Cell& cell) const {
-    constexpr std::size_t kWidth = 20;
+    constexpr std::size_t kWidth = 12;
     const std::size_t full = kWidth * (cell_ - 1) / cells_;
-    return fmt::format("[{:#<{}}{:.<{}}] {}/{} {} {}x{} at {:g} %{}", "", full, "", kWidth - full,
+    return fmt::format("[{:#<{}}{:.<{}}] {}/{} {} {}x{} {:g}%{}", "", full, "", kWidth - full,
                        cell_, cells_, cell.scene, cell.size, cell.size, 100 * cell.strain,
-                       cell.velocity_correction ? " + velocity correction" : "");
+                       cell.velocity_correction ? " +velocity" : "");
   }
 
   std::size_t cells_;
