@@ -1,0 +1,232 @@
+/// The program as its users run it: what it prints where, and how it exits.
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "engine/scenes.h"
+#include "temporary_folder.h"
+
+extern char** environ;
+
+namespace weft::tools {
+namespace {
+
+struct Outcome {
+  int exit_code;
+  std::string out;
+  std::string err;
+};
+
+Outcome run_program(const TemporaryFolder& folder, const std::string& arguments) {
+  const std::string command = std::string(WEFT_PROGRAM) + " " + arguments + " >" +
+                              folder.file("stdout") + " 2>" + folder.file("stderr");
+  const int status = std::system(command.c_str());
+  REQUIRE(WIFEXITED(status));
+  const Outcome outcome{WEXITSTATUS(status), folder.read("stdout"), folder.read("stderr")};
+  std::filesystem::remove(folder.file("stdout"));
+  std::filesystem::remove(folder.file("stderr"));
+  return outcome;
+}
+
+TEST_CASE("with --json - stdout is JSON alone, with every key of the contract") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, "run hang --size 5 --steps 4 --json -");
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.err.empty());
+  const auto json = nlohmann::json::parse(outcome.out);
+  std::istringstream keys(
+      "scene particles constraints solver scheme backend isa threads dt steps substeps "
+      "tolerance status ms_per_frame real_time_factor max_strain mean_max_strain "
+      "rms_strain iterations_per_step direction_updates_per_step visits corrections "
+      "ns_per_constraint_iteration energy_start energy_end energy_gain lowest_y "
+      "state_hash bytes_per_particle stages peak_rss_mb");
+  for (std::string key; keys >> key;) {
+    CAPTURE(key);
+    CHECK(json.contains(key));
+    CHECK_FALSE(json[key].is_null());
+  }
+  CHECK(json["scene"] == "hang");
+  CHECK(json["particles"] == 25);
+  CHECK(json["steps"] == 4);
+  CHECK(json["status"] == "converged");
+  CHECK(json["max_strain"] <= 0.01);
+  CHECK(json["state_hash"].get<std::string>().size() == 16);
+  CHECK(json["stages"].contains("solve_positions"));
+}
+
+TEST_CASE("the table tells no time without its strain") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, "run hang --size 5 --steps 4");
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.err.empty());
+  std::istringstream lines(outcome.out);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(" ms ") != std::string::npos) CHECK(line.find("strain") != std::string::npos);
+  }
+}
+
+TEST_CASE("every built-in scene runs with its default size and reaches its tolerance") {
+  const TemporaryFolder folder;
+  for (const scenes::BuiltIn& scene : scenes::list()) {
+    CAPTURE(scene.name);
+    const Outcome outcome =
+        run_program(folder, "run " + std::string(scene.name) + " --steps 3 --json -");
+    CHECK(outcome.exit_code == 0);
+    CHECK(nlohmann::json::parse(outcome.out)["max_strain"] <= 0.01);
+  }
+}
+
+TEST_CASE("what is refused exits with 2 and one line that names it") {
+  const TemporaryFolder folder;
+  const struct {
+    std::string arguments;
+    std::string named;
+  } kRefused[] = {
+      {"", "verb"},
+      {"weave", "weave"},
+      {"run", "SCENE"},
+      {"run curtain", "'curtain'"},
+      {"run none.obj", "'none.obj'"},
+      {"run none.json", "'none.json'"},
+      {"run hang --size x", "--size = x"},
+      {"run hang --size 1", "size"},
+      {"run hang --steps 0", "--steps: 0"},
+      {"run hang --dt -1", "--dt: -1"},
+      {"run hang --dt nan", "--dt: nan"},
+      {"run hang --repeat 0", "--repeat: 0"},
+      {"run hang --tolerance 0%", "--tolerance: '0%'"},
+      {"run hang --iterations -1", "iterations"},
+      {"run hang --skip maybe", "--skip: 'maybe'"},
+      {"run hang --solver magic", "--solver: 'magic'"},
+      {"run hang --pin top", "--pin"},
+      {"run hang --slack 0.1", "--slack"},
+      {"run hang --out a.txt", "'a.txt'"},
+      {"run hang --out missing/a.obj", "'missing/a.obj'"},
+      {"run hang --json missing/a.json", "'missing/a.json'"},
+      {"run hang --out a.json --json ./a.json", "'a.json'"},
+      {"run hang --colour red", "--colour"},
+      {"scene hang --out a.obj", "'a.obj'"},
+  };
+  for (const auto& refused : kRefused) {
+    CAPTURE(refused.arguments);
+    const Outcome outcome = run_program(folder, refused.arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(outcome.err.starts_with("weft: "));
+    CHECK(outcome.err.find(refused.named) != std::string::npos);
+    CHECK(std::ranges::count(outcome.err, '\n') == 1);
+  }
+}
+
+TEST_CASE("what is not available yet says so") {
+  const TemporaryFolder folder;
+  for (const std::string arguments :
+       {"--solver yarn", "--solver direct", "--solver auto", "--scheme rattle", "--backend simd",
+        "--isa avx2", "--threads 2", "--substeps 4", "--substeps auto"}) {
+    CAPTURE(arguments);
+    const Outcome outcome = run_program(folder, "run hang " + arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.err == "weft: " + arguments + ": not available yet\n");
+  }
+  const Outcome usual = run_program(folder,
+                                    "run hang --size 4 --steps 2 --solver gauss_seidel --scheme "
+                                    "paper --backend reference --threads 1 --substeps 1");
+  CHECK(usual.exit_code == 0);
+}
+
+TEST_CASE("a missed tolerance exits with 3, and the report and the files are written") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      folder, "run hang --size 9 --steps 5 --tolerance 0.001% --max-iterations 2 --out " +
+                  folder.file("last.obj") + " --json " + folder.file("report.json"));
+  CHECK(outcome.exit_code == 3);
+  CHECK(nlohmann::json::parse(folder.read("report.json"))["status"] == "iteration_limit");
+  CHECK(folder.read("last.obj").starts_with("o cloth\n"));
+}
+
+TEST_CASE("a fixed number of iterations is exactly that") {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_program(folder, "run hang --size 6 --steps 5 --iterations 7 --json -");
+  CHECK(outcome.exit_code == 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  CHECK(json["status"] == "fixed_iterations");
+  CHECK(json["iterations_per_step"] == 7);
+}
+
+TEST_CASE("the way of iterating can be chosen") {
+  const TemporaryFolder folder;
+  for (const std::string method :
+       {"--anticipate off --skip off --directions each", "--anticipate on --skip off",
+        "--anticipate off --skip on --directions frozen", "--velocity-correction on"}) {
+    CAPTURE(method);
+    const Outcome outcome = run_program(folder, "run hang --size 6 --steps 10 --json - " + method);
+    CHECK(outcome.exit_code == 0);
+    CHECK(nlohmann::json::parse(outcome.out)["max_strain"] <= 0.01);
+  }
+}
+
+TEST_CASE("a scene can be written, run, saved and run on") {
+  const TemporaryFolder folder;
+  const auto hash = [&](const std::string& arguments) {
+    const Outcome outcome = run_program(folder, "run " + arguments + " --json -");
+    REQUIRE(outcome.exit_code == 0);
+    return nlohmann::json::parse(outcome.out)["state_hash"].get<std::string>();
+  };
+  const std::string start = folder.file("start.json");
+  const std::string half = folder.file("half.json");
+  CHECK(run_program(folder, "scene hang_sphere --size 7 --out " + start).exit_code == 0);
+  const std::string whole = hash("hang_sphere --size 7 --steps 20");
+  CHECK(hash(start + " --steps 10 --out " + half) != whole);
+  CHECK(hash(half + " --steps 10") == whole);
+}
+
+TEST_CASE("a mesh is pinned, run and saved with its numbering") {
+  const TemporaryFolder folder;
+  const std::string mesh =
+      folder.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nf 1 2 3 4\nl 5 3\n");
+  const Outcome outcome =
+      run_program(folder, "run " + mesh + " --pin y'>'0.9 --ropes --steps 3 --json - --out " +
+                              folder.file("last.obj") + " --out " + folder.file("motion.pc2"));
+  CHECK(outcome.exit_code == 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  CHECK(json["particles"] == 4);
+  CHECK(folder.read("last.obj").ends_with("f 1 2 3 4\nl 5 3\n"));
+  CHECK(folder.read("motion.pc2").size() == 32 + 4 * 5 * 12);
+}
+
+TEST_CASE("an interrupted run exits with 130, says so, and leaves no file") {
+  const TemporaryFolder folder;
+  const TemporaryFolder outputs;
+  const std::string motion = outputs.file("motion.pc2");
+  const std::string errors = folder.file("stderr");
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 2, errors.c_str(), O_WRONLY | O_CREAT, 0600);
+  const char* arguments[] = {WEFT_PROGRAM, "run",   "hang",         "--steps",
+                             "100000000",  "--out", motion.c_str(), nullptr};
+  pid_t program = 0;
+  REQUIRE(posix_spawn(&program, WEFT_PROGRAM, &actions, nullptr,
+                      const_cast<char* const*>(arguments), environ) == 0);
+  while (outputs.is_empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  kill(program, SIGINT);
+  int status = 0;
+  waitpid(program, &status, 0);
+  posix_spawn_file_actions_destroy(&actions);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 130);
+  CHECK(folder.read("stderr") == "weft: interrupted\n");
+  CHECK(outputs.is_empty());
+}
+
+}  // namespace
+}  // namespace weft::tools

@@ -1,0 +1,179 @@
+#include "tools/obj_mesh.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scenes.h"
+
+namespace weft::tools {
+namespace {
+
+/// Two unit squares side by side in the x-y plane, as separate parts: vertices 5 and 8 (from 1: 6
+/// and 9) repeat 1 and 2, vertex 4 is in no face.
+constexpr auto kTwoSquares = R"(
+mtllib missing.mtl
+o left
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 9 9 9
+vt 0 0
+usemtl cotton
+f 1/1 2/1 3/1 4/1
+o right
+v 1 0 0
+v 2 0 0
+v 2 1 0
+v 1 1 0
+f -4 -3 -2 -1
+)";
+
+ObjScene parse(const std::string& text, const ObjOptions& options = {}) {
+  auto scene = parse_obj(text, options);
+  REQUIRE_MESSAGE(scene, scene.error());
+  return std::move(scene.value());
+}
+
+std::string error_of(const std::string& text, const ObjOptions& options = {}) {
+  const auto scene = parse_obj(text, options);
+  REQUIRE_FALSE(scene);
+  return scene.error();
+}
+
+std::size_t count(const SceneDescription& scene, ConstraintKind kind) {
+  return static_cast<std::size_t>(std::ranges::count(scene.constraints, kind, &Constraint::kind));
+}
+
+std::vector<std::uint32_t> pinned(const std::string& rule) {
+  return parse(kTwoSquares, {.pin = rule}).description.fixed;
+}
+
+TEST_CASE("parts are welded where they meet, and unused vertices are no particles") {
+  const ObjScene scene = parse(kTwoSquares);
+  CHECK(scene.description.positions.size() == 6);
+  CHECK(scene.description.constraints.size() == 7);
+  CHECK(scene.mesh.vertices.size() == 9);
+  CHECK(scene.mesh.particle_of_vertex ==
+        std::vector<std::uint32_t>{0, 1, 2, 3, kNoIndex, 1, 4, 5, 2});
+  CHECK(build_model(scene.description));
+}
+
+TEST_CASE("edges keep their length in the file, and the mass is shared") {
+  const ObjScene scene = parse(kTwoSquares, {.mass = 3, .scale = 2});
+  for (const Constraint& constraint : scene.description.constraints) {
+    CHECK(constraint.rest_length == 2);
+  }
+  CHECK(scene.description.masses == std::vector<double>(6, 0.5));
+  CHECK(scene.mesh.vertices[6].x == 4);
+}
+
+TEST_CASE("diagonals of four-sided faces become ropes when asked for") {
+  const ObjScene plain = parse(kTwoSquares);
+  CHECK(count(plain.description, ConstraintKind::rope) == 0);
+  const ObjScene ropes = parse(kTwoSquares, {.rope_diagonals = true});
+  CHECK(count(ropes.description, ConstraintKind::rope) == 4);
+  CHECK(count(ropes.description, ConstraintKind::distance) == 7);
+  CHECK(build_model(ropes.description));
+}
+
+TEST_CASE("a diagonal that is an edge of another face stays a distance") {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 2\nf 1 2 3 4\nf 1 3 5\n";
+  const ObjScene scene = parse(text, {.rope_diagonals = true});
+  CHECK(count(scene.description, ConstraintKind::rope) == 1);
+  CHECK(build_model(scene.description));
+}
+
+TEST_CASE("polygons are joined along their border only, lines along their segments") {
+  const std::string pentagon = "v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\n";
+  CHECK(parse(pentagon + "f 1 2 3 4 5\n").description.constraints.size() == 5);
+  CHECK(parse(pentagon + "l 1 2 3 4 5\n").description.constraints.size() == 4);
+}
+
+TEST_CASE("edges without a length are dropped") {
+  const ObjScene scene = parse("v 0 0 0\nv 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\nf 1 1 2\n");
+  CHECK(scene.description.positions.size() == 3);
+  CHECK(scene.description.constraints.size() == 3);
+  CHECK(error_of("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n") == "every edge of the mesh has length 0");
+}
+
+TEST_CASE("pin rules choose particles by their vertices") {
+  CHECK(pinned("none").empty());
+  CHECK(pinned("top") == std::vector<std::uint32_t>{2, 3, 5});
+  CHECK(pinned("y>0.9") == std::vector<std::uint32_t>{2, 3, 5});
+  CHECK(pinned("x>=2") == std::vector<std::uint32_t>{4, 5});
+  CHECK(pinned("x<1") == std::vector<std::uint32_t>{0, 3});
+  CHECK(pinned("x<=1") == std::vector<std::uint32_t>{0, 1, 2, 3});
+  CHECK(pinned("3,6-8") == std::vector<std::uint32_t>{2, 3, 4, 5});
+  CHECK(pinned("1,5") == std::vector<std::uint32_t>{1});
+}
+
+TEST_CASE("pin rules are in the file's coordinates") {
+  CHECK(parse(kTwoSquares, {.pin = "y>0.9", .scale = 0.1}).description.fixed.size() == 3);
+}
+
+TEST_CASE("a pin rule that means nothing is refused") {
+  for (const std::string rule : {"", "y", "y>", "w>1", "y=1", "y>x", "1,", "3-1", "-1", "bottom"}) {
+    CAPTURE(rule);
+    CHECK(error_of(kTwoSquares, {.pin = rule})
+              .starts_with("--pin: '" + rule + "' is not none, top, a comparison"));
+  }
+  CHECK(error_of(kTwoSquares, {.pin = "y>5"}) == "--pin: 'y>5' matches no vertex");
+  CHECK(error_of(kTwoSquares, {.pin = "0,4"}) == "--pin: '0,4': no face has a vertex 4");
+  CHECK(error_of(kTwoSquares, {.pin = "0-99"}) == "--pin: '0-99': no face has a vertex 4");
+}
+
+TEST_CASE("broken files are refused in one line") {
+  CHECK(error_of("v 0 0 0\nv 1 x 0\nf 1 2 1\n") ==
+        "line 2: 'v 1 x 0': a vertex needs three finite numbers");
+  CHECK(error_of("v 0 0\n") == "line 1: 'v 0 0': a vertex needs three finite numbers");
+  CHECK(error_of("v 0 0 0\nv 1 0 0\nf 1 2 3\n") == "a face or line uses vertex 3 of 2");
+  CHECK(error_of("v 0 0 0\n") == "no face and no line in the file");
+  CHECK(error_of("") == "no face and no line in the file");
+  const std::string zero = error_of("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 0 1 2\n");
+  CHECK(zero.find("line 4") != std::string::npos);
+  CHECK(zero.find('\n') == std::string::npos);
+  std::string many = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf";
+  for (int i = 0; i < 300; ++i) many += " 1";
+  CHECK(error_of(many) == "line 4: a face of 300 vertices; at most 255 can be read");
+}
+
+TEST_CASE("masses and scales must be above 0") {
+  CHECK(error_of(kTwoSquares, {.mass = 0}) == "--mass: 0 is not a number above 0");
+  CHECK(error_of(kTwoSquares, {.scale = -1}) == "--scale: -1 is not a number above 0");
+}
+
+TEST_CASE("a mesh is written with the numbering and the faces of its file") {
+  const ObjScene scene = parse(kTwoSquares);
+  auto model = build_model(scene.description);
+  REQUIRE(model);
+  const auto cloth = Cloth::create(model.value(), {});
+  REQUIRE(cloth);
+  const std::string text = obj_text(scene.mesh, scene.description, cloth.value());
+  CHECK(text ==
+        "o cloth\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 9 9 9\nv 1 0 0\nv 2 0 0\nv 2 1 0\n"
+        "v 1 1 0\nf 1 2 3 4\nf 6 7 8 9\n");
+  CHECK(parse(text).mesh.particle_of_vertex == scene.mesh.particle_of_vertex);
+}
+
+TEST_CASE("spheres are written as objects of their own") {
+  const auto scene = scenes::make("hang_sphere", {.size = 3});
+  REQUIRE(scene);
+  auto model = build_model(scene.value());
+  REQUIRE(model);
+  const auto cloth = Cloth::create(model.value(), {});
+  REQUIRE(cloth);
+  const std::string text = obj_text(grid_mesh(scene.value(), 3), scene.value(), cloth.value());
+  CHECK(text.find("o sphere_9\n") != std::string::npos);
+  const ObjScene again = parse(text);
+  CHECK(again.mesh.faces.size() > 4);
+  for (std::size_t vertex = 9; vertex < again.mesh.vertices.size(); ++vertex) {
+    const Vec3 v = again.mesh.vertices[vertex];
+    CHECK(std::hypot(v.x - 0.5, v.y + 0.6, v.z - 0.5) == doctest::Approx(0.25));
+  }
+}
+
+}  // namespace
+}  // namespace weft::tools

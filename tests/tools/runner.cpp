@@ -1,0 +1,94 @@
+#include "tools/runner.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scenes.h"
+
+namespace weft::tools {
+namespace {
+
+SceneDescription hang(int size) { return scenes::make("hang", {.size = size}).value(); }
+
+TEST_CASE("a summary sums up what the steps reported and what the cloth measured") {
+  const SceneDescription scene = hang(6);
+  RunSummary expected;
+  double strain_sum = 0;
+  double square_sum = 0;
+  const auto summary =
+      run(scene, {}, {.steps = 30}, [&](int frame, const Cloth& cloth, const StepReport& report) {
+        CHECK(frame == ++expected.frames);
+        expected.iterations += report.iterations;
+        expected.visits += report.visits;
+        expected.corrections += report.corrections;
+        expected.direction_updates += report.direction_updates;
+        const Strain strain = cloth.strain();
+        expected.max_strain = std::max(expected.max_strain, strain.max);
+        strain_sum += strain.max;
+        square_sum += strain.rms * strain.rms;
+        expected.state_hash = cloth.state_hash();
+        expected.energy_end = cloth.energy().total();
+      });
+  REQUIRE(summary);
+  const RunSummary& actual = summary.value();
+  CHECK(actual.frames == 30);
+  CHECK(actual.status == Status::converged);
+  CHECK(actual.iterations == expected.iterations);
+  CHECK(actual.visits == expected.visits);
+  CHECK(actual.corrections == expected.corrections);
+  CHECK(actual.direction_updates == expected.direction_updates);
+  CHECK(actual.max_strain == expected.max_strain);
+  CHECK(actual.mean_max_strain == strain_sum / 30);
+  CHECK(actual.rms_strain == doctest::Approx(std::sqrt(square_sum / 30)));
+  CHECK(actual.state_hash == expected.state_hash);
+  CHECK(actual.energy_end == expected.energy_end);
+  CHECK(actual.step_seconds > 0);
+  CHECK(actual.solver_seconds <= actual.step_seconds);
+  CHECK(actual.model.particles == 36);
+}
+
+TEST_CASE("repeats differ in nothing but their time, and only the first is shown") {
+  const SceneDescription scene = hang(5);
+  int shown = 0;
+  const auto once = run(scene, {}, {.steps = 10});
+  const auto best = run(scene, {}, {.steps = 10, .repeat = 3},
+                        [&](int, const Cloth&, const StepReport&) { ++shown; });
+  REQUIRE(once);
+  REQUIRE(best);
+  CHECK(shown == 10);
+  CHECK(best.value().frames == 10);
+  CHECK(best.value().state_hash == once.value().state_hash);
+  CHECK(best.value().visits == once.value().visits);
+}
+
+TEST_CASE("the worst status of all frames is told") {
+  const SceneDescription scene = hang(8);
+  const auto limited = run(scene, {.tolerance = 1e-9, .max_iterations = 2}, {.steps = 5});
+  REQUIRE(limited);
+  CHECK(limited.value().status == Status::iteration_limit);
+  CHECK_FALSE(limited.value().reached_tolerance());
+  const auto fixed = run(scene, {.iterations = 2}, {.steps = 5});
+  REQUIRE(fixed);
+  CHECK(fixed.value().status == Status::fixed_iterations);
+  CHECK(fixed.value().iterations == 10);
+  CHECK(fixed.value().reached_tolerance());
+}
+
+TEST_CASE("a run ends with the frame that would not be finite") {
+  const auto summary = run(hang(4), {}, {.dt = 1e200, .steps = 5});
+  REQUIRE(summary);
+  CHECK(summary.value().status == Status::non_finite);
+  CHECK(summary.value().frames == 1);
+  CHECK_FALSE(summary.value().reached_tolerance());
+}
+
+TEST_CASE("what the library refuses is passed on") {
+  CHECK_FALSE(run(SceneDescription{}, {}, {}));
+  CHECK_FALSE(run(hang(3), {.tolerance = -1}, {}));
+  CHECK_FALSE(run(hang(3), {}, {.dt = -1}));
+}
+
+}  // namespace
+}  // namespace weft::tools

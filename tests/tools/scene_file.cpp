@@ -1,0 +1,149 @@
+#include "tools/scene_file.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "engine/scenes.h"
+#include "temporary_folder.h"
+
+namespace weft::tools {
+namespace {
+
+bool same(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+bool same(const Constraint& a, const Constraint& b) {
+  return a.a == b.a && a.b == b.b && a.rest_length == b.rest_length && a.kind == b.kind;
+}
+
+template <class Value>
+bool same(const std::vector<Value>& a, const std::vector<Value>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Value& x, const Value& y) { return same(x, y); });
+}
+
+void check_same(const SceneDescription& a, const SceneDescription& b) {
+  CHECK(same(a.gravity, b.gravity));
+  CHECK(same(a.positions, b.positions));
+  CHECK(same(a.velocities, b.velocities));
+  CHECK(same(a.constraints, b.constraints));
+  CHECK(a.masses == b.masses);
+  CHECK(a.fixed == b.fixed);
+  CHECK(a.spheres == b.spheres);
+  CHECK(a.radii == b.radii);
+}
+
+/// The error of a scene of two particles with one more key, or with the text as it is.
+std::string error_of(const std::string& text) {
+  const auto scene = parse_scene(text);
+  REQUIRE_FALSE(scene);
+  return scene.error();
+}
+std::string error_with(const std::string& more) {
+  return error_of(R"({"positions": [[0,0,0],[3,4,0]], "total_mass": 1, )" + more + "}");
+}
+
+TEST_CASE("every built-in scene survives writing and reading to the last bit") {
+  for (const scenes::BuiltIn& built_in : scenes::list()) {
+    CAPTURE(built_in.name);
+    const auto scene = scenes::make(built_in.name, {.size = 7});
+    REQUIRE(scene);
+    const auto again = parse_scene(scene_text(scene.value()));
+    REQUIRE(again);
+    check_same(scene.value(), again.value());
+  }
+}
+
+TEST_CASE("velocities and ropes survive writing and reading") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0.1, 1.0 / 3, 1e-300}};
+  scene.velocities = {{1, 2, 3}, {-0.1, 0, 4e5}};
+  scene.masses = {1, 0.3};
+  scene.constraints = {{0, 1, 0.7, ConstraintKind::rope}};
+  scene.gravity = {0, 0, -9.81};
+  const auto again = parse_scene(scene_text(scene));
+  REQUIRE(again);
+  check_same(scene, again.value());
+}
+
+TEST_CASE("a run goes on from its last state as if it had not stopped") {
+  const auto scene = scenes::make("sphere_drop", {.size = 5});
+  REQUIRE(scene);
+  const auto run_from = [](const SceneDescription& start) {
+    auto model = build_model(start);
+    REQUIRE(model);
+    auto cloth = Cloth::create(model.value(), {});
+    REQUIRE(cloth);
+    for (int frame = 0; frame < 20; ++frame) REQUIRE(cloth.value().step(0.01));
+    return std::move(cloth.value());
+  };
+  Cloth cloth = run_from(scene.value());
+  const auto again = parse_scene(scene_text(present_scene(scene.value(), cloth)));
+  REQUIRE(again);
+  for (int frame = 0; frame < 20; ++frame) REQUIRE(cloth.step(0.01));
+  CHECK(run_from(again.value()).state_hash() == cloth.state_hash());
+}
+
+TEST_CASE("what is left out is measured, shared or usual") {
+  const auto scene = parse_scene(R"({"positions": [[0,0,0],[3,4,0]], "total_mass": 3,
+                                     "constraints": [[0,1]]})");
+  REQUIRE(scene);
+  CHECK(scene.value().masses == std::vector<double>{1.5, 1.5});
+  CHECK(scene.value().constraints[0].rest_length == 5);
+  CHECK(scene.value().constraints[0].kind == ConstraintKind::distance);
+  CHECK(same(scene.value().gravity, Vec3{0, -10, 0}));
+  CHECK(scene.value().velocities.empty());
+}
+
+TEST_CASE("a null rest length is measured too") {
+  const auto scene = parse_scene(R"({"positions": [[0,0,0],[3,4,0]], "total_mass": 3,
+                                     "constraints": [[0,1,null,"rope"]]})");
+  REQUIRE(scene);
+  CHECK(same(scene.value().constraints[0], Constraint{0, 1, 5, ConstraintKind::rope}));
+}
+
+TEST_CASE("errors name the place in the file") {
+  CHECK(error_with(R"("velocities": [[0,0,0],[0,"x",0]])") ==
+        R"(velocities[1][1]: expected a number, not "x")");
+  CHECK(error_with(R"("gravity": [0,0])") == "gravity: expected [x, y, z], not [0,0]");
+  CHECK(error_with(R"("fixed": 1)") == "fixed: expected an array, not 1");
+  CHECK(error_with(R"("fixed": [0, -1])") == "fixed[1]: expected a particle number, not -1");
+  CHECK(error_with(R"("fixed": [0.5])") == "fixed[0]: expected a particle number, not 0.5");
+  CHECK(error_with(R"("constraints": [[0,1],[1]])") ==
+        "constraints[1]: expected [a, b, rest length, kind], not [1]");
+  CHECK(error_with(R"("constraints": [[0,1,-2]])") ==
+        "constraints[0][2]: expected a length above 0, not -2");
+  CHECK(error_with(R"("constraints": [[0,1,1,"spring"]])") ==
+        R"(constraints[0][3]: expected "distance" or "rope", not "spring")");
+  CHECK(error_with(R"("constraints": [[0,9]])") == "constraints[0]: there is no particle 9");
+}
+
+TEST_CASE("unknown, missing and contradicting keys are refused") {
+  CHECK(error_with(R"("colour": 1)") == "unknown key 'colour'");
+  CHECK(error_with(R"("masses": [1,1])") == "expected one of the keys 'masses' and 'total_mass'");
+  CHECK(error_of("{}") == "the key 'positions' is missing");
+  CHECK(error_of("[]") == "expected an object with the key 'positions'");
+  CHECK(error_of(R"({"positions": [], "total_mass": 0})") ==
+        "total_mass: expected a mass above 0, not 0");
+}
+
+TEST_CASE("text that is not JSON is refused in one line") {
+  for (const std::string text : {"", "{", "weft", R"({"positions": [[1e999,0,0]]})", "\xff\xfe"}) {
+    CAPTURE(text);
+    const std::string error = error_of(text);
+    CHECK_FALSE(error.empty());
+    CHECK(error.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("a file's errors name the file") {
+  const TemporaryFolder folder;
+  CHECK(read_scene_file(folder.file("none.json")).error() ==
+        "cannot read '" + folder.file("none.json") + "': No such file or directory");
+  const std::string bad = folder.write("bad.json", "{}");
+  CHECK(read_scene_file(bad).error() == bad + ": the key 'positions' is missing");
+  CHECK_FALSE(read_scene_file(folder.file("")));
+}
+
+}  // namespace
+}  // namespace weft::tools
