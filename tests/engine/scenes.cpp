@@ -43,7 +43,7 @@ TEST_CASE("the list names what make() makes") {
 TEST_CASE("every edge of every scene starts at its rest length, and every model builds") {
   for (const scenes::BuiltIn& scene : scenes::list()) {
     for (const int size : {3, 5, 21, 101}) {
-      CAPTURE(scene.name);
+      CAPTURE(std::string(scene.name));
       CAPTURE(size);
       const SceneDescription description = made(scene.name, {.size = size});
       const double rest = scene.name == "chain" ? 0.01 : 1.0 / (size - 1);

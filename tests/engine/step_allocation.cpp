@@ -42,7 +42,7 @@ TEST_CASE("a warm step allocates nothing") {
   for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners"}) {
     for (const Method& method : kMethods) {
       for (const bool velocity_correction : {false, true}) {
-        CAPTURE(name);
+        CAPTURE(std::string(name));
         CAPTURE(text(method));
         CAPTURE(velocity_correction);
         Settings settings = with({}, method);

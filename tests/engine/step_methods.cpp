@@ -2,6 +2,7 @@
 /// still ends with every true error within tolerance.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "tests/support/clothes.h"
@@ -83,14 +84,44 @@ TEST_CASE("skipping satisfied constraints changes no bit of 200 steps") {
   });
 }
 
-TEST_CASE("anticipating errors does not change 200 steps") {
+TEST_CASE("anticipating errors changes none of 200 steps beyond rounding") {
+  for_every_setting([](const SceneDescription& scene, Settings settings) {
+    settings.anticipate = false;
+    Cloth recomputed = cloth_of(scene, settings);
+    settings.anticipate = true;
+    Cloth anticipated = cloth_of(scene, settings);
+    for (int k = 0; k < kSteps; ++k) {
+      REQUIRE(anticipated.write_positions(positions(recomputed)));
+      REQUIRE(anticipated.write_velocities(velocities(recomputed)));
+      const StepReport expected = step(recomputed, kStep);
+      const StepReport report = step(anticipated, kStep);
+      REQUIRE(largest_distance(positions(anticipated), positions(recomputed)) < 1e-13);
+      REQUIRE(largest_distance(velocities(anticipated), velocities(recomputed)) < 1e-11);
+      REQUIRE(report.iterations == expected.iterations);
+      REQUIRE(report.velocity_iterations == expected.velocity_iterations);
+      REQUIRE(report.corrections == expected.corrections);
+    }
+  });
+}
+
+/// The same run, but one particle starts 1e-15 m lower: how far rounding alone may lead.
+Motion simulate_twin(SceneDescription scene, const Settings& settings) {
+  scene.positions[30].y -= 1e-15;
+  return simulate(scene, settings);
+}
+
+TEST_CASE("anticipating errors does not change a run of 200 steps") {
   for_every_setting([](const SceneDescription& scene, Settings settings) {
     settings.anticipate = false;
     const Motion recomputed = simulate(scene, settings);
+    const Motion twin = simulate_twin(scene, settings);
     settings.anticipate = true;
     const Motion anticipated = simulate(scene, settings);
-    CHECK(largest_distance(anticipated.positions, recomputed.positions) < 1e-9);
-    CHECK(largest_distance(anticipated.velocities, recomputed.velocities) < 1e-7);
+    // A sheet that buckles under a sphere amplifies rounding a billion times in 2 s.
+    const double chaos = largest_distance(twin.positions, recomputed.positions);
+    CHECK(largest_distance(anticipated.positions, recomputed.positions) <
+          std::max(1e-9, 10 * chaos));
+    CHECK(chaos < 1e-5);
     CHECK(anticipated.iterations == recomputed.iterations);
     CHECK(anticipated.corrections == recomputed.corrections);
   });
@@ -100,7 +131,7 @@ TEST_CASE("every method ends every step with every true error within tolerance")
   for (const Case& c : kCases) {
     const SceneDescription scene = scene_of(c.scene, c.size);
     for (const Method& method : kMethods) {
-      CAPTURE(c.scene);
+      CAPTURE(std::string(c.scene));
       CAPTURE(text(method));
       Settings settings = with({}, method);
       settings.tolerance = 0.002;

@@ -1,6 +1,7 @@
 /// A description's numbering is the user's business: it names particles, it does not steer them.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "tests/support/clothes.h"
@@ -47,12 +48,12 @@ void shuffle_constraints(SceneDescription& scene, Random& random) {
 }
 
 TEST_CASE("renumbered particles move the same, with every method") {
-  for (const char* name : {"hang", "hang_sphere", "sphere_drop"}) {
-    const SceneDescription scene = scene_of(name, 8);
+  for (const char* name : {"hang", "hang_sphere", "corners"}) {
+    const SceneDescription scene = scene_of(name, 9);
     Random random(11);
     const std::vector<std::uint32_t> to = random.permutation(scene.positions.size());
     for (const Method& method : kMethods) {
-      CAPTURE(name);
+      CAPTURE(std::string(name));
       CAPTURE(text(method));
       Cloth plain = cloth_of(scene, with({}, method));
       Cloth permuted = cloth_of(renumbered(scene, to), with({}, method));
@@ -60,6 +61,29 @@ TEST_CASE("renumbered particles move the same, with every method") {
       run(permuted, 0.01, 100);
       CHECK(largest_distance(positions(plain), taken_back(positions(permuted), to)) < 1e-9);
     }
+  }
+}
+
+// Contacts are visited in the order in which they are found, so a sphere that is free, and joins
+// its contacts, may end elsewhere within the tolerance: there is one motion only where that is
+// small.
+TEST_CASE("renumbered particles make the same motion of contacts that push one another") {
+  const SceneDescription scene = scene_of("sphere_drop", 6);
+  Random random(14);
+  const std::vector<std::uint32_t> to = random.permutation(scene.positions.size());
+  for (const bool anticipate : {false, true}) {
+    CAPTURE(anticipate);
+    Settings settings = tight(1e-12);
+    settings.anticipate = anticipate;
+    Cloth plain = cloth_of(scene, settings);
+    Cloth permuted = cloth_of(renumbered(scene, to), settings);
+    int most_contacts = 0;
+    for (int k = 0; k < 40; ++k) {
+      most_contacts = std::max(most_contacts, step(plain, 0.01).contacts);
+      step(permuted, 0.01);
+    }
+    CHECK(most_contacts > 2);
+    CHECK(largest_distance(positions(plain), taken_back(positions(permuted), to)) < 1e-9);
   }
 }
 

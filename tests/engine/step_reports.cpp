@@ -28,7 +28,7 @@ void check_strain(const SceneDescription& scene, const Cloth& cloth, double max,
 
 TEST_CASE("the reported strain is that of the positions one can read") {
   for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners"}) {
-    CAPTURE(name);
+    CAPTURE(std::string(name));
     const SceneDescription scene = scene_of(name, 9);
     for (const int iterations : {0, 2}) {
       Settings settings;

@@ -11,7 +11,7 @@ namespace {
 
 TEST_CASE("cloths of one model, run in two threads at once, agree bit for bit") {
   for (const char* name : {"hang", "sphere_drop"}) {
-    CAPTURE(name);
+    CAPTURE(std::string(name));
     const auto model = model_of(scene_of(name, 10));
     Settings settings;
     settings.velocity_correction = true;

@@ -19,7 +19,7 @@ void check_message(const std::string& message, std::initializer_list<const char*
   CAPTURE(message);
   CHECK(message.find('\n') == std::string::npos);
   for (const char* part : parts) {
-    CAPTURE(part);
+    CAPTURE(std::string(part));
     CHECK(message.find(part) != std::string::npos);
   }
 }

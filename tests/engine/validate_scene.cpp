@@ -35,7 +35,7 @@ void check_refused(const Spoil& spoil, std::initializer_list<const char*> parts)
   CAPTURE(message);
   CHECK(message.find('\n') == std::string::npos);
   for (const char* part : parts) {
-    CAPTURE(part);
+    CAPTURE(std::string(part));
     CHECK(message.find(part) != std::string::npos);
   }
 }
