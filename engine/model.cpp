@@ -26,9 +26,9 @@ Model::Model(const SceneDescription& description) {
   store_particles(description);
   find_hubs(description);
   store_constraints(description);
-  colour_constraints();
   list_adjacent();
   build_rows();
+  build_blocks();
   list_block_neighbours();
 }
 
@@ -69,36 +69,45 @@ void Model::find_hubs(const SceneDescription& d) {
 }
 
 void Model::store_constraints(const SceneDescription& d) {
-  const auto inert = [&](const Constraint& c) {
-    return inverse_mass[c.a] + inverse_mass[c.b] == 0;
+  struct Active {
+    int range;
+    std::uint32_t colour, described;
+    auto operator<=>(const Active&) const = default;
   };
-  ConstraintStore& s = constraints;
-  for (int range = 0; range < 3; ++range) {
-    for (std::uint32_t i = 0; i < d.constraints.size(); ++i) {
-      const Constraint& c = d.constraints[i];
-      if (range_of(c, hub) != range || inert(c)) continue;
-      s.a.push_back(c.a);
-      s.b.push_back(c.b);
-      s.rest_length.push_back(c.rest_length);
-      s.effective_mass.push_back(1 / (inverse_mass[c.a] + inverse_mass[c.b]));
-      s.described.push_back(i);
-    }
-    if (range == 0) s.plain = s.size();
-    if (range == 1) s.bilateral = s.size();
+  std::vector<Active> active;
+  std::vector<Pair> pairs;
+  for (std::uint32_t i = 0; i < d.constraints.size(); ++i) {
+    const Constraint& c = d.constraints[i];
+    if (inverse_mass[c.a] + inverse_mass[c.b] == 0) continue;
+    active.push_back({range_of(c, hub), 0, i});
+    pairs.push_back({c.a, c.b});
   }
-  inert_constraints = d.constraints.size() - s.size();
-}
-
-void Model::colour_constraints() {
-  std::vector<Pair> pairs(constraints.size());
-  for (std::size_t c = 0; c < pairs.size(); ++c) pairs[c] = {constraints.a[c], constraints.b[c]};
-  Colouring colouring = colour_pairs(pairs, particles);
-  constraints.colour = std::move(colouring.colour);
+  const Colouring colouring = colour_pairs(pairs, particles);
   colours = colouring.count;
-  // Plain constraints come first and have at most 2 (kHubDegree - 1) neighbours: colours < 64.
+  for (std::size_t k = 0; k < active.size(); ++k) active[k].colour = colouring.colour[k];
+  std::ranges::sort(active);
+  for (const Active& a : active)
+    append_constraint(d.constraints[a.described], a.colour, a.described);
+  const auto in_ranges = [&](int last) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(active, [&](const Active& a) { return a.range <= last; }));
+  };
+  constraints.plain = in_ranges(0);
+  constraints.bilateral = in_ranges(1);
+  inert_constraints = d.constraints.size() - active.size();
+  // A plain constraint has at most 2 (kHubDegree - 1) neighbours: its colour fits a bit of a mask.
   static_assert(2 * reference::kHubDegree <= 64);
   plain_colour.assign(constraints.colour.begin(),
                       constraints.colour.begin() + static_cast<std::ptrdiff_t>(constraints.plain));
+}
+
+void Model::append_constraint(const Constraint& c, std::uint32_t colour, std::uint32_t described) {
+  constraints.a.push_back(c.a);
+  constraints.b.push_back(c.b);
+  constraints.rest_length.push_back(c.rest_length);
+  constraints.effective_mass.push_back(1 / (inverse_mass[c.a] + inverse_mass[c.b]));
+  constraints.colour.push_back(colour);
+  constraints.described.push_back(described);
 }
 
 void Model::list_adjacent() {
@@ -140,19 +149,28 @@ void Model::build_rows() {
   }
 }
 
+void Model::build_blocks() {
+  for (std::uint32_t c = 0; c < constraints.plain; ++c) {
+    const bool full = !block_first.empty() && c - block_first.back() == reference::kBlock;
+    if (c == 0 || full || plain_colour[c] != plain_colour[c - 1]) block_first.push_back(c);
+    block_of.push_back(static_cast<std::uint32_t>(block_first.size() - 1));
+  }
+  block_first.push_back(static_cast<std::uint32_t>(constraints.plain));
+}
+
 void Model::list_block_neighbours() {
-  using reference::kBlock;
   std::vector<std::uint32_t> blocks;
   block_neighbours.begin.push_back(0);
-  for (std::size_t first = 0; first < constraints.plain; first += kBlock) {
-    blocks.assign(1, static_cast<std::uint32_t>(first / kBlock));
-    for (std::size_t c = first; c < std::min(first + kBlock, constraints.plain); ++c) {
+  for (std::size_t block = 0; block + 1 < block_first.size(); ++block) {
+    blocks.clear();
+    for (std::size_t c = block_first[block]; c < block_first[block + 1]; ++c) {
       for (const std::uint32_t j : rows[c]) {
-        if (j < constraints.plain) blocks.push_back(static_cast<std::uint32_t>(j / kBlock));
+        if (j < constraints.plain) blocks.push_back(block_of[j]);
       }
     }
-    std::sort(blocks.begin(), blocks.end());
-    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+    std::ranges::sort(blocks);
+    const auto rest = std::ranges::unique(blocks);
+    blocks.erase(rest.begin(), rest.end());
     block_neighbours.items.insert(block_neighbours.items.end(), blocks.begin(), blocks.end());
     block_neighbours.begin.push_back(static_cast<std::uint32_t>(block_neighbours.items.size()));
   }
@@ -164,6 +182,9 @@ reference::Topology Model::topology() const {
   t.row_later = row_later.data();
   t.row_constraint = rows.items.data();
   t.row_weight = row_weight.data();
+  t.blocks = block_first.size() - 1;
+  t.block_first = block_first.data();
+  t.block_of = block_of.data();
   t.block_begin = block_neighbours.begin.data();
   t.block_neighbour = block_neighbours.items.data();
   t.adjacent_begin = adjacent.begin.data();
@@ -180,8 +201,9 @@ std::size_t Model::bytes() const {
          bytes_of(s.effective_mass) + bytes_of(s.colour) + bytes_of(s.described) +
          bytes_of(adjacent.begin) + bytes_of(adjacent.items) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(rows.begin) + bytes_of(rows.items) + bytes_of(row_later) + bytes_of(row_weight) +
-         bytes_of(block_neighbours.begin) + bytes_of(block_neighbours.items) +
-         bytes_of(plain_colour) + bytes_of(spheres) + bytes_of(radius);
+         bytes_of(block_first) + bytes_of(block_of) + bytes_of(block_neighbours.begin) +
+         bytes_of(block_neighbours.items) + bytes_of(plain_colour) + bytes_of(spheres) +
+         bytes_of(radius);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

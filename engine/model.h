@@ -12,8 +12,9 @@
 
 namespace weft {
 
-/// The active constraints in solver order: distance without hubs, distance at hubs, ropes; within
-/// each range in the description's order (see kernels/reference/relaxation.h for the ranges).
+/// The active constraints in solver order: distance without hubs, distance at hubs, ropes (see
+/// kernels/reference/relaxation.h); within each range colour by colour, within a colour as
+/// described.
 struct ConstraintStore {
   std::size_t plain = 0;      // [0, plain): distance, no hub
   std::size_t bilateral = 0;  // [plain, bilateral): distance at a hub
@@ -55,7 +56,9 @@ class Model {
   std::vector<std::uint32_t> row_later;  // first entry of the row beyond the constraint itself
   std::vector<double> row_weight;        // s w_p of each entry
   std::vector<std::uint8_t> plain_colour;
-  Lists block_neighbours;  // per block of plain constraints, see kernels/reference
+
+  std::vector<std::uint32_t> block_first, block_of;  // blocks of plain constraints of one colour
+  Lists block_neighbours;
 
   std::vector<std::uint32_t> spheres;
   std::vector<double> radius;  // empty without spheres
@@ -67,10 +70,11 @@ class Model {
  private:
   void store_particles(const SceneDescription& description);
   void store_constraints(const SceneDescription& description);
+  void append_constraint(const Constraint& c, std::uint32_t colour, std::uint32_t described);
   void find_hubs(const SceneDescription& description);
-  void colour_constraints();
   void list_adjacent();
   void build_rows();
+  void build_blocks();
   void list_block_neighbours();
 };
 

@@ -39,7 +39,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   if (settings.anticipate) {
     reference.row_product.resize(m.rows.items.size());
     reference.row_ready.resize(s.plain);
-    if (settings.skip) reference.changed.resize(m.block_neighbours.begin.size() - 1);
+    if (settings.skip) reference.changed.resize(m.block_first.size() - 1);
     if (!m.hubs.empty()) reference.hub_motion.resize(m.particles);
   }
 }

@@ -26,8 +26,12 @@ struct Topology {
   const std::uint32_t* row_constraint = nullptr;
   const double* row_weight = nullptr;
 
-  /// Blocks of kBlock plain constraints that share a particle with one of block i, itself included:
-  /// block_neighbour[k], k in [block_begin[i], block_begin[i+1]).
+  /// Block i holds the plain constraints block_first[i] ... block_first[i+1] - 1, at most kBlock
+  /// and all of one colour. It shares particles with the blocks block_neighbour[k], k in
+  /// [block_begin[i], block_begin[i+1]).
+  std::size_t blocks = 0;
+  const std::uint32_t* block_first = nullptr;
+  const std::uint32_t* block_of = nullptr;  // per plain constraint
   const std::uint32_t* block_begin = nullptr;
   const std::uint32_t* block_neighbour = nullptr;
 

@@ -18,7 +18,7 @@
 ///
 /// Constraints stand in four ranges, so that the common kind is solved without a question asked:
 ///
-///   [0, plain)            distance, no hub at either end
+///   [0, plain)            distance, no hub at either end, colour by colour
 ///   [plain, bilateral)    distance, a hub at one end or both
 ///   [bilateral, pulling)  ropes
 ///   [pulling, count)      contacts; a is the sphere
@@ -40,7 +40,7 @@ using kernels::Vector;
 using kernels::VectorsView;
 
 inline constexpr std::size_t kHubDegree = 16;
-inline constexpr std::size_t kBlock = 16;  // plain constraints per flag of the anticipated loop
+inline constexpr std::size_t kBlock = 32;  // most plain constraints of one colour in a block
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 /// When directions are renewed: before each iteration (paper 3.2, 4.1); when an iteration found
@@ -68,12 +68,17 @@ struct Relaxation {
   double limit = kUnlimited;  // largest |lambda| of one correction (paper 4.2)
 };
 
-/// The change of constraint c's impulse that its error e calls for; 0 if it is satisfied or may not
-/// act. `impulse` is what it has accumulated.
+/// The change of constraint c's impulse that an error e out of tolerance calls for.
+inline double bilateral_change(const Relaxation& r, std::size_t c, double e) {
+  const double change = e * r.effective_mass[c];
+  return r.limit < kUnlimited ? std::clamp(change, -r.limit, r.limit) : change;
+}
+
+/// The same for every kind and any error; 0 if c is satisfied or may not act. `impulse` is what it
+/// has accumulated.
 inline double impulse_change(const Relaxation& r, std::size_t c, double e, double impulse) {
   if (std::abs(e) <= r.tolerance[c]) return 0;
-  double change = e * r.effective_mass[c];
-  if (r.limit < kUnlimited) change = std::clamp(change, -r.limit, r.limit);
+  const double change = bilateral_change(r, c, e);
   if (c < r.bilateral) return change;
   if (c < r.pulling) return std::max(change, -impulse);
   return std::min(change, -impulse);
