@@ -34,8 +34,9 @@ Energy measure_energy(const Model& m, const kernels::Vectors& x, const kernels::
 }
 
 bool all_finite(const kernels::Vectors& v) {
-  double sum = 0;  // of zeros, unless some component is NaN or infinite
-  for (std::size_t i = 0; i < v.size(); ++i) sum += 0 * v.x[i] + 0 * v.y[i] + 0 * v.z[i];
+  const auto zero = [](double c) { return 0 * (12 * c * c); };  // unless that is not finite
+  double sum = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) sum += zero(v.x[i]) + zero(v.y[i]) + zero(v.z[i]);
   return sum == 0;
 }
 

@@ -11,6 +11,7 @@ namespace weft {
 Strain measure_strain(const Model& model, const kernels::Vectors& position);
 Energy measure_energy(const Model& model, const kernels::Vectors& position,
                       const kernels::Vectors& velocity);
+/// Whether all components, and the squared distances between any two vectors, are finite.
 bool all_finite(const kernels::Vectors& vectors);
 
 }  // namespace weft

@@ -162,6 +162,9 @@ Result<void> validate(const SceneDescription& d) {
   if (auto r = validate_size("masses", d.masses.size(), particles); !r) return r;
   for (std::size_t i = 0; i < particles; ++i) {
     if (auto r = validate_positive(element("masses", i), d.masses[i]); !r) return r;
+    if (!std::isfinite(1 / d.masses[i])) {
+      return refuse(element("masses", i), "is too small to be inverted", number(d.masses[i]));
+    }
   }
   if (!finite(d.gravity)) return refuse("gravity", "must be finite", text(d.gravity));
   if (auto r = validate_index_list("fixed", d.fixed, particles); !r) return r;

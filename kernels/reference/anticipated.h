@@ -106,7 +106,11 @@ class AnticipatedLoop {
     const double e = w_.error[c];
     const double change = bilateral_change(r_, c, e);
     w_.pending[c] += change;
-    w_.error[c] = r_.limit < kUnlimited ? e - change / r_.effective_mass[c] : 0.0;
+    w_.error[c] = 0;
+    if (r_.limit < kUnlimited) {
+      w_.error[c] = e - change / r_.effective_mass[c];
+      remind(c);
+    }
     push_row(c, change);
     if (contacts_.first != nullptr) {
       push_contacts(c, r_.a[c], -change);
