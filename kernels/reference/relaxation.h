@@ -75,9 +75,10 @@ inline double bilateral_change(const Relaxation& r, std::size_t c, double e) {
 }
 
 /// The same for every kind and any error; 0 if c is satisfied or may not act. `impulse` is what it
-/// has accumulated.
+/// has accumulated. An error that is not a number ends the loop rather than keep it busy: the step
+/// is refused afterwards.
 inline double impulse_change(const Relaxation& r, std::size_t c, double e, double impulse) {
-  if (std::abs(e) <= r.tolerance[c]) return 0;
+  if (!(std::abs(e) > r.tolerance[c])) return 0;
   const double change = bilateral_change(r, c, e);
   if (c < r.bilateral) return change;
   if (c < r.pulling) return std::max(change, -impulse);
