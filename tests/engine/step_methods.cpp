@@ -79,7 +79,8 @@ TEST_CASE("skipping satisfied constraints changes no bit of 200 steps") {
       CHECK(largest_distance(skipped.velocities, all.velocities) == 0);
       CHECK(skipped.corrections == all.corrections);
       CHECK(skipped.iterations == all.iterations);
-      CHECK(skipped.visits < all.visits);
+      CHECK(skipped.visits <= all.visits);
+      if (settings.directions == Directions::frozen) CHECK(skipped.visits < all.visits);
     }
   });
 }

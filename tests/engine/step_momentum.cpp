@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kStep = 0.01;
 constexpr int kSize = 8;
-// A displacement is known to an ulp of a position, 1e-16 m, and so its velocity to 1e-14 m/s. What
-// is kept is kept to that, over 64 particles of about 1 kg at about 1 m.
-constexpr double kRounding = 3e-13;
+// A displacement is known to an ulp of a position, 1e-16 m, and so its velocity to 1e-14 m/s: if 64
+// particles of at most 2 kg, at most 1 m away, all round the same way, to this much, kg m^2 / s.
+constexpr double kRounding = 64 * 2 * 1 * 1e-14;
 
 Settings fixed_iterations(const Method& method, int iterations) {
   Settings settings = with({}, method);
