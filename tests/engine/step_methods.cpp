@@ -148,6 +148,38 @@ TEST_CASE("every method ends every step with every true error within tolerance")
   }
 }
 
+TEST_CASE("at full size, at the paper's tolerances: skipping changes no bit" *
+          doctest::test_suite("slow")) {
+  for (const char* scene_name : {"hang", "hang_sphere"}) {
+    for (const double tolerance : {0.1, 0.01, 1e-5}) {
+      for (std::size_t m = 0; m < kMethods.size(); m += 2) {
+        CAPTURE(std::string(scene_name));
+        CAPTURE(tolerance);
+        CAPTURE(text(kMethods[m]));
+        Settings settings;
+        settings.tolerance = tolerance;
+        const SceneDescription scene = scene_of(scene_name, 20);
+        const Motion all = simulate(scene, with(settings, kMethods[m]), 50);
+        const Motion skipped = simulate(scene, with(settings, kMethods[m + 1]), 50);
+        CHECK(skipped.hash == all.hash);
+        CHECK(skipped.corrections == all.corrections);
+        CHECK(max_strain(scene, skipped.positions) <= tolerance * (1 + 1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE("a chain whose end weighs as much as 10,000 links stays within tolerance" *
+          doctest::test_suite("slow")) {
+  const auto scene = scenes::make("chain", {.size = 20, .end_mass = 1e4});
+  REQUIRE(scene);
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    const Motion motion = simulate(scene.value(), with({}, method), 10);
+    CHECK(max_strain(scene.value(), motion.positions) <= 0.01 * (1 + 1e-9));
+  }
+}
+
 TEST_CASE("renewed and frozen directions tend to the same motion as dt does to 0") {
   const SceneDescription scene = scene_of("hang", 5);
   double before = 0;
