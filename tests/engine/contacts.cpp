@@ -57,10 +57,36 @@ TEST_CASE("a contact never pulls") {
 TEST_CASE("particles near a sphere, but not in touch, are left to approach") {
   for (const Method& method : kMethods) {
     CAPTURE(text(method));
-    const Vec3 approach{-1, 0, 0};
-    Cloth cloth = cloth_of(sphere_and_particle(0.25, approach), tight_with_velocities(method));
-    CHECK(step(cloth, 0.01).corrections == 0);
+    const Vec3 approach{-0.1, 0, 0};
+    Cloth cloth = cloth_of(sphere_and_particle(0.205, approach), tight_with_velocities(method));
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.contacts == 1);
+    CHECK(report.corrections == 0);
     CHECK(distance(cloth.velocity(1), approach) == 0);
+  }
+}
+
+// The preview leaves the particle at 0.5, far from the sphere of radius 0.3; it is the bar, whose
+// pin has moved, that drags it to 0.2 and so into the sphere, which has to make room.
+TEST_CASE("a contact that only the constraints bring about is found") {
+  SceneDescription scene;
+  scene.positions = {{-1, 0.001, 0}, {0.5, 0.001, 0}, {0, 0.001, 0}};
+  scene.masses = {1, 1, 1};
+  scene.fixed = {0};
+  scene.constraints = {{0, 1, 1.5}};
+  scene.spheres = {2};
+  scene.radii = {0, 0, 0.3};
+  scene.gravity = {0, 0, 0};
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    Cloth cloth = cloth_of(scene, tight_with_velocities(method));
+    REQUIRE(cloth.move_fixed(0, {-1.3, 0.001, 0}));
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::converged);
+    CHECK(report.contacts == 1);
+    CHECK(distance(cloth.position(1), {0.2, 0.001, 0}) < 1e-9);
+    CHECK(distance(cloth.position(2), {-0.1, 0.001, 0}) < 1e-9);
+    CHECK(max_penetration(scene, positions(cloth)) <= 1e-12 * (1 + 1e-3));
   }
 }
 
