@@ -1,0 +1,18 @@
+/// The unit of contiguous work that the vector kernels take.
+#pragma once
+
+#include <cstdint>
+
+namespace weft::kernels {
+
+inline constexpr std::uint32_t kLanes = 16;  // of the widest vector, whatever the machine has
+
+/// Constraint slot constraint + k joins the particle slots a + k and b + k, k < length. No slot
+/// occurs twice.
+struct Run {
+  std::uint32_t a = 0, b = 0;    // first slots
+  std::uint32_t constraint = 0;  // first constraint slot
+  std::uint32_t length = 0;      // multiple of kLanes
+};
+
+}  // namespace weft::kernels

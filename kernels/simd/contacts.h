@@ -1,0 +1,86 @@
+/// Contacts of one sphere s with particles p: which are near enough to be watched, and one pass
+/// over them. They push only: the sum of their corrections, in units of e, stays at or below 0.
+///
+/// kLanes contacts are taken at once, whatever the width of a vector. They share the sphere, so
+/// each is corrected as if the sphere's mass were divided among them (mass splitting: never too
+/// much, however light the sphere, and next to nothing lost where it is heavy):
+///
+///     gain_b = tau^2 w_p / (w_p + kLanes w_s),   gain_a = -tau^2 w_s / (w_p + kLanes w_s)
+///
+/// and the sphere moves by the sum of what they do to it, added in one order.
+#pragma once
+
+#include "kernels/simd/relax.h"
+
+namespace weft::simd {
+namespace {
+
+std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vector centre,
+                      double extra, std::size_t first, std::size_t last, std::uint32_t* out) {
+  const DoubleVector c{Doubles(centre.x), Doubles(centre.y), Doubles(centre.z)};
+  std::size_t found = 0;
+  for (std::size_t i = first; i < last; i += kDoubles) {
+    const DoubleVector d = load(x, i) - c;
+    const Doubles limit = load(reach + i) + Doubles(extra);
+    const auto near = dot(d, d) < limit * limit;
+    if (!xsimd::any(near)) continue;
+    bool lanes[kDoubles];
+    near.store_unaligned(lanes);
+    for (std::uint32_t k = 0; k < kDoubles; ++k) {
+      if (lanes[k]) out[found++] = static_cast<std::uint32_t>(i + k);
+    }
+  }
+  return found;
+}
+
+[[gnu::always_inline]] inline Corrected correct_contacts(const Relaxation& r, std::size_t c,
+                                                         Floats e, Floats threshold) {
+  const Floats sum = load(r.impulse + c);
+  const Floats change = xsimd::min(e, Floats(0.f) - sum);
+  const FloatMask lanes = (xsimd::abs(e) > threshold) & (change != Floats(0.f));
+  const Floats by = xsimd::select(lanes, change, Floats(0.f));
+  (sum + by).store_unaligned(r.impulse + c);
+  return {lanes, by};
+}
+
+/// Sum of kLanes numbers as a balanced tree.
+[[gnu::always_inline]] inline float tree_sum(float* lanes) {
+  for (std::uint32_t half = kernels::kLanes / 2; half > 0; half /= 2) {
+    for (std::uint32_t k = 0; k < half; ++k) lanes[k] += lanes[k + half];
+  }
+  return lanes[0];
+}
+
+std::uint32_t relax_contacts(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
+  const Floats threshold(r.threshold);
+  const std::size_t sphere = r.a[first];
+  std::uint32_t corrections = 0;
+  Gathered at_b;
+  for (std::size_t block = first; block < last; block += kernels::kLanes) {
+    const FloatVector us{Floats(r.u.x[sphere]), Floats(r.u.y[sphere]), Floats(r.u.z[sphere])};
+    alignas(64) float x[kernels::kLanes], y[kernels::kLanes], z[kernels::kLanes];
+    std::uint32_t corrected_here = 0;
+    for (std::uint32_t k = 0; k < kernels::kLanes; k += kFloats) {
+      const std::size_t c = block + k;
+      const FloatVector n = load(r.n, c);
+      FloatVector up = at_b.get(r.u, r.b + c);
+      const Corrected corrected = correct_contacts(r, c, errors(r, c, n, us - up), threshold);
+      corrected_here += static_cast<std::uint32_t>(std::popcount(bits(corrected.lanes)));
+      move(up, n, corrected.by * load(r.gain_b + c));
+      at_b.put(r.u, r.b + c, up);
+      const Floats at_a = corrected.by * load(r.gain_a + c);
+      (at_a * n.x).store_aligned(x + k);
+      (at_a * n.y).store_aligned(y + k);
+      (at_a * n.z).store_aligned(z + k);
+    }
+    corrections += corrected_here;
+    if (corrected_here == 0) continue;
+    r.u.x[sphere] += tree_sum(x);
+    r.u.y[sphere] += tree_sum(y);
+    r.u.z[sphere] += tree_sum(z);
+  }
+  return corrections;
+}
+
+}  // namespace
+}  // namespace weft::simd

@@ -1,0 +1,62 @@
+/// predict, apply_displacements and commit, in double. The formulas are those of the reference
+/// (kernels/reference/integrate.h); the predicted position is formed twice, by the same operations,
+/// rather than kept.
+#pragma once
+
+#include "kernels/simd/lanes.h"
+
+namespace weft::simd {
+namespace {
+
+[[gnu::always_inline]] inline DoubleVector acceleration(const Motion& m, std::size_t i) {
+  const Doubles w = load(m.inverse_mass + i), zero(0.);
+  const auto free = w > zero;
+  DoubleVector a{Doubles(m.gravity.x), Doubles(m.gravity.y), Doubles(m.gravity.z)};
+  if (m.force.x != nullptr) {
+    const DoubleVector f = load(m.force, i);
+    a = {fused(w, f.x, a.x), fused(w, f.y, a.y), fused(w, f.z, a.z)};
+  }
+  return {xsimd::select(free, a.x, zero), xsimd::select(free, a.y, zero),
+          xsimd::select(free, a.z, zero)};
+}
+
+[[gnu::always_inline]] inline DoubleVector predicted(const DoubleVector& p, const DoubleVector& v,
+                                                     const DoubleVector& a, double h) {
+  const Doubles step(h), half(0.5 * h * h);
+  return {fused(half, a.x, fused(step, v.x, p.x)), fused(half, a.y, fused(step, v.y, p.y)),
+          fused(half, a.z, fused(step, v.z, p.z))};
+}
+
+void predict(const Motion& m, FloatsView u, double h, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; i += kDoubles) {
+    store(m.solved, i, predicted(load(m.position, i), load(m.velocity, i), acceleration(m, i), h));
+  }
+  const Floats zero(0.f);
+  for (std::size_t i = first; i < last; i += kFloats) store(u, i, {zero, zero, zero});
+}
+
+void commit(const Motion& m, double h, std::size_t first, std::size_t last) {
+  const Doubles step(h), rate(1 / h);
+  for (std::size_t i = first; i < last; i += kDoubles) {
+    const DoubleVector v = load(m.velocity, i), a = acceleration(m, i);
+    const DoubleVector d = load(m.solved, i) - predicted(load(m.position, i), v, a, h);
+    store(m.next_velocity, i,
+          {fused(rate, d.x, fused(step, a.x, v.x)), fused(rate, d.y, fused(step, a.y, v.y)),
+           fused(rate, d.z, fused(step, a.z, v.z))});
+  }
+}
+
+void apply_displacements(kernels::VectorsView x, FloatsView u, std::size_t first,
+                         std::size_t last) {
+  for (std::size_t i = first; i < last; i += kDoubles) {
+    const DoubleVector p = load(x, i);
+    store(x, i,
+          {p.x + load_as_double(u.x + i), p.y + load_as_double(u.y + i),
+           p.z + load_as_double(u.z + i)});
+  }
+  const Floats zero(0.f);
+  for (std::size_t i = first; i < last; i += kFloats) store(u, i, {zero, zero, zero});
+}
+
+}  // namespace
+}  // namespace weft::simd

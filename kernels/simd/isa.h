@@ -1,0 +1,16 @@
+/// The instruction sets that the vector kernels are built for, and which of them this machine has.
+#pragma once
+
+#include <cstdint>
+
+namespace weft::simd {
+
+/// sse2: every x86-64. avx2: with FMA. avx512: F, CD, DQ, BW, VL.
+/// avx2 and avx512 give the same bits; sse2 rounds twice where they fuse.
+enum class Isa : std::uint8_t { sse2, avx2, avx512 };
+
+/// By the processor and by what the operating system saves of it (XGETBV).
+bool supported(Isa isa);
+Isa best_isa();
+
+}  // namespace weft::simd

@@ -1,0 +1,132 @@
+/// xsimd batches under the names of this project, and what xsimd 8.1 lacks.
+///
+/// Everything in the kernels' headers has internal linkage: each instruction set compiles them
+/// anew, and a function shared between two of them could be linked from the wrong one.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <xsimd/xsimd.hpp>
+
+#include "kernels/runs.h"
+#include "kernels/simd/table.h"
+
+namespace weft::simd {
+namespace {
+
+#if defined(__AVX512F__)
+using Arch = xsimd::avx512f;
+#elif defined(__AVX2__)
+using Arch = xsimd::fma3<xsimd::avx2>;
+#else
+using Arch = xsimd::sse2;
+#endif
+
+using Floats = xsimd::batch<float, Arch>;
+using Doubles = xsimd::batch<double, Arch>;
+using FloatMask = Floats::batch_bool_type;
+
+constexpr std::uint32_t kFloats = Floats::size;
+constexpr std::uint32_t kDoubles = Doubles::size;
+static_assert(kernels::kLanes % kFloats == 0);
+
+/// x y + z, rounded once where the machine can. xsimd 8.1 has no fma for avx512f.
+[[gnu::always_inline]] inline Floats fused(Floats x, Floats y, Floats z) {
+#if defined(__AVX512F__)
+  return Floats(_mm512_fmadd_ps(x, y, z));
+#else
+  return xsimd::fma(x, y, z);
+#endif
+}
+
+[[gnu::always_inline]] inline Doubles fused(Doubles x, Doubles y, Doubles z) {
+#if defined(__AVX512F__)
+  return Doubles(_mm512_fmadd_pd(x, y, z));
+#else
+  return xsimd::fma(x, y, z);
+#endif
+}
+
+[[gnu::always_inline]] inline float fused(float x, float y, float z) {
+#if defined(__AVX2__)
+  return __builtin_fmaf(x, y, z);
+#else
+  return x * y + z;
+#endif
+}
+
+/// One bit per lane.
+[[gnu::always_inline]] inline std::uint32_t bits(FloatMask mask) {
+#if defined(__AVX512F__)
+  return static_cast<std::uint32_t>(static_cast<__mmask16>(mask));
+#elif defined(__AVX2__)
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(mask));
+#else
+  return static_cast<std::uint32_t>(_mm_movemask_ps(mask));
+#endif
+}
+
+/// Three batches: a vector per lane.
+struct FloatVector {
+  Floats x, y, z;
+};
+struct DoubleVector {
+  Doubles x, y, z;
+};
+
+[[gnu::always_inline]] inline Floats load(const float* p) { return Floats::load_unaligned(p); }
+[[gnu::always_inline]] inline Doubles load(const double* p) { return Doubles::load_unaligned(p); }
+
+[[gnu::always_inline]] inline FloatVector load(const FloatsView& v, std::size_t i) {
+  return {load(v.x + i), load(v.y + i), load(v.z + i)};
+}
+[[gnu::always_inline]] inline DoubleVector load(const kernels::VectorsView& v, std::size_t i) {
+  return {load(v.x + i), load(v.y + i), load(v.z + i)};
+}
+[[gnu::always_inline]] inline void store(const FloatsView& v, std::size_t i, const FloatVector& f) {
+  f.x.store_unaligned(v.x + i);
+  f.y.store_unaligned(v.y + i);
+  f.z.store_unaligned(v.z + i);
+}
+[[gnu::always_inline]] inline void store(const kernels::VectorsView& v, std::size_t i,
+                                         const DoubleVector& d) {
+  d.x.store_unaligned(v.x + i);
+  d.y.store_unaligned(v.y + i);
+  d.z.store_unaligned(v.z + i);
+}
+
+[[gnu::always_inline]] inline DoubleVector operator-(const DoubleVector& a, const DoubleVector& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+[[gnu::always_inline]] inline FloatVector operator-(const FloatVector& a, const FloatVector& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+[[gnu::always_inline]] inline Doubles dot(const DoubleVector& a, const DoubleVector& b) {
+  return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
+}
+
+/// Rounds kDoubles doubles to float.
+[[gnu::always_inline]] inline void store_as_float(float* p, Doubles d) {
+#if defined(__AVX512F__)
+  _mm256_storeu_ps(p, _mm512_cvtpd_ps(d));
+#elif defined(__AVX2__)
+  _mm_storeu_ps(p, _mm256_cvtpd_ps(d));
+#else
+  _mm_storel_pi(reinterpret_cast<__m64*>(p), _mm_cvtpd_ps(d));
+#endif
+}
+
+/// Widens kDoubles floats.
+[[gnu::always_inline]] inline Doubles load_as_double(const float* p) {
+#if defined(__AVX512F__)
+  return Doubles(_mm512_cvtps_pd(_mm256_loadu_ps(p)));
+#elif defined(__AVX2__)
+  return Doubles(_mm256_cvtps_pd(_mm_loadu_ps(p)));
+#else
+  return Doubles(_mm_cvtps_pd(_mm_loadl_pi(_mm_setzero_ps(), reinterpret_cast<const __m64*>(p))));
+#endif
+}
+
+}  // namespace
+}  // namespace weft::simd

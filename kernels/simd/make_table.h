@@ -1,0 +1,36 @@
+/// All vector kernels of one instruction set: that of the translation unit which includes this.
+#pragma once
+
+#include "kernels/simd/contacts.h"
+#include "kernels/simd/directions.h"
+#include "kernels/simd/integrate.h"
+#include "kernels/simd/masks.h"
+#include "kernels/simd/measure.h"
+#include "kernels/simd/relax.h"
+
+namespace weft::simd {
+namespace {
+
+constexpr Table make_table() {
+  return {.predict = predict,
+          .commit = commit,
+          .apply_displacements = apply_displacements,
+          .renew_run = renew_run,
+          .renew_singles = renew_singles,
+          .renew_velocity_run = renew_velocity_run,
+          .renew_velocity_singles = renew_velocity_singles,
+          .relax_run = relax_run,
+          .relax_singles = relax_singles,
+          .relax_rope_run = relax_rope_run,
+          .relax_rope_singles = relax_rope_singles,
+          .relax_serial = relax_serial,
+          .relax_rope_serial = relax_rope_serial,
+          .relax_contacts = relax_contacts,
+          .relax_masked_run = relax_masked_run,
+          .strain_run = strain_run,
+          .strain_singles = strain_singles,
+          .find_near = find_near};
+}
+
+}  // namespace
+}  // namespace weft::simd
