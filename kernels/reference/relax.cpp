@@ -1,6 +1,3 @@
-/// The loop around all methods. One iteration is one sweep. However often directions are renewed,
-/// the loop ends when an iteration along fresh directions corrects nothing: then every true error
-/// is within tolerance, because n points along the connecting line.
 #include "kernels/reference/relax.h"
 
 #include "kernels/reference/anticipated.h"
@@ -10,53 +7,9 @@
 namespace weft::reference {
 namespace {
 
-void count(LoopResult& result, const Sweep& sweep) {
-  ++result.iterations;
-  result.visits += sweep.visits;
-  result.corrections += sweep.corrections;
-}
-
-template <class Loop>
-LoopResult iterate_to_tolerance(Loop& loop, Directions directions, int max_iterations) {
-  LoopResult result;
-  loop.renew();
-  ++result.direction_updates;
-  bool fresh = true;
-  while (result.iterations < max_iterations) {
-    const Sweep sweep = loop.sweep();
-    count(result, sweep);
-    const bool satisfied = sweep.corrections == 0;
-    if (satisfied && (fresh || directions == Directions::constant)) {
-      result.converged = true;
-      break;
-    }
-    fresh = satisfied || directions == Directions::each;
-    if (!fresh) continue;
-    loop.renew();
-    ++result.direction_updates;
-  }
-  loop.finish();
-  return result;
-}
-
-template <class Loop>
-LoopResult iterate_fixed(Loop& loop, Directions directions, int iterations) {
-  LoopResult result;
-  while (result.iterations < iterations) {
-    if (result.iterations == 0 || directions == Directions::each) {
-      loop.renew();
-      ++result.direction_updates;
-    }
-    count(result, loop.sweep());
-  }
-  loop.finish();
-  return result;
-}
-
 template <Directions kDirections, class Loop>
 LoopResult run(Loop&& loop, const Method& method) {
-  if (method.fixed_iterations > 0) return iterate_fixed(loop, kDirections, method.fixed_iterations);
-  return iterate_to_tolerance(loop, kDirections, method.max_iterations);
+  return kernels::iterate(loop, kDirections, method.fixed_iterations, method.max_iterations);
 }
 
 template <Directions kDirections>

@@ -1,10 +1,6 @@
 /// The impulse loops of the paper, in double, one constraint after the other: the oracle for every
-/// faster kernel. Each method is one class of two verbs,
-///
-///   renew()  take new directions (and errors) from the present x
-///   sweep()  one iteration: visit the constraints in order, correct those out of tolerance
-///
-/// and the loop around them is the same for all (relax.cpp).
+/// faster kernel. The loop around the methods is
+/// kernels/loop.h; the methods are direct.h (original), masked.h (4.3) and anticipated.h (4.2).
 #pragma once
 
 #include <cstddef>
@@ -71,14 +67,6 @@ struct Method {
   bool frozen_directions = false;  // 4.4
   int fixed_iterations = 0;        // > 0: exactly so many, to whatever error
   int max_iterations = 1;
-};
-
-struct LoopResult {
-  int iterations = 0;
-  int direction_updates = 0;
-  std::int64_t visits = 0;
-  std::int64_t corrections = 0;
-  bool converged = false;
 };
 
 /// Position loop (3.2, 4.4): moves r.x until every true error is within tolerance.

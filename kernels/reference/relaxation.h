@@ -32,20 +32,20 @@
 #include <cstdint>
 #include <limits>
 
+#include "kernels/loop.h"
 #include "kernels/vectors.h"
 
 namespace weft::reference {
 
+using kernels::Directions;
+using kernels::LoopResult;
+using kernels::Sweep;
 using kernels::Vector;
 using kernels::VectorsView;
 
 inline constexpr std::size_t kHubDegree = 16;
 inline constexpr std::size_t kBlock = 32;  // most plain constraints of one colour in a block
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-
-/// When directions are renewed: before each iteration (paper 3.2, 4.1); when an iteration found
-/// nothing left to correct along them (4.4); or never, they are given (velocity loop).
-enum class Directions : std::uint8_t { each, frozen, constant };
 
 /// A flag of one byte that, unlike std::uint8_t, cannot alias the pointers around it.
 enum class Flag : std::uint8_t { clear, set };
@@ -106,11 +106,5 @@ inline double renew_direction(const Relaxation& r, std::size_t c) {
   r.n.set(c, l > 0 ? (1 / l) * d : Vector{0, 1, 0});
   return l - r.target[c];
 }
-
-/// What one pass over the constraints did.
-struct Sweep {
-  std::int64_t visits = 0;
-  std::int64_t corrections = 0;
-};
 
 }  // namespace weft::reference

@@ -1,0 +1,31 @@
+/// A compressed list of lists.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace weft {
+
+/// List i is items[begin[i]] ... items[begin[i + 1] - 1].
+struct Lists {
+  std::vector<std::uint32_t> begin;
+  std::vector<std::uint32_t> items;
+
+  std::size_t size() const { return begin.empty() ? 0 : begin.size() - 1; }
+  std::span<const std::uint32_t> operator[](std::size_t i) const {
+    return {items.data() + begin[i], items.data() + begin[i + 1]};
+  }
+  std::size_t bytes() const {
+    return (begin.capacity() + items.capacity()) * sizeof(std::uint32_t);
+  }
+  /// Appends a list.
+  void push_back(std::span<const std::uint32_t> list) {
+    if (begin.empty()) begin.push_back(0);
+    items.insert(items.end(), list.begin(), list.end());
+    begin.push_back(static_cast<std::uint32_t>(items.size()));
+  }
+};
+
+}  // namespace weft

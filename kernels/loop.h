@@ -1,0 +1,84 @@
+/// The loop around every method of relaxation. A method is a class of three verbs:
+///
+///   renew()   take new directions and errors from the present state
+///   sweep()   one iteration: one pass over the constraints
+///   finish()  leave the result where the caller expects it
+///
+/// However often directions are renewed, the loop ends when an iteration along fresh directions
+/// corrects nothing: then every true error is within tolerance, because n points along the
+/// connecting line.
+#pragma once
+
+#include <cstdint>
+
+namespace weft::kernels {
+
+/// When directions are renewed: before each iteration (paper 3.2, 4.1); when an iteration found
+/// nothing left to correct along them (4.4); or never, they are given (velocity loop).
+enum class Directions : std::uint8_t { each, frozen, constant };
+
+/// What one pass over the constraints did.
+struct Sweep {
+  std::int64_t visits = 0;
+  std::int64_t corrections = 0;
+};
+
+struct LoopResult {
+  int iterations = 0;
+  int direction_updates = 0;
+  std::int64_t visits = 0;
+  std::int64_t corrections = 0;
+  bool converged = false;
+};
+
+inline void count(LoopResult& result, const Sweep& sweep) {
+  ++result.iterations;
+  result.visits += sweep.visits;
+  result.corrections += sweep.corrections;
+}
+
+template <class Loop>
+LoopResult iterate_to_tolerance(Loop& loop, Directions directions, int max_iterations) {
+  LoopResult result;
+  loop.renew();
+  ++result.direction_updates;
+  bool fresh = true;
+  while (result.iterations < max_iterations) {
+    const Sweep sweep = loop.sweep();
+    count(result, sweep);
+    const bool satisfied = sweep.corrections == 0;
+    if (satisfied && (fresh || directions == Directions::constant)) {
+      result.converged = true;
+      break;
+    }
+    fresh = satisfied || directions == Directions::each;
+    if (!fresh) continue;
+    loop.renew();
+    ++result.direction_updates;
+  }
+  loop.finish();
+  return result;
+}
+
+template <class Loop>
+LoopResult iterate_fixed(Loop& loop, Directions directions, int iterations) {
+  LoopResult result;
+  while (result.iterations < iterations) {
+    if (result.iterations == 0 || directions == Directions::each) {
+      loop.renew();
+      ++result.direction_updates;
+    }
+    count(result, loop.sweep());
+  }
+  loop.finish();
+  return result;
+}
+
+/// fixed_iterations > 0: exactly so many, to whatever error.
+template <class Loop>
+LoopResult iterate(Loop&& loop, Directions directions, int fixed_iterations, int max_iterations) {
+  if (fixed_iterations > 0) return iterate_fixed(loop, directions, fixed_iterations);
+  return iterate_to_tolerance(loop, directions, max_iterations);
+}
+
+}  // namespace weft::kernels
