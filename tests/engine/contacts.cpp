@@ -54,6 +54,18 @@ TEST_CASE("a contact never pulls") {
   }
 }
 
+TEST_CASE("a contact that pushed in one step owes no pull in the next") {
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    Cloth cloth = cloth_of(sphere_and_particle(0.25, {-8, 0, 0}), with(tight(1e-12), method));
+    CHECK(step(cloth, 0.01).corrections > 0);
+    const std::vector<Vec3> apart{{0, 0, 0}, {0.5, 0, 0}};
+    REQUIRE(cloth.write_velocities(apart));
+    CHECK(step(cloth, 0.01).corrections == 0);
+    CHECK(largest_distance(velocities(cloth), apart) == 0);
+  }
+}
+
 TEST_CASE("particles near a sphere, but not in touch, are left to approach") {
   for (const Method& method : kMethods) {
     CAPTURE(text(method));

@@ -58,6 +58,20 @@ TEST_CASE("a taut rope does not push its ends apart") {
   }
 }
 
+TEST_CASE("a rope that pulled in one step owes no push in the next") {
+  for (const Method& method : kMethods) {
+    CAPTURE(text(method));
+    SceneDescription scene = free_rope(0.95);
+    scene.velocities = {{0, 0, 0}, {10, 0, 0}};
+    Cloth cloth = cloth_of(scene, with(tight(1e-12), method));
+    CHECK(step(cloth, 0.01).corrections > 0);
+    const std::vector<Vec3> inwards{{1, 0, 0}, {-1, 0, 0}};
+    REQUIRE(cloth.write_velocities(inwards));
+    CHECK(step(cloth, 0.01).corrections == 0);
+    CHECK(largest_distance(velocities(cloth), inwards) == 0);
+  }
+}
+
 // On one line: A fixed at 0, then M at 0.3 and Q at 0.6, joined by bars, and P at 1.5 and R at
 // -0.35 on ropes of 1 to Q. M, Q and P fly to +x by 0.25 a step. In truth the bars hold M and Q,
 // and Q's rope holds P at 1.6; R's rope stays slack. But until the bars have settled Q is beyond
