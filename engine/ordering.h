@@ -1,0 +1,83 @@
+/// Where particles and constraints stand in memory, so that the loops over them are contiguous.
+///
+///   slots       particles in memory order; some slots are padding and hold no particle
+///   tile        a range of slots small enough for a core's own cache; tiles are independent of
+///               each other except for the constraints between them
+///   batch       constraints of one colour (and one kind) within a tile, or between tiles: no slot
+///               occurs twice in a batch, padding included, so all of it may be done at once
+///   run         a stretch of a batch in which constraint c + k joins the slots a + k and b + k:
+///               plain loads and stores, no indices
+///   singles     the rest of a batch: constraints that find their slots through an index
+///
+/// One pass over the constraints goes through the batches in order: tile after tile (tiles may go
+/// side by side), then the batches between tiles one after the other.
+///
+///   constraint slots of a batch:  | run | run | ... | run | singles |
+///                                 ^first                  ^singles  ^last
+///
+/// Every run, and the singles, fill whole lanes: their lengths are multiples of kLanes, made up
+/// with padding constraints, which join slots that are otherwise unused in the batch and move
+/// nothing.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace weft {
+
+inline constexpr std::uint32_t kLanes = 16;  // of the widest vector, whatever the machine has
+
+struct Run {
+  std::uint32_t a = 0, b = 0;    // first slots
+  std::uint32_t constraint = 0;  // first constraint slot
+  std::uint32_t length = 0;      // multiple of kLanes
+};
+
+struct Batch {
+  std::uint32_t first = 0, singles = 0, last = 0;  // constraint slots
+  std::uint32_t first_run = 0, last_run = 0;       // in Ordering::runs
+  std::uint32_t colour = 0;  // unique per particle: batches between tiles have colours of their own
+  ConstraintKind kind = ConstraintKind::distance;
+};
+
+struct Tile {
+  std::uint32_t first_slot = 0, last_slot = 0;
+  std::uint32_t first_batch = 0, last_batch = 0;
+};
+
+/// A constraint to be placed: its two particles and its kind.
+struct Link {
+  std::uint32_t a = 0, b = 0;
+  ConstraintKind kind = ConstraintKind::distance;
+};
+
+struct Ordering {
+  std::vector<std::uint32_t> slot_of;      // particle -> slot
+  std::vector<std::uint32_t> particle_at;  // slot -> particle, kNoIndex: padding
+  std::vector<std::uint32_t> link_at;      // constraint slot -> link, kNoIndex: padding
+  std::vector<std::uint32_t> a, b;         // constraint slot -> slots (runs too); a may be link.b
+  std::vector<Run> runs;
+  std::vector<Batch> batches;
+  std::vector<Tile> tiles;
+  std::uint32_t between_tiles = 0;  // first batch between tiles; they go to the end of batches
+  std::uint32_t colours = 0;
+  double run_share = 0;  // links in runs / links
+
+  std::size_t slots() const { return particle_at.size(); }
+  std::size_t constraint_slots() const { return link_at.size(); }
+};
+
+struct OrderingOptions {
+  std::uint32_t tile_particles = 4096;
+  /// Below this share of links in runs the mesh is ordered for locality alone, all links singles.
+  double least_run_share = 0.7;
+};
+
+/// Deterministic: depends on the arguments only. Links must be valid and without duplicates.
+Ordering order(std::span<const Vec3> positions, std::span<const Link> links,
+               const OrderingOptions& options = {});
+
+}  // namespace weft
