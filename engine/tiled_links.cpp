@@ -7,6 +7,13 @@
 #include "engine/used_colours.h"
 
 namespace weft {
+namespace {
+
+/// Within a tile, where no particle has more than 16 links. Between the tiles such particles need
+/// 31 more at most, which makes one bit of a word for each.
+constexpr std::uint32_t kMostColours = 33;
+
+}  // namespace
 
 TiledLinks::TiledLinks(const Placement& placement, std::span<const Link> links,
                        std::size_t particles)
@@ -53,9 +60,18 @@ void TiledLinks::colour_within(const Placement& placement, std::span<const Link>
       if (given[i] != kNoIndex) set(i, given[i]);
     }
   }
+  std::uint32_t classes = 0;
+  for (const std::uint32_t c : given) {
+    if (c != kNoIndex) classes = std::max(classes, c + 1);
+  }
+  // The others first try colours of their own: among the runs they would take slots that padding
+  // needs.
   for (const auto& tile : within) {
     for (const std::uint32_t i : tile) {
-      if (given[i] == kNoIndex) set(i, used.lowest_free(std::array{links[i].a, links[i].b}));
+      if (given[i] != kNoIndex) continue;
+      const std::array ends{links[i].a, links[i].b};
+      const std::uint32_t c = used.lowest_free(ends, classes);
+      set(i, c < kMostColours ? c : used.lowest_free(ends));
     }
   }
 }

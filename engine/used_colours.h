@@ -24,11 +24,11 @@ class UsedColours {
     words[i] |= bit;
   }
 
-  /// The lowest colour that is free at all the particles.
+  /// The lowest colour, not below `least`, that is free at all the particles.
   template <class Particles>
-  std::uint32_t lowest_free(const Particles& particles) const {
-    for (std::uint32_t i = 0;; ++i) {
-      std::uint64_t used = 0;
+  std::uint32_t lowest_free(const Particles& particles, std::uint32_t least = 0) const {
+    for (std::uint32_t i = least / 64;; ++i) {
+      std::uint64_t used = i == least / 64 ? (std::uint64_t{1} << (least % 64)) - 1 : 0;
       for (const std::uint32_t particle : particles) used |= word(particle, i);
       if (~used != 0) return 64 * i + static_cast<std::uint32_t>(std::countr_one(used));
     }

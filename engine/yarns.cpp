@@ -11,23 +11,31 @@
 namespace weft {
 namespace {
 
-constexpr double kStraightest = -0.5;     // cosine: a yarn turns by less than 60 degrees
+constexpr double kLeastStraight = -0.5;   // cosine: a yarn turns by less than 60 degrees
+constexpr double kUnevenness = 0.25;      // how much like lengths count beside straightness
 constexpr std::size_t kLargestKnot = 64;  // links at a particle; no yarn runs through larger ones
 
 Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// From a to b; zero where a direction cannot be told.
-std::vector<Vec3> unit_directions(std::span<const Vec3> positions, std::span<const Link> links) {
-  std::vector<Vec3> directions;
-  directions.reserve(links.size());
+struct Course {
+  Vec3 direction;  // from a to b; zero where it cannot be told
+  double length = 0;
+};
+
+std::vector<Course> courses_of(std::span<const Vec3> positions, std::span<const Link> links) {
+  std::vector<Course> courses;
+  courses.reserve(links.size());
   for (const Link& link : links) {
     const Vec3 d = positions[link.b] - positions[link.a];
-    const double length = std::hypot(d.x, d.y, d.z);
-    const bool known = length > 0 && std::isfinite(length);
-    directions.push_back(known ? Vec3{d.x / length, d.y / length, d.z / length} : Vec3{});
+    const double length = std::sqrt(dot(d, d));
+    if (length > 0 && std::isfinite(length)) {
+      courses.push_back({{d.x / length, d.y / length, d.z / length}, length});
+    } else {
+      courses.emplace_back();
+    }
   }
-  return directions;
+  return courses;
 }
 
 /// How each link goes on at its ends: the next link beyond a and beyond b, or kNoIndex.
@@ -38,7 +46,7 @@ struct Continuation {
 class Pairing {
  public:
   Pairing(std::span<const Vec3> positions, std::span<const Link> links, const Incidence& incidence)
-      : links_(links), directions_(unit_directions(positions, links)), next_(links.size()) {
+      : links_(links), courses_(courses_of(positions, links)), next_(links.size()) {
     for (std::uint32_t p = 0; p < incidence.particles(); ++p) pair_up(p, incidence[p]);
   }
   std::uint32_t next(std::uint32_t link, std::uint32_t particle) const {
@@ -47,19 +55,20 @@ class Pairing {
 
  private:
   struct Candidate {
-    double cosine;
+    double cost;  // low for straight pairs of like length
     std::uint32_t one, two;
     auto operator<=>(const Candidate&) const = default;
   };
 
-  /// The straightest pair first; links are left alone where only bends remain.
+  /// The best pair first; links are left alone where only bends remain.
   void pair_up(std::uint32_t particle, std::span<const std::uint32_t> links) {
     if (links.size() > kLargestKnot) return;
     candidates_.clear();
     for (std::size_t i = 0; i < links.size(); ++i) {
       for (std::size_t k = i + 1; k < links.size(); ++k) {
         const double cosine = dot(away(links[i], particle), away(links[k], particle));
-        if (cosine < kStraightest) candidates_.push_back({cosine, links[i], links[k]});
+        if (cosine < kLeastStraight)
+          candidates_.push_back({cosine + unevenness(links[i], links[k]), links[i], links[k]});
       }
     }
     std::sort(candidates_.begin(), candidates_.end());
@@ -72,8 +81,13 @@ class Pairing {
     }
   }
 
+  /// Tells a link to the neighbour from one that skips it.
+  double unevenness(std::uint32_t one, std::uint32_t two) const {
+    const auto [shorter, longer] = std::minmax(courses_[one].length, courses_[two].length);
+    return kUnevenness * (1 - shorter / longer);
+  }
   Vec3 away(std::uint32_t link, std::uint32_t particle) const {
-    const Vec3& d = directions_[link];
+    const Vec3& d = courses_[link].direction;
     return links_[link].a == particle ? d : Vec3{-d.x, -d.y, -d.z};
   }
   std::uint32_t& slot(std::uint32_t link, std::uint32_t particle) {
@@ -81,7 +95,7 @@ class Pairing {
   }
 
   std::span<const Link> links_;
-  std::vector<Vec3> directions_;
+  std::vector<Course> courses_;
   std::vector<Continuation> next_;
   std::vector<Candidate> candidates_;
 };
