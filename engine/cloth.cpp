@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "engine/contacts.h"
+#include "engine/isa.h"
 #include "engine/measure.h"
 #include "engine/state.h"
 #include "engine/step.h"
@@ -14,9 +15,11 @@ namespace {
 Vec3 to_public(kernels::Vector v) { return {v.x, v.y, v.z}; }
 kernels::Vector to_internal(Vec3 v) { return {v.x, v.y, v.z}; }
 
-Result<void> read(const kernels::Vectors& from, std::span<Vec3> out) {
-  if (auto r = validate_size("out", out.size(), from.size()); !r) return r;
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = to_public(from[i]);
+Result<void> read(const Model& model, const kernels::Vectors& from, std::span<Vec3> out) {
+  if (auto r = validate_size("out", out.size(), model.particles); !r) return r;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = to_public(from[model.ordering.slot_of[i]]);
+  }
   return {};
 }
 
@@ -28,11 +31,11 @@ void hash_bits(std::uint64_t& hash, double value) {
   }
 }
 
-void hash_bits(std::uint64_t& hash, const kernels::Vectors& vectors) {
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    hash_bits(hash, vectors.x[i]);
-    hash_bits(hash, vectors.y[i]);
-    hash_bits(hash, vectors.z[i]);
+void hash_bits(std::uint64_t& hash, const Model& model, const kernels::Vectors& vectors) {
+  for (const std::uint32_t slot : model.ordering.slot_of) {
+    hash_bits(hash, vectors.x[slot]);
+    hash_bits(hash, vectors.y[slot]);
+    hash_bits(hash, vectors.z[slot]);
   }
 }
 
@@ -40,6 +43,7 @@ void hash_bits(std::uint64_t& hash, const kernels::Vectors& vectors) {
 
 struct Cloth::Impl : State {
   using State::State;
+  std::uint32_t slot(std::uint32_t particle) const { return model->ordering.slot_of[particle]; }
 };
 
 Cloth::Cloth(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -50,7 +54,11 @@ Cloth::~Cloth() = default;
 Result<Cloth> Cloth::create(std::shared_ptr<const Model> model, const Settings& settings) {
   if (!model) return Error{"model: must not be null (null)"};
   if (auto valid = validate(settings); !valid) return Error{valid.error()};
-  return Cloth(std::make_unique<Impl>(std::move(model), settings));
+  auto isa = resolve(settings.isa);
+  if (!isa) return Error{isa.error()};
+  Settings resolved = settings;
+  resolved.isa = isa.value();
+  return Cloth(std::make_unique<Impl>(std::move(model), resolved));
 }
 
 Result<StepReport> Cloth::step(double dt) {
@@ -62,36 +70,45 @@ std::size_t Cloth::particle_count() const { return impl_->model->particles; }
 const Model& Cloth::model() const { return *impl_->model; }
 const Settings& Cloth::settings() const { return impl_->settings; }
 
-Vec3 Cloth::position(std::uint32_t particle) const { return to_public(impl_->position[particle]); }
-Vec3 Cloth::velocity(std::uint32_t particle) const { return to_public(impl_->velocity[particle]); }
+Vec3 Cloth::position(std::uint32_t particle) const {
+  return to_public(impl_->position[impl_->slot(particle)]);
+}
+Vec3 Cloth::velocity(std::uint32_t particle) const {
+  return to_public(impl_->velocity[impl_->slot(particle)]);
+}
 
-Result<void> Cloth::read_positions(std::span<Vec3> out) const { return read(impl_->position, out); }
+Result<void> Cloth::read_positions(std::span<Vec3> out) const {
+  return read(*impl_->model, impl_->position, out);
+}
 Result<void> Cloth::read_velocities(std::span<Vec3> out) const {
-  return read(impl_->velocity, out);
+  return read(*impl_->model, impl_->velocity, out);
 }
 
 Result<void> Cloth::read_positions(std::span<float> out) const {
-  const kernels::Vectors& x = impl_->position;
-  if (auto r = validate_size("out", out.size(), 3 * x.size()); !r) return r;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    out[3 * i] = static_cast<float>(x.x[i]);
-    out[3 * i + 1] = static_cast<float>(x.y[i]);
-    out[3 * i + 2] = static_cast<float>(x.z[i]);
+  if (auto r = validate_size("out", out.size(), 3 * particle_count()); !r) return r;
+  for (std::uint32_t i = 0; i < particle_count(); ++i) {
+    const kernels::Vector x = impl_->position[impl_->slot(i)];
+    out[3 * i] = static_cast<float>(x.x);
+    out[3 * i + 1] = static_cast<float>(x.y);
+    out[3 * i + 2] = static_cast<float>(x.z);
   }
   return {};
 }
 
 Result<void> Cloth::write_positions(std::span<const Vec3> in) {
   if (auto r = validate_vectors("positions", in, particle_count()); !r) return r;
-  for (std::size_t i = 0; i < in.size(); ++i) impl_->position.set(i, to_internal(in[i]));
+  for (std::uint32_t i = 0; i < in.size(); ++i) {
+    impl_->position.set(impl_->slot(i), to_internal(in[i]));
+  }
   return {};
 }
 
 Result<void> Cloth::write_velocities(std::span<const Vec3> in) {
   if (auto r = validate_vectors("velocities", in, particle_count()); !r) return r;
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    const bool fixed = impl_->model->inverse_mass[i] == 0;
-    impl_->velocity.set(i, fixed ? kernels::Vector{0, 0, 0} : to_internal(in[i]));
+  for (std::uint32_t i = 0; i < in.size(); ++i) {
+    const std::uint32_t slot = impl_->slot(i);
+    const bool fixed = impl_->model->inverse_mass[slot] == 0;
+    impl_->velocity.set(slot, fixed ? kernels::Vector{0, 0, 0} : to_internal(in[i]));
   }
   return {};
 }
@@ -102,8 +119,10 @@ Result<void> Cloth::write_forces(std::span<const Vec3> in) {
     return {};
   }
   if (auto r = validate_vectors("forces", in, particle_count()); !r) return r;
-  impl_->force.resize(in.size());
-  for (std::size_t i = 0; i < in.size(); ++i) impl_->force.set(i, to_internal(in[i]));
+  impl_->force.resize(impl_->model->slots());
+  for (std::uint32_t i = 0; i < in.size(); ++i) {
+    impl_->force.set(impl_->slot(i), to_internal(in[i]));
+  }
   return {};
 }
 
@@ -112,17 +131,19 @@ Result<void> Cloth::move_fixed(std::uint32_t particle, Vec3 position) {
     return Error{"particle: no such particle, the scene has " + std::to_string(particle_count()) +
                  " (" + std::to_string(particle) + ")"};
   }
-  if (impl_->model->inverse_mass[particle] != 0) {
+  const std::uint32_t slot = impl_->slot(particle);
+  if (impl_->model->inverse_mass[slot] != 0) {
     return Error{"particle: is not fixed (" + std::to_string(particle) + ")"};
   }
   if (auto r = validate_vector("position", particle, position); !r) return r;
-  impl_->position.set(particle, to_internal(position));
+  impl_->position.set(slot, to_internal(position));
   return {};
 }
 
 Strain Cloth::strain() const { return measure_strain(*impl_->model, impl_->position); }
 double Cloth::max_penetration() const {
-  return weft::max_penetration(*impl_->model, impl_->position);
+  return weft::max_penetration(*impl_->model, *impl_->kernels, impl_->position.view(),
+                               impl_->contacts);
 }
 Energy Cloth::energy() const {
   return measure_energy(*impl_->model, impl_->position, impl_->velocity);
@@ -130,8 +151,8 @@ Energy Cloth::energy() const {
 
 std::uint64_t Cloth::state_hash() const {
   std::uint64_t hash = 0xcbf29ce484222325u;
-  hash_bits(hash, impl_->position);
-  hash_bits(hash, impl_->velocity);
+  hash_bits(hash, *impl_->model, impl_->position);
+  hash_bits(hash, *impl_->model, impl_->velocity);
   return hash;
 }
 

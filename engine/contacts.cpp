@@ -7,87 +7,96 @@ namespace {
 
 constexpr double kMargin = 0.1;  // of the sphere's radius
 
-bool joined(const Model& m, std::uint32_t a, std::uint32_t b) {
+bool joined(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
   const ConstraintStore& s = m.constraints;
-  return std::ranges::any_of(m.adjacent[a],
-                             [&](std::uint32_t c) { return s.a[c] == b || s.b[c] == b; });
+  const auto joins = [&](std::uint32_t c) {
+    return (s.a[c] == sphere && s.b[c] == particle) || (s.a[c] == particle && s.b[c] == sphere);
+  };
+  return std::ranges::any_of(s.hub_distances, joins) || std::ranges::any_of(s.hub_ropes, joins);
 }
 
-/// Calls visit(sphere, particle, distance) for every pair nearer than its reach. A pair of spheres
-/// is seen once. Pairs that cannot move, and pairs joined by a constraint, do not collide.
-template <class Reach, class Visit>
-void for_each_pair(const Model& m, const kernels::Vectors& x, Reach&& reach, Visit&& visit) {
+bool is_sphere(const Model& m, std::uint32_t slot) {
+  return m.hub[slot] && std::ranges::find(m.spheres, slot) != m.spheres.end();
+}
+
+/// A pair of spheres is seen once. Pairs that cannot move do not collide.
+bool may_touch(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
+  if (particle == sphere || !m.is_particle(particle)) return false;
+  if (m.inverse_mass[sphere] + m.inverse_mass[particle] == 0) return false;
+  return !(particle < sphere && is_sphere(m, particle)) && !joined(m, sphere, particle);
+}
+
+/// Calls visit(sphere, particle, r1 + r2) for every pair nearer than r1 + r2 + extra(sphere).
+template <class Extra, class Visit>
+void for_each_pair(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
+                   std::vector<std::uint32_t>& found, Extra&& extra, Visit&& visit) {
   for (const std::uint32_t s : m.spheres) {
-    const kernels::Vector centre = x[s];
-    for (std::uint32_t p = 0; p < m.particles; ++p) {
-      const double limit = reach(s, p);
-      const kernels::Vector d = centre - x[p];
-      if (limit <= 0 || !(dot(d, d) < limit * limit)) continue;
-      if (p == s || m.inverse_mass[s] + m.inverse_mass[p] == 0) continue;
-      const bool other_is_sphere = m.hub[p] && std::ranges::find(m.spheres, p) != m.spheres.end();
-      if ((other_is_sphere && p < s) || joined(m, s, p)) continue;
-      visit(s, p, length(d));
+    const double beyond = m.radius[s] + extra(s);
+    if (beyond <= 0) continue;
+    const std::size_t near =
+        kernels.find_near(x, m.radius.data(), x[s], beyond, 0, m.slots(), found.data());
+    for (std::size_t i = 0; i < near; ++i) {
+      if (may_touch(m, s, found[i])) visit(s, found[i], m.radius[s] + m.radius[found[i]]);
     }
   }
 }
 
-bool listed(const State& state, std::uint32_t s, std::uint32_t p) {
-  const std::size_t base = state.model->constraints.size();
-  for (auto k = state.contacts.first[p]; k != reference::kNoContact; k = state.contacts.next[k]) {
-    if (state.constraints.a[base + k] == s) return true;
+bool listed(const ContactStore& contacts, std::uint32_t s, std::uint32_t p) {
+  for (auto k = contacts.first[p]; k != kNoIndex; k = contacts.next[k]) {
+    if (contacts.sphere[k] == s) return true;
   }
   return false;
 }
 
-void append(State& state, std::uint32_t s, std::uint32_t p) {
-  const Model& m = *state.model;
-  ContactStore& contacts = state.contacts;
-  const auto k = static_cast<std::uint32_t>(contacts.count++);
-  if (contacts.count > contacts.next.size()) state.reserve_contacts(2 * contacts.count);
-  const std::size_t c = m.constraints.size() + k;
-  state.constraints.a[c] = s;
-  state.constraints.b[c] = p;
-  state.constraints.target[c] = m.radius[s] + m.radius[p];
-  state.constraints.effective_mass[c] = 1 / (m.inverse_mass[s] + m.inverse_mass[p]);
-  state.constraints.impulse[c] = 0;
-  contacts.next[k] = contacts.first[p];
-  contacts.first[p] = k;
+void append(ContactStore& contacts, std::uint32_t s, std::uint32_t p, double distance) {
+  contacts.next.push_back(contacts.first[p]);
+  contacts.first[p] = contacts.count();
+  contacts.sphere.push_back(s);
+  contacts.particle.push_back(p);
+  contacts.distance.push_back(distance);
 }
 
 }  // namespace
 
-void find_contacts(State& state) {
-  const Model& m = *state.model;
-  const std::size_t base = m.constraints.size();
-  for (std::size_t k = 0; k < state.contacts.count; ++k) {
-    state.contacts.first[state.constraints.b[base + k]] = reference::kNoContact;
-  }
-  state.contacts.count = 0;
-  const auto reach = [&](std::uint32_t s, std::uint32_t p) {
-    return m.radius[s] + m.radius[p] + kMargin * m.radius[s];
-  };
-  for_each_pair(m, state.solved, reach,
-                [&](std::uint32_t s, std::uint32_t p, double) { append(state, s, p); });
+ContactStore make_contact_store(const Model& model) {
+  ContactStore contacts;
+  if (!model.has_contacts()) return contacts;
+  contacts.first.assign(model.slots(), kNoIndex);
+  contacts.found.resize(model.slots());
+  return contacts;
 }
 
-std::size_t add_missed_contacts(State& state) {
-  const Model& m = *state.model;
-  const std::size_t before = state.contacts.count;
-  const auto reach = [&](std::uint32_t s, std::uint32_t p) {
-    return m.radius[s] + m.radius[p] - state.settings.contact_tolerance;
-  };
-  for_each_pair(m, state.solved, reach, [&](std::uint32_t s, std::uint32_t p, double) {
-    if (!listed(state, s, p)) append(state, s, p);
-  });
-  return state.contacts.count - before;
+void find_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
+                   ContactStore& contacts) {
+  for (const std::uint32_t p : contacts.particle) contacts.first[p] = kNoIndex;
+  contacts.sphere.clear();
+  contacts.particle.clear();
+  contacts.distance.clear();
+  contacts.next.clear();
+  for_each_pair(
+      m, kernels, x, contacts.found, [&](std::uint32_t s) { return kMargin * m.radius[s]; },
+      [&](std::uint32_t s, std::uint32_t p, double distance) { append(contacts, s, p, distance); });
 }
 
-double max_penetration(const Model& m, const kernels::Vectors& position) {
+std::size_t add_missed_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
+                                double tolerance, ContactStore& contacts) {
+  const std::uint32_t before = contacts.count();
+  for_each_pair(
+      m, kernels, x, contacts.found, [&](std::uint32_t) { return -tolerance; },
+      [&](std::uint32_t s, std::uint32_t p, double distance) {
+        if (!listed(contacts, s, p)) append(contacts, s, p, distance);
+      });
+  return contacts.count() - before;
+}
+
+double max_penetration(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
+                       ContactStore& contacts) {
   double deepest = 0;
-  const auto reach = [&](std::uint32_t s, std::uint32_t p) { return m.radius[s] + m.radius[p]; };
-  for_each_pair(m, position, reach, [&](std::uint32_t s, std::uint32_t p, double distance) {
-    deepest = std::max(deepest, reach(s, p) - distance);
-  });
+  for_each_pair(
+      m, kernels, x, contacts.found, [](std::uint32_t) { return 0.; },
+      [&](std::uint32_t s, std::uint32_t p, double distance) {
+        deepest = std::max(deepest, distance - length(x[s] - x[p]));
+      });
   return deepest;
 }
 

@@ -1,81 +1,85 @@
 /// The immutable part of a cloth: who is joined to whom and how. Shared by any number of Cloths.
+///
+/// Inside the engine particles are numbered by slot (engine/ordering.h); the description's numbers
+/// appear only at the interface.
 #pragma once
 
 #include <weft/weft.h>
 
 #include <cstdint>
-#include <span>
+#include <mutex>
 #include <vector>
 
-#include "kernels/reference/relax.h"
+#include "engine/ordering.h"
+#include "engine/reference_layout.h"
+#include "engine/simd_layout.h"
 #include "kernels/vectors.h"
 
 namespace weft {
 
-/// The active constraints in solver order: distance without hubs, distance at hubs, ropes (see
-/// kernels/reference/relaxation.h); within each range colour by colour, within a colour as
-/// described.
+/// The active constraints in solver order; within each range in the order of the batches:
+///
+///   [0, plain)          distance, no hub at either end
+///   [plain, bilateral)  distance, at a hub
+///   [bilateral, size)   ropes
+///
+/// A hub is a particle of more than kHubDegree constraints, or a sphere.
 struct ConstraintStore {
-  std::size_t plain = 0;      // [0, plain): distance, no hub
-  std::size_t bilateral = 0;  // [plain, bilateral): distance at a hub
-  std::vector<std::uint32_t> a, b;
+  std::size_t plain = 0, bilateral = 0;
+  std::vector<std::uint32_t> a, b;  // slots
   kernels::AlignedVector<double> rest_length;
   kernels::AlignedVector<double> effective_mass;  // 1 / (w_a + w_b), kg
-  std::vector<std::uint32_t> colour;
-  std::vector<std::uint32_t> described;  // index in the description
+  std::vector<std::uint32_t> colour;              // unique at a particle, hubs left out
+  std::vector<std::uint32_t> described;           // index in the description
+  std::vector<std::uint32_t> slot;                // constraint slot; kNoIndex: at a hub
+  std::vector<std::uint32_t> hub_distances, hub_ropes;
   std::size_t size() const { return a.size(); }
-};
-
-/// A compressed list of lists: list i is items[begin[i]] ... items[begin[i + 1] - 1].
-struct Lists {
-  std::vector<std::uint32_t> begin;
-  std::vector<std::uint32_t> items;
-  std::span<const std::uint32_t> operator[](std::size_t i) const {
-    return {items.data() + begin[i], items.data() + begin[i + 1]};
-  }
 };
 
 class Model {
  public:
   explicit Model(const SceneDescription& description);  // must be valid
 
-  std::size_t particles = 0;
+  std::size_t particles = 0;  // described
+  Ordering ordering;
+  std::uint32_t spare_slots = 0;  // first of kLanes padding slots that no batch uses
+  std::size_t slots() const { return ordering.slots(); }
+
+  // Per slot; padding: at the origin, without mass and fixed.
   kernels::Vectors initial_position, initial_velocity;
   kernels::AlignedVector<double> mass, inverse_mass;  // inverse_mass 0: fixed
-  kernels::Vector gravity{};
+  kernels::AlignedVector<double> radius;              // empty without spheres
+  std::vector<std::uint8_t> hub;
+  std::vector<std::uint32_t> hubs;
+  std::vector<std::uint32_t> spheres;
 
+  kernels::Vector gravity{};
   ConstraintStore constraints;
   std::size_t inert_constraints = 0;
-  std::uint32_t colours = 0;
-
-  Lists adjacent;                 // constraints at each particle
-  std::vector<std::uint8_t> hub;  // per particle
-  std::vector<std::uint32_t> hubs;
-
-  Lists rows;  // per plain constraint: those that share a particle with it
-  std::vector<std::uint32_t> row_later;  // first entry of the row beyond the constraint itself
-  std::vector<double> row_weight;        // s w_p of each entry
-  std::vector<std::uint8_t> plain_colour;
-
-  std::vector<std::uint32_t> block_first, block_of;  // blocks of plain constraints of one colour
-  Lists block_neighbours;
-
-  std::vector<std::uint32_t> spheres;
-  std::vector<double> radius;  // empty without spheres
 
   bool has_contacts() const { return !spheres.empty(); }
-  reference::Topology topology() const;
+  bool is_particle(std::size_t slot) const { return ordering.particle_at[slot] != kNoIndex; }
   std::size_t bytes() const;
 
+  /// What each backend needs besides; made when first asked for, by whichever thread.
+  const ReferenceLayout& reference() const;
+  const SimdLayout& simd() const;
+
  private:
+  void find_hubs(const SceneDescription& description);
+  void order_particles(const SceneDescription& description);
   void store_particles(const SceneDescription& description);
   void store_constraints(const SceneDescription& description);
-  void append_constraint(const Constraint& c, std::uint32_t colour, std::uint32_t described);
-  void find_hubs(const SceneDescription& description);
-  void list_adjacent();
-  void build_rows();
-  void build_blocks();
-  void list_block_neighbours();
+  void store_batches(const SceneDescription& description, ConstraintKind kind);
+  void store_hubs(const SceneDescription& description, ConstraintKind kind);
+  void append(const Constraint& constraint, std::uint32_t described, std::uint32_t a,
+              std::uint32_t b);
+
+  std::vector<std::uint8_t> fixed_particle_, hub_particle_;  // by the description's numbers
+  std::vector<std::uint32_t> described_link_;                // link -> description
+  mutable std::once_flag reference_once_, simd_once_;
+  mutable ReferenceLayout reference_;
+  mutable SimdLayout simd_;
 };
 
 }  // namespace weft

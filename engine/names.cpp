@@ -33,6 +33,22 @@ std::string_view name(Backend backend) {
   switch (backend) {
     case Backend::reference:
       return "reference";
+    case Backend::simd:
+      return "simd";
+  }
+  return "unknown";
+}
+
+std::string_view name(Isa isa) {
+  switch (isa) {
+    case Isa::automatic:
+      return "auto";
+    case Isa::sse2:
+      return "sse2";
+    case Isa::avx2:
+      return "avx2";
+    case Isa::avx512:
+      return "avx512";
   }
   return "unknown";
 }

@@ -112,6 +112,14 @@ class Assembly {
   std::size_t links_in_runs_ = 0;
 };
 
+/// Only links along the frequent steps of the lattice make runs.
+bool may_be_woven(const Placement& placement, double least_run_share) {
+  const std::vector<std::uint32_t>& classes = placement.colour_class;
+  const auto irregular = std::count(classes.begin(), classes.end(), kNoIndex);
+  const auto count = static_cast<double>(classes.size());
+  return count - static_cast<double>(irregular) >= least_run_share * count;
+}
+
 }  // namespace
 
 Ordering order(std::span<const Vec3> positions, std::span<const Link> links,
@@ -120,8 +128,11 @@ Ordering order(std::span<const Vec3> positions, std::span<const Link> links,
     return Assembly(placement, links, positions.size()).ordering();
   };
   const std::vector<Cell> cells = find_lattice(positions, find_yarns(positions, links));
-  Ordering woven = assemble(place_woven(cells, links, options.tile_particles));
-  if (woven.run_share >= options.least_run_share) return woven;
+  const Placement rows = place_woven(cells, links, options.tile_particles);
+  if (may_be_woven(rows, options.least_run_share)) {
+    Ordering woven = assemble(rows);
+    if (woven.run_share >= options.least_run_share) return woven;
+  }
   const Incidence incidence(positions.size(), links);
   return assemble(place_nearby(incidence, links, options.tile_particles));
 }

@@ -26,15 +26,12 @@
 #include <span>
 #include <vector>
 
+#include "kernels/runs.h"
+
 namespace weft {
 
-inline constexpr std::uint32_t kLanes = 16;  // of the widest vector, whatever the machine has
-
-struct Run {
-  std::uint32_t a = 0, b = 0;    // first slots
-  std::uint32_t constraint = 0;  // first constraint slot
-  std::uint32_t length = 0;      // multiple of kLanes
-};
+using kernels::kLanes;
+using kernels::Run;
 
 struct Batch {
   std::uint32_t first = 0, singles = 0, last = 0;  // constraint slots

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 
-#include "engine/contacts.h"
 #include "engine/measure.h"
+#include "engine/team.h"
 #include "kernels/reference/integrate.h"
-#include "kernels/reference/relax.h"
 
 namespace weft {
 namespace {
@@ -25,9 +23,18 @@ void timed(StepReport& report, Stage stage, Work&& work) {
   report.stage_seconds[static_cast<std::size_t>(stage)] = seconds.count();
 }
 
-reference::Motion motion(State& s) {
+/// The worse of two: the enumerators are in order of severity.
+void worsen(StepReport& report, Status status) { report.status = std::max(report.status, status); }
+
+void add(StepReport& report, const kernels::LoopResult& result) {
+  report.visits += result.visits;
+  report.corrections += result.corrections;
+  if (!result.converged) worsen(report, Status::iteration_limit);
+}
+
+reference::Motion reference_motion(State& s) {
   reference::Motion m;
-  m.particles = s.model->particles;
+  m.particles = s.model->slots();
   m.inverse_mass = s.model->inverse_mass.data();
   m.gravity = s.model->gravity;
   if (s.force.size() > 0) m.force = s.force.view();
@@ -38,97 +45,119 @@ reference::Motion motion(State& s) {
   return m;
 }
 
-reference::Method method(const Settings& settings, int iterations_done) {
-  return {.anticipate = settings.anticipate,
-          .skip = settings.skip,
-          .frozen_directions = settings.directions == Directions::frozen,
-          .fixed_iterations = settings.iterations,
-          .max_iterations = settings.max_iterations - iterations_done};
+simd::Motion simd_motion(State& s) {
+  simd::Motion m;
+  m.inverse_mass = s.model->inverse_mass.data();
+  m.gravity = s.model->gravity;
+  if (s.force.size() > 0) m.force = s.force.view();
+  m.position = s.position.view();
+  m.velocity = s.velocity.view();
+  m.solved = s.solved.view();
+  m.next_velocity = s.next_velocity.view();
+  return m;
 }
 
-/// The worse of two: the enumerators are in order of severity.
-void worsen(StepReport& report, Status status) { report.status = std::max(report.status, status); }
-
-void add(StepReport& report, const reference::LoopResult& result) {
-  report.visits += result.visits;
-  report.corrections += result.corrections;
-  if (!result.converged) worsen(report, Status::iteration_limit);
+/// work(first, last) over all slots, shared out in stretches.
+template <class Work>
+void for_all_slots(const State& s, Team& team, Work&& work) {
+  constexpr std::size_t kStretch = 1024;
+  const std::size_t slots = s.model->slots();
+  team.for_each((slots + kStretch - 1) / kStretch,
+                [&](std::size_t i) { work(i * kStretch, std::min(slots, (i + 1) * kStretch)); });
 }
 
-void solve_positions(State& s, double h, StepReport& report) {
-  std::fill(s.constraints.impulse.begin(), s.constraints.impulse.end(), 0.0);
+void predict(State& s, double h, Team& team) {
+  if (s.reference) return reference::predict(reference_motion(s), h);
+  const simd::Motion motion = simd_motion(s);
+  for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
+    s.kernels->predict(motion, h, first, last);
+  });
+}
+
+void commit(State& s, double h, Team& team) {
+  if (s.reference) {
+    return reference::commit(reference_motion(s), h, s.next_velocity.view());
+  }
+  const simd::Motion motion = simd_motion(s);
+  for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
+    s.kernels->commit(motion, h, first, last);
+  });
+}
+
+void solve_positions(State& s, double h, StepReport& report, Team& team) {
   for (int round = 0; round < kMaxContactRounds; ++round) {
+    const int left = s.settings.max_iterations - report.iterations;
     const auto result =
-        reference::relax_positions(s.position_problem(h), s.model->topology(), s.contact_lists(),
-                                   s.workspace(), method(s.settings, report.iterations));
+        s.reference ? s.reference->solve_positions(s.solved.view(), h, s.contacts, round == 0, left)
+                    : s.simd->solve_positions(s.solved.view(), s.contacts, round == 0, left, team);
     add(report, result);
     report.iterations += result.iterations;
     report.direction_updates += result.direction_updates;
-    const bool again = s.model->has_contacts() && result.converged && add_missed_contacts(s) > 0;
+    const bool again = s.model->has_contacts() && result.converged &&
+                       add_missed_contacts(*s.model, *s.kernels, s.solved.view(),
+                                           s.settings.contact_tolerance, s.contacts) > 0;
     if (!again) return;
   }
   worsen(report, Status::iteration_limit);
 }
 
-/// Ropes and contacts take part where they are taut or touch; slack ones get an endless tolerance.
-void choose_velocity_tolerances(State& s, const reference::Relaxation& r) {
-  const double tolerance = s.settings.iterations == 0 ? s.settings.velocity_tolerance : 0;
-  for (std::size_t c = 0; c < r.count; ++c) {
-    bool active = true;
-    if (c >= r.bilateral) {
-      const double target =
-          c < r.pulling ? s.model->constraints.rest_length[c] : s.constraints.target[c];
-      const double e = length(s.next_position[r.a[c]] - s.next_position[r.b[c]]) - target;
-      active = c < r.pulling ? e >= -s.constraints.tolerance[c] : e <= s.constraints.tolerance[c];
-    }
-    s.constraints.velocity_tolerance[c] =
-        active ? tolerance : std::numeric_limits<double>::infinity();
-  }
-}
-
-void correct_velocities(State& s, StepReport& report) {
-  const reference::Relaxation problem = s.velocity_problem();
-  reference::renew_all_directions(s.position_problem(1), s.next_position.view());
-  choose_velocity_tolerances(s, problem);
-  std::fill(s.constraints.impulse.begin(), s.constraints.impulse.end(), 0.0);
-  const auto result = reference::relax_velocities(problem, s.model->topology(), s.contact_lists(),
-                                                  s.workspace(), method(s.settings, 0));
+void correct_velocities(State& s, StepReport& report, Team& team) {
+  const auto x = s.solved.view(), v = s.next_velocity.view();
+  const auto result = s.reference ? s.reference->correct_velocities(x, v, s.contacts)
+                                  : s.simd->correct_velocities(x, v, s.contacts, team);
   add(report, result);
   report.velocity_iterations += result.iterations;
 }
 
 /// The next state becomes the state, if it is one.
 bool accept(State& s) {
-  if (!all_finite(s.next_position) || !all_finite(s.next_velocity)) return false;
-  std::swap(s.position, s.next_position);
+  if (!all_finite(s.solved) || !all_finite(s.next_velocity)) return false;
+  std::swap(s.position, s.solved);
   std::swap(s.velocity, s.next_velocity);
   return true;
 }
 
-void report_errors(const State& s, StepReport& report) {
-  const Strain strain = measure_strain(*s.model, s.position);
+void report_errors(State& s, StepReport& report, Team& team) {
+  const Strain strain = s.simd ? s.simd->measure_strain(s.position.view(), team)
+                               : measure_strain(*s.model, s.position);
   report.max_strain = strain.max;
   report.rms_strain = strain.rms;
   report.worst_constraint = strain.worst_constraint;
-  report.contacts = static_cast<int>(s.contacts.count);
-  report.max_penetration = max_penetration(*s.model, s.position);
+  report.contacts = static_cast<int>(s.contacts.count());
+  if (s.model->has_contacts()) {
+    report.max_penetration = max_penetration(*s.model, *s.kernels, s.position.view(), s.contacts);
+  }
+}
+
+/// Below this a thread has too little to do between two meetings.
+constexpr std::size_t kLeastSlotsPerThread = 500;
+
+int threads_worth_having(const State& s) {
+  if (s.reference) return 1;
+  const std::size_t most = s.model->slots() / kLeastSlotsPerThread;
+  const std::size_t wanted = s.settings.threads > 0 ? static_cast<std::size_t>(s.settings.threads)
+                                                    : static_cast<std::size_t>(kMaxThreads);
+  return static_cast<int>(std::min(most, wanted));
 }
 
 }  // namespace
 
 StepReport step(State& s, double h) {
   StepReport report;
-  timed(report, Stage::predict, [&] { reference::predict(motion(s), h); });
-  if (s.model->has_contacts()) timed(report, Stage::find_contacts, [&] { find_contacts(s); });
-  timed(report, Stage::solve_positions, [&] { solve_positions(s, h, report); });
-  timed(report, Stage::commit,
-        [&] { reference::commit(motion(s), h, s.next_position.view(), s.next_velocity.view()); });
+  Team team(threads_worth_having(s));
+  timed(report, Stage::predict, [&] { predict(s, h, team); });
+  if (s.model->has_contacts()) {
+    timed(report, Stage::find_contacts,
+          [&] { find_contacts(*s.model, *s.kernels, s.solved.view(), s.contacts); });
+  }
+  timed(report, Stage::solve_positions, [&] { solve_positions(s, h, report, team); });
+  timed(report, Stage::commit, [&] { commit(s, h, team); });
   if (s.settings.velocity_correction) {
-    timed(report, Stage::correct_velocities, [&] { correct_velocities(s, report); });
+    timed(report, Stage::correct_velocities, [&] { correct_velocities(s, report, team); });
   }
   if (s.settings.iterations > 0) report.status = Status::fixed_iterations;
   if (!accept(s)) report.status = Status::non_finite;
-  timed(report, Stage::report, [&] { report_errors(s, report); });
+  timed(report, Stage::report, [&] { report_errors(s, report, team); });
   return report;
 }
 

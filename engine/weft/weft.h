@@ -119,6 +119,8 @@ struct ModelInfo {
   std::size_t ropes = 0;
   std::size_t spheres = 0;
   std::size_t colours = 0;
+  std::size_t tiles = 0;  ///< parts that threads may work on side by side
+  double run_share = 0;   ///< constraints in contiguous runs / constraints
   std::size_t bytes = 0;
 };
 ModelInfo describe(const Model& model);
@@ -133,7 +135,13 @@ enum class Scheme : std::uint8_t { paper };
 /// frozen: only once all errors along them are within tolerance (section 4.4).
 enum class Directions : std::uint8_t { each, frozen };
 /// reference: scalar, double, the oracle for everything else.
-enum class Backend : std::uint8_t { reference };
+/// simd: float lanes inside the loop, refined from double; the same tolerance is reached.
+enum class Backend : std::uint8_t { reference, simd };
+/// What the simd backend runs on. automatic: what WEFT_ISA in the environment names, else the best
+/// that the machine has. avx2 and avx512 give the same bits.
+enum class Isa : std::uint8_t { automatic, sse2, avx2, avx512 };
+
+inline constexpr int kMaxThreads = 256;
 
 /// How a cloth is solved. The defaults converge to 1 % with all of the paper's optimisations.
 struct Settings {
@@ -147,7 +155,11 @@ struct Settings {
   double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit
   Solver solver = Solver::gauss_seidel;
   Scheme scheme = Scheme::paper;
-  Backend backend = Backend::reference;
+  Backend backend = Backend::simd;
+  Isa isa = Isa::automatic;
+  /// Most threads of the caller's arena that a step may use; 0: as many as it offers. Small cloths
+  /// use one. The result does not depend on it.
+  int threads = 0;
   Directions directions = Directions::frozen;
   bool anticipate = true;            ///< section 4.2: errors are updated, not recomputed
   bool skip = true;                  ///< section 4.3: satisfied constraints are passed over
@@ -176,6 +188,7 @@ std::string_view name(Solver);
 std::string_view name(Scheme);
 std::string_view name(Directions);
 std::string_view name(Backend);
+std::string_view name(Isa);
 std::string_view name(Status);
 std::string_view name(Stage);
 
@@ -224,7 +237,7 @@ class Cloth {
 
   std::size_t particle_count() const;
   const Model& model() const;
-  const Settings& settings() const;
+  const Settings& settings() const;  ///< isa resolved
 
   Vec3 position(std::uint32_t particle) const;
   Vec3 velocity(std::uint32_t particle) const;

@@ -22,11 +22,9 @@ void predict(const Motion& m, double h) {
   }
 }
 
-void commit(const Motion& m, double h, const kernels::VectorsView& next_position,
-            const kernels::VectorsView& next_velocity) {
+void commit(const Motion& m, double h, const kernels::VectorsView& next_velocity) {
   for (std::size_t i = 0; i < m.particles; ++i) {
     const Vector displacement = m.solved[i] - m.predicted[i];
-    next_position.set(i, m.solved[i]);
     next_velocity.set(i, m.velocity[i] + h * acceleration(m, i) + (1 / h) * displacement);
   }
 }

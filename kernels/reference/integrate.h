@@ -21,10 +21,9 @@ struct Motion {
 /// predicted = solved = p + h v + h^2/2 (g + F/m)            (paper eq. 2)
 void predict(const Motion& motion, double h);
 
-/// Writes the next state; position and velocity are only read. With D = solved - predicted
+/// Position and velocity are only read. With D = solved - predicted
 ///     p(t+h) = solved,   v(t+h) = v + h (g + F/m) + D / h.
 /// (The paper prints p(t) + D and h F: without the preview and without 1/m.)
-void commit(const Motion& motion, double h, const kernels::VectorsView& next_position,
-            const kernels::VectorsView& next_velocity);
+void commit(const Motion& motion, double h, const kernels::VectorsView& next_velocity);
 
 }  // namespace weft::reference

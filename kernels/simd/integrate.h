@@ -27,12 +27,10 @@ namespace {
           fused(half, a.z, fused(step, v.z, p.z))};
 }
 
-void predict(const Motion& m, FloatsView u, double h, std::size_t first, std::size_t last) {
+void predict(const Motion& m, double h, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; i += kDoubles) {
     store(m.solved, i, predicted(load(m.position, i), load(m.velocity, i), acceleration(m, i), h));
   }
-  const Floats zero(0.f);
-  for (std::size_t i = first; i < last; i += kFloats) store(u, i, {zero, zero, zero});
 }
 
 void commit(const Motion& m, double h, std::size_t first, std::size_t last) {

@@ -73,8 +73,8 @@ struct StrainSums {
 
 /// Ranges of slots are multiples of kLanes; runs and singles likewise.
 struct Table {
-  /// solved = p + h v + h^2/2 a (paper eq. 2); u = 0.
-  void (*predict)(const Motion&, FloatsView u, double h, std::size_t first, std::size_t last);
+  /// solved = p + h v + h^2/2 a (paper eq. 2).
+  void (*predict)(const Motion&, double h, std::size_t first, std::size_t last);
   /// next_velocity = v + h a + (solved - predicted) / h, predicted formed as in predict.
   void (*commit)(const Motion&, double h, std::size_t first, std::size_t last);
   /// x += u, u = 0.

@@ -1,0 +1,58 @@
+#include "engine/isa.h"
+
+#include <cstdlib>
+
+namespace weft {
+namespace {
+
+Isa to_public(simd::Isa isa) {
+  switch (isa) {
+    case simd::Isa::avx512:
+      return Isa::avx512;
+    case simd::Isa::avx2:
+      return Isa::avx2;
+    case simd::Isa::sse2:
+      break;
+  }
+  return Isa::sse2;
+}
+
+Result<Isa> from_environment() {
+  const char* wanted = std::getenv("WEFT_ISA");
+  if (wanted == nullptr || *wanted == '\0') return Isa::automatic;
+  for (const Isa isa : {Isa::automatic, Isa::sse2, Isa::avx2, Isa::avx512}) {
+    if (name(isa) == wanted) return isa;
+  }
+  return Error{"WEFT_ISA: must be auto, sse2, avx2 or avx512 (" + std::string(wanted) + ")"};
+}
+
+}  // namespace
+
+Result<Isa> resolve(Isa wanted) {
+  if (wanted == Isa::automatic) {
+    auto named = from_environment();
+    if (!named) return named;
+    wanted = named.value();
+  }
+  if (wanted == Isa::automatic) return to_public(simd::best_isa());
+  if (wanted > Isa::avx512) {
+    return Error{"isa: unknown choice (" + std::to_string(static_cast<int>(wanted)) + ")"};
+  }
+  if (!simd::supported(to_kernel(wanted))) {
+    return Error{"isa: this machine lacks it (" + std::string(name(wanted)) + ")"};
+  }
+  return wanted;
+}
+
+simd::Isa to_kernel(Isa isa) {
+  switch (isa) {
+    case Isa::avx512:
+      return simd::Isa::avx512;
+    case Isa::avx2:
+      return simd::Isa::avx2;
+    default:
+      return simd::Isa::sse2;
+  }
+}
+
+}  // namespace weft

@@ -1,0 +1,17 @@
+/// Which instruction set a cloth runs on.
+#pragma once
+
+#include <weft/weft.h>
+
+#include "kernels/simd/isa.h"
+
+namespace weft {
+
+/// automatic: what WEFT_ISA in the environment names, else the best of the machine. An instruction
+/// set that the machine lacks, or a name that is none, is an error.
+Result<Isa> resolve(Isa wanted);
+
+/// A resolved one.
+simd::Isa to_kernel(Isa isa);
+
+}  // namespace weft

@@ -1,0 +1,212 @@
+#include "engine/simd_loop.h"
+
+#include <algorithm>
+
+namespace weft {
+namespace {
+
+void add(kernels::Sweep& sum, const kernels::Sweep& sweep) {
+  sum.visits += sweep.visits;
+  sum.corrections += sweep.corrections;
+}
+
+/// Slots are shared out in stretches of this many.
+constexpr std::size_t kStretch = 1024;
+
+}  // namespace
+
+SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
+    : s_(solver),
+      layout_(solver.layout_),
+      table_(solver.table_),
+      unknowns_(unknowns),
+      r_(solver.relaxation(unknowns.velocity)),
+      contacts_(r_),
+      g_(solver.geometry(unknowns.x, unknowns.velocity)),
+      contact_geometry_(g_),
+      team_(team) {
+  ContactLanes& c = s_.contacts_;
+  contacts_.n = c.n.view();
+  contacts_.e0 = c.e0.data();
+  contacts_.gain_a = c.gain_a.data();
+  contacts_.gain_b = c.gain_b.data();
+  contacts_.impulse = c.impulse.data();
+  contacts_.a = contact_geometry_.a = c.a.data();
+  contacts_.b = contact_geometry_.b = c.b.data();
+  contact_geometry_.rest_length = c.distance.data();
+  contact_geometry_.scale = c.scale.data();
+  std::ranges::fill(s_.stale_, std::uint8_t{1});
+  for (kernels::AlignedVector<float>* u : {&s_.u_.x, &s_.u_.y, &s_.u_.z}) {
+    std::ranges::fill(*u, 0.f);
+  }
+}
+
+void SimdLoop::apply_displacements() {
+  const kernels::VectorsView target = unknowns_.velocity ? unknowns_.v : unknowns_.x;
+  team_.for_each((layout_.slots + kStretch - 1) / kStretch, [&](std::size_t i) {
+    table_.apply_displacements(target, r_.u, i * kStretch,
+                               std::min(layout_.slots, (i + 1) * kStretch));
+  });
+}
+
+/// With skipping, only where something moved since the last renewal: elsewhere directions and
+/// errors would come out the same.
+void SimdLoop::renew() {
+  apply_displacements();
+  const std::size_t chunks = layout_.chunks.size();
+  team_.for_each((chunks + kPiece - 1) / kPiece, [&](std::size_t piece) {
+    const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
+    for (std::size_t i = piece * kPiece; i < last; ++i) {
+      if (skips() && !s_.stale_[i]) continue;
+      renew_chunk(i);
+      if (!skips()) continue;
+      s_.stale_[i] = 0;
+      s_.changed_[i] = 1;
+    }
+  });
+  renew_rest();
+  if (masks()) std::ranges::fill(s_.mask_, ~std::uint64_t{0});
+}
+
+void SimdLoop::renew_chunk(std::size_t i) {
+  const Chunk& chunk = layout_.chunks[i];
+  const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
+  if (chunk.singles && unknowns_.velocity) {
+    table_.renew_velocity_singles(g_, unknowns_.v, r_, first, last);
+  } else if (chunk.singles) {
+    table_.renew_singles(g_, r_, first, last);
+  } else if (unknowns_.velocity) {
+    table_.renew_velocity_run(g_, unknowns_.v, r_, chunk.run);
+  } else {
+    table_.renew_run(g_, r_, chunk.run);
+  }
+}
+
+/// Hubs and contacts.
+void SimdLoop::renew_rest() {
+  const auto renew = [&](const simd::Geometry& g, const simd::Relaxation& r, std::uint32_t first,
+                         std::uint32_t last) {
+    if (unknowns_.velocity) {
+      table_.renew_velocity_singles(g, unknowns_.v, r, first, last);
+    } else {
+      table_.renew_singles(g, r, first, last);
+    }
+  };
+  if (layout_.hub_first < layout_.hub_last) {
+    renew(g_, r_, layout_.hub_first, static_cast<std::uint32_t>(layout_.constraint_slots));
+  }
+  for (const ContactLanes::Range& range : s_.contacts_.spheres) {
+    renew(contact_geometry_, contacts_, range.first, range.last);
+  }
+}
+
+kernels::Sweep SimdLoop::sweep() {
+  kernels::Sweep sweep;
+  const Ordering& ordering = s_.model_.ordering;
+  const auto& batch_chunks = layout_.batch_chunks;
+  team_.for_each(ordering.tiles.size(), [&](std::size_t i) {
+    const Tile& tile = ordering.tiles[i];
+    s_.sweeps_[i] = sweep_chunks(batch_chunks[tile.first_batch], batch_chunks[tile.last_batch]);
+  });
+  for (std::size_t i = 0; i < ordering.tiles.size(); ++i) add(sweep, s_.sweeps_[i]);
+  for (std::size_t i = ordering.between_tiles; i < ordering.batches.size(); ++i) {
+    add(sweep, sweep_batch_between_tiles(i));
+  }
+  sweep_hubs(sweep);
+  sweep_contacts(sweep);
+  return sweep;
+}
+
+kernels::Sweep SimdLoop::sweep_batch_between_tiles(std::size_t batch) {
+  const std::size_t first = layout_.batch_chunks[batch], last = layout_.batch_chunks[batch + 1];
+  const std::size_t pieces = (last - first + kPiece - 1) / kPiece;
+  team_.for_each(pieces, [&](std::size_t piece) {
+    const std::size_t begin = first + piece * kPiece;
+    s_.sweeps_[piece] = sweep_chunks(begin, std::min(last, begin + kPiece));
+  });
+  kernels::Sweep sweep;
+  for (std::size_t piece = 0; piece < pieces; ++piece) add(sweep, s_.sweeps_[piece]);
+  return sweep;
+}
+
+kernels::Sweep SimdLoop::sweep_chunks(std::size_t first, std::size_t last) {
+  kernels::Sweep sweep;
+  for (std::size_t i = first; i < last; ++i) sweep_chunk(i, sweep);
+  return sweep;
+}
+
+void SimdLoop::sweep_chunk(std::size_t i, kernels::Sweep& sweep) {
+  if (skips()) {
+    if (!s_.changed_[i]) return;
+    s_.changed_[i] = 0;
+  }
+  const std::uint32_t corrections = relax(layout_.chunks[i], sweep);
+  sweep.corrections += corrections;
+  if (skips() && corrections > 0) mark_neighbours(i);
+}
+
+std::uint32_t SimdLoop::relax(const Chunk& chunk, kernels::Sweep& sweep) {
+  const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
+  if (masks() && !chunk.singles && !chunk.rope && chunk.colour < 64) {
+    std::uint64_t visits = 0;
+    const auto corrections =
+        table_.relax_masked_run(r_, chunk.run, std::uint64_t{1} << chunk.colour, visits);
+    sweep.visits += static_cast<std::int64_t>(visits);
+    return corrections;
+  }
+  sweep.visits += chunk.real;
+  std::uint32_t corrections = 0;
+  if (chunk.singles) {
+    corrections = chunk.rope ? table_.relax_rope_singles(r_, first, last)
+                             : table_.relax_singles(r_, first, last);
+  } else {
+    corrections =
+        chunk.rope ? table_.relax_rope_run(r_, chunk.run) : table_.relax_run(r_, chunk.run);
+  }
+  if (masks() && corrections > 0) {
+    mark_slots(r_.a, first, last);
+    mark_slots(r_.b, first, last);
+  }
+  return corrections;
+}
+
+void SimdLoop::sweep_hubs(kernels::Sweep& sweep) {
+  if (layout_.hub_first == layout_.hub_last) return;
+  const auto corrections = table_.relax_serial(r_, layout_.hub_first, layout_.hub_ropes) +
+                           table_.relax_rope_serial(r_, layout_.hub_ropes, layout_.hub_last);
+  sweep.visits += layout_.hub_last - layout_.hub_first;
+  sweep.corrections += corrections;
+  if (corrections == 0) return;
+  mark_slots(r_.a, layout_.hub_first, layout_.hub_last);
+  mark_slots(r_.b, layout_.hub_first, layout_.hub_last);
+}
+
+void SimdLoop::sweep_contacts(kernels::Sweep& sweep) {
+  for (const ContactLanes::Range& range : s_.contacts_.spheres) {
+    const auto corrections = table_.relax_contacts(contacts_, range.first, range.last);
+    sweep.visits += range.last - range.first;
+    sweep.corrections += corrections;
+    if (corrections > 0) mark_slots(contacts_.b, range.first, range.last);
+  }
+}
+
+/// Several threads may set the same flag of a chunk between tiles, all to the same value.
+void SimdLoop::mark_neighbours(std::size_t chunk) {
+  for (const std::uint32_t i : layout_.neighbours[chunk]) {
+    std::atomic_ref(s_.changed_[i]).store(1, std::memory_order_relaxed);
+    std::atomic_ref(s_.stale_[i]).store(1, std::memory_order_relaxed);
+  }
+}
+
+void SimdLoop::mark_slots(const std::uint32_t* slots, std::size_t first, std::size_t last) {
+  for (std::size_t c = first; c < last; ++c) {
+    if (masks()) s_.mask_[slots[c]] = ~std::uint64_t{0};
+    if (!skips()) continue;
+    for (const std::uint32_t i : layout_.chunks_at[slots[c]]) {
+      s_.changed_[i] = 1;
+      s_.stale_[i] = 1;
+    }
+  }
+}
+
+}  // namespace weft

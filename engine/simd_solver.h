@@ -1,0 +1,101 @@
+/// Gauss-Seidel on the vector kernels: the same loop as the reference (kernels/loop.h), one pass
+/// being
+///
+///     for each tile (side by side):  for each of its batches:  for each chunk
+///     for each batch between tiles:  for each chunk (side by side)
+///     constraints at hubs, one after the other
+///     contacts, sphere by sphere
+///
+/// The result depends on neither the number of threads nor, where multiplications and additions are
+/// fused, the instruction set.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/contacts.h"
+#include "engine/model.h"
+#include "engine/simd_layout.h"
+#include "engine/team.h"
+#include "kernels/loop.h"
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+/// Float vectors, owned.
+struct Floats3 {
+  kernels::AlignedVector<float> x, y, z;
+  void resize(std::size_t n) {
+    x.resize(n);
+    y.resize(n);
+    z.resize(n);
+  }
+  simd::FloatsView view() { return {x.data(), y.data(), z.data()}; }
+  std::size_t bytes() const { return 3 * x.capacity() * sizeof(float); }
+};
+
+/// Contacts in lanes: those of each sphere together, padded to whole lanes.
+struct ContactLanes {
+  struct Range {
+    std::uint32_t first = 0, last = 0;
+  };
+  std::vector<Range> spheres;  // those that have contacts
+  std::vector<std::uint32_t> a, b;
+  std::vector<std::uint32_t> contact;  // in the ContactStore, or kNoIndex
+  Floats3 n;
+  kernels::AlignedVector<float> e0, gain_a, gain_b, impulse;
+  kernels::AlignedVector<double> distance, scale;
+
+  void resize(std::size_t n);
+  std::size_t bytes() const;
+};
+
+class SimdSolver {
+ public:
+  SimdSolver(const Model& model, const Settings& settings, simd::Isa isa);
+
+  /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
+  /// were found anew, accumulated impulses start at 0.
+  kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
+                                      bool first_round, int max_iterations, Team& team);
+  /// The velocity loop at the positions x.
+  kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
+                                         const ContactStore& contacts, Team& team);
+  Strain measure_strain(kernels::VectorsView x, Team& team);
+
+  const simd::Table& kernels() const { return table_; }
+  simd::FloatsView displacements() { return u_.view(); }
+  std::size_t bytes() const;
+
+ private:
+  friend class SimdLoop;
+
+  void fill_gains(double tolerance_or_speed, bool velocity);
+  void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
+  void choose_active(kernels::VectorsView x);
+  void finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
+                     Strain& strain) const;
+  simd::Relaxation relaxation(bool velocity);
+  simd::Geometry geometry(kernels::VectorsView x, bool velocity);
+
+  const Model& model_;
+  const SimdLayout& layout_;
+  const Settings settings_;
+  const simd::Table& table_;
+
+  Floats3 u_, n_;
+  kernels::AlignedVector<float> e0_, gain_a_, gain_b_, impulse_;
+  kernels::AlignedVector<double> scale_;
+  kernels::AlignedVector<float> velocity_gain_a_, velocity_gain_b_;  // velocity correction only
+  kernels::AlignedVector<double> velocity_scale_;
+  kernels::AlignedVector<std::uint64_t> mask_;  // skip without anticipation only
+  std::vector<std::uint8_t> changed_, stale_;   // per chunk; skip only
+  std::vector<kernels::Sweep> sweeps_;          // per piece of parallel work
+  std::vector<simd::StrainSums> strains_;       // per chunk
+  ContactLanes contacts_;
+  std::vector<float> contact_impulse_;  // per contact of the ContactStore
+};
+
+}  // namespace weft
