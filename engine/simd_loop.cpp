@@ -35,7 +35,7 @@ SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
   contacts_.b = contact_geometry_.b = c.b.data();
   contact_geometry_.rest_length = c.distance.data();
   contact_geometry_.scale = c.scale.data();
-  std::ranges::fill(s_.stale_, std::uint8_t{1});
+  std::ranges::fill(s_.flags_, std::uint8_t{kChanged | kStale});
   for (kernels::AlignedVector<float>* u : {&s_.u_.x, &s_.u_.y, &s_.u_.z}) {
     std::ranges::fill(*u, 0.f);
   }
@@ -57,11 +57,9 @@ void SimdLoop::renew() {
   team_.for_each((chunks + kPiece - 1) / kPiece, [&](std::size_t piece) {
     const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
     for (std::size_t i = piece * kPiece; i < last; ++i) {
-      if (skips() && !s_.stale_[i]) continue;
+      if (skips() && !(s_.flags_[i] & kStale)) continue;
       renew_chunk(i);
-      if (!skips()) continue;
-      s_.stale_[i] = 0;
-      s_.changed_[i] = 1;
+      if (skips()) s_.flags_[i] = kChanged;
     }
   });
   renew_rest();
@@ -137,8 +135,8 @@ kernels::Sweep SimdLoop::sweep_chunks(std::size_t first, std::size_t last) {
 
 void SimdLoop::sweep_chunk(std::size_t i, kernels::Sweep& sweep) {
   if (skips()) {
-    if (!s_.changed_[i]) return;
-    s_.changed_[i] = 0;
+    if (!(s_.flags_[i] & kChanged)) return;
+    s_.flags_[i] &= kStale;
   }
   const std::uint32_t corrections = relax(layout_.chunks[i], sweep);
   sweep.corrections += corrections;
@@ -190,11 +188,10 @@ void SimdLoop::sweep_contacts(kernels::Sweep& sweep) {
   }
 }
 
-/// Several threads may set the same flag of a chunk between tiles, all to the same value.
+/// Several threads may set the flags of a chunk between tiles, all to the same value.
 void SimdLoop::mark_neighbours(std::size_t chunk) {
   for (const std::uint32_t i : layout_.neighbours[chunk]) {
-    std::atomic_ref(s_.changed_[i]).store(1, std::memory_order_relaxed);
-    std::atomic_ref(s_.stale_[i]).store(1, std::memory_order_relaxed);
+    std::atomic_ref(s_.flags_[i]).store(kChanged | kStale, std::memory_order_relaxed);
   }
 }
 
@@ -203,8 +200,7 @@ void SimdLoop::mark_slots(const std::uint32_t* slots, std::size_t first, std::si
     if (masks()) s_.mask_[slots[c]] = ~std::uint64_t{0};
     if (!skips()) continue;
     for (const std::uint32_t i : layout_.chunks_at[slots[c]]) {
-      s_.changed_[i] = 1;
-      s_.stale_[i] = 1;
+      s_.flags_[i] = kChanged | kStale;
     }
   }
 }

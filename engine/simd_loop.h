@@ -24,7 +24,11 @@ class SimdLoop {
   void finish() { apply_displacements(); }
 
  private:
-  bool skips() const { return !s_.changed_.empty(); }
+  /// What happened to a chunk, or to one that shares a particle with it: something was corrected
+  /// since it was last visited; since its directions were last renewed.
+  enum ChunkFlag : std::uint8_t { kChanged = 1, kStale = 2 };
+
+  bool skips() const { return !s_.flags_.empty(); }
   bool masks() const { return !s_.mask_.empty(); }
   void apply_displacements();
   void renew_chunk(std::size_t i);

@@ -49,8 +49,7 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa i
   if (layout_.has_ropes) impulse_.resize(size);
   if (settings.skip && settings.iterations == 0) {
     if (!settings.anticipate) mask_.resize(layout_.slots);
-    changed_.resize(layout_.chunks.size());
-    stale_.resize(layout_.chunks.size());
+    flags_.resize(layout_.chunks.size());
   }
   sweeps_.resize(std::max(model.ordering.tiles.size(), layout_.chunks.size() / kPiece + 1));
   strains_.resize(layout_.chunks.size() + 1);
@@ -243,8 +242,8 @@ std::size_t SimdSolver::bytes() const {
   return u_.bytes() + n_.bytes() + bytes_of(e0_) + bytes_of(gain_a_) + bytes_of(gain_b_) +
          bytes_of(impulse_) + bytes_of(scale_) + bytes_of(velocity_gain_a_) +
          bytes_of(velocity_gain_b_) + bytes_of(velocity_scale_) + bytes_of(mask_) +
-         bytes_of(changed_) + bytes_of(stale_) + bytes_of(sweeps_) + bytes_of(strains_) +
-         contacts_.bytes() + bytes_of(contact_impulse_);
+         bytes_of(flags_) + bytes_of(sweeps_) + bytes_of(strains_) + contacts_.bytes() +
+         bytes_of(contact_impulse_);
 }
 
 }  // namespace weft

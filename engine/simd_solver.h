@@ -91,7 +91,7 @@ class SimdSolver {
   kernels::AlignedVector<float> velocity_gain_a_, velocity_gain_b_;  // velocity correction only
   kernels::AlignedVector<double> velocity_scale_;
   kernels::AlignedVector<std::uint64_t> mask_;  // skip without anticipation only
-  std::vector<std::uint8_t> changed_, stale_;   // per chunk; skip only
+  std::vector<std::uint8_t> flags_;             // per chunk, of ChunkFlag; skip only
   std::vector<kernels::Sweep> sweeps_;          // per piece of parallel work
   std::vector<simd::StrainSums> strains_;       // per chunk
   ContactLanes contacts_;

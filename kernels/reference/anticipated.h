@@ -76,9 +76,9 @@ class AnticipatedLoop {
     const std::size_t first = t_.block_first[block], last = t_.block_first[block + 1];
     std::uint64_t unsatisfied = compare(first, last);
     sweep.visits += static_cast<std::int64_t>(last - first);
-    sweep.corrections += std::popcount(unsatisfied);
     if (kSkip && unsatisfied != 0) remind_neighbours(block);
     for (; unsatisfied != 0; unsatisfied &= unsatisfied - 1) {
+      ++sweep.corrections;
       correct(first + static_cast<std::size_t>(std::countr_zero(unsatisfied)));
     }
   }

@@ -65,7 +65,7 @@ std::uint32_t relax_contacts(const Relaxation& r, std::uint32_t first, std::uint
       const FloatVector n = load(r.n, c);
       FloatVector up = at_b.get(r.u, r.b + c);
       const Corrected corrected = correct_contacts(r, c, errors(r, c, n, us - up), threshold);
-      corrected_here += static_cast<std::uint32_t>(std::popcount(bits(corrected.lanes)));
+      corrected_here += count(corrected.lanes);
       move(up, n, corrected.by * load(r.gain_b + c));
       at_b.put(r.u, r.b + c, up);
       const Floats at_a = corrected.by * load(r.gain_a + c);

@@ -67,6 +67,14 @@ static_assert(kernels::kLanes % kFloats == 0);
 #endif
 }
 
+[[gnu::always_inline]] inline std::uint32_t count(FloatMask mask) {
+#if defined(__AVX2__)
+  return static_cast<std::uint32_t>(__builtin_popcount(bits(mask)));
+#else
+  return (0x4332322132212110u >> (4 * bits(mask))) & 15;  // plain SSE2 has no popcnt
+#endif
+}
+
 /// Three batches: a vector per lane.
 struct FloatVector {
   Floats x, y, z;

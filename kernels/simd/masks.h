@@ -10,19 +10,35 @@
 namespace weft::simd {
 namespace {
 
-[[gnu::always_inline]] inline bool any_marked(const std::uint64_t* a, const std::uint64_t* b,
-                                              std::uint64_t bit) {
-  std::uint64_t marks = 0;
-  for (std::uint32_t k = 0; k < kFloats; ++k) marks |= a[k] | b[k];
-  return (marks & bit) != 0;
-}
+using Words = xsimd::batch<std::uint64_t, Arch>;
+constexpr std::uint32_t kWords = Words::size;
 
-[[gnu::always_inline]] inline void update_marks(std::uint64_t* mask, std::uint32_t corrected,
-                                                std::uint64_t bit) {
-  for (std::uint32_t k = 0; k < kFloats; ++k) {
-    const std::uint64_t moved = 0 - static_cast<std::uint64_t>((corrected >> k) & 1u);
-    mask[k] = (mask[k] | moved) & ~bit;
+/// The marks of kFloats slots.
+struct Marks {
+  Words words[kFloats / kWords];
+
+  [[gnu::always_inline]] explicit Marks(const std::uint64_t* mask) {
+    for (std::uint32_t i = 0; i < kFloats / kWords; ++i) {
+      words[i] = Words::load_unaligned(mask + i * kWords);
+    }
   }
+  [[gnu::always_inline]] void update(std::uint64_t* mask, std::uint32_t corrected,
+                                     std::uint64_t bit) const {
+    alignas(64) static constexpr std::uint64_t kLaneBits[16] = {
+        1u << 0, 1u << 1, 1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
+        1u << 8, 1u << 9, 1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15};
+    const Words others(~bit), lanes(corrected), none(std::uint64_t{0});
+    for (std::uint32_t i = 0; i < kFloats / kWords; ++i) {
+      const auto still = (lanes & Words::load_aligned(kLaneBits + i * kWords)) == none;
+      xsimd::select(still, words[i] & others, others).store_unaligned(mask + i * kWords);
+    }
+  }
+};
+
+[[gnu::always_inline]] inline bool any_marked(const Marks& a, const Marks& b, std::uint64_t bit) {
+  Words marks = a.words[0] | b.words[0];
+  for (std::uint32_t i = 1; i < kFloats / kWords; ++i) marks = marks | a.words[i] | b.words[i];
+  return xsimd::any((marks & Words(bit)) != Words(std::uint64_t{0}));
 }
 
 std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_t bit,
@@ -31,16 +47,17 @@ std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_
   std::uint32_t corrections = 0;
   for (std::size_t k = 0; k < run.length; k += kFloats) {
     const std::size_t a = run.a + k, b = run.b + k, c = run.constraint + k;
-    if (!any_marked(r.mask + a, r.mask + b, bit)) continue;
+    const Marks at_a(r.mask + a), at_b(r.mask + b);
+    if (!any_marked(at_a, at_b, bit)) continue;
     visits += kFloats;
     const FloatVector n = load(r.n, c);
     FloatVector ua = load(r.u, a), ub = load(r.u, b);
     const Corrected corrected = correct_distances(r, c, errors(r, c, n, ua - ub), threshold);
     const std::uint32_t lanes = bits(corrected.lanes);
-    update_marks(r.mask + a, lanes, bit);
-    update_marks(r.mask + b, lanes, bit);
+    at_a.update(r.mask + a, lanes, bit);
+    at_b.update(r.mask + b, lanes, bit);
     if (lanes == 0) continue;
-    corrections += static_cast<std::uint32_t>(std::popcount(lanes));
+    corrections += count(corrected.lanes);
     move(ua, n, corrected.by * load(r.gain_a + c));
     move(ub, n, corrected.by * load(r.gain_b + c));
     store(r.u, a, ua);

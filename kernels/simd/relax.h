@@ -57,9 +57,8 @@ template <class Correct>
     const FloatVector n = load(r.n, c);
     FloatVector ua = load(r.u, a), ub = load(r.u, b);
     const Corrected corrected = correct(r, c, errors(r, c, n, ua - ub), threshold);
-    const std::uint32_t lanes = bits(corrected.lanes);
-    if (lanes == 0) continue;
-    corrections += static_cast<std::uint32_t>(std::popcount(lanes));
+    if (!xsimd::any(corrected.lanes)) continue;
+    corrections += count(corrected.lanes);
     move(ua, n, corrected.by * load(r.gain_a + c));
     move(ub, n, corrected.by * load(r.gain_b + c));
     store(r.u, a, ua);
@@ -104,9 +103,8 @@ template <class Correct>
     const FloatVector n = load(r.n, c);
     FloatVector ua = at_a.get(r.u, r.a + c), ub = at_b.get(r.u, r.b + c);
     const Corrected corrected = correct(r, c, errors(r, c, n, ua - ub), threshold);
-    const std::uint32_t lanes = bits(corrected.lanes);
-    if (lanes == 0) continue;
-    corrections += static_cast<std::uint32_t>(std::popcount(lanes));
+    if (!xsimd::any(corrected.lanes)) continue;
+    corrections += count(corrected.lanes);
     move(ua, n, corrected.by * load(r.gain_a + c));
     move(ub, n, corrected.by * load(r.gain_b + c));
     at_a.put(r.u, r.a + c, ua);
