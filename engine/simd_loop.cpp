@@ -26,19 +26,14 @@ SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
       contact_geometry_(g_),
       team_(team) {
   ContactLanes& c = s_.contacts_;
-  contacts_.n = c.n.view();
-  contacts_.e0 = c.e0.data();
-  contacts_.gain_a = c.gain_a.data();
-  contacts_.gain_b = c.gain_b.data();
+  contacts_.blocks = c.blocks.data();
   contacts_.impulse = c.impulse.data();
   contacts_.a = contact_geometry_.a = c.a.data();
   contacts_.b = contact_geometry_.b = c.b.data();
   contact_geometry_.rest_length = c.distance.data();
   contact_geometry_.scale = c.scale.data();
   std::ranges::fill(s_.flags_, std::uint8_t{kChanged | kStale});
-  for (kernels::AlignedVector<float>* u : {&s_.u_.x, &s_.u_.y, &s_.u_.z}) {
-    std::ranges::fill(*u, 0.f);
-  }
+  std::ranges::fill(s_.u_, 0.f);
 }
 
 void SimdLoop::apply_displacements() {

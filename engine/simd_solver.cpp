@@ -23,29 +23,24 @@ void ContactLanes::resize(std::size_t size) {
   a.resize(size);
   b.resize(size);
   contact.resize(size);
-  n.resize(size);
-  e0.resize(size);
-  gain_a.resize(size);
-  gain_b.resize(size);
+  blocks.resize(size / kernels::kLanes);
   impulse.resize(size);
   distance.resize(size);
   scale.resize(size);
 }
 
 std::size_t ContactLanes::bytes() const {
-  return bytes_of(spheres) + bytes_of(a) + bytes_of(b) + bytes_of(contact) + n.bytes() +
-         bytes_of(e0) + bytes_of(gain_a) + bytes_of(gain_b) + bytes_of(impulse) +
-         bytes_of(distance) + bytes_of(scale);
+  return bytes_of(spheres) + bytes_of(a) + bytes_of(b) + bytes_of(contact) + bytes_of(blocks) +
+         bytes_of(impulse) + bytes_of(distance) + bytes_of(scale);
 }
 
 SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa isa)
     : model_(model), layout_(model.simd()), settings_(settings), table_(simd::table(isa)) {
   const std::size_t size = layout_.constraint_slots;
-  u_.resize(layout_.slots);
-  n_.resize(size);
-  e0_.resize(size);
-  fill_gains(settings.tolerance, false);
-  if (settings.velocity_correction) fill_gains(settings.velocity_tolerance, true);
+  stride_ = layout_.slots + kernels::kLanes;  // not a power of two: x, y, z in different cache sets
+  u_.resize(3 * stride_);
+  fill_gains(false);
+  if (settings.velocity_correction) fill_gains(true);
   if (layout_.has_ropes) impulse_.resize(size);
   if (settings.skip && settings.iterations == 0) {
     if (!settings.anticipate) mask_.resize(layout_.slots);
@@ -57,21 +52,21 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa i
 
 /// Tolerances tau of the loop: tolerance * rest length, in m, or one speed for all, in m/s. With a
 /// fixed number of iterations errors are measured in rest lengths and nothing is tolerated.
-void SimdSolver::fill_gains(double tolerance, bool velocity) {
-  auto& gain_a = velocity ? velocity_gain_a_ : gain_a_;
-  auto& gain_b = velocity ? velocity_gain_b_ : gain_b_;
+void SimdSolver::fill_gains(bool velocity) {
+  auto& blocks = velocity ? velocity_blocks_ : blocks_;
   auto& scale = velocity ? velocity_scale_ : scale_;
   const std::size_t size = layout_.constraint_slots;
-  gain_a.resize(size);
-  gain_b.resize(size);
+  blocks.resize(size / kernels::kLanes);
   scale.resize(size);
   for (std::size_t c = 0; c < size; ++c) {
     if (layout_.constraint_at[c] == kNoIndex) continue;
-    double tau = velocity ? tolerance : tolerance * layout_.rest_length[c];
-    if (settings_.iterations > 0) tau = velocity ? 1 : layout_.rest_length[c];
+    const double rest = layout_.rest_length[c];
+    double tau = velocity ? settings_.velocity_tolerance : settings_.tolerance * rest;
+    if (settings_.iterations > 0) tau = velocity ? 1 : rest;
     scale[c] = 1 / tau;
-    gain_a[c] = static_cast<float>(-tau * tau * layout_.share_a[c]);
-    gain_b[c] = static_cast<float>(tau * tau * layout_.share_b[c]);
+    simd::ConstraintBlock& block = blocks[c / kernels::kLanes];
+    block.gain_a[c % kernels::kLanes] = static_cast<float>(-tau * tau * layout_.share_a[c]);
+    block.gain_b[c % kernels::kLanes] = static_cast<float>(tau * tau * layout_.share_b[c]);
   }
 }
 
@@ -89,8 +84,9 @@ void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep
     contacts_.a[next] = s;
     contacts_.b[next] = p;
     contacts_.contact[next] = contact;
-    contacts_.gain_a[next] = static_cast<float>(-split * ws);
-    contacts_.gain_b[next] = static_cast<float>(split * wp);
+    simd::ConstraintBlock& block = contacts_.blocks[next / kernels::kLanes];
+    block.gain_a[next % kernels::kLanes] = static_cast<float>(-split * ws);
+    block.gain_b[next % kernels::kLanes] = static_cast<float>(split * wp);
     contacts_.impulse[next] = real ? contact_impulse_[contact] : 0;
     contacts_.distance[next] = real ? store.distance[contact] : 1;
     contacts_.scale[next] = real ? 1 / tau : 0;
@@ -161,11 +157,8 @@ kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kerne
 
 simd::Relaxation SimdSolver::relaxation(bool velocity) {
   simd::Relaxation r;
-  r.u = u_.view();
-  r.n = n_.view();
-  r.e0 = e0_.data();
-  r.gain_a = velocity ? velocity_gain_a_.data() : gain_a_.data();
-  r.gain_b = velocity ? velocity_gain_b_.data() : gain_b_.data();
+  r.u = {u_.data(), stride_};
+  r.blocks = velocity ? velocity_blocks_.data() : blocks_.data();
   r.impulse = impulse_.data();
   r.a = layout_.a.data();
   r.b = layout_.b.data();
@@ -239,11 +232,9 @@ void SimdSolver::finish_strain(kernels::VectorsView x, std::size_t worst_chunk, 
 }
 
 std::size_t SimdSolver::bytes() const {
-  return u_.bytes() + n_.bytes() + bytes_of(e0_) + bytes_of(gain_a_) + bytes_of(gain_b_) +
-         bytes_of(impulse_) + bytes_of(scale_) + bytes_of(velocity_gain_a_) +
-         bytes_of(velocity_gain_b_) + bytes_of(velocity_scale_) + bytes_of(mask_) +
-         bytes_of(flags_) + bytes_of(sweeps_) + bytes_of(strains_) + contacts_.bytes() +
-         bytes_of(contact_impulse_);
+  return bytes_of(u_) + bytes_of(impulse_) + bytes_of(blocks_) + bytes_of(velocity_blocks_) +
+         bytes_of(scale_) + bytes_of(velocity_scale_) + bytes_of(mask_) + bytes_of(flags_) +
+         bytes_of(sweeps_) + bytes_of(strains_) + contacts_.bytes() + bytes_of(contact_impulse_);
 }
 
 }  // namespace weft

@@ -24,18 +24,6 @@
 
 namespace weft {
 
-/// Float vectors, owned.
-struct Floats3 {
-  kernels::AlignedVector<float> x, y, z;
-  void resize(std::size_t n) {
-    x.resize(n);
-    y.resize(n);
-    z.resize(n);
-  }
-  simd::FloatsView view() { return {x.data(), y.data(), z.data()}; }
-  std::size_t bytes() const { return 3 * x.capacity() * sizeof(float); }
-};
-
 /// Contacts in lanes: those of each sphere together, padded to whole lanes.
 struct ContactLanes {
   struct Range {
@@ -44,8 +32,8 @@ struct ContactLanes {
   std::vector<Range> spheres;  // those that have contacts
   std::vector<std::uint32_t> a, b;
   std::vector<std::uint32_t> contact;  // in the ContactStore, or kNoIndex
-  Floats3 n;
-  kernels::AlignedVector<float> e0, gain_a, gain_b, impulse;
+  kernels::AlignedVector<simd::ConstraintBlock> blocks;
+  kernels::AlignedVector<float> impulse;
   kernels::AlignedVector<double> distance, scale;
 
   void resize(std::size_t n);
@@ -66,13 +54,12 @@ class SimdSolver {
   Strain measure_strain(kernels::VectorsView x, Team& team);
 
   const simd::Table& kernels() const { return table_; }
-  simd::FloatsView displacements() { return u_.view(); }
   std::size_t bytes() const;
 
  private:
   friend class SimdLoop;
 
-  void fill_gains(double tolerance_or_speed, bool velocity);
+  void fill_gains(bool velocity);
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
   void choose_active(kernels::VectorsView x);
   void finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
@@ -85,11 +72,11 @@ class SimdSolver {
   const Settings settings_;
   const simd::Table& table_;
 
-  Floats3 u_, n_;
-  kernels::AlignedVector<float> e0_, gain_a_, gain_b_, impulse_;
-  kernels::AlignedVector<double> scale_;
-  kernels::AlignedVector<float> velocity_gain_a_, velocity_gain_b_;  // velocity correction only
-  kernels::AlignedVector<double> velocity_scale_;
+  kernels::AlignedVector<float> u_;  // x, y, z, each stride_ long
+  std::size_t stride_ = 0;
+  kernels::AlignedVector<float> impulse_;                                   // with ropes only
+  kernels::AlignedVector<simd::ConstraintBlock> blocks_, velocity_blocks_;  // the latter with
+  kernels::AlignedVector<double> scale_, velocity_scale_;                   // velocity correction
   kernels::AlignedVector<std::uint64_t> mask_;  // skip without anticipation only
   std::vector<std::uint8_t> flags_;             // per chunk, of ChunkFlag; skip only
   std::vector<kernels::Sweep> sweeps_;          // per piece of parallel work

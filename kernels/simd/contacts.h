@@ -57,18 +57,19 @@ std::uint32_t relax_contacts(const Relaxation& r, std::uint32_t first, std::uint
   std::uint32_t corrections = 0;
   Gathered at_b;
   for (std::size_t block = first; block < last; block += kernels::kLanes) {
-    const FloatVector us{Floats(r.u.x[sphere]), Floats(r.u.y[sphere]), Floats(r.u.z[sphere])};
+    const FloatVector us{Floats(r.u.x[sphere]), Floats(r.u.y()[sphere]), Floats(r.u.z()[sphere])};
     alignas(64) float x[kernels::kLanes], y[kernels::kLanes], z[kernels::kLanes];
     std::uint32_t corrected_here = 0;
     for (std::uint32_t k = 0; k < kernels::kLanes; k += kFloats) {
       const std::size_t c = block + k;
-      const FloatVector n = load(r.n, c);
+      const Part p = part(r, c);
+      const FloatVector n = p.n();
       FloatVector up = at_b.get(r.u, r.b + c);
-      const Corrected corrected = correct_contacts(r, c, errors(r, c, n, us - up), threshold);
+      const Corrected corrected = correct_contacts(r, c, errors(p, n, us - up), threshold);
       corrected_here += count(corrected.lanes);
-      move(up, n, corrected.by * load(r.gain_b + c));
+      move(up, n, corrected.by * p.gain_b());
       at_b.put(r.u, r.b + c, up);
-      const Floats at_a = corrected.by * load(r.gain_a + c);
+      const Floats at_a = corrected.by * p.gain_a();
       (at_a * n.x).store_aligned(x + k);
       (at_a * n.y).store_aligned(y + k);
       (at_a * n.z).store_aligned(z + k);
@@ -76,8 +77,8 @@ std::uint32_t relax_contacts(const Relaxation& r, std::uint32_t first, std::uint
     corrections += corrected_here;
     if (corrected_here == 0) continue;
     r.u.x[sphere] += tree_sum(x);
-    r.u.y[sphere] += tree_sum(y);
-    r.u.z[sphere] += tree_sum(z);
+    r.u.y()[sphere] += tree_sum(y);
+    r.u.z()[sphere] += tree_sum(z);
   }
   return corrections;
 }

@@ -25,10 +25,12 @@ struct Direction {
 [[gnu::always_inline]] inline void store_scaled(const Relaxation& r, std::size_t c,
                                                 const DoubleVector& n, Doubles error,
                                                 Doubles scale) {
-  store_as_float(r.n.x + c, n.x * scale);
-  store_as_float(r.n.y + c, n.y * scale);
-  store_as_float(r.n.z + c, n.z * scale);
-  store_as_float(r.e0 + c, error * scale);
+  ConstraintBlock& block = r.blocks[c / kernels::kLanes];
+  const std::size_t lane = c % kernels::kLanes;
+  store_as_float(block.nx + lane, n.x * scale);
+  store_as_float(block.ny + lane, n.y * scale);
+  store_as_float(block.nz + lane, n.z * scale);
+  store_as_float(block.e0 + lane, error * scale);
 }
 
 /// The doubles of scattered slots, brought side by side.

@@ -44,13 +44,13 @@ void commit(const Motion& m, double h, std::size_t first, std::size_t last) {
   }
 }
 
-void apply_displacements(kernels::VectorsView x, FloatsView u, std::size_t first,
+void apply_displacements(kernels::VectorsView x, Displacements u, std::size_t first,
                          std::size_t last) {
   for (std::size_t i = first; i < last; i += kDoubles) {
     const DoubleVector p = load(x, i);
     store(x, i,
-          {p.x + load_as_double(u.x + i), p.y + load_as_double(u.y + i),
-           p.z + load_as_double(u.z + i)});
+          {p.x + load_as_double(u.x + i), p.y + load_as_double(u.y() + i),
+           p.z + load_as_double(u.z() + i)});
   }
   const Floats zero(0.f);
   for (std::size_t i = first; i < last; i += kFloats) store(u, i, {zero, zero, zero});

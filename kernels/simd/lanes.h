@@ -86,16 +86,19 @@ struct DoubleVector {
 [[gnu::always_inline]] inline Floats load(const float* p) { return Floats::load_unaligned(p); }
 [[gnu::always_inline]] inline Doubles load(const double* p) { return Doubles::load_unaligned(p); }
 
-[[gnu::always_inline]] inline FloatVector load(const FloatsView& v, std::size_t i) {
-  return {load(v.x + i), load(v.y + i), load(v.z + i)};
+[[gnu::always_inline]] inline FloatVector load(const Displacements& u, std::size_t i) {
+  const float* x = u.x + i;
+  return {load(x), load(x + u.stride), load(x + 2 * u.stride)};
 }
 [[gnu::always_inline]] inline DoubleVector load(const kernels::VectorsView& v, std::size_t i) {
   return {load(v.x + i), load(v.y + i), load(v.z + i)};
 }
-[[gnu::always_inline]] inline void store(const FloatsView& v, std::size_t i, const FloatVector& f) {
-  f.x.store_unaligned(v.x + i);
-  f.y.store_unaligned(v.y + i);
-  f.z.store_unaligned(v.z + i);
+[[gnu::always_inline]] inline void store(const Displacements& u, std::size_t i,
+                                         const FloatVector& f) {
+  float* x = u.x + i;
+  f.x.store_unaligned(x);
+  f.y.store_unaligned(x + u.stride);
+  f.z.store_unaligned(x + 2 * u.stride);
 }
 [[gnu::always_inline]] inline void store(const kernels::VectorsView& v, std::size_t i,
                                          const DoubleVector& d) {

@@ -1,6 +1,7 @@
 /// All vector kernels of one instruction set: that of the translation unit which includes this.
 #pragma once
 
+#include "kernels/simd/anticipate.h"
 #include "kernels/simd/contacts.h"
 #include "kernels/simd/directions.h"
 #include "kernels/simd/integrate.h"
@@ -27,6 +28,12 @@ constexpr Table make_table() {
           .relax_rope_serial = relax_rope_serial,
           .relax_contacts = relax_contacts,
           .relax_masked_run = relax_masked_run,
+          .renew_products_run = renew_products_run,
+          .renew_products_singles = renew_products_singles,
+          .relax_anticipated_run = relax_anticipated_run,
+          .relax_anticipated_singles = relax_anticipated_singles,
+          .apply_sums_run = apply_sums_run,
+          .apply_sums_singles = apply_sums_singles,
           .strain_run = strain_run,
           .strain_singles = strain_singles,
           .find_near = find_near};

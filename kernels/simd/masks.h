@@ -50,16 +50,17 @@ std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_
     const Marks at_a(r.mask + a), at_b(r.mask + b);
     if (!any_marked(at_a, at_b, bit)) continue;
     visits += kFloats;
-    const FloatVector n = load(r.n, c);
+    const Part p = part(r, c);
+    const FloatVector n = p.n();
     FloatVector ua = load(r.u, a), ub = load(r.u, b);
-    const Corrected corrected = correct_distances(r, c, errors(r, c, n, ua - ub), threshold);
+    const Corrected corrected = correct_distances(r, c, errors(p, n, ua - ub), threshold);
     const std::uint32_t lanes = bits(corrected.lanes);
     at_a.update(r.mask + a, lanes, bit);
     at_b.update(r.mask + b, lanes, bit);
     if (lanes == 0) continue;
     corrections += count(corrected.lanes);
-    move(ua, n, corrected.by * load(r.gain_a + c));
-    move(ub, n, corrected.by * load(r.gain_b + c));
+    move(ua, n, corrected.by * p.gain_a());
+    move(ub, n, corrected.by * p.gain_b());
     store(r.u, a, ua);
     store(r.u, b, ub);
   }

@@ -19,9 +19,26 @@ struct Corrected {
   Floats by;  // the error taken out of each lane, 0 where none is
 };
 
-[[gnu::always_inline]] inline Floats errors(const Relaxation& r, std::size_t c,
-                                            const FloatVector& n, const FloatVector& d) {
-  return fused(n.x, d.x, fused(n.y, d.y, fused(n.z, d.z, load(r.e0 + c))));
+/// kFloats constraints of a block, from its lane on.
+struct Part {
+  const ConstraintBlock& block;
+  std::uint32_t lane;
+
+  [[gnu::always_inline]] FloatVector n() const {
+    return {load(block.nx + lane), load(block.ny + lane), load(block.nz + lane)};
+  }
+  [[gnu::always_inline]] Floats e0() const { return load(block.e0 + lane); }
+  [[gnu::always_inline]] Floats gain_a() const { return load(block.gain_a + lane); }
+  [[gnu::always_inline]] Floats gain_b() const { return load(block.gain_b + lane); }
+};
+
+[[gnu::always_inline]] inline Part part(const Relaxation& r, std::size_t c) {
+  return {r.blocks[c / kernels::kLanes], static_cast<std::uint32_t>(c % kernels::kLanes)};
+}
+
+[[gnu::always_inline]] inline Floats errors(const Part& part, const FloatVector& n,
+                                            const FloatVector& d) {
+  return fused(n.x, d.x, fused(n.y, d.y, fused(n.z, d.z, part.e0())));
 }
 
 [[gnu::always_inline]] inline Corrected correct_distances(const Relaxation&, std::size_t, Floats e,
@@ -51,18 +68,19 @@ template <class Correct>
 [[gnu::always_inline]] inline std::uint32_t relax_contiguous(const Relaxation& r, const Run& run,
                                                              Correct&& correct) {
   const Floats threshold(r.threshold);
+  const Displacements u = r.u;
   std::uint32_t corrections = 0;
   for (std::size_t k = 0; k < run.length; k += kFloats) {
-    const std::size_t a = run.a + k, b = run.b + k, c = run.constraint + k;
-    const FloatVector n = load(r.n, c);
-    FloatVector ua = load(r.u, a), ub = load(r.u, b);
-    const Corrected corrected = correct(r, c, errors(r, c, n, ua - ub), threshold);
+    const Part p = part(r, run.constraint + k);
+    const FloatVector n = p.n();
+    FloatVector ua = load(u, run.a + k), ub = load(u, run.b + k);
+    const Corrected corrected = correct(r, run.constraint + k, errors(p, n, ua - ub), threshold);
     if (!xsimd::any(corrected.lanes)) continue;
     corrections += count(corrected.lanes);
-    move(ua, n, corrected.by * load(r.gain_a + c));
-    move(ub, n, corrected.by * load(r.gain_b + c));
-    store(r.u, a, ua);
-    store(r.u, b, ub);
+    move(ua, n, corrected.by * p.gain_a());
+    move(ub, n, corrected.by * p.gain_b());
+    store(u, run.a + k, ua);
+    store(u, run.b + k, ub);
   }
   return corrections;
 }
@@ -71,23 +89,23 @@ template <class Correct>
 struct Gathered {
   alignas(64) float x[kFloats], y[kFloats], z[kFloats];
 
-  [[gnu::always_inline]] FloatVector get(const FloatsView& u, const std::uint32_t* slot) {
+  [[gnu::always_inline]] FloatVector get(const Displacements& u, const std::uint32_t* slot) {
     for (std::uint32_t k = 0; k < kFloats; ++k) {
       x[k] = u.x[slot[k]];
-      y[k] = u.y[slot[k]];
-      z[k] = u.z[slot[k]];
+      y[k] = u.y()[slot[k]];
+      z[k] = u.z()[slot[k]];
     }
     return {load(x), load(y), load(z)};
   }
-  [[gnu::always_inline]] void put(const FloatsView& u, const std::uint32_t* slot,
+  [[gnu::always_inline]] void put(const Displacements& u, const std::uint32_t* slot,
                                   const FloatVector& v) {
     v.x.store_aligned(x);
     v.y.store_aligned(y);
     v.z.store_aligned(z);
     for (std::uint32_t k = 0; k < kFloats; ++k) {
       u.x[slot[k]] = x[k];
-      u.y[slot[k]] = y[k];
-      u.z[slot[k]] = z[k];
+      u.y()[slot[k]] = y[k];
+      u.z()[slot[k]] = z[k];
     }
   }
 };
@@ -100,13 +118,14 @@ template <class Correct>
   std::uint32_t corrections = 0;
   Gathered at_a, at_b;
   for (std::size_t c = first; c < last; c += kFloats) {
-    const FloatVector n = load(r.n, c);
+    const Part p = part(r, c);
+    const FloatVector n = p.n();
     FloatVector ua = at_a.get(r.u, r.a + c), ub = at_b.get(r.u, r.b + c);
-    const Corrected corrected = correct(r, c, errors(r, c, n, ua - ub), threshold);
+    const Corrected corrected = correct(r, c, errors(p, n, ua - ub), threshold);
     if (!xsimd::any(corrected.lanes)) continue;
     corrections += count(corrected.lanes);
-    move(ua, n, corrected.by * load(r.gain_a + c));
-    move(ub, n, corrected.by * load(r.gain_b + c));
+    move(ua, n, corrected.by * p.gain_a());
+    move(ub, n, corrected.by * p.gain_b());
     at_a.put(r.u, r.a + c, ua);
     at_b.put(r.u, r.b + c, ub);
   }
@@ -118,22 +137,24 @@ template <class Change>
 [[gnu::always_inline]] inline std::uint32_t relax_one_by_one(const Relaxation& r,
                                                              std::uint32_t first,
                                                              std::uint32_t last, Change&& change) {
+  float *const x = r.u.x, *const y = r.u.y(), *const z = r.u.z();
   std::uint32_t corrections = 0;
   for (std::size_t c = first; c < last; ++c) {
-    const std::size_t a = r.a[c], b = r.b[c];
-    const float nx = r.n.x[c], ny = r.n.y[c], nz = r.n.z[c];
-    const float e = fused(nx, r.u.x[a] - r.u.x[b],
-                          fused(ny, r.u.y[a] - r.u.y[b], fused(nz, r.u.z[a] - r.u.z[b], r.e0[c])));
+    const ConstraintBlock& block = r.blocks[c / kernels::kLanes];
+    const std::size_t lane = c % kernels::kLanes, a = r.a[c], b = r.b[c];
+    const float nx = block.nx[lane], ny = block.ny[lane], nz = block.nz[lane];
+    const float e =
+        fused(nx, x[a] - x[b], fused(ny, y[a] - y[b], fused(nz, z[a] - z[b], block.e0[lane])));
     const float by = std::abs(e) > r.threshold ? change(c, e) : 0;
     if (by == 0) continue;
     ++corrections;
-    const float at_a = by * r.gain_a[c], at_b = by * r.gain_b[c];
-    r.u.x[a] = fused(at_a, nx, r.u.x[a]);
-    r.u.y[a] = fused(at_a, ny, r.u.y[a]);
-    r.u.z[a] = fused(at_a, nz, r.u.z[a]);
-    r.u.x[b] = fused(at_b, nx, r.u.x[b]);
-    r.u.y[b] = fused(at_b, ny, r.u.y[b]);
-    r.u.z[b] = fused(at_b, nz, r.u.z[b]);
+    const float at_a = by * block.gain_a[lane], at_b = by * block.gain_b[lane];
+    x[a] = fused(at_a, nx, x[a]);
+    y[a] = fused(at_a, ny, y[a]);
+    z[a] = fused(at_a, nz, z[a]);
+    x[b] = fused(at_b, nx, x[b]);
+    y[b] = fused(at_b, ny, y[b]);
+    z[b] = fused(at_b, nz, z[b]);
   }
   return corrections;
 }

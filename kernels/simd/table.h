@@ -28,22 +28,51 @@ namespace weft::simd {
 
 using kernels::Run;
 
-struct FloatsView {
-  float *x = nullptr, *y = nullptr, *z = nullptr;
+/// Displacements of the slots: x, y and z at one distance from each other, so that one pointer and
+/// one stride reach all three.
+struct Displacements {
+  float* x = nullptr;
+  std::size_t stride = 0;
+
+  float* y() const { return x + stride; }
+  float* z() const { return x + 2 * stride; }
+};
+
+/// Constraints in blocks of kLanes, so that a pass over them is one stream of memory:
+///
+///     | n.x | n.y | n.z | e0 | gain_a | gain_b |    each kLanes floats, one cache line
+///
+/// Constraint c is lane c % kLanes of block c / kLanes; runs, and ranges of singles, are whole
+/// blocks.
+struct alignas(64) ConstraintBlock {
+  float nx[kernels::kLanes], ny[kernels::kLanes], nz[kernels::kLanes];  // in 1 / tau
+  float e0[kernels::kLanes];                                            // in tau
+  float gain_a[kernels::kLanes], gain_b[kernels::kLanes];               // tau^2
 };
 
 /// What relaxing a constraint reads and writes.
 struct Relaxation {
-  FloatsView u;                   // per slot
-  FloatsView n;                   // per constraint, in 1 / tau
-  float* e0 = nullptr;            // per constraint, in tau
-  const float* gain_a = nullptr;  // per constraint, tau^2
-  const float* gain_b = nullptr;
-  float* impulse = nullptr;          // ropes: accumulated corrections, >= 0
+  Displacements u;
+  ConstraintBlock* blocks = nullptr;
+  float* impulse = nullptr;          // ropes, contacts: sum of corrections, >= 0 and <= 0
   const std::uint32_t* a = nullptr;  // constraint -> slot, for singles
   const std::uint32_t* b = nullptr;
   std::uint64_t* mask = nullptr;  // skipping by masks: per slot, bit = colour
   float threshold = 1;            // 0: correct whatever the error
+};
+
+/// Memory of the anticipating form (anticipate.h). Constraint slots as elsewhere; pulls of block i
+/// are first_pull[i] ... first_pull[i + 1] - 1, each kLanes products.
+struct Anticipation {
+  float* error = nullptr;                      // per constraint
+  float* change = nullptr;                     // per constraint: its last correction
+  float* sum = nullptr;                        // per constraint: of its corrections
+  const std::uint32_t* first_pull = nullptr;   // per block of kLanes constraints
+  const std::int32_t* from_run = nullptr;      // per pull: neighbour of lane 0; lane k has + k
+  const std::int32_t* from_singles = nullptr;  // per pull and lane
+  const float* weight = nullptr;               // per pull and lane
+  float* product = nullptr;                    // per pull and lane
+  float threshold = 1;
 };
 
 /// What renewing directions and measuring strain read.
@@ -78,7 +107,7 @@ struct Table {
   /// next_velocity = v + h a + (solved - predicted) / h, predicted formed as in predict.
   void (*commit)(const Motion&, double h, std::size_t first, std::size_t last);
   /// x += u, u = 0.
-  void (*apply_displacements)(kernels::VectorsView x, FloatsView u, std::size_t first,
+  void (*apply_displacements)(kernels::VectorsView x, Displacements u, std::size_t first,
                               std::size_t last);
 
   /// n = (x_a - x_b) / l / tau, e0 = (l - rest) / tau (paper 4.2).
@@ -105,6 +134,18 @@ struct Table {
   /// whole vectors at once. `visits` counts the lanes looked at.
   std::uint32_t (*relax_masked_run)(const Relaxation&, const Run&, std::uint64_t bit,
                                     std::uint64_t& visits);
+
+  /// The anticipating form. renew_products starts afresh: error = e0, no changes.
+  void (*renew_products_run)(const Anticipation&, const Relaxation&, const Run&);
+  void (*renew_products_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
+                                 std::uint32_t last);
+  std::uint32_t (*relax_anticipated_run)(const Anticipation&, const Run&);
+  std::uint32_t (*relax_anticipated_singles)(const Anticipation&, std::uint32_t first,
+                                             std::uint32_t last);
+  /// u_a += gain_a sum n, u_b += gain_b sum n.
+  void (*apply_sums_run)(const Anticipation&, const Relaxation&, const Run&);
+  void (*apply_sums_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
+                             std::uint32_t last);
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);

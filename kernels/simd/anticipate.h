@@ -1,0 +1,159 @@
+/// One pass over the constraints of one colour in the form of paper 4.2: errors are kept, and what
+/// a correction does to its neighbours is anticipated.
+///
+/// The paper pushes: a correction is added to the error of every constraint that shares a particle
+/// with it. Lanes of one colour would have to scatter. So each constraint pulls instead, when its
+/// turn comes, what its neighbours changed since its last turn; in an order that is always the same
+/// that is exactly the last change of each:
+///
+///     e_c += sum_k product[k] * change[from[k]]
+///     change_c = |e_c| > threshold ? e_c : 0,   e_c -= change_c,   sum_c += change_c
+///     product[k] = weight[k] n_c . n_from[k]
+///
+/// The weight is the neighbour's gain at the shared particle, negative if that is end b of c (the
+/// paper prints e_j + n_j . n_i e_i, without masses and sign). A constraint that is passed over
+/// must have change 0. Displacements come last: apply_sums.
+///
+///     pulls of a block of kLanes constraints in a run:   from: one number, plain loads
+///     pulls of a block of singles:                       from: one number for each lane
+#pragma once
+
+#include "kernels/simd/relax.h"
+
+namespace weft::simd {
+namespace {
+
+/// Where the lanes of a vector find their neighbours.
+struct FromRun {
+  const std::int32_t* from;
+  [[gnu::always_inline]] std::size_t index(std::size_t pull, std::size_t lane) const {
+    return static_cast<std::size_t>(from[pull] + static_cast<std::ptrdiff_t>(lane));
+  }
+  [[gnu::always_inline]] Floats get(const float* v, std::size_t pull, std::size_t lane) const {
+    return load(v + from[pull] + static_cast<std::ptrdiff_t>(lane));
+  }
+};
+struct FromSingles {
+  const std::int32_t* from;
+  [[gnu::always_inline]] std::size_t index(std::size_t pull, std::size_t lane) const {
+    return static_cast<std::size_t>(from[pull * kernels::kLanes + lane]);
+  }
+  [[gnu::always_inline]] Floats get(const float* v, std::size_t pull, std::size_t lane) const {
+    alignas(64) float side_by_side[kFloats];
+    const std::int32_t* index = from + pull * kernels::kLanes + lane;
+    for (std::uint32_t k = 0; k < kFloats; ++k) side_by_side[k] = v[index[k]];
+    return load(side_by_side);
+  }
+};
+
+template <class From>
+[[gnu::always_inline]] inline std::uint32_t relax_anticipated(const Anticipation& p,
+                                                              const From& from, std::uint32_t first,
+                                                              std::uint32_t last) {
+  const Floats threshold(p.threshold);
+  std::uint32_t corrections = 0;
+  for (std::size_t block = first; block < last; block += kernels::kLanes) {
+    const std::size_t begin = p.first_pull[block / kernels::kLanes];
+    const std::size_t end = p.first_pull[block / kernels::kLanes + 1];
+    for (std::size_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      const std::size_t c = block + lane;
+      Floats e = load(p.error + c);
+      for (std::size_t pull = begin; pull < end; ++pull) {
+        const Floats product = load(p.product + pull * kernels::kLanes + lane);
+        e = fused(product, from.get(p.change, pull, lane), e);
+      }
+      const Corrected corrected = correct_distances({}, c, e, threshold);
+      corrected.by.store_unaligned(p.change + c);
+      (e - corrected.by).store_unaligned(p.error + c);
+      (load(p.sum + c) + corrected.by).store_unaligned(p.sum + c);
+      corrections += count(corrected.lanes);
+    }
+  }
+  return corrections;
+}
+
+/// The directions of the neighbours that a pull of kFloats lanes reads.
+template <class From>
+[[gnu::always_inline]] inline FloatVector directions_of(const Relaxation& r, const From& from,
+                                                        std::size_t pull, std::size_t lane) {
+  alignas(64) float x[kFloats], y[kFloats], z[kFloats];
+  for (std::uint32_t k = 0; k < kFloats; ++k) {
+    const std::size_t c = from.index(pull, lane + k);
+    const ConstraintBlock& block = r.blocks[c / kernels::kLanes];
+    x[k] = block.nx[c % kernels::kLanes];
+    y[k] = block.ny[c % kernels::kLanes];
+    z[k] = block.nz[c % kernels::kLanes];
+  }
+  return {load(x), load(y), load(z)};
+}
+
+template <class From>
+[[gnu::always_inline]] inline void renew_products(const Anticipation& p, const From& from,
+                                                  const Relaxation& r, std::uint32_t first,
+                                                  std::uint32_t last) {
+  for (std::size_t block = first; block < last; block += kernels::kLanes) {
+    const std::size_t begin = p.first_pull[block / kernels::kLanes];
+    const std::size_t end = p.first_pull[block / kernels::kLanes + 1];
+    for (std::size_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      const std::size_t c = block + lane;
+      const Part here = part(r, c);
+      const FloatVector n = here.n();
+      for (std::size_t pull = begin; pull < end; ++pull) {
+        const std::size_t k = pull * kernels::kLanes + lane;
+        const FloatVector other = directions_of(r, from, pull, lane);
+        const Floats dot = fused(n.x, other.x, fused(n.y, other.y, n.z * other.z));
+        (load(p.weight + k) * dot).store_unaligned(p.product + k);
+      }
+      here.e0().store_unaligned(p.error + c);
+      Floats(0.f).store_unaligned(p.change + c);
+      Floats(0.f).store_unaligned(p.sum + c);
+    }
+  }
+}
+
+std::uint32_t relax_anticipated_run(const Anticipation& p, const Run& run) {
+  return relax_anticipated(p, FromRun{p.from_run}, run.constraint, run.constraint + run.length);
+}
+std::uint32_t relax_anticipated_singles(const Anticipation& p, std::uint32_t first,
+                                        std::uint32_t last) {
+  return relax_anticipated(p, FromSingles{p.from_singles}, first, last);
+}
+
+void renew_products_run(const Anticipation& p, const Relaxation& r, const Run& run) {
+  renew_products(p, FromRun{p.from_run}, r, run.constraint, run.constraint + run.length);
+}
+void renew_products_singles(const Anticipation& p, const Relaxation& r, std::uint32_t first,
+                            std::uint32_t last) {
+  renew_products(p, FromSingles{p.from_singles}, r, first, last);
+}
+
+void apply_sums_run(const Anticipation& p, const Relaxation& r, const Run& run) {
+  for (std::size_t k = 0; k < run.length; k += kFloats) {
+    const std::size_t a = run.a + k, b = run.b + k, c = run.constraint + k;
+    const Part here = part(r, c);
+    const FloatVector n = here.n();
+    const Floats sum = load(p.sum + c);
+    FloatVector ua = load(r.u, a), ub = load(r.u, b);
+    move(ua, n, sum * here.gain_a());
+    move(ub, n, sum * here.gain_b());
+    store(r.u, a, ua);
+    store(r.u, b, ub);
+  }
+}
+void apply_sums_singles(const Anticipation& p, const Relaxation& r, std::uint32_t first,
+                        std::uint32_t last) {
+  Gathered at_a, at_b;
+  for (std::size_t c = first; c < last; c += kFloats) {
+    const Part here = part(r, c);
+    const FloatVector n = here.n();
+    const Floats sum = load(p.sum + c);
+    FloatVector ua = at_a.get(r.u, r.a + c), ub = at_b.get(r.u, r.b + c);
+    move(ua, n, sum * here.gain_a());
+    move(ub, n, sum * here.gain_b());
+    at_a.put(r.u, r.a + c, ua);
+    at_b.put(r.u, r.b + c, ub);
+  }
+}
+
+}  // namespace
+}  // namespace weft::simd
