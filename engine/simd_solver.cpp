@@ -13,6 +13,9 @@ std::size_t bytes_of(const T& vector) {
   return vector.capacity() * sizeof(vector[0]);
 }
 
+/// Of constraint blocks; more are fetched from memory in every pass. About two cores' own caches.
+constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
+
 std::size_t whole_lanes(std::size_t n) {
   return (n + kernels::kLanes - 1) / kernels::kLanes * kernels::kLanes;
 }
@@ -164,6 +167,7 @@ simd::Relaxation SimdSolver::relaxation(bool velocity) {
   r.b = layout_.b.data();
   r.mask = mask_.data();
   r.threshold = settings_.iterations > 0 ? 0 : 1;
+  r.from_memory = bytes_of(blocks_) > kCachedBytes;
   return r;
 }
 

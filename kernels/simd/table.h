@@ -59,6 +59,7 @@ struct Relaxation {
   const std::uint32_t* b = nullptr;
   std::uint64_t* mask = nullptr;  // skipping by masks: per slot, bit = colour
   float threshold = 1;            // 0: correct whatever the error
+  bool from_memory = false;       // the blocks do not fit the caches: fetch them ahead
 };
 
 /// Memory of the anticipating form (anticipate.h). Constraint slots as elsewhere; pulls of block i
