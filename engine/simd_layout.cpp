@@ -38,10 +38,12 @@ void cut_batches(const Ordering& ordering, SimdLayout& layout) {
     for (std::uint32_t r = batch.first_run; r < batch.last_run; ++r) {
       cut(ordering, batch, ordering.runs[r], false, layout.chunks);
     }
+    layout.batch_singles.push_back(static_cast<std::uint32_t>(layout.chunks.size()));
     const kernels::Run singles{0, 0, batch.singles, batch.last - batch.singles};
     cut(ordering, batch, singles, true, layout.chunks);
   }
   layout.batch_chunks.push_back(static_cast<std::uint32_t>(layout.chunks.size()));
+  for (const Chunk& chunk : layout.chunks) layout.runs.push_back(chunk.run);
 }
 
 /// The slots of a chunk's real constraints.
@@ -124,9 +126,9 @@ SimdLayout make_simd_layout(const Model& model) {
 }
 
 std::size_t SimdLayout::bytes() const {
-  return bytes_of(chunks) + bytes_of(batch_chunks) + neighbours.bytes() + chunks_at.bytes() +
-         bytes_of(a) + bytes_of(b) + bytes_of(constraint_at) + bytes_of(rest_length) +
-         bytes_of(share_a) + bytes_of(share_b);
+  return bytes_of(chunks) + bytes_of(runs) + bytes_of(batch_chunks) + bytes_of(batch_singles) +
+         neighbours.bytes() + chunks_at.bytes() + bytes_of(a) + bytes_of(b) +
+         bytes_of(constraint_at) + bytes_of(rest_length) + bytes_of(share_a) + bytes_of(share_b);
 }
 
 }  // namespace weft

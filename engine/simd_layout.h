@@ -32,9 +32,11 @@ struct Chunk {
 
 struct SimdLayout {
   std::vector<Chunk> chunks;
-  std::vector<std::uint32_t> batch_chunks;  // batch i: chunks batch_chunks[i] ... [i + 1] - 1
-  Lists neighbours;                         // chunks that share a slot with chunk i, and i itself
-  Lists chunks_at;                          // slot -> chunks
+  std::vector<kernels::Run> runs;            // of the chunks, side by side
+  std::vector<std::uint32_t> batch_chunks;   // batch i: chunks batch_chunks[i] ... [i + 1] - 1,
+  std::vector<std::uint32_t> batch_singles;  // its singles from batch_singles[i] on
+  Lists neighbours;                          // chunks that share a slot with chunk i, and i itself
+  Lists chunks_at;                           // slot -> chunks
 
   std::size_t slots = 0;
   std::uint32_t hub_first = 0, hub_ropes = 0, hub_last = 0;  // constraint slots, not padded

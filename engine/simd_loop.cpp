@@ -32,7 +32,7 @@ SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
   contacts_.b = contact_geometry_.b = c.b.data();
   contact_geometry_.rest_length = c.distance.data();
   contact_geometry_.scale = c.scale.data();
-  std::ranges::fill(s_.flags_, std::uint8_t{kChanged | kStale});
+  std::ranges::fill(s_.stale_, std::uint8_t{1});
   std::ranges::fill(s_.u_, 0.f);
 }
 
@@ -52,9 +52,11 @@ void SimdLoop::renew() {
   team_.for_each((chunks + kPiece - 1) / kPiece, [&](std::size_t piece) {
     const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
     for (std::size_t i = piece * kPiece; i < last; ++i) {
-      if (skips() && !(s_.flags_[i] & kStale)) continue;
+      if (skips() && !s_.stale_[i]) continue;
       renew_chunk(i);
-      if (skips()) s_.flags_[i] = kChanged;
+      if (!skips()) continue;
+      s_.stale_[i] = 0;
+      s_.changed_[i] = 1;
     }
   });
   renew_rest();
@@ -96,11 +98,8 @@ void SimdLoop::renew_rest() {
 kernels::Sweep SimdLoop::sweep() {
   kernels::Sweep sweep;
   const Ordering& ordering = s_.model_.ordering;
-  const auto& batch_chunks = layout_.batch_chunks;
-  team_.for_each(ordering.tiles.size(), [&](std::size_t i) {
-    const Tile& tile = ordering.tiles[i];
-    s_.sweeps_[i] = sweep_chunks(batch_chunks[tile.first_batch], batch_chunks[tile.last_batch]);
-  });
+  team_.for_each(ordering.tiles.size(),
+                 [&](std::size_t i) { s_.sweeps_[i] = sweep_tile(ordering.tiles[i]); });
   for (std::size_t i = 0; i < ordering.tiles.size(); ++i) add(sweep, s_.sweeps_[i]);
   for (std::size_t i = ordering.between_tiles; i < ordering.batches.size(); ++i) {
     add(sweep, sweep_batch_between_tiles(i));
@@ -110,45 +109,70 @@ kernels::Sweep SimdLoop::sweep() {
   return sweep;
 }
 
+kernels::Sweep SimdLoop::sweep_tile(const Tile& tile) {
+  kernels::Sweep sweep;
+  for (std::size_t batch = tile.first_batch; batch < tile.last_batch; ++batch) {
+    add(sweep, sweep_chunks(batch, layout_.batch_chunks[batch], layout_.batch_chunks[batch + 1]));
+  }
+  return sweep;
+}
+
 kernels::Sweep SimdLoop::sweep_batch_between_tiles(std::size_t batch) {
   const std::size_t first = layout_.batch_chunks[batch], last = layout_.batch_chunks[batch + 1];
   const std::size_t pieces = (last - first + kPiece - 1) / kPiece;
   team_.for_each(pieces, [&](std::size_t piece) {
     const std::size_t begin = first + piece * kPiece;
-    s_.sweeps_[piece] = sweep_chunks(begin, std::min(last, begin + kPiece));
+    s_.sweeps_[piece] = sweep_chunks(batch, begin, std::min(last, begin + kPiece));
   });
   kernels::Sweep sweep;
   for (std::size_t piece = 0; piece < pieces; ++piece) add(sweep, s_.sweeps_[piece]);
   return sweep;
 }
 
-kernels::Sweep SimdLoop::sweep_chunks(std::size_t first, std::size_t last) {
+/// Chunks of one batch touch no particle in common: they are relaxed first and looked at
+/// afterwards.
+kernels::Sweep SimdLoop::sweep_chunks(std::size_t index, std::size_t first, std::size_t last) {
+  const Batch& batch = s_.model_.ordering.batches[index];
   kernels::Sweep sweep;
-  for (std::size_t i = first; i < last; ++i) sweep_chunk(i, sweep);
+  const std::size_t singles = std::clamp<std::size_t>(layout_.batch_singles[index], first, last);
+  relax_runs(batch, first, singles, sweep);
+  for (std::size_t i = singles; i < last; ++i) relax_one(batch, i, sweep);
+  for (std::size_t i = first; i < last; ++i) {
+    if (!wanted(i)) continue;
+    sweep.corrections += s_.corrections_[i];
+    if (!skips()) continue;
+    s_.changed_[i] = 0;
+    if (s_.corrections_[i] > 0) mark_neighbours(i);
+  }
   return sweep;
 }
 
-void SimdLoop::sweep_chunk(std::size_t i, kernels::Sweep& sweep) {
-  if (skips()) {
-    if (!(s_.flags_[i] & kChanged)) return;
-    s_.flags_[i] &= kStale;
+void SimdLoop::relax_runs(const Batch& batch, std::size_t first, std::size_t last,
+                          kernels::Sweep& sweep) {
+  const bool plain = batch.kind == ConstraintKind::distance && !masks();
+  if (!plain) {
+    for (std::size_t i = first; i < last; ++i) relax_one(batch, i, sweep);
+    return;
   }
-  const std::uint32_t corrections = relax(layout_.chunks[i], sweep);
-  sweep.corrections += corrections;
-  if (skips() && corrections > 0) mark_neighbours(i);
+  table_.relax_runs(r_, layout_.runs.data() + first, last - first,
+                    skips() ? s_.changed_.data() + first : nullptr, s_.corrections_.data() + first);
+  for (std::size_t i = first; i < last; ++i) {
+    if (wanted(i)) sweep.visits += layout_.chunks[i].real;
+  }
 }
 
-std::uint32_t SimdLoop::relax(const Chunk& chunk, kernels::Sweep& sweep) {
+void SimdLoop::relax_one(const Batch& batch, std::size_t i, kernels::Sweep& sweep) {
+  const Chunk& chunk = layout_.chunks[i];
   const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
-  if (masks() && !chunk.singles && !chunk.rope && chunk.colour < 64) {
+  std::uint32_t& corrections = s_.corrections_[i];
+  if (!wanted(i)) return;
+  if (masks() && !chunk.singles && !chunk.rope && batch.colour < 64) {
     std::uint64_t visits = 0;
-    const auto corrections =
-        table_.relax_masked_run(r_, chunk.run, std::uint64_t{1} << chunk.colour, visits);
+    corrections = table_.relax_masked_run(r_, chunk.run, std::uint64_t{1} << batch.colour, visits);
     sweep.visits += static_cast<std::int64_t>(visits);
-    return corrections;
+    return;
   }
   sweep.visits += chunk.real;
-  std::uint32_t corrections = 0;
   if (chunk.singles) {
     corrections = chunk.rope ? table_.relax_rope_singles(r_, first, last)
                              : table_.relax_singles(r_, first, last);
@@ -160,7 +184,6 @@ std::uint32_t SimdLoop::relax(const Chunk& chunk, kernels::Sweep& sweep) {
     mark_slots(r_.a, first, last);
     mark_slots(r_.b, first, last);
   }
-  return corrections;
 }
 
 void SimdLoop::sweep_hubs(kernels::Sweep& sweep) {
@@ -186,7 +209,8 @@ void SimdLoop::sweep_contacts(kernels::Sweep& sweep) {
 /// Several threads may set the flags of a chunk between tiles, all to the same value.
 void SimdLoop::mark_neighbours(std::size_t chunk) {
   for (const std::uint32_t i : layout_.neighbours[chunk]) {
-    std::atomic_ref(s_.flags_[i]).store(kChanged | kStale, std::memory_order_relaxed);
+    std::atomic_ref(s_.changed_[i]).store(1, std::memory_order_relaxed);
+    std::atomic_ref(s_.stale_[i]).store(1, std::memory_order_relaxed);
   }
 }
 
@@ -195,7 +219,8 @@ void SimdLoop::mark_slots(const std::uint32_t* slots, std::size_t first, std::si
     if (masks()) s_.mask_[slots[c]] = ~std::uint64_t{0};
     if (!skips()) continue;
     for (const std::uint32_t i : layout_.chunks_at[slots[c]]) {
-      s_.flags_[i] = kChanged | kStale;
+      s_.changed_[i] = 1;
+      s_.stale_[i] = 1;
     }
   }
 }

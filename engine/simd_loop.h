@@ -24,19 +24,17 @@ class SimdLoop {
   void finish() { apply_displacements(); }
 
  private:
-  /// What happened to a chunk, or to one that shares a particle with it: something was corrected
-  /// since it was last visited; since its directions were last renewed.
-  enum ChunkFlag : std::uint8_t { kChanged = 1, kStale = 2 };
-
-  bool skips() const { return !s_.flags_.empty(); }
+  bool skips() const { return !s_.changed_.empty(); }
   bool masks() const { return !s_.mask_.empty(); }
   void apply_displacements();
   void renew_chunk(std::size_t i);
   void renew_rest();
-  kernels::Sweep sweep_chunks(std::size_t first, std::size_t last);
+  kernels::Sweep sweep_tile(const Tile& tile);
   kernels::Sweep sweep_batch_between_tiles(std::size_t batch);
-  void sweep_chunk(std::size_t i, kernels::Sweep& sweep);
-  std::uint32_t relax(const Chunk& chunk, kernels::Sweep& sweep);
+  kernels::Sweep sweep_chunks(std::size_t batch, std::size_t first, std::size_t last);
+  void relax_runs(const Batch& batch, std::size_t first, std::size_t last, kernels::Sweep& sweep);
+  void relax_one(const Batch& batch, std::size_t chunk, kernels::Sweep& sweep);
+  bool wanted(std::size_t chunk) const { return !skips() || s_.changed_[chunk]; }
   void sweep_hubs(kernels::Sweep& sweep);
   void sweep_contacts(kernels::Sweep& sweep);
   void mark_neighbours(std::size_t chunk);

@@ -47,10 +47,12 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa i
   if (layout_.has_ropes) impulse_.resize(size);
   if (settings.skip && settings.iterations == 0) {
     if (!settings.anticipate) mask_.resize(layout_.slots);
-    flags_.resize(layout_.chunks.size());
+    changed_.resize(layout_.chunks.size());
+    stale_.resize(layout_.chunks.size());
   }
   sweeps_.resize(std::max(model.ordering.tiles.size(), layout_.chunks.size() / kPiece + 1));
   strains_.resize(layout_.chunks.size() + 1);
+  corrections_.resize(layout_.chunks.size());
 }
 
 /// Tolerances tau of the loop: tolerance * rest length, in m, or one speed for all, in m/s. With a
@@ -237,8 +239,9 @@ void SimdSolver::finish_strain(kernels::VectorsView x, std::size_t worst_chunk, 
 
 std::size_t SimdSolver::bytes() const {
   return bytes_of(u_) + bytes_of(impulse_) + bytes_of(blocks_) + bytes_of(velocity_blocks_) +
-         bytes_of(scale_) + bytes_of(velocity_scale_) + bytes_of(mask_) + bytes_of(flags_) +
-         bytes_of(sweeps_) + bytes_of(strains_) + contacts_.bytes() + bytes_of(contact_impulse_);
+         bytes_of(scale_) + bytes_of(velocity_scale_) + bytes_of(mask_) + bytes_of(changed_) +
+         bytes_of(stale_) + bytes_of(corrections_) + bytes_of(sweeps_) + bytes_of(strains_) +
+         contacts_.bytes() + bytes_of(contact_impulse_);
 }
 
 }  // namespace weft

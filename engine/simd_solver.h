@@ -78,9 +78,12 @@ class SimdSolver {
   kernels::AlignedVector<simd::ConstraintBlock> blocks_, velocity_blocks_;  // the latter with
   kernels::AlignedVector<double> scale_, velocity_scale_;                   // velocity correction
   kernels::AlignedVector<std::uint64_t> mask_;  // skip without anticipation only
-  std::vector<std::uint8_t> flags_;             // per chunk, of ChunkFlag; skip only
-  std::vector<kernels::Sweep> sweeps_;          // per piece of parallel work
-  std::vector<simd::StrainSums> strains_;       // per chunk
+  // Per chunk, skip only: something in it, or in a chunk that shares a particle with it, was
+  // corrected since it was last visited; since its directions were last renewed.
+  std::vector<std::uint8_t> changed_, stale_;
+  std::vector<std::uint32_t> corrections_;  // per chunk, of the present pass
+  std::vector<kernels::Sweep> sweeps_;      // per piece of parallel work
+  std::vector<simd::StrainSums> strains_;   // per chunk
   ContactLanes contacts_;
   std::vector<float> contact_impulse_;  // per contact of the ContactStore
 };

@@ -21,6 +21,7 @@ constexpr Table make_table() {
           .renew_velocity_run = renew_velocity_run,
           .renew_velocity_singles = renew_velocity_singles,
           .relax_run = relax_run,
+          .relax_runs = relax_runs,
           .relax_singles = relax_singles,
           .relax_rope_run = relax_rope_run,
           .relax_rope_singles = relax_rope_singles,

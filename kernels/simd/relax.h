@@ -185,6 +185,16 @@ std::uint32_t relax_run(const Relaxation& r, const Run& run) {
   if (r.from_memory) return relax_contiguous<true>(r, run, correct_distances);
   return relax_contiguous<false>(r, run, correct_distances);
 }
+void relax_runs(const Relaxation& r, const Run* runs, std::size_t count, const std::uint8_t* wanted,
+                std::uint32_t* corrections) {
+  const Relaxation local = r;  // what nothing in here can change, as far as the compiler knows
+  for (std::size_t i = 0; i < count; ++i) {
+    corrections[i] = 0;
+    if (wanted != nullptr && wanted[i] == 0) continue;
+    corrections[i] = local.from_memory ? relax_contiguous<true>(local, runs[i], correct_distances)
+                                       : relax_contiguous<false>(local, runs[i], correct_distances);
+  }
+}
 std::uint32_t relax_singles(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
   return relax_scattered(r, first, last, correct_distances);
 }

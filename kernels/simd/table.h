@@ -123,6 +123,10 @@ struct Table {
 
   /// One pass over constraints of one colour; returns how many were corrected.
   std::uint32_t (*relax_run)(const Relaxation&, const Run&);
+  /// The same for many runs, those with wanted[i] == 0 left out (null: none), so that a short run
+  /// costs no call. corrections[i] is set for every run.
+  void (*relax_runs)(const Relaxation&, const Run* runs, std::size_t count,
+                     const std::uint8_t* wanted, std::uint32_t* corrections);
   std::uint32_t (*relax_singles)(const Relaxation&, std::uint32_t first, std::uint32_t last);
   std::uint32_t (*relax_rope_run)(const Relaxation&, const Run&);
   std::uint32_t (*relax_rope_singles)(const Relaxation&, std::uint32_t first, std::uint32_t last);
