@@ -1,0 +1,40 @@
+/// What every file of benchmarks registers, and what they share.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "kernels/simd/isa.h"
+#include "perf/bandwidth.h"
+#include "perf/workbench.h"
+
+namespace weft::perf {
+
+struct Shared {
+  Bandwidth bandwidth;
+  Workshop workshop;
+};
+
+/// What one benchmark iteration goes through.
+struct Work {
+  double items = 0;      // constraints or particles
+  double bytes = 0;      // that must move: each array element once per read and once per write
+  double footprint = 0;  // bytes touched
+  bool particles = false;
+};
+void count(benchmark::State& state, const Work& work, const Bandwidth& bandwidth);
+
+std::vector<simd::Isa> supported_isas();
+std::string name_of(simd::Isa isa);
+inline constexpr int kGridSizes[] = {20, 40, 100, 300, 1000};
+inline constexpr int kIrregularSizes[] = {40, 120, 300};  // 14,400 particles: 120
+
+void register_particle_benchmarks(Shared& shared);
+void register_constraint_benchmarks(Shared& shared);
+void register_contact_benchmarks(Shared& shared);
+void register_team_benchmarks();
+void register_step_benchmarks();
+
+}  // namespace weft::perf

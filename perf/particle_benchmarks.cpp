@@ -1,0 +1,65 @@
+/// Kernels that go through all slots: predict, commit, apply_displacements, find_near.
+#include "perf/benchmarks.h"
+
+namespace weft::perf {
+namespace {
+
+struct Kernel {
+  const char* name;
+  double bytes_per_slot;      // read + written
+  double footprint_per_slot;  // touched
+  void (*pass)(const simd::Table& table, Workbench& bench, const simd::Relaxation& r);
+};
+
+constexpr double kStep = 0.01;
+
+constexpr Kernel kKernels[] = {
+    {"predict", 80, 80,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       t.predict(w.motion(), kStep, 0, w.slots());
+     }},
+    {"commit", 104, 104,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       t.commit(w.motion(), kStep, 0, w.slots());
+     }},
+    {"apply_displacements", 72, 36,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation& r) {
+       t.apply_displacements(w.solved.view(), r.u, 0, w.slots());
+     }},
+    {"find_near", 32, 32,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       const kernels::Vector centre{0.5, 0, 0.5};
+       benchmark::DoNotOptimize(t.find_near(w.position.view(), w.reach.data(), centre, 0.1, 0,
+                                            w.slots(), w.near.data()));
+     }},
+};
+
+void run(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Isa isa, int size) {
+  Workbench& bench = shared.workshop.get("grid", size, false);
+  const simd::Relaxation r = bench.relaxation();
+  for (auto _ : state) kernel.pass(simd::table(isa), bench, r);
+  const auto slots = static_cast<double>(bench.slots());
+  count(state,
+        {static_cast<double>(bench.particles), kernel.bytes_per_slot * slots,
+         kernel.footprint_per_slot * slots, true},
+        shared.bandwidth);
+}
+
+}  // namespace
+
+void register_particle_benchmarks(Shared& shared) {
+  for (const Kernel& kernel : kKernels) {
+    for (const simd::Isa isa : supported_isas()) {
+      for (const int size : kGridSizes) {
+        const std::string name =
+            std::string(kernel.name) + '/' + name_of(isa) + '/' + std::to_string(size);
+        benchmark::RegisterBenchmark(name.c_str(),
+                                     [&shared, &kernel, isa, size](benchmark::State& state) {
+                                       run(state, shared, kernel, isa, size);
+                                     });
+      }
+    }
+  }
+}
+
+}  // namespace weft::perf
