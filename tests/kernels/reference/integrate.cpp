@@ -61,12 +61,11 @@ TEST_CASE("the commit takes the preview along, and what was corrected becomes ve
   predict(motion, 0.1);
   const Vector corrected = particles.solved[0] + Vector{0.5, 0, 0.25};
   particles.solved.set(0, corrected);
-  Vectors position{2}, velocity{2};
-  commit(motion, 0.1, position.view(), velocity.view());
-  check_near(position[0], corrected);
+  Vectors velocity{2};
+  commit(motion, 0.1, velocity.view());
   CHECK(length(velocity[0] - Vector{1 + 0.4 + 5, -1, -1 + 0.2 + 2.5}) < 1e-14);
-  check_near(position[1], {1, 2, 3});
   check_near(velocity[1], {0, 0, 0});
+  check_near(particles.solved[0], corrected);
   check_near(particles.position[0], {1, 2, 3});
   check_near(particles.velocity[0], {1, 0, -1});
 }
