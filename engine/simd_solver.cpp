@@ -40,8 +40,7 @@ std::size_t ContactLanes::bytes() const {
 SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa isa)
     : model_(model), layout_(model.simd()), settings_(settings), table_(simd::table(isa)) {
   const std::size_t size = layout_.constraint_slots;
-  stride_ = layout_.slots + kernels::kLanes;  // not a power of two: x, y, z in different cache sets
-  u_.resize(3 * stride_);
+  allocate_displacements();
   fill_gains(false);
   if (settings.velocity_correction) fill_gains(true);
   if (layout_.has_ropes) impulse_.resize(size);
@@ -53,6 +52,19 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa i
   sweeps_.resize(std::max(model.ordering.tiles.size(), layout_.chunks.size() / kPiece + 1));
   strains_.resize(layout_.chunks.size() + 1);
   corrections_.resize(layout_.chunks.size());
+}
+
+/// In quads if there are no runs.
+void SimdSolver::allocate_displacements() {
+  if (model_.ordering.runs.empty()) {
+    u_step_ = 4;
+    u_stride_ = 1;
+    u_.resize(4 * layout_.slots);
+  } else {
+    u_step_ = 1;
+    u_stride_ = layout_.slots + kernels::kLanes;  // no power of two: axes in different cache sets
+    u_.resize(3 * u_stride_);
+  }
 }
 
 /// Tolerances tau of the loop: tolerance * rest length, in m, or one speed for all, in m/s. With a
@@ -120,12 +132,18 @@ kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, const Co
   const auto directions = settings_.directions == Directions::frozen ? kernels::Directions::frozen
                                                                      : kernels::Directions::each;
   SimdLoop loop(*this, {x, {}, false}, team);
-  const auto result = kernels::iterate(loop, directions, settings_.iterations, max_iterations);
+  const auto result = kernels::iterate(loop, directions, limits(max_iterations));
   for (std::size_t k = 0; model_.has_contacts() && k < contacts_.contact.size(); ++k) {
     const std::uint32_t contact = contacts_.contact[k];
     if (contact < contact_impulse_.size()) contact_impulse_[contact] = contacts_.impulse[k];
   }
   return result;
+}
+
+kernels::LoopLimits SimdSolver::limits(int max_iterations) const {
+  return {.fixed_iterations = settings_.iterations,
+          .max_iterations = max_iterations,
+          .renew_after = settings_.renew_after};
 }
 
 /// Ropes and contacts take part in the velocity loop where they are taut or touch.
@@ -156,13 +174,12 @@ kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kerne
   }
   choose_active(x);
   SimdLoop loop(*this, {x, v, true}, team);
-  return kernels::iterate(loop, kernels::Directions::constant, settings_.iterations,
-                          settings_.max_iterations);
+  return kernels::iterate(loop, kernels::Directions::constant, limits(settings_.max_iterations));
 }
 
 simd::Relaxation SimdSolver::relaxation(bool velocity) {
   simd::Relaxation r;
-  r.u = {u_.data(), stride_};
+  r.u = {u_.data(), u_stride_, u_step_};
   r.blocks = velocity ? velocity_blocks_.data() : blocks_.data();
   r.impulse = impulse_.data();
   r.a = layout_.a.data();

@@ -59,6 +59,8 @@ class SimdSolver {
  private:
   friend class SimdLoop;
 
+  void allocate_displacements();
+  kernels::LoopLimits limits(int max_iterations) const;
   void fill_gains(bool velocity);
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
   void choose_active(kernels::VectorsView x);
@@ -72,8 +74,8 @@ class SimdSolver {
   const Settings settings_;
   const simd::Table& table_;
 
-  kernels::AlignedVector<float> u_;  // x, y, z, each stride_ long
-  std::size_t stride_ = 0;
+  kernels::AlignedVector<float> u_;
+  std::size_t u_stride_ = 0, u_step_ = 1;                                   // simd::Displacements
   kernels::AlignedVector<float> impulse_;                                   // with ropes only
   kernels::AlignedVector<simd::ConstraintBlock> blocks_, velocity_blocks_;  // the latter with
   kernels::AlignedVector<double> scale_, velocity_scale_;                   // velocity correction

@@ -35,7 +35,7 @@ void Workbench::place_particles(const SceneDescription& scene) {
   near.resize(slots());
   mask.assign(slots(), ~std::uint64_t{0});
   stride_ = slots() + kLanes;
-  u_.resize(3 * stride_);
+  u_.resize(4 * stride_);
   for (std::size_t slot = 0; slot < slots(); ++slot) {
     const std::uint32_t i = ordering.particle_at[slot];
     if (i == kNoIndex) continue;
@@ -93,7 +93,7 @@ void Workbench::fill_errors() {
 simd::Relaxation Workbench::relaxation() {
   fill_errors();
   simd::Relaxation r;
-  r.u = {u_.data(), stride_};
+  r.u = {u_.data(), stride_, 1};
   r.blocks = blocks_.data() + 1;
   r.impulse = impulse.data();
   r.a = ordering.a.data();

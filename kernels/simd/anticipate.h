@@ -142,7 +142,7 @@ void apply_sums_run(const Anticipation& p, const Relaxation& r, const Run& run) 
 }
 void apply_sums_singles(const Anticipation& p, const Relaxation& r, std::uint32_t first,
                         std::uint32_t last) {
-  Gathered at_a, at_b;
+  PlanarLanes at_a, at_b;
   for (std::size_t c = first; c < last; c += kFloats) {
     const Part here = part(r, c);
     const FloatVector n = here.n();

@@ -51,11 +51,13 @@ std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vect
   return lanes[0];
 }
 
-std::uint32_t relax_contacts(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
+template <class Lanes>
+[[gnu::always_inline]] inline std::uint32_t relax_touching(const Relaxation& r, std::uint32_t first,
+                                                           std::uint32_t last) {
   const Floats threshold(r.threshold);
-  const std::size_t sphere = r.a[first];
+  const std::size_t sphere = r.a[first] * r.u.step;
   std::uint32_t corrections = 0;
-  Gathered at_b;
+  Lanes at_b;
   for (std::size_t block = first; block < last; block += kernels::kLanes) {
     const FloatVector us{Floats(r.u.x[sphere]), Floats(r.u.y()[sphere]), Floats(r.u.z()[sphere])};
     alignas(64) float x[kernels::kLanes], y[kernels::kLanes], z[kernels::kLanes];
@@ -81,6 +83,11 @@ std::uint32_t relax_contacts(const Relaxation& r, std::uint32_t first, std::uint
     r.u.z()[sphere] += tree_sum(z);
   }
   return corrections;
+}
+
+std::uint32_t relax_contacts(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
+  return r.u.in_quads() ? relax_touching<QuadLanes>(r, first, last)
+                        : relax_touching<PlanarLanes>(r, first, last);
 }
 
 }  // namespace

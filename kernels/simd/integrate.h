@@ -44,8 +44,18 @@ void commit(const Motion& m, double h, std::size_t first, std::size_t last) {
   }
 }
 
+void apply_quads(const kernels::VectorsView& x, float* u, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    x.x[i] += static_cast<double>(u[4 * i]);
+    x.y[i] += static_cast<double>(u[4 * i + 1]);
+    x.z[i] += static_cast<double>(u[4 * i + 2]);
+  }
+  for (std::size_t i = 4 * first; i < 4 * last; ++i) u[i] = 0;
+}
+
 void apply_displacements(kernels::VectorsView x, Displacements u, std::size_t first,
                          std::size_t last) {
+  if (u.in_quads()) return apply_quads(x, u.x, first, last);
   for (std::size_t i = first; i < last; i += kDoubles) {
     const DoubleVector p = load(x, i);
     store(x, i,
