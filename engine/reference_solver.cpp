@@ -109,8 +109,9 @@ reference::Method ReferenceSolver::method(int max_iterations) const {
   return {.anticipate = settings_.anticipate,
           .skip = settings_.skip,
           .frozen_directions = settings_.directions == Directions::frozen,
-          .fixed_iterations = settings_.iterations,
-          .max_iterations = max_iterations};
+          .limits = {.fixed_iterations = settings_.iterations,
+                     .max_iterations = max_iterations,
+                     .renew_after = settings_.renew_after}};
 }
 
 kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x, double h,

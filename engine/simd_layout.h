@@ -20,7 +20,7 @@ namespace weft {
 
 class Model;
 
-inline constexpr std::uint32_t kChunk = 64;
+inline constexpr std::uint32_t kChunk = 128;
 
 struct Chunk {
   kernels::Run run;        // singles: only constraint and length are meant

@@ -32,7 +32,6 @@ SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
   contacts_.b = contact_geometry_.b = c.b.data();
   contact_geometry_.rest_length = c.distance.data();
   contact_geometry_.scale = c.scale.data();
-  std::ranges::fill(s_.stale_, std::uint8_t{1});
   std::ranges::fill(s_.u_, 0.f);
 }
 
@@ -52,9 +51,9 @@ void SimdLoop::renew() {
   team_.for_each((chunks + kPiece - 1) / kPiece, [&](std::size_t piece) {
     const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
     for (std::size_t i = piece * kPiece; i < last; ++i) {
-      if (skips() && !s_.stale_[i]) continue;
+      if (marks() && !s_.stale_[i]) continue;
       renew_chunk(i);
-      if (!skips()) continue;
+      if (!marks()) continue;
       s_.stale_[i] = 0;
       s_.changed_[i] = 1;
     }
@@ -106,7 +105,20 @@ kernels::Sweep SimdLoop::sweep() {
   }
   sweep_hubs(sweep);
   sweep_contacts(sweep);
+  if (skips()) choose_density(sweep);
   return sweep;
+}
+
+/// Leaving the dense state everything counts as changed: the next pass finds out what did.
+void SimdLoop::choose_density(const kernels::Sweep& sweep) {
+  constexpr std::int64_t kDenseShare = 16;
+  const auto constraints = static_cast<std::int64_t>(s_.model_.constraints.size());
+  const bool dense = kDenseShare * sweep.corrections > constraints;
+  if (dense_ && !dense) {
+    std::ranges::fill(s_.changed_, std::uint8_t{1});
+    std::ranges::fill(s_.stale_, std::uint8_t{1});
+  }
+  dense_ = dense;
 }
 
 kernels::Sweep SimdLoop::sweep_tile(const Tile& tile) {
@@ -140,7 +152,7 @@ kernels::Sweep SimdLoop::sweep_chunks(std::size_t index, std::size_t first, std:
   for (std::size_t i = first; i < last; ++i) {
     if (!wanted(i)) continue;
     sweep.corrections += s_.corrections_[i];
-    if (!skips()) continue;
+    if (!marks()) continue;
     s_.changed_[i] = 0;
     if (s_.corrections_[i] > 0) mark_neighbours(i);
   }
@@ -155,7 +167,7 @@ void SimdLoop::relax_runs(const Batch& batch, std::size_t first, std::size_t las
     return;
   }
   table_.relax_runs(r_, layout_.runs.data() + first, last - first,
-                    skips() ? s_.changed_.data() + first : nullptr, s_.corrections_.data() + first);
+                    marks() ? s_.changed_.data() + first : nullptr, s_.corrections_.data() + first);
   for (std::size_t i = first; i < last; ++i) {
     if (wanted(i)) sweep.visits += layout_.chunks[i].real;
   }
@@ -217,7 +229,7 @@ void SimdLoop::mark_neighbours(std::size_t chunk) {
 void SimdLoop::mark_slots(const std::uint32_t* slots, std::size_t first, std::size_t last) {
   for (std::size_t c = first; c < last; ++c) {
     if (masks()) s_.mask_[slots[c]] = ~std::uint64_t{0};
-    if (!skips()) continue;
+    if (!marks()) continue;
     for (const std::uint32_t i : layout_.chunks_at[slots[c]]) {
       s_.changed_[i] = 1;
       s_.stale_[i] = 1;

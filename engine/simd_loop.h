@@ -34,7 +34,9 @@ class SimdLoop {
   kernels::Sweep sweep_chunks(std::size_t batch, std::size_t first, std::size_t last);
   void relax_runs(const Batch& batch, std::size_t first, std::size_t last, kernels::Sweep& sweep);
   void relax_one(const Batch& batch, std::size_t chunk, kernels::Sweep& sweep);
-  bool wanted(std::size_t chunk) const { return !skips() || s_.changed_[chunk]; }
+  bool marks() const { return skips() && !dense_; }
+  bool wanted(std::size_t chunk) const { return !marks() || s_.changed_[chunk]; }
+  void choose_density(const kernels::Sweep& sweep);
   void sweep_hubs(kernels::Sweep& sweep);
   void sweep_contacts(kernels::Sweep& sweep);
   void mark_neighbours(std::size_t chunk);
@@ -47,6 +49,8 @@ class SimdLoop {
   simd::Relaxation r_, contacts_;
   simd::Geometry g_, contact_geometry_;
   Team& team_;
+  /// So much is corrected that marking costs more than it saves: everything is visited.
+  bool dense_ = true;
 };
 
 }  // namespace weft

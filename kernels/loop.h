@@ -37,13 +37,20 @@ inline void count(LoopResult& result, const Sweep& sweep) {
   result.corrections += sweep.corrections;
 }
 
+struct LoopLimits {
+  int fixed_iterations = 0;  // > 0: exactly so many, to whatever error
+  int max_iterations = 1;
+  int renew_after = 0;  // > 0: frozen directions live for at most so many iterations
+};
+
 template <class Loop>
-LoopResult iterate_to_tolerance(Loop& loop, Directions directions, int max_iterations) {
+LoopResult iterate_to_tolerance(Loop& loop, Directions directions, const LoopLimits& limits) {
   LoopResult result;
   loop.renew();
   ++result.direction_updates;
   bool fresh = true;
-  while (result.iterations < max_iterations) {
+  int age = 0;
+  while (result.iterations < limits.max_iterations) {
     const Sweep sweep = loop.sweep();
     count(result, sweep);
     const bool satisfied = sweep.corrections == 0;
@@ -51,10 +58,12 @@ LoopResult iterate_to_tolerance(Loop& loop, Directions directions, int max_itera
       result.converged = true;
       break;
     }
-    fresh = satisfied || directions == Directions::each;
+    const bool old = directions == Directions::frozen && ++age == limits.renew_after;
+    fresh = satisfied || old || directions == Directions::each;
     if (!fresh) continue;
     loop.renew();
     ++result.direction_updates;
+    age = 0;
   }
   loop.finish();
   return result;
@@ -74,11 +83,10 @@ LoopResult iterate_fixed(Loop& loop, Directions directions, int iterations) {
   return result;
 }
 
-/// fixed_iterations > 0: exactly so many, to whatever error.
 template <class Loop>
-LoopResult iterate(Loop&& loop, Directions directions, int fixed_iterations, int max_iterations) {
-  if (fixed_iterations > 0) return iterate_fixed(loop, directions, fixed_iterations);
-  return iterate_to_tolerance(loop, directions, max_iterations);
+LoopResult iterate(Loop&& loop, Directions directions, const LoopLimits& limits) {
+  if (limits.fixed_iterations > 0) return iterate_fixed(loop, directions, limits.fixed_iterations);
+  return iterate_to_tolerance(loop, directions, limits);
 }
 
 }  // namespace weft::kernels

@@ -9,13 +9,13 @@ namespace {
 
 template <Directions kDirections, class Loop>
 LoopResult run(Loop&& loop, const Method& method) {
-  return kernels::iterate(loop, kDirections, method.fixed_iterations, method.max_iterations);
+  return kernels::iterate(loop, kDirections, method.limits);
 }
 
 template <Directions kDirections>
 LoopResult relax(const Relaxation& r, const Topology& t, const ContactLists& c, const Workspace& w,
                  const Method& method) {
-  const bool skip = method.skip && method.fixed_iterations == 0;
+  const bool skip = method.skip && method.limits.fixed_iterations == 0;
   if (method.anticipate && skip) {
     return run<kDirections>(AnticipatedLoop<true, kDirections>(r, t, c, w), method);
   }

@@ -65,8 +65,7 @@ struct Method {
   bool anticipate = false;         // 4.2
   bool skip = false;               // 4.3: block flags with anticipation, else 64-bit masks
   bool frozen_directions = false;  // 4.4
-  int fixed_iterations = 0;        // > 0: exactly so many, to whatever error
-  int max_iterations = 1;
+  kernels::LoopLimits limits;
 };
 
 /// Position loop (3.2, 4.4): moves r.x until every true error is within tolerance.
