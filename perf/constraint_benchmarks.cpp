@@ -2,7 +2,8 @@
 ///
 ///   NAME_run        a grid in runs
 ///   NAME_singles    the same grid, every constraint finding its particles through an index
-///   NAME_irregular  an irregular triangle mesh, as the ordering has it
+///   NAME_quads      the same again, displacements in quads
+///   NAME_irregular  an irregular triangle mesh as the engine has it: singles, in quads
 #include <algorithm>
 
 #include "perf/benchmarks.h"
@@ -29,7 +30,7 @@ struct Traffic {
 struct Kernel {
   const char* name;
   Traffic traffic;
-  bool anticipates;
+  bool anticipates, moves;  // moves: reads and writes displacements
   float threshold;
   void (*run)(const Arguments&, const Piece&);
   void (*singles)(const Arguments&, const Piece&);  // null: runs only
@@ -41,6 +42,7 @@ constexpr Kernel kKernels[] = {
     {"renew",
      {32, 24, 32, 24},
      false,
+     false,
      0,
      [](const Arguments& x, const Piece& piece) { x.table.renew_run(x.g, x.r, piece.run); },
      [](const Arguments& x, const Piece& piece) {
@@ -48,6 +50,7 @@ constexpr Kernel kKernels[] = {
      }},
     {"renew_velocity",
      {24, 48, 24, 48},
+     false,
      false,
      0,
      [](const Arguments& x, const Piece& piece) {
@@ -59,6 +62,7 @@ constexpr Kernel kKernels[] = {
     {"relax",
      {24, 24, 24, 12},
      false,
+     true,
      0,
      [](const Arguments& x, const Piece& piece) { x.table.relax_run(x.r, piece.run); },
      [](const Arguments& x, const Piece& piece) {
@@ -67,6 +71,7 @@ constexpr Kernel kKernels[] = {
     {"relax_satisfied",
      {24, 12, 24, 12},
      false,
+     true,
      kNothingIsCorrected,
      [](const Arguments& x, const Piece& piece) { x.table.relax_run(x.r, piece.run); },
      [](const Arguments& x, const Piece& piece) {
@@ -75,6 +80,7 @@ constexpr Kernel kKernels[] = {
     {"relax_rope",
      {32, 24, 28, 12},
      false,
+     true,
      0,
      [](const Arguments& x, const Piece& piece) { x.table.relax_rope_run(x.r, piece.run); },
      [](const Arguments& x, const Piece& piece) {
@@ -83,6 +89,7 @@ constexpr Kernel kKernels[] = {
     {"relax_masked",
      {24, 40, 24, 20},
      false,
+     true,
      0,
      [](const Arguments& x, const Piece& piece) {
        std::uint64_t visits = 0;
@@ -93,6 +100,7 @@ constexpr Kernel kKernels[] = {
     {"relax_masked_satisfied",
      {0, 8, 0, 8},
      false,
+     true,
      kNothingIsCorrected,
      [](const Arguments& x, const Piece& piece) {
        std::uint64_t visits = 0;
@@ -103,6 +111,7 @@ constexpr Kernel kKernels[] = {
     {"relax_anticipated",
      {20, 0, 12, 0, 4},
      true,
+     false,
      0,
      [](const Arguments& x, const Piece& piece) { x.table.relax_anticipated_run(x.p, piece.run); },
      [](const Arguments& x, const Piece& piece) {
@@ -111,6 +120,7 @@ constexpr Kernel kKernels[] = {
     {"renew_products",
      {28, 0, 28, 0, 8},
      true,
+     false,
      0,
      [](const Arguments& x, const Piece& piece) {
        x.table.renew_products_run(x.p, x.r, piece.run);
@@ -121,6 +131,7 @@ constexpr Kernel kKernels[] = {
     {"apply_sums",
      {24, 24, 24, 12},
      true,
+     true,
      0,
      [](const Arguments& x, const Piece& piece) { x.table.apply_sums_run(x.p, x.r, piece.run); },
      [](const Arguments& x, const Piece& piece) {
@@ -128,6 +139,7 @@ constexpr Kernel kKernels[] = {
      }},
     {"strain",
      {16, 24, 16, 24},
+     false,
      false,
      0,
      [](const Arguments& x, const Piece& piece) {
@@ -160,8 +172,9 @@ Work work_of(const Kernel& kernel, Workbench& bench) {
   return work;
 }
 
-Arguments arguments_of(const Kernel& kernel, Workbench& bench, simd::Isa isa) {
-  Arguments x{simd::table(isa), bench.relaxation(), bench.geometry(), {}, bench.velocity.view()};
+Arguments arguments_of(const Kernel& kernel, bool in_quads, Workbench& bench, simd::Isa isa) {
+  Arguments x{
+      simd::table(isa), bench.relaxation(in_quads), bench.geometry(), {}, bench.velocity.view()};
   x.r.threshold = kernel.threshold;
   if (kernel.anticipates) {
     x.p = bench.pulls().anticipation(kernel.threshold);
@@ -182,14 +195,14 @@ Arguments arguments_of(const Kernel& kernel, Workbench& bench, simd::Isa isa) {
 struct Case {
   const Kernel& kernel;
   const char* mesh;
-  bool singles;
+  bool singles, in_quads;
   simd::Isa isa;
   int size;
 };
 
 void run(benchmark::State& state, Shared& shared, const Case& c) {
   Workbench& bench = shared.workshop.get(c.mesh, c.size, c.singles);
-  const Arguments x = arguments_of(c.kernel, bench, c.isa);
+  const Arguments x = arguments_of(c.kernel, c.in_quads, bench, c.isa);
   pass(c.kernel, x, bench);
   for (auto _ : state) pass(c.kernel, x, bench);
   count(state, work_of(c.kernel, bench), shared.bandwidth);
@@ -207,12 +220,15 @@ void add(Shared& shared, const Case& c, const char* form) {
 void register_constraint_benchmarks(Shared& shared) {
   for (const Kernel& kernel : kKernels) {
     for (const simd::Isa isa : supported_isas()) {
-      for (const int size : kGridSizes) add(shared, {kernel, "grid", false, isa, size}, "_run");
+      const bool quads = kernel.moves && !kernel.anticipates;
+      for (const int n : kGridSizes) add(shared, {kernel, "grid", false, false, isa, n}, "_run");
       if (kernel.singles == nullptr) continue;
-      for (const int size : kGridSizes) add(shared, {kernel, "grid", true, isa, size}, "_singles");
-      for (const int size : kIrregularSizes) {
-        add(shared, {kernel, "irregular", false, isa, size}, "_irregular");
+      for (const int n : kGridSizes) add(shared, {kernel, "grid", true, false, isa, n}, "_singles");
+      for (const int n : kIrregularSizes) {
+        add(shared, {kernel, "irregular", false, quads, isa, n}, "_irregular");
       }
+      if (!quads) continue;
+      for (const int n : kGridSizes) add(shared, {kernel, "grid", true, true, isa, n}, "_quads");
     }
   }
 }

@@ -26,6 +26,10 @@ constexpr Kernel kKernels[] = {
      [](const simd::Table& t, Workbench& w, const simd::Relaxation& r) {
        t.apply_displacements(w.solved.view(), r.u, 0, w.slots());
      }},
+    {"apply_displacements_quads", 80, 40,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation& r) {
+       t.apply_displacements(w.solved.view(), {r.u.x, 1, 4}, 0, w.slots());
+     }},
     {"find_near", 32, 32,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
        const kernels::Vector centre{0.5, 0, 0.5};

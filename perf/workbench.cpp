@@ -90,10 +90,10 @@ void Workbench::fill_errors() {
   std::ranges::fill(u_, 0.f);
 }
 
-simd::Relaxation Workbench::relaxation() {
+simd::Relaxation Workbench::relaxation(bool in_quads) {
   fill_errors();
   simd::Relaxation r;
-  r.u = {u_.data(), stride_, 1};
+  r.u = {u_.data(), in_quads ? 1 : stride_, in_quads ? std::size_t{4} : 1};
   r.blocks = blocks_.data() + 1;
   r.impulse = impulse.data();
   r.a = ordering.a.data();

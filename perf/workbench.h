@@ -35,7 +35,7 @@ class Workbench {
   Ordering ordering;
   std::vector<Piece> pieces;  // in the order of a pass
 
-  simd::Relaxation relaxation();
+  simd::Relaxation relaxation(bool in_quads = false);
   simd::Geometry geometry();
   simd::Motion motion();
   PullLayout& pulls();  // made when first asked for
