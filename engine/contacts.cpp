@@ -5,7 +5,7 @@
 namespace weft {
 namespace {
 
-constexpr double kMargin = 0.1;  // of the sphere's radius
+constexpr double kMargin = 0.05;  // of the sphere's radius
 
 bool joined(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
   const ConstraintStore& s = m.constraints;

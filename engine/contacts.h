@@ -25,7 +25,7 @@ struct ContactStore {
 /// An empty store with room for the search; without spheres nothing is allocated.
 ContactStore make_contact_store(const Model& model);
 
-/// Lists every pair whose distance at x is below r1 + r2 plus a tenth of the sphere's radius.
+/// Lists every pair whose distance at x is below r1 + r2 plus a twentieth of the sphere's radius.
 void find_contacts(const Model& model, const simd::Table& kernels, kernels::VectorsView x,
                    ContactStore& contacts);
 

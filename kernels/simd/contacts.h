@@ -68,13 +68,15 @@ template <class Lanes>
       const FloatVector n = p.n();
       FloatVector up = at_b.get(r.u, r.b + c);
       const Corrected corrected = correct_contacts(r, c, errors(p, n, us - up), threshold);
-      corrected_here += count(corrected.lanes);
-      move(up, n, corrected.by * p.gain_b());
-      at_b.put(r.u, r.b + c, up);
+      const std::uint32_t corrected_lanes = count(corrected.lanes);
       const Floats at_a = corrected.by * p.gain_a();
       (at_a * n.x).store_aligned(x + k);
       (at_a * n.y).store_aligned(y + k);
       (at_a * n.z).store_aligned(z + k);
+      if (corrected_lanes == 0) continue;
+      corrected_here += corrected_lanes;
+      move(up, n, corrected.by * p.gain_b());
+      at_b.put(r.u, r.b + c, up);
     }
     corrections += corrected_here;
     if (corrected_here == 0) continue;
