@@ -33,7 +33,7 @@ struct Kernel {
   bool anticipates, moves;  // moves: reads and writes displacements
   float threshold;
   void (*run)(const Arguments&, const Piece&);
-  void (*singles)(const Arguments&, const Piece&);  // null: runs only
+  void (*singles)(const Arguments&, const Piece&);  // null: as relax; only measured in runs
 };
 
 constexpr float kNothingIsCorrected = 1e30f;
@@ -151,7 +151,15 @@ constexpr Kernel kKernels[] = {
 };
 
 void pass(const Kernel& kernel, const Arguments& x, const Workbench& bench) {
-  for (const Piece& piece : bench.pieces) (piece.singles ? kernel.singles : kernel.run)(x, piece);
+  for (const Piece& piece : bench.pieces) {
+    if (!piece.singles) {
+      kernel.run(x, piece);
+    } else if (kernel.singles != nullptr) {
+      kernel.singles(x, piece);
+    } else {
+      x.table.relax_singles(x.r, piece.first(), piece.last());
+    }
+  }
 }
 
 Work work_of(const Kernel& kernel, Workbench& bench) {
