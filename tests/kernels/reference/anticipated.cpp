@@ -123,11 +123,11 @@ void check_anticipation(const Run& run, std::uint32_t seed) {
   REQUIRE(r.count - r.bilateral > 10);
   const reference::Topology topology = problem.topology();
   const reference::Workspace workspace = problem.workspace();
-  const reference::Method method{.anticipate = true,
-                                 .skip = run.skip,
-                                 .frozen_directions = true,
-                                 .fixed_iterations = run.fixed_iterations,
-                                 .max_iterations = 4};
+  const reference::Method method{
+      .anticipate = true,
+      .skip = run.skip,
+      .frozen_directions = true,
+      .limits = {.fixed_iterations = run.fixed_iterations, .max_iterations = 4}};
   const auto result = relax_positions(r, topology, {}, workspace, method);
   CHECK(result.direction_updates == 1);
   CHECK(result.corrections > 50);
@@ -160,9 +160,9 @@ TEST_CASE("one correction, worked by hand") {
     Problem problem(scene, 0.1);
     const Relaxation r = problem.view();
     const reference::Workspace workspace = problem.workspace();
-    const auto result =
-        relax_positions(r, problem.topology(), {}, workspace,
-                        {.anticipate = true, .frozen_directions = true, .max_iterations = 1});
+    const auto result = relax_positions(
+        r, problem.topology(), {}, workspace,
+        {.anticipate = true, .frozen_directions = true, .limits = {.max_iterations = 1}});
     CHECK(result.corrections == 1);
     // Constraints and particles stand in the order of the model.
     const ConstraintStore& store = problem.model->constraints;
