@@ -20,7 +20,7 @@
 
 #include "kernels/simd/relax.h"
 
-namespace weft::simd {
+namespace weft::simd::inline WEFT_LANES {
 namespace {
 
 /// Where the lanes of a vector find their neighbours.
@@ -156,4 +156,4 @@ void apply_sums_singles(const Anticipation& p, const Relaxation& r, std::uint32_
 }
 
 }  // namespace
-}  // namespace weft::simd
+}  // namespace weft::simd::inline WEFT_LANES

@@ -7,7 +7,7 @@
 
 #include "kernels/simd/lanes.h"
 
-namespace weft::simd {
+namespace weft::simd::inline WEFT_LANES {
 namespace {
 
 struct Direction {
@@ -88,4 +88,4 @@ void renew_velocity_singles(const Geometry& g, kernels::VectorsView v, const Rel
 }
 
 }  // namespace
-}  // namespace weft::simd
+}  // namespace weft::simd::inline WEFT_LANES

@@ -5,7 +5,7 @@
 
 #include "kernels/simd/lanes.h"
 
-namespace weft::simd {
+namespace weft::simd::inline WEFT_LANES {
 namespace {
 
 [[gnu::always_inline]] inline DoubleVector acceleration(const Motion& m, std::size_t i) {
@@ -67,4 +67,4 @@ void apply_displacements(kernels::VectorsView x, Displacements u, std::size_t fi
 }
 
 }  // namespace
-}  // namespace weft::simd
+}  // namespace weft::simd::inline WEFT_LANES

@@ -12,7 +12,16 @@
 #include "kernels/runs.h"
 #include "kernels/simd/table.h"
 
-namespace weft::simd {
+// The namespace of these kernels, so that profiles tell the instruction sets apart.
+#if defined(__AVX512F__)
+#define WEFT_LANES avx512
+#elif defined(__AVX2__)
+#define WEFT_LANES avx2
+#else
+#define WEFT_LANES sse2
+#endif
+
+namespace weft::simd::inline WEFT_LANES {
 namespace {
 
 #if defined(__AVX512F__)
@@ -140,4 +149,4 @@ struct DoubleVector {
 }
 
 }  // namespace
-}  // namespace weft::simd
+}  // namespace weft::simd::inline WEFT_LANES

@@ -9,7 +9,7 @@
 #include "kernels/simd/measure.h"
 #include "kernels/simd/relax.h"
 
-namespace weft::simd {
+namespace weft::simd::inline WEFT_LANES {
 namespace {
 
 constexpr Table make_table() {
@@ -41,4 +41,4 @@ constexpr Table make_table() {
 }
 
 }  // namespace
-}  // namespace weft::simd
+}  // namespace weft::simd::inline WEFT_LANES

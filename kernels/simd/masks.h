@@ -7,7 +7,7 @@
 
 #include "kernels/simd/relax.h"
 
-namespace weft::simd {
+namespace weft::simd::inline WEFT_LANES {
 namespace {
 
 using Words = xsimd::batch<std::uint64_t, Arch>;
@@ -68,4 +68,4 @@ std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_
 }
 
 }  // namespace
-}  // namespace weft::simd
+}  // namespace weft::simd::inline WEFT_LANES

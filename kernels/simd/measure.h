@@ -8,7 +8,7 @@
 
 #include "kernels/simd/directions.h"
 
-namespace weft::simd {
+namespace weft::simd::inline WEFT_LANES {
 namespace {
 
 struct StrainColumns {
@@ -56,4 +56,4 @@ StrainSums strain_singles(const Geometry& g, std::uint32_t first, std::uint32_t 
 }
 
 }  // namespace
-}  // namespace weft::simd
+}  // namespace weft::simd::inline WEFT_LANES

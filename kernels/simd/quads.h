@@ -11,7 +11,7 @@
 
 #include "kernels/simd/lanes.h"
 
-namespace weft::simd {
+namespace weft::simd::inline WEFT_LANES {
 namespace {
 
 #if defined(__AVX512F__)
@@ -109,4 +109,4 @@ struct QuadLanes {
 };
 
 }  // namespace
-}  // namespace weft::simd
+}  // namespace weft::simd::inline WEFT_LANES

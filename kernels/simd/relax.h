@@ -11,7 +11,7 @@
 
 #include "kernels/simd/quads.h"
 
-namespace weft::simd {
+namespace weft::simd::inline WEFT_LANES {
 namespace {
 
 struct Corrected {
@@ -210,4 +210,4 @@ std::uint32_t relax_rope_singles(const Relaxation& r, std::uint32_t first, std::
 }
 
 }  // namespace
-}  // namespace weft::simd
+}  // namespace weft::simd::inline WEFT_LANES
