@@ -48,6 +48,7 @@ Settings settings_of(const Cell& cell, const Variant& variant) {
   settings.anticipate = variant.anticipate;
   settings.skip = variant.skip;
   settings.directions = variant.directions;
+  settings.renew_after = 0;  // as section 4.4 has it
   return settings;
 }
 

@@ -6,7 +6,6 @@
 namespace weft::tools {
 namespace {
 
-constexpr int kThreads = 1;
 constexpr int kSubsteps = 1;
 
 double mean(std::int64_t total, int frames) {
@@ -33,8 +32,9 @@ double bytes_per_particle(const RunSummary& summary) {
   return static_cast<double>(summary.bytes) / static_cast<double>(summary.model.particles);
 }
 
-/// The instruction set that the backend's loops are compiled for.
-std::string_view isa(Backend) { return "scalar"; }
+std::string_view isa(const RunReport& report) {
+  return report.settings.backend == Backend::reference ? "scalar" : name(report.summary.isa);
+}
 
 double peak_rss_mb() {
   rusage usage{};
@@ -79,8 +79,8 @@ Json to_json(const RunReport& report) {
       {"solver", name(settings.solver)},
       {"scheme", name(settings.scheme)},
       {"backend", name(settings.backend)},
-      {"isa", isa(settings.backend)},
-      {"threads", kThreads},
+      {"isa", isa(report)},
+      {"threads", settings.backend == Backend::reference ? 1 : summary.threads},
       {"dt", report.plan.dt},
       {"steps", report.plan.steps},
       {"frames", summary.frames},

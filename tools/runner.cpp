@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
 namespace weft::tools {
 namespace {
 
@@ -52,6 +55,7 @@ void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
   const double frames = std::max(summary.frames, 1);
   summary.mean_max_strain = errors.strain_sum / frames;
   summary.rms_strain = std::sqrt(errors.square_strain_sum / frames);
+  summary.isa = cloth.settings().isa;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     if (static_cast<Stage>(stage) != Stage::report) {
       summary.solver_seconds += summary.stage_seconds[stage];
@@ -88,10 +92,9 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   return summary;
 }
 
-}  // namespace
-
-Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& settings,
-                       const RunPlan& plan, const FrameCallback& on_frame) {
+Result<RunSummary> run_repeatedly(const std::shared_ptr<const Model>& model,
+                                  const Settings& settings, const RunPlan& plan,
+                                  const FrameCallback& on_frame) {
   auto best = run_once(model, settings, plan, on_frame);
   if (!best || plan.repeat <= 1) return best;
   for (int i = 0; i < plan.repeat; ++i) {
@@ -100,6 +103,23 @@ Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& setti
     if (i == 0 || next.value().step_seconds < best.value().step_seconds) best = std::move(next);
   }
   return best;
+}
+
+}  // namespace
+
+Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& settings,
+                       const RunPlan& plan, const FrameCallback& on_frame) {
+  if (settings.threads < 0 || settings.threads > kMaxThreads) {
+    return Error{"threads: must be from 0 to " + std::to_string(kMaxThreads) + " (" +
+                 std::to_string(settings.threads) + ")"};
+  }
+  const int threads = settings.threads > 0 ? settings.threads : tbb::info::default_concurrency();
+  const tbb::global_control at_most(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(std::max(threads, 2)));
+  tbb::task_arena arena(threads);
+  auto result = arena.execute([&] { return run_repeatedly(model, settings, plan, on_frame); });
+  if (result) result.value().threads = threads;
+  return result;
 }
 
 Result<RunSummary> run(const SceneDescription& scene, const Settings& settings, const RunPlan& plan,

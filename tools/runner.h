@@ -26,7 +26,9 @@ using FrameCallback = std::function<void(int frame, const Cloth&, const StepRepo
 /// All figures of a run. Counts and seconds are sums over its frames; strains are fractions,
 /// recomputed from the positions after every frame.
 struct RunSummary {
-  int frames = 0;  ///< computed; below RunPlan::steps only if status is non_finite
+  Isa isa = Isa::automatic;  ///< what the kernels ran on
+  int threads = 1;           ///< that the steps could use
+  int frames = 0;            ///< computed; below RunPlan::steps only if status is non_finite
   Status status = Status::converged;  ///< the worst of all frames
 
   double step_seconds = 0;    ///< wall time in step()

@@ -24,7 +24,14 @@ constexpr std::array<Choice<Directions>, 2> kDirections{{
 }};
 constexpr std::array<Choice<Backend>, 2> kBackends{{
     {"reference", Backend::reference},
-    {"simd", std::nullopt},
+    {"simd", Backend::simd},
+}};
+
+constexpr std::array<Choice<Isa>, 4> kIsas{{
+    {"auto", Isa::automatic},
+    {"sse2", Isa::sse2},
+    {"avx2", Isa::avx2},
+    {"avx512", Isa::avx512},
 }};
 
 /// Sets the field from the text, if there is one.
@@ -67,11 +74,6 @@ Result<void> check_one(std::string_view option, const std::optional<std::string>
   return Error{fmt::format("{}: '{}' is not a whole number above 0", option, *text)};
 }
 
-Result<void> check_isa(const std::optional<std::string>& text) {
-  if (!text) return {};
-  return Error{fmt::format("--isa {}: not available yet", *text)};
-}
-
 }  // namespace
 
 void add_solver_options(CLI::App& verb, SolverOptions& options) {
@@ -98,9 +100,15 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
                   "renewed before each iteration");
   verb.add_option("--velocity-correction", options.velocity_correction,
                   "on or off (default): a second loop, on velocities");
-  verb.add_option("--backend", options.backend, "reference");
-  verb.add_option("--isa", options.isa, "instruction set (not available yet)");
-  verb.add_option("--threads", options.threads, "1");
+  verb.add_option(
+      "--renew-after", settings.renew_after,
+      "frozen directions serve for at most so many iterations (default 32; 0: until all "
+      "errors along them are within tolerance)");
+  verb.add_option("--backend", options.backend, "simd (default) or reference");
+  verb.add_option("--isa", options.isa,
+                  "sse2, avx2, avx512 or auto (default: WEFT_ISA, else the best there is)");
+  verb.add_option("--threads", settings.threads,
+                  "most threads of a step (default 0: one for each processor)");
   verb.add_option("--substeps", options.substeps, "1");
 }
 
@@ -116,8 +124,7 @@ Result<Settings> settings_of(const SolverOptions& options) {
       choose_switch("--velocity-correction", options.velocity_correction,
                     settings.velocity_correction),
       choose("--backend", options.backend, kBackends, settings.backend),
-      check_isa(options.isa),
-      check_one("--threads", options.threads, false),
+      choose("--isa", options.isa, kIsas, settings.isa),
       check_one("--substeps", options.substeps, true),
   };
   for (const Result<void>& check : checks) {

@@ -24,7 +24,6 @@ struct SolverOptions {
   std::optional<std::string> velocity_correction;
   std::optional<std::string> backend;
   std::optional<std::string> isa;
-  std::optional<std::string> threads;
   std::optional<std::string> substeps;
 };
 
