@@ -33,6 +33,7 @@ inline constexpr int kIrregularSizes[] = {40, 120, 300};  // 14,400 particles: 1
 
 void register_particle_benchmarks(Shared& shared);
 void register_constraint_benchmarks(Shared& shared);
+void register_batch_benchmarks(Shared& shared);
 void register_contact_benchmarks(Shared& shared);
 void register_team_benchmarks();
 void register_step_benchmarks();

@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   }
   register_particle_benchmarks(shared);
   register_constraint_benchmarks(shared);
+  register_batch_benchmarks(shared);
   register_contact_benchmarks(shared);
   register_team_benchmarks();
   register_step_benchmarks();

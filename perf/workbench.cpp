@@ -63,11 +63,15 @@ void Workbench::place_constraints(const SceneDescription& scene) {
 
 void Workbench::cut_pieces() {
   for (const Batch& batch : ordering.batches) {
+    const std::size_t first = pieces.size();
     for (std::uint32_t r = batch.first_run; r < batch.last_run; ++r) {
       cut(ordering.runs[r], batch, false);
     }
+    const std::size_t singles = pieces.size();
     cut({0, 0, batch.singles, batch.last - batch.singles}, batch, true);
+    batches.push_back({first, singles, pieces.size()});
   }
+  for (const Piece& piece : pieces) runs.push_back(piece.run);
 }
 
 void Workbench::cut(const kernels::Run& run, const Batch& batch, bool singles) {

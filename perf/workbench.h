@@ -33,7 +33,12 @@ class Workbench {
   std::size_t slots() const { return ordering.slots(); }
   std::size_t constraint_slots() const { return ordering.constraint_slots(); }
   Ordering ordering;
-  std::vector<Piece> pieces;  // in the order of a pass
+  std::vector<Piece> pieces;       // in the order of a pass
+  std::vector<kernels::Run> runs;  // of the pieces
+  struct Range {
+    std::size_t first, singles, last;
+  };
+  std::vector<Range> batches;  // pieces of each; those from `singles` on are singles
 
   simd::Relaxation relaxation(bool in_quads = false);
   simd::Geometry geometry();
