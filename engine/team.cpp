@@ -9,69 +9,78 @@ namespace weft {
 namespace {
 
 constexpr std::uint32_t kStop = 0xffffffffu;
-constexpr int kSpinsBeforeYield = 2000;
+/// Pauses before a waiting thread gives its processor away: some tens of microseconds.
+constexpr int kPatience = 2000;
 
 std::uint64_t call_of(std::uint64_t epoch, std::uint32_t members) { return epoch << 32 | members; }
+std::uint64_t epoch_of(std::uint64_t call) { return call >> 32; }
 std::uint32_t members_of(std::uint64_t call) { return static_cast<std::uint32_t>(call); }
 
-/// Waits until ready() holds: spinning, since it is soon; yielding, if it is not.
+/// Waits until ready() holds. Returns whether that was soon.
 template <class Ready>
-void wait_until(Ready&& ready) {
+bool wait_until(Ready&& ready) {
   for (int spins = 0; !ready(); ++spins) {
-    if (spins < kSpinsBeforeYield) {
+    if (spins < kPatience) {
       __builtin_ia32_pause();
-    } else {
-      std::this_thread::yield();
+      continue;
     }
+    while (!ready()) std::this_thread::yield();
+    return false;
   }
+  return true;
 }
 
 }  // namespace
 
-Team::Team(int threads) {
-  const int helpers = std::min(threads, tbb::this_task_arena::max_concurrency()) - 1;
-  alone_ = helpers <= 0;
-  for (int i = 0; i < helpers; ++i) tasks_.run([this] { serve(); });
+Team::Team(int threads)
+    : helpers_(std::min({threads, kMostMembers, tbb::this_task_arena::max_concurrency()}) - 1),
+      alone_(helpers_ <= 0) {
+  for (int i = 0; i < helpers_; ++i) tasks_.run([this] { serve(); });
 }
 
 Team::~Team() {
-  if (alone_) return;
+  if (helpers_ <= 0) return;
   call_.store(call_of(++epoch_, kStop), std::memory_order_release);
   tasks_.wait();
 }
 
 void Team::run(const Job& job) {
   const std::uint32_t members = 1 + (alone_ ? 0 : joined_.load(std::memory_order_relaxed));
-  if (members == 1 || job.count < 2) {
-    job.share(job.context, 0, job.count);
-    return;
-  }
+  if (members == 1 || job.count < 2) return job.work(job.context, 0, job.count);
   job_ = job;
   done_.store(0, std::memory_order_relaxed);
   call_.store(call_of(++epoch_, members), std::memory_order_release);
-  do_share(job, 0, members);
-  wait_until([&] { return done_.load(std::memory_order_acquire) == members - 1; });
+  take_shares(epoch_, 0, members);
+  alone_ = !wait_until([&] { return done_.load(std::memory_order_acquire) == members; });
 }
 
-/// A member beyond `members` of an epoch must not touch the job: the leader does not wait for it.
-/// Epoch and members are one word so that it cannot mistake one call for the next.
+/// Epoch and members are one word so that a thread cannot mistake one call for the next. A share
+/// that is begun in an epoch keeps the leader in it; a thread that has begun none must not touch
+/// the job.
 void Team::serve() {
-  std::uint64_t seen = call_.load(std::memory_order_acquire);
-  if (members_of(seen) == kStop) return;
+  std::uint64_t call = call_.load(std::memory_order_acquire);
+  if (members_of(call) == kStop) return;
   const std::uint32_t me = 1 + joined_.fetch_add(1, std::memory_order_relaxed);
   for (;;) {
-    std::uint64_t call = seen;
+    const std::uint64_t seen = call;
     wait_until([&] { return (call = call_.load(std::memory_order_acquire)) != seen; });
-    seen = call;
     if (members_of(call) == kStop) return;
-    if (me >= members_of(call)) continue;
-    do_share(job_, me, members_of(call));
-    done_.fetch_add(1, std::memory_order_release);
+    if (me < members_of(call)) take_shares(epoch_of(call), me, members_of(call));
   }
 }
 
-void Team::do_share(const Job& job, std::uint32_t member, std::uint32_t members) {
-  job.share(job.context, job.count * member / members, job.count * (member + 1) / members);
+/// One's own share first, so that the same data stays with the same processor.
+void Team::take_shares(std::uint64_t epoch, std::uint32_t me, std::uint32_t members) {
+  for (std::uint32_t k = 0; k < members; ++k) {
+    const std::uint32_t share = (me + k) % members;
+    std::uint64_t before = shares_[share].begun.load(std::memory_order_relaxed);
+    if (before >= epoch) continue;
+    if (!shares_[share].begun.compare_exchange_strong(before, epoch, std::memory_order_acq_rel)) {
+      continue;
+    }
+    job_.work(job_.context, job_.count * share / members, job_.count * (share + 1) / members);
+    done_.fetch_add(1, std::memory_order_release);
+  }
 }
 
 }  // namespace weft

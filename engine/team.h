@@ -1,26 +1,34 @@
 /// A few threads that do a long list of short parallel loops together.
 ///
 /// A loop over the batches of a small cloth lasts a microsecond; handing each to the task scheduler
-/// would cost more than that. So the threads are asked for once per solve, as oneTBB tasks in the
-/// caller's arena, and from then on meet through one atomic word:
+/// would cost more than that. So the threads are asked for once per step, as oneTBB tasks in the
+/// caller's arena, and from then on meet through atomics:
 ///
-///     leader:  announces (epoch, members), does its share, waits for the others' shares
-///     member:  waits for a new epoch; if it is among the members, does its share and counts itself
+///     leader:  announces (epoch, members); takes its share, then any that nobody has begun; waits
+///              for those that others have begun
+///     member:  waits for a new epoch; takes its share, then any that nobody has begun
 ///
 /// Nobody is waited for who has not come: a task that the scheduler never starts, or starts late,
-/// is simply no member yet. Shares depend on the members present; results must not.
+/// is simply no member yet, and the share of a member that is late is done by another. If all the
+/// same a share keeps the leader waiting for long, its thread has lost its processor: the leader
+/// goes on alone for the rest of the step. Who does a share is left to chance; results must not
+/// depend on it.
 #pragma once
 
 #include <tbb/task_group.h>
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace weft {
 
 class Team {
  public:
+  static constexpr int kMostMembers = 64;
+
   /// Asks for up to `threads` threads, this one included; at most what the arena has.
   explicit Team(int threads);
   ~Team();
@@ -31,7 +39,7 @@ class Team {
   template <class Work>
   void for_each(std::size_t count, Work&& work) {
     const auto share = [](void* context, std::size_t first, std::size_t last) {
-      Work& body = *static_cast<std::remove_reference_t<Work>*>(context);
+      auto& body = *static_cast<std::remove_reference_t<Work>*>(context);
       for (std::size_t i = first; i < last; ++i) body(i);
     };
     run({share, &work, count});
@@ -39,22 +47,27 @@ class Team {
 
  private:
   struct Job {
-    void (*share)(void* context, std::size_t first, std::size_t last) = nullptr;
+    void (*work)(void* context, std::size_t first, std::size_t last) = nullptr;
     void* context = nullptr;
     std::size_t count = 0;
+  };
+  static constexpr std::size_t kCacheLine = 64;
+  struct alignas(kCacheLine) Share {
+    std::atomic<std::uint64_t> begun{0};  // the last epoch in which somebody did
   };
 
   void run(const Job& job);
   void serve();
-  static void do_share(const Job& job, std::uint32_t member, std::uint32_t members);
+  void take_shares(std::uint64_t epoch, std::uint32_t me, std::uint32_t members);
 
-  static constexpr std::size_t kCacheLine = 64;
   // epoch in the high half, members (leader included) in the low half; kStop as members: go home.
   alignas(kCacheLine) std::atomic<std::uint64_t> call_{0};
-  alignas(kCacheLine) std::atomic<std::uint32_t> done_{0};    // members that finished this epoch
+  alignas(kCacheLine) std::atomic<std::uint32_t> done_{0};    // shares finished in this epoch
   alignas(kCacheLine) std::atomic<std::uint32_t> joined_{0};  // tasks that have started
-  Job job_;  // written by the leader between epochs, read by members of the epoch
+  std::array<Share, kMostMembers> shares_;
+  Job job_;  // written by the leader between epochs, read by whoever has begun a share
   std::uint64_t epoch_ = 0;
+  int helpers_ = 0;
   bool alone_ = true;
   tbb::task_group tasks_;
 };
