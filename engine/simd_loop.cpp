@@ -181,7 +181,7 @@ void SimdLoop::relax_one(const Batch& batch, std::size_t i, kernels::Sweep& swee
   if (masks() && !chunk.singles && !chunk.rope && batch.colour < 64) {
     std::uint64_t visits = 0;
     corrections = table_.relax_masked_run(r_, chunk.run, std::uint64_t{1} << batch.colour, visits);
-    sweep.visits += static_cast<std::int64_t>(visits);
+    sweep.visits += std::min<std::int64_t>(static_cast<std::int64_t>(visits), chunk.real);
     return;
   }
   sweep.visits += chunk.real;
@@ -212,7 +212,7 @@ void SimdLoop::sweep_hubs(kernels::Sweep& sweep) {
 void SimdLoop::sweep_contacts(kernels::Sweep& sweep) {
   for (const ContactLanes::Range& range : s_.contacts_.spheres) {
     const auto corrections = table_.relax_contacts(contacts_, range.first, range.last);
-    sweep.visits += range.last - range.first;
+    sweep.visits += range.real;
     sweep.corrections += corrections;
     if (corrections > 0) mark_slots(contacts_.b, range.first, range.last);
   }

@@ -114,11 +114,12 @@ void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep
     for (std::uint32_t k = 0; k < store.count(); ++k) {
       if (store.sphere[k] == s) put(s, store.particle[k], k);
     }
+    const std::uint32_t last_contact = next;
     // Padding stands on padding slots, each its own: lanes of a block must not share a particle.
     for (std::uint32_t spare = 0; next % kernels::kLanes != 0; ++spare) {
       put(s, model_.spare_slots + spare, kNoIndex);
     }
-    if (next > first) contacts_.spheres.push_back({first, next});
+    if (next > first) contacts_.spheres.push_back({first, next, last_contact - first});
   }
 }
 
@@ -166,6 +167,8 @@ void SimdSolver::choose_active(kernels::VectorsView x) {
   }
 }
 
+/// The directions stay, but are "renewed" like frozen ones: it is the renewal that takes the errors
+/// anew from the velocities, in double. Without it no error could fall below 10^-7 of the first.
 kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                                    const ContactStore& store, Team& team) {
   std::ranges::fill(impulse_, 0.f);
@@ -174,7 +177,7 @@ kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kerne
   }
   choose_active(x);
   SimdLoop loop(*this, {x, v, true}, team);
-  return kernels::iterate(loop, kernels::Directions::constant, limits(settings_.max_iterations));
+  return kernels::iterate(loop, kernels::Directions::frozen, limits(settings_.max_iterations));
 }
 
 simd::Relaxation SimdSolver::relaxation(bool velocity) {

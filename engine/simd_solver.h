@@ -28,6 +28,7 @@ namespace weft {
 struct ContactLanes {
   struct Range {
     std::uint32_t first = 0, last = 0;
+    std::uint32_t real = 0;  // without padding
   };
   std::vector<Range> spheres;  // those that have contacts
   std::vector<std::uint32_t> a, b;
