@@ -30,7 +30,7 @@ Settings tight_with_velocities(const Method& method) {
 }
 
 TEST_CASE("a contact stops what would pass through, and shares the momentum") {
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
     Cloth cloth = cloth_of(sphere_and_particle(0.25, {-8, 0, 0}), tight_with_velocities(method));
     const StepReport report = step(cloth, 0.01);
@@ -38,13 +38,13 @@ TEST_CASE("a contact stops what would pass through, and shares the momentum") {
     CHECK(report.contacts == 1);
     CHECK(report.max_penetration <= 1e-12);
     CHECK(distance(cloth.position(0), cloth.position(1)) == doctest::Approx(0.2).epsilon(1e-11));
-    CHECK(distance(cloth.velocity(0), {-2, 0, 0}) < 1e-9);
-    CHECK(distance(cloth.velocity(1), {-2, 0, 0}) < 1e-9);
+    CHECK(distance(cloth.velocity(0), {-2, 0, 0}) < exactness(method.backend, 1e-9, 8));
+    CHECK(distance(cloth.velocity(1), {-2, 0, 0}) < exactness(method.backend, 1e-9, 8));
   }
 }
 
 TEST_CASE("a contact never pulls") {
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
     const Vec3 away{5, 1, 0};
     Cloth cloth = cloth_of(sphere_and_particle(0.2, away), tight_with_velocities(method));
@@ -55,7 +55,7 @@ TEST_CASE("a contact never pulls") {
 }
 
 TEST_CASE("a contact that pushed in one step owes no pull in the next") {
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
     Cloth cloth = cloth_of(sphere_and_particle(0.25, {-8, 0, 0}), with(tight(1e-12), method));
     CHECK(step(cloth, 0.01).corrections > 0);
@@ -67,7 +67,7 @@ TEST_CASE("a contact that pushed in one step owes no pull in the next") {
 }
 
 TEST_CASE("particles near a sphere, but not in touch, are left to approach") {
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
     const Vec3 approach{-0.1, 0, 0};
     Cloth cloth = cloth_of(sphere_and_particle(0.205, approach), tight_with_velocities(method));
@@ -89,15 +89,15 @@ TEST_CASE("a contact that only the constraints bring about is found") {
   scene.spheres = {2};
   scene.radii = {0, 0, 0.3};
   scene.gravity = {0, 0, 0};
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
     Cloth cloth = cloth_of(scene, tight_with_velocities(method));
     REQUIRE(cloth.move_fixed(0, {-1.3, 0.001, 0}));
     const StepReport report = step(cloth, 0.01);
     CHECK(report.status == Status::converged);
     CHECK(report.contacts == 1);
-    CHECK(distance(cloth.position(1), {0.2, 0.001, 0}) < 1e-9);
-    CHECK(distance(cloth.position(2), {-0.1, 0.001, 0}) < 1e-9);
+    CHECK(distance(cloth.position(1), {0.2, 0.001, 0}) < exactness(method.backend, 1e-9, 0.3));
+    CHECK(distance(cloth.position(2), {-0.1, 0.001, 0}) < exactness(method.backend, 1e-9, 0.3));
     CHECK(max_penetration(scene, positions(cloth)) <= 1e-12 * (1 + 1e-3));
   }
 }
@@ -120,63 +120,67 @@ SceneDescription early_push() {
 }
 
 TEST_CASE("an early over-push is taken back") {
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
     Cloth cloth = cloth_of(early_push(), with(tight(1e-12), method));
     const StepReport report = step(cloth, 0.01);
     CHECK(report.status == Status::converged);
     CHECK(report.corrections > 2);
-    CHECK(distance(cloth.position(0), {0, 0, 0}) < 1e-10);
-    CHECK(length(cloth.velocity(0)) < 1e-8);
-    CHECK(distance(cloth.position(1), {0.3, 0, 0}) < 1e-10);
-    CHECK(distance(cloth.position(2), {0.6, 0, 0}) < 1e-10);
+    CHECK(distance(cloth.position(0), {0, 0, 0}) < exactness(method.backend, 1e-10, 0.5));
+    CHECK(length(cloth.velocity(0)) < exactness(method.backend, 1e-8, 50));
+    CHECK(distance(cloth.position(1), {0.3, 0, 0}) < exactness(method.backend, 1e-10, 0.5));
+    CHECK(distance(cloth.position(2), {0.6, 0, 0}) < exactness(method.backend, 1e-10, 0.5));
   }
 }
 
 TEST_CASE("the velocity loop takes an early over-push back as well") {
+  const Backend backend = each_backend();
   SceneDescription scene = early_push();
   // Q starts in touch with S, and no error of position is worth a correction.
   scene.positions[0] = {0.1, 0, 0};
   scene.velocities[0] = {-1, 0, 0};
-  Settings settings = tight(1e-3);
+  Settings settings = on(backend, tight(1e-3));
   settings.velocity_tolerance = 1e-10;
   settings.velocity_correction = true;
   Cloth cloth = cloth_of(scene, settings);
   const StepReport report = step(cloth, 1e-9);
   CHECK(report.iterations == 1);
   CHECK(report.velocity_iterations > 2);
-  CHECK(distance(cloth.velocity(0), {-1, 0, 0}) < 1e-8);
-  CHECK(length(cloth.velocity(1)) < 1e-8);
-  CHECK(length(cloth.velocity(2)) < 1e-8);
+  CHECK(distance(cloth.velocity(0), {-1, 0, 0}) < exactness(backend, 1e-8, 50));
+  CHECK(length(cloth.velocity(1)) < exactness(backend, 1e-8, 50));
+  CHECK(length(cloth.velocity(2)) < exactness(backend, 1e-8, 50));
 }
 
 TEST_CASE("particles outside the list of spheres do not collide among themselves") {
+  const Backend backend = each_backend();
   SceneDescription scene = sphere_and_particle(0.25, {0, 0, 0});
   scene.positions.push_back({0.3, 0, 0});
   scene.velocities.push_back({-5, 0, 0});
   scene.masses.push_back(1);
   scene.radii.push_back(0.1);
-  Cloth cloth = cloth_of(scene, tight(1e-12));
+  Cloth cloth = cloth_of(scene, on(backend, tight(1e-12)));
   step(cloth, 0.01);
   CHECK(distance(cloth.position(2), {0.25, 0, 0}) < 1e-15);
   CHECK(distance(cloth.velocity(1), {0, 0, 0}) == 0);
 }
 
 TEST_CASE("two fixed spheres may overlap") {
+  const Backend backend = each_backend();
   SceneDescription scene = sphere_and_particle(0.1, {0, 0, 0});
   scene.fixed = {0, 1};
   scene.spheres = {0, 1};
-  Cloth cloth = cloth_of(scene, {});
+  Cloth cloth = cloth_of(scene, on(backend));
   CHECK(step(cloth, 0.01).status == Status::converged);
   CHECK(cloth.max_penetration() == 0);
 }
 
 TEST_CASE("two free spheres that list each other are one pair") {
+  const Backend backend = each_backend();
   SceneDescription scene = sphere_and_particle(0.25, {-8, 0, 0});
   scene.spheres = {0, 1};
-  Cloth cloth = cloth_of(scene, tight(1e-12));
+  Cloth cloth = cloth_of(scene, on(backend, tight(1e-12)));
   CHECK(step(cloth, 0.01).contacts == 1);
-  CHECK(distance(cloth.velocity(0), {-3 / 4.0, 0, 0}) < 1e-9);
+  CHECK(distance(cloth.velocity(0), {-3 / 4.0, 0, 0}) < exactness(backend, 1e-9, 3));
 }
 
 /// Particles thrown from everywhere at a fixed and at a free sphere.
@@ -205,7 +209,7 @@ SceneDescription hail() {
 
 TEST_CASE("no step ends with more penetration than the tolerance") {
   const SceneDescription scene = hail();
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
     Settings settings = with({}, method);
     settings.contact_tolerance = 1e-6;

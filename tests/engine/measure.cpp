@@ -21,9 +21,10 @@ TEST_CASE("a model describes what it holds") {
 }
 
 TEST_CASE("an inert constraint is neither solved nor measured") {
+  const Backend backend = each_backend();
   SceneDescription scene = scene_of("hang", 5);
   scene.constraints.insert(scene.constraints.begin(), {0, 4, 7.0});
-  Cloth cloth = cloth_of(scene, {});
+  Cloth cloth = cloth_of(scene, on(backend));
   CHECK(cloth.strain().max < 1e-12);
   const StepReport report = step(cloth, 0.01);
   CHECK(report.status == Status::converged);
@@ -31,28 +32,31 @@ TEST_CASE("an inert constraint is neither solved nor measured") {
 }
 
 TEST_CASE("the worst constraint is named by its number in the description") {
+  const Backend backend = each_backend();
   SceneDescription scene = scene_of("hang", 5);
   scene.constraints.insert(scene.constraints.begin(), {0, 24, 5.0, ConstraintKind::rope});
   scene.constraints.insert(scene.constraints.begin() + 1, {0, 4, 7.0});
   scene.constraints[20].rest_length *= 2;
-  CHECK(cloth_of(scene, {}).strain().worst_constraint == 20);
-  CHECK(cloth_of(scene, {}).strain().max == doctest::Approx(0.5).epsilon(1e-12));
+  CHECK(cloth_of(scene, on(backend)).strain().worst_constraint == 20);
+  CHECK(cloth_of(scene, on(backend)).strain().max == doctest::Approx(0.5).epsilon(1e-12));
 }
 
 TEST_CASE("penetration is measured over all sphere pairs") {
+  const Backend backend = each_backend();
   SceneDescription scene = scene_of("hang_sphere", 5);
   scene.positions[12] = {0.5, -0.4, 0.5};
   scene.radii[12] = 0.01;
-  CHECK(cloth_of(scene, {}).max_penetration() == doctest::Approx(0.06).epsilon(1e-12));
+  CHECK(cloth_of(scene, on(backend)).max_penetration() == doctest::Approx(0.06).epsilon(1e-12));
   CHECK(max_penetration(scene, scene.positions) == doctest::Approx(0.06).epsilon(1e-12));
-  CHECK(cloth_of(scene_of("hang", 5), {}).max_penetration() == 0);
+  CHECK(cloth_of(scene_of("hang", 5), on(backend)).max_penetration() == 0);
 }
 
 TEST_CASE("a cloth holds memory only for what it runs") {
+  const Backend backend = each_backend();
   const SceneDescription scene = scene_of("hang", 20);
-  Settings lean;
+  Settings lean = on(backend);
   lean.anticipate = lean.skip = false;
-  Settings full;
+  Settings full = on(backend);
   full.velocity_correction = true;
   const std::size_t little = cloth_of(scene, lean).bytes();
   CHECK(little > 400 * 2 * 3 * sizeof(double));

@@ -48,7 +48,7 @@ Motion simulate(const SceneDescription& scene, const Settings& settings, int ste
 
 /// f(scene, settings) for every scene, directions, and velocity correction.
 template <class F>
-void for_every_setting(F f) {
+void for_every_setting(Backend backend, F f) {
   for (const Case& c : kCases) {
     const SceneDescription scene = scene_of(c.scene, c.size);
     for (const Directions directions : {Directions::each, Directions::frozen}) {
@@ -56,7 +56,7 @@ void for_every_setting(F f) {
         const std::string setting = std::string(c.scene) + ", " + std::string(name(directions)) +
                                     (velocity_correction ? ", velocity correction" : "");
         CAPTURE(setting);
-        Settings settings;
+        Settings settings = on(backend);
         settings.directions = directions;
         settings.velocity_correction = velocity_correction;
         f(scene, settings);
@@ -66,7 +66,7 @@ void for_every_setting(F f) {
 }
 
 TEST_CASE("skipping satisfied constraints changes no bit of 200 steps") {
-  for_every_setting([](const SceneDescription& scene, Settings settings) {
+  for_every_setting(each_backend(), [](const SceneDescription& scene, Settings settings) {
     for (const bool anticipate : {false, true}) {
       CAPTURE(anticipate);
       settings.anticipate = anticipate;
@@ -80,13 +80,15 @@ TEST_CASE("skipping satisfied constraints changes no bit of 200 steps") {
       CHECK(skipped.corrections == all.corrections);
       CHECK(skipped.iterations == all.iterations);
       CHECK(skipped.visits <= all.visits);
-      if (settings.directions == Directions::frozen) CHECK(skipped.visits < all.visits);
+      // So small a sheet is one chunk per colour on the simd backend: it may pass over nothing.
+      const bool scalar = settings.backend == Backend::reference;
+      if (scalar && settings.directions == Directions::frozen) CHECK(skipped.visits < all.visits);
     }
   });
 }
 
 TEST_CASE("anticipating errors changes none of 200 steps beyond rounding") {
-  for_every_setting([](const SceneDescription& scene, Settings settings) {
+  for_every_setting(Backend::reference, [](const SceneDescription& scene, Settings settings) {
     settings.anticipate = false;
     Cloth recomputed = cloth_of(scene, settings);
     settings.anticipate = true;
@@ -112,7 +114,7 @@ Motion simulate_twin(SceneDescription scene, const Settings& settings) {
 }
 
 TEST_CASE("anticipating errors does not change a run of 200 steps") {
-  for_every_setting([](const SceneDescription& scene, Settings settings) {
+  for_every_setting(Backend::reference, [](const SceneDescription& scene, Settings settings) {
     settings.anticipate = false;
     const Motion recomputed = simulate(scene, settings);
     const Motion twin = simulate_twin(scene, settings);
@@ -131,7 +133,7 @@ TEST_CASE("anticipating errors does not change a run of 200 steps") {
 TEST_CASE("every method ends every step with every true error within tolerance") {
   for (const Case& c : kCases) {
     const SceneDescription scene = scene_of(c.scene, c.size);
-    for (const Method& method : kMethods) {
+    for (const Method& method : kAllMethods) {
       CAPTURE(std::string(c.scene));
       CAPTURE(text(method));
       Settings settings = with({}, method);
@@ -152,15 +154,15 @@ TEST_CASE("at full size, at the paper's tolerances: skipping changes no bit" *
           doctest::test_suite("slow")) {
   for (const char* scene_name : {"hang", "hang_sphere"}) {
     for (const double tolerance : {0.1, 0.01, 1e-5}) {
-      for (std::size_t m = 0; m < kMethods.size(); m += 2) {
+      for (std::size_t m = 0; m < kAllMethods.size(); m += 2) {
         CAPTURE(std::string(scene_name));
         CAPTURE(tolerance);
-        CAPTURE(text(kMethods[m]));
+        CAPTURE(text(kAllMethods[m]));
         Settings settings;
         settings.tolerance = tolerance;
         const SceneDescription scene = scene_of(scene_name, 20);
-        const Motion all = simulate(scene, with(settings, kMethods[m]), 50);
-        const Motion skipped = simulate(scene, with(settings, kMethods[m + 1]), 50);
+        const Motion all = simulate(scene, with(settings, kAllMethods[m]), 50);
+        const Motion skipped = simulate(scene, with(settings, kAllMethods[m + 1]), 50);
         CHECK(skipped.hash == all.hash);
         CHECK(skipped.corrections == all.corrections);
         CHECK(max_strain(scene, skipped.positions) <= tolerance * (1 + 1e-9));
@@ -173,7 +175,7 @@ TEST_CASE("a chain whose end weighs as much as 10,000 links stays within toleran
           doctest::test_suite("slow")) {
   const auto scene = scenes::make("chain", {.size = 20, .end_mass = 1e4});
   REQUIRE(scene);
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
     const Motion motion = simulate(scene.value(), with({}, method), 10);
     CHECK(max_strain(scene.value(), motion.positions) <= 0.01 * (1 + 1e-9));
@@ -181,12 +183,13 @@ TEST_CASE("a chain whose end weighs as much as 10,000 links stays within toleran
 }
 
 TEST_CASE("renewed and frozen directions tend to the same motion as dt does to 0") {
+  const Backend backend = each_backend();
   const SceneDescription scene = scene_of("hang", 5);
   double before = 0;
   for (const int steps : {10, 20, 40, 80}) {
     std::vector<Vec3> ends[2];
     for (const Directions directions : {Directions::each, Directions::frozen}) {
-      Settings settings = tight(1e-10);
+      Settings settings = on(backend, tight(1e-10));
       settings.directions = directions;
       Cloth cloth = cloth_of(scene, settings);
       run(cloth, 0.2 / steps, steps);

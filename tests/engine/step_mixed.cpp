@@ -75,22 +75,23 @@ TEST_CASE("ropes, bars and contacts together: 4.2 and 4.3 change nothing") {
   const SceneDescription scene = mixed_scene();
   REQUIRE(describe(*model_of(scene)).ropes > 50);
   for (const bool velocity_correction : {false, true}) {
-    for (std::size_t base = 0; base < kMethods.size(); base += 4) {
+    for (std::size_t base = 0; base < kAllMethods.size(); base += 4) {
       Settings settings;
       settings.tolerance = 1e-4;
       settings.velocity_correction = velocity_correction;
       Run runs[4];
       for (std::size_t m = 0; m < 4; ++m) {
-        CAPTURE(text(kMethods[base + m]));
+        CAPTURE(text(kAllMethods[base + m]));
         CAPTURE(velocity_correction);
-        runs[m] = simulate(scene, with(settings, kMethods[base + m]), 100);
-        CHECK(runs[m].most_contacts > 5);
+        runs[m] = simulate(scene, with(settings, kAllMethods[base + m]), 70);
+        CHECK(runs[m].most_contacts > 3);
         CHECK(largest_distance(runs[m].positions, runs[0].positions) < 1e-9);
       }
       CHECK(runs[1].hash == runs[0].hash);
       CHECK(runs[3].hash == runs[2].hash);
       CHECK(runs[1].visits < runs[0].visits);
       CHECK(runs[3].visits < runs[2].visits);
+      if (kAllMethods[base].backend == Backend::simd) CHECK(runs[2].hash == runs[0].hash);
     }
   }
 }
@@ -98,12 +99,14 @@ TEST_CASE("ropes, bars and contacts together: 4.2 and 4.3 change nothing") {
 TEST_CASE("ropes, bars and contacts together: all eight methods tend to one motion") {
   const SceneDescription scene = mixed_scene();
   std::vector<Vec3> first;
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
+    // On the simd backend methods differ in what they pass over, not in what they do.
+    if (method.backend == Backend::simd && !(method.anticipate && method.skip)) continue;
     CAPTURE(text(method));
     Settings settings = with({}, method);
     settings.tolerance = 1e-5;
     settings.contact_tolerance = 1e-6;
-    const Run run = simulate(scene, settings, 25);
+    const Run run = simulate(scene, settings, 12);
     if (first.empty()) first = run.positions;
     CHECK(largest_distance(run.positions, first) < 1e-3);
   }

@@ -73,7 +73,7 @@ TEST_CASE("renumbered particles make the same motion of contacts that push one a
   const std::vector<std::uint32_t> to = random.permutation(scene.positions.size());
   for (const bool anticipate : {false, true}) {
     CAPTURE(anticipate);
-    Settings settings = tight(1e-12);
+    Settings settings = on(Backend::reference, tight(1e-12));
     settings.anticipate = anticipate;
     Cloth plain = cloth_of(scene, settings);
     Cloth permuted = cloth_of(renumbered(scene, to), settings);
@@ -94,7 +94,8 @@ TEST_CASE("what a step converges to does not depend on the order of the constrai
   shuffle_constraints(shuffled, random);
   for (const bool anticipate : {false, true}) {
     CAPTURE(anticipate);
-    Settings settings = tight(1e-13);
+    Settings settings = on(Backend::reference, tight(1e-13));
+    settings.renew_after = 0;  // else the order decides how far the first directions lead
     settings.anticipate = anticipate;
     Cloth plain = cloth_of(scene, settings);
     Cloth other = cloth_of(shuffled, settings);

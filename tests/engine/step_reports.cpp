@@ -27,11 +27,12 @@ void check_strain(const SceneDescription& scene, const Cloth& cloth, double max,
 }
 
 TEST_CASE("the reported strain is that of the positions one can read") {
+  const Backend backend = each_backend();
   for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners"}) {
     CAPTURE(std::string(name));
     const SceneDescription scene = scene_of(name, 9);
     for (const int iterations : {0, 2}) {
-      Settings settings;
+      Settings settings = on(backend);
       settings.iterations = iterations;
       Cloth cloth = cloth_of(scene, settings);
       for (int k = 0; k < 60; ++k) {
@@ -45,7 +46,8 @@ TEST_CASE("the reported strain is that of the positions one can read") {
 }
 
 TEST_CASE("a step out of reach of its tolerance reports the strain that is left") {
-  Settings settings = tight(1e-9);
+  const Backend backend = each_backend();
+  Settings settings = on(backend, tight(1e-9));
   settings.max_iterations = 2;
   const SceneDescription scene = scene_of("hang", 9);
   Cloth cloth = cloth_of(scene, settings);
@@ -55,7 +57,7 @@ TEST_CASE("a step out of reach of its tolerance reports the strain that is left"
 }
 
 TEST_CASE("counts stand in a sane relation") {
-  for (const Method& method : kMethods) {
+  for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
     const SceneDescription scene = scene_of("hang", 9);
     const auto constraints = static_cast<std::int64_t>(scene.constraints.size());
@@ -78,16 +80,17 @@ TEST_CASE("counts stand in a sane relation") {
 }
 
 TEST_CASE("only the stages that a scene needs take time") {
+  const Backend backend = each_backend();
   const auto seconds = [](const StepReport& report, Stage stage) {
     return report.stage_seconds[static_cast<std::size_t>(stage)];
   };
-  Cloth plain = cloth_of(scene_of("hang", 9), {});
+  Cloth plain = cloth_of(scene_of("hang", 9), on(backend));
   const StepReport lean = step(plain, 0.01);
   CHECK(seconds(lean, Stage::find_contacts) == 0);
   CHECK(seconds(lean, Stage::correct_velocities) == 0);
   CHECK(seconds(lean, Stage::solve_positions) > 0);
 
-  Settings settings;
+  Settings settings = on(backend);
   settings.velocity_correction = true;
   Cloth full = cloth_of(scene_of("hang_sphere", 9), settings);
   const StepReport report = step(full, 0.01);
@@ -95,10 +98,11 @@ TEST_CASE("only the stages that a scene needs take time") {
 }
 
 TEST_CASE("a scene without constraints converges at once and names no worst constraint") {
+  const Backend backend = each_backend();
   SceneDescription scene;
   scene.positions = {{0, 0, 0}};
   scene.masses = {1};
-  Cloth cloth = cloth_of(scene, {});
+  Cloth cloth = cloth_of(scene, on(backend));
   const StepReport report = step(cloth, 0.01);
   CHECK(report.status == Status::converged);
   CHECK(report.worst_constraint == kNoIndex);

@@ -10,10 +10,11 @@ namespace weft::test {
 namespace {
 
 TEST_CASE("cloths of one model, run in two threads at once, agree bit for bit") {
+  const Backend backend = each_backend();
   for (const char* name : {"hang", "sphere_drop"}) {
     CAPTURE(std::string(name));
     const auto model = model_of(scene_of(name, 10));
-    Settings settings;
+    Settings settings = on(backend);
     settings.velocity_correction = true;
     auto alone = Cloth::create(model, settings);
     auto left = Cloth::create(model, settings);
@@ -33,8 +34,9 @@ TEST_CASE("cloths of one model, run in two threads at once, agree bit for bit") 
 }
 
 TEST_CASE("a cloth keeps its model alive") {
+  const Backend backend = each_backend();
   auto model = model_of(scene_of("hang", 5));
-  auto cloth = Cloth::create(model, {});
+  auto cloth = Cloth::create(model, on(backend));
   REQUIRE(cloth);
   model.reset();
   CHECK(step(cloth.value(), 0.01).status == Status::converged);

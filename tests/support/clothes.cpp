@@ -68,15 +68,28 @@ SceneDescription free_bar(double mass_a, double mass_b) {
   return scene;
 }
 
+Backend each_backend() {
+  Backend backend = Backend::reference;
+  SUBCASE("on the reference backend") { backend = Backend::reference; }
+  SUBCASE("on the simd backend") { backend = Backend::simd; }
+  return backend;
+}
+
+Settings on(Backend backend, Settings settings) {
+  settings.backend = backend;
+  return settings;
+}
+
 std::string text(const Method& method) {
-  return std::string(name(method.directions)) + (method.anticipate ? ", anticipate" : "") +
-         (method.skip ? ", skip" : "");
+  return std::string(name(method.backend)) + ", " + std::string(name(method.directions)) +
+         (method.anticipate ? ", anticipate" : "") + (method.skip ? ", skip" : "");
 }
 
 Settings with(Settings settings, const Method& method) {
   settings.directions = method.directions;
   settings.anticipate = method.anticipate;
   settings.skip = method.skip;
+  settings.backend = method.backend;
   return settings;
 }
 
@@ -86,6 +99,10 @@ Settings tight(double tolerance) {
   settings.contact_tolerance = tolerance;
   settings.velocity_tolerance = tolerance;
   return settings;
+}
+
+double exactness(Backend backend, double exact, double corrected) {
+  return backend == Backend::reference ? exact : exact + corrected * 0x1p-22;
 }
 
 }  // namespace weft::test

@@ -26,13 +26,20 @@ double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
 /// Two free particles a bar of length 1 apart along x, without gravity.
 SceneDescription free_bar(double mass_a, double mass_b);
 
-/// One of the paper's ways to compute a step.
+inline constexpr std::array kBackends{Backend::reference, Backend::simd};
+Settings on(Backend backend, Settings settings = {});
+/// What stands after it in a test case runs twice: once for each backend.
+Backend each_backend();
+
+/// One of the paper's ways to compute a step, and on what.
 struct Method {
   Directions directions;
   bool anticipate;
   bool skip;
+  Backend backend = Backend::reference;
 };
-/// All eight; a method's neighbour at index ^ 1 differs in skip alone, at index ^ 2 in anticipate.
+/// All eight, on the reference; a method's neighbour at index ^ 1 differs in skip alone, at index ^
+/// 2 in anticipate.
 inline constexpr std::array<Method, 8> kMethods{{
     {Directions::each, false, false},
     {Directions::each, false, true},
@@ -43,9 +50,24 @@ inline constexpr std::array<Method, 8> kMethods{{
     {Directions::frozen, true, false},
     {Directions::frozen, true, true},
 }};
+consteval std::array<Method, 16> on_both_backends() {
+  std::array<Method, 16> all{};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i] = kMethods[i % 8];
+    if (i >= 8) all[i].backend = Backend::simd;
+  }
+  return all;
+}
+/// The eight on the reference, then the eight on the simd backend.
+inline constexpr std::array<Method, 16> kAllMethods = on_both_backends();
 std::string text(const Method& method);
 Settings with(Settings settings, const Method& method);
 /// Every constraint, contact and velocity to the same small error.
 Settings tight(double tolerance);
+
+/// How exactly an outcome is known beside its tolerance. The reference rounds in double: `exact`.
+/// The simd backend shares what it takes from a constraint, `corrected` in all, out between the two
+/// ends by factors and along directions rounded to float, a few roundings of 2^-24 each.
+double exactness(Backend backend, double exact, double corrected);
 
 }  // namespace weft::test
