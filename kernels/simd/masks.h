@@ -51,6 +51,7 @@ std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_
     if (!any_marked(at_a, at_b, bit)) continue;
     visits += kFloats;
     const Part p = part(r, c);
+    if (r.from_memory && p.lane == 0) fetch_ahead(p.block);
     const FloatVector n = p.n();
     FloatVector ua = load(r.u, a), ub = load(r.u, b);
     const Corrected corrected = correct_distances(r, c, errors(p, n, ua - ub), threshold);

@@ -122,7 +122,7 @@ struct PlanarLanes {
   }
 };
 
-template <class Lanes, class Correct>
+template <class Lanes, bool kFromMemory, class Correct>
 [[gnu::always_inline]] inline std::uint32_t relax_scattered(const Relaxation& r,
                                                             std::uint32_t first, std::uint32_t last,
                                                             Correct&& correct) {
@@ -131,6 +131,7 @@ template <class Lanes, class Correct>
   Lanes at_a, at_b;
   for (std::size_t c = first; c < last; c += kFloats) {
     const Part p = part(r, c);
+    if (kFromMemory && p.lane == 0) fetch_ahead(p.block);
     const FloatVector n = p.n();
     FloatVector ua = at_a.get(r.u, r.a + c), ub = at_b.get(r.u, r.b + c);
     const Corrected corrected = correct(r, c, errors(p, n, ua - ub), threshold);
@@ -142,6 +143,16 @@ template <class Lanes, class Correct>
     at_b.put(r.u, r.b + c, ub);
   }
   return corrections;
+}
+
+template <class Correct>
+[[gnu::always_inline]] inline std::uint32_t relax_any_scattered(const Relaxation& r,
+                                                                std::uint32_t first,
+                                                                std::uint32_t last,
+                                                                Correct&& correct) {
+  if (!r.u.in_quads()) return relax_scattered<PlanarLanes, false>(r, first, last, correct);
+  if (r.from_memory) return relax_scattered<QuadLanes, true>(r, first, last, correct);
+  return relax_scattered<QuadLanes, false>(r, first, last, correct);
 }
 
 /// One constraint after the other: each sees what the one before it did.
@@ -198,15 +209,14 @@ void relax_runs(const Relaxation& r, const Run* runs, std::size_t count, const s
   }
 }
 std::uint32_t relax_singles(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
-  if (r.u.in_quads()) return relax_scattered<QuadLanes>(r, first, last, correct_distances);
-  return relax_scattered<PlanarLanes>(r, first, last, correct_distances);
+  return relax_any_scattered(r, first, last, correct_distances);
 }
 std::uint32_t relax_rope_run(const Relaxation& r, const Run& run) {
+  if (r.from_memory) return relax_contiguous<true>(r, run, correct_ropes);
   return relax_contiguous<false>(r, run, correct_ropes);
 }
 std::uint32_t relax_rope_singles(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
-  if (r.u.in_quads()) return relax_scattered<QuadLanes>(r, first, last, correct_ropes);
-  return relax_scattered<PlanarLanes>(r, first, last, correct_ropes);
+  return relax_any_scattered(r, first, last, correct_ropes);
 }
 
 }  // namespace
