@@ -10,6 +10,10 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   velocity = model->initial_velocity;
   solved.resize(model->slots());
   next_velocity.resize(model->slots());
+  if (settings.substeps > 1) {
+    start_position.resize(model->slots());
+    start_velocity.resize(model->slots());
+  }
   contacts = make_contact_store(*model);
   if (settings.backend == Backend::reference) {
     predicted.resize(model->slots());
@@ -21,8 +25,8 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
 
 std::size_t State::bytes() const {
   std::size_t sum = 0;
-  for (const kernels::Vectors* v :
-       {&position, &velocity, &force, &solved, &next_velocity, &predicted}) {
+  for (const kernels::Vectors* v : {&position, &velocity, &force, &solved, &next_velocity,
+                                    &start_position, &start_velocity, &predicted}) {
     sum += v->bytes();
   }
   const auto list = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };

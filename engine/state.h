@@ -7,8 +7,8 @@
 ///   commit              next_velocity
 ///   correct_velocities  next_velocity
 ///   report              nothing
-/// position and velocity change only when the whole step is known to be finite (accept in
-/// step.cpp).
+/// position and velocity change only when a substep is known to be finite (accept in step.cpp), and
+/// are taken back when a later substep of the same step is not.
 #pragma once
 
 #include <weft/weft.h>
@@ -32,6 +32,7 @@ struct State {
   kernels::Vectors force;   // empty: none
   kernels::Vectors solved;  // where the position loop works; the next positions
   kernels::Vectors next_velocity;
+  kernels::Vectors start_position, start_velocity;  // of the step; with substeps only
   ContactStore contacts;
 
   // The one of the chosen backend.

@@ -20,7 +20,7 @@ void timed(StepReport& report, Stage stage, Work&& work) {
   const auto start = Clock::now();
   work();
   const std::chrono::duration<double> seconds = Clock::now() - start;
-  report.stage_seconds[static_cast<std::size_t>(stage)] = seconds.count();
+  report.stage_seconds[static_cast<std::size_t>(stage)] += seconds.count();
 }
 
 /// The worse of two: the enumerators are in order of severity.
@@ -85,13 +85,14 @@ void commit(State& s, double h, Team& team) {
 }
 
 void solve_positions(State& s, double h, StepReport& report, Team& team) {
+  int left = s.settings.max_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
-    const int left = s.settings.max_iterations - report.iterations;
     const auto result =
         s.reference ? s.reference->solve_positions(s.solved.view(), h, s.contacts, round == 0, left)
                     : s.simd->solve_positions(s.solved.view(), s.contacts, round == 0, left, team);
     add(report, result);
     report.iterations += result.iterations;
+    left -= result.iterations;
     report.direction_updates += result.direction_updates;
     const bool again = s.model->has_contacts() && result.converged &&
                        add_missed_contacts(*s.model, *s.kernels, s.solved.view(),
@@ -140,11 +141,20 @@ int threads_worth_having(const State& s) {
   return static_cast<int>(std::min(most, wanted));
 }
 
-}  // namespace
+/// accept() makes a transaction of one substep; several must remember where they began.
+void begin_transaction(State& s) {
+  if (s.settings.substeps == 1) return;
+  s.start_position = s.position;
+  s.start_velocity = s.velocity;
+}
 
-StepReport step(State& s, double h) {
-  StepReport report;
-  Team team(threads_worth_having(s));
+void roll_back(State& s, int accepted_substeps) {
+  if (accepted_substeps == 0) return;
+  std::swap(s.position, s.start_position);
+  std::swap(s.velocity, s.start_velocity);
+}
+
+void substep(State& s, double h, StepReport& report, Team& team) {
   timed(report, Stage::predict, [&] { predict(s, h, team); });
   if (s.model->has_contacts()) {
     timed(report, Stage::find_contacts,
@@ -156,7 +166,22 @@ StepReport step(State& s, double h) {
     timed(report, Stage::correct_velocities, [&] { correct_velocities(s, report, team); });
   }
   if (s.settings.iterations > 0) report.status = Status::fixed_iterations;
-  if (!accept(s)) report.status = Status::non_finite;
+}
+
+}  // namespace
+
+StepReport step(State& s, double dt) {
+  StepReport report;
+  Team team(threads_worth_having(s));
+  const double h = dt / s.settings.substeps;
+  begin_transaction(s);
+  for (int k = 0; k < s.settings.substeps; ++k) {
+    substep(s, h, report, team);
+    if (accept(s)) continue;
+    roll_back(s, k);
+    report.status = Status::non_finite;
+    break;
+  }
   timed(report, Stage::report, [&] { report_errors(s, report, team); });
   return report;
 }

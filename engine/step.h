@@ -1,4 +1,4 @@
-/// One time step, from top to bottom.
+/// One time step, from top to bottom: substep() in step.cpp is the list of its stages.
 #pragma once
 
 #include <weft/weft.h>
@@ -7,7 +7,7 @@
 
 namespace weft {
 
-/// Advances the state by h > 0, or leaves it as it was (Status::non_finite).
-StepReport step(State& state, double h);
+/// Advances the state by dt > 0, or leaves it as it was (Status::non_finite).
+StepReport step(State& state, double dt);
 
 }  // namespace weft

@@ -174,6 +174,7 @@ Result<void> validate(const SceneDescription& d) {
 
 Result<void> validate(const Settings& s) {
   if (auto r = validate_positive("tolerance", s.tolerance); !r) return r;
+  if (auto r = validate_count("substeps", s.substeps, 1); !r) return r;
   if (auto r = validate_count("iterations", s.iterations, 0); !r) return r;
   if (auto r = validate_count("renew_after", s.renew_after, 0); !r) return r;
   if (auto r = validate_count("max_iterations", s.max_iterations, 1); !r) return r;

@@ -146,6 +146,9 @@ inline constexpr int kMaxThreads = 256;
 /// How a cloth is solved. The defaults converge to 1 % with all of the paper's optimisations.
 struct Settings {
   double tolerance = 0.01;  ///< strain, | |a-b| - rest | / rest, that every step must reach; > 0
+  /// A step of dt is done as so many steps of dt / substeps, each to the tolerances; >= 1. Fine
+  /// meshes want small steps. Iterations, and their bounds, are those of one substep.
+  int substeps = 1;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per step whatever the error, nothing
   /// skipped, frozen directions renewed once per step.
   int iterations = 0;
@@ -198,7 +201,8 @@ std::string_view name(Stage);
 
 inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
-/// What one step did and what it reached.
+/// What one step did and what it reached. Counts and seconds are sums over its substeps, the status
+/// is the worst of them, the errors are those at the end.
 struct StepReport {
   Status status = Status::converged;
   int iterations = 0;            ///< passes over the position constraints
@@ -236,7 +240,8 @@ class Cloth {
   Cloth& operator=(Cloth&&) noexcept;
   ~Cloth();
 
-  /// Advances by dt seconds (finite, > 0). An error means that dt was refused.
+  /// Advances by dt seconds (finite, > 0), all substeps of it or none. An error means that dt was
+  /// refused.
   Result<StepReport> step(double dt);
 
   std::size_t particle_count() const;

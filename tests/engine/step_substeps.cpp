@@ -1,0 +1,126 @@
+/// Substeps: many small steps that answer as one.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+Settings in_substeps(Settings settings, int substeps) {
+  settings.substeps = substeps;
+  return settings;
+}
+
+void add(StepReport& sum, const StepReport& report) {
+  sum.status = std::max(sum.status, report.status);
+  sum.iterations += report.iterations;
+  sum.direction_updates += report.direction_updates;
+  sum.velocity_iterations += report.velocity_iterations;
+  sum.visits += report.visits;
+  sum.corrections += report.corrections;
+  sum.contacts = report.contacts;
+  sum.max_strain = report.max_strain;
+  sum.rms_strain = report.rms_strain;
+  sum.max_penetration = report.max_penetration;
+}
+
+void check_equal(const StepReport& report, const StepReport& expected) {
+  CHECK(report.status == expected.status);
+  CHECK(report.iterations == expected.iterations);
+  CHECK(report.direction_updates == expected.direction_updates);
+  CHECK(report.velocity_iterations == expected.velocity_iterations);
+  CHECK(report.visits == expected.visits);
+  CHECK(report.corrections == expected.corrections);
+  CHECK(report.contacts == expected.contacts);
+  CHECK(report.max_strain == expected.max_strain);
+  CHECK(report.rms_strain == expected.rms_strain);
+  CHECK(report.max_penetration == expected.max_penetration);
+}
+
+TEST_CASE("a step in substeps is so many small steps, and reports their sum") {
+  for (const Backend backend : kBackends) {
+    for (const char* name : {"hang", "hang_sphere", "sphere_drop"}) {
+      for (const bool velocity_correction : {false, true}) {
+        CAPTURE(std::string(weft::name(backend)));
+        CAPTURE(std::string(name));
+        CAPTURE(velocity_correction);
+        Settings settings = on(backend);
+        settings.velocity_correction = velocity_correction;
+        const SceneDescription scene = scene_of(name, 7);
+        Cloth whole = cloth_of(scene, in_substeps(settings, 3));
+        Cloth small = cloth_of(scene, settings);
+        for (int frame = 0; frame < 40; ++frame) {
+          const StepReport report = step(whole, 0.01);
+          StepReport sum;
+          for (int k = 0; k < 3; ++k) add(sum, step(small, 0.01 / 3));
+          check_equal(report, sum);
+          REQUIRE(whole.state_hash() == small.state_hash());
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("the status is the worst of the substeps") {
+  Settings settings = on(each_backend(), tight(1e-9));
+  settings.max_iterations = 2;
+  Cloth cloth = cloth_of(scene_of("hang", 7), in_substeps(settings, 4));
+  const StepReport report = step(cloth, 0.01);
+  CHECK(report.status == Status::iteration_limit);
+  CHECK(report.iterations == 8);
+}
+
+TEST_CASE("a fixed number of iterations is that of each substep") {
+  Settings settings = on(each_backend());
+  settings.iterations = 5;
+  Cloth cloth = cloth_of(scene_of("hang", 7), in_substeps(settings, 4));
+  const StepReport report = step(cloth, 0.01);
+  CHECK(report.status == Status::fixed_iterations);
+  CHECK(report.iterations == 20);
+  CHECK(report.direction_updates == 4);
+}
+
+// Flying at 1e153 m/s for 8 s: the squared lengths overflow near 4e153 m, four substeps in.
+SceneDescription on_the_way_to_overflow() {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 2, 3}};
+  scene.velocities = {{1e153, 0, 0}, {1, 0, 0}};
+  scene.masses = {1, 1};
+  return scene;
+}
+
+TEST_CASE("a later substep that overflows takes the whole step back") {
+  const Backend backend = each_backend();
+  {
+    Cloth small = cloth_of(on_the_way_to_overflow(), on(backend));
+    REQUIRE(step(small, 1).status == Status::converged);
+    REQUIRE(step(small, 1).status == Status::converged);
+  }
+  Cloth cloth = cloth_of(on_the_way_to_overflow(), in_substeps(on(backend), 8));
+  const std::uint64_t before = cloth.state_hash();
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    CHECK(step(cloth, 8).status == Status::non_finite);
+    CHECK(cloth.state_hash() == before);
+  }
+  REQUIRE(cloth.write_velocities(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}));
+  CHECK(step(cloth, 8).status == Status::converged);
+  CHECK(distance(cloth.position(1), {9, 2 - 320, 3}) < 1e-9);
+}
+
+TEST_CASE("the number of substeps must be at least 1") {
+  for (const int substeps : {0, -2}) {
+    const auto cloth =
+        Cloth::create(model_of(scene_of("hang", 4)), in_substeps(Settings{}, substeps));
+    REQUIRE_FALSE(cloth);
+    CHECK(cloth.error().find("substeps") != std::string::npos);
+    CHECK(cloth.error().find(std::to_string(substeps)) != std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace weft::test
