@@ -1,16 +1,31 @@
 /// Every instruction set that kernels can be tested on here.
 #pragma once
 
+#include <doctest/doctest.h>
+
+#include <string>
 #include <vector>
 
 #include "kernels/simd/isa.h"
 
 namespace weft::test {
 
+inline constexpr simd::Isa kIsas[]{simd::Isa::sse2, simd::Isa::avx2, simd::Isa::avx512};
+
+inline std::string text(simd::Isa isa) {
+  if (isa == simd::Isa::avx512) return "avx512";
+  return isa == simd::Isa::avx2 ? "avx2" : "sse2";
+}
+
+/// Says which it leaves out.
 inline std::vector<simd::Isa> supported_isas() {
   std::vector<simd::Isa> isas;
-  for (const simd::Isa isa : {simd::Isa::sse2, simd::Isa::avx2, simd::Isa::avx512}) {
-    if (simd::supported(isa)) isas.push_back(isa);
+  for (const simd::Isa isa : kIsas) {
+    if (simd::supported(isa)) {
+      isas.push_back(isa);
+    } else {
+      MESSAGE("this machine lacks ", text(isa), ": not tested");
+    }
   }
   return isas;
 }

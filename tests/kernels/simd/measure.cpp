@@ -1,0 +1,76 @@
+/// Strain against plain scalar code, and against its definition.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "tests/support/kernel_data.h"
+
+namespace weft::test {
+namespace {
+
+using kernels::Vector;
+
+double strain(const Rounding& rounding, const KernelData& data, std::uint32_t c, Vector d,
+              bool rope) {
+  if (data.is_padding(c)) return 0;
+  const double rest = data.rest_length[c];
+  const double stretch = (std::sqrt(rounding.dot(d, d)) - rest) / rest;
+  return rope ? std::max(stretch, 0.0) : std::abs(stretch);
+}
+
+/// Sixteen columns, whatever the width of a vector, then the columns in order.
+simd::StrainSums expected_sums(const Rounding& rounding, const KernelData& data, bool singles,
+                               bool rope) {
+  double squares[kLanes] = {};
+  simd::StrainSums sums;
+  for (std::uint32_t c = data.first; c < data.last; ++c) {
+    const std::uint32_t k = c - data.first;
+    const std::uint32_t a = singles ? data.a[c] : data.run.a + k;
+    const std::uint32_t b = singles ? data.b[c] : data.run.b + k;
+    const double s = strain(rounding, data, c, data.position[a] - data.position[b], rope);
+    sums.largest = std::max(sums.largest, s);
+    squares[k % kLanes] = rounding.fused(s, s, squares[k % kLanes]);
+  }
+  for (const double column : squares) sums.squares += column;
+  return sums;
+}
+
+TEST_CASE("strains are those of the positions, ropes' and padding's left out where they should") {
+  for (const simd::Isa isa : supported_isas()) {
+    for (const std::uint32_t length : kLengths) {
+      for (const bool singles : {false, true}) {
+        for (const bool rope : {false, true}) {
+          CAPTURE(text(isa));
+          CAPTURE(length);
+          CAPTURE(singles);
+          CAPTURE(rope);
+          KernelData data(length, length + 9);
+          const KernelData before = data;
+          const simd::Table& table = simd::table(isa);
+          const simd::StrainSums sums =
+              singles ? table.strain_singles(data.geometry(), data.first, data.last, rope)
+                      : table.strain_run(data.geometry(), data.run, rope);
+          const simd::StrainSums wanted = expected_sums(Rounding(isa), data, singles, rope);
+          CHECK(sums.largest == wanted.largest);
+          CHECK(sums.squares == wanted.squares);
+          CHECK(sums.largest > 0);
+          CHECK(same(data, before));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a batch of padding has no strain") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    KernelData data(64, 1);
+    for (std::uint32_t c = data.first; c < data.last; ++c) data.make_padding(c);
+    const simd::StrainSums run = simd::table(isa).strain_run(data.geometry(), data.run, false);
+    CHECK(run.largest == 0);
+    CHECK(run.squares == 0);
+  }
+}
+
+}  // namespace
+}  // namespace weft::test
