@@ -31,7 +31,8 @@
 
 namespace weft::reference {
 
-template <bool kSkip, Directions kDirections>
+/// kContacts: whether there are any; asking at every correction costs a twentieth.
+template <bool kSkip, Directions kDirections, bool kContacts>
 class AnticipatedLoop {
  public:
   AnticipatedLoop(const Relaxation& r, const Topology& t, const ContactLists& contacts,
@@ -112,7 +113,7 @@ class AnticipatedLoop {
       remind(c);
     }
     push_row(c, change);
-    if (contacts_.first != nullptr) {
+    if constexpr (kContacts) {
       push_contacts(c, r_.a[c], -change);
       push_contacts(c, r_.b[c], change);
     }
@@ -179,11 +180,11 @@ class AnticipatedLoop {
     for (std::size_t k = t_.adjacent_begin[p]; k < t_.adjacent_begin[p + 1]; ++k) {
       push(t_.adjacent_constraint[k], p, d);
     }
-    push_contacts(c, p, impulse);
+    if constexpr (kContacts) push_contacts(c, p, impulse);
   }
 
   void push_contacts(std::size_t c, std::size_t p, double impulse) {
-    if (contacts_.first == nullptr || contacts_.first[p] == kNoContact) return;
+    if (contacts_.first[p] == kNoContact) return;
     const Vector d = (r_.inverse_mass[p] * impulse) * r_.n[c];
     for (auto k = contacts_.first[p]; k != kNoContact; k = contacts_.next[k]) {
       push(r_.pulling + k, p, d);

@@ -12,16 +12,21 @@ LoopResult run(Loop&& loop, const Method& method) {
   return kernels::iterate(loop, kDirections, method.limits);
 }
 
+template <bool kSkip, Directions kDirections>
+LoopResult anticipate(const Relaxation& r, const Topology& t, const ContactLists& c,
+                      const Workspace& w, const Method& method) {
+  if (c.first != nullptr) {
+    return run<kDirections>(AnticipatedLoop<kSkip, kDirections, true>(r, t, c, w), method);
+  }
+  return run<kDirections>(AnticipatedLoop<kSkip, kDirections, false>(r, t, c, w), method);
+}
+
 template <Directions kDirections>
 LoopResult relax(const Relaxation& r, const Topology& t, const ContactLists& c, const Workspace& w,
                  const Method& method) {
   const bool skip = method.skip && method.limits.fixed_iterations == 0;
-  if (method.anticipate && skip) {
-    return run<kDirections>(AnticipatedLoop<true, kDirections>(r, t, c, w), method);
-  }
-  if (method.anticipate) {
-    return run<kDirections>(AnticipatedLoop<false, kDirections>(r, t, c, w), method);
-  }
+  if (method.anticipate && skip) return anticipate<true, kDirections>(r, t, c, w, method);
+  if (method.anticipate) return anticipate<false, kDirections>(r, t, c, w, method);
   if (skip) return run<kDirections>(MaskedLoop<kDirections>(r, t, w), method);
   return run<kDirections>(DirectLoop<kDirections>(r), method);
 }
