@@ -6,8 +6,6 @@
 namespace weft::tools {
 namespace {
 
-constexpr int kSubsteps = 1;
-
 double mean(std::int64_t total, int frames) {
   return frames > 0 ? static_cast<double>(total) / frames : 0;
 }
@@ -84,7 +82,7 @@ Json to_json(const RunReport& report) {
       {"dt", report.plan.dt},
       {"steps", report.plan.steps},
       {"frames", summary.frames},
-      {"substeps", kSubsteps},
+      {"substeps", settings.substeps},
       {"tolerance", settings.tolerance},
       {"status", name(summary.status)},
       {"ms_per_frame", 1e3 * summary.seconds_per_frame()},
@@ -122,8 +120,10 @@ std::string to_table(const RunReport& report) {
                   summary.model.particles, summary.model.constraints, summary.model.spheres));
   row("solver", fmt::format("{}, scheme {}, backend {}, {}", name(settings.solver),
                             name(settings.scheme), name(settings.backend), goal_text(settings)));
-  row("frames",
-      fmt::format("{} of {} s, status {}", summary.frames, report.plan.dt, name(summary.status)));
+  const auto substeps =
+      settings.substeps > 1 ? fmt::format(" in {} substeps each", settings.substeps) : "";
+  row("frames", fmt::format("{} of {} s{}, status {}", summary.frames, report.plan.dt, substeps,
+                            name(summary.status)));
   row("time", fmt::format("{:.4g} ms per frame, {:.3g} times real time, at max strain {}",
                           1e3 * summary.seconds_per_frame(), real_time_factor(report),
                           percent(summary.max_strain)));

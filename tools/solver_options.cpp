@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <limits>
 
 #include "tools/parse.h"
 
@@ -62,16 +63,15 @@ Result<void> choose_tolerance(const std::optional<std::string>& text, double& fi
   return {};
 }
 
-/// A count of which only 1 is available yet.
-Result<void> check_one(std::string_view option, const std::optional<std::string>& text,
-                       bool accepts_auto) {
+Result<void> choose_substeps(const std::optional<std::string>& text, int& field) {
   if (!text) return {};
+  if (text == "auto") return Error{"--substeps auto: not available yet"};
   const auto count = parse_count(*text);
-  if (count == 1) return {};
-  if (count > 1 || (accepts_auto && text == "auto")) {
-    return Error{fmt::format("{} {}: not available yet", option, *text)};
+  if (!count || *count < 1 || *count > std::numeric_limits<int>::max()) {
+    return Error{fmt::format("--substeps: '{}' is not a whole number above 0", *text)};
   }
-  return Error{fmt::format("{}: '{}' is not a whole number above 0", option, *text)};
+  field = static_cast<int>(*count);
+  return {};
 }
 
 }  // namespace
@@ -109,7 +109,8 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
                   "sse2, avx2, avx512 or auto (default: WEFT_ISA, else the best there is)");
   verb.add_option("--threads", settings.threads,
                   "most threads of a step (default 0: one for each processor)");
-  verb.add_option("--substeps", options.substeps, "1");
+  verb.add_option("--substeps", options.substeps,
+                  "steps that a frame is done in, each to the tolerances (default 1)");
 }
 
 Result<Settings> settings_of(const SolverOptions& options) {
@@ -125,7 +126,7 @@ Result<Settings> settings_of(const SolverOptions& options) {
                     settings.velocity_correction),
       choose("--backend", options.backend, kBackends, settings.backend),
       choose("--isa", options.isa, kIsas, settings.isa),
-      check_one("--substeps", options.substeps, true),
+      choose_substeps(options.substeps, settings.substeps),
   };
   for (const Result<void>& check : checks) {
     if (!check) return Error{check.error()};

@@ -105,6 +105,9 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
       {"run hang --repeat 0", "--repeat: 0"},
       {"run hang --tolerance 0%", "--tolerance: '0%'"},
       {"run hang --iterations -1", "iterations"},
+      {"run hang --substeps 0", "--substeps: '0'"},
+      {"run hang --substeps 1.5", "--substeps: '1.5'"},
+      {"run hang --substeps 9999999999", "--substeps: '9999999999'"},
       {"run hang --skip maybe", "--skip: 'maybe'"},
       {"run hang --solver magic", "--solver: 'magic'"},
       {"run hang --pin top", "--pin"},
@@ -129,9 +132,8 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
 
 TEST_CASE("what is not available yet says so") {
   const TemporaryFolder folder;
-  for (const std::string arguments :
-       {"--solver yarn", "--solver direct", "--solver auto", "--scheme rattle", "--backend simd",
-        "--isa avx2", "--threads 2", "--substeps 4", "--substeps auto"}) {
+  for (const std::string arguments : {"--solver yarn", "--solver direct", "--solver auto",
+                                      "--scheme rattle", "--substeps auto"}) {
     CAPTURE(arguments);
     const Outcome outcome = run_program(folder, "run hang " + arguments);
     CHECK(outcome.exit_code == 2);
@@ -141,6 +143,19 @@ TEST_CASE("what is not available yet says so") {
                                     "run hang --size 4 --steps 2 --solver gauss_seidel --scheme "
                                     "paper --backend reference --threads 1 --substeps 1");
   CHECK(usual.exit_code == 0);
+}
+
+TEST_CASE("substeps are done and reported") {
+  const TemporaryFolder folder;
+  const auto hash = [&](const std::string& arguments, int substeps) {
+    const Outcome outcome = run_program(folder, "run hang --size 5 --json - " + arguments);
+    REQUIRE(outcome.exit_code == 0);
+    const auto json = nlohmann::json::parse(outcome.out);
+    CHECK(json["substeps"] == substeps);
+    return json["state_hash"].get<std::string>();
+  };
+  const std::string split = hash("--dt 0.02 --steps 10 --substeps 2", 2);
+  CHECK(split == hash("--dt 0.01 --steps 20", 1));
 }
 
 TEST_CASE("a missed tolerance exits with 3, and the report and the files are written") {
