@@ -20,7 +20,8 @@
 
 #include "kernels/simd/relax.h"
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 /// Where the lanes of a vector find their neighbours.
@@ -156,4 +157,5 @@ void apply_sums_singles(const Anticipation& p, const Relaxation& r, std::uint32_
 }
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

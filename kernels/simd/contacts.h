@@ -12,7 +12,8 @@
 
 #include "kernels/simd/relax.h"
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vector centre,
@@ -93,4 +94,5 @@ std::uint32_t relax_contacts(const Relaxation& r, std::uint32_t first, std::uint
 }
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

@@ -7,7 +7,8 @@
 
 #include "kernels/simd/lanes.h"
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 struct Direction {
@@ -88,4 +89,5 @@ void renew_velocity_singles(const Geometry& g, kernels::VectorsView v, const Rel
 }
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

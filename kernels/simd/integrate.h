@@ -5,7 +5,8 @@
 
 #include "kernels/simd/lanes.h"
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 [[gnu::always_inline]] inline DoubleVector acceleration(const Motion& m, std::size_t i) {
@@ -67,4 +68,5 @@ void apply_displacements(kernels::VectorsView x, Displacements u, std::size_t fi
 }
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

@@ -21,7 +21,8 @@
 #define WEFT_LANES sse2
 #endif
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 #if defined(__AVX512F__)
@@ -149,4 +150,5 @@ struct DoubleVector {
 }
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

@@ -9,7 +9,8 @@
 #include "kernels/simd/measure.h"
 #include "kernels/simd/relax.h"
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 constexpr Table make_table() {
@@ -41,4 +42,5 @@ constexpr Table make_table() {
 }
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

@@ -7,7 +7,8 @@
 
 #include "kernels/simd/relax.h"
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 using Words = xsimd::batch<std::uint64_t, Arch>;
@@ -69,4 +70,5 @@ std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_
 }
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

@@ -8,7 +8,8 @@
 
 #include "kernels/simd/directions.h"
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 struct StrainColumns {
@@ -56,4 +57,5 @@ StrainSums strain_singles(const Geometry& g, std::uint32_t first, std::uint32_t 
 }
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

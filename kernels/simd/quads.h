@@ -11,7 +11,8 @@
 
 #include "kernels/simd/lanes.h"
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 #if defined(__AVX512F__)
@@ -109,4 +110,5 @@ struct QuadLanes {
 };
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

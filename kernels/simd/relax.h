@@ -11,7 +11,8 @@
 
 #include "kernels/simd/quads.h"
 
-namespace weft::simd::inline WEFT_LANES {
+namespace weft::simd {
+inline namespace WEFT_LANES {
 namespace {
 
 struct Corrected {
@@ -220,4 +221,5 @@ std::uint32_t relax_rope_singles(const Relaxation& r, std::uint32_t first, std::
 }
 
 }  // namespace
-}  // namespace weft::simd::inline WEFT_LANES
+}  // namespace WEFT_LANES
+}  // namespace weft::simd
