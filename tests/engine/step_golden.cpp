@@ -1,0 +1,85 @@
+/// Fingerprints of whole runs on AVX2 and AVX-512: no change of the compiler, the machine or the
+/// code may change a bit unnoticed. (SSE2 does not fuse, and has bits of its own.)
+///
+/// If a change is meant to change results, say so in its commit and put in the new table, which
+///
+///     WEFT_PRINT_HASHES=1 build/tests/weft_tests --source-file='*step_golden.cpp'
+///
+/// prints. Only scenes made by additions, multiplications and square roots are here: the bits of
+/// sines are the C library's.
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "kernels/simd/isa.h"
+#include "tests/support/clothes.h"
+#include "tests/support/mesh_scenes.h"
+
+namespace weft::test {
+namespace {
+
+struct Golden {
+  const char* scene;
+  int size;
+  int steps;
+  bool velocity_correction;
+  std::uint64_t hash;
+};
+
+constexpr Golden kGolden[] = {
+    {"hang", 20, 40, false, 0xc094f3d1e626dce1},
+    {"hang", 41, 12, true, 0xc39e5792680cba6d},
+    {"hang", 90, 6, false, 0x47afac2e7a4f92a5},
+    {"hang_sphere", 21, 40, false, 0x46f7d4ffee199d4c},
+    {"hang_sphere", 41, 8, true, 0xef0eba083a1fdb76},
+    {"corners", 21, 20, false, 0xda4df41750b6bf85},
+    {"ropes", 33, 10, true, 0x1155b4cb72c5a2a8},
+    {"random", 33, 10, false, 0x90abc61cb7cbea3b},
+    {"hub", 17, 6, true, 0xfa09a294848129c1},
+};
+
+SceneDescription describe(const Golden& golden) {
+  const std::string scene = golden.scene;
+  const auto size = static_cast<std::uint32_t>(golden.size);
+  if (scene == "ropes") return roped_sheet(size);
+  if (scene == "random") return random_sheet(size, 8);
+  if (scene == "hub") return hub_sheet(size);
+  return scene_of(golden.scene, golden.size);
+}
+
+std::uint64_t hash_of(const Golden& golden, Isa isa) {
+  Settings settings;
+  settings.isa = isa;
+  settings.velocity_correction = golden.velocity_correction;
+  Cloth cloth = cloth_of(describe(golden), settings);
+  for (int k = 0; k < golden.steps; ++k) {
+    REQUIRE(step(cloth, 0.005).status == Status::converged);
+  }
+  return cloth.state_hash();
+}
+
+void print(const Golden& golden, std::uint64_t hash) {
+  std::printf("    {\"%s\", %d, %d, %s, 0x%016llx},\n", golden.scene, golden.size, golden.steps,
+              golden.velocity_correction ? "true" : "false", static_cast<unsigned long long>(hash));
+}
+
+TEST_CASE("runs have the fingerprints that they had") {
+  if (!simd::supported(simd::Isa::avx2)) {
+    MESSAGE("this machine lacks avx2: not tested");
+    return;
+  }
+  const bool wanted = std::getenv("WEFT_PRINT_HASHES") != nullptr;
+  for (const Golden& golden : kGolden) {
+    CAPTURE(std::string(golden.scene));
+    CAPTURE(golden.size);
+    const std::uint64_t hash = hash_of(golden, Isa::avx2);
+    if (wanted) print(golden, hash);
+    CHECK(hash == golden.hash);
+    if (simd::supported(simd::Isa::avx512)) CHECK(hash_of(golden, Isa::avx512) == hash);
+  }
+}
+
+}  // namespace
+}  // namespace weft::test

@@ -1,0 +1,52 @@
+#include "tests/support/mesh_scenes.h"
+
+#include <algorithm>
+
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+
+SceneDescription scene_of(const Mesh& mesh) {
+  SceneDescription scene;
+  double side = 0;
+  std::uint32_t far = 0;
+  for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
+    side = std::max({side, mesh.positions[i].x, mesh.positions[i].z});
+    if (mesh.positions[i].z > mesh.positions[far].z) far = i;
+  }
+  for (const Vec3& p : mesh.positions) {
+    scene.positions.push_back((1 / side) * p);
+    scene.masses.push_back(1.0 / static_cast<double>(mesh.positions.size()));
+  }
+  for (const Link& link : mesh.links) {
+    const double rest = distance(scene.positions[link.a], scene.positions[link.b]);
+    scene.constraints.push_back({link.a, link.b, rest, link.kind});
+  }
+  scene.fixed = {0, far};
+  return scene;
+}
+
+SceneDescription roped_sheet(std::uint32_t size) {
+  Mesh mesh = grid(size, size);
+  add_diagonals(mesh, size, size, ConstraintKind::rope);
+  return scene_of(mesh);
+}
+
+SceneDescription random_sheet(std::uint32_t size, std::uint32_t seed) {
+  Random random(seed);
+  return scene_of(shuffled(triangles(size, size, 0.3, 0.05, random), random));
+}
+
+SceneDescription hub_sheet(std::uint32_t size) {
+  Mesh mesh = grid(size, size);
+  const std::uint32_t middle = size / 2 * size + size / 2;
+  for (std::uint32_t k = 0; k + 1 < size; ++k) {
+    for (const std::uint32_t border :
+         {k, (k + 1) * size - 1, size * size - 1 - k, (k + 1) * size}) {
+      mesh.links.push_back({middle, border, ConstraintKind::rope});
+    }
+  }
+  return scene_of(mesh);
+}
+
+}  // namespace weft::test
