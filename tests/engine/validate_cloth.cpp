@@ -57,10 +57,34 @@ TEST_CASE("iterations, their bound and the impulse limit must be in range") {
   check_setting([](auto& s) { s.impulse_limit = kInfinity; }, {"impulse_limit", "inf"});
 }
 
+TEST_CASE("threads must be in range") {
+  check_setting([](auto& s) { s.threads = -1; }, {"threads", "-1", "256"});
+  check_setting([](auto& s) { s.threads = kMaxThreads + 1; }, {"threads", "257", "256"});
+  for (const int threads : {0, 1, kMaxThreads}) {
+    Settings settings;
+    settings.threads = threads;
+    const auto cloth = Cloth::create(model_of(scene_of("hang", 4)), settings);
+    REQUIRE(cloth);
+    CHECK(cloth.value().settings().threads == threads);
+  }
+}
+
+TEST_CASE("directions must not be renewed after a negative number of iterations") {
+  check_setting([](auto& s) { s.renew_after = -1; }, {"renew_after", "-1"});
+}
+
+TEST_CASE("only the reference limits impulses") {
+  check_setting([](auto& s) { s.impulse_limit = 0.5; }, {"impulse_limit", "reference", "0.5"});
+  Settings settings = on(Backend::reference);
+  settings.impulse_limit = 0.5;
+  CHECK(Cloth::create(model_of(scene_of("hang", 4)), settings));
+}
+
 TEST_CASE("choices that do not exist are refused") {
   check_setting([](auto& s) { s.solver = static_cast<Solver>(200); }, {"solver", "200"});
   check_setting([](auto& s) { s.scheme = static_cast<Scheme>(200); }, {"scheme", "200"});
   check_setting([](auto& s) { s.backend = static_cast<Backend>(200); }, {"backend", "200"});
+  check_setting([](auto& s) { s.isa = static_cast<Isa>(200); }, {"isa", "200"});
   check_setting([](auto& s) { s.directions = static_cast<Directions>(200); },
                 {"directions", "200"});
 }

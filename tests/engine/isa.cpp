@@ -1,0 +1,129 @@
+/// Which instruction set a cloth runs on, and who says so.
+#include "engine/isa.h"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "kernels/simd/table.h"
+#include "tests/support/clothes.h"
+#include "tests/support/isas.h"
+
+namespace weft::test {
+namespace {
+
+/// WEFT_ISA for as long as it lives.
+class Environment {
+ public:
+  explicit Environment(const char* value) {
+    if (const char* before = std::getenv("WEFT_ISA")) before_ = before;
+    set(value);
+  }
+  ~Environment() { set(before_.empty() ? nullptr : before_.c_str()); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  static void set(const char* value) {
+    if (value != nullptr) {
+      ::setenv("WEFT_ISA", value, 1);
+    } else {
+      ::unsetenv("WEFT_ISA");
+    }
+  }
+  std::string before_;
+};
+
+constexpr Isa kNamed[]{Isa::sse2, Isa::avx2, Isa::avx512};
+
+Isa best() {
+  Isa best = Isa::sse2;
+  for (const Isa isa : kNamed) {
+    if (simd::supported(to_kernel(isa))) best = isa;
+  }
+  return best;
+}
+
+Result<Cloth> try_cloth(Isa isa) {
+  Settings settings;
+  settings.isa = isa;
+  return Cloth::create(model_of(scene_of("hang", 4)), settings);
+}
+
+TEST_CASE("left alone a cloth takes the best that the machine has, and says which") {
+  for (const char* value : {static_cast<const char*>(nullptr), "", "auto"}) {
+    const Environment environment(value);
+    const auto cloth = try_cloth(Isa::automatic);
+    REQUIRE(cloth);
+    CHECK(cloth.value().settings().isa == best());
+  }
+  CHECK(to_kernel(best()) == simd::best_isa());
+}
+
+TEST_CASE("WEFT_ISA names it for cloths that do not") {
+  for (const Isa isa : kNamed) {
+    if (!simd::supported(to_kernel(isa))) continue;
+    CAPTURE(name(isa));
+    const Environment environment(std::string(name(isa)).c_str());
+    const auto cloth = try_cloth(Isa::automatic);
+    REQUIRE(cloth);
+    CHECK(cloth.value().settings().isa == isa);
+  }
+}
+
+TEST_CASE("settings come before WEFT_ISA, even if that is nonsense") {
+  for (const char* value : {"sse2", "avx512", "neon"}) {
+    const Environment environment(value);
+    for (const Isa isa : kNamed) {
+      if (!simd::supported(to_kernel(isa))) continue;
+      const auto cloth = try_cloth(isa);
+      REQUIRE(cloth);
+      CHECK(cloth.value().settings().isa == isa);
+    }
+  }
+}
+
+TEST_CASE("a name that is none is refused in one line that shows it") {
+  for (const char* value : {"neon", "AVX2", "avx", " avx2", "3"}) {
+    const Environment environment(value);
+    const auto cloth = try_cloth(Isa::automatic);
+    REQUIRE_FALSE(cloth);
+    CHECK(cloth.error() ==
+          "WEFT_ISA: must be auto, sse2, avx2 or avx512 (" + std::string(value) + ")");
+  }
+}
+
+TEST_CASE("what the machine lacks, and what does not exist, is refused") {
+  for (const Isa isa : kNamed) {
+    if (simd::supported(to_kernel(isa))) continue;
+    const auto cloth = try_cloth(isa);
+    REQUIRE_FALSE(cloth);
+    CHECK(cloth.error() == "isa: this machine lacks it (" + std::string(name(isa)) + ")");
+    const Environment environment(std::string(name(isa)).c_str());
+    CHECK_FALSE(try_cloth(Isa::automatic));
+  }
+  const auto cloth = try_cloth(static_cast<Isa>(200));
+  REQUIRE_FALSE(cloth);
+  CHECK(cloth.error() == "isa: unknown choice (200)");
+}
+
+TEST_CASE("every machine has sse2; avx512 comes with avx2") {
+  CHECK(simd::supported(simd::Isa::sse2));
+  CHECK((simd::supported(simd::Isa::avx2) || !simd::supported(simd::Isa::avx512)));
+  for (const simd::Isa isa : kIsas) {
+    CHECK((&simd::table(isa) == &simd::kSse2Table) == (isa == simd::Isa::sse2));
+    CHECK((&simd::table(isa) == &simd::kAvx2Table) == (isa == simd::Isa::avx2));
+  }
+}
+
+TEST_CASE("the reference takes the choice, too: the search for contacts runs on it") {
+  Settings settings = on(Backend::reference);
+  settings.isa = Isa::sse2;
+  Cloth cloth = cloth_of(scene_of("hang_sphere", 6), settings);
+  CHECK(cloth.settings().isa == Isa::sse2);
+  CHECK(step(cloth, 0.01).status == Status::converged);
+}
+
+}  // namespace
+}  // namespace weft::test
