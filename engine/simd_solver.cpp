@@ -149,19 +149,22 @@ kernels::LoopLimits SimdSolver::limits(int max_iterations) const {
 
 /// Ropes and contacts take part in the velocity loop where they are taut or touch.
 void SimdSolver::choose_active(kernels::VectorsView x) {
-  const double tau = settings_.iterations > 0 ? 1 : settings_.velocity_tolerance;
+  const bool fixed_iterations = settings_.iterations > 0;  // then tolerances have no say
+  const double tau = fixed_iterations ? 1 : settings_.velocity_tolerance;
+  const double slack = fixed_iterations ? 0 : settings_.tolerance;
+  const double gap = fixed_iterations ? 0 : settings_.contact_tolerance;
   for (std::size_t c = 0; layout_.has_ropes && c < layout_.constraint_slots; ++c) {
     const std::uint32_t constraint = layout_.constraint_at[c];
     if (constraint == kNoIndex || constraint < model_.constraints.bilateral) continue;
     const double l = length(x[layout_.a[c]] - x[layout_.b[c]]);
-    const bool taut = l >= (1 - settings_.tolerance) * layout_.rest_length[c];
+    const bool taut = l >= (1 - slack) * layout_.rest_length[c];
     velocity_scale_[c] = taut ? 1 / tau : 0;
   }
   for (const ContactLanes::Range& range : contacts_.spheres) {
     for (std::size_t k = range.first; k < range.last; ++k) {
       if (contacts_.contact[k] == kNoIndex) continue;
       const double l = length(x[contacts_.a[k]] - x[contacts_.b[k]]);
-      const bool touching = l <= contacts_.distance[k] + settings_.contact_tolerance;
+      const bool touching = l <= contacts_.distance[k] + gap;
       contacts_.scale[k] = touching ? 1 / tau : 0;
     }
   }
