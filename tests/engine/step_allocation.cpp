@@ -1,5 +1,6 @@
 /// A step allocates nothing once warm.
 #include <doctest/doctest.h>
+#include <tbb/task_arena.h>
 
 #include <memory>
 
@@ -63,6 +64,18 @@ TEST_CASE("without contacts even the first step allocates nothing") {
     CHECK(report);
     CHECK(after == before);
   }
+}
+
+TEST_CASE("nor does a warm step that two threads share") {
+  tbb::task_arena arena(2);
+  arena.execute([] {
+    Cloth cloth = cloth_of(scene_of("hang", 45), {});
+    run(cloth, 0.005, 20);
+    const std::size_t before = allocations();
+    for (int k = 0; k < 20; ++k) (void)cloth.step(0.005);
+    const std::size_t after = allocations();
+    CHECK(after == before);
+  });
 }
 
 }  // namespace

@@ -182,6 +182,36 @@ TEST_CASE("a chain whose end weighs as much as 10,000 links stays within toleran
   }
 }
 
+TEST_CASE("frozen directions live for as many iterations as the settings say") {
+  const Backend backend = each_backend();
+  const SceneDescription scene = scene_of("hang", 12);
+  Settings settings = on(backend);
+  settings.tolerance = 0.001;
+  settings.skip = settings.anticipate = false;
+  settings.directions = Directions::each;
+  const Motion each = simulate(scene, settings, 40);
+  settings.directions = Directions::frozen;
+  settings.renew_after = 1;
+  CHECK(simulate(scene, settings, 40).hash == each.hash);
+  for (const int most : {2, 5, 32}) {
+    CAPTURE(most);
+    settings.renew_after = most;
+    Cloth cloth = cloth_of(scene, settings);
+    for (int k = 0; k < 40; ++k) {
+      const StepReport report = step(cloth, kStep);
+      REQUIRE(report.iterations <= most * report.direction_updates);
+    }
+  }
+  settings.renew_after = 0;
+  Cloth paper = cloth_of(scene, settings);
+  int longest = 0;
+  for (int k = 0; k < 40; ++k) {
+    const StepReport report = step(paper, kStep);
+    longest = std::max(longest, report.iterations / report.direction_updates);
+  }
+  CHECK(longest > 32);
+}
+
 TEST_CASE("renewed and frozen directions tend to the same motion as dt does to 0") {
   const Backend backend = each_backend();
   const SceneDescription scene = scene_of("hang", 5);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support/clothes.h"
+#include "tests/support/mesh_scenes.h"
 #include "tests/support/motion.h"
 
 namespace weft::test {
@@ -28,9 +29,13 @@ void check_strain(const SceneDescription& scene, const Cloth& cloth, double max,
 
 TEST_CASE("the reported strain is that of the positions one can read") {
   const Backend backend = each_backend();
+  std::vector<NamedScene> scenes{
+      {"ropes", roped_sheet(9)}, {"random mesh", random_sheet(9, 4)}, {"hub", hub_sheet(9)}};
   for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners"}) {
-    CAPTURE(std::string(name));
-    const SceneDescription scene = scene_of(name, 9);
+    scenes.push_back({name, scene_of(name, 9)});
+  }
+  for (const auto& [name, scene] : scenes) {
+    CAPTURE(name);
     for (const int iterations : {0, 2}) {
       Settings settings = on(backend);
       settings.iterations = iterations;

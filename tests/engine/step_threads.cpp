@@ -1,5 +1,7 @@
 /// A Model may be shared by any number of Cloths and threads.
 #include <doctest/doctest.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <array>
 #include <thread>
@@ -31,6 +33,25 @@ TEST_CASE("cloths of one model, run in two threads at once, agree bit for bit") 
     CHECK(left.value().state_hash() == alone.value().state_hash());
     CHECK(right.value().state_hash() == alone.value().state_hash());
   }
+}
+
+TEST_CASE("cloths of one model, made and run by the tasks of one arena, agree bit for bit") {
+  const auto model = model_of(scene_of("hang", 41));
+  constexpr std::size_t kCloths = 8;
+  std::array<std::uint64_t, kCloths> hashes{};
+  tbb::task_arena arena(2);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, kCloths, [&](std::size_t i) {
+      auto cloth = Cloth::create(model, {});
+      if (!cloth) return;
+      for (int k = 0; k < 10; ++k) (void)cloth.value().step(0.005);
+      hashes[i] = cloth.value().state_hash();
+    });
+  });
+  auto alone = Cloth::create(model, {.threads = 1});
+  REQUIRE(alone);
+  run(alone.value(), 0.005, 10);
+  for (const std::uint64_t hash : hashes) CHECK(hash == alone.value().state_hash());
 }
 
 TEST_CASE("a cloth keeps its model alive") {
