@@ -34,10 +34,13 @@ Energy measure_energy(const Model& m, const kernels::Vectors& x, const kernels::
 }
 
 bool all_finite(const kernels::Vectors& v) {
-  const auto zero = [](double c) { return 0 * (12 * c * c); };  // unless that is not finite
-  double sum = 0;
-  for (std::size_t i = 0; i < v.size(); ++i) sum += zero(v.x[i]) + zero(v.y[i]) + zero(v.z[i]);
-  return sum == 0;
+  constexpr double kMost = 1e150;  // 12 kMost^2, the largest squared distance, is finite
+  bool beyond = false;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    beyond |=
+        !(std::abs(v.x[i]) <= kMost) | !(std::abs(v.y[i]) <= kMost) | !(std::abs(v.z[i]) <= kMost);
+  }
+  return !beyond;
 }
 
 }  // namespace weft
