@@ -131,6 +131,11 @@ const SimdLayout& Model::simd() const {
   return simd_;
 }
 
+const DirectLayout& Model::direct() const {
+  std::call_once(direct_once_, [this] { direct_ = make_direct_layout(*this); });
+  return direct_;
+}
+
 std::size_t Model::bytes() const {
   const ConstraintStore& s = constraints;
   const Ordering& o = ordering;
@@ -141,7 +146,7 @@ std::size_t Model::bytes() const {
          bytes_of(o.tiles) + bytes_of(s.a) + bytes_of(s.b) + bytes_of(s.rest_length) +
          bytes_of(s.effective_mass) + bytes_of(s.colour) + bytes_of(s.described) +
          bytes_of(s.slot) + bytes_of(fixed_particle_) + bytes_of(hub_particle_) +
-         bytes_of(described_link_) + reference_.bytes() + simd_.bytes();
+         bytes_of(described_link_) + reference_.bytes() + simd_.bytes() + direct_.bytes();
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

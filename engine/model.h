@@ -10,6 +10,7 @@
 #include <mutex>
 #include <vector>
 
+#include "engine/direct_layout.h"
 #include "engine/ordering.h"
 #include "engine/reference_layout.h"
 #include "engine/simd_layout.h"
@@ -61,9 +62,10 @@ class Model {
   bool is_particle(std::size_t slot) const { return ordering.particle_at[slot] != kNoIndex; }
   std::size_t bytes() const;
 
-  /// What each backend needs besides; made when first asked for, by whichever thread.
+  /// What each backend or solver needs besides; made when first asked for, by whichever thread.
   const ReferenceLayout& reference() const;
   const SimdLayout& simd() const;
+  const DirectLayout& direct() const;
 
  private:
   void find_hubs(const SceneDescription& description);
@@ -77,9 +79,10 @@ class Model {
 
   std::vector<std::uint8_t> fixed_particle_, hub_particle_;  // by the description's numbers
   std::vector<std::uint32_t> described_link_;                // link -> description
-  mutable std::once_flag reference_once_, simd_once_;
+  mutable std::once_flag reference_once_, simd_once_, direct_once_;
   mutable ReferenceLayout reference_;
   mutable SimdLayout simd_;
+  mutable DirectLayout direct_;
 };
 
 }  // namespace weft

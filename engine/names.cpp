@@ -7,6 +7,8 @@ std::string_view name(Solver solver) {
   switch (solver) {
     case Solver::gauss_seidel:
       return "gauss_seidel";
+    case Solver::direct:
+      return "direct";
   }
   return "unknown";
 }

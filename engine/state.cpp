@@ -21,6 +21,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   } else {
     simd.emplace(*model, settings, to_kernel(settings.isa));
   }
+  if (settings.solver == Solver::direct) direct.emplace(*model, settings);
 }
 
 std::size_t State::bytes() const {
@@ -34,6 +35,7 @@ std::size_t State::bytes() const {
          list(contacts.first) + list(contacts.next) + list(contacts.found);
   if (reference) sum += reference->bytes();
   if (simd) sum += simd->bytes();
+  if (direct) sum += direct->bytes();
   return sum;
 }
 

@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "engine/contacts.h"
+#include "engine/direct_solver.h"
 #include "engine/model.h"
 #include "engine/reference_solver.h"
 #include "engine/simd_solver.h"
@@ -39,6 +40,7 @@ struct State {
   std::optional<ReferenceSolver> reference;
   kernels::Vectors predicted;  // reference only
   std::optional<SimdSolver> simd;
+  std::optional<DirectSolver> direct;  // with Solver::direct; those above then are its answer
   const simd::Table* kernels = nullptr;
 
   State(std::shared_ptr<const Model> model, const Settings& settings);

@@ -84,12 +84,47 @@ void commit(State& s, double h, Team& team) {
   });
 }
 
+kernels::LoopResult sweep_positions(State& s, double h, bool first, int left, Team& team) {
+  const auto x = s.solved.view();
+  return s.reference ? s.reference->solve_positions(x, h, s.contacts, first, left)
+                     : s.simd->solve_positions(x, s.contacts, first, left, team);
+}
+
+kernels::LoopResult sweep_velocities(State& s, Team& team) {
+  const auto x = s.solved.view(), v = s.next_velocity.view();
+  return s.reference ? s.reference->correct_velocities(x, v, s.contacts)
+                     : s.simd->correct_velocities(x, v, s.contacts, team);
+}
+
+/// What a lambda for the direct solver sees, as one reference: std::function then allocates
+/// nothing.
+struct Answer {
+  State& state;
+  double h;
+  Team& team;
+};
+
+kernels::LoopResult solve_positions(State& s, double h, bool first, int left, Team& team) {
+  if (!s.direct) return sweep_positions(s, h, first, left, team);
+  const Answer answer{s, h, team};
+  return s.direct->solve_positions(
+      s.solved.view(), s.contacts, first, left, [&answer](bool begin, int most) {
+        return sweep_positions(answer.state, answer.h, begin, most, answer.team);
+      });
+}
+
+kernels::LoopResult correct_velocities(State& s, Team& team) {
+  if (!s.direct) return sweep_velocities(s, team);
+  const Answer answer{s, 0, team};
+  return s.direct->correct_velocities(
+      s.solved.view(), s.next_velocity.view(), s.contacts,
+      [&answer](bool, int) { return sweep_velocities(answer.state, answer.team); });
+}
+
 void solve_positions(State& s, double h, StepReport& report, Team& team) {
   int left = s.settings.max_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
-    const auto result =
-        s.reference ? s.reference->solve_positions(s.solved.view(), h, s.contacts, round == 0, left)
-                    : s.simd->solve_positions(s.solved.view(), s.contacts, round == 0, left, team);
+    const auto result = solve_positions(s, h, round == 0, left, team);
     add(report, result);
     report.iterations += result.iterations;
     left -= result.iterations;
@@ -103,9 +138,7 @@ void solve_positions(State& s, double h, StepReport& report, Team& team) {
 }
 
 void correct_velocities(State& s, StepReport& report, Team& team) {
-  const auto x = s.solved.view(), v = s.next_velocity.view();
-  const auto result = s.reference ? s.reference->correct_velocities(x, v, s.contacts)
-                                  : s.simd->correct_velocities(x, v, s.contacts, team);
+  const auto result = correct_velocities(s, team);
   add(report, result);
   report.velocity_iterations += result.iterations;
 }

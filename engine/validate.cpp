@@ -183,12 +183,15 @@ Result<void> validate(const Settings& s) {
   if (!std::isfinite(s.impulse_limit) || s.impulse_limit < 0) {
     return refuse("impulse_limit", "must be finite and at least 0", number(s.impulse_limit));
   }
-  if (auto r = validate_choice("solver", s.solver, Solver::gauss_seidel); !r) return r;
+  if (auto r = validate_choice("solver", s.solver, Solver::direct); !r) return r;
   if (auto r = validate_choice("scheme", s.scheme, Scheme::paper); !r) return r;
   if (auto r = validate_choice("backend", s.backend, Backend::simd); !r) return r;
   if (s.impulse_limit > 0 && s.backend != Backend::reference) {
     return refuse("impulse_limit", "only the reference backend limits impulses",
                   number(s.impulse_limit));
+  }
+  if (s.impulse_limit > 0 && s.solver == Solver::direct) {
+    return refuse("impulse_limit", "the direct solver limits no impulses", number(s.impulse_limit));
   }
   if (s.threads < 0 || s.threads > kMaxThreads) {
     return refuse("threads", "must be from 0 to " + std::to_string(kMaxThreads),

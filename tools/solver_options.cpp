@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<Choice<Solver>, 4> kSolvers{{
     {"gauss_seidel", Solver::gauss_seidel},
     {"yarn", std::nullopt},
-    {"direct", std::nullopt},
+    {"direct", Solver::direct},
     {"auto", std::nullopt},
 }};
 constexpr std::array<Choice<Scheme>, 2> kSchemes{{
@@ -90,7 +90,7 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
                   "m/s left along a constraint (default 0.01)");
   verb.add_option("--impulse-limit", settings.impulse_limit,
                   "N s, largest impulse of one correction (default 0: no limit)");
-  verb.add_option("--solver", options.solver, "gauss_seidel (default)");
+  verb.add_option("--solver", options.solver, "gauss_seidel (default) or direct");
   verb.add_option("--scheme", options.scheme, "paper (default)");
   verb.add_option("--anticipate", options.anticipate,
                   "on (default) or off: update errors instead of recomputing them");

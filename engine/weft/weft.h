@@ -128,7 +128,11 @@ ModelInfo describe(const Model& model);
 // ----------------------------------------------------------------------------------------- create
 
 /// gauss_seidel: the impulse loop of the paper (section 3.2), one constraint after the other.
-enum class Solver : std::uint8_t { gauss_seidel };
+/// direct: all impulses at once, from the factors of their matrix, repeated until the true errors
+///   are within tolerance: two or three solves, at any tolerance. Where that fails (a step that
+///   bends edges by much of their length: use substeps), Gauss-Seidel answers, and
+///   StepReport::iterations counts its passes too.
+enum class Solver : std::uint8_t { gauss_seidel, direct };
 /// paper: impulses along the directions of the previewed state; first order.
 enum class Scheme : std::uint8_t { paper };
 /// each: directions renewed before every iteration (sections 3.2, 4.1).
@@ -205,7 +209,7 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 /// is the worst of them, the errors are those at the end.
 struct StepReport {
   Status status = Status::converged;
-  int iterations = 0;            ///< passes over the position constraints
+  int iterations = 0;            ///< passes over the position constraints; direct: solves
   int direction_updates = 0;     ///< renewals of the constraint directions
   int velocity_iterations = 0;   ///< passes of the velocity loop
   std::int64_t visits = 0;       ///< constraints whose error was looked at, both loops

@@ -132,8 +132,8 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
 
 TEST_CASE("what is not available yet says so") {
   const TemporaryFolder folder;
-  for (const std::string arguments : {"--solver yarn", "--solver direct", "--solver auto",
-                                      "--scheme rattle", "--substeps auto"}) {
+  for (const std::string arguments :
+       {"--solver yarn", "--solver auto", "--scheme rattle", "--substeps auto"}) {
     CAPTURE(arguments);
     const Outcome outcome = run_program(folder, "run hang " + arguments);
     CHECK(outcome.exit_code == 2);
@@ -143,6 +143,16 @@ TEST_CASE("what is not available yet says so") {
                                     "run hang --size 4 --steps 2 --solver gauss_seidel --scheme "
                                     "paper --backend reference --threads 1 --substeps 1");
   CHECK(usual.exit_code == 0);
+}
+
+TEST_CASE("the direct solver is available") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      folder, "run corners --size 7 --steps 5 --tolerance 1e-6 --solver direct --json -");
+  CHECK(outcome.exit_code == 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  CHECK(json["solver"] == "direct");
+  CHECK(json["max_strain"] <= 1e-6);
 }
 
 TEST_CASE("substeps are done and reported") {

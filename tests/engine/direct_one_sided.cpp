@@ -1,0 +1,154 @@
+/// The direct solver on what pulls or pushes only: ropes and contacts.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+Settings direct(Settings settings) {
+  settings.solver = Solver::direct;
+  return settings;
+}
+
+SceneDescription free_rope(double start_distance) {
+  SceneDescription scene = free_bar(1, 1);
+  scene.positions[1] = {start_distance, 0, 0};
+  scene.constraints[0].kind = ConstraintKind::rope;
+  return scene;
+}
+
+TEST_CASE("a slack rope lets its ends fly free, and so does a taut one inwards") {
+  for (const double start : {0.2, 1.0}) {
+    SceneDescription scene = free_rope(start);
+    scene.velocities = {{2, 0, 0}, {-3, 0, 0}};
+    Settings settings = direct(tight(1e-12));
+    settings.velocity_correction = true;
+    Cloth cloth = cloth_of(scene, settings);
+    CHECK(step(cloth, 0.01).corrections == 0);
+    CHECK(distance(cloth.velocity(0), {2, 0, 0}) == 0);
+    CHECK(distance(cloth.velocity(1), {-3, 0, 0}) == 0);
+  }
+}
+
+TEST_CASE("a rope runs taut and shares the momentum") {
+  SceneDescription scene = free_rope(0.95);
+  scene.velocities = {{0, 0, 0}, {10, 0, 0}};
+  Settings settings = direct(tight(1e-12));
+  settings.velocity_correction = true;
+  Cloth cloth = cloth_of(scene, settings);
+  CHECK(step(cloth, 0.01).status == Status::converged);
+  CHECK(distance(cloth.position(0), cloth.position(1)) == doctest::Approx(1).epsilon(1e-12));
+  CHECK(distance(cloth.velocity(0), {5, 0, 0}) < 1e-9);
+  CHECK(distance(cloth.velocity(1), {5, 0, 0}) < 1e-9);
+}
+
+// As in step_ropes.cpp: R's rope looks taut until the bars have settled, and must give all back.
+TEST_CASE("a rope's early pull is taken back") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}, {1.5, 0, 0}, {-0.35, 0, 0}};
+  scene.velocities = {{0, 0, 0}, {25, 0, 0}, {25, 0, 0}, {25, 0, 0}, {0, 0, 0}};
+  scene.masses = {1, 1, 1, 2, 1};
+  scene.fixed = {0};
+  scene.constraints = {{4, 2, 1.0, ConstraintKind::rope},
+                       {2, 3, 1.0, ConstraintKind::rope},
+                       {0, 1, 0.3},
+                       {2, 1, 0.3}};
+  scene.gravity = {0, 0, 0};
+  Cloth cloth = cloth_of(scene, direct(tight(1e-12)));
+  CHECK(step(cloth, 0.01).status == Status::converged);
+  CHECK(distance(cloth.position(2), {0.6, 0, 0}) < 1e-10);
+  CHECK(distance(cloth.position(3), {1.6, 0, 0}) < 1e-10);
+  CHECK(distance(cloth.position(4), {-0.35, 0, 0}) < 1e-10);
+}
+
+TEST_CASE("a sheet of bars and ropes holds both, and no rope pushes") {
+  SceneDescription scene = scene_of("hang", 9);
+  for (std::size_t i = 0; i < scene.constraints.size(); i += 2) {
+    scene.constraints[i].kind = ConstraintKind::rope;
+  }
+  Cloth cloth = cloth_of(scene, direct(tight(1e-6)));
+  for (int k = 0; k < 100; ++k) {
+    REQUIRE(step(cloth, 0.005).status == Status::converged);
+    REQUIRE(max_strain(scene, positions(cloth)) <= 1e-6 * (1 + 1e-6));
+  }
+}
+
+TEST_CASE("scenes with contacts converge, none deeper than the tolerance") {
+  for (const Backend backend : kBackends) {
+    for (const char* name : {"hang_sphere", "sphere_drop"}) {
+      for (const bool velocity_correction : {false, true}) {
+        CAPTURE(std::string(name));
+        CAPTURE(velocity_correction);
+        const SceneDescription scene = scene_of(name, 13);
+        Settings settings = direct(on(backend));
+        settings.velocity_correction = velocity_correction;
+        Cloth cloth = cloth_of(scene, settings);
+        int contacts = 0;
+        for (int k = 0; k < 200; ++k) {
+          const StepReport report = step(cloth, 0.01);
+          REQUIRE(report.status == Status::converged);
+          REQUIRE(report.max_strain <= 0.01);
+          REQUIRE(report.max_penetration <= 1e-4);
+          contacts = std::max(contacts, report.contacts);
+        }
+        CHECK(contacts > 5);
+      }
+    }
+  }
+}
+
+TEST_CASE("a sphere falls on a free sheet: momentum is kept to rounding") {
+  SceneDescription scene = drifting_sheet(9, 4);
+  const auto sphere = static_cast<std::uint32_t>(scene.positions.size());
+  scene.positions.push_back({0.4, 0.17, 0.41});
+  scene.velocities.push_back({0.3, -5, 0.1});
+  scene.masses.push_back(20);
+  scene.spheres = {sphere};
+  scene.radii.assign(scene.positions.size(), 0.01);
+  scene.radii[sphere] = 0.15;
+  const Vec3 before = momentum(scene.masses, scene.velocities);
+  Settings settings = direct(tight(1e-4));
+  settings.velocity_correction = true;
+  Cloth cloth = cloth_of(scene, settings);
+  int contacts = 0;
+  for (int k = 0; k < 40; ++k) {
+    const StepReport report = step(cloth, 0.0025);
+    REQUIRE(report.status == Status::converged);
+    REQUIRE(max_penetration(scene, positions(cloth)) <= 1e-4 * (1 + 1e-9));
+    contacts = std::max(contacts, report.contacts);
+  }
+  CHECK(contacts > 3);
+  CHECK(distance(momentum(scene.masses, velocities(cloth)), before) <= 1e-9 * length(before));
+}
+
+TEST_CASE("spheres collide with each other and with what is fixed") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0.01, 1.2, 0}, {0, 2.4, 0.01}, {0.3, 3.3, 0}};
+  scene.velocities.assign(4, {0, -3, 0});
+  scene.masses = {1, 1, 2, 0.1};
+  scene.fixed = {0};
+  scene.radii = {0.5, 0.5, 0.5, 0.1};
+  scene.spheres = {1, 2};
+  scene.constraints = {{2, 3, distance(scene.positions[2], scene.positions[3])}};
+  Settings settings = direct(tight(1e-6));
+  settings.velocity_correction = true;
+  Cloth cloth = cloth_of(scene, settings);
+  bool touched = false;
+  for (int k = 0; k < 200; ++k) {
+    const StepReport report = step(cloth, 0.005);
+    REQUIRE(report.status == Status::converged);
+    REQUIRE(max_penetration(scene, positions(cloth)) <= 1e-6 * (1 + 1e-9));
+    touched = touched || report.corrections > 2;
+  }
+  CHECK(touched);
+}
+
+}  // namespace
+}  // namespace weft::test
