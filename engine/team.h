@@ -4,15 +4,17 @@
 /// would cost more than that. So the threads are asked for once per step, as oneTBB tasks in the
 /// caller's arena, and from then on meet through atomics:
 ///
-///     leader:  announces (epoch, members); takes its share, then any that nobody has begun; waits
-///              for those that others have begun
-///     member:  waits for a new epoch; takes its share, then any that nobody has begun
+///     leader:  announces (epoch, members), does its share, waits for the others'
+///     member:  waits for a new epoch, does its share
+///
+/// A meeting costs what it takes a cache line to cross between processors, twice; so everything
+/// that a call says is in one line, and nobody touches the lines of another without need.
 ///
 /// Nobody is waited for who has not come: a task that the scheduler never starts, or starts late,
-/// is simply no member yet, and the share of a member that is late is done by another. If all the
-/// same a share keeps the leader waiting for long, its thread has lost its processor: the leader
-/// goes on alone for the rest of the step. Who does a share is left to chance; results must not
-/// depend on it.
+/// is simply no member yet, and the leader does itself what a member has not begun after a while.
+/// If a share that was begun keeps it waiting for long, its thread has lost its processor: the
+/// leader goes on alone for the rest of the step. Who does a share is left to chance; results must
+/// not depend on it.
 #pragma once
 
 #include <tbb/task_group.h>
@@ -52,20 +54,25 @@ class Team {
     std::size_t count = 0;
   };
   static constexpr std::size_t kCacheLine = 64;
-  struct alignas(kCacheLine) Share {
-    std::atomic<std::uint64_t> begun{0};  // the last epoch in which somebody did
+  /// epoch in the high half, members (leader included) in the low half; kStop as members: go home.
+  struct alignas(kCacheLine) Call {
+    std::atomic<std::uint64_t> word{0};
+    Job job;  // written by the leader between epochs, read by whoever has begun a share
+  };
+  /// The last epoch in which somebody began, and finished, the share of a member.
+  struct Share {
+    alignas(kCacheLine) std::atomic<std::uint64_t> begun{0};
+    alignas(kCacheLine) std::atomic<std::uint64_t> done{0};
   };
 
   void run(const Job& job);
   void serve();
-  void take_shares(std::uint64_t epoch, std::uint32_t me, std::uint32_t members);
+  void do_share(std::uint64_t epoch, std::uint32_t share, std::uint32_t members);
+  bool finish_share(std::uint64_t epoch, std::uint32_t share, std::uint32_t members);
 
-  // epoch in the high half, members (leader included) in the low half; kStop as members: go home.
-  alignas(kCacheLine) std::atomic<std::uint64_t> call_{0};
-  alignas(kCacheLine) std::atomic<std::uint32_t> done_{0};    // shares finished in this epoch
+  Call call_;
   alignas(kCacheLine) std::atomic<std::uint32_t> joined_{0};  // tasks that have started
   std::array<Share, kMostMembers> shares_;
-  Job job_;  // written by the leader between epochs, read by whoever has begun a share
   std::uint64_t epoch_ = 0;
   int helpers_ = 0;
   bool alone_ = true;
