@@ -12,6 +12,11 @@ std::size_t bytes_of(const T& vector) {
   return vector.capacity() * sizeof(vector[0]);
 }
 
+template <class Layout>
+std::size_t bytes_if_made(const OnDemand<Layout>& layout) {
+  return layout.if_made() != nullptr ? layout.if_made()->bytes() : 0;
+}
+
 }  // namespace
 
 Model::Model(const SceneDescription& description) : particles(description.positions.size()) {
@@ -122,18 +127,15 @@ void Model::append(const Constraint& c, std::uint32_t described, std::uint32_t a
 }
 
 const ReferenceLayout& Model::reference() const {
-  std::call_once(reference_once_, [this] { reference_ = make_reference_layout(*this); });
-  return reference_;
+  return reference_.get([this] { return make_reference_layout(*this); });
 }
 
 const SimdLayout& Model::simd() const {
-  std::call_once(simd_once_, [this] { simd_ = make_simd_layout(*this); });
-  return simd_;
+  return simd_.get([this] { return make_simd_layout(*this); });
 }
 
 const DirectLayout& Model::direct() const {
-  std::call_once(direct_once_, [this] { direct_ = make_direct_layout(*this); });
-  return direct_;
+  return direct_.get([this] { return make_direct_layout(*this); });
 }
 
 std::size_t Model::bytes() const {
@@ -146,7 +148,8 @@ std::size_t Model::bytes() const {
          bytes_of(o.tiles) + bytes_of(s.a) + bytes_of(s.b) + bytes_of(s.rest_length) +
          bytes_of(s.effective_mass) + bytes_of(s.colour) + bytes_of(s.described) +
          bytes_of(s.slot) + bytes_of(fixed_particle_) + bytes_of(hub_particle_) +
-         bytes_of(described_link_) + reference_.bytes() + simd_.bytes() + direct_.bytes();
+         bytes_of(described_link_) + bytes_if_made(reference_) + bytes_if_made(simd_) +
+         bytes_if_made(direct_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

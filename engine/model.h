@@ -7,10 +7,10 @@
 #include <weft/weft.h>
 
 #include <cstdint>
-#include <mutex>
 #include <vector>
 
 #include "engine/direct_layout.h"
+#include "engine/on_demand.h"
 #include "engine/ordering.h"
 #include "engine/reference_layout.h"
 #include "engine/simd_layout.h"
@@ -79,10 +79,9 @@ class Model {
 
   std::vector<std::uint8_t> fixed_particle_, hub_particle_;  // by the description's numbers
   std::vector<std::uint32_t> described_link_;                // link -> description
-  mutable std::once_flag reference_once_, simd_once_, direct_once_;
-  mutable ReferenceLayout reference_;
-  mutable SimdLayout simd_;
-  mutable DirectLayout direct_;
+  OnDemand<ReferenceLayout> reference_;
+  OnDemand<SimdLayout> simd_;
+  OnDemand<DirectLayout> direct_;
 };
 
 }  // namespace weft

@@ -13,6 +13,10 @@ std::size_t bytes_of(const T& vector) {
   return vector.capacity() * sizeof(vector[0]);
 }
 
+/// Floats see an error fall by some seven digits; renewing takes it from there (iterative
+/// refinement).
+constexpr int kOldestDirections = 1024;
+
 /// Of constraint blocks; more are fetched from memory in every pass. About two cores' own caches.
 constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
 
@@ -144,7 +148,7 @@ kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, const Co
 kernels::LoopLimits SimdSolver::limits(int max_iterations) const {
   return {.fixed_iterations = settings_.iterations,
           .max_iterations = max_iterations,
-          .renew_after = settings_.renew_after};
+          .renew_after = settings_.renew_after > 0 ? settings_.renew_after : kOldestDirections};
 }
 
 /// Ropes and contacts take part in the velocity loop where they are taut or touch.
