@@ -18,7 +18,6 @@ constexpr double kNegligible = 1e-6;
 /// 1 % far below that, and the next steps have no noise to fight (corners, 41 x 41, 4 substeps, 1
 /// %: 30 ms a frame and 0.45 J gained without it).
 constexpr double kGoal = 1e-5;
-constexpr int kMostExtra = 3;
 constexpr int kMostSolves = 60;          // of one attempt; two or three are usual
 constexpr int kPatience = 4;             // solves that need not halve the error
 constexpr int kFirstSweeps = 32;         // of the answer to the first failure
@@ -143,26 +142,22 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
   }
   copy(x, start_.view(), start_.size());
   int wanted = kFirstSweeps;
-  bool settled = false;
   for (int attempt = 0;; ++attempt) {
     Outcome outcome = iterate(x, contacts, max_iterations, result);
-    if (outcome == Outcome::exhausted && !settled) return result;
+    if (outcome == Outcome::exhausted) return result;
     if (outcome == Outcome::failed && attempt == 0 && uneven_) {
       outcome = iterate_stiff(x, contacts, max_iterations, result);
     }
     result.converged = outcome == Outcome::converged;
     if (result.converged) return result;
     copy(start_.view(), x, start_.size());
-    result.converged = settled;
     const int left = max_iterations - result.iterations;
-    if (settled || left <= 0) return result;
+    if (left <= 0) return result;
     start(contacts, true);
     const LoopResult swept = sweeps(attempt == 0, std::min(wanted, left));
     count(result, swept);
-    settled =
-        swept.converged;  // but with the noise of the tolerance: one more attempt to take it out
-    result.converged = settled;
-    if (result.iterations >= max_iterations) return result;
+    result.converged = swept.converged;
+    if (result.converged || result.iterations >= max_iterations) return result;
     copy(x, start_.view(), start_.size());
     wanted = std::min(wanted, max_iterations) * kMoreSweeps;
   }
@@ -172,19 +167,18 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
 DirectSolver::Outcome DirectSolver::iterate(VectorsView x, const ContactStore& contacts,
                                             int max_iterations, LoopResult& result) {
   Progress progress(kMostSolves, kPatience);
-  const int first = result.iterations;
   const double goal = std::min(1.0, kGoal / settings_.tolerance);
-  int within = 0;  // solves that began within tolerance, and the first one
+  bool solved = false;
   for (;;) {
     const double worst = measure_positions(x, contacts);
     result.visits += static_cast<std::int64_t>(total_.size());
-    if (worst <= kNegligible || (within > 0 && worst <= goal)) return Outcome::converged;
-    if (worst <= 1 && (within == kMostExtra || result.iterations >= max_iterations)) {
-      return Outcome::converged;
+    if (worst <= kNegligible || (solved && worst <= goal)) return Outcome::converged;
+    const bool enough = worst <= 1;
+    if (!progress.goes_on(worst)) return enough ? Outcome::converged : Outcome::failed;
+    if (result.iterations >= max_iterations) {
+      return enough ? Outcome::converged : Outcome::exhausted;
     }
-    if (!progress.goes_on(worst)) return worst <= 1 ? Outcome::converged : Outcome::failed;
-    if (result.iterations >= max_iterations) return Outcome::exhausted;
-    within += worst <= 1 || result.iterations == first;
+    solved = true;
     ++result.iterations;
     ++result.direction_updates;
     if (!solve()) return Outcome::failed;
