@@ -1,7 +1,7 @@
 /// The immutable part of a cloth: who is joined to whom and how. Shared by any number of Cloths.
 ///
-/// Inside the engine particles are numbered by slot (engine/ordering.h); the description's numbers
-/// appear only at the interface.
+/// Inside the engine particles are numbered by slot (engine/ordering/ordering.h); the description's
+/// numbers appear only at the interface.
 #pragma once
 
 #include <weft/weft.h>
@@ -9,11 +9,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/direct_layout.h"
 #include "engine/on_demand.h"
-#include "engine/ordering.h"
-#include "engine/reference_layout.h"
-#include "engine/simd_layout.h"
+#include "engine/ordering/ordering.h"
+#include "engine/solvers/direct_layout.h"
+#include "engine/solvers/reference_layout.h"
+#include "engine/solvers/simd_layout.h"
 #include "kernels/vectors.h"
 
 namespace weft {

@@ -17,10 +17,10 @@
 #include <optional>
 
 #include "engine/contacts.h"
-#include "engine/direct_solver.h"
 #include "engine/model.h"
-#include "engine/reference_solver.h"
-#include "engine/simd_solver.h"
+#include "engine/solvers/direct_solver.h"
+#include "engine/solvers/reference_solver.h"
+#include "engine/solvers/simd_solver.h"
 #include "kernels/vectors.h"
 
 namespace weft {

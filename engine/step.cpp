@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "engine/measure.h"
-#include "engine/team.h"
+#include "engine/solvers/team.h"
 #include "kernels/reference/integrate.h"
 
 namespace weft {

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/ordering.h"
+#include "engine/ordering/ordering.h"
 #include "kernels/simd/table.h"
 
 namespace weft::perf {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "engine/team.h"
+#include "engine/solvers/team.h"
 #include "perf/benchmarks.h"
 
 namespace weft::perf {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <span>
 
-#include "engine/simd_layout.h"
+#include "engine/solvers/simd_layout.h"
 
 namespace weft::perf {
 namespace {
 
-/// As in engine/simd_solver.cpp.
+/// As in engine/solvers/simd_solver.cpp.
 constexpr std::size_t kFetchedAheadAbove = std::size_t{4} << 20;
 
 Ordering order_of(const SceneDescription& scene, const OrderingOptions& options) {

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include "engine/ordering.h"
+#include "engine/ordering/ordering.h"
 #include "kernels/simd/table.h"
 #include "perf/meshes.h"
 #include "perf/pull_layout.h"

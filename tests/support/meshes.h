@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/ordering.h"
+#include "engine/ordering/ordering.h"
 #include "tests/support/random.h"
 
 namespace weft::test {

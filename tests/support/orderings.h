@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "engine/ordering.h"
+#include "engine/ordering/ordering.h"
 
 namespace weft::test {
 

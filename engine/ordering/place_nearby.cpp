@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <numeric>
+
+#include "engine/ordering/placement.h"
+
+namespace weft {
+namespace {
+
+/// Cuts the mesh in two halves again and again, each time along the levels of a breadth-first
+/// search that begins at a far end, until the pieces are as large as a tile.
+class Bisection {
+ public:
+  Bisection(const Incidence& incidence, std::span<const Link> links)
+      : incidence_(incidence),
+        links_(links),
+        order_(incidence.particles()),
+        piece_of_(incidence.particles()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+  }
+
+  std::vector<std::vector<std::uint32_t>> cut(std::uint32_t tiles) {
+    struct Piece {
+      std::size_t first, last;
+      std::uint32_t tiles;
+    };
+    std::vector<std::vector<std::uint32_t>> result;
+    std::vector<Piece> open{{0, order_.size(), tiles}};
+    while (!open.empty()) {
+      const Piece piece = open.back();
+      open.pop_back();
+      search(piece.first, piece.last);
+      search(piece.first, piece.last);
+      if (piece.tiles == 1) {
+        result.emplace_back(at(piece.first), at(piece.last));
+        continue;
+      }
+      const std::uint32_t half = piece.tiles / 2;
+      const std::size_t middle = piece.first + (piece.last - piece.first) * half / piece.tiles;
+      open.push_back({middle, piece.last, piece.tiles - half});
+      open.push_back({piece.first, middle, half});
+    }
+    return result;
+  }
+
+ private:
+  std::vector<std::uint32_t>::iterator at(std::size_t i) {
+    return order_.begin() + static_cast<std::ptrdiff_t>(i);
+  }
+
+  /// Reorders a piece breadth first from its last particle, which is far off if the piece was in
+  /// this order before. Parts follow each other.
+  void search(std::size_t first, std::size_t last) {
+    const std::uint32_t piece = ++pieces_;  // marks those not found yet
+    for (std::size_t i = first; i < last; ++i) piece_of_[order_[i]] = piece;
+    found_.clear();
+    std::size_t next = 0;
+    for (std::size_t i = last; i-- > first;) {
+      find(order_[i], piece);
+      for (; next < found_.size(); ++next) {
+        const std::uint32_t p = found_[next];
+        for (const std::uint32_t link : incidence_[p]) find(other_end(links_[link], p), piece);
+      }
+    }
+    std::copy(found_.begin(), found_.end(), at(first));
+  }
+
+  void find(std::uint32_t particle, std::uint32_t piece) {
+    if (piece_of_[particle] != piece) return;
+    piece_of_[particle] = 0;
+    found_.push_back(particle);
+  }
+
+  const Incidence& incidence_;
+  std::span<const Link> links_;
+  std::vector<std::uint32_t> order_, piece_of_, found_;
+  std::uint32_t pieces_ = 0;
+};
+
+}  // namespace
+
+Placement place_nearby(const Incidence& incidence, std::span<const Link> links,
+                       std::uint32_t tile_particles) {
+  Placement placement;
+  placement.colour_class.assign(links.size(), kNoIndex);
+  if (incidence.particles() == 0) return placement;
+  const std::uint32_t tiles = tile_count(incidence.particles(), tile_particles);
+  placement.tiles = Bisection(incidence, links).cut(tiles);
+  return placement;
+}
+
+}  // namespace weft

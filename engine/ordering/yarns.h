@@ -1,0 +1,41 @@
+/// Yarns: the links, taken apart into chains that run straight on through their particles, as the
+/// yarns of a woven cloth do. On a grid they are its rows and its columns.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/ordering/ordering.h"
+
+namespace weft {
+
+/// Link k of a yarn joins its particles k and k + 1; the last link of a closed yarn joins its last
+/// particle to its first. No particle is twice on a yarn.
+struct Yarn {
+  std::uint32_t first_particle = 0, last_particle = 0;  // in Yarns::particles
+  std::uint32_t first_link = 0, last_link = 0;          // in Yarns::links
+  std::uint32_t family = 0;
+  bool closed = false;
+};
+
+struct Yarns {
+  std::vector<Yarn> yarns;  // each link in exactly one
+  std::vector<std::uint32_t> particles, links;
+  std::uint32_t families = 0;  // no particle is on two yarns of a family
+
+  std::span<const std::uint32_t> particles_of(const Yarn& yarn) const {
+    return {particles.data() + yarn.first_particle, particles.data() + yarn.last_particle};
+  }
+  std::span<const std::uint32_t> links_of(const Yarn& yarn) const {
+    return {links.data() + yarn.first_link, links.data() + yarn.last_link};
+  }
+};
+
+/// Deterministic: depends on the arguments only. Links must be valid and without duplicates.
+/// Family 0 holds the longest yarns; of equally long ones, those with the shorter links.
+Yarns find_yarns(std::span<const Vec3> positions, std::span<const Link> links);
+
+}  // namespace weft

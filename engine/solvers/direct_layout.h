@@ -1,0 +1,57 @@
+/// What the direct solver needs to know of a model: in which order the constraints are eliminated,
+/// where the values of their matrix and of its factor stand.
+///
+///   rows     the constraints of the matrix, in the order of elimination (minimum degree)
+///   entries  per row k the constraints j < k that share a particle with it: A(k, j) =
+///            sigma_k sigma_j w_p n_k . n_j. Two constraints share at most one particle, or they
+///            would join the same two; so an entry is one product, and a row a plain list.
+///   factor   A = L D L^T; L by columns, its unit diagonal left out. pattern lists the same
+///            entries by rows, for the factorisation goes row by row.
+///
+/// Not in the matrix are the bodies: free particles that couple too many constraints with each
+/// other (spheres and hubs of more than kBodyDegree). They would make a dense block of the matrix;
+/// instead their motions stay unknowns beside it (engine/solvers/direct_solver.h). A constraint
+/// that has nothing but bodies and fixed particles for its ends is a link between bodies.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/lists.h"
+
+namespace weft {
+
+class Model;
+
+struct DirectLayout {
+  static constexpr std::size_t kBodyDegree = 64;
+
+  std::vector<std::uint32_t> row_constraint;
+  std::vector<std::uint32_t> a, b;  // slots, per row
+  std::vector<double> diagonal;     // w_a + w_b without the bodies', per row
+
+  std::vector<std::size_t> entry_begin;   // per row
+  std::vector<std::uint32_t> entry_row;   // j
+  std::vector<std::uint32_t> entry_slot;  // p
+  std::vector<double> entry_weight;       // sigma_k sigma_j w_p
+
+  std::vector<std::size_t> pattern_begin;     // per row of L
+  std::vector<std::uint32_t> pattern_column;  // ascending
+  std::vector<std::size_t> column_begin;      // per column of L
+  std::vector<std::uint32_t> column_row;      // ascending
+
+  std::vector<std::uint32_t> row_of;   // per constraint; kNoIndex: a link between bodies
+  Lists rows_at;                       // rows at each slot, those of a body included
+  std::vector<std::uint32_t> links;    // constraints between bodies
+  std::vector<std::uint32_t> bodies;   // slots
+  std::vector<std::uint32_t> body_of;  // per slot, kNoIndex: none
+
+  std::size_t rows() const { return row_constraint.size(); }
+  std::size_t bytes() const;
+};
+
+DirectLayout make_direct_layout(const Model& model);
+
+}  // namespace weft

@@ -1,0 +1,55 @@
+/// What the vector kernels need to know of a model: the constraints in their slots, cut into
+/// chunks.
+///
+///   constraint slots:  | batches of the ordering | hub distances | hub ropes |
+///
+/// A chunk is at most kChunk constraints of one batch, all in one run or all singles. It is the
+/// unit of work of a kernel call, of sharing work between threads and of skipping: a chunk is
+/// passed over unless something in it, or in a chunk that shares a particle with it, was corrected
+/// since it was last visited.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/lists.h"
+#include "engine/ordering/ordering.h"
+#include "kernels/vectors.h"
+
+namespace weft {
+
+class Model;
+
+inline constexpr std::uint32_t kChunk = 128;
+
+struct Chunk {
+  kernels::Run run;        // singles: only constraint and length are meant
+  std::uint32_t real = 0;  // constraints that are not padding
+  std::uint32_t colour = 0;
+  bool singles = false;
+  bool rope = false;
+};
+
+struct SimdLayout {
+  std::vector<Chunk> chunks;
+  std::vector<kernels::Run> runs;            // of the chunks, side by side
+  std::vector<std::uint32_t> batch_chunks;   // batch i: chunks batch_chunks[i] ... [i + 1] - 1,
+  std::vector<std::uint32_t> batch_singles;  // its singles from batch_singles[i] on
+  Lists neighbours;                          // chunks that share a slot with chunk i, and i itself
+  Lists chunks_at;                           // slot -> chunks
+
+  std::size_t slots = 0;
+  std::uint32_t hub_first = 0, hub_ropes = 0, hub_last = 0;  // constraint slots, not padded
+  std::size_t constraint_slots = 0;                          // with padding to whole lanes
+  std::vector<std::uint32_t> a, b;                           // per constraint slot
+  std::vector<std::uint32_t> constraint_at;                  // in the ConstraintStore, or kNoIndex
+  kernels::AlignedVector<double> rest_length;                // padding: 1
+  kernels::AlignedVector<double> share_a, share_b;           // w_a / (w_a + w_b), padding: 0
+  bool has_ropes = false;
+
+  std::size_t bytes() const;
+};
+
+SimdLayout make_simd_layout(const Model& model);
+
+}  // namespace weft

@@ -1,0 +1,240 @@
+#include "engine/solvers/simd_loop.h"
+
+#include <algorithm>
+
+namespace weft {
+namespace {
+
+void add(kernels::Sweep& sum, const kernels::Sweep& sweep) {
+  sum.visits += sweep.visits;
+  sum.corrections += sweep.corrections;
+}
+
+/// Slots are shared out in stretches of this many.
+constexpr std::size_t kStretch = 1024;
+
+}  // namespace
+
+SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
+    : s_(solver),
+      layout_(solver.layout_),
+      table_(solver.table_),
+      unknowns_(unknowns),
+      r_(solver.relaxation(unknowns.velocity)),
+      contacts_(r_),
+      g_(solver.geometry(unknowns.x, unknowns.velocity)),
+      contact_geometry_(g_),
+      team_(team) {
+  ContactLanes& c = s_.contacts_;
+  contacts_.blocks = c.blocks.data();
+  contacts_.impulse = c.impulse.data();
+  contacts_.a = contact_geometry_.a = c.a.data();
+  contacts_.b = contact_geometry_.b = c.b.data();
+  contact_geometry_.rest_length = c.distance.data();
+  contact_geometry_.scale = c.scale.data();
+  std::ranges::fill(s_.u_, 0.f);
+}
+
+void SimdLoop::apply_displacements() {
+  const kernels::VectorsView target = unknowns_.velocity ? unknowns_.v : unknowns_.x;
+  team_.for_each((layout_.slots + kStretch - 1) / kStretch, [&](std::size_t i) {
+    table_.apply_displacements(target, r_.u, i * kStretch,
+                               std::min(layout_.slots, (i + 1) * kStretch));
+  });
+}
+
+/// With skipping, only where something moved since the last renewal: elsewhere directions and
+/// errors would come out the same.
+void SimdLoop::renew() {
+  apply_displacements();
+  const std::size_t chunks = layout_.chunks.size();
+  team_.for_each((chunks + kPiece - 1) / kPiece, [&](std::size_t piece) {
+    const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
+    for (std::size_t i = piece * kPiece; i < last; ++i) {
+      if (marks() && !s_.stale_[i]) continue;
+      renew_chunk(i);
+      if (!marks()) continue;
+      s_.stale_[i] = 0;
+      s_.changed_[i] = 1;
+    }
+  });
+  renew_rest();
+  if (masks()) std::ranges::fill(s_.mask_, ~std::uint64_t{0});
+}
+
+void SimdLoop::renew_chunk(std::size_t i) {
+  const Chunk& chunk = layout_.chunks[i];
+  const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
+  if (chunk.singles && unknowns_.velocity) {
+    table_.renew_velocity_singles(g_, unknowns_.v, r_, first, last);
+  } else if (chunk.singles) {
+    table_.renew_singles(g_, r_, first, last);
+  } else if (unknowns_.velocity) {
+    table_.renew_velocity_run(g_, unknowns_.v, r_, chunk.run);
+  } else {
+    table_.renew_run(g_, r_, chunk.run);
+  }
+}
+
+/// Hubs and contacts.
+void SimdLoop::renew_rest() {
+  const auto renew = [&](const simd::Geometry& g, const simd::Relaxation& r, std::uint32_t first,
+                         std::uint32_t last) {
+    if (unknowns_.velocity) {
+      table_.renew_velocity_singles(g, unknowns_.v, r, first, last);
+    } else {
+      table_.renew_singles(g, r, first, last);
+    }
+  };
+  if (layout_.hub_first < layout_.hub_last) {
+    renew(g_, r_, layout_.hub_first, static_cast<std::uint32_t>(layout_.constraint_slots));
+  }
+  for (const ContactLanes::Range& range : s_.contacts_.spheres) {
+    renew(contact_geometry_, contacts_, range.first, range.last);
+  }
+}
+
+kernels::Sweep SimdLoop::sweep() {
+  kernels::Sweep sweep;
+  const Ordering& ordering = s_.model_.ordering;
+  team_.for_each(ordering.tiles.size(),
+                 [&](std::size_t i) { s_.sweeps_[i] = sweep_tile(ordering.tiles[i]); });
+  for (std::size_t i = 0; i < ordering.tiles.size(); ++i) add(sweep, s_.sweeps_[i]);
+  for (std::size_t i = ordering.between_tiles; i < ordering.batches.size(); ++i) {
+    add(sweep, sweep_batch_between_tiles(i));
+  }
+  sweep_hubs(sweep);
+  sweep_contacts(sweep);
+  if (skips()) choose_density(sweep);
+  return sweep;
+}
+
+/// Leaving the dense state everything counts as changed: the next pass finds out what did.
+void SimdLoop::choose_density(const kernels::Sweep& sweep) {
+  constexpr std::int64_t kDenseShare = 16;
+  const auto constraints = static_cast<std::int64_t>(s_.model_.constraints.size());
+  const bool dense = kDenseShare * sweep.corrections > constraints;
+  if (dense_ && !dense) {
+    std::ranges::fill(s_.changed_, std::uint8_t{1});
+    std::ranges::fill(s_.stale_, std::uint8_t{1});
+  }
+  dense_ = dense;
+}
+
+kernels::Sweep SimdLoop::sweep_tile(const Tile& tile) {
+  kernels::Sweep sweep;
+  for (std::size_t batch = tile.first_batch; batch < tile.last_batch; ++batch) {
+    add(sweep, sweep_chunks(batch, layout_.batch_chunks[batch], layout_.batch_chunks[batch + 1]));
+  }
+  return sweep;
+}
+
+kernels::Sweep SimdLoop::sweep_batch_between_tiles(std::size_t batch) {
+  const std::size_t first = layout_.batch_chunks[batch], last = layout_.batch_chunks[batch + 1];
+  const std::size_t pieces = (last - first + kPiece - 1) / kPiece;
+  team_.for_each(pieces, [&](std::size_t piece) {
+    const std::size_t begin = first + piece * kPiece;
+    s_.sweeps_[piece] = sweep_chunks(batch, begin, std::min(last, begin + kPiece));
+  });
+  kernels::Sweep sweep;
+  for (std::size_t piece = 0; piece < pieces; ++piece) add(sweep, s_.sweeps_[piece]);
+  return sweep;
+}
+
+/// Chunks of one batch touch no particle in common: they are relaxed first and looked at
+/// afterwards.
+kernels::Sweep SimdLoop::sweep_chunks(std::size_t index, std::size_t first, std::size_t last) {
+  const Batch& batch = s_.model_.ordering.batches[index];
+  kernels::Sweep sweep;
+  const std::size_t singles = std::clamp<std::size_t>(layout_.batch_singles[index], first, last);
+  relax_runs(batch, first, singles, sweep);
+  for (std::size_t i = singles; i < last; ++i) relax_one(batch, i, sweep);
+  for (std::size_t i = first; i < last; ++i) {
+    if (!wanted(i)) continue;
+    sweep.corrections += s_.corrections_[i];
+    if (!marks()) continue;
+    s_.changed_[i] = 0;
+    if (s_.corrections_[i] > 0) mark_neighbours(i);
+  }
+  return sweep;
+}
+
+void SimdLoop::relax_runs(const Batch& batch, std::size_t first, std::size_t last,
+                          kernels::Sweep& sweep) {
+  const bool plain = batch.kind == ConstraintKind::distance && !masks();
+  if (!plain) {
+    for (std::size_t i = first; i < last; ++i) relax_one(batch, i, sweep);
+    return;
+  }
+  table_.relax_runs(r_, layout_.runs.data() + first, last - first,
+                    marks() ? s_.changed_.data() + first : nullptr, s_.corrections_.data() + first);
+  for (std::size_t i = first; i < last; ++i) {
+    if (wanted(i)) sweep.visits += layout_.chunks[i].real;
+  }
+}
+
+void SimdLoop::relax_one(const Batch& batch, std::size_t i, kernels::Sweep& sweep) {
+  const Chunk& chunk = layout_.chunks[i];
+  const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
+  std::uint32_t& corrections = s_.corrections_[i];
+  if (!wanted(i)) return;
+  if (masks() && !chunk.singles && !chunk.rope && batch.colour < 64) {
+    std::uint64_t visits = 0;
+    corrections = table_.relax_masked_run(r_, chunk.run, std::uint64_t{1} << batch.colour, visits);
+    sweep.visits += std::min<std::int64_t>(static_cast<std::int64_t>(visits), chunk.real);
+    return;
+  }
+  sweep.visits += chunk.real;
+  if (chunk.singles) {
+    corrections = chunk.rope ? table_.relax_rope_singles(r_, first, last)
+                             : table_.relax_singles(r_, first, last);
+  } else {
+    corrections =
+        chunk.rope ? table_.relax_rope_run(r_, chunk.run) : table_.relax_run(r_, chunk.run);
+  }
+  if (masks() && corrections > 0) {
+    mark_slots(r_.a, first, last);
+    mark_slots(r_.b, first, last);
+  }
+}
+
+void SimdLoop::sweep_hubs(kernels::Sweep& sweep) {
+  if (layout_.hub_first == layout_.hub_last) return;
+  const auto corrections = table_.relax_serial(r_, layout_.hub_first, layout_.hub_ropes) +
+                           table_.relax_rope_serial(r_, layout_.hub_ropes, layout_.hub_last);
+  sweep.visits += layout_.hub_last - layout_.hub_first;
+  sweep.corrections += corrections;
+  if (corrections == 0) return;
+  mark_slots(r_.a, layout_.hub_first, layout_.hub_last);
+  mark_slots(r_.b, layout_.hub_first, layout_.hub_last);
+}
+
+void SimdLoop::sweep_contacts(kernels::Sweep& sweep) {
+  for (const ContactLanes::Range& range : s_.contacts_.spheres) {
+    const auto corrections = table_.relax_contacts(contacts_, range.first, range.last);
+    sweep.visits += range.real;
+    sweep.corrections += corrections;
+    if (corrections > 0) mark_slots(contacts_.b, range.first, range.last);
+  }
+}
+
+/// Several threads may set the flags of a chunk between tiles, all to the same value.
+void SimdLoop::mark_neighbours(std::size_t chunk) {
+  for (const std::uint32_t i : layout_.neighbours[chunk]) {
+    std::atomic_ref(s_.changed_[i]).store(1, std::memory_order_relaxed);
+    std::atomic_ref(s_.stale_[i]).store(1, std::memory_order_relaxed);
+  }
+}
+
+void SimdLoop::mark_slots(const std::uint32_t* slots, std::size_t first, std::size_t last) {
+  for (std::size_t c = first; c < last; ++c) {
+    if (masks()) s_.mask_[slots[c]] = ~std::uint64_t{0};
+    if (!marks()) continue;
+    for (const std::uint32_t i : layout_.chunks_at[slots[c]]) {
+      s_.changed_[i] = 1;
+      s_.stale_[i] = 1;
+    }
+  }
+}
+
+}  // namespace weft

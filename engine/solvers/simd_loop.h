@@ -1,0 +1,56 @@
+/// The three verbs of kernels/loop.h on the vector kernels.
+#pragma once
+
+#include <atomic>
+
+#include "engine/solvers/simd_solver.h"
+
+namespace weft {
+
+inline constexpr std::size_t kPiece = 16;  // chunks that one thread takes at a time
+
+class SimdLoop {
+ public:
+  struct Unknowns {
+    kernels::VectorsView x;  // position loop: moved; velocity loop: where the directions are
+    kernels::VectorsView v;  // velocity loop: changed
+    bool velocity = false;
+  };
+
+  SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team);
+
+  void renew();
+  kernels::Sweep sweep();
+  void finish() { apply_displacements(); }
+
+ private:
+  bool skips() const { return !s_.changed_.empty(); }
+  bool masks() const { return !s_.mask_.empty(); }
+  void apply_displacements();
+  void renew_chunk(std::size_t i);
+  void renew_rest();
+  kernels::Sweep sweep_tile(const Tile& tile);
+  kernels::Sweep sweep_batch_between_tiles(std::size_t batch);
+  kernels::Sweep sweep_chunks(std::size_t batch, std::size_t first, std::size_t last);
+  void relax_runs(const Batch& batch, std::size_t first, std::size_t last, kernels::Sweep& sweep);
+  void relax_one(const Batch& batch, std::size_t chunk, kernels::Sweep& sweep);
+  bool marks() const { return skips() && !dense_; }
+  bool wanted(std::size_t chunk) const { return !marks() || s_.changed_[chunk]; }
+  void choose_density(const kernels::Sweep& sweep);
+  void sweep_hubs(kernels::Sweep& sweep);
+  void sweep_contacts(kernels::Sweep& sweep);
+  void mark_neighbours(std::size_t chunk);
+  void mark_slots(const std::uint32_t* slots, std::size_t first, std::size_t last);
+
+  SimdSolver& s_;
+  const SimdLayout& layout_;
+  const simd::Table& table_;
+  Unknowns unknowns_;
+  simd::Relaxation r_, contacts_;
+  simd::Geometry g_, contact_geometry_;
+  Team& team_;
+  /// So much is corrected that marking costs more than it saves: everything is visited.
+  bool dense_ = true;
+};
+
+}  // namespace weft

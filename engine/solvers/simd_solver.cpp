@@ -1,0 +1,274 @@
+#include "engine/solvers/simd_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/solvers/simd_loop.h"
+
+namespace weft {
+namespace {
+
+template <class T>
+std::size_t bytes_of(const T& vector) {
+  return vector.capacity() * sizeof(vector[0]);
+}
+
+/// Floats see an error fall by some seven digits; renewing takes it from there (iterative
+/// refinement).
+constexpr int kOldestDirections = 1024;
+
+/// Of constraint blocks; more are fetched from memory in every pass. About two cores' own caches.
+constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
+
+std::size_t whole_lanes(std::size_t n) {
+  return (n + kernels::kLanes - 1) / kernels::kLanes * kernels::kLanes;
+}
+
+}  // namespace
+
+void ContactLanes::resize(std::size_t size) {
+  a.resize(size);
+  b.resize(size);
+  contact.resize(size);
+  blocks.resize(size / kernels::kLanes);
+  impulse.resize(size);
+  distance.resize(size);
+  scale.resize(size);
+}
+
+std::size_t ContactLanes::bytes() const {
+  return bytes_of(spheres) + bytes_of(a) + bytes_of(b) + bytes_of(contact) + bytes_of(blocks) +
+         bytes_of(impulse) + bytes_of(distance) + bytes_of(scale);
+}
+
+SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa isa)
+    : model_(model), layout_(model.simd()), settings_(settings), table_(simd::table(isa)) {
+  const std::size_t size = layout_.constraint_slots;
+  allocate_displacements();
+  fill_gains(false);
+  if (settings.velocity_correction) fill_gains(true);
+  if (layout_.has_ropes) impulse_.resize(size);
+  if (settings.skip && settings.iterations == 0) {
+    if (!settings.anticipate) mask_.resize(layout_.slots);
+    changed_.resize(layout_.chunks.size());
+    stale_.resize(layout_.chunks.size());
+  }
+  sweeps_.resize(std::max(model.ordering.tiles.size(), layout_.chunks.size() / kPiece + 1));
+  strains_.resize(layout_.chunks.size() + 1);
+  corrections_.resize(layout_.chunks.size());
+}
+
+/// In quads if there are no runs.
+void SimdSolver::allocate_displacements() {
+  if (model_.ordering.runs.empty()) {
+    u_step_ = 4;
+    u_stride_ = 1;
+    u_.resize(4 * layout_.slots);
+  } else {
+    u_step_ = 1;
+    u_stride_ = layout_.slots + kernels::kLanes;  // no power of two: axes in different cache sets
+    u_.resize(3 * u_stride_);
+  }
+}
+
+/// Tolerances tau of the loop: tolerance * rest length, in m, or one speed for all, in m/s. With a
+/// fixed number of iterations errors are measured in rest lengths and nothing is tolerated.
+void SimdSolver::fill_gains(bool velocity) {
+  auto& blocks = velocity ? velocity_blocks_ : blocks_;
+  auto& scale = velocity ? velocity_scale_ : scale_;
+  const std::size_t size = layout_.constraint_slots;
+  blocks.resize(size / kernels::kLanes);
+  scale.resize(size);
+  for (std::size_t c = 0; c < size; ++c) {
+    if (layout_.constraint_at[c] == kNoIndex) continue;
+    const double rest = layout_.rest_length[c];
+    double tau = velocity ? settings_.velocity_tolerance : settings_.tolerance * rest;
+    if (settings_.iterations > 0) tau = velocity ? 1 : rest;
+    scale[c] = 1 / tau;
+    simd::ConstraintBlock& block = blocks[c / kernels::kLanes];
+    block.gain_a[c % kernels::kLanes] = static_cast<float>(-tau * tau * layout_.share_a[c]);
+    block.gain_b[c % kernels::kLanes] = static_cast<float>(tau * tau * layout_.share_b[c]);
+  }
+}
+
+/// Brings the contacts of each sphere side by side. They are few.
+void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep_impulses) {
+  contact_impulse_.resize(store.count());
+  if (!keep_impulses) std::ranges::fill(contact_impulse_, 0.f);
+  contacts_.resize(whole_lanes(store.count()) + kernels::kLanes * model_.spheres.size());
+  contacts_.spheres.clear();
+  std::uint32_t next = 0;
+  const auto put = [&](std::uint32_t s, std::uint32_t p, std::uint32_t contact) {
+    const double ws = model_.inverse_mass[s], wp = model_.inverse_mass[p];
+    const bool real = contact != kNoIndex;
+    const double split = real ? tau * tau / (wp + kernels::kLanes * ws) : 0;
+    contacts_.a[next] = s;
+    contacts_.b[next] = p;
+    contacts_.contact[next] = contact;
+    simd::ConstraintBlock& block = contacts_.blocks[next / kernels::kLanes];
+    block.gain_a[next % kernels::kLanes] = static_cast<float>(-split * ws);
+    block.gain_b[next % kernels::kLanes] = static_cast<float>(split * wp);
+    contacts_.impulse[next] = real ? contact_impulse_[contact] : 0;
+    contacts_.distance[next] = real ? store.distance[contact] : 1;
+    contacts_.scale[next] = real ? 1 / tau : 0;
+    ++next;
+  };
+  for (const std::uint32_t s : model_.spheres) {
+    const std::uint32_t first = next;
+    for (std::uint32_t k = 0; k < store.count(); ++k) {
+      if (store.sphere[k] == s) put(s, store.particle[k], k);
+    }
+    const std::uint32_t last_contact = next;
+    // Padding stands on padding slots, each its own: lanes of a block must not share a particle.
+    for (std::uint32_t spare = 0; next % kernels::kLanes != 0; ++spare) {
+      put(s, model_.spare_slots + spare, kNoIndex);
+    }
+    if (next > first) contacts_.spheres.push_back({first, next, last_contact - first});
+  }
+}
+
+kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, const ContactStore& store,
+                                                bool first_round, int max_iterations, Team& team) {
+  if (first_round) std::ranges::fill(impulse_, 0.f);
+  if (model_.has_contacts()) {
+    const double tau = settings_.iterations > 0 ? 1 : settings_.contact_tolerance;
+    place_contacts(store, tau, !first_round);
+  }
+  const auto directions = settings_.directions == Directions::frozen ? kernels::Directions::frozen
+                                                                     : kernels::Directions::each;
+  SimdLoop loop(*this, {x, {}, false}, team);
+  const auto result = kernels::iterate(loop, directions, limits(max_iterations));
+  for (std::size_t k = 0; model_.has_contacts() && k < contacts_.contact.size(); ++k) {
+    const std::uint32_t contact = contacts_.contact[k];
+    if (contact < contact_impulse_.size()) contact_impulse_[contact] = contacts_.impulse[k];
+  }
+  return result;
+}
+
+kernels::LoopLimits SimdSolver::limits(int max_iterations) const {
+  return {.fixed_iterations = settings_.iterations,
+          .max_iterations = max_iterations,
+          .renew_after = settings_.renew_after > 0 ? settings_.renew_after : kOldestDirections};
+}
+
+/// Ropes and contacts take part in the velocity loop where they are taut or touch.
+void SimdSolver::choose_active(kernels::VectorsView x) {
+  const bool fixed_iterations = settings_.iterations > 0;  // then tolerances have no say
+  const double tau = fixed_iterations ? 1 : settings_.velocity_tolerance;
+  const double slack = fixed_iterations ? 0 : settings_.tolerance;
+  const double gap = fixed_iterations ? 0 : settings_.contact_tolerance;
+  for (std::size_t c = 0; layout_.has_ropes && c < layout_.constraint_slots; ++c) {
+    const std::uint32_t constraint = layout_.constraint_at[c];
+    if (constraint == kNoIndex || constraint < model_.constraints.bilateral) continue;
+    const double l = length(x[layout_.a[c]] - x[layout_.b[c]]);
+    const bool taut = l >= (1 - slack) * layout_.rest_length[c];
+    velocity_scale_[c] = taut ? 1 / tau : 0;
+  }
+  for (const ContactLanes::Range& range : contacts_.spheres) {
+    for (std::size_t k = range.first; k < range.last; ++k) {
+      if (contacts_.contact[k] == kNoIndex) continue;
+      const double l = length(x[contacts_.a[k]] - x[contacts_.b[k]]);
+      const bool touching = l <= contacts_.distance[k] + gap;
+      contacts_.scale[k] = touching ? 1 / tau : 0;
+    }
+  }
+}
+
+/// The directions stay, but are "renewed" like frozen ones: it is the renewal that takes the errors
+/// anew from the velocities, in double. Without it no error could fall below 10^-7 of the first.
+kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
+                                                   const ContactStore& store, Team& team) {
+  std::ranges::fill(impulse_, 0.f);
+  if (model_.has_contacts()) {
+    place_contacts(store, settings_.iterations > 0 ? 1 : settings_.velocity_tolerance, false);
+  }
+  choose_active(x);
+  SimdLoop loop(*this, {x, v, true}, team);
+  return kernels::iterate(loop, kernels::Directions::frozen, limits(settings_.max_iterations));
+}
+
+simd::Relaxation SimdSolver::relaxation(bool velocity) {
+  simd::Relaxation r;
+  r.u = {u_.data(), u_stride_, u_step_};
+  r.blocks = velocity ? velocity_blocks_.data() : blocks_.data();
+  r.impulse = impulse_.data();
+  r.a = layout_.a.data();
+  r.b = layout_.b.data();
+  r.mask = mask_.data();
+  r.threshold = settings_.iterations > 0 ? 0 : 1;
+  r.from_memory = bytes_of(blocks_) > kCachedBytes;
+  return r;
+}
+
+simd::Geometry SimdSolver::geometry(kernels::VectorsView x, bool velocity) {
+  return {x, layout_.rest_length.data(), velocity ? velocity_scale_.data() : scale_.data(),
+          layout_.a.data(), layout_.b.data()};
+}
+
+/// Chunk by chunk side by side, then added in order.
+Strain SimdSolver::measure_strain(kernels::VectorsView x, Team& team) {
+  const simd::Geometry g = geometry(x, false);
+  const auto measure = [&](const Chunk& chunk) {
+    const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
+    return chunk.singles ? table_.strain_singles(g, first, last, chunk.rope)
+                         : table_.strain_run(g, chunk.run, chunk.rope);
+  };
+  const std::size_t chunks = layout_.chunks.size();
+  const std::size_t pieces = (chunks + kPiece - 1) / kPiece;
+  team.for_each(pieces, [&](std::size_t piece) {
+    const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
+    for (std::size_t i = piece * kPiece; i < last; ++i) strains_[i] = measure(layout_.chunks[i]);
+  });
+  Strain strain;
+  double squares = 0;
+  std::size_t worst = chunks;
+  for (std::size_t i = 0; i < chunks; ++i) {
+    squares += strains_[i].squares;
+    if (worst == chunks || strains_[i].largest > strain.max) {
+      strain.max = strains_[i].largest;
+      worst = i;
+    }
+  }
+  finish_strain(x, worst, squares, strain);
+  return strain;
+}
+
+/// Adds the constraints at hubs, and finds the constraint that the largest strain belongs to.
+void SimdSolver::finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
+                               Strain& strain) const {
+  const ConstraintStore& store = model_.constraints;
+  const auto strain_of = [&](std::uint32_t slot) {
+    const double rest = layout_.rest_length[slot];
+    const double stretch = (length(x[layout_.a[slot]] - x[layout_.b[slot]]) - rest) / rest;
+    return layout_.constraint_at[slot] < store.bilateral ? std::abs(stretch)
+                                                         : std::max(0.0, stretch);
+  };
+  double nearest = -1;
+  const auto consider = [&](std::uint32_t slot, double s) {
+    if (s <= nearest) return;
+    nearest = s;
+    strain.worst_constraint = store.described[layout_.constraint_at[slot]];
+  };
+  if (worst_chunk < layout_.chunks.size()) {
+    const kernels::Run& run = layout_.chunks[worst_chunk].run;
+    for (std::uint32_t c = run.constraint; c < run.constraint + run.length; ++c) {
+      if (layout_.constraint_at[c] != kNoIndex) consider(c, strain_of(c));
+    }
+  }
+  for (std::uint32_t c = layout_.hub_first; c < layout_.hub_last; ++c) {
+    const double s = strain_of(c);
+    squares += s * s;
+    strain.max = std::max(strain.max, s);
+    consider(c, s);
+  }
+  if (store.size() > 0) strain.rms = std::sqrt(squares / static_cast<double>(store.size()));
+}
+
+std::size_t SimdSolver::bytes() const {
+  return bytes_of(u_) + bytes_of(impulse_) + bytes_of(blocks_) + bytes_of(velocity_blocks_) +
+         bytes_of(scale_) + bytes_of(velocity_scale_) + bytes_of(mask_) + bytes_of(changed_) +
+         bytes_of(stale_) + bytes_of(corrections_) + bytes_of(sweeps_) + bytes_of(strains_) +
+         contacts_.bytes() + bytes_of(contact_impulse_);
+}
+
+}  // namespace weft

@@ -1,0 +1,94 @@
+/// Gauss-Seidel on the vector kernels: the same loop as the reference (kernels/loop.h), one pass
+/// being
+///
+///     for each tile (side by side):  for each of its batches:  for each chunk
+///     for each batch between tiles:  for each chunk (side by side)
+///     constraints at hubs, one after the other
+///     contacts, sphere by sphere
+///
+/// The result depends on neither the number of threads nor, where multiplications and additions are
+/// fused, the instruction set.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/contacts.h"
+#include "engine/model.h"
+#include "engine/solvers/simd_layout.h"
+#include "engine/solvers/team.h"
+#include "kernels/loop.h"
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+/// Contacts in lanes: those of each sphere together, padded to whole lanes.
+struct ContactLanes {
+  struct Range {
+    std::uint32_t first = 0, last = 0;
+    std::uint32_t real = 0;  // without padding
+  };
+  std::vector<Range> spheres;  // those that have contacts
+  std::vector<std::uint32_t> a, b;
+  std::vector<std::uint32_t> contact;  // in the ContactStore, or kNoIndex
+  kernels::AlignedVector<simd::ConstraintBlock> blocks;
+  kernels::AlignedVector<float> impulse;
+  kernels::AlignedVector<double> distance, scale;
+
+  void resize(std::size_t n);
+  std::size_t bytes() const;
+};
+
+class SimdSolver {
+ public:
+  SimdSolver(const Model& model, const Settings& settings, simd::Isa isa);
+
+  /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
+  /// were found anew, accumulated impulses start at 0.
+  kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
+                                      bool first_round, int max_iterations, Team& team);
+  /// The velocity loop at the positions x.
+  kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
+                                         const ContactStore& contacts, Team& team);
+  Strain measure_strain(kernels::VectorsView x, Team& team);
+
+  const simd::Table& kernels() const { return table_; }
+  std::size_t bytes() const;
+
+ private:
+  friend class SimdLoop;
+
+  void allocate_displacements();
+  kernels::LoopLimits limits(int max_iterations) const;
+  void fill_gains(bool velocity);
+  void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
+  void choose_active(kernels::VectorsView x);
+  void finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
+                     Strain& strain) const;
+  simd::Relaxation relaxation(bool velocity);
+  simd::Geometry geometry(kernels::VectorsView x, bool velocity);
+
+  const Model& model_;
+  const SimdLayout& layout_;
+  const Settings settings_;
+  const simd::Table& table_;
+
+  kernels::AlignedVector<float> u_;
+  std::size_t u_stride_ = 0, u_step_ = 1;                                   // simd::Displacements
+  kernels::AlignedVector<float> impulse_;                                   // with ropes only
+  kernels::AlignedVector<simd::ConstraintBlock> blocks_, velocity_blocks_;  // the latter with
+  kernels::AlignedVector<double> scale_, velocity_scale_;                   // velocity correction
+  kernels::AlignedVector<std::uint64_t> mask_;  // skip without anticipation only
+  // Per chunk, skip only: something in it, or in a chunk that shares a particle with it, was
+  // corrected since it was last visited; since its directions were last renewed.
+  std::vector<std::uint8_t> changed_, stale_;
+  std::vector<std::uint32_t> corrections_;  // per chunk, of the present pass
+  std::vector<kernels::Sweep> sweeps_;      // per piece of parallel work
+  std::vector<simd::StrainSums> strains_;   // per chunk
+  ContactLanes contacts_;
+  std::vector<float> contact_impulse_;  // per contact of the ContactStore
+};
+
+}  // namespace weft

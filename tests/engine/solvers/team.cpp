@@ -1,0 +1,166 @@
+/// A team does every index of a loop exactly once, whoever comes to help.
+#include "engine/solvers/team.h"
+
+#include <doctest/doctest.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+namespace weft::test {
+namespace {
+
+/// In an arena of so many slots.
+template <class Work>
+void in_arena(int slots, Work&& work) {
+  tbb::task_arena arena(slots);
+  arena.execute(work);
+}
+
+/// How often each index was done, in a loop by a team of so many.
+std::vector<int> done_by(Team& team, std::size_t count) {
+  std::vector<int> done(count);  // shares do not overlap: no need for atomics
+  team.for_each(count, [&](std::size_t i) { ++done[i]; });
+  return done;
+}
+
+bool each_once(const std::vector<int>& done) {
+  return std::ranges::all_of(done, [](int times) { return times == 1; });
+}
+
+/// Loops until a second thread has taken part, or some seconds have passed; how many threads did.
+std::size_t threads_seen(Team& team) {
+  std::atomic<bool> other{false};
+  const auto leader = std::this_thread::get_id();
+  const auto start = std::chrono::steady_clock::now();
+  while (!other && std::chrono::steady_clock::now() - start < std::chrono::seconds(5)) {
+    team.for_each(2, [&](std::size_t) {
+      if (std::this_thread::get_id() != leader) other = true;
+    });
+  }
+  return other ? 2 : 1;
+}
+
+TEST_CASE("every index is done exactly once, few or many, by any team") {
+  for (const int slots : {1, 2}) {
+    for (const int threads : {0, 1, 2, 3, 300}) {
+      CAPTURE(slots);
+      CAPTURE(threads);
+      in_arena(slots, [&] {
+        Team team(threads);
+        for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 64u, 65u, 1000u, 100'000u}) {
+          CAPTURE(count);
+          REQUIRE(each_once(done_by(team, count)));
+        }
+      });
+    }
+  }
+}
+
+TEST_CASE("indices come in ascending order within a share, all in order on one thread") {
+  in_arena(1, [] {
+    Team team(8);
+    std::vector<std::size_t> order;
+    team.for_each(1000, [&](std::size_t i) { order.push_back(i); });
+    CHECK(order.size() == 1000);
+    CHECK(std::ranges::is_sorted(order));
+  });
+}
+
+TEST_CASE("thousands of loops: what one wrote the next one reads, in whatever thread") {
+  in_arena(2, [] {
+    Team team(2);
+    constexpr std::size_t kCount = 64;
+    constexpr int kLoops = 20'000;
+    std::vector<int> here(kCount), there(kCount);
+    for (int loop = 0; loop < kLoops; ++loop) {
+      team.for_each(kCount, [&](std::size_t i) { there[i] = here[kCount - 1 - i] + 1; });
+      std::swap(here, there);
+    }
+    CHECK(std::ranges::all_of(here, [](int value) { return value == kLoops; }));
+  });
+}
+
+TEST_CASE("a second thread comes to help, if the arena has one") {
+  if (std::thread::hardware_concurrency() < 2) {
+    MESSAGE("this machine has one processor: not tested");
+    return;
+  }
+  in_arena(2, [] {
+    Team team(2);
+    CHECK(threads_seen(team) == 2);
+  });
+  in_arena(2, [] {
+    Team team(1);
+    const auto leader = std::this_thread::get_id();
+    for (int loop = 0; loop < 1000; ++loop) {
+      team.for_each(2, [&](std::size_t) { REQUIRE(std::this_thread::get_id() == leader); });
+    }
+  });
+}
+
+TEST_CASE("teams come and go") {
+  in_arena(2, [] {
+    std::size_t sum = 0;
+    for (int team = 0; team < 3000; ++team) {
+      Team brief(2);
+      if (team % 2 == 0) continue;  // nothing to do: the helper may not even have come
+      sum += done_by(brief, 10).size();
+    }
+    CHECK(sum == 15'000);
+  });
+}
+
+TEST_CASE("teams in the tasks of one arena: more of them than it has threads") {
+  for (const int slots : {1, 2}) {
+    CAPTURE(slots);
+    in_arena(slots, [] {
+      std::atomic<int> failed{0};
+      tbb::parallel_for(0, 40, [&](int) {
+        Team team(2);
+        for (int loop = 0; loop < 50; ++loop) {
+          if (!each_once(done_by(team, 100))) ++failed;
+        }
+      });
+      CHECK(failed == 0);
+    });
+  }
+}
+
+TEST_CASE("more threads than processors: leaders wait for no one who has lost his") {
+  std::atomic<int> failed{0};
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 6; ++k) {
+    threads.emplace_back([&failed] {
+      in_arena(2, [&failed] {
+        Team team(2);
+        for (int loop = 0; loop < 500; ++loop) {
+          if (!each_once(done_by(team, 40))) ++failed;
+        }
+      });
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  CHECK(failed == 0);
+}
+
+TEST_CASE("a share that takes long is waited for") {
+  in_arena(2, [] {
+    Team team(2);
+    threads_seen(team);
+    std::vector<int> done(2);
+    team.for_each(2, [&](std::size_t i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      ++done[i];
+    });
+    CHECK(each_once(done));
+    CHECK(each_once(done_by(team, 1000)));
+  });
+}
+
+}  // namespace
+}  // namespace weft::test
