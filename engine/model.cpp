@@ -2,15 +2,11 @@
 
 #include <algorithm>
 
+#include "engine/bytes_of.h"
 #include "engine/validate.h"
 
 namespace weft {
 namespace {
-
-template <class T>
-std::size_t bytes_of(const T& vector) {
-  return vector.capacity() * sizeof(vector[0]);
-}
 
 template <class Layout>
 std::size_t bytes_if_made(const OnDemand<Layout>& layout) {

@@ -5,15 +5,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/bytes_of.h"
 #include "engine/model.h"
 
 namespace weft {
 namespace {
-
-template <class T>
-std::size_t bytes_of(const T& vector) {
-  return vector.capacity() * sizeof(vector[0]);
-}
 
 void find_bodies(const Model& model, DirectLayout& layout) {
   const ConstraintStore& s = model.constraints;

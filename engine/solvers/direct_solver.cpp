@@ -1,4 +1,5 @@
 #include "engine/solvers/direct_solver.h"
+#include "engine/bytes_of.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,11 +28,6 @@ constexpr int kMostStiffSolves = 20000;  // of a small scene
 constexpr std::size_t kStiffWork = 100'000'000;  // entries of all factors of a large one
 constexpr std::size_t kMostBodies = 16;
 constexpr double kLinkShift = 1e-8;  // of w_a + w_b: the spring of a link between bodies
-
-template <class T>
-std::size_t bytes_of(const T& vector) {
-  return vector.capacity() * sizeof(vector[0]);
-}
 
 void copy(VectorsView from, VectorsView to, std::size_t n) {
   std::copy_n(from.x, n, to.x);

@@ -1,18 +1,10 @@
 #include "engine/solvers/reference_solver.h"
+#include "engine/bytes_of.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace weft {
-namespace {
-
-template <class T>
-std::size_t bytes_of(const T& vector) {
-  return vector.capacity() * sizeof(vector[0]);
-}
-
-}  // namespace
-
 ReferenceSolver::ReferenceSolver(const Model& model, const Settings& settings)
     : model_(model), layout_(model.reference()), settings_(settings) {
   const ConstraintStore& s = model.constraints;

@@ -2,15 +2,11 @@
 
 #include <algorithm>
 
+#include "engine/bytes_of.h"
 #include "engine/model.h"
 
 namespace weft {
 namespace {
-
-template <class T>
-std::size_t bytes_of(const T& vector) {
-  return vector.capacity() * sizeof(vector[0]);
-}
 
 std::uint32_t count_real(const Ordering& ordering, std::uint32_t first, std::uint32_t length) {
   const auto begin = ordering.link_at.begin() + first;

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/bytes_of.h"
 #include "engine/solvers/simd_loop.h"
 
 namespace weft {
 namespace {
-
-template <class T>
-std::size_t bytes_of(const T& vector) {
-  return vector.capacity() * sizeof(vector[0]);
-}
 
 /// Floats see an error fall by some seven digits; renewing takes it from there (iterative
 /// refinement).
