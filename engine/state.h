@@ -21,6 +21,7 @@
 #include "engine/solvers/direct_solver.h"
 #include "engine/solvers/reference_solver.h"
 #include "engine/solvers/simd_solver.h"
+#include "engine/solvers/team.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -42,6 +43,7 @@ struct State {
   std::optional<SimdSolver> simd;
   std::optional<DirectSolver> direct;  // with Solver::direct; those above then are its answer
   const simd::Table* kernels = nullptr;
+  std::shared_ptr<Team::Meeting> meeting = Team::make_meeting();  // of the team of each step
 
   State(std::shared_ptr<const Model> model, const Settings& settings);
   std::size_t bytes() const;

@@ -206,7 +206,7 @@ void substep(State& s, double h, StepReport& report, Team& team) {
 
 StepReport step(State& s, double dt) {
   StepReport report;
-  Team team(threads_worth_having(s));
+  Team team(threads_worth_having(s), s.meeting);
   const double h = dt / s.settings.substeps;
   begin_transaction(s);
   for (int k = 0; k < s.settings.substeps; ++k) {

@@ -17,12 +17,11 @@
 /// not depend on it.
 #pragma once
 
-#include <tbb/task_group.h>
-
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <type_traits>
 
 namespace weft {
@@ -30,12 +29,16 @@ namespace weft {
 class Team {
  public:
   static constexpr int kMostMembers = 64;
+  struct Meeting;
 
-  /// Asks for up to `threads` threads, this one included; at most what the arena has.
-  explicit Team(int threads);
+  /// Asks for up to `threads` threads, this one included; at most what the arena has. A meeting may
+  /// be used again by the next team, when this one is gone.
+  explicit Team(int threads, std::shared_ptr<Meeting> meeting = make_meeting());
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
+
+  static std::shared_ptr<Meeting> make_meeting();
 
   /// work(i) for i in [0, count), in shares of consecutive i; returns when all are done.
   template <class Work>
@@ -53,6 +56,18 @@ class Team {
     void* context = nullptr;
     std::size_t count = 0;
   };
+
+  void run(const Job& job);
+  bool finish_share(std::uint32_t share, std::uint32_t members);
+
+  std::shared_ptr<Meeting> meeting_;
+  int helpers_ = 0;
+  bool alone_ = true;
+};
+
+/// Where leader and members meet. It outlives the team, since a task may start when the team is
+/// gone: it finds the door closed.
+struct Team::Meeting {
   static constexpr std::size_t kCacheLine = 64;
   /// epoch in the high half, members (leader included) in the low half; kStop as members: go home.
   struct alignas(kCacheLine) Call {
@@ -65,18 +80,16 @@ class Team {
     alignas(kCacheLine) std::atomic<std::uint64_t> done{0};
   };
 
-  void run(const Job& job);
-  void serve();
-  void do_share(std::uint64_t epoch, std::uint32_t share, std::uint32_t members);
-  bool finish_share(std::uint64_t epoch, std::uint32_t share, std::uint32_t members);
+  Call call;
+  alignas(kCacheLine) std::atomic<std::uint32_t> door;  // kClosed, or how many have come in
+  std::atomic<std::uint32_t> left{0};                   // of those
+  std::atomic<int> asked{0};                            // tasks that have not started yet
+  std::array<Share, kMostMembers> shares;
+  std::uint64_t epoch = 0;
 
-  Call call_;
-  alignas(kCacheLine) std::atomic<std::uint32_t> joined_{0};  // tasks that have started
-  std::array<Share, kMostMembers> shares_;
-  std::uint64_t epoch_ = 0;
-  int helpers_ = 0;
-  bool alone_ = true;
-  tbb::task_group tasks_;
+  Meeting();
+  void attend();
+  void do_share(std::uint64_t epoch, std::uint32_t share, std::uint32_t members);
 };
 
 }  // namespace weft
