@@ -92,8 +92,10 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
                   "N s, largest impulse of one correction (default 0: no limit)");
   verb.add_option("--solver", options.solver, "gauss_seidel (default) or direct");
   verb.add_option("--scheme", options.scheme, "paper (default)");
-  verb.add_option("--anticipate", options.anticipate,
-                  "on (default) or off: update errors instead of recomputing them");
+  verb.add_option(
+      "--anticipate", options.anticipate,
+      "on (default) or off: update errors instead of recomputing them; simd: skip by flags, or by "
+      "masks (off)");
   verb.add_option("--skip", options.skip, "on (default) or off: pass over satisfied constraints");
   verb.add_option("--directions", options.directions,
                   "frozen (default) until all errors along them are within tolerance, or each: "

@@ -174,7 +174,10 @@ struct Settings {
   /// use one. The result does not depend on it.
   int threads = 0;
   Directions directions = Directions::frozen;
-  bool anticipate = true;            ///< section 4.2: errors are updated, not recomputed
+  /// Section 4.2: errors are updated, not recomputed. simd forms them from displacements either
+  /// way, which is quicker in lanes (perf/README.md); there this chooses by what `skip` remembers:
+  /// flags of chunks of constraints, or, off, the paper's 64-bit masks.
+  bool anticipate = true;
   bool skip = true;                  ///< section 4.3: satisfied constraints are passed over
   bool velocity_correction = false;  ///< sections 3.2, 3.3: a second loop, on velocities
 };
