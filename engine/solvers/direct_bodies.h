@@ -1,0 +1,43 @@
+/// Bodies (spheres and hubs, engine/solvers/direct_layout.h) are unknowns beside the matrix, by
+/// their motions y. With the bodies' motion the errors are e + B y, so lambda = A^-1 (e + B y), and
+/// the balance of impulses of the bodies gives
+///
+///     (W^-1 + B^T A^-1 B + contacts) y = -B^T A^-1 e - contacts,
+///
+/// three back-substitutions for each body. Links between bodies have no inverse mass in A: they act
+/// in this small system as very stiff springs, whose error the next iteration takes.
+#pragma once
+
+#include "engine/solvers/direct_factor.h"
+#include "engine/solvers/direct_system.h"
+
+namespace weft {
+
+class DirectBodies {
+ public:
+  explicit DirectBodies(const DirectLayout& layout) : column_of_(layout.bodies.size()) {}
+
+  /// lambda, being A^-1 e, becomes A^-1 (e + B y). false: the system is not solvable.
+  bool solve(DirectSystem& system, const DirectFactor& factor);
+  /// y of what stands at a slot.
+  kernels::Vector motion(const DirectLayout& layout, std::uint32_t slot) const;
+  /// Of a tie: its impulse is its error, with the bodies' motion, over this.
+  static double compliance(const DirectSystem& system, const Tie& tie);
+  std::size_t bytes() const;
+
+ private:
+  bool choose(const DirectSystem& system);
+  void fill_column(const DirectSystem& system, std::size_t body);
+  void fill_balance(const DirectSystem& system, const DirectFactor& factor);
+  void balance_touches(const DirectSystem& system);
+  void balance_ties(const DirectSystem& system);
+  bool solve_balance();
+
+  std::vector<std::uint32_t> bodies_;     // slots of those that take part
+  std::vector<std::uint32_t> column_of_;  // per body of the layout
+  std::vector<double> columns_;           // B, three columns for each body
+  std::vector<double> solved_;            // A^-1 B
+  std::vector<double> balance_, motion_;  // the small system
+};
+
+}  // namespace weft

@@ -1,0 +1,163 @@
+#include "engine/solvers/direct_stiff.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/bytes_of.h"
+#include "engine/solvers/direct_measure.h"
+
+namespace weft {
+namespace {
+
+using kernels::LoopResult;
+using kernels::Vector;
+using kernels::VectorsView;
+
+constexpr double kUneven = 100;                 // ratio of masses
+constexpr int kMostSolves = 20000;              // of a small scene
+constexpr std::size_t kMostWork = 100'000'000;  // entries of all factors of a large one
+
+Vector operator*(const Symmetric& s, Vector v) {
+  return {s.xx * v.x + s.xy * v.y + s.xz * v.z, s.xy * v.x + s.yy * v.y + s.yz * v.z,
+          s.xz * v.x + s.yz * v.y + s.zz * v.z};
+}
+
+Symmetric inverse(const Symmetric& s) {
+  const double xx = s.yy * s.zz - s.yz * s.yz, xy = s.xz * s.yz - s.xy * s.zz,
+               xz = s.xy * s.yz - s.xz * s.yy;
+  const double f = 1 / (s.xx * xx + s.xy * xy + s.xz * xz);
+  return {f * xx, f * (s.xx * s.zz - s.xz * s.xz), f * (s.xx * s.yy - s.xy * s.xy), f * xy,
+          f * xz, f * (s.xy * s.xz - s.xx * s.yz)};
+}
+
+/// Whether free particles' masses differ by so much that tensions throw the light ones about.
+bool is_uneven(const Model& model) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const double w : model.inverse_mass) {
+    if (w == 0) continue;
+    least = std::min(least, w);
+    most = std::max(most, w);
+  }
+  return most >= kUneven * least;
+}
+
+/// Its imbalance first grows by orders of magnitude: patience is all there is to bound it by.
+int most_solves(const DirectLayout& layout) {
+  const std::size_t most = kMostWork / (layout.column_row.size() + layout.rows() + 1);
+  return static_cast<int>(std::clamp<std::size_t>(most, 100, kMostSolves));
+}
+
+}  // namespace
+
+DirectStiff::DirectStiff(const Model& model) {
+  if (!is_uneven(model) || !model.direct().bodies.empty() || model.has_contacts()) return;
+  predicted_.resize(model.slots());
+  g_.resize(model.slots());
+  soft_.resize(model.slots());
+}
+
+DirectOutcome DirectStiff::iterate(DirectSystem& system, DirectFactor& factor, VectorsView x,
+                                   const ContactStore& contacts, int max_iterations,
+                                   LoopResult& result) {
+  const Model& model = system.model;
+  for (std::size_t p = 0; p < model.slots(); ++p) predicted_.set(p, x[p]);
+  const int most = most_solves(system.layout);
+  for (int solves = 0;; ++solves) {
+    const double worst = measure_positions(system, x, contacts);
+    result.visits += system.count();
+    const double imbalance = find_imbalance(system, x);
+    if (worst <= 0.5 && imbalance <= 0.1) {
+      for (std::size_t p = 0; p < model.slots(); ++p) x.add(p, -model.inverse_mass[p] * g_[p]);
+      if (measure_positions(system, x, contacts) <= 1) return DirectOutcome::converged;
+      find_imbalance(system, x);
+    }
+    if (!std::isfinite(worst + imbalance) || solves == most) return DirectOutcome::failed;
+    if (result.iterations >= max_iterations) return DirectOutcome::exhausted;
+    ++result.iterations;
+    ++result.direction_updates;
+    result.corrections += system.active;
+    stiffen(system);
+    solve(system, factor, x);
+  }
+}
+
+/// g = M (x - x~) + J^T lambda, in g_; the largest |W g| in tolerances.
+double DirectStiff::find_imbalance(const DirectSystem& system, VectorsView x) {
+  const Model& model = system.model;
+  const DirectLayout& layout = system.layout;
+  for (std::size_t p = 0; p < model.slots(); ++p) {
+    const double w = model.inverse_mass[p];
+    g_.set(p, w > 0 ? (1 / w) * (x[p] - predicted_[p]) : Vector{0, 0, 0});
+  }
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t row = 0; row < layout.rows(); ++row) {
+    const std::uint32_t c = layout.row_constraint[row];
+    const Vector j = system.total[c] * system.n(row);
+    g_.view().add(layout.a[row], j);
+    g_.view().add(layout.b[row], -1 * j);
+    shortest = std::min(shortest, system.tolerance(c));
+  }
+  double worst = 0;
+  for (std::size_t p = 0; p < model.slots(); ++p) {
+    worst = std::max(worst, model.inverse_mass[p] * length(g_[p]));
+  }
+  return worst / shortest;
+}
+
+/// W~ = (M + sum k (1 - n n^T))^-1 per particle.
+void DirectStiff::stiffen(const DirectSystem& system) {
+  const Model& model = system.model;
+  const DirectLayout& layout = system.layout;
+  for (std::size_t p = 0; p < model.slots(); ++p) {
+    const double w = model.inverse_mass[p];
+    const double m = w > 0 ? 1 / w : 0;
+    soft_[p] = {m, m, m, 0, 0, 0};
+  }
+  for (std::size_t row = 0; row < layout.rows(); ++row) {
+    const std::uint32_t c = layout.row_constraint[row];
+    const double k = 2 * std::abs(system.total[c]) / model.constraints.rest_length[c];
+    const auto [x, y, z] = system.n(row);
+    for (const std::uint32_t p : {layout.a[row], layout.b[row]}) {
+      Symmetric& s = soft_[p];
+      s.xx += k * (1 - x * x);
+      s.yy += k * (1 - y * y);
+      s.zz += k * (1 - z * z);
+      s.xy -= k * x * y;
+      s.xz -= k * x * z;
+      s.yz -= k * y * z;
+    }
+  }
+  for (std::size_t p = 0; p < model.slots(); ++p) {
+    soft_[p] = model.inverse_mass[p] > 0 ? inverse(soft_[p]) : Symmetric{};
+  }
+}
+
+void DirectStiff::solve(DirectSystem& system, DirectFactor& factor, VectorsView x) {
+  const DirectLayout& layout = system.layout;
+  for (std::size_t row = 0; row < layout.rows(); ++row) {
+    const std::uint32_t a = layout.a[row], b = layout.b[row];
+    system.lambda[row] -= dot(system.n(row), soft_[a] * g_[a] - soft_[b] * g_[b]);
+  }
+  factor.factorise([&](std::size_t k, double* y) {
+    const Vector nk = system.n(k);
+    for (std::size_t e = layout.entry_begin[k]; e < layout.entry_begin[k + 1]; ++e) {
+      const std::uint32_t j = layout.entry_row[e];
+      const double value = dot(system.n(j), soft_[layout.entry_slot[e]] * nk);
+      y[j] += layout.entry_weight[e] > 0 ? value : -value;
+    }
+    const double d = dot(nk, soft_[layout.a[k]] * nk) + dot(nk, soft_[layout.b[k]] * nk);
+    return d > 0 ? d : layout.diagonal[k];
+  });
+  factor.solve(system.lambda.data());
+  for (std::size_t row = 0; row < layout.rows(); ++row) {
+    const double impulse = system.clamped(layout.row_constraint[row], system.lambda[row]);
+    g_.view().add(layout.a[row], impulse * system.n(row));
+    g_.view().add(layout.b[row], -impulse * system.n(row));
+  }
+  for (std::size_t p = 0; p < system.model.slots(); ++p) x.add(p, -1 * (soft_[p] * g_[p]));
+}
+
+std::size_t DirectStiff::bytes() const { return predicted_.bytes() + g_.bytes() + bytes_of(soft_); }
+
+}  // namespace weft
