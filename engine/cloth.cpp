@@ -119,7 +119,7 @@ Result<void> Cloth::write_forces(std::span<const Vec3> in) {
     return {};
   }
   if (auto r = validate_vectors("forces", in, particle_count()); !r) return r;
-  impl_->force.resize(impl_->model->slots());
+  if (impl_->force.size() == 0) impl_->force = kernels::Vectors(impl_->model->slots());
   for (std::uint32_t i = 0; i < in.size(); ++i) {
     impl_->force.set(impl_->slot(i), to_internal(in[i]));
   }

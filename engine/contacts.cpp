@@ -48,7 +48,18 @@ bool listed(const ContactStore& contacts, std::uint32_t s, std::uint32_t p) {
   return false;
 }
 
+/// Room in all lists before anything is in one: they stay of one length if memory runs out.
+void make_room(ContactStore& contacts) {
+  if (contacts.count() < contacts.capacity()) return;
+  const std::size_t room = std::max<std::size_t>(64, 2 * std::size_t{contacts.count()});
+  contacts.distance.reserve(room);
+  contacts.next.reserve(room);
+  contacts.particle.reserve(room);
+  contacts.sphere.reserve(room);
+}
+
 void append(ContactStore& contacts, std::uint32_t s, std::uint32_t p, double distance) {
+  make_room(contacts);
   contacts.next.push_back(contacts.first[p]);
   contacts.first[p] = contacts.count();
   contacts.sphere.push_back(s);

@@ -20,6 +20,7 @@ struct ContactStore {
   std::vector<std::uint32_t> found;  // scratch of the search, per slot
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(sphere.size()); }
+  std::size_t capacity() const { return sphere.capacity(); }  // of the list that grows last
 };
 
 /// An empty store with room for the search; without spheres nothing is allocated.

@@ -33,14 +33,26 @@ Energy measure_energy(const Model& m, const kernels::Vectors& x, const kernels::
   return energy;
 }
 
+namespace {
+
+constexpr double kMost = 1e150;  // 12 kMost^2, the largest squared distance, is finite
+
+}  // namespace
+
 bool all_finite(const kernels::Vectors& v) {
-  constexpr double kMost = 1e150;  // 12 kMost^2, the largest squared distance, is finite
   bool beyond = false;
   for (std::size_t i = 0; i < v.size(); ++i) {
     beyond |=
         !(std::abs(v.x[i]) <= kMost) | !(std::abs(v.y[i]) <= kMost) | !(std::abs(v.z[i]) <= kMost);
   }
   return !beyond;
+}
+
+std::size_t first_not_finite(const kernels::Vectors& v) {
+  const auto within = [](double number) { return std::abs(number) <= kMost; };
+  std::size_t i = 0;
+  while (i < v.size() && within(v.x[i]) && within(v.y[i]) && within(v.z[i])) ++i;
+  return i;
 }
 
 }  // namespace weft

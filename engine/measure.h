@@ -13,5 +13,7 @@ Energy measure_energy(const Model& model, const kernels::Vectors& position,
                       const kernels::Vectors& velocity);
 /// Whether all components, and the squared distances between any two vectors, are finite.
 bool all_finite(const kernels::Vectors& vectors);
+/// The index of the first of which that is not true; the size if there is none.
+std::size_t first_not_finite(const kernels::Vectors& vectors);
 
 }  // namespace weft

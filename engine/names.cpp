@@ -63,6 +63,10 @@ std::string_view name(Status status) {
       return "fixed_iterations";
     case Status::iteration_limit:
       return "iteration_limit";
+    case Status::infeasible:
+      return "infeasible";
+    case Status::non_finite_input:
+      return "non_finite_input";
     case Status::non_finite:
       return "non_finite";
   }

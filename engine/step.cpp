@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <tuple>
 
 #include "engine/measure.h"
 #include "engine/solvers/team.h"
+#include "engine/standstill.h"
 #include "kernels/reference/integrate.h"
 
 namespace weft {
@@ -84,10 +86,42 @@ void commit(State& s, double h, Team& team) {
   });
 }
 
-kernels::LoopResult sweep_positions(State& s, double h, bool first, int left, Team& team) {
+kernels::LoopResult sweep_positions(State& s, double h, bool first, const LoopBudget& budget,
+                                    Team& team) {
   const auto x = s.solved.view();
-  return s.reference ? s.reference->solve_positions(x, h, s.contacts, first, left)
-                     : s.simd->solve_positions(x, s.contacts, first, left, team);
+  return s.reference ? s.reference->solve_positions(x, h, s.contacts, first, budget)
+                     : s.simd->solve_positions(x, s.contacts, first, budget, team);
+}
+
+Strain strain_at(State& s, kernels::Vectors& x, Team& team) {
+  return s.simd ? s.simd->measure_strain(x.view(), team) : measure_strain(*s.model, x);
+}
+
+double penetration_at(State& s, kernels::Vectors& x) {
+  if (!s.model->has_contacts()) return 0;
+  return max_penetration(*s.model, *s.kernels, x.view(), s.contacts);
+}
+
+/// Sweeps until nothing is out of tolerance, `most` iterations are done, or none of them brings
+/// anything any more.
+kernels::LoopResult sweep_on(State& s, double h, bool first, int most, Standstill& standstill,
+                             Team& team) {
+  if (s.settings.iterations > 0)
+    return sweep_positions(s, h, first, whole_budget(s.settings), team);
+  kernels::LoopResult sum;
+  while (sum.iterations < most && !standstill.reached()) {
+    const int part = std::min(most - sum.iterations, kPassesBetweenLooks);
+    const LoopBudget budget{part, standstill.in_doubt() ? 1 : s.settings.renew_after};
+    const auto result = sweep_positions(s, h, first && sum.iterations == 0, budget, team);
+    sum.iterations += result.iterations;
+    sum.direction_updates += result.direction_updates;
+    sum.visits += result.visits;
+    sum.corrections += result.corrections;
+    sum.converged = result.converged;
+    if (sum.converged || part < kPassesBetweenLooks) break;
+    standstill.look(strain_at(s, s.solved, team), penetration_at(s, s.solved));
+  }
+  return sum;
 }
 
 kernels::LoopResult sweep_velocities(State& s, Team& team) {
@@ -101,31 +135,35 @@ kernels::LoopResult sweep_velocities(State& s, Team& team) {
 struct Answer {
   State& state;
   double h;
+  Standstill& standstill;
   Team& team;
 };
 
-kernels::LoopResult solve_positions(State& s, double h, bool first, int left, Team& team) {
-  if (!s.direct) return sweep_positions(s, h, first, left, team);
-  const Answer answer{s, h, team};
+kernels::LoopResult solve_positions(State& s, double h, bool first, int left,
+                                    Standstill& standstill, Team& team) {
+  if (!s.direct) return sweep_on(s, h, first, left, standstill, team);
+  const Answer answer{s, h, standstill, team};
   return s.direct->solve_positions(
       s.solved.view(), s.contacts, first, left, [&answer](bool begin, int most) {
-        return sweep_positions(answer.state, answer.h, begin, most, answer.team);
+        return sweep_on(answer.state, answer.h, begin, most, answer.standstill, answer.team);
       });
 }
 
 kernels::LoopResult correct_velocities(State& s, Team& team) {
   if (!s.direct) return sweep_velocities(s, team);
-  const Answer answer{s, 0, team};
+  const auto answer = std::tie(s, team);
   return s.direct->correct_velocities(
       s.solved.view(), s.next_velocity.view(), s.contacts,
-      [&answer](bool, int) { return sweep_velocities(answer.state, answer.team); });
+      [&answer](bool, int) { return std::apply(sweep_velocities, answer); });
 }
 
 void solve_positions(State& s, double h, StepReport& report, Team& team) {
   int left = s.settings.max_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
-    const auto result = solve_positions(s, h, round == 0, left, team);
+    Standstill standstill;
+    const auto result = solve_positions(s, h, round == 0, left, standstill, team);
     add(report, result);
+    if (!result.converged && standstill.reached()) worsen(report, Status::infeasible);
     report.iterations += result.iterations;
     left -= result.iterations;
     report.direction_updates += result.direction_updates;
@@ -152,15 +190,12 @@ bool accept(State& s) {
 }
 
 void report_errors(State& s, StepReport& report, Team& team) {
-  const Strain strain = s.simd ? s.simd->measure_strain(s.position.view(), team)
-                               : measure_strain(*s.model, s.position);
+  const Strain strain = strain_at(s, s.position, team);
   report.max_strain = strain.max;
   report.rms_strain = strain.rms;
   report.worst_constraint = strain.worst_constraint;
   report.contacts = static_cast<int>(s.contacts.count());
-  if (s.model->has_contacts()) {
-    report.max_penetration = max_penetration(*s.model, *s.kernels, s.position.view(), s.contacts);
-  }
+  report.max_penetration = penetration_at(s, s.position);
 }
 
 /// Below this a thread has too little to do between two meetings: two gained nothing at 1,600
@@ -175,17 +210,44 @@ int threads_worth_having(const State& s) {
   return static_cast<int>(std::min(most, wanted));
 }
 
-/// accept() makes a transaction of one substep; several must remember where they began.
-void begin_transaction(State& s) {
-  if (s.settings.substeps == 1) return;
-  s.start_position = s.position;
-  s.start_velocity = s.velocity;
-}
+/// accept() makes a transaction of one substep; several must remember where they began, and return
+/// there unless all are done, whatever the reason.
+class Transaction {
+ public:
+  explicit Transaction(State& s) : s_(s) {
+    if (s.settings.substeps == 1) return;
+    s.start_position = s.position;
+    s.start_velocity = s.velocity;
+  }
+  ~Transaction() {
+    if (accepted_ == 0 || accepted_ == s_.settings.substeps) return;
+    std::swap(s_.position, s_.start_position);
+    std::swap(s_.velocity, s_.start_velocity);
+  }
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
 
-void roll_back(State& s, int accepted_substeps) {
-  if (accepted_substeps == 0) return;
-  std::swap(s.position, s.start_position);
-  std::swap(s.velocity, s.start_velocity);
+  bool accept() {
+    const bool accepted = weft::accept(s_);
+    accepted_ += accepted;
+    return accepted;
+  }
+
+ private:
+  State& s_;
+  int accepted_ = 0;
+};
+
+/// Of a substep that was not accepted: who left the range of numbers, and whether that would have
+/// happened without any constraint.
+void explain(State& s, double h, StepReport& report, Team& team) {
+  const std::size_t solved =
+      std::min(first_not_finite(s.solved), first_not_finite(s.next_velocity));
+  predict(s, h, team);
+  const std::size_t predicted = first_not_finite(s.solved);
+  const bool input = predicted < s.model->slots();
+  report.failed_particle = s.model->ordering.particle_at[input ? predicted : solved];
+  worsen(report, input ? Status::non_finite_input : Status::non_finite);
 }
 
 void substep(State& s, double h, StepReport& report, Team& team) {
@@ -202,20 +264,21 @@ void substep(State& s, double h, StepReport& report, Team& team) {
   if (s.settings.iterations > 0) report.status = Status::fixed_iterations;
 }
 
+void run_substeps(State& s, double h, StepReport& report, Team& team) {
+  Transaction transaction(s);
+  for (int k = 0; k < s.settings.substeps; ++k) {
+    substep(s, h, report, team);
+    if (transaction.accept()) continue;
+    return explain(s, h, report, team);
+  }
+}
+
 }  // namespace
 
 StepReport step(State& s, double dt) {
   StepReport report;
   Team team(threads_worth_having(s), s.meeting);
-  const double h = dt / s.settings.substeps;
-  begin_transaction(s);
-  for (int k = 0; k < s.settings.substeps; ++k) {
-    substep(s, h, report, team);
-    if (accept(s)) continue;
-    roll_back(s, k);
-    report.status = Status::non_finite;
-    break;
-  }
+  run_substeps(s, dt / s.settings.substeps, report, team);
   timed(report, Stage::report, [&] { report_errors(s, report, team); });
   return report;
 }

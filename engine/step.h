@@ -7,7 +7,8 @@
 
 namespace weft {
 
-/// Advances the state by dt > 0, or leaves it as it was (Status::non_finite).
+/// Advances the state by dt > 0, or leaves it as it was: where committed(status) is false, and
+/// where it throws.
 StepReport step(State& state, double dt);
 
 }  // namespace weft

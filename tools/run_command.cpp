@@ -76,7 +76,7 @@ Result<Prepared> prepare(const RunOptions& options) {
 Result<RunSummary> run_and_record(const Prepared& prepared, const RunPlan& plan, Outputs& outputs) {
   Progress progress(plan.steps);
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
-    const bool is_last = frame == plan.steps || report.status == Status::non_finite;
+    const bool is_last = frame == plan.steps || !committed(report.status);
     outputs.add_frame(cloth, is_last);
     progress.show(frame, report.max_strain);
   };

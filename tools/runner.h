@@ -28,7 +28,7 @@ using FrameCallback = std::function<void(int frame, const Cloth&, const StepRepo
 struct RunSummary {
   Isa isa = Isa::automatic;  ///< what the kernels ran on
   int threads = 1;           ///< that the steps could use
-  int frames = 0;            ///< computed; below RunPlan::steps only if status is non_finite
+  int frames = 0;            ///< computed; below RunPlan::steps only if a step did not commit
   Status status = Status::converged;  ///< the worst of all frames
 
   double step_seconds = 0;    ///< wall time in step()
@@ -65,7 +65,7 @@ struct RunSummary {
   }
 };
 
-/// Every repeat starts from the model's own state. A frame that ends non_finite ends the run. An
+/// Every repeat starts from the model's own state. A step that commits nothing ends the run. An
 /// error means that the settings or dt were refused.
 Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& settings,
                        const RunPlan& plan, const FrameCallback& on_frame = {});

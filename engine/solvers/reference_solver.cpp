@@ -32,7 +32,6 @@ ReferenceSolver::ReferenceSolver(const Model& model, const Settings& settings)
 void ReferenceSolver::reserve(std::size_t contacts) {
   const std::size_t size = model_.constraints.size() + contacts;
   if (size <= capacity_) return;
-  capacity_ = size;
   if (model_.has_contacts()) {
     a_.resize(size);
     b_.resize(size);
@@ -46,9 +45,11 @@ void ReferenceSolver::reserve(std::size_t contacts) {
     velocity_tolerance_.resize(size);
     zero_.resize(size);
   }
-  if (!settings_.anticipate) return;
-  error_.resize(size);
-  pending_.resize(size);
+  if (settings_.anticipate) {
+    error_.resize(size);
+    pending_.resize(size);
+  }
+  capacity_ = size;
 }
 
 void ReferenceSolver::place_contacts(const ContactStore& contacts) {
@@ -97,18 +98,18 @@ reference::Workspace ReferenceSolver::workspace() {
   return w;
 }
 
-reference::Method ReferenceSolver::method(int max_iterations) const {
+reference::Method ReferenceSolver::method(const LoopBudget& budget) const {
   return {.anticipate = settings_.anticipate,
           .skip = settings_.skip,
           .frozen_directions = settings_.directions == Directions::frozen,
           .limits = {.fixed_iterations = settings_.iterations,
-                     .max_iterations = max_iterations,
-                     .renew_after = settings_.renew_after}};
+                     .max_iterations = budget.iterations,
+                     .renew_after = budget.renew_after}};
 }
 
 kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x, double h,
                                                      const ContactStore& contacts, bool first_round,
-                                                     int max_iterations) {
+                                                     const LoopBudget& budget) {
   place_contacts(contacts);
   if (first_round) std::ranges::fill(impulse_, 0.0);
   reference::Relaxation r = problem(x, contacts.count());
@@ -116,7 +117,7 @@ kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x, dou
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   return reference::relax_positions(r, layout_.topology(),
                                     model_.has_contacts() ? lists : reference::ContactLists{},
-                                    workspace(), method(max_iterations));
+                                    workspace(), method(budget));
 }
 
 /// Ropes and contacts take part where they are taut or touch; slack ones get an endless tolerance.
@@ -147,7 +148,7 @@ kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   return reference::relax_velocities(r, layout_.topology(),
                                      model_.has_contacts() ? lists : reference::ContactLists{},
-                                     workspace(), method(settings_.max_iterations));
+                                     workspace(), method(whole_budget(settings_)));
 }
 
 std::size_t ReferenceSolver::bytes() const {

@@ -8,6 +8,7 @@
 
 #include "engine/contacts.h"
 #include "engine/model.h"
+#include "engine/solvers/loop_budget.h"
 #include "kernels/reference/relax.h"
 
 namespace weft {
@@ -20,7 +21,7 @@ class ReferenceSolver {
   /// were found anew, accumulated impulses start at 0. h is the time step, for the impulse limit.
   kernels::LoopResult solve_positions(kernels::VectorsView x, double h,
                                       const ContactStore& contacts, bool first_round,
-                                      int max_iterations);
+                                      const LoopBudget& budget);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts);
@@ -32,7 +33,7 @@ class ReferenceSolver {
   void choose_velocity_tolerances(const reference::Relaxation& r, kernels::VectorsView x);
   reference::Relaxation problem(kernels::VectorsView x, std::size_t contacts);
   reference::Workspace workspace();
-  reference::Method method(int max_iterations) const;
+  reference::Method method(const LoopBudget& budget) const;
 
   const Model& model_;
   const ReferenceLayout& layout_;

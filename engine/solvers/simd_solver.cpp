@@ -124,7 +124,8 @@ void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep
 }
 
 kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, const ContactStore& store,
-                                                bool first_round, int max_iterations, Team& team) {
+                                                bool first_round, const LoopBudget& budget,
+                                                Team& team) {
   if (first_round) std::ranges::fill(impulse_, 0.f);
   if (model_.has_contacts()) {
     const double tau = settings_.iterations > 0 ? 1 : settings_.contact_tolerance;
@@ -133,7 +134,7 @@ kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, const Co
   const auto directions = settings_.directions == Directions::frozen ? kernels::Directions::frozen
                                                                      : kernels::Directions::each;
   SimdLoop loop(*this, {x, {}, false}, team);
-  const auto result = kernels::iterate(loop, directions, limits(max_iterations));
+  const auto result = kernels::iterate(loop, directions, limits(budget));
   for (std::size_t k = 0; model_.has_contacts() && k < contacts_.contact.size(); ++k) {
     const std::uint32_t contact = contacts_.contact[k];
     if (contact < contact_impulse_.size()) contact_impulse_[contact] = contacts_.impulse[k];
@@ -141,10 +142,10 @@ kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, const Co
   return result;
 }
 
-kernels::LoopLimits SimdSolver::limits(int max_iterations) const {
+kernels::LoopLimits SimdSolver::limits(const LoopBudget& budget) const {
   return {.fixed_iterations = settings_.iterations,
-          .max_iterations = max_iterations,
-          .renew_after = settings_.renew_after > 0 ? settings_.renew_after : kOldestDirections};
+          .max_iterations = budget.iterations,
+          .renew_after = budget.renew_after > 0 ? budget.renew_after : kOldestDirections};
 }
 
 /// Ropes and contacts take part in the velocity loop where they are taut or touch.
@@ -180,7 +181,7 @@ kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kerne
   }
   choose_active(x);
   SimdLoop loop(*this, {x, v, true}, team);
-  return kernels::iterate(loop, kernels::Directions::frozen, limits(settings_.max_iterations));
+  return kernels::iterate(loop, kernels::Directions::frozen, limits(whole_budget(settings_)));
 }
 
 simd::Relaxation SimdSolver::relaxation(bool velocity) {

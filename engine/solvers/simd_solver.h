@@ -17,6 +17,7 @@
 
 #include "engine/contacts.h"
 #include "engine/model.h"
+#include "engine/solvers/loop_budget.h"
 #include "engine/solvers/simd_layout.h"
 #include "engine/solvers/team.h"
 #include "kernels/loop.h"
@@ -48,7 +49,7 @@ class SimdSolver {
   /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
   /// were found anew, accumulated impulses start at 0.
   kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
-                                      bool first_round, int max_iterations, Team& team);
+                                      bool first_round, const LoopBudget& budget, Team& team);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts, Team& team);
@@ -61,7 +62,7 @@ class SimdSolver {
   friend class SimdLoop;
 
   void allocate_displacements();
-  kernels::LoopLimits limits(int max_iterations) const;
+  kernels::LoopLimits limits(const LoopBudget& budget) const;
   void fill_gains(bool velocity);
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
   void choose_active(kernels::VectorsView x);

@@ -162,7 +162,7 @@ struct Settings {
   /// that will change are wasted: 32 saves a fifth of the iterations and more.
   /// (simd: 0 is 1024, since floats see an error fall by seven digits at most between renewals.)
   int renew_after = 32;
-  int max_iterations = 1'000'000;    ///< bound on the work of one step; > 0
+  int max_iterations = 1'000'000;    ///< bound on the work of one step, in iterations; > 0
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
   double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit
@@ -186,8 +186,23 @@ struct Settings {
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
 /// iteration_limit: max_iterations were done and some constraint is still out of tolerance. The
 ///   state is committed.
+/// infeasible: some constraint is out of tolerance and thousands of iterations no longer change
+///   that: the constraints contradict each other (a chain whose ends are too far apart), or masses
+///   differ by more than 10^7. The state is committed, with the error shared out among them.
+/// non_finite_input: positions, velocities, forces and dt were such that even without a constraint
+///   a particle would have left the range of numbers. The state is unchanged.
 /// non_finite: a position or velocity would have become NaN or infinite. The state is unchanged.
-enum class Status : std::uint8_t { converged, fixed_iterations, iteration_limit, non_finite };
+enum class Status : std::uint8_t {
+  converged,
+  fixed_iterations,
+  iteration_limit,
+  infeasible,
+  non_finite_input,
+  non_finite
+};
+
+/// Whether a step that ended so changed the state.
+constexpr bool committed(Status status) { return status < Status::non_finite_input; }
 
 /// The stages of a step, in order.
 enum class Stage : std::uint8_t {
@@ -224,6 +239,7 @@ struct StepReport {
   double rms_strain = 0;
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
   double max_penetration = 0;                 ///< m, 0 without contacts
+  std::uint32_t failed_particle = kNoIndex;   ///< non_finite, non_finite_input: the first such
   std::array<double, kStageCount> stage_seconds{};
 };
 
@@ -249,8 +265,8 @@ class Cloth {
   Cloth& operator=(Cloth&&) noexcept;
   ~Cloth();
 
-  /// Advances by dt seconds (finite, > 0), all substeps of it or none. An error means that dt was
-  /// refused.
+  /// Advances by dt seconds (finite, > 0), all substeps of it or none: also where memory runs out
+  /// and std::bad_alloc is thrown, the state stays as it was. An error means that dt was refused.
   Result<StepReport> step(double dt);
 
   std::size_t particle_count() const;

@@ -2,15 +2,20 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <limits>
 #include <new>
 
 namespace weft::test {
 namespace {
 
 std::atomic<std::size_t> count{0};
+constexpr std::size_t kEndless = std::numeric_limits<std::size_t>::max();
+thread_local std::size_t granted_here = kEndless;
 
 void* counted(std::size_t bytes, std::size_t alignment) {
   ++count;
+  if (granted_here == 0) throw std::bad_alloc();
+  if (granted_here != kEndless) --granted_here;
   const std::size_t rounded = (bytes + alignment) / alignment * alignment;
   if (void* memory = std::aligned_alloc(alignment, rounded)) return memory;
   throw std::bad_alloc();
@@ -19,6 +24,9 @@ void* counted(std::size_t bytes, std::size_t alignment) {
 }  // namespace
 
 std::size_t allocations() { return count; }
+
+FailingAllocations::FailingAllocations(std::size_t granted) { granted_here = granted; }
+FailingAllocations::~FailingAllocations() { granted_here = kEndless; }
 
 }  // namespace weft::test
 

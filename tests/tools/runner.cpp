@@ -79,7 +79,7 @@ TEST_CASE("the worst status of all frames is told") {
 TEST_CASE("a run ends with the frame that would not be finite") {
   const auto summary = run(hang(4), {}, {.dt = 1e200, .steps = 5});
   REQUIRE(summary);
-  CHECK(summary.value().status == Status::non_finite);
+  CHECK(summary.value().status == Status::non_finite_input);
   CHECK(summary.value().frames == 1);
   CHECK_FALSE(summary.value().reached_tolerance());
 }

@@ -1,0 +1,70 @@
+/// Constraints that cannot all be met: said so, settled, and left behind without a jump.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+
+namespace weft::test {
+namespace {
+
+constexpr double kLink = 0.01;
+constexpr int kLinks = 19;
+
+/// A level chain, its ends fixed `stretch` times its length apart.
+SceneDescription pulled_chain(double stretch) {
+  SceneDescription scene;
+  for (std::uint32_t i = 0; i <= kLinks; ++i) {
+    scene.positions.push_back({stretch * kLink * i, 0, 0});
+    scene.masses.push_back(1);
+    if (i > 0) scene.constraints.push_back({i - 1, i, kLink});
+  }
+  scene.fixed = {0, kLinks};
+  return scene;
+}
+
+TEST_CASE("a chain with its ends too far apart says so, and comes to rest") {
+  const Backend backend = each_backend();
+  Cloth cloth = cloth_of(pulled_chain(1.1), on(backend));
+  for (int k = 0; k < 50; ++k) {
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::infeasible);
+    CHECK(report.iterations < 200'000);
+    CHECK(report.max_strain > 0.1);  // some edge has its share or more
+    CHECK(report.max_strain < 0.25);
+    CHECK(report.worst_constraint < kLinks);
+  }
+  const std::vector<Vec3> before = positions(cloth);
+  step(cloth, 0.01);
+  CHECK(largest_distance(positions(cloth), before) < 1e-6);
+}
+
+TEST_CASE("ends that come back free the chain again") {
+  const Backend backend = each_backend();
+  Cloth cloth = cloth_of(pulled_chain(1.1), on(backend));
+  run(cloth, 0.01, 20);
+  double most_kinetic = 0;
+  for (int k = 1; k <= 100; ++k) {
+    const double stretch = 1.1 - 0.2 * k / 100;
+    REQUIRE(cloth.move_fixed(kLinks, {stretch * kLinks * kLink, 0, 0}));
+    const StepReport report = step(cloth, 0.01);
+    most_kinetic = std::max(most_kinetic, cloth.energy().kinetic);
+    if (stretch < 0.98) CHECK(report.status == Status::converged);
+  }
+  // 18 kg that fall by 5 cm, as the chain does when its ends are a tenth nearer, have 9 J.
+  CHECK(most_kinetic < 3);
+}
+
+TEST_CASE("a loop that is merely slow is not taken for one that gets nowhere") {
+  const Backend backend = each_backend();
+  SceneDescription scene = scene_of("chain", 20);
+  scene.masses.back() = 1000;
+  Settings settings = on(backend);
+  settings.tolerance = 0.001;
+  Cloth cloth = cloth_of(scene, settings);
+  for (int k = 0; k < 10; ++k) CHECK(step(cloth, 1. / 60).status == Status::converged);
+}
+
+}  // namespace
+}  // namespace weft::test
