@@ -25,7 +25,7 @@ Strain measure_strain(const Model& m, const kernels::Vectors& x) {
 
 Energy measure_energy(const Model& m, const kernels::Vectors& x, const kernels::Vectors& v) {
   Energy energy;
-  for (std::size_t i = 0; i < m.particles; ++i) {
+  for (std::size_t i = 0; i < m.slots(); ++i) {
     if (m.inverse_mass[i] == 0) continue;
     energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
     energy.potential -= m.mass[i] * dot(m.gravity, x[i]);
