@@ -143,10 +143,14 @@ kernels::LoopResult solve_positions(State& s, double h, bool first, int left,
                                     Standstill& standstill, Team& team) {
   if (!s.direct) return sweep_on(s, h, first, left, standstill, team);
   const Answer answer{s, h, standstill, team};
-  return s.direct->solve_positions(
-      s.solved.view(), s.contacts, first, left, [&answer](bool begin, int most) {
-        return sweep_on(answer.state, answer.h, begin, most, answer.standstill, answer.team);
-      });
+  const auto sweeps = [&answer](bool begin, int most) {
+    auto result = sweep_on(answer.state, answer.h, begin, most, answer.standstill, answer.team);
+    result.converged |= answer.standstill.reached();  // nobody will find a better answer
+    return result;
+  };
+  auto result = s.direct->solve_positions(s.solved.view(), s.contacts, first, left, sweeps);
+  result.converged &= !standstill.reached();
+  return result;
 }
 
 kernels::LoopResult correct_velocities(State& s, Team& team) {

@@ -1,10 +1,11 @@
-/// The `weft` program. Exit codes: 0 done, 2 something given was refused, 3 a run did not reach its
-/// tolerance, 130 interrupted.
+/// The `weft` program. Exit codes: 0 done, 1 a hard case failed, 2 something given was refused, 3 a
+/// run did not reach its tolerance, 130 interrupted.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <new>
 
+#include "tools/hard_command.h"
 #include "tools/paper_command.h"
 #include "tools/pending_file.h"
 #include "tools/run_command.h"
@@ -29,9 +30,11 @@ int main(int argc, char** argv) {
   weft::tools::add_run_command(app, exit_code);
   weft::tools::add_scene_command(app, exit_code);
   weft::tools::add_paper_command(app, exit_code);
+  weft::tools::add_hard_command(app, exit_code);
   try {
     app.parse(argc, argv);
-    if (app.get_subcommands().empty()) return refuse("a verb is missing: run, scene or paper");
+    if (app.get_subcommands().empty())
+      return refuse("a verb is missing: run, scene, paper or hard");
   } catch (const CLI::ParseError& error) {
     return error.get_exit_code() == 0 ? app.exit(error) : refuse(error.what());
   } catch (const std::bad_alloc&) {

@@ -9,15 +9,14 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "engine/scenes.h"
 #include "tools/json_output.h"
+#include "tools/output_folder.h"
 #include "tools/paper_results.h"
 #include "tools/paper_study.h"
-#include "tools/pending_file.h"
 #include "tools/plotting.h"
 
 namespace weft::tools {
@@ -93,13 +92,6 @@ Result<paper::Study> carry_out(const PaperOptions& options) {
   return study;
 }
 
-Result<void> write_file(const std::filesystem::path& path, const std::string& content) {
-  auto file = PendingFile::open(path);
-  if (!file) return Error{file.error()};
-  file.value().write(content);
-  return file.value().commit();
-}
-
 Result<void> write_json(const std::string& destination, const Json& json) {
   auto output = JsonOutput::open(destination);
   if (!output) return Error{output.error()};
@@ -120,15 +112,6 @@ Result<void> write_folder(const std::filesystem::path& folder, const paper::Stud
   return {};
 }
 
-Result<void> make_folder(const std::string& folder) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem) return Error{fmt::format("--out {}: {}", folder, problem.message())};
-  // Opened and dropped: a folder that cannot be written is refused now.
-  const auto probe = PendingFile::open(std::filesystem::path(folder) / "paper.json");
-  return probe ? Result<void>{} : Result<void>{Error{probe.error()}};
-}
-
 int fail(const std::string& message) {
   fmt::print(stderr, "weft: {}\n", message);
   return kExitBadInput;
@@ -143,7 +126,7 @@ int run_paper(const PaperOptions& options) {
     json = std::move(opened.value());
   }
   if (!options.out.empty()) {
-    if (const auto made = make_folder(options.out); !made) return fail(made.error());
+    if (const auto made = make_output_folder(options.out); !made) return fail(made.error());
   }
 
   const auto study = carry_out(options);

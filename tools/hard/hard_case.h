@@ -1,0 +1,65 @@
+/// What a hard case is: a name, what is measured, the bound it must keep, and who claims to handle
+/// it. A case is run once for each method that claims it.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tools/hard/trial.h"
+
+namespace weft::tools::hard {
+
+struct Method {
+  Solver solver = Solver::gauss_seidel;
+  Scheme scheme = Scheme::paper;
+};
+/// Every solver with every scheme that the library names.
+std::vector<Method> all_methods();
+/// "direct", "direct+rattle".
+std::string label(const Method& method);
+
+struct Setup {
+  Method method;
+  bool quick = false;
+  /// Steps of the whole case, or of the quick one.
+  int steps(int whole, int few) const { return quick ? few : whole; }
+  /// Settings of the method, with this tolerance.
+  Settings settings(double tolerance) const;
+};
+
+struct Outcome {
+  double figure = std::numeric_limits<double>::quiet_NaN();
+  std::string detail = {};
+  std::string failure = {};  ///< a reason to fail whatever the figure is; empty: none
+  double ms_per_step = 0;
+};
+
+struct Case {
+  std::string name = {};
+  std::string measures = {};  ///< what the figure is, with its unit
+  double bound = 0;           ///< the figure must not be above it
+  std::function<Outcome(const Setup&)> run = {};
+  std::function<bool(const Method&)> claimed = [](const Method&) { return true; };
+};
+
+/// For methods that bring a tight tolerance in a bounded number of passes.
+bool not_by_relaxation(const Method& method);
+
+/// The largest strain is the figure; it fails where a step did not converge, or claimed what is not
+/// so, or where more energy appeared than `energy_allowed`.
+Outcome strain_outcome(const Trial& trial, double energy_allowed);
+/// The number of steps whose report is not true is the figure: what did not converge must say so.
+Outcome honesty_outcome(const Trial& trial, double energy_allowed);
+
+/// J that a level sheet of `size` x `size` particles and 1 kg may gain when it is let go: it falls
+/// freely until an edge is out of tolerance, and is then caught, the whole error being taken out in
+/// one step, as speed.
+double energy_of_the_catch(int size, double tolerance, double dt);
+
+inline constexpr double kAnyEnergy = std::numeric_limits<double>::infinity();
+
+}  // namespace weft::tools::hard

@@ -1,0 +1,94 @@
+/// Masses that differ, and masses that are very small or large.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/hard/scenes.h"
+#include "tools/hard/suite.h"
+
+namespace weft::tools::hard {
+namespace {
+
+constexpr double kChainStrain = 0.001;
+constexpr double kDropStrain = 0.01;
+
+/// A chain of 1 kg particles swings down under a heavy end. One that stretches it by hundreds of
+/// metres: extended position-based dynamics, 100 iterations, an end of 10^5 kg.
+Outcome run_chain(const Setup& setup, double end_mass) {
+  scenes::Options options;
+  options.end_mass = end_mass;
+  Trial trial{built_in("chain", options), setup.settings(kChainStrain)};
+  trial.dt = 1.0 / 60;
+  trial.steps = setup.steps(600, 60);
+  return strain_outcome(trial, kAnyEnergy);
+}
+
+/// More passes than one frame may cost, from here on.
+constexpr int kMostByRelaxation = 3;
+
+std::vector<Case> chain_cases() {
+  std::vector<Case> cases;
+  for (int power = 0; power <= 6; ++power) {
+    Case chain;
+    chain.name = fmt::format("chain_end_1e{}", power);
+    chain.measures = "max strain";
+    chain.bound = kChainStrain;
+    chain.run = [power](const Setup& setup) { return run_chain(setup, std::pow(10, power)); };
+    if (power > kMostByRelaxation) chain.claimed = not_by_relaxation;
+    cases.push_back(chain);
+  }
+  return cases;
+}
+
+Outcome run_drop(const Setup& setup, double sphere_mass, double slack) {
+  scenes::Options options;
+  options.size = setup.quick ? 10 : 20;
+  options.sphere_mass = sphere_mass;
+  options.slack = slack;
+  Trial trial{built_in("sphere_drop", options), setup.settings(kDropStrain)};
+  trial.steps = setup.steps(200, 60);
+  return strain_outcome(trial, kAnyEnergy);
+}
+
+std::vector<Case> drop_cases() {
+  std::vector<Case> cases;
+  for (const double slack : {0.05, 0.0}) {
+    for (const double mass : {1.0, 10.0, 100.0, 1000.0}) {
+      Case drop;
+      drop.name = fmt::format("sphere_drop_{:g}_kg{}", mass, slack > 0 ? "" : "_taut");
+      drop.measures = "max strain";
+      drop.bound = kDropStrain;
+      drop.run = [mass, slack](const Setup& setup) { return run_drop(setup, mass, slack); };
+      cases.push_back(drop);
+    }
+  }
+  return cases;
+}
+
+/// The masses of a hanging sheet, all alike.
+Outcome run_uniform(const Setup& setup, double mass) {
+  constexpr int kSize = 10;
+  Trial trial{sheet("hang", kSize), setup.settings(0.01)};
+  for (double& m : trial.scene.masses) m = mass;
+  trial.steps = setup.steps(200, 60);
+  const double whole = mass * kSize * kSize;  // kg
+  return strain_outcome(trial, whole * energy_of_the_catch(kSize, 0.01, trial.dt));
+}
+
+}  // namespace
+
+std::vector<Case> mass_cases() {
+  std::vector<Case> cases = chain_cases();
+  for (const Case& drop : drop_cases()) cases.push_back(drop);
+  for (const double mass : {1e-9, 1e9}) {
+    Case uniform;
+    uniform.name = fmt::format("masses_{:.0e}_kg", mass);
+    uniform.measures = "max strain";
+    uniform.bound = 0.01;
+    uniform.run = [mass](const Setup& setup) { return run_uniform(setup, mass); };
+    cases.push_back(uniform);
+  }
+  return cases;
+}
+
+}  // namespace weft::tools::hard

@@ -1,0 +1,36 @@
+/// What a state violates and keeps, recomputed from the description's own numbers: nothing here
+/// asks the cloth what it thinks of itself.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <vector>
+
+namespace weft::tools::hard {
+
+struct Snapshot {
+  std::vector<Vec3> positions, velocities;
+};
+Snapshot snapshot(const Cloth& cloth);
+
+bool all_finite(const Snapshot& state);
+/// Largest | |a-b| - rest | / rest, a slack rope's being 0; without constraints between two fixed
+/// particles.
+double max_strain(const SceneDescription& scene, const Snapshot& state);
+/// m, the deepest overlap of a sphere with anything that it may touch.
+double max_penetration(const SceneDescription& scene, const Snapshot& state);
+/// J, kinetic and gravitational, of the particles that are not fixed.
+double energy(const SceneDescription& scene, const Snapshot& state);
+double kinetic_energy(const SceneDescription& scene, const Snapshot& state);
+/// Of all particles; angular about `centre`.
+Vec3 momentum(const SceneDescription& scene, const Snapshot& state);
+Vec3 angular_momentum(const SceneDescription& scene, const Snapshot& state, Vec3 centre);
+
+Vec3 operator+(Vec3 a, Vec3 b);
+Vec3 operator-(Vec3 a, Vec3 b);
+Vec3 operator*(double s, Vec3 v);
+Vec3 cross(Vec3 a, Vec3 b);
+double dot(Vec3 a, Vec3 b);
+double length(Vec3 v);
+
+}  // namespace weft::tools::hard

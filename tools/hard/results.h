@@ -1,0 +1,19 @@
+/// The results of the hard cases in the forms in which they are written.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/hard/suite.h"
+#include "tools/json_output.h"
+
+namespace weft::tools::hard {
+
+int failed(const std::vector<CaseResult>& results);
+
+Json to_json(const std::vector<CaseResult>& results);
+std::string to_csv(const std::vector<CaseResult>& results);
+std::string to_markdown(const std::vector<CaseResult>& results);
+std::string to_text(const std::vector<CaseResult>& results);
+
+}  // namespace weft::tools::hard
