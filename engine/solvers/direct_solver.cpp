@@ -79,13 +79,14 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
   copy(x, start_.view(), start_.size());
   int wanted = kFirstSweeps;
   for (int attempt = 0;; ++attempt) {
-    DirectOutcome outcome = iterate(x, contacts, max_iterations, result);
+    DirectOutcome outcome = iterate(x, contacts, max_iterations, sweeps != nullptr, result);
     if (outcome == DirectOutcome::exhausted) return result;
     if (outcome == DirectOutcome::failed && attempt == 0 && stiff_.wanted()) {
       outcome = iterate_stiff(x, contacts, max_iterations, result);
     }
     result.converged = outcome == DirectOutcome::converged;
-    if (result.converged) return result;
+    result.failed = !result.converged && !sweeps;
+    if (result.converged || result.failed) return result;
     copy(start_.view(), x, start_.size());
     const int left = max_iterations - result.iterations;
     if (left <= 0) return result;
@@ -99,9 +100,10 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
   }
 }
 
-/// Newton's method from x.
+/// Newton's method from x. noise_will_do: an error within tolerance is success even if it does not
+/// fall to what solves aim at.
 DirectOutcome DirectSolver::iterate(VectorsView x, const ContactStore& contacts, int max_iterations,
-                                    LoopResult& result) {
+                                    bool noise_will_do, LoopResult& result) {
   Progress progress;
   const double goal = std::min(1.0, kGoal / settings_.tolerance);
   bool solved = false;
@@ -109,10 +111,12 @@ DirectOutcome DirectSolver::iterate(VectorsView x, const ContactStore& contacts,
     const double worst = measure_positions(system_, x, contacts);
     result.visits += system_.count();
     if (worst <= kNegligible || (solved && worst <= goal)) return DirectOutcome::converged;
-    const bool enough = worst <= 1;
-    if (!progress.goes_on(worst)) return enough ? DirectOutcome::converged : DirectOutcome::failed;
+    const bool within = worst <= 1;
+    if (!progress.goes_on(worst)) {
+      return within && noise_will_do ? DirectOutcome::converged : DirectOutcome::failed;
+    }
     if (result.iterations >= max_iterations) {
-      return enough ? DirectOutcome::converged : DirectOutcome::exhausted;
+      return within ? DirectOutcome::converged : DirectOutcome::exhausted;
     }
     solved = true;
     ++result.direction_updates;

@@ -18,9 +18,13 @@
 ///
 /// Newton's method fails where a step bends edges by much of their length, where masses differ by
 /// thousands, and where A is singular and the errors inconsistent (compressed straight chains).
-/// That is seen by errors that no longer fall. The answer is to start again from the predicted
-/// state with sweeps of Gauss-Seidel, which take the short waves out, and to try again from there,
-/// with four times as many sweeps after each failure; Settings::max_iterations bounds the sum.
+/// That is seen by errors that no longer fall. A caller who can take a smaller step gives no sweeps
+/// and is told (LoopResult::failed). The other answer is to start again from the predicted state
+/// with sweeps of Gauss-Seidel, which take the short waves out, and to try again from there, with
+/// four times as many sweeps after each failure; Settings::max_iterations bounds the sum. Smaller
+/// steps are the better answer where they help: sweeps stop at the tolerance, and the error that
+/// they leave is removed by the next step's solve at once, as a blow (a sphere that drops on 20 x
+/// 20 particles, 4 substeps, 1 %: 10.6 J gained with sweeps, 5e-5 J with halved steps).
 #pragma once
 
 #include <functional>
@@ -41,8 +45,8 @@ class DirectSolver {
   DirectSolver(const Model& model, const Settings& settings);
 
   /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
-  /// were found anew, accumulated impulses start at 0. LoopResult::iterations counts solves, and
-  /// sweeps where they were needed.
+  /// were found anew, accumulated impulses start at 0. sweeps: may be empty; x is worth nothing
+  /// then after a failure. LoopResult::iterations counts solves, and sweeps where they were needed.
   kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
                                       bool first_round, int max_iterations, const Sweeps& sweeps);
   /// Corrects v at the positions x.
@@ -52,7 +56,7 @@ class DirectSolver {
 
  private:
   DirectOutcome iterate(kernels::VectorsView x, const ContactStore& contacts, int max_iterations,
-                        kernels::LoopResult& result);
+                        bool noise_will_do, kernels::LoopResult& result);
   DirectOutcome iterate_stiff(kernels::VectorsView x, const ContactStore& contacts,
                               int max_iterations, kernels::LoopResult& result);
   DirectOutcome iterate_fixed(kernels::VectorsView x, const ContactStore& contacts,
