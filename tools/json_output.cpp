@@ -20,4 +20,10 @@ Result<void> JsonOutput::write(const Json& json) {
   return file_->commit();
 }
 
+Result<void> write_json(const std::string& destination, const Json& json) {
+  auto output = JsonOutput::open(destination);
+  if (!output) return Error{output.error()};
+  return output.value().write(json);
+}
+
 }  // namespace weft::tools

@@ -28,4 +28,7 @@ class JsonOutput {
   std::optional<PendingFile> file_;
 };
 
+/// Opens and writes.
+Result<void> write_json(const std::string& destination, const Json& json);
+
 }  // namespace weft::tools

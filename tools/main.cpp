@@ -8,6 +8,7 @@
 #include "tools/hard_command.h"
 #include "tools/paper_command.h"
 #include "tools/pending_file.h"
+#include "tools/precision_command.h"
 #include "tools/run_command.h"
 #include "tools/scene_command.h"
 
@@ -31,10 +32,11 @@ int main(int argc, char** argv) {
   weft::tools::add_scene_command(app, exit_code);
   weft::tools::add_paper_command(app, exit_code);
   weft::tools::add_hard_command(app, exit_code);
+  weft::tools::add_precision_command(app, exit_code);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
-      return refuse("a verb is missing: run, scene, paper or hard");
+      return refuse("a verb is missing: run, scene, paper, hard or precision");
   } catch (const CLI::ParseError& error) {
     return error.get_exit_code() == 0 ? app.exit(error) : refuse(error.what());
   } catch (const std::bad_alloc&) {

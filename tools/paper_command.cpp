@@ -1,10 +1,7 @@
 #include "tools/paper_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -18,6 +15,7 @@
 #include "tools/paper_results.h"
 #include "tools/paper_study.h"
 #include "tools/plotting.h"
+#include "tools/task_line.h"
 
 namespace weft::tools {
 namespace {
@@ -32,43 +30,10 @@ struct PaperOptions {
   std::optional<int> repeat;  // 5; 2 if quick
 };
 
-/// One line on stderr, redrawn in place on a terminal; elsewhere one line per cell.
-class ProgressLine {
- public:
-  explicit ProgressLine(std::size_t cells) : cells_(cells), redraws_(isatty(STDERR_FILENO) != 0) {}
-  ~ProgressLine() {
-    if (redraws_) fmt::print(stderr, "\r\033[K");
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void next_cell(const paper::Cell& cell) {
-    ++cell_;
-    if (!redraws_) fmt::print(stderr, "{}\n", describe(cell));
-  }
-
-  void frame(const paper::Cell& cell, const paper::Variant& variant, int done, int total) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!redraws_ || now - drawn_ < std::chrono::milliseconds(100)) return;
-    drawn_ = now;
-    fmt::print(stderr, "\r{} {} {}/{}\033[K", describe(cell), variant.label(), done, total);
-    std::fflush(stderr);
-  }
-
- private:
-  std::string describe(const paper::Cell& cell) const {
-    constexpr std::size_t kWidth = 12;
-    const std::size_t full = kWidth * (cell_ - 1) / cells_;
-    return fmt::format("[{:#<{}}{:.<{}}] {}/{} {} {}x{} {:g}%{}", "", full, "", kWidth - full,
-                       cell_, cells_, cell.scene, cell.size, cell.size, 100 * cell.strain,
-                       cell.velocity_correction ? " +velocity" : "");
-  }
-
-  std::size_t cells_;
-  std::size_t cell_ = 0;
-  bool redraws_;
-  std::chrono::steady_clock::time_point drawn_;
-};
+std::string describe(const paper::Cell& cell) {
+  return fmt::format("{0} {1}x{1} {2:g}%{3}", cell.scene, cell.size, 100 * cell.strain,
+                     cell.velocity_correction ? " +velocity" : "");
+}
 
 Result<paper::Study> carry_out(const PaperOptions& options) {
   paper::Study study;
@@ -77,25 +42,21 @@ Result<paper::Study> carry_out(const PaperOptions& options) {
   study.sphere_mass = scenes::Options{}.sphere_mass;
   const auto table = paper::table_cells(options.quick);
   const auto figure_4 = paper::figure_4_cells(options.quick);
-  ProgressLine line(table.size() + figure_4.size());
-  const auto progress = [&](const paper::Cell& cell, const paper::Variant& variant, int done,
-                            int total) { line.frame(cell, variant, done, total); };
+  TaskLine line(table.size() + figure_4.size());
+  const auto progress = [&](const paper::Cell&, const paper::Variant& variant, int done,
+                            int total) {
+    line.show(fmt::format("{} {}/{}", variant.label(), done, total));
+  };
 
   for (const auto& [cells, rows] : {std::pair{&table, &study.rows}, {&figure_4, &study.figure_4}}) {
     for (const paper::Cell& cell : *cells) {
-      line.next_cell(cell);
+      line.next(describe(cell));
       auto measured = paper::measure(cell, study.repeat, progress);
       if (!measured) return Error{measured.error()};
       for (paper::Row& row : measured.value()) rows->push_back(std::move(row));
     }
   }
   return study;
-}
-
-Result<void> write_json(const std::string& destination, const Json& json) {
-  auto output = JsonOutput::open(destination);
-  if (!output) return Error{output.error()};
-  return output.value().write(json);
 }
 
 /// The data first: the pictures are drawn from it, and a machine without matplotlib keeps it.

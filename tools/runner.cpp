@@ -77,7 +77,8 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   Errors errors;
   summary.energy_start = cloth.energy().total();
   summary.lowest_y = std::numeric_limits<double>::infinity();
-  while (summary.frames < plan.steps && committed(summary.status)) {
+  while (summary.frames < plan.steps && summary.step_seconds < plan.seconds_limit &&
+         committed(summary.status)) {
     const auto start = Clock::now();
     const auto report = cloth.step(plan.dt);
     const std::chrono::duration<double> elapsed = Clock::now() - start;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 
 namespace weft::tools {
@@ -17,6 +18,8 @@ struct RunPlan {
   int steps = 200;   ///< frames to run
   /// Runs of which the fastest is reported. Above 1 an untimed run goes first, to warm up.
   int repeat = 1;
+  /// A run ends once its steps have taken so long (s); RunSummary::frames says how far it came.
+  double seconds_limit = std::numeric_limits<double>::infinity();
 };
 
 /// Called once per frame, frames counted from 1, with the state that the frame reached.
@@ -28,7 +31,7 @@ using FrameCallback = std::function<void(int frame, const Cloth&, const StepRepo
 struct RunSummary {
   Isa isa = Isa::automatic;  ///< what the kernels ran on
   int threads = 1;           ///< that the steps could use
-  int frames = 0;            ///< computed; below RunPlan::steps only if a step did not commit
+  int frames = 0;            ///< computed; below RunPlan::steps if not committed or out of time
   Status status = Status::converged;  ///< the worst of all frames
 
   double step_seconds = 0;    ///< wall time in step()

@@ -118,6 +118,11 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
       {"run hang --out a.json --json ./a.json", "'a.json'"},
       {"run hang --colour red", "--colour"},
       {"scene hang --out a.obj", "'a.obj'"},
+      {"precision --scene curtain", "'curtain'"},
+      {"precision --scene hang_sphere", "--scene hang_sphere"},
+      {"precision --scene corners --size 8", "size"},
+      {"precision --threads 0", "--threads"},
+      {"precision --json missing/a.json", "'missing/a.json'"},
   };
   for (const auto& refused : kRefused) {
     CAPTURE(refused.arguments);
@@ -213,6 +218,20 @@ TEST_CASE("a scene can be written, run, saved and run on") {
   const std::string whole = hash("hang_sphere --size 7 --steps 20");
   CHECK(hash(start + " --steps 10 --out " + half) != whole);
   CHECK(hash(half + " --steps 10") == whole);
+}
+
+TEST_CASE("precision: JSON alone on stdout, points and orders of the contract") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, "precision --size 4 --quick --json -");
+  CHECK(outcome.exit_code == 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  REQUIRE_FALSE(json["points"].empty());
+  for (const auto& point : json["points"]) {
+    CHECK(point["ms_per_frame"] > 0);
+    CHECK(point["max_strain"] > 0);
+  }
+  CHECK(json["order"]["paper"] > 0.7);
+  CHECK(json["order"].contains("rattle"));
 }
 
 TEST_CASE("a mesh is pinned, run and saved with its numbering") {

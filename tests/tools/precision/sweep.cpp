@@ -1,0 +1,147 @@
+#include "tools/precision/sweep.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "tools/precision/bullet.h"
+#include "tools/precision/order.h"
+#include "tools/precision/sizes.h"
+
+namespace weft::tools::precision {
+namespace {
+
+Task small_task(int frames = 50) {
+  auto task = make_task("hang", 5);
+  REQUIRE(task);
+  task.value().frames = frames;
+  return std::move(task.value());
+}
+
+const Effort kOnce{.repeat = 1};
+
+TEST_CASE("solvers and schemes are all that weft.h names") {
+  CHECK(std::ranges::count(all_solvers(), Solver::gauss_seidel) == 1);
+  CHECK(std::ranges::count(all_solvers(), Solver::direct) == 1);
+  CHECK(std::ranges::count(all_schemes(), Scheme::paper) == 1);
+  for (const Solver solver : all_solvers()) CHECK(name(solver) != "unknown");
+}
+
+TEST_CASE("the curves: the original first, rows of rising cost") {
+  const Task task = small_task();
+  const auto curves = weft_curves(task, true);
+  REQUIRE(curves.size() >= 3);
+  CHECK(curves.front().label == "original");
+  for (const Curve& curve : curves) {
+    CAPTURE(curve.label);
+    for (const Row& row : curve.rows) {
+      CHECK(std::ranges::is_sorted(row, [](const Settings& a, const Settings& b) {
+        return a.tolerance > b.tolerance || a.iterations < b.iterations;
+      }));
+    }
+  }
+}
+
+TEST_CASE("a point: its tolerance is reached, its trajectory compared") {
+  Task task = small_task();
+  REQUIRE(add_reference(task, 4));
+  CHECK(task.reference_error > 0);
+  const auto point = measure(task, {.tolerance = 1e-4}, {.repeat = 3});
+  REQUIRE(point);
+  const Outcome& outcome = point.value().outcome;
+  CHECK(outcome.status == "converged");
+  CHECK(outcome.counts());
+  CHECK(outcome.frames == 50);
+  CHECK(outcome.ms_per_frame > 0);
+  CHECK(outcome.max_strain <= 1e-4);
+  REQUIRE(outcome.trajectory_error);
+  CHECK(*outcome.trajectory_error > 0.001);
+  CHECK(*outcome.trajectory_error < 0.1);
+  CHECK(point.value().knobs.tolerance == 1e-4);
+
+  const auto finer = measure(task, {.tolerance = 1e-4, .substeps = 8}, kOnce);
+  REQUIRE(finer);
+  CHECK(*finer.value().outcome.trajectory_error < *outcome.trajectory_error / 2);
+}
+
+TEST_CASE("a fixed number of iterations is no tolerance; without a reference nothing is compared") {
+  const auto point = measure(small_task(), {.iterations = 30}, kOnce);
+  REQUIRE(point);
+  CHECK_FALSE(point.value().knobs.tolerance);
+  CHECK(point.value().knobs.iterations == 30);
+  CHECK(point.value().outcome.status == "fixed_iterations");
+  CHECK_FALSE(point.value().outcome.trajectory_error);
+}
+
+TEST_CASE("a run out of time says so, does not count, and ends its row") {
+  const Task task = small_task();
+  const Effort hasty{.repeat = 1, .seconds_limit = 0};
+  const Curve curve{"made up", {{{.tolerance = 0.1}, {.tolerance = 0.01}}}};
+  const auto points = sweep(task, curve, hasty, [](const std::string&) {});
+  REQUIRE(points);
+  REQUIRE(points.value().size() == 1);
+  CHECK(points.value().front().outcome.status == "out_of_time");
+  CHECK_FALSE(points.value().front().outcome.counts());
+}
+
+TEST_CASE("a run that gains energy does not count") {
+  Outcome outcome{.status = "converged", .energy_gain = 0.0009};
+  CHECK(outcome.counts());
+  outcome.energy_gain = 0.0011;
+  CHECK_FALSE(outcome.counts());
+}
+
+TEST_CASE("the exponent of a power law is found, and refused where there is none") {
+  CHECK(*fitted_exponent(std::vector{1., 2., 4.}, std::vector{3., 12., 48.}) == doctest::Approx(2));
+  CHECK_FALSE(fitted_exponent(std::vector{1.}, std::vector{1.}));
+  CHECK_FALSE(fitted_exponent(std::vector{1., 1.}, std::vector{1., 2.}));
+  CHECK_FALSE(fitted_exponent(std::vector{1., 2.}, std::vector{0., 2.}));
+}
+
+TEST_CASE("the paper's scheme is of first order") {
+  auto task = make_task("hang", 6);
+  REQUIRE(task);
+  task.value().frames = kReferenceFrame;
+  REQUIRE(add_reference(task.value(), 16));
+  const auto orders = measure_orders(task.value());
+  REQUIRE(orders.size() == all_schemes().size());
+  CHECK(orders.front().scheme == "paper");
+  REQUIRE(orders.front().order);
+  CHECK(*orders.front().order == doctest::Approx(0.9).epsilon(0.15));
+}
+
+TEST_CASE("cost against size: a curve for each solver, which ends where time runs out") {
+  SizeStudy study = size_study(true);
+  study.sizes = {4, 6, 8};
+  study.frames = 20;
+  REQUIRE(measure(study, [](const std::string&) {}));
+  REQUIRE(study.curves.size() == all_solvers().size());
+  const SizeCurve& curve = study.curves.front();
+  REQUIRE(curve.points.size() == 3);
+  CHECK(curve.end.empty());
+  CHECK(curve.exponent);
+  for (const SizePoint& point : curve.points) CHECK(point.outcome.max_strain <= 0.01);
+
+  SizeStudy hasty = size_study(true);
+  hasty.sizes = {4};
+  hasty.seconds_limit = 0;
+  REQUIRE(measure(hasty, [](const std::string&) {}));
+  CHECK(hasty.curves.front().points.empty());
+  CHECK(hasty.curves.front().end == "4 x 4 did not reach 1 % in 0 s");
+}
+
+TEST_CASE("Bullet computes the same motion, the better the more it iterates") {
+  if (bullet_version().empty()) return;
+  Task task = small_task();
+  REQUIRE(add_reference(task, 4));
+  const auto points = sweep_bullet(task, kOnce, true, [](const std::string&) {});
+  REQUIRE(points.size() > 2);
+  const Outcome& best = points.back().outcome;
+  CHECK(best.max_strain < 0.001);
+  CHECK(best.max_strain < points.front().outcome.max_strain);
+  CHECK(*best.trajectory_error < 0.01);
+  CHECK(best.frames == 50);
+}
+
+}  // namespace
+}  // namespace weft::tools::precision

@@ -1,0 +1,34 @@
+/// The order of convergence of a scheme: the error of its trajectory behaves like dt^order.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/precision/task.h"
+
+namespace weft::tools::precision {
+
+struct OrderPoint {
+  double dt = 0;     ///< s
+  double error = 0;  ///< m, at 0.4 s
+};
+
+struct Order {
+  std::string scheme;
+  std::vector<OrderPoint> points;
+  std::optional<double> order;  ///< nothing if a run failed
+};
+
+/// The exponent p of y = c x^p, by least squares of the logarithms. Nothing for fewer than two
+/// points, or if one is not positive.
+std::optional<double> fitted_exponent(std::span<const double> x, std::span<const double> y);
+
+/// Every scheme, with the direct solver and tolerances so tight that nothing but the scheme is
+/// seen, at dt = 0.01 ... 0.00125 s. The task has its reference.
+std::vector<Order> measure_orders(const Task& task);
+
+}  // namespace weft::tools::precision

@@ -1,0 +1,162 @@
+#include "tools/precision/sweep.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "tools/precision/reference_solution.h"
+#include "tools/runner.h"
+
+namespace weft::tools::precision {
+namespace {
+
+/// The enums of weft.h end where they have no more names.
+template <class Choice>
+std::vector<Choice> all() {
+  std::vector<Choice> values;
+  for (std::uint8_t i = 0; name(static_cast<Choice>(i)) != "unknown"; ++i) {
+    values.push_back(static_cast<Choice>(i));
+  }
+  return values;
+}
+
+struct KnobSet {
+  std::vector<double> tolerances;
+  std::vector<int> substeps;  // of the rows of tolerances
+  std::vector<int> iterations;
+  std::vector<int> many_substeps;  // of the rows of iterations
+};
+
+KnobSet knob_set(bool quick) {
+  if (quick) return {{0.1, 0.01, 1e-3, 1e-4}, {1, 4}, {1, 8}, {8, 32}};
+  return {{0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5}, {1, 2, 4, 8, 16}, {1, 4, 16, 64}, {4, 16, 64}};
+}
+
+std::vector<Row> rows_of(const Settings& base, const KnobSet& knobs) {
+  std::vector<Row> rows;
+  for (const int substeps : knobs.substeps) {
+    Row& row = rows.emplace_back();
+    for (const double tolerance : knobs.tolerances) {
+      row.push_back(base);
+      row.back().substeps = substeps;
+      row.back().tolerance = tolerance;
+    }
+  }
+  for (const int substeps : knobs.many_substeps) {
+    Row& row = rows.emplace_back();
+    for (const int iterations : knobs.iterations) {
+      row.push_back(base);
+      row.back().substeps = substeps;
+      row.back().iterations = iterations;
+    }
+  }
+  return rows;
+}
+
+/// Section 3.2 with the formulation of 4.1, as printed: scalar, every constraint in every
+/// iteration.
+Curve original(const Task& task, const KnobSet& knobs) {
+  Settings settings;
+  settings.backend = Backend::reference;
+  settings.directions = Directions::each;
+  settings.anticipate = false;
+  settings.skip = false;
+  settings.threads = task.threads;
+  return {"original", rows_of(settings, {knobs.tolerances, {1}, {}, {}})};
+}
+
+bool is_known(const Task& task, const Settings& settings) {
+  return static_cast<bool>(Cloth::create(task.model, settings));
+}
+
+Outcome outcome_of(const Task& task, const RunSummary& summary) {
+  Outcome outcome;
+  outcome.frames = summary.frames;
+  outcome.ms_per_frame = 1000 * summary.seconds_per_frame();
+  outcome.max_strain = summary.max_strain;
+  outcome.mean_max_strain = summary.mean_max_strain;
+  outcome.energy_gain = summary.energy_gain;
+  const bool out_of_time = summary.frames < task.frames && committed(summary.status);
+  outcome.status = out_of_time ? "out_of_time" : name(summary.status);
+  return outcome;
+}
+
+std::vector<Vec3> positions_of(const Cloth& cloth) {
+  std::vector<Vec3> positions(cloth.particle_count());
+  static_cast<void>(cloth.read_positions(positions));  // fails for a wrong size alone
+  return positions;
+}
+
+}  // namespace
+
+std::vector<Solver> all_solvers() { return all<Solver>(); }
+std::vector<Scheme> all_schemes() { return all<Scheme>(); }
+
+std::vector<Curve> weft_curves(const Task& task, bool quick) {
+  const KnobSet knobs = knob_set(quick);
+  std::vector<Curve> curves{original(task, knobs)};
+  for (const Solver solver : all_solvers()) {
+    for (const Scheme scheme : all_schemes()) {
+      Settings settings;
+      settings.solver = solver;
+      settings.scheme = scheme;
+      settings.threads = task.threads;
+      if (!is_known(task, settings)) continue;
+      curves.push_back(
+          {fmt::format("{}, {}", name(solver), name(scheme)), rows_of(settings, knobs)});
+    }
+  }
+  return curves;
+}
+
+Result<Point> measure(const Task& task, const Settings& settings, const Effort& effort) {
+  std::optional<double> error;
+  const auto compare = [&](int frame, const Cloth& cloth, const StepReport&) {
+    if (frame != kReferenceFrame || task.reference.empty()) return;
+    error = trajectory_error(positions_of(cloth), task.reference);
+  };
+  RunPlan plan;
+  plan.dt = kFrame;
+  plan.steps = task.frames;
+  plan.seconds_limit = effort.seconds_limit;
+
+  auto best = run(task.model, settings, plan, compare);
+  if (!best) return Error{best.error()};
+  double total = best.value().step_seconds;
+  for (int i = 1; i < effort.repeat && total < effort.enough_seconds; ++i) {
+    auto next = run(task.model, settings, plan);
+    if (!next) return Error{next.error()};
+    total += next.value().step_seconds;
+    if (next.value().step_seconds < best.value().step_seconds) best = std::move(next);
+  }
+
+  Point point{std::string(name(settings.solver)),
+              std::string(name(settings.scheme)),
+              std::string(name(settings.backend)),
+              {settings.substeps, {}, settings.iterations},
+              outcome_of(task, best.value())};
+  if (settings.iterations == 0) point.knobs.tolerance = settings.tolerance;
+  point.outcome.trajectory_error = error;
+  return point;
+}
+
+Result<std::vector<Point>> sweep(const Task& task, const Curve& curve, const Effort& effort,
+                                 const Watch& watch) {
+  std::vector<Point> points;
+  for (const Row& row : curve.rows) {
+    for (const Settings& settings : row) {
+      watch(fmt::format("{} substeps, {}", settings.substeps,
+                        settings.iterations > 0 ? fmt::format("{} iterations", settings.iterations)
+                                                : fmt::format("{:g} %", 100 * settings.tolerance)));
+      auto point = measure(task, settings, effort);
+      if (!point) break;  // refused
+      points.push_back(std::move(point.value()));
+      if (points.back().outcome.status == "out_of_time") break;
+    }
+  }
+  return points;
+}
+
+}  // namespace weft::tools::precision

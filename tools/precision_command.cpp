@@ -1,0 +1,191 @@
+#include "tools/precision_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/json_output.h"
+#include "tools/output_folder.h"
+#include "tools/plotting.h"
+#include "tools/precision/bullet.h"
+#include "tools/precision/results.h"
+#include "tools/precision/sweep.h"
+#include "tools/task_line.h"
+
+namespace weft::tools {
+namespace {
+
+using namespace precision;
+
+constexpr int kExitBadInput = 2;
+
+struct PrecisionOptions {
+  std::optional<std::string> scene;
+  std::optional<int> size;
+  std::string json;
+  std::string out;
+  bool quick = false;
+  std::optional<int> threads;  // charts: 1; cost against size: all
+
+  bool names_scene() const { return scene || size; }
+};
+
+/// `corners` has a middle row, so its size is odd.
+int default_size(const std::string& scene, bool quick) {
+  return (quick ? 20 : 40) + (scene == "corners" ? 1 : 0);
+}
+
+Result<std::vector<Task>> tasks_of(const PrecisionOptions& options) {
+  std::vector<std::string> scenes{"hang", "corners"};
+  if (options.names_scene()) scenes = {options.scene.value_or("hang")};
+  std::vector<Task> tasks;
+  for (const std::string& scene : scenes) {
+    auto task = make_task(scene, options.size.value_or(default_size(scene, options.quick)));
+    if (!task) return Error{task.error()};
+    if (!task.value().description.spheres.empty()) {
+      return Error{
+          fmt::format("--scene {}: has contacts, which the reference solution has not", scene)};
+    }
+    if (options.quick) task.value().frames = 100;
+    task.value().threads = options.threads.value_or(1);
+    tasks.push_back(std::move(task.value()));
+  }
+  return tasks;
+}
+
+/// The reference's step is a frame / 128 (quick: / 64).
+int reference_parts(bool quick) { return quick ? 32 : 64; }
+
+Result<Chart> measure_chart(Task task, const PrecisionOptions& options, TaskLine& line) {
+  Effort effort;
+  if (options.quick) effort = {.repeat = 2, .seconds_limit = 0.5, .enough_seconds = 0.05};
+  const auto watch = [&](const std::string& detail) { line.show(detail); };
+  const std::string scene = fmt::format("{0} {1}x{1}", task.scene, task.size);
+
+  line.next(scene + " reference solution");
+  if (const auto done = add_reference(task, reference_parts(options.quick)); !done) {
+    return Error{scene + ": " + done.error()};
+  }
+  Chart chart{std::move(task), {}};
+  line.next(scene + " weft");
+  for (const Curve& curve : weft_curves(chart.task, options.quick)) {
+    auto points = sweep(chart.task, curve, effort,
+                        [&](const std::string& detail) { watch(curve.label + ", " + detail); });
+    if (!points) return Error{points.error()};
+    for (Point& point : points.value()) chart.points.push_back(std::move(point));
+  }
+  line.next(scene + " Bullet");
+  for (Point& point : sweep_bullet(chart.task, effort, options.quick, watch)) {
+    chart.points.push_back(std::move(point));
+  }
+  return chart;
+}
+
+Result<std::vector<Order>> orders_of(bool quick, TaskLine& line) {
+  line.next("orders of convergence, hang 20x20");
+  auto task = make_task("hang", 20);
+  if (!task) return Error{task.error()};
+  task.value().frames = kReferenceFrame;
+  if (const auto done = add_reference(task.value(), reference_parts(quick)); !done) {
+    return Error{done.error()};
+  }
+  return measure_orders(task.value());
+}
+
+Result<Study> carry_out(const std::vector<Task>& tasks, const PrecisionOptions& options) {
+  const bool has_sizes = !options.names_scene();
+  TaskLine line(3 * tasks.size() + 1 + (has_sizes ? 1 : 0));
+  Study study;
+  study.quick = options.quick;
+  study.bullet = bullet_version();
+  for (const Task& task : tasks) {
+    auto chart = measure_chart(task, options, line);
+    if (!chart) return Error{chart.error()};
+    study.charts.push_back(std::move(chart.value()));
+  }
+  auto orders = orders_of(options.quick, line);
+  if (!orders) return Error{orders.error()};
+  study.orders = std::move(orders.value());
+  if (has_sizes) {
+    line.next("cost against size");
+    study.sizes = size_study(options.quick);
+    study.sizes->threads = options.threads.value_or(0);
+    const auto done = measure(*study.sizes, [&](const std::string& detail) { line.show(detail); });
+    if (!done) return Error{done.error()};
+  }
+  return study;
+}
+
+/// The data first: the pictures are drawn from it, and a machine without matplotlib keeps it.
+Result<void> write_folder(const std::string& folder, const Study& study) {
+  if (auto done = write_file(folder + "/points.csv", points_csv(study)); !done) return done;
+  if (study.sizes) {
+    if (auto done = write_file(folder + "/sizes.csv", sizes_csv(*study.sizes)); !done) return done;
+  }
+  const std::string json = folder + "/precision.json";
+  if (auto done = write_json(json, to_json(study)); !done) return done;
+  const auto drawn = plot("precision_charts.py", {json, "--out", folder});
+  if (!drawn) fmt::print(stderr, "weft: {}; the data is in {}\n", drawn.error(), folder);
+  return {};
+}
+
+int fail(const std::string& message) {
+  fmt::print(stderr, "weft: {}\n", message);
+  return kExitBadInput;
+}
+
+int run_precision(const PrecisionOptions& options) {
+  const auto tasks = tasks_of(options);
+  if (!tasks) return fail(tasks.error());
+  // Destinations are opened before minutes of work, not after.
+  std::optional<JsonOutput> json;
+  if (!options.json.empty()) {
+    auto opened = JsonOutput::open(options.json);
+    if (!opened) return fail(opened.error());
+    json = std::move(opened.value());
+  }
+  if (!options.out.empty()) {
+    if (const auto made = make_output_folder(options.out); !made) return fail(made.error());
+  }
+
+  const auto study = carry_out(tasks.value(), options);
+  if (!study) return fail(study.error());
+
+  if (!json || !json->is_stdout()) fmt::print("{}", to_text(study.value()));
+  if (json) {
+    if (const auto done = json->write(to_json(study.value())); !done) return fail(done.error());
+  }
+  if (!options.out.empty()) {
+    if (const auto done = write_folder(options.out, study.value()); !done) {
+      return fail(done.error());
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_precision_command(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<PrecisionOptions>();
+  CLI::App* command = app.add_subcommand(
+      "precision", "Measure error against time per frame: every solver, scheme and knob");
+  command->add_option("--scene", options->scene,
+                      "Only this built-in scene, without cost against size (default: hang, corners "
+                      "and cost against size)");
+  command->add_option("--size", options->size,
+                      "N of the scene (default 40, corners 41; quick 20, 21)");
+  command->add_option("--json", options->json, "Write the results as JSON; - for standard output");
+  command->add_option("--out", options->out, "Write CSV, JSON and the charts into a folder");
+  command->add_flag("--quick", options->quick, "Few settings on small scenes: under a minute");
+  command
+      ->add_option("--threads", options->threads,
+                   "Threads of every run (default 1; cost against size: all)")
+      ->check(CLI::Range(1, kMaxThreads));
+  command->callback([options, &exit_code] { exit_code = run_precision(*options); });
+}
+
+}  // namespace weft::tools
