@@ -7,8 +7,10 @@
 namespace weft::test {
 namespace {
 
-bool is_fixed(const SceneDescription& scene, std::size_t particle) {
-  return std::find(scene.fixed.begin(), scene.fixed.end(), particle) != scene.fixed.end();
+bool joined(const SceneDescription& scene, std::size_t i, std::size_t j) {
+  return std::ranges::any_of(scene.constraints, [&](const Constraint& c) {
+    return (c.a == i && c.b == j) || (c.a == j && c.b == i);
+  });
 }
 
 }  // namespace
@@ -28,11 +30,18 @@ Vec3 angular_momentum(const std::vector<double>& masses, const std::vector<Vec3>
   return sum;
 }
 
+std::vector<bool> are_fixed(const SceneDescription& scene) {
+  std::vector<bool> fixed(scene.positions.size());
+  for (const std::uint32_t i : scene.fixed) fixed[i] = true;
+  return fixed;
+}
+
 std::vector<double> strains(const SceneDescription& scene, const std::vector<Vec3>& positions) {
+  const std::vector<bool> fixed = are_fixed(scene);
   std::vector<double> strains;
   for (const Constraint& c : scene.constraints) {
     const double excess = distance(positions[c.a], positions[c.b]) - c.rest_length;
-    const bool inert = is_fixed(scene, c.a) && is_fixed(scene, c.b);
+    const bool inert = fixed[c.a] && fixed[c.b];
     const double error = c.kind == ConstraintKind::rope ? std::max(excess, 0.0) : std::abs(excess);
     strains.push_back(inert ? 0.0 : error / c.rest_length);
   }
@@ -46,12 +55,13 @@ double max_strain(const SceneDescription& scene, const std::vector<Vec3>& positi
 }
 
 double max_penetration(const SceneDescription& scene, const std::vector<Vec3>& positions) {
+  const std::vector<bool> fixed = are_fixed(scene);
   double deepest = 0;
   for (const std::uint32_t s : scene.spheres) {
     for (std::size_t i = 0; i < positions.size(); ++i) {
-      if (i == s || (is_fixed(scene, s) && is_fixed(scene, i))) continue;
-      const double gap = distance(positions[s], positions[i]) - scene.radii[s] - scene.radii[i];
-      deepest = std::max(deepest, -gap);
+      if (i == s || (fixed[s] && fixed[i])) continue;
+      const double overlap = scene.radii[s] + scene.radii[i] - distance(positions[s], positions[i]);
+      if (overlap > deepest && !joined(scene, s, i)) deepest = overlap;
     }
   }
   return deepest;
@@ -59,9 +69,10 @@ double max_penetration(const SceneDescription& scene, const std::vector<Vec3>& p
 
 double energy(const SceneDescription& scene, const std::vector<Vec3>& positions,
               const std::vector<Vec3>& velocities) {
+  const std::vector<bool> fixed = are_fixed(scene);
   double sum = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (is_fixed(scene, i)) continue;
+    if (fixed[i]) continue;
     sum += scene.masses[i] *
            (dot(velocities[i], velocities[i]) / 2 - dot(scene.gravity, positions[i]));
   }

@@ -1,0 +1,207 @@
+/// Scenes and settings drawn by chance (tests/support/random_cases.h): whatever they are, a step
+/// keeps what weft.h promises.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/simd/isa.h"
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+struct State {
+  std::vector<Vec3> positions, velocities;
+};
+
+State state_of(const Cloth& cloth) { return {positions(cloth), velocities(cloth)}; }
+
+bool finite(const std::vector<Vec3>& vectors) {
+  return std::ranges::all_of(vectors, [](Vec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  });
+}
+
+/// A length is known to a few roundings, and an error in lanes is compared with its tolerance as a
+/// float.
+constexpr double kRounding = 1e-14;
+constexpr double kAsFloat = 0x1p-23;
+
+/// Two that should be the same length, or strain, but for rounding.
+bool same(double a, double b) { return std::abs(a - b) <= kRounding * (1 + std::abs(a)); }
+
+void check_strain(const RandomCase& c, const StepReport& report, const State& now) {
+  const std::vector<double> all = strains(c.scene, now.positions);
+  const std::vector<bool> fixed = are_fixed(c.scene);
+  double largest = 0, squares = 0, active = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (fixed[c.scene.constraints[i].a] && fixed[c.scene.constraints[i].b]) continue;
+    largest = std::max(largest, all[i]);
+    squares += all[i] * all[i];
+    ++active;
+  }
+  CHECK(same(report.max_strain, largest));
+  CHECK(same(report.rms_strain, active > 0 ? std::sqrt(squares / active) : 0));
+  if (active == 0) {
+    CHECK(report.worst_constraint == kNoIndex);
+    return;
+  }
+  REQUIRE(report.worst_constraint < all.size());
+  CHECK(same(all[report.worst_constraint], largest));
+}
+
+/// Known as well as the radii that it is the sum of.
+void check_penetration(const RandomCase& c, const StepReport& report, const State& now) {
+  const double deepest = max_penetration(c.scene, now.positions);
+  double largest = 0;
+  for (const double radius : c.scene.radii) largest = std::max(largest, radius);
+  CHECK(std::abs(report.max_penetration - deepest) <= kRounding * largest);
+}
+
+/// n . (v_a - v_b) of bars, and of ropes that are taut and lengthen all the same.
+double largest_speed(const RandomCase& c, const State& now) {
+  const std::vector<bool> fixed = are_fixed(c.scene);
+  double largest = 0;
+  for (const Constraint& link : c.scene.constraints) {
+    const Vec3 d = now.positions[link.a] - now.positions[link.b];
+    if ((fixed[link.a] && fixed[link.b]) || length(d) == 0) continue;
+    const double speed = dot(d, now.velocities[link.a] - now.velocities[link.b]) / length(d);
+    if (link.kind == ConstraintKind::distance) largest = std::max(largest, std::abs(speed));
+    const double taut = (1 - c.settings.tolerance) * link.rest_length * (1 + kRounding);
+    if (link.kind == ConstraintKind::rope && length(d) > taut) largest = std::max(largest, speed);
+  }
+  return largest;
+}
+
+double fastest(const State& now) {
+  double speed = 0;
+  for (const Vec3 v : now.velocities) speed = std::max(speed, length(v));
+  return speed;
+}
+
+void check_status(const RandomCase& c, const StepReport& report, const State& now) {
+  const Settings& s = c.settings;
+  CHECK(report.iterations <= s.substeps * (s.iterations > 0 ? s.iterations : s.max_iterations));
+  if (s.iterations > 0) CHECK(report.status == Status::fixed_iterations);
+  if (report.status != Status::converged) return;
+  CHECK(report.max_strain <= s.tolerance * (1 + kAsFloat) + kRounding);
+  CHECK(report.max_penetration <= s.contact_tolerance * (1 + kAsFloat));
+  if (!s.velocity_correction) return;
+  // In lanes a velocity is the sum of a double and a float.
+  const double rounding = kRounding * fastest(now);
+  CHECK(largest_speed(c, now) <= s.velocity_tolerance * (1 + kAsFloat) + rounding);
+}
+
+void check_fixed(const RandomCase& c, const State& before, const State& now) {
+  for (const std::uint32_t i : c.scene.fixed) {
+    CHECK(distance(before.positions[i], now.positions[i]) == 0);
+    CHECK(length(now.velocities[i]) == 0);
+  }
+}
+
+void check_step(const RandomCase& c, Cloth& cloth) {
+  const State before = state_of(cloth);
+  const std::uint64_t hash = cloth.state_hash();
+  const StepReport report = step(cloth, c.dt);
+  CAPTURE(name(report.status));
+  const State now = state_of(cloth);
+  CHECK(finite(now.positions));
+  CHECK(finite(now.velocities));
+  check_strain(c, report, now);
+  check_penetration(c, report, now);
+  check_fixed(c, before, now);
+  CHECK((report.failed_particle == kNoIndex) == committed(report.status));
+  if (committed(report.status)) {
+    check_status(c, report, now);
+  } else {
+    CHECK(cloth.state_hash() == hash);
+  }
+}
+
+Cloth start(const RandomCase& c, const Settings& settings) {
+  Cloth cloth = cloth_of(c.scene, settings);
+  REQUIRE(cloth.write_forces(c.forces));
+  return cloth;
+}
+
+/// Pins wander, where they do, by a little in each step.
+void move_pins(const RandomCase& c, int step, Cloth& cloth) {
+  if (!c.moves_pins) return;
+  Random random(c.seed + static_cast<std::uint32_t>(step));
+  for (const std::uint32_t i : c.scene.fixed) {
+    const double way =
+        0.01 * (c.scene.constraints.empty() ? 1 : c.scene.constraints[0].rest_length);
+    REQUIRE(cloth.move_fixed(i, cloth.position(i) + random.in_box(way)));
+  }
+}
+
+TEST_CASE("random cases: the state is finite, the report true, and what converged in tolerance") {
+  for_each_case(4000, random_case, [](const RandomCase& c) {
+    INFO(text(c));
+    Cloth cloth = start(c, c.settings);
+    for (int k = 0; k < c.steps; ++k) {
+      CAPTURE(k);
+      move_pins(c, k, cloth);
+      check_step(c, cloth);
+    }
+  });
+}
+
+// ------------------------------------------------------------------------------- the same bits
+
+std::uint64_t hash_after(const RandomCase& c, const Settings& settings) {
+  Cloth cloth = start(c, settings);
+  for (int k = 0; k < c.steps; ++k) {
+    move_pins(c, k, cloth);
+    step(cloth, c.dt);
+  }
+  return cloth.state_hash();
+}
+
+/// Whether positions and speeds are known to much less than their tolerances. Where they are not, a
+/// constraint may be out of tolerance as soon as it was corrected: passing it over until something
+/// moves is then not the same as visiting it again.
+bool is_resolved(const RandomCase& c) {
+  Cloth cloth = start(c, c.settings);
+  step(cloth, c.dt);
+  const State now = state_of(cloth);
+  double shortest = 1e300, farthest = 0;
+  for (const Constraint& link : c.scene.constraints) {
+    shortest = std::min(shortest, link.rest_length);
+  }
+  for (const Vec3 p : now.positions) farthest = std::max(farthest, length(p));
+  return kRounding * farthest < c.settings.tolerance * shortest &&
+         kRounding * fastest(now) < c.settings.velocity_tolerance;
+}
+
+TEST_CASE("random cases: what is passed over changes no bit") {
+  for_each_case(4000, random_case, [](const RandomCase& c) {
+    if (!is_resolved(c)) return;
+    INFO(text(c));
+    Settings other = c.settings;
+    other.skip = !other.skip;
+    if (c.settings.backend == Backend::simd) other.anticipate = !other.anticipate;
+    CHECK(hash_after(c, other) == hash_after(c, c.settings));
+  });
+}
+
+TEST_CASE("random cases: threads, AVX2 or AVX-512 change no bit") {
+  for_each_case(4000, random_case, [](const RandomCase& c) {
+    if (c.settings.backend == Backend::reference) return;
+    INFO(text(c));
+    const std::uint64_t hash = hash_after(c, c.settings);
+    Settings other = c.settings;
+    other.threads = 1;
+    CHECK(hash_after(c, other) == hash);
+    if (!simd::supported(simd::Isa::avx512)) return;
+    other.isa = Isa::avx2;
+    CHECK(hash_after(c, other) == hash);
+  });
+}
+
+}  // namespace
+}  // namespace weft::test

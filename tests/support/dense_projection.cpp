@@ -1,0 +1,105 @@
+#include "tests/support/dense_projection.h"
+
+#include <algorithm>
+
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+constexpr int kMostSolves = 30;
+constexpr double kExact = 1e-14;  // strain; a length is known no better
+
+Eigen::VectorXd flat(const std::vector<Vec3>& vectors) {
+  Eigen::VectorXd result(3 * static_cast<Eigen::Index>(vectors.size()));
+  Eigen::Index i = 0;
+  for (const Vec3 v : vectors) {
+    for (const double value : {v.x, v.y, v.z}) result[i++] = value;
+  }
+  return result;
+}
+
+void subtract(std::vector<Vec3>& from, const Eigen::VectorXd& motion) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    from[i] = from[i] - Vec3{motion[at], motion[at + 1], motion[at + 2]};
+  }
+}
+
+}  // namespace
+
+DenseProjection::DenseProjection(const SceneDescription& scene) : scene_(scene) {
+  const std::vector<bool> fixed = are_fixed(scene);
+  inverse_.resize(3 * static_cast<Eigen::Index>(scene.positions.size()));
+  for (std::size_t i = 0; i < scene.positions.size(); ++i) {
+    inverse_mass_.push_back(fixed[i] ? 0 : 1 / scene.masses[i]);
+    inverse_.segment<3>(static_cast<Eigen::Index>(3 * i)).setConstant(inverse_mass_[i]);
+  }
+  for (const Constraint& c : scene.constraints) {
+    if (!fixed[c.a] || !fixed[c.b]) bars_.push_back(c);
+  }
+}
+
+void DenseProjection::form(const std::vector<Vec3>& x) {
+  const auto rows = static_cast<Eigen::Index>(bars_.size());
+  jacobian_.setZero(rows, inverse_.size());
+  error_.resize(rows);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const Constraint& bar = bars_[static_cast<std::size_t>(row)];
+    const Vec3 d = x[bar.a] - x[bar.b];
+    const Eigen::Vector3d n = Eigen::Vector3d(d.x, d.y, d.z) / length(d);
+    jacobian_.row(row).segment<3>(3 * static_cast<Eigen::Index>(bar.a)) = n;
+    jacobian_.row(row).segment<3>(3 * static_cast<Eigen::Index>(bar.b)) = -n;
+    error_[row] = length(d) - bar.rest_length;
+  }
+  matrix_ = jacobian_ * inverse_.asDiagonal() * jacobian_.transpose();
+}
+
+bool DenseProjection::project_positions(std::vector<Vec3>& x) {
+  Eigen::VectorXd impulse = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bars_.size()));
+  for (int solves = 0; solves < kMostSolves; ++solves) {
+    form(x);
+    double worst = 0;
+    for (Eigen::Index row = 0; row < error_.size(); ++row) {
+      const double rest = bars_[static_cast<std::size_t>(row)].rest_length;
+      worst = std::max(worst, std::abs(error_[row]) / rest);
+    }
+    reciprocal_condition_ = std::min(reciprocal_condition_, condition());
+    if (worst <= kExact) break;
+    const Eigen::VectorXd more = matrix_.ldlt().solve(error_);
+    impulse += more;
+    subtract(x, inverse_.cwiseProduct(jacobian_.transpose() * more));
+  }
+  std::vector<double> share(x.size());
+  for (std::size_t row = 0; row < bars_.size(); ++row) {
+    const double size = std::abs(impulse[static_cast<Eigen::Index>(row)]);
+    share[bars_[row].a] += size * inverse_mass_[bars_[row].a];
+    share[bars_[row].b] += size * inverse_mass_[bars_[row].b];
+  }
+  largest_share_ = *std::ranges::max_element(share);
+  return max_strain(scene_, x) <= 10 * kExact;
+}
+
+void DenseProjection::project_velocities(const std::vector<Vec3>& x, std::vector<Vec3>& v) {
+  form(x);
+  const Eigen::VectorXd impulse = matrix_.ldlt().solve(jacobian_ * flat(v));
+  subtract(v, inverse_.cwiseProduct(jacobian_.transpose() * impulse));
+}
+
+double DenseProjection::condition() const {
+  const Eigen::VectorXd scale = matrix_.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix_ * scale.asDiagonal();
+  const auto values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
+  return values.minCoeff() / values.maxCoeff();
+}
+
+double DenseProjection::motion_per_error() const {
+  const Eigen::MatrixXd inverse =
+      matrix_.ldlt().solve(Eigen::MatrixXd::Identity(matrix_.rows(), matrix_.cols()));
+  const Eigen::MatrixXd motion = inverse_.asDiagonal() * jacobian_.transpose() * inverse;
+  return motion.cwiseAbs().rowwise().sum().maxCoeff();
+}
+
+}  // namespace weft::test
