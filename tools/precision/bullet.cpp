@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -139,11 +140,12 @@ std::string bullet_version() {
 std::vector<Point> sweep_bullet(const Task& task, const Effort& effort, bool quick,
                                 const std::function<void(const std::string&)>& watch) {
   constexpr double kLoosest = 0.1, kTightest = 1e-3;
+  constexpr int kMostIterations = 2000;
   const std::vector<int> substeps =
-      quick ? std::vector{5, 20} : std::vector{1, 2, 5, 10, 20, 50, 100, 200};
+      quick ? std::vector{5, 20} : std::vector{5, 10, 20, 50, 100, 200};
   std::vector<Point> points;
   for (const int parts : substeps) {
-    for (double iterations = 1; iterations < 2000; iterations *= quick ? 4 : 1.5) {
+    for (double iterations = 1; iterations < kMostIterations; iterations *= quick ? 4 : 1.5) {
       const Knobs knobs{parts, {}, static_cast<int>(std::lround(iterations))};
       watch(fmt::format("{} substeps, {} iterations", parts, knobs.iterations));
       const Outcome outcome = best_of(task, knobs, effort);

@@ -16,8 +16,8 @@ namespace weft::tools::precision {
 /// Version and number format; empty: not built in.
 std::string bullet_version();
 
-/// Its substeps and iterations, from those too few for a strain of 10 % to those that reach 0.01 %
-/// or the limit of time. Empty if not built in.
+/// Its substeps and iterations, from those that keep a strain of 10 % to those that reach 0.1 % or
+/// the limit of time. Empty if not built in.
 std::vector<Point> sweep_bullet(const Task& task, const Effort& effort, bool quick,
                                 const std::function<void(const std::string&)>& watch);
 

@@ -295,7 +295,8 @@ std::string to_text(const Study& study) {
   std::string text;
   const Text out = std::back_inserter(text);
   if (study.quick) fmt::format_to(out, "QUICK: few settings, small scenes.\n");
-  fmt::format_to(out, "Bullet: {}\n\n", study.bullet.empty() ? "not built in" : study.bullet);
+  fmt::format_to(out, "Bullet: {}\n\n",
+                 study.bullet.empty() ? "not built in (tools/setup libbullet-dev)" : study.bullet);
   for (const Chart& chart : study.charts) {
     write_cheapest(out, chart);
     write_failures(out, chart);
