@@ -13,6 +13,8 @@
 #include "tools/plotting.h"
 #include "tools/precision/bullet.h"
 #include "tools/precision/results.h"
+#include "tools/precision/results_json.h"
+#include "tools/precision/results_tables.h"
 #include "tools/precision/sweep.h"
 #include "tools/task_line.h"
 
@@ -126,6 +128,7 @@ Result<void> write_folder(const std::string& folder, const Study& study) {
   if (study.sizes) {
     if (auto done = write_file(folder + "/sizes.csv", sizes_csv(*study.sizes)); !done) return done;
   }
+  if (auto done = write_file(folder + "/precision.md", to_markdown(study)); !done) return done;
   const std::string json = folder + "/precision.json";
   if (auto done = write_json(json, to_json(study)); !done) return done;
   const auto drawn = plot("precision_charts.py", {json, "--out", folder});
@@ -179,7 +182,8 @@ void add_precision_command(CLI::App& app, int& exit_code) {
   command->add_option("--size", options->size,
                       "N of the scene (default 40, corners 41; quick 20, 21)");
   command->add_option("--json", options->json, "Write the results as JSON; - for standard output");
-  command->add_option("--out", options->out, "Write CSV, JSON and the charts into a folder");
+  command->add_option("--out", options->out,
+                      "Write CSV, JSON, tables and the charts into a folder");
   command->add_flag("--quick", options->quick, "Few settings on small scenes: under a minute");
   command
       ->add_option("--threads", options->threads,

@@ -1,11 +1,11 @@
-/// What `weft precision` measured, and the forms in which it is written.
+/// What `weft precision` measured.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "tools/json_output.h"
 #include "tools/precision/order.h"
 #include "tools/precision/sizes.h"
 #include "tools/precision/task.h"
@@ -26,17 +26,15 @@ struct Study {
   std::optional<SizeStudy> sizes;
 };
 
+/// Strains for which the cheapest settings are sought.
+inline constexpr std::array<double, 5> kBounds{0.1, 0.01, 1e-3, 1e-4, 1e-5};
+
 /// "original" for the paper's unoptimised method, else the solver or the peer.
 std::string contender(const Point& point);
+/// In the order of first appearance.
+std::vector<std::string> contenders(const Chart& chart);
 
 /// The cheapest point of a contender that counts and keeps max_strain within the bound.
 const Point* cheapest(const Chart& chart, const std::string& contender, double bound);
-
-Json to_json(const Study& study);
-std::string points_csv(const Study& study);
-std::string sizes_csv(const SizeStudy& study);
-
-/// For a reader: the cheapest way to each bound, the orders, cost against size, and what failed.
-std::string to_text(const Study& study);
 
 }  // namespace weft::tools::precision

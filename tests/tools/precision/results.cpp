@@ -1,4 +1,6 @@
 #include "tools/precision/results.h"
+#include "tools/precision/results_json.h"
+#include "tools/precision/results_tables.h"
 
 #include <doctest/doctest.h>
 
@@ -67,6 +69,13 @@ TEST_CASE("the JSON has the keys of the contract; peers are apart, failures are 
 TEST_CASE("CSV: a heading and a line for each point, peers too") {
   const std::string csv = points_csv(made_up_study());
   CHECK(std::ranges::count(csv, '\n') == 6);
+}
+
+TEST_CASE("markdown: a row for each bound, a column for each contender") {
+  const std::string text = to_markdown(made_up_study());
+  CHECK(text.starts_with("| hang 20², ms per frame | direct | gauss_seidel | bullet |"));
+  CHECK(text.find("| 1 % | 0.4 | 0.1 | 0.4 |") != std::string::npos);
+  CHECK(text.find("| 0.1 % | 0.4 | never | 0.4 |") != std::string::npos);
 }
 
 TEST_CASE("the text tells what does not count") {

@@ -1,0 +1,117 @@
+#include "tools/precision/results_json.h"
+
+namespace weft::tools::precision {
+namespace {
+
+Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+void add_outcome(Json& json, const Outcome& outcome) {
+  json["ms_per_frame"] = outcome.ms_per_frame;
+  json["max_strain"] = outcome.max_strain;
+  json["trajectory_error"] = optional_json(outcome.trajectory_error);
+  json["mean_max_strain"] = outcome.mean_max_strain;
+  json["energy_gain"] = outcome.energy_gain;
+  json["status"] = outcome.status;
+  json["frames"] = outcome.frames;
+  json["counts"] = outcome.counts();
+}
+
+Json point_json(const Task& task, const Point& point) {
+  Json json{{"scene", task.scene},
+            {"size", task.size},
+            {"contender", contender(point)},
+            {"solver", point.solver},
+            {"scheme", point.scheme},
+            {"backend", point.backend},
+            {"substeps", point.knobs.substeps},
+            {"tolerance", optional_json(point.knobs.tolerance)},
+            {"iterations", point.knobs.iterations}};
+  add_outcome(json, point.outcome);
+  return json;
+}
+
+bool is_peer(const Point& point) { return point.backend.empty(); }
+
+Json points_json(const Study& study, bool peers) {
+  Json json = Json::array();
+  for (const Chart& chart : study.charts) {
+    for (const Point& point : chart.points) {
+      if (is_peer(point) == peers) json.push_back(point_json(chart.task, point));
+    }
+  }
+  return json;
+}
+
+Json scenes_json(const Study& study) {
+  Json json = Json::array();
+  for (const Chart& chart : study.charts) {
+    json.push_back({{"scene", chart.task.scene},
+                    {"size", chart.task.size},
+                    {"frames", chart.task.frames},
+                    {"threads", chart.task.threads},
+                    {"reference_error", chart.task.reference_error}});
+  }
+  return json;
+}
+
+Json cheapest_json(const Study& study) {
+  Json json = Json::array();
+  for (const Chart& chart : study.charts) {
+    for (const double bound : kBounds) {
+      for (const std::string& name : contenders(chart)) {
+        const Point* point = cheapest(chart, name, bound);
+        if (!point) continue;
+        Json row = point_json(chart.task, *point);
+        row["bound"] = bound;
+        json.push_back(std::move(row));
+      }
+    }
+  }
+  return json;
+}
+
+Json sizes_json(const SizeStudy& study) {
+  Json json{{"scene", study.scene},
+            {"tolerance", study.tolerance},
+            {"frames", study.frames},
+            {"threads", study.threads},
+            {"curves", Json::array()}};
+  for (const SizeCurve& curve : study.curves) {
+    Json points = Json::array();
+    for (const SizePoint& point : curve.points) {
+      Json& row = points.emplace_back(Json{{"size", point.size}, {"substeps", point.substeps}});
+      add_outcome(row, point.outcome);
+      row.erase("trajectory_error");
+    }
+    json["curves"].push_back({{"solver", curve.solver},
+                              {"exponent", optional_json(curve.exponent)},
+                              {"end", curve.end},
+                              {"points", std::move(points)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Json to_json(const Study& study) {
+  Json json{{"points", points_json(study, false)}, {"order", Json::object()}};
+  // A scheme that weft does not have yet has no order.
+  for (const char* scheme : {"paper", "rattle"}) json["order"][scheme] = nullptr;
+  json["order_points"] = Json::array();
+  for (const Order& order : study.orders) {
+    json["order"][order.scheme] = optional_json(order.order);
+    for (const OrderPoint& point : order.points) {
+      json["order_points"].push_back(
+          {{"scheme", order.scheme}, {"dt", point.dt}, {"trajectory_error", point.error}});
+    }
+  }
+  json["peers"] = points_json(study, true);
+  json["bullet"] = study.bullet.empty() ? "not built in" : study.bullet;
+  json["scenes"] = scenes_json(study);
+  json["cheapest"] = cheapest_json(study);
+  if (study.sizes) json["sizes"] = sizes_json(*study.sizes);
+  json["quick"] = study.quick;
+  return json;
+}
+
+}  // namespace weft::tools::precision

@@ -1,0 +1,12 @@
+/// The JSON of `weft precision`, by the command line contract and with more keys: peers apart, the
+/// cheapest settings, cost against size.
+#pragma once
+
+#include "tools/json_output.h"
+#include "tools/precision/results.h"
+
+namespace weft::tools::precision {
+
+Json to_json(const Study& study);
+
+}  // namespace weft::tools::precision

@@ -1,0 +1,201 @@
+#include "tools/precision/results_tables.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <map>
+
+namespace weft::tools::precision {
+namespace {
+
+std::string percent(double fraction) { return fmt::format("{:g} %", 100 * fraction); }
+
+using Text = std::back_insert_iterator<std::string>;
+
+std::string knobs_text(const Knobs& knobs) {
+  const std::string goal =
+      knobs.tolerance ? percent(*knobs.tolerance) : fmt::format("{} iterations", knobs.iterations);
+  return fmt::format("{}, {} substep{}", goal, knobs.substeps, knobs.substeps == 1 ? "" : "s");
+}
+
+std::string error_text(const std::optional<double>& error) {
+  return error ? fmt::format("{:.3g} mm", 1000 * *error) : "-";
+}
+
+void write_cheapest(Text out, const Chart& chart) {
+  const Task& task = chart.task;
+  fmt::format_to(out,
+                 "{0}, size {1}, {2} frames of {3} s, {4} thread{5}: the cheapest setting that "
+                 "keeps every strain within the bound\nand gains no energy. Trajectory errors at "
+                 "{6} s; the reference's own is about {7:.2g} mm.\n",
+                 task.scene, task.size, task.frames, kFrame, task.threads,
+                 task.threads == 1 ? "" : "s", kFrame * kReferenceFrame,
+                 1000 * task.reference_error);
+  fmt::format_to(out, "{:>9}  {:14}{:>13}{:>10}{:>13}{:>13}  {}\n", "bound", "", "ms per frame",
+                 "x auto", "max strain", "trajectory", "setting");
+  for (const double bound : kBounds) {
+    const Point* plain = cheapest(chart, "auto", bound);
+    for (const std::string& name : contenders(chart)) {
+      const Point* point = cheapest(chart, name, bound);
+      if (!point) {
+        fmt::format_to(out, "{:>9}  {:14}{:>13}\n", percent(bound), name, "not reached");
+        continue;
+      }
+      const double ms = point->outcome.ms_per_frame;
+      fmt::format_to(out, "{:>9}  {:14}{:13.4g}{:>10}{:>13}{:>13}  {}{}\n", percent(bound), name,
+                     ms, plain ? fmt::format("{:.1f}", ms / plain->outcome.ms_per_frame) : "-",
+                     fmt::format("{:.3g} %", 100 * point->outcome.max_strain),
+                     error_text(point->outcome.trajectory_error),
+                     point->scheme.empty() ? "" : point->scheme + ", ", knobs_text(point->knobs));
+    }
+  }
+  fmt::format_to(out, "\n");
+}
+
+void write_markdown_row(Text out, const Chart& chart, double bound) {
+  const auto ms = [&](const std::string& name) -> std::optional<double> {
+    const Point* point = cheapest(chart, name, bound);
+    return point ? std::optional(point->outcome.ms_per_frame) : std::nullopt;
+  };
+  fmt::format_to(out, "| {} |", percent(bound));
+  for (const std::string& name : contenders(chart)) {
+    const auto cost = ms(name);
+    fmt::format_to(out, " {} |", cost ? fmt::format("{:.3g}", *cost) : "never");
+  }
+  const auto plain = ms("auto");
+  for (const char* other : {"gauss_seidel", "bullet"}) {
+    const auto cost = ms(other);
+    fmt::format_to(out, " {} |", plain && cost ? fmt::format("{:.3g}", *cost / *plain) : "");
+  }
+  fmt::format_to(out, "\n");
+}
+
+void write_markdown(Text out, const Chart& chart) {
+  fmt::format_to(out, "| {} {}², ms per frame |", chart.task.scene, chart.task.size);
+  std::string rule = "|---|---|---|";
+  for (const std::string& name : contenders(chart)) {
+    fmt::format_to(out, " {} |", name);
+    rule += "---|";
+  }
+  fmt::format_to(out, " gauss_seidel / auto | bullet / auto |\n{}\n", rule);
+  for (const double bound : kBounds) write_markdown_row(out, chart, bound);
+  fmt::format_to(out, "\n");
+}
+
+void write_failures(Text out, const Chart& chart) {
+  std::map<std::string, std::map<std::string, int>> failures;
+  for (const Point& point : chart.points) {
+    const Outcome& outcome = point.outcome;
+    if (outcome.counts()) continue;
+    const std::string curve = contender(point) + (point.scheme.empty() ? "" : ", " + point.scheme);
+    ++failures[curve][outcome.is_complete() ? "gained energy" : outcome.status];
+  }
+  if (failures.empty()) return;
+  fmt::format_to(out, "Settings of {} that do not count:\n", chart.task.scene);
+  for (const auto& [curve, reasons] : failures) {
+    fmt::format_to(out, "  {:24}", curve);
+    const char* separator = "";
+    for (const auto& [reason, count] : reasons) {
+      fmt::format_to(out, "{}{} {}", separator, count, reason);
+      separator = ", ";
+    }
+    fmt::format_to(out, "\n");
+  }
+  fmt::format_to(out, "\n");
+}
+
+void write_orders(Text out, const std::vector<Order>& orders) {
+  fmt::format_to(out, "Order of convergence on hang 20 x 20, trajectory error in mm by dt\n{:10}",
+                 "");
+  for (const OrderPoint& point : orders.front().points) fmt::format_to(out, "{:>12g}", point.dt);
+  fmt::format_to(out, "{:>9}\n", "order");
+  for (const Order& order : orders) {
+    fmt::format_to(out, "{:10}", order.scheme);
+    for (const OrderPoint& point : order.points) {
+      fmt::format_to(out, "{:12.4g}", 1000 * point.error);
+    }
+    fmt::format_to(out, "{:>9}\n", order.order ? fmt::format("{:.2f}", *order.order) : "-");
+  }
+  fmt::format_to(out, "\n");
+}
+
+void write_sizes(Text out, const SizeStudy& study) {
+  fmt::format_to(out, "Cost against size: {}, {}, {} frames, {}\n{:>14}{:14}{:>13}{:>11}{:>13}\n",
+                 study.scene, percent(study.tolerance), study.frames,
+                 study.threads == 0 ? "all threads" : fmt::format("threads: {}", study.threads),
+                 "size  ", "solver", "ms per frame", "substeps", "max strain");
+  for (const SizeCurve& curve : study.curves) {
+    for (const SizePoint& point : curve.points) {
+      fmt::format_to(out, "{:>14}{:14}{:13.4g}{:11}{:>13}\n",
+                     fmt::format("{0} x {0}  ", point.size), curve.solver,
+                     point.outcome.ms_per_frame, point.substeps,
+                     fmt::format("{:.3g} %", 100 * point.outcome.max_strain));
+    }
+    if (curve.exponent) {
+      fmt::format_to(out, "{:>14}{:14}time ~ particles^{:.2f}\n", "", curve.solver,
+                     *curve.exponent);
+    }
+    if (!curve.end.empty()) fmt::format_to(out, "{:>14}{:14}{}\n", "", curve.solver, curve.end);
+  }
+}
+
+}  // namespace
+
+std::string points_csv(const Study& study) {
+  std::string csv =
+      "scene,size,contender,solver,scheme,backend,substeps,tolerance,iterations,ms_per_frame,"
+      "max_strain,mean_max_strain,trajectory_error,energy_gain,status,frames,counts\n";
+  const auto field = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.6g}", *value) : "";
+  };
+  for (const Chart& chart : study.charts) {
+    for (const Point& point : chart.points) {
+      const Outcome& o = point.outcome;
+      fmt::format_to(std::back_inserter(csv),
+                     "{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{},{:.6g},{},{},{}\n",
+                     chart.task.scene, chart.task.size, contender(point), point.solver,
+                     point.scheme, point.backend, point.knobs.substeps,
+                     field(point.knobs.tolerance), point.knobs.iterations, o.ms_per_frame,
+                     o.max_strain, o.mean_max_strain, field(o.trajectory_error), o.energy_gain,
+                     o.status, o.frames, o.counts());
+    }
+  }
+  return csv;
+}
+
+std::string sizes_csv(const SizeStudy& study) {
+  std::string csv = "scene,size,solver,substeps,ms_per_frame,max_strain,energy_gain,status\n";
+  for (const SizeCurve& curve : study.curves) {
+    for (const SizePoint& point : curve.points) {
+      const Outcome& o = point.outcome;
+      fmt::format_to(std::back_inserter(csv), "{},{},{},{},{:.6g},{:.6g},{:.6g},{}\n", study.scene,
+                     point.size, curve.solver, point.substeps, o.ms_per_frame, o.max_strain,
+                     o.energy_gain, o.status);
+    }
+  }
+  return csv;
+}
+
+std::string to_markdown(const Study& study) {
+  std::string text;
+  const Text out = std::back_inserter(text);
+  for (const Chart& chart : study.charts) write_markdown(out, chart);
+  return text;
+}
+
+std::string to_text(const Study& study) {
+  std::string text;
+  const Text out = std::back_inserter(text);
+  if (study.quick) fmt::format_to(out, "QUICK: few settings, small scenes.\n");
+  fmt::format_to(out, "Bullet: {}\n\n",
+                 study.bullet.empty() ? "not built in (tools/setup libbullet-dev)" : study.bullet);
+  for (const Chart& chart : study.charts) {
+    write_cheapest(out, chart);
+    write_failures(out, chart);
+  }
+  if (!study.orders.empty()) write_orders(out, study.orders);
+  if (study.sizes) write_sizes(out, *study.sizes);
+  return text;
+}
+
+}  // namespace weft::tools::precision
