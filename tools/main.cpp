@@ -6,8 +6,8 @@
 #include <new>
 
 #include "tools/hard_command.h"
+#include "tools/interrupt.h"
 #include "tools/paper_command.h"
-#include "tools/pending_file.h"
 #include "tools/precision_command.h"
 #include "tools/run_command.h"
 #include "tools/scene_command.h"

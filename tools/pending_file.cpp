@@ -7,7 +7,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 
 namespace weft::tools {
@@ -17,9 +16,6 @@ namespace {
 // hence this table of plain pointers. A file beyond its end is only not removed on an interrupt.
 std::array<std::atomic<const char*>, 32> pending_names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
-
-// Asked before any signal can come.
-bool stderr_is_terminal = false;
 
 void remember(const char* name) {
   for (auto& slot : pending_names) {
@@ -33,17 +29,6 @@ void forget(const char* name) {
     const char* expected = name;
     if (slot.compare_exchange_strong(expected, nullptr)) return;
   }
-}
-
-extern "C" void remove_pending_and_exit(int signal) {
-  for (auto& slot : pending_names) {
-    if (const char* name = slot.load()) unlink(name);
-  }
-  constexpr char kLine[] = "\nweft: interrupted\n";
-  const std::size_t begin = stderr_is_terminal ? 0 : 1;  // there may be a progress line to leave
-  [[maybe_unused]] const auto written =
-      write(STDERR_FILENO, kLine + begin, sizeof kLine - 1 - begin);
-  _exit(128 + signal);
 }
 
 }  // namespace
@@ -106,12 +91,10 @@ Result<void> PendingFile::commit() {
   return {};
 }
 
-void install_interrupt_handler() {
-  stderr_is_terminal = isatty(STDERR_FILENO) == 1;
-  struct sigaction action {};
-  action.sa_handler = remove_pending_and_exit;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+void remove_pending_files() {
+  for (auto& slot : pending_names) {
+    if (const char* name = slot.load()) unlink(name);
+  }
 }
 
 }  // namespace weft::tools

@@ -33,7 +33,7 @@ class PendingFile {
   std::unique_ptr<State> state_;
 };
 
-/// On SIGINT and SIGTERM: remove all pending files, say so in one line, exit with 128 + signal.
-void install_interrupt_handler();
+/// The temporary ones of all that live. For a signal handler that ends the program.
+void remove_pending_files();
 
 }  // namespace weft::tools

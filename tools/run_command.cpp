@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "tools/interrupt.h"
 #include "tools/json_output.h"
 #include "tools/outputs.h"
 #include "tools/progress.h"
@@ -73,20 +74,29 @@ Result<Prepared> prepare(const RunOptions& options) {
   return prepared;
 }
 
-Result<RunSummary> run_and_record(const Prepared& prepared, const RunPlan& plan, Outputs& outputs) {
+Result<RunSummary> run_and_record(const Prepared& prepared, RunPlan plan, Outputs& outputs) {
   Progress progress(plan.steps);
+  bool stopped = false;
+  plan.stop = [&stopped] { return stopped = OrderlyInterrupt::signal() != 0; };
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
-    const bool is_last = frame == plan.steps || !committed(report.status);
+    const bool is_last = frame == plan.steps || !committed(report.status) || stopped;
     outputs.add_frame(cloth, is_last);
     progress.show(frame, report.max_strain);
   };
   return run(prepared.source.description, prepared.settings, plan, on_frame);
 }
 
+int interrupted(const RunSummary& summary, const RunPlan& plan) {
+  fmt::print(stderr, "weft: interrupted; frame {} of {} is the last one in all that was written\n",
+             summary.frames, plan.steps);
+  return 128 + OrderlyInterrupt::signal();
+}
+
 Result<int> run_verb(const RunOptions& options) {
   auto prepared = prepare(options);
   if (!prepared) return Error{prepared.error()};
   auto& [source, settings, json] = prepared.value();
+  const OrderlyInterrupt interrupt;
   auto outputs = Outputs::open(options.out, source);
   if (!outputs) return Error{outputs.error()};
   auto summary = run_and_record(prepared.value(), options.plan, outputs.value());
@@ -100,6 +110,7 @@ Result<int> run_verb(const RunOptions& options) {
   if (!json || !json->is_stdout()) {
     if (auto printed = print_text(to_table(report)); !printed) return Error{printed.error()};
   }
+  if (summary.value().stopped) return interrupted(summary.value(), options.plan);
   return summary.value().reached_tolerance() ? 0 : kNotReached;
 }
 

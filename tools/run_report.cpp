@@ -80,7 +80,7 @@ Json to_json(const RunReport& report) {
       {"isa", isa(report)},
       {"threads", settings.backend == Backend::reference ? 1 : summary.threads},
       {"dt", report.plan.dt},
-      {"steps", report.plan.steps},
+      {"steps", summary.frames},
       {"frames", summary.frames},
       {"substeps", settings.substeps},
       {"tolerance", settings.tolerance},

@@ -78,7 +78,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   summary.energy_start = cloth.energy().total();
   summary.lowest_y = std::numeric_limits<double>::infinity();
   while (summary.frames < plan.steps && summary.step_seconds < plan.seconds_limit &&
-         committed(summary.status)) {
+         committed(summary.status) && !summary.stopped) {
     const auto start = Clock::now();
     const auto report = cloth.step(plan.dt);
     const std::chrono::duration<double> elapsed = Clock::now() - start;
@@ -87,6 +87,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     summary.step_seconds += elapsed.count();
     add_work(summary, report.value());
     add_errors(summary, errors, cloth);
+    summary.stopped = plan.stop && plan.stop();
     if (on_frame) on_frame(summary.frames, cloth, report.value());
   }
   finish(summary, errors, cloth);
@@ -97,10 +98,10 @@ Result<RunSummary> run_repeatedly(const std::shared_ptr<const Model>& model,
                                   const Settings& settings, const RunPlan& plan,
                                   const FrameCallback& on_frame) {
   auto best = run_once(model, settings, plan, on_frame);
-  if (!best || plan.repeat <= 1) return best;
+  if (!best || plan.repeat <= 1 || best.value().stopped) return best;
   for (int i = 0; i < plan.repeat; ++i) {
     auto next = run_once(model, settings, plan, {});
-    if (!next) return next;
+    if (!next || next.value().stopped) return next;
     if (i == 0 || next.value().step_seconds < best.value().step_seconds) best = std::move(next);
   }
   return best;

@@ -20,6 +20,8 @@ struct RunPlan {
   int repeat = 1;
   /// A run ends once its steps have taken so long (s); RunSummary::frames says how far it came.
   double seconds_limit = std::numeric_limits<double>::infinity();
+  /// Asked after every frame, before its callback: true ends the run there.
+  std::function<bool()> stop = {};
 };
 
 /// Called once per frame, frames counted from 1, with the state that the frame reached.
@@ -31,7 +33,8 @@ using FrameCallback = std::function<void(int frame, const Cloth&, const StepRepo
 struct RunSummary {
   Isa isa = Isa::automatic;  ///< what the kernels ran on
   int threads = 1;           ///< that the steps could use
-  int frames = 0;            ///< computed; below RunPlan::steps if not committed or out of time
+  int frames = 0;  ///< computed; below RunPlan::steps if stopped, not committed or out of time
+  bool stopped = false;               ///< RunPlan::stop said so
   Status status = Status::converged;  ///< the worst of all frames
 
   double step_seconds = 0;    ///< wall time in step()

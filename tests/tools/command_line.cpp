@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
+#include <vector>
 
 #include "engine/scenes.h"
 #include "temporary_folder.h"
@@ -248,27 +250,78 @@ TEST_CASE("a mesh is pinned, run and saved with its numbering") {
   CHECK(folder.read("motion.pc2").size() == 32 + 4 * 5 * 12);
 }
 
-TEST_CASE("an interrupted run exits with 130, says so, and leaves no file") {
+/// The program at work in a process of its own.
+class Running {
+ public:
+  Running(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    const std::string out = folder.file("stdout"), err = folder.file("stderr");
+    posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT, 0600);
+    std::string program = WEFT_PROGRAM;
+    std::vector<char*> pointers{program.data()};
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    const int failure =
+        posix_spawn(&process_, WEFT_PROGRAM, &actions, nullptr, pointers.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    REQUIRE(failure == 0);
+  }
+  void interrupt() const { kill(process_, SIGINT); }
+  int exit_code() const {
+    int status = 0;
+    waitpid(process_, &status, 0);
+    REQUIRE(WIFEXITED(status));
+    return WEXITSTATUS(status);
+  }
+
+ private:
+  pid_t process_ = 0;
+};
+
+void wait_for(const std::function<bool()>& sight) {
+  while (!sight()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+TEST_CASE("an interrupted run ends with its frame: whole files, a line, 130") {
   const TemporaryFolder folder;
   const TemporaryFolder outputs;
-  const std::string motion = outputs.file("motion.pc2");
-  const std::string errors = folder.file("stderr");
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 2, errors.c_str(), O_WRONLY | O_CREAT, 0600);
-  const char* arguments[] = {WEFT_PROGRAM, "run",   "hang",         "--steps",
-                             "100000000",  "--out", motion.c_str(), nullptr};
-  pid_t program = 0;
-  REQUIRE(posix_spawn(&program, WEFT_PROGRAM, &actions, nullptr,
-                      const_cast<char* const*>(arguments), environ) == 0);
-  while (outputs.is_empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  kill(program, SIGINT);
-  int status = 0;
-  waitpid(program, &status, 0);
-  posix_spawn_file_actions_destroy(&actions);
-  CHECK(WIFEXITED(status));
-  CHECK(WEXITSTATUS(status) == 130);
-  CHECK(folder.read("stderr") == "weft: interrupted\n");
+  const std::string motion = outputs.file("motion.pc2"), scene = outputs.file("last.json");
+  const std::string report = outputs.file("report.json");
+  const Running running(folder, {"run", "hang", "--steps", "100000000", "--out", motion, "--out",
+                                 scene, "--json", report});
+  wait_for([&] { return !outputs.is_empty(); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  running.interrupt();
+  CHECK(running.exit_code() == 130);
+  CHECK(folder.read("stderr").find("weft: stops after this frame") == 0);
+  REQUIRE_FALSE(outputs.read("report.json").empty());
+  const auto frames = nlohmann::json::parse(outputs.read("report.json"))["steps"].get<int>();
+  CHECK(folder.read("stderr").find("weft: interrupted; frame " + std::to_string(frames) +
+                                   " of 100000000") != std::string::npos);
+  CHECK(outputs.read("motion.pc2").size() ==
+        32 + (static_cast<std::size_t>(frames) + 1) * 12 * 400);
+
+  // The last state is that of a run of so many frames.
+  const Outcome same = run_program(
+      folder, "run hang --steps " + std::to_string(frames) + " --out " + folder.file("same.json"));
+  CHECK(same.exit_code == 0);
+  CHECK(folder.read("same.json") == outputs.read("last.json"));
+}
+
+TEST_CASE("a second interrupt ends a frame that takes too long, and leaves no file") {
+  const TemporaryFolder folder;
+  const TemporaryFolder outputs;
+  const Running running(folder, {"run", "corners", "--size", "301", "--tolerance", "0.0001%",
+                                 "--out", outputs.file("last.obj")});
+  wait_for([&] { return !outputs.is_empty(); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  running.interrupt();
+  wait_for([&] { return folder.read("stderr").find("once more") != std::string::npos; });
+  running.interrupt();
+  CHECK(running.exit_code() == 130);
+  CHECK(folder.read("stderr").ends_with("weft: interrupted\n"));
   CHECK(outputs.is_empty());
 }
 

@@ -1,0 +1,53 @@
+#include "tools/interrupt.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstddef>
+
+#include "tools/pending_file.h"
+
+namespace weft::tools {
+namespace {
+
+bool stderr_is_terminal = false;  // asked before any signal can come
+volatile std::sig_atomic_t orderly = 0;
+volatile std::sig_atomic_t received = 0;
+
+/// There may be a progress line to leave.
+template <std::size_t kSize>
+void say(const char (&line)[kSize]) {
+  if (stderr_is_terminal) [[maybe_unused]]
+    const auto left = write(STDERR_FILENO, "\n", 1);
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, line, kSize - 1);
+}
+
+extern "C" void handle_interrupt(int signal) {
+  if (orderly != 0 && received == 0) {
+    received = signal;
+    say("weft: stops after this frame; once more to stop at once\n");
+    return;
+  }
+  remove_pending_files();
+  say("weft: interrupted\n");
+  _exit(128 + signal);
+}
+
+}  // namespace
+
+void install_interrupt_handler() {
+  stderr_is_terminal = isatty(STDERR_FILENO) == 1;
+  struct sigaction action {};
+  action.sa_handler = handle_interrupt;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+OrderlyInterrupt::OrderlyInterrupt() {
+  received = 0;
+  orderly = 1;
+}
+OrderlyInterrupt::~OrderlyInterrupt() { orderly = 0; }
+int OrderlyInterrupt::signal() { return received; }
+
+}  // namespace weft::tools

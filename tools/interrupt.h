@@ -1,0 +1,22 @@
+/// SIGINT (Ctrl-C) and SIGTERM: nothing is left half-written, and nothing that was reached is lost.
+#pragma once
+
+namespace weft::tools {
+
+/// A signal ends the program at once with 128 + its number: pending files are removed, and one line
+/// says so. Call it once, before anything else.
+void install_interrupt_handler();
+
+/// While it lives, the first signal only asks for an end: whoever works frame by frame looks at
+/// signal() between two frames. The second one ends the program at once.
+class OrderlyInterrupt {
+ public:
+  OrderlyInterrupt();
+  ~OrderlyInterrupt();
+  OrderlyInterrupt(const OrderlyInterrupt&) = delete;
+  OrderlyInterrupt& operator=(const OrderlyInterrupt&) = delete;
+
+  static int signal();  ///< 0: none came
+};
+
+}  // namespace weft::tools
