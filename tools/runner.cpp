@@ -8,6 +8,8 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include "tools/cpu_time.h"
+
 namespace weft::tools {
 namespace {
 
@@ -77,11 +79,13 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   Errors errors;
   summary.energy_start = cloth.energy().total();
   summary.lowest_y = std::numeric_limits<double>::infinity();
-  while (summary.frames < plan.steps && summary.step_seconds < plan.seconds_limit &&
+  while (summary.frames < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
          committed(summary.status) && !summary.stopped) {
+    const double cpu_start = cpu_seconds();
     const auto start = Clock::now();
     const auto report = cloth.step(plan.dt);
     const std::chrono::duration<double> elapsed = Clock::now() - start;
+    summary.cpu_seconds += cpu_seconds() - cpu_start;
     if (!report) return Error{report.error()};
     ++summary.frames;
     summary.step_seconds += elapsed.count();

@@ -18,7 +18,8 @@ struct RunPlan {
   int steps = 200;   ///< frames to run
   /// Runs of which the fastest is reported. Above 1 an untimed run goes first, to warm up.
   int repeat = 1;
-  /// A run ends once its steps have taken so long (s); RunSummary::frames says how far it came.
+  /// A run ends once its steps have taken so much processor time (s); RunSummary::frames says how
+  /// far it came.
   double seconds_limit = std::numeric_limits<double>::infinity();
   /// Asked after every frame, before its callback: true ends the run there.
   std::function<bool()> stop = {};
@@ -38,6 +39,7 @@ struct RunSummary {
   Status status = Status::converged;  ///< the worst of all frames
 
   double step_seconds = 0;    ///< wall time in step()
+  double cpu_seconds = 0;     ///< processor time in step(), all threads together
   double solver_seconds = 0;  ///< of all stages but `report`, as the steps themselves measured it
   std::array<double, kStageCount> stage_seconds{};
 

@@ -199,7 +199,7 @@ def precision_figure(study):
     figure.suptitle("What an error costs", x=0.075, y=1 - 0.14 / height, ha="left",
                     fontweight="bold", fontsize=12.5)
     notes = [f"lower left is better; {threads} thread{'s' if threads > 1 else ''}, "
-             f"{scenes[0]['frames']} frames; every solver at its best of substeps, tolerances and "
+             f"{scenes[0]['frames']} frames, processor time; every solver at its best of substeps, tolerances and "
              "iterations"]
     if study["bullet"] == "not built in":
         notes.append("Bullet: not built in")

@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
+#include "tools/cpu_time.h"
 #include "tools/precision/meter.h"
 
 namespace weft::tools::precision {
@@ -100,17 +100,16 @@ class SoftBody {
 };
 
 Outcome run_once(const Task& task, const Knobs& knobs, double seconds_limit) {
-  using Clock = std::chrono::steady_clock;
   SoftBody body(task.description, knobs.iterations);
   Meter meter(task);
   std::vector<Vec3> positions, velocities;
   std::string status = "fixed_iterations";
   for (int frame = 0; frame < task.frames && status == "fixed_iterations"; ++frame) {
-    const auto start = Clock::now();
+    const double start = cpu_seconds();
     for (int k = 0; k < knobs.substeps; ++k) body.step(kFrame / knobs.substeps);
-    const std::chrono::duration<double> elapsed = Clock::now() - start;
+    const double elapsed = cpu_seconds() - start;
     body.read(positions, velocities);
-    if (!meter.add_frame(positions, velocities, elapsed.count())) status = "non_finite";
+    if (!meter.add_frame(positions, velocities, elapsed)) status = "non_finite";
     if (meter.seconds() > seconds_limit) status = "out_of_time";
   }
   Outcome outcome = meter.outcome();

@@ -77,6 +77,7 @@ Result<void> measure(SizeStudy& study, const SizeWatch& watch) {
     auto task = make_task(study.scene, size);
     if (!task) return Error{task.error()};
     task.value().frames = study.frames;
+    task.value().threads = study.threads;
     for (std::size_t k = 0; k < study.curves.size(); ++k) {
       SizeCurve& curve = study.curves[k];
       if (!curve.end.empty()) continue;

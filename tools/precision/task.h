@@ -43,7 +43,7 @@ struct Knobs {
 struct Outcome {
   std::string status;  ///< weft's name of it, or out_of_time
   int frames = 0;
-  double ms_per_frame = 0;
+  double ms_per_frame = 0;                   ///< one thread: processor time, else wall time
   double max_strain = 0;                     ///< over all frames and constraints
   double mean_max_strain = 0;                ///< mean over the frames
   double energy_gain = 0;                    ///< J
@@ -65,7 +65,7 @@ struct Point {
 /// How long a run may take, and how often short ones are repeated; the fastest counts.
 struct Effort {
   int repeat = 5;
-  double seconds_limit = 4;      ///< of one run
+  double seconds_limit = 4;      ///< of processor time, one run
   double enough_seconds = 0.25;  ///< runs of one point stop when they have taken this long together
 };
 
