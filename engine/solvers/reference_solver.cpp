@@ -137,6 +137,7 @@ void ReferenceSolver::choose_velocity_tolerances(const reference::Relaxation& r,
 kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
                                                         kernels::VectorsView v,
                                                         const ContactStore& contacts) {
+  place_contacts(contacts);  // positions may have been solved elsewhere
   reference::Relaxation r = problem(x, contacts.count());
   reference::renew_all_directions(r, x);
   choose_velocity_tolerances(r, x);

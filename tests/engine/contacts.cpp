@@ -227,5 +227,32 @@ TEST_CASE("no step ends with more penetration than the tolerance") {
   }
 }
 
+TEST_CASE("contacts that the direct solver leaves to sweeps are theirs in velocities too") {
+  const Backend backend = each_backend();
+  SceneDescription scene;  // more spheres than the direct solver takes, each with a particle to it
+  scene.gravity = {0, 0, 0};
+  constexpr std::uint32_t kSpheres = 20;
+  for (std::uint32_t i = 0; i < kSpheres; ++i) {
+    scene.spheres.push_back(2 * i);
+    for (const double height : {0.0, 0.10005}) {
+      scene.positions.push_back({static_cast<double>(i), height, 0});
+      scene.velocities.push_back({0, height > 0 ? -0.02 : 0.0, 0});
+      scene.masses.push_back(1);
+      scene.radii.push_back(height > 0 ? 0 : 0.1);
+    }
+  }
+  Settings settings = on(backend);
+  settings.solver = Solver::direct;
+  settings.velocity_correction = true;
+  Cloth cloth = cloth_of(scene, settings);
+  const StepReport report = step(cloth, 1e-4);
+  CHECK(report.status == Status::converged);
+  CHECK(report.contacts == kSpheres);
+  for (std::uint32_t i = 0; i < kSpheres; ++i) {
+    const double approach = cloth.velocity(2 * i).y - cloth.velocity(2 * i + 1).y;
+    CHECK(approach <= settings.velocity_tolerance * (1 + 1e-6));
+  }
+}
+
 }  // namespace
 }  // namespace weft::test
