@@ -21,7 +21,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   } else {
     simd.emplace(*model, settings, to_kernel(settings.isa));
   }
-  if (settings.solver == Solver::direct) direct.emplace(*model, settings);
+  if (settings.solver == Solver::direct) direct.emplace(*model, settings, *kernels);
 }
 
 std::size_t State::bytes() const {

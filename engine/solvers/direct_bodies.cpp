@@ -15,7 +15,7 @@ constexpr double kLinkShift = 1e-8;  // of w_a + w_b: the spring of a link betwe
 
 }  // namespace
 
-bool DirectBodies::solve(DirectSystem& system, const DirectFactor& factor) {
+bool DirectBodies::solve(DirectSystem& system, DirectFactor& factor) {
   if (!choose(system)) return false;
   if (bodies_.empty()) return true;
   fill_balance(system, factor);
@@ -77,7 +77,7 @@ void DirectBodies::fill_column(const DirectSystem& system, std::size_t body) {
 }
 
 /// (W^-1 + B^T A^-1 B + contacts) y = -B^T A^-1 e - contacts, lambda being A^-1 e.
-void DirectBodies::fill_balance(const DirectSystem& system, const DirectFactor& factor) {
+void DirectBodies::fill_balance(const DirectSystem& system, DirectFactor& factor) {
   const std::size_t rows = system.layout.rows(), size = 3 * bodies_.size();
   columns_.resize(std::max(columns_.size(), size * rows));
   solved_.resize(std::max(solved_.size(), size * rows));

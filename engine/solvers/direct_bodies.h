@@ -18,7 +18,7 @@ class DirectBodies {
   explicit DirectBodies(const DirectLayout& layout) : column_of_(layout.bodies.size()) {}
 
   /// lambda, being A^-1 e, becomes A^-1 (e + B y). false: the system is not solvable.
-  bool solve(DirectSystem& system, const DirectFactor& factor);
+  bool solve(DirectSystem& system, DirectFactor& factor);
   /// y of what stands at a slot.
   kernels::Vector motion(const DirectLayout& layout, std::uint32_t slot) const;
   /// Of a tie: its impulse is its error, with the bodies' motion, over this.
@@ -28,7 +28,7 @@ class DirectBodies {
  private:
   bool choose(const DirectSystem& system);
   void fill_column(const DirectSystem& system, std::size_t body);
-  void fill_balance(const DirectSystem& system, const DirectFactor& factor);
+  void fill_balance(const DirectSystem& system, DirectFactor& factor);
   void balance_touches(const DirectSystem& system);
   void balance_ties(const DirectSystem& system);
   bool solve_balance();

@@ -1,9 +1,7 @@
-/// A = L D L^T on the fixed pattern of a DirectLayout, row by row (up-looking): row k of L solves a
-/// triangular system with the rows above it,
-///
-///     L(0..k-1, 0..k-1) D y = A(0..k-1, k),     L(k, j) = y_j,     d_k = A(k, k) - sum_j d_j y_j^2
-///
-/// and only the columns of its pattern take part. Nothing is allocated after construction.
+/// A = L D L^T on the fixed fronts of a DirectLayout. A front is assembled from the matrix's
+/// entries in its columns and from what its children pass on, eliminated densely
+/// (kernels/simd/fronts.h), and passes on an update itself. Nothing is allocated after
+/// construction.
 ///
 /// Redundant constraints make A singular: the pivot of the last of them vanishes but for rounding.
 /// The diagonal w_a + w_b is raised by kShift of itself, which the outer iteration corrects with
@@ -12,9 +10,10 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "engine/solvers/direct_layout.h"
+#include "kernels/simd/table.h"
+#include "kernels/vectors.h"
 
 namespace weft {
 
@@ -23,33 +22,40 @@ class DirectFactor {
   static constexpr double kShift = 1e-12;
   static constexpr double kLeastPivot = 1e-11;
 
-  explicit DirectFactor(const DirectLayout& layout)
-      : layout_(layout),
-        lower_(layout.column_row.size()),
-        reciprocal_(layout.rows()),
-        end_(layout.rows()),
-        work_(layout.rows()) {}
+  DirectFactor(const DirectLayout& layout, const simd::Table& kernels);
 
-  /// row(k, y) adds A(k, j) to y[j] for all j < k and returns A(k, k).
-  template <class Row>
-  void factorise(Row&& row) {
-    for (std::size_t k = 0; k < layout_.rows(); ++k) {
-      end_[k] = layout_.column_begin[k];
-      eliminate(k, row(k, work_.data()));
+  /// entry(e): the value of entry e of the layout; diagonal(k): A(k, k).
+  template <class Entry, class Diagonal>
+  void factorise(Entry&& entry, Diagonal&& diagonal) {
+    for (std::size_t i = 0; i < layout_.fronts.fronts.size(); ++i) {
+      clear(i);
+      for (std::size_t e = layout_.entry_begin[i]; e < layout_.entry_begin[i + 1]; ++e) {
+        lower_[layout_.entry_place[e]] = entry(e);
+      }
+      const DirectFront& front = layout_.fronts.fronts[i];
+      for (std::size_t c = 0; c < front.count; ++c) {
+        const std::size_t k = front.first + c;
+        lower_[front.panel + c * front.stride() + c] = diagonal(k) + kShift * layout_.diagonal[k];
+      }
+      eliminate(i);
     }
   }
   /// b = A^-1 b.
-  void solve(double* b) const;
+  void solve(double* b);
   std::size_t bytes() const;
 
  private:
-  void eliminate(std::size_t k, double diagonal);
+  simd::Front front_at(std::size_t i);
+  void clear(std::size_t i);
+  void eliminate(std::size_t i);
+  void add_update(const DirectFront& child, std::size_t number, const simd::Front& parent) const;
 
   const DirectLayout& layout_;
-  std::vector<double> lower_;       // by columns
-  std::vector<double> reciprocal_;  // 1 / d, or 0
-  std::vector<std::size_t> end_;    // of the part of each column that is known
-  std::vector<double> work_;        // zero between rows
+  const simd::Table& kernels_;
+  kernels::AlignedVector<double> lower_;               // panels
+  kernels::AlignedVector<double> reciprocal_, least_;  // per padded column
+  kernels::AlignedVector<double> updates_[2];          // stacks
+  kernels::AlignedVector<double> scratch_, part_;      // of a panel; of a right side
 };
 
 }  // namespace weft

@@ -18,14 +18,11 @@ void absorb_touches(DirectSystem& s) {
 
 void factorise_free(const DirectSystem& s, DirectFactor& factor) {
   const DirectLayout& layout = s.layout;
-  factor.factorise([&](std::size_t k, double* y) {
-    const Vector nk = s.n(k);
-    for (std::size_t e = layout.entry_begin[k]; e < layout.entry_begin[k + 1]; ++e) {
-      const std::uint32_t j = layout.entry_row[e];
-      y[j] += layout.entry_weight[e] * dot(nk, s.n(j));
-    }
-    return layout.diagonal[k];
-  });
+  factor.factorise(
+      [&](std::size_t e) {
+        return layout.entry_weight[e] * dot(s.n(layout.entry_row[e]), s.n(layout.entry_with[e]));
+      },
+      [&](std::size_t k) { return layout.diagonal[k]; });
 }
 
 void factorise_touched(const DirectSystem& s, DirectFactor& factor) {
@@ -33,16 +30,17 @@ void factorise_touched(const DirectSystem& s, DirectFactor& factor) {
   const auto along = [&](std::uint32_t p, Vector v) {
     return s.touch_of[p] == kNoIndex ? 0 : dot(v, s.touches[s.touch_of[p]].n);
   };
-  factor.factorise([&](std::size_t k, double* y) {
-    const Vector nk = s.n(k);
-    for (std::size_t e = layout.entry_begin[k]; e < layout.entry_begin[k + 1]; ++e) {
-      const std::uint32_t j = layout.entry_row[e], p = layout.entry_slot[e];
-      y[j] += layout.entry_weight[e] * (dot(nk, s.n(j)) - along(p, nk) * along(p, s.n(j)));
-    }
-    const double at_a = along(layout.a[k], nk), at_b = along(layout.b[k], nk);
-    return layout.diagonal[k] - s.model.inverse_mass[layout.a[k]] * at_a * at_a -
-           s.model.inverse_mass[layout.b[k]] * at_b * at_b;
-  });
+  factor.factorise(
+      [&](std::size_t e) {
+        const Vector nk = s.n(layout.entry_row[e]), nj = s.n(layout.entry_with[e]);
+        const std::uint32_t p = layout.entry_slot[e];
+        return layout.entry_weight[e] * (dot(nk, nj) - along(p, nk) * along(p, nj));
+      },
+      [&](std::size_t k) {
+        const double at_a = along(layout.a[k], s.n(k)), at_b = along(layout.b[k], s.n(k));
+        return layout.diagonal[k] - s.model.inverse_mass[layout.a[k]] * at_a * at_a -
+               s.model.inverse_mass[layout.b[k]] * at_b * at_b;
+      });
 }
 
 void clamp_rows(DirectSystem& s) {

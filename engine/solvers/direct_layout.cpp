@@ -62,21 +62,34 @@ Lists lists_at_ends(std::size_t slots, std::span<const std::uint32_t> items, End
   return lists;
 }
 
-/// Constraints in the order in which eliminating them fills least (approximate minimum degree).
-std::vector<std::uint32_t> elimination_order(const Model& model, const DirectLayout& layout,
-                                             const Lists& at,
-                                             std::span<const std::uint32_t> members) {
-  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
-  std::vector<int> number(model.constraints.size(), -1);
-  for (std::size_t i = 0; i < members.size(); ++i) number[members[i]] = static_cast<int>(i);
-  std::vector<Eigen::Triplet<double, int>> entries;
+/// The matrix's pattern: per member, by its number, those it has an entry with.
+Lists neighbours_of(const Model& model, const DirectLayout& layout, const Lists& at,
+                    std::span<const std::uint32_t> members) {
+  std::vector<std::uint32_t> number(model.constraints.size(), kNoIndex), list;
+  for (std::uint32_t i = 0; i < members.size(); ++i) number[members[i]] = i;
+  Lists neighbours;
+  neighbours.begin.push_back(0);
   for (const std::uint32_t k : members) {
-    entries.emplace_back(number[k], number[k], 1.0);
-    for_each_neighbour(model, layout, at, k, [&](std::uint32_t, std::uint32_t j) {
-      entries.emplace_back(number[k], number[j], 1.0);
-    });
+    list.clear();
+    for_each_neighbour(model, layout, at, k,
+                       [&](std::uint32_t, std::uint32_t j) { list.push_back(number[j]); });
+    neighbours.push_back(list);
   }
+  return neighbours;
+}
+
+/// In the order in which eliminating them fills least (approximate minimum degree).
+std::vector<std::uint32_t> least_fill(const Lists& neighbours,
+                                      std::span<const std::uint32_t> members) {
+  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+  std::vector<Eigen::Triplet<double, int>> entries;
   const auto size = static_cast<int>(members.size());
+  for (int k = 0; k < size; ++k) {
+    entries.emplace_back(k, k, 1.0);
+    for (const std::uint32_t j : neighbours[static_cast<std::size_t>(k)]) {
+      entries.emplace_back(k, static_cast<int>(j), 1.0);
+    }
+  }
   Matrix matrix(size, size);
   matrix.setFromTriplets(entries.begin(), entries.end());
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
@@ -85,6 +98,16 @@ std::vector<std::uint32_t> elimination_order(const Model& model, const DirectLay
   for (int i = 0; i < size; ++i) {
     order.push_back(members[static_cast<std::size_t>(permutation.indices()[i])]);
   }
+  return order;
+}
+
+std::vector<std::uint32_t> elimination_order(const Model& model, const DirectLayout& layout,
+                                             const Lists& at,
+                                             std::span<const std::uint32_t> members) {
+  const auto filling = least_fill(neighbours_of(model, layout, at, members), members);
+  std::vector<std::uint32_t> order;
+  const auto tree = elimination_tree(neighbours_of(model, layout, at, filling));
+  for (const std::uint32_t k : postorder(tree)) order.push_back(filling[k]);
   return order;
 }
 
@@ -99,56 +122,26 @@ void store_rows(const Model& model, DirectLayout& layout) {
   }
 }
 
+/// By columns, for those of a front are one stretch.
 void store_entries(const Model& model, const Lists& at, DirectLayout& layout) {
   const ConstraintStore& s = model.constraints;
-  layout.entry_begin.push_back(0);
-  for (std::uint32_t k = 0; k < layout.rows(); ++k) {
-    const std::uint32_t c = layout.row_constraint[k];
-    for_each_neighbour(model, layout, at, c, [&](std::uint32_t p, std::uint32_t j) {
-      if (layout.row_of[j] > k) return;
-      const double w = model.inverse_mass[p];
-      layout.entry_row.push_back(layout.row_of[j]);
-      layout.entry_slot.push_back(p);
-      layout.entry_weight.push_back((s.a[j] == p) == (s.a[c] == p) ? w : -w);
-    });
+  for (const DirectFront& front : layout.fronts.fronts) {
     layout.entry_begin.push_back(layout.entry_row.size());
-  }
-}
-
-/// Row k of L has an entry in column j where A has one, and on the path from there to the root in
-/// the tree of elimination, up to k (Liu 1990).
-void store_pattern(DirectLayout& layout) {
-  const std::size_t rows = layout.rows();
-  std::vector<std::uint32_t> parent(rows, kNoIndex), seen(rows, kNoIndex);
-  layout.pattern_begin.push_back(0);
-  for (std::uint32_t k = 0; k < rows; ++k) {
-    seen[k] = k;
-    for (std::size_t e = layout.entry_begin[k]; e < layout.entry_begin[k + 1]; ++e) {
-      for (std::uint32_t j = layout.entry_row[e]; seen[j] != k; j = parent[j]) {
-        seen[j] = k;
-        layout.pattern_column.push_back(j);
-        if (parent[j] == kNoIndex) parent[j] = k;
-      }
-    }
-    std::sort(
-        layout.pattern_column.begin() + static_cast<std::ptrdiff_t>(layout.pattern_begin.back()),
-        layout.pattern_column.end());
-    layout.pattern_begin.push_back(layout.pattern_column.size());
-  }
-}
-
-void store_columns(DirectLayout& layout) {
-  auto& begin = layout.column_begin;
-  begin.assign(layout.rows() + 1, 0);
-  for (const std::uint32_t j : layout.pattern_column) ++begin[j + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  layout.column_row.resize(begin.back());
-  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-  for (std::uint32_t k = 0; k < layout.rows(); ++k) {
-    for (std::size_t i = layout.pattern_begin[k]; i < layout.pattern_begin[k + 1]; ++i) {
-      layout.column_row[next[layout.pattern_column[i]]++] = k;
+    for (std::uint32_t j = front.first; j < front.first + front.count; ++j) {
+      const std::uint32_t c = layout.row_constraint[j];
+      for_each_neighbour(model, layout, at, c, [&](std::uint32_t p, std::uint32_t other) {
+        const std::uint32_t k = layout.row_of[other];
+        if (k < j) return;
+        const double w = model.inverse_mass[p];
+        layout.entry_row.push_back(k);
+        layout.entry_with.push_back(j);
+        layout.entry_slot.push_back(p);
+        layout.entry_weight.push_back((s.a[other] == p) == (s.a[c] == p) ? w : -w);
+        layout.entry_place.push_back(layout.fronts.place_of(k, j));
+      });
     }
   }
+  layout.entry_begin.push_back(layout.entry_row.size());
 }
 
 }  // namespace
@@ -166,9 +159,8 @@ DirectLayout make_direct_layout(const Model& model) {
   const Lists at = lists_at_ends(model.slots(), members, ends);
   layout.row_constraint = elimination_order(model, layout, at, members);
   store_rows(model, layout);
+  layout.fronts = make_direct_fronts(neighbours_of(model, layout, at, layout.row_constraint));
   store_entries(model, at, layout);
-  store_pattern(layout);
-  store_columns(layout);
   std::vector<std::uint32_t> rows(layout.rows());
   std::iota(rows.begin(), rows.end(), 0u);
   layout.rows_at = lists_at_ends(model.slots(), rows, [&](std::uint32_t r) {
@@ -179,10 +171,9 @@ DirectLayout make_direct_layout(const Model& model) {
 
 std::size_t DirectLayout::bytes() const {
   return bytes_of(row_constraint) + bytes_of(a) + bytes_of(b) + bytes_of(diagonal) +
-         bytes_of(entry_begin) + bytes_of(entry_row) + bytes_of(entry_slot) +
-         bytes_of(entry_weight) + bytes_of(pattern_begin) + bytes_of(pattern_column) +
-         bytes_of(column_begin) + bytes_of(column_row) + bytes_of(row_of) + rows_at.bytes() +
-         bytes_of(links) + bytes_of(bodies) + bytes_of(body_of);
+         bytes_of(entry_begin) + bytes_of(entry_row) + bytes_of(entry_with) + bytes_of(entry_slot) +
+         bytes_of(entry_weight) + bytes_of(entry_place) + fronts.bytes() + bytes_of(row_of) +
+         rows_at.bytes() + bytes_of(links) + bytes_of(bodies) + bytes_of(body_of);
 }
 
 }  // namespace weft

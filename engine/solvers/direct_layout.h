@@ -1,12 +1,14 @@
 /// What the direct solver needs to know of a model: in which order the constraints are eliminated,
 /// where the values of their matrix and of its factor stand.
 ///
-///   rows     the constraints of the matrix, in the order of elimination (minimum degree)
-///   entries  per row k the constraints j < k that share a particle with it: A(k, j) =
-///            sigma_k sigma_j w_p n_k . n_j. Two constraints share at most one particle, or they
-///            would join the same two; so an entry is one product, and a row a plain list.
-///   factor   A = L D L^T; L by columns, its unit diagonal left out. pattern lists the same
-///            entries by rows, for the factorisation goes row by row.
+///   rows     the constraints of the matrix, in the order of elimination (minimum degree, subtrees
+///            in one stretch)
+///   entries  every pair of constraints k > j that share a particle p: A(k, j) = sigma_k sigma_j
+///   w_p
+///            n_k . n_j. Two constraints share at most one particle, or they would join the same
+///            two; so an entry is one product.
+///   fronts   A = L D L^T by dense parts (engine/solvers/direct_fronts.h); entries stand in the
+///            order of the fronts that take them.
 ///
 /// Not in the matrix are the bodies: free particles that couple too many constraints with each
 /// other (spheres and hubs of more than kBodyDegree). They would make a dense block of the matrix;
@@ -20,6 +22,7 @@
 #include <vector>
 
 #include "engine/lists.h"
+#include "engine/solvers/direct_fronts.h"
 
 namespace weft {
 
@@ -32,15 +35,14 @@ struct DirectLayout {
   std::vector<std::uint32_t> a, b;  // slots, per row
   std::vector<double> diagonal;     // w_a + w_b without the bodies', per row
 
-  std::vector<std::size_t> entry_begin;   // per row
-  std::vector<std::uint32_t> entry_row;   // j
+  std::vector<std::size_t> entry_begin;   // per front, and their end
+  std::vector<std::uint32_t> entry_row;   // k
+  std::vector<std::uint32_t> entry_with;  // j
   std::vector<std::uint32_t> entry_slot;  // p
   std::vector<double> entry_weight;       // sigma_k sigma_j w_p
+  std::vector<std::size_t> entry_place;   // among the values of L
 
-  std::vector<std::size_t> pattern_begin;     // per row of L
-  std::vector<std::uint32_t> pattern_column;  // ascending
-  std::vector<std::size_t> column_begin;      // per column of L
-  std::vector<std::uint32_t> column_row;      // ascending
+  DirectFronts fronts;
 
   std::vector<std::uint32_t> row_of;   // per constraint; kNoIndex: a link between bodies
   Lists rows_at;                       // rows at each slot, those of a body included

@@ -59,10 +59,10 @@ class Progress {
 
 }  // namespace
 
-DirectSolver::DirectSolver(const Model& model, const Settings& settings)
+DirectSolver::DirectSolver(const Model& model, const Settings& settings, const simd::Table& kernels)
     : settings_(settings),
       system_(model, settings),
-      factor_(model.direct()),
+      factor_(model.direct(), kernels),
       bodies_(model.direct()),
       stiff_(model),
       start_(model.slots()) {}

@@ -8,7 +8,8 @@
 /// each solve is Newton's method for the projection onto the constraints: the error is squared
 /// each time. Velocities need one solve, for they are linear.
 ///
-///   direct_layout    which constraint is which row, and the pattern of the factor
+///   direct_layout    which constraint is which row, and where its values stand
+///   direct_fronts    the dense parts of the factor
 ///   direct_factor    A = L D L^T
 ///   direct_system    what one solve works on
 ///   direct_measure   directions, errors, the active set of ropes and contacts
@@ -42,7 +43,7 @@ using Sweeps = std::function<kernels::LoopResult(bool first, int max_iterations)
 
 class DirectSolver {
  public:
-  DirectSolver(const Model& model, const Settings& settings);
+  DirectSolver(const Model& model, const Settings& settings, const simd::Table& kernels);
 
   /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
   /// were found anew, accumulated impulses start at 0. sweeps: may be empty; x is worth nothing

@@ -16,7 +16,7 @@ using kernels::VectorsView;
 
 constexpr double kUneven = 100;                 // ratio of masses
 constexpr int kMostSolves = 20000;              // of a small scene
-constexpr std::size_t kMostWork = 100'000'000;  // entries of all factors of a large one
+constexpr std::size_t kMostWork = 100'000'000;  // values of all factors of a large one
 
 Vector operator*(const Symmetric& s, Vector v) {
   return {s.xx * v.x + s.xy * v.y + s.xz * v.z, s.xy * v.x + s.yy * v.y + s.yz * v.z,
@@ -44,7 +44,7 @@ bool is_uneven(const Model& model) {
 
 /// Its imbalance first grows by orders of magnitude: patience is all there is to bound it by.
 int most_solves(const DirectLayout& layout) {
-  const std::size_t most = kMostWork / (layout.column_row.size() + layout.rows() + 1);
+  const std::size_t most = kMostWork / (layout.fronts.values + 1);
   return static_cast<int>(std::clamp<std::size_t>(most, 100, kMostSolves));
 }
 
@@ -139,16 +139,17 @@ void DirectStiff::solve(DirectSystem& system, DirectFactor& factor, VectorsView 
     const std::uint32_t a = layout.a[row], b = layout.b[row];
     system.lambda[row] -= dot(system.n(row), soft_[a] * g_[a] - soft_[b] * g_[b]);
   }
-  factor.factorise([&](std::size_t k, double* y) {
-    const Vector nk = system.n(k);
-    for (std::size_t e = layout.entry_begin[k]; e < layout.entry_begin[k + 1]; ++e) {
-      const std::uint32_t j = layout.entry_row[e];
-      const double value = dot(system.n(j), soft_[layout.entry_slot[e]] * nk);
-      y[j] += layout.entry_weight[e] > 0 ? value : -value;
-    }
-    const double d = dot(nk, soft_[layout.a[k]] * nk) + dot(nk, soft_[layout.b[k]] * nk);
-    return d > 0 ? d : layout.diagonal[k];
-  });
+  factor.factorise(
+      [&](std::size_t e) {
+        const Vector softened = soft_[layout.entry_slot[e]] * system.n(layout.entry_row[e]);
+        const double value = dot(system.n(layout.entry_with[e]), softened);
+        return layout.entry_weight[e] > 0 ? value : -value;
+      },
+      [&](std::size_t k) {
+        const Vector nk = system.n(k);
+        const double d = dot(nk, soft_[layout.a[k]] * nk) + dot(nk, soft_[layout.b[k]] * nk);
+        return d > 0 ? d : layout.diagonal[k];
+      });
   factor.solve(system.lambda.data());
   for (std::size_t row = 0; row < layout.rows(); ++row) {
     const double impulse = system.clamped(layout.row_constraint[row], system.lambda[row]);

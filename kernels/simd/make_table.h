@@ -4,6 +4,7 @@
 #include "kernels/simd/anticipate.h"
 #include "kernels/simd/contacts.h"
 #include "kernels/simd/directions.h"
+#include "kernels/simd/fronts.h"
 #include "kernels/simd/integrate.h"
 #include "kernels/simd/masks.h"
 #include "kernels/simd/measure.h"
@@ -38,6 +39,9 @@ constexpr Table make_table() {
           .apply_sums_singles = apply_sums_singles,
           .strain_run = strain_run,
           .strain_singles = strain_singles,
+          .eliminate_front = eliminate_front,
+          .solve_front_forward = solve_front_forward,
+          .solve_front_backward = solve_front_backward,
           .find_near = find_near};
 }
 

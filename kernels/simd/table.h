@@ -102,6 +102,22 @@ struct Motion {
   kernels::VectorsView next_velocity{};
 };
 
+/// Rows of a front come in groups of so many, as in AVX-512.
+inline constexpr std::size_t kFrontRows = 8;
+
+/// A front of a sparse factorisation (fronts.h). All arrays are 64-byte aligned, the padding of
+/// panel and update is 0.
+struct Front {
+  std::size_t width = 0;          // columns of the panel, a multiple of 4
+  std::size_t stride = 0;         // rows of the panel, a multiple of kFrontRows
+  std::size_t below = 0;          // the last of them; rows and columns of update
+  double* panel = nullptr;        // in: assembled; out: L without its diagonal, 0 above it
+  double* update = nullptr;       // in: assembled; out: what is passed on
+  const double* least = nullptr;  // per column: a pivot that is no larger is taken as infinite
+  double* reciprocal = nullptr;   // per column: 1 / d, or 0
+  double* scratch = nullptr;      // as large as panel
+};
+
 /// Sums over a run, in an order that depends on nothing but the run.
 struct StrainSums {
   double largest = 0;
@@ -162,6 +178,12 @@ struct Table {
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);
+
+  /// Eliminates a front's columns; reciprocal, scratch and update are written too.
+  void (*eliminate_front)(const Front&);
+  /// Substitutions with one front, z having its rows; panel and reciprocal are read.
+  void (*solve_front_forward)(const Front&, double* z);
+  void (*solve_front_backward)(const Front&, double* z);
 
   /// Slots in [first, last) nearer to the centre than reach[slot] + extra; writes their indices,
   /// returns how many.

@@ -29,7 +29,7 @@ struct Trial {
       : model(model_of(scene)),
         x(model->initial_position),
         contacts(make_contact_store(*model)),
-        solver(*model, Settings{}) {}
+        solver(*model, Settings{}, simd::table(simd::best_isa())) {}
   kernels::LoopResult solve(const Sweeps& sweeps) {
     return solver.solve_positions(x.view(), contacts, true, 1000, sweeps);
   }
