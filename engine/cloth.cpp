@@ -58,6 +58,7 @@ Result<Cloth> Cloth::create(std::shared_ptr<const Model> model, const Settings& 
   if (!isa) return Error{isa.error()};
   Settings resolved = settings;
   resolved.isa = isa.value();
+  resolved.velocity_correction |= settings.scheme == Scheme::rattle;
   return Cloth(std::make_unique<Impl>(std::move(model), resolved));
 }
 

@@ -17,6 +17,8 @@ std::string_view name(Scheme scheme) {
   switch (scheme) {
     case Scheme::paper:
       return "paper";
+    case Scheme::rattle:
+      return "rattle";
   }
   return "unknown";
 }

@@ -14,6 +14,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     start_position.resize(model->slots());
     start_velocity.resize(model->slots());
   }
+  if (settings.scheme == Scheme::rattle) kicks.resize((model->slots() + kStretch - 1) / kStretch);
   contacts = make_contact_store(*model);
   if (settings.backend == Backend::reference) {
     predicted.resize(model->slots());
@@ -33,6 +34,7 @@ std::size_t State::bytes() const {
   const auto list = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
   sum += list(contacts.sphere) + list(contacts.particle) + list(contacts.distance) +
          list(contacts.first) + list(contacts.next) + list(contacts.found);
+  sum += kicks.capacity() * sizeof(kernels::Kicks);
   if (reference) sum += reference->bytes();
   if (simd) sum += simd->bytes();
   if (direct) sum += direct->bytes();

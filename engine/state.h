@@ -15,6 +15,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "engine/contacts.h"
 #include "engine/model.h"
@@ -22,9 +23,12 @@
 #include "engine/solvers/reference_solver.h"
 #include "engine/solvers/simd_solver.h"
 #include "engine/solvers/team.h"
+#include "kernels/kicks.h"
 #include "kernels/vectors.h"
 
 namespace weft {
+
+inline constexpr std::size_t kStretch = 1024;  // slots that a thread takes at a time
 
 struct State {
   std::shared_ptr<const Model> model;
@@ -36,6 +40,8 @@ struct State {
   kernels::Vectors next_velocity;
   kernels::Vectors start_position, start_velocity;  // of the step; with substeps only
   ContactStore contacts;
+
+  std::vector<kernels::Kicks> kicks;  // per stretch of slots; scheme rattle only
 
   // The one of the chosen backend.
   std::optional<ReferenceSolver> reference;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <tuple>
+#include <utility>
 
 #include "engine/measure.h"
+#include "engine/rattle.h"
 #include "engine/solvers/team.h"
 #include "engine/standstill.h"
 #include "kernels/reference/integrate.h"
@@ -27,6 +30,14 @@ void timed(StepReport& report, Stage stage, Work&& work) {
 
 /// The worse of two: the enumerators are in order of severity.
 void worsen(StepReport& report, Status status) { report.status = std::max(report.status, status); }
+
+void count(kernels::LoopResult& sum, const kernels::LoopResult& part) {
+  sum.iterations += part.iterations;
+  sum.direction_updates += part.direction_updates;
+  sum.visits += part.visits;
+  sum.corrections += part.corrections;
+  sum.converged = part.converged;
+}
 
 void add(StepReport& report, const kernels::LoopResult& result) {
   report.visits += result.visits;
@@ -62,7 +73,6 @@ simd::Motion simd_motion(State& s) {
 /// work(first, last) over all slots, shared out in stretches.
 template <class Work>
 void for_all_slots(const State& s, Team& team, Work&& work) {
-  constexpr std::size_t kStretch = 1024;
   const std::size_t slots = s.model->slots();
   team.for_each((slots + kStretch - 1) / kStretch,
                 [&](std::size_t i) { work(i * kStretch, std::min(slots, (i + 1) * kStretch)); });
@@ -86,11 +96,25 @@ void commit(State& s, double h, Team& team) {
   });
 }
 
-kernels::LoopResult sweep_positions(State& s, double h, bool first, const LoopBudget& budget,
-                                    Team& team) {
+kernels::Kicks measure_kicks(State& s, double h, Team& team) {
+  if (s.reference) {
+    return reference::measure_kicks(reference_motion(s), h, s.next_velocity.view());
+  }
+  const simd::Motion motion = simd_motion(s);
+  for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
+    s.kicks[first / kStretch] = s.kernels->measure_kicks(motion, h, first, last);
+  });
+  kernels::Kicks sum;
+  for (const kernels::Kicks& kicks : s.kicks) sum.add(kicks);
+  return sum;
+}
+
+/// With a start: along the directions there (scheme rattle).
+kernels::LoopResult sweep_positions(State& s, double h, kernels::VectorsView start, bool first,
+                                    const LoopBudget& budget, Team& team) {
   const auto x = s.solved.view();
-  return s.reference ? s.reference->solve_positions(x, h, s.contacts, first, budget)
-                     : s.simd->solve_positions(x, s.contacts, first, budget, team);
+  return s.reference ? s.reference->solve_positions(x, start, h, s.contacts, first, budget)
+                     : s.simd->solve_positions(x, start, s.contacts, first, budget, team);
 }
 
 Strain strain_at(State& s, kernels::Vectors& x, Team& team) {
@@ -107,21 +131,35 @@ double penetration_at(State& s, kernels::Vectors& x) {
 kernels::LoopResult sweep_on(State& s, double h, bool first, int most, Standstill& standstill,
                              Team& team) {
   if (s.settings.iterations > 0)
-    return sweep_positions(s, h, first, whole_budget(s.settings), team);
+    return sweep_positions(s, h, {}, first, whole_budget(s.settings), team);
   kernels::LoopResult sum;
   while (sum.iterations < most && !standstill.reached()) {
     const int part = std::min(most - sum.iterations, kPassesBetweenLooks);
     const LoopBudget budget{part, standstill.in_doubt() ? 1 : s.settings.renew_after};
-    const auto result = sweep_positions(s, h, first && sum.iterations == 0, budget, team);
-    sum.iterations += result.iterations;
-    sum.direction_updates += result.direction_updates;
-    sum.visits += result.visits;
-    sum.corrections += result.corrections;
-    sum.converged = result.converged;
+    count(sum, sweep_positions(s, h, {}, first && sum.iterations == 0, budget, team));
     if (sum.converged || part < kPassesBetweenLooks) break;
     standstill.look(strain_at(s, s.solved, team), penetration_at(s, s.solved));
   }
   return sum;
+}
+
+/// Scheme rattle, as long as sweeps bring the largest strain down: if they do not, the paper's
+/// scheme is quicker than waiting.
+kernels::LoopResult sweep_from_start(State& s, double h, kernels::VectorsView start, bool first,
+                                     int most, Team& team) {
+  constexpr int kPasses = 256;
+  if (s.settings.iterations > 0) {
+    return sweep_positions(s, h, start, first, whole_budget(s.settings), team);
+  }
+  kernels::LoopResult sum;
+  double strain = std::numeric_limits<double>::infinity();
+  for (;;) {
+    const LoopBudget budget{std::min(most - sum.iterations, kPasses), s.settings.renew_after};
+    count(sum, sweep_positions(s, h, start, first && sum.iterations == 0, budget, team));
+    if (sum.converged || sum.iterations >= most) return sum;
+    const double before = std::exchange(strain, strain_at(s, s.solved, team).max);
+    if (!(strain < before)) return sum;
+  }
 }
 
 kernels::LoopResult sweep_velocities(State& s, Team& team) {
@@ -138,6 +176,12 @@ struct Answer {
   Standstill& standstill;
   Team& team;
 };
+
+kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView start, bool first,
+                                     int left, Team& team) {
+  if (!s.direct) return sweep_from_start(s, h, start, first, left, team);
+  return s.direct->solve_from_start(s.solved.view(), start, s.contacts, first, left);
+}
 
 kernels::LoopResult solve_positions(State& s, double h, bool first, int left,
                                     Standstill& standstill, Team& team) {
@@ -161,11 +205,14 @@ kernels::LoopResult correct_velocities(State& s, Team& team) {
       [&answer](bool, int) { return std::apply(sweep_velocities, answer); });
 }
 
-void solve_positions(State& s, double h, StepReport& report, Team& team) {
+void solve_positions(State& s, double h, kernels::VectorsView start, StepReport& report,
+                     Team& team) {
   int left = s.settings.max_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
     Standstill standstill;
-    const auto result = solve_positions(s, h, round == 0, left, standstill, team);
+    const bool first = round == 0;
+    const auto result = start.x != nullptr ? solve_from_start(s, h, start, first, left, team)
+                                           : solve_positions(s, h, first, left, standstill, team);
     add(report, result);
     if (!result.converged && standstill.reached()) worsen(report, Status::infeasible);
     report.iterations += result.iterations;
@@ -254,18 +301,33 @@ void explain(State& s, double h, StepReport& report, Team& team) {
   worsen(report, input ? Status::non_finite_input : Status::non_finite);
 }
 
-void substep(State& s, double h, StepReport& report, Team& team) {
+/// With a start: by scheme rattle.
+void substep(State& s, double h, kernels::VectorsView start, StepReport& report, Team& team) {
   timed(report, Stage::predict, [&] { predict(s, h, team); });
   if (s.model->has_contacts()) {
     timed(report, Stage::find_contacts,
           [&] { find_contacts(*s.model, *s.kernels, s.solved.view(), s.contacts); });
   }
-  timed(report, Stage::solve_positions, [&] { solve_positions(s, h, report, team); });
+  timed(report, Stage::solve_positions, [&] { solve_positions(s, h, start, report, team); });
   timed(report, Stage::commit, [&] { commit(s, h, team); });
   if (s.settings.velocity_correction) {
     timed(report, Stage::correct_velocities, [&] { correct_velocities(s, report, team); });
   }
   if (s.settings.iterations > 0) report.status = Status::fixed_iterations;
+}
+
+/// Until it is accepted a substep leaves position and velocity alone: it can be done again. With a
+/// fixed number of iterations it is not.
+void substep(State& s, double h, StepReport& report, Team& team) {
+  if (s.settings.scheme == Scheme::paper) return substep(s, h, {}, report, team);
+  const Status before = std::exchange(report.status, Status::converged);
+  substep(s, h, s.position.view(), report, team);
+  const bool good = report.status == Status::fixed_iterations ||
+                    (report.status == Status::converged && keeps_energy(measure_kicks(s, h, team)));
+  if (good) return worsen(report, before);
+  report.status = before;
+  ++report.scheme_fallbacks;
+  substep(s, h, {}, report, team);
 }
 
 void run_substeps(State& s, double h, StepReport& report, Team& team) {

@@ -184,7 +184,7 @@ Result<void> validate(const Settings& s) {
     return refuse("impulse_limit", "must be finite and at least 0", number(s.impulse_limit));
   }
   if (auto r = validate_choice("solver", s.solver, Solver::direct); !r) return r;
-  if (auto r = validate_choice("scheme", s.scheme, Scheme::paper); !r) return r;
+  if (auto r = validate_choice("scheme", s.scheme, Scheme::rattle); !r) return r;
   if (auto r = validate_choice("backend", s.backend, Backend::simd); !r) return r;
   if (s.impulse_limit > 0 && s.backend != Backend::reference) {
     return refuse("impulse_limit", "only the reference backend limits impulses",

@@ -76,6 +76,7 @@ Json to_json(const RunReport& report) {
       {"constraints", summary.model.constraints},
       {"solver", name(settings.solver)},
       {"scheme", name(settings.scheme)},
+      {"scheme_fallbacks", summary.scheme_fallbacks},
       {"backend", name(settings.backend)},
       {"isa", isa(report)},
       {"threads", settings.backend == Backend::reference ? 1 : summary.threads},
@@ -120,6 +121,10 @@ std::string to_table(const RunReport& report) {
                   summary.model.particles, summary.model.constraints, summary.model.spheres));
   row("solver", fmt::format("{}, scheme {}, backend {}, {}", name(settings.solver),
                             name(settings.scheme), name(settings.backend), goal_text(settings)));
+  if (settings.scheme == Scheme::rattle) {
+    row("scheme", fmt::format("{} of {} substeps left to scheme paper", summary.scheme_fallbacks,
+                              std::int64_t{summary.frames} * settings.substeps));
+  }
   const auto substeps =
       settings.substeps > 1 ? fmt::format(" in {} substeps each", settings.substeps) : "";
   row("frames", fmt::format("{} of {} s{}, status {}", summary.frames, report.plan.dt, substeps,

@@ -30,6 +30,7 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.direction_updates += report.direction_updates;
   summary.visits += report.visits;
   summary.corrections += report.corrections;
+  summary.scheme_fallbacks += report.scheme_fallbacks;
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     summary.stage_seconds[stage] += report.stage_seconds[stage];

@@ -48,6 +48,7 @@ struct RunSummary {
   std::int64_t direction_updates = 0;
   std::int64_t visits = 0;
   std::int64_t corrections = 0;
+  std::int64_t scheme_fallbacks = 0;
   int max_contacts = 0;  ///< most pairs watched in one frame
 
   double max_strain = 0;       ///< over all frames and constraints

@@ -17,7 +17,7 @@ constexpr std::array<Choice<Solver>, 4> kSolvers{{
 }};
 constexpr std::array<Choice<Scheme>, 2> kSchemes{{
     {"paper", Scheme::paper},
-    {"rattle", std::nullopt},
+    {"rattle", Scheme::rattle},
 }};
 constexpr std::array<Choice<Directions>, 2> kDirections{{
     {"each", Directions::each},
@@ -91,7 +91,8 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
   verb.add_option("--impulse-limit", settings.impulse_limit,
                   "N s, largest impulse of one correction (default 0: no limit)");
   verb.add_option("--solver", options.solver, "gauss_seidel (default) or direct");
-  verb.add_option("--scheme", options.scheme, "paper (default)");
+  verb.add_option("--scheme", options.scheme,
+                  "paper (default), or rattle: second order; implies --velocity-correction on");
   verb.add_option(
       "--anticipate", options.anticipate,
       "on (default) or off: update errors instead of recomputing them; simd: skip by flags, or by "

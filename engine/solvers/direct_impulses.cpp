@@ -71,11 +71,19 @@ void clamp_touches(DirectSystem& s, const DirectBodies& bodies) {
   }
 }
 
+/// As long as no direction turns, the factor serves again: to velocities after positions, and to
+/// all solves of a rattle step.
+void factorise(DirectSystem& s, DirectFactor& factor) {
+  if (!s.turned) return;
+  s.turned = false;
+  s.touches.empty() ? factorise_free(s, factor) : factorise_touched(s, factor);
+}
+
 }  // namespace
 
 bool solve_impulses(DirectSystem& system, DirectFactor& factor, DirectBodies& bodies) {
   absorb_touches(system);
-  system.touches.empty() ? factorise_free(system, factor) : factorise_touched(system, factor);
+  factorise(system, factor);
   factor.solve(system.lambda.data());
   if (!bodies.solve(system, factor)) return false;
   clamp_rows(system);

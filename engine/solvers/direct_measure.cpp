@@ -51,9 +51,11 @@ void measure_rows(DirectSystem& s, Judge& takes_part, Read&& read) {
     const std::uint32_t c = layout.row_constraint[row];
     const Reading r = read(c, layout.a[row], layout.b[row], s.model.constraints.rest_length[c]);
     const bool active = takes_part(c, r);
-    s.nx[row] = active ? r.n.x : 0;
-    s.ny[row] = active ? r.n.y : 0;
-    s.nz[row] = active ? r.n.z : 0;
+    const Vector n = active ? r.n : Vector{0, 0, 0};
+    s.turned |= n.x != s.nx[row] || n.y != s.ny[row] || n.z != s.nz[row];
+    s.nx[row] = n.x;
+    s.ny[row] = n.y;
+    s.nz[row] = n.z;
     s.lambda[row] = active ? r.error : 0;
   }
 }
@@ -85,6 +87,7 @@ void add_contact(DirectSystem& s, const Tie& contact) {
 template <class Read>
 void measure_contacts(DirectSystem& s, const ContactStore& contacts, Judge& takes_part,
                       Read&& read) {
+  s.turned |= !s.touches.empty();
   for (const Tie& touch : s.touches) s.touch_of[touch.b] = kNoIndex;
   s.touches.clear();
   for (std::uint32_t k = 0; k < contacts.count(); ++k) {
@@ -93,6 +96,7 @@ void measure_contacts(DirectSystem& s, const ContactStore& contacts, Judge& take
     const Reading r = read(index, a, b, contacts.distance[k]);
     if (takes_part(index, r)) add_contact(s, {index, a, b, r.n, r.error});
   }
+  s.turned |= !s.touches.empty();
 }
 
 /// read(index, a, b, target) is the Reading of a constraint or contact.
@@ -108,13 +112,16 @@ double measure(DirectSystem& system, const ContactStore& contacts, Read&& read) 
 
 }  // namespace
 
-/// Directions and errors are both taken at x.
-double measure_positions(DirectSystem& system, VectorsView x, const ContactStore& contacts) {
+double measure_positions(DirectSystem& system, VectorsView x, VectorsView start,
+                         const ContactStore& contacts) {
+  const std::size_t constraints = start.x == nullptr ? 0 : system.model.constraints.size();
   return measure(system, contacts,
                  [&](std::uint32_t index, std::uint32_t a, std::uint32_t b, double target) {
                    const Vector d = x[a] - x[b];
-                   const double l = length(d);
-                   return Reading{direction(d, l), l - target, system.tolerance(index)};
+                   const double l = length(d), tolerance = system.tolerance(index);
+                   if (index >= constraints) return Reading{direction(d, l), l - target, tolerance};
+                   const Vector from = start[a] - start[b];
+                   return Reading{direction(from, length(from)), l - target, tolerance};
                  });
 }
 

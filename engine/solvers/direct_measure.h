@@ -7,8 +7,10 @@
 
 namespace weft {
 
-/// Each returns the largest error in tolerances, infinite if an error is not a number.
-double measure_positions(DirectSystem& system, kernels::VectorsView x,
+/// Each returns the largest error in tolerances, infinite if an error is not a number. Scheme
+/// rattle takes the directions of constraints at `start`, if given, instead of x; contacts come
+/// about within a step and act along their directions at x.
+double measure_positions(DirectSystem& system, kernels::VectorsView x, kernels::VectorsView start,
                          const ContactStore& contacts);
 double measure_velocities(DirectSystem& system, kernels::VectorsView x, kernels::VectorsView v,
                           const ContactStore& contacts);

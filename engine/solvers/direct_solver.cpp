@@ -73,13 +73,13 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
   LoopResult result;
   system_.start(contacts, first_round);
   if (settings_.iterations > 0) {
-    iterate_fixed(x, contacts, result);
+    iterate_fixed(x, {}, contacts, result);
     return result;
   }
   copy(x, start_.view(), start_.size());
   int wanted = kFirstSweeps;
   for (int attempt = 0;; ++attempt) {
-    DirectOutcome outcome = iterate(x, contacts, max_iterations, sweeps != nullptr, result);
+    DirectOutcome outcome = iterate(x, {}, contacts, max_iterations, sweeps != nullptr, result);
     if (outcome == DirectOutcome::exhausted) return result;
     if (outcome == DirectOutcome::failed && attempt == 0 && stiff_.wanted()) {
       outcome = iterate_stiff(x, contacts, max_iterations, result);
@@ -100,15 +100,27 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
   }
 }
 
-/// Newton's method from x. noise_will_do: an error within tolerance is success even if it does not
-/// fall to what solves aim at.
-DirectOutcome DirectSolver::iterate(VectorsView x, const ContactStore& contacts, int max_iterations,
-                                    bool noise_will_do, LoopResult& result) {
+LoopResult DirectSolver::solve_from_start(VectorsView x, VectorsView start,
+                                          const ContactStore& contacts, bool first_round,
+                                          int max_iterations) {
+  LoopResult result;
+  system_.start(contacts, first_round);
+  const DirectOutcome outcome = settings_.iterations > 0
+                                    ? iterate_fixed(x, start, contacts, result)
+                                    : iterate(x, start, contacts, max_iterations, true, result);
+  result.converged = outcome == DirectOutcome::converged;
+  return result;
+}
+
+/// Newton's method from x; with a start the simplified one. noise_will_do: an error within
+/// tolerance is success even if it does not fall to what solves aim at.
+DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const ContactStore& contacts,
+                                    int max_iterations, bool noise_will_do, LoopResult& result) {
   Progress progress;
   const double goal = std::min(1.0, kGoal / settings_.tolerance);
   bool solved = false;
   for (;;) {
-    const double worst = measure_positions(system_, x, contacts);
+    const double worst = measure_positions(system_, x, start, contacts);
     result.visits += system_.count();
     if (worst <= kNegligible || (solved && worst <= goal)) return DirectOutcome::converged;
     const bool within = worst <= 1;
@@ -131,10 +143,10 @@ DirectOutcome DirectSolver::iterate_stiff(VectorsView x, const ContactStore& con
   return stiff_.iterate(system_, factor_, x, contacts, max_iterations, result);
 }
 
-DirectOutcome DirectSolver::iterate_fixed(VectorsView x, const ContactStore& contacts,
-                                          LoopResult& result) {
+DirectOutcome DirectSolver::iterate_fixed(VectorsView x, VectorsView start,
+                                          const ContactStore& contacts, LoopResult& result) {
   while (result.iterations < settings_.iterations) {
-    measure_positions(system_, x, contacts);
+    measure_positions(system_, x, start, contacts);
     result.visits += system_.count();
     ++result.direction_updates;
     if (!solve(x, result)) return DirectOutcome::failed;

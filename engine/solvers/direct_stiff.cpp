@@ -64,12 +64,12 @@ DirectOutcome DirectStiff::iterate(DirectSystem& system, DirectFactor& factor, V
   for (std::size_t p = 0; p < model.slots(); ++p) predicted_.set(p, x[p]);
   const int most = most_solves(system.layout);
   for (int solves = 0;; ++solves) {
-    const double worst = measure_positions(system, x, contacts);
+    const double worst = measure_positions(system, x, {}, contacts);
     result.visits += system.count();
     const double imbalance = find_imbalance(system, x);
     if (worst <= 0.5 && imbalance <= 0.1) {
       for (std::size_t p = 0; p < model.slots(); ++p) x.add(p, -model.inverse_mass[p] * g_[p]);
-      if (measure_positions(system, x, contacts) <= 1) return DirectOutcome::converged;
+      if (measure_positions(system, x, {}, contacts) <= 1) return DirectOutcome::converged;
       find_imbalance(system, x);
     }
     if (!std::isfinite(worst + imbalance) || solves == most) return DirectOutcome::failed;
@@ -150,6 +150,7 @@ void DirectStiff::solve(DirectSystem& system, DirectFactor& factor, VectorsView 
         const double d = dot(nk, soft_[layout.a[k]] * nk) + dot(nk, soft_[layout.b[k]] * nk);
         return d > 0 ? d : layout.diagonal[k];
       });
+  system.turned = true;
   factor.solve(system.lambda.data());
   for (std::size_t row = 0; row < layout.rows(); ++row) {
     const double impulse = system.clamped(layout.row_constraint[row], system.lambda[row]);

@@ -2,8 +2,8 @@
 /// its solving makes impulses of them.
 ///
 /// Which step writes what, in this order:
-///   measure   nx, ny, nz, lambda (errors), touches, ties, active
-///   solve     lambda and the impulses of touches and ties; total
+///   measure   nx, ny, nz, lambda (errors), touches, ties, active, turned
+///   solve     lambda and the impulses of touches and ties; total; turned
 ///   apply     nothing
 #pragma once
 
@@ -40,6 +40,7 @@ struct DirectSystem {
   std::vector<double> lambda;           // per row: errors, then impulses
   std::vector<double> total;            // accumulated impulses, constraints then contacts
   std::int64_t active = 0;              // constraints and contacts that take part
+  bool turned = true;                   // the matrix has changed since it was factorised
   std::vector<Tie> touches;             // contacts with a particle of the matrix
   std::vector<std::uint32_t> touch_of;  // per slot, kNoIndex: none; with spheres only
   std::vector<Tie> ties;                // links between bodies, contacts included

@@ -38,6 +38,7 @@ void ReferenceSolver::reserve(std::size_t contacts) {
     target_.resize(size);
     effective_mass_.resize(size);
   }
+  if (settings_.scheme == Scheme::rattle) start_target_.resize(size);
   tolerance_.resize(size, settings_.iterations == 0 ? settings_.contact_tolerance : 0);
   direction_.resize(size);
   impulse_.resize(size);
@@ -107,17 +108,26 @@ reference::Method ReferenceSolver::method(const LoopBudget& budget) const {
                      .renew_after = budget.renew_after}};
 }
 
-kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x, double h,
+kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x,
+                                                     kernels::VectorsView start, double h,
                                                      const ContactStore& contacts, bool first_round,
                                                      const LoopBudget& budget) {
   place_contacts(contacts);
   if (first_round) std::ranges::fill(impulse_, 0.0);
   reference::Relaxation r = problem(x, contacts.count());
+  if (start.x != nullptr) take_directions_at(start, r);
   if (settings_.impulse_limit > 0) r.limit = settings_.impulse_limit * h;
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   return reference::relax_positions(r, layout_.topology(),
                                     model_.has_contacts() ? lists : reference::ContactLists{},
                                     workspace(), method(budget));
+}
+
+void ReferenceSolver::take_directions_at(kernels::VectorsView start, reference::Relaxation& r) {
+  r.start = start;
+  r.rest_length = r.target;
+  std::copy(r.target + r.pulling, r.target + r.count, start_target_.data() + r.pulling);
+  r.target = r.start_target = start_target_.data();
 }
 
 /// Ropes and contacts take part where they are taut or touch; slack ones get an endless tolerance.
@@ -154,10 +164,10 @@ kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
 
 std::size_t ReferenceSolver::bytes() const {
   return bytes_of(a_) + bytes_of(b_) + bytes_of(target_) + bytes_of(effective_mass_) +
-         bytes_of(tolerance_) + bytes_of(velocity_tolerance_) + bytes_of(zero_) +
-         direction_.bytes() + bytes_of(impulse_) + bytes_of(error_) + bytes_of(pending_) +
-         bytes_of(row_product_) + bytes_of(row_ready_) + bytes_of(changed_) + bytes_of(moved_) +
-         hub_motion_.bytes() + bytes_of(mask_);
+         bytes_of(start_target_) + bytes_of(tolerance_) + bytes_of(velocity_tolerance_) +
+         bytes_of(zero_) + direction_.bytes() + bytes_of(impulse_) + bytes_of(error_) +
+         bytes_of(pending_) + bytes_of(row_product_) + bytes_of(row_ready_) + bytes_of(changed_) +
+         bytes_of(moved_) + hub_motion_.bytes() + bytes_of(mask_);
 }
 
 }  // namespace weft

@@ -18,8 +18,9 @@ class ReferenceSolver {
   ReferenceSolver(const Model& model, const Settings& settings);
 
   /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
-  /// were found anew, accumulated impulses start at 0. h is the time step, for the impulse limit.
-  kernels::LoopResult solve_positions(kernels::VectorsView x, double h,
+  /// were found anew, accumulated impulses start at 0. Scheme rattle takes directions at `start`,
+  /// if given, instead of x. h is the time step, for the impulse limit.
+  kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start, double h,
                                       const ContactStore& contacts, bool first_round,
                                       const LoopBudget& budget);
   /// The velocity loop at the positions x.
@@ -30,6 +31,7 @@ class ReferenceSolver {
  private:
   void reserve(std::size_t contacts);
   void place_contacts(const ContactStore& contacts);
+  void take_directions_at(kernels::VectorsView start, reference::Relaxation& r);
   void choose_velocity_tolerances(const reference::Relaxation& r, kernels::VectorsView x);
   reference::Relaxation problem(kernels::VectorsView x, std::size_t contacts);
   reference::Workspace workspace();
@@ -42,6 +44,7 @@ class ReferenceSolver {
 
   std::vector<std::uint32_t> a_, b_;                          // with spheres only
   kernels::AlignedVector<double> target_, effective_mass_;    // with spheres only
+  kernels::AlignedVector<double> start_target_;               // scheme rattle only
   kernels::AlignedVector<double> tolerance_;                  // m
   kernels::AlignedVector<double> velocity_tolerance_, zero_;  // velocity correction only
   kernels::Vectors direction_;

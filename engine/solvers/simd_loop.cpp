@@ -65,32 +65,36 @@ void SimdLoop::renew() {
 void SimdLoop::renew_chunk(std::size_t i) {
   const Chunk& chunk = layout_.chunks[i];
   const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
-  if (chunk.singles && unknowns_.velocity) {
-    table_.renew_velocity_singles(g_, unknowns_.v, r_, first, last);
-  } else if (chunk.singles) {
-    table_.renew_singles(g_, r_, first, last);
-  } else if (unknowns_.velocity) {
-    table_.renew_velocity_run(g_, unknowns_.v, r_, chunk.run);
+  if (chunk.singles) {
+    renew_singles(first, last);
   } else {
-    table_.renew_run(g_, r_, chunk.run);
+    renew_run(chunk.run);
   }
 }
 
-/// Hubs and contacts.
+void SimdLoop::renew_run(const kernels::Run& run) {
+  if (unknowns_.velocity) return table_.renew_velocity_run(g_, unknowns_.v, r_, run);
+  if (unknowns_.start.x == nullptr) return table_.renew_run(g_, r_, run);
+  table_.renew_from_start_run(g_, unknowns_.start, r_, run);
+}
+
+void SimdLoop::renew_singles(std::uint32_t first, std::uint32_t last) {
+  if (unknowns_.velocity) return table_.renew_velocity_singles(g_, unknowns_.v, r_, first, last);
+  if (unknowns_.start.x == nullptr) return table_.renew_singles(g_, r_, first, last);
+  table_.renew_from_start_singles(g_, unknowns_.start, r_, first, last);
+}
+
+/// Hubs and contacts. These come about within a step: they act along their directions at x.
 void SimdLoop::renew_rest() {
-  const auto renew = [&](const simd::Geometry& g, const simd::Relaxation& r, std::uint32_t first,
-                         std::uint32_t last) {
-    if (unknowns_.velocity) {
-      table_.renew_velocity_singles(g, unknowns_.v, r, first, last);
-    } else {
-      table_.renew_singles(g, r, first, last);
-    }
-  };
   if (layout_.hub_first < layout_.hub_last) {
-    renew(g_, r_, layout_.hub_first, static_cast<std::uint32_t>(layout_.constraint_slots));
+    renew_singles(layout_.hub_first, static_cast<std::uint32_t>(layout_.constraint_slots));
   }
-  for (const ContactLanes::Range& range : s_.contacts_.spheres) {
-    renew(contact_geometry_, contacts_, range.first, range.last);
+  for (const auto& [first, last, real] : s_.contacts_.spheres) {
+    if (unknowns_.velocity) {
+      table_.renew_velocity_singles(contact_geometry_, unknowns_.v, contacts_, first, last);
+    } else {
+      table_.renew_singles(contact_geometry_, contacts_, first, last);
+    }
   }
 }
 

@@ -12,8 +12,9 @@ inline constexpr std::size_t kPiece = 16;  // chunks that one thread takes at a 
 class SimdLoop {
  public:
   struct Unknowns {
-    kernels::VectorsView x;  // position loop: moved; velocity loop: where the directions are
-    kernels::VectorsView v;  // velocity loop: changed
+    kernels::VectorsView x{};      // position loop: moved; velocity loop: where the directions are
+    kernels::VectorsView start{};  // position loop, rattle: where the directions are
+    kernels::VectorsView v{};      // velocity loop: changed
     bool velocity = false;
   };
 
@@ -28,6 +29,8 @@ class SimdLoop {
   bool masks() const { return !s_.mask_.empty(); }
   void apply_displacements();
   void renew_chunk(std::size_t i);
+  void renew_run(const kernels::Run& run);
+  void renew_singles(std::uint32_t first, std::uint32_t last);
   void renew_rest();
   kernels::Sweep sweep_tile(const Tile& tile);
   kernels::Sweep sweep_batch_between_tiles(std::size_t batch);

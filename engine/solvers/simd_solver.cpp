@@ -123,9 +123,9 @@ void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep
   }
 }
 
-kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, const ContactStore& store,
-                                                bool first_round, const LoopBudget& budget,
-                                                Team& team) {
+kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
+                                                const ContactStore& store, bool first_round,
+                                                const LoopBudget& budget, Team& team) {
   if (first_round) std::ranges::fill(impulse_, 0.f);
   if (model_.has_contacts()) {
     const double tau = settings_.iterations > 0 ? 1 : settings_.contact_tolerance;
@@ -133,7 +133,7 @@ kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, const Co
   }
   const auto directions = settings_.directions == Directions::frozen ? kernels::Directions::frozen
                                                                      : kernels::Directions::each;
-  SimdLoop loop(*this, {x, {}, false}, team);
+  SimdLoop loop(*this, {.x = x, .start = start}, team);
   const auto result = kernels::iterate(loop, directions, limits(budget));
   for (std::size_t k = 0; model_.has_contacts() && k < contacts_.contact.size(); ++k) {
     const std::uint32_t contact = contacts_.contact[k];
@@ -180,7 +180,7 @@ kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kerne
     place_contacts(store, settings_.iterations > 0 ? 1 : settings_.velocity_tolerance, false);
   }
   choose_active(x);
-  SimdLoop loop(*this, {x, v, true}, team);
+  SimdLoop loop(*this, {.x = x, .v = v, .velocity = true}, team);
   return kernels::iterate(loop, kernels::Directions::frozen, limits(whole_budget(settings_)));
 }
 

@@ -47,9 +47,11 @@ class SimdSolver {
   SimdSolver(const Model& model, const Settings& settings, simd::Isa isa);
 
   /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
-  /// were found anew, accumulated impulses start at 0.
-  kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
-                                      bool first_round, const LoopBudget& budget, Team& team);
+  /// were found anew, accumulated impulses start at 0. Scheme rattle takes directions at `start`,
+  /// if given, instead of x.
+  kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
+                                      const ContactStore& contacts, bool first_round,
+                                      const LoopBudget& budget, Team& team);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts, Team& team);

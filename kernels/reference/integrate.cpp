@@ -29,4 +29,18 @@ void commit(const Motion& m, double h, const kernels::VectorsView& next_velocity
   }
 }
 
+kernels::Kicks measure_kicks(const Motion& m, double h, const kernels::VectorsView& next_velocity) {
+  kernels::Kicks sum;
+  for (std::size_t i = 0; i < m.particles; ++i) {
+    const double w = m.inverse_mass[i];
+    if (w == 0) continue;
+    const Vector v = m.velocity[i], next = next_velocity[i], a = acceleration(m, i);
+    const Vector first = (1 / h) * (m.solved[i] - m.predicted[i]);
+    const Vector second = next - (v + h * a + first);
+    const double gain = dot(next, next) - dot(v, v) - 2 * dot(a, m.solved[i] - m.position[i]);
+    sum.add({dot(first, first) / w, dot(second, second) / w, gain / w});
+  }
+  return sum;
+}
+
 }  // namespace weft::reference

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "kernels/kicks.h"
 #include "kernels/vectors.h"
 
 namespace weft::reference {
@@ -25,5 +26,9 @@ void predict(const Motion& motion, double h);
 ///     p(t+h) = solved,   v(t+h) = v + h (g + F/m) + D / h.
 /// (The paper prints p(t) + D and h F: without the preview and without 1/m.)
 void commit(const Motion& motion, double h, const kernels::VectorsView& next_velocity);
+
+/// Once next_velocity is corrected: by how much it differs from what commit left is the second dv.
+kernels::Kicks measure_kicks(const Motion& motion, double h,
+                             const kernels::VectorsView& next_velocity);
 
 }  // namespace weft::reference

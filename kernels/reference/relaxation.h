@@ -23,6 +23,13 @@
 ///   [bilateral, pulling)  ropes
 ///   [pulling, count)      contacts; a is the sphere
 ///
+/// Scheme rattle: n is taken at the positions `start` of the step's beginning, while errors are
+/// true ones, at x. Renewing then sets the target so that both hold:
+///
+///     target = n . (x_a - x_b) - (|x_a - x_b| - rest length)
+///
+/// Contacts come about within the step: they always act along their directions at x.
+///
 /// A hub is a particle of so many constraints (kHubDegree, or any sphere) that telling every
 /// neighbour of a change costs more than every neighbour asking for it.
 #pragma once
@@ -66,6 +73,10 @@ struct Relaxation {
   VectorsView n;              // per constraint, unit
   double* impulse = nullptr;  // per constraint, accumulated lambda; read for unilateral ones only
   double limit = kUnlimited;  // largest |lambda| of one correction (paper 4.2)
+
+  VectorsView start;                    // rattle: where directions are taken; null: at x
+  const double* rest_length = nullptr;  // rattle: of what is not a contact
+  double* start_target = nullptr;       // rattle: `target`, to be written
 };
 
 /// The change of constraint c's impulse that an error e out of tolerance calls for.
@@ -97,13 +108,27 @@ inline void apply(const Relaxation& r, std::size_t c, double impulse) {
   r.x.add(b, r.inverse_mass[b] * j);
 }
 
+/// Particles that coincide have no direction; any unit vector separates them.
+inline Vector direction(Vector d, double length) {
+  return length > 0 ? (1 / length) * d : Vector{0, 1, 0};
+}
+
+inline double renew_direction_at_start(const Relaxation& r, std::size_t c) {
+  const Vector d = r.x[r.a[c]] - r.x[r.b[c]], from = r.start[r.a[c]] - r.start[r.b[c]];
+  const Vector n = direction(from, length(from));
+  const double e = length(d) - r.rest_length[c];
+  r.n.set(c, n);
+  r.start_target[c] = dot(n, d) - e;
+  return e;
+}
+
 /// Sets n_c from the positions x and returns the error along it, which is then the true error
-/// (paper 4.2: l = |n|, e = l - dist, n = n / l). Particles that coincide have no direction; any
-/// unit vector separates them.
+/// (paper 4.2: l = |n|, e = l - dist, n = n / l).
 inline double renew_direction(const Relaxation& r, std::size_t c) {
+  if (r.start.x != nullptr && c < r.pulling) return renew_direction_at_start(r, c);
   const Vector d = r.x[r.a[c]] - r.x[r.b[c]];
   const double l = length(d);
-  r.n.set(c, l > 0 ? (1 / l) * d : Vector{0, 1, 0});
+  r.n.set(c, direction(d, l));
   return l - r.target[c];
 }
 

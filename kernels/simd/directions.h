@@ -2,6 +2,7 @@
 ///
 ///     d = x_a - x_b,  l = |d|,  n = d / l / tau,  e0 = (l - rest) / tau
 ///
+/// Scheme rattle takes n at the positions that the step started from, and e0 from x all the same.
 /// Ends that coincide have no direction; any separates them: n = (0, 1, 0) / tau.
 #pragma once
 
@@ -52,6 +53,13 @@ struct Direction {
   store_scaled(r, c, to.n, to.length - load(g.rest_length + c), load(g.scale + c));
 }
 
+[[gnu::always_inline]] inline void renew_from_start(const Geometry& g, const Relaxation& r,
+                                                    std::size_t c, const DoubleVector& d,
+                                                    const DoubleVector& start) {
+  const Doubles length = xsimd::sqrt(dot(d, d));
+  store_scaled(r, c, direction(start).n, length - load(g.rest_length + c), load(g.scale + c));
+}
+
 [[gnu::always_inline]] inline void renew_velocity(const Geometry& g, const Relaxation& r,
                                                   std::size_t c, const DoubleVector& d,
                                                   const DoubleVector& dv) {
@@ -69,6 +77,23 @@ void renew_singles(const Geometry& g, const Relaxation& r, std::uint32_t first,
                    std::uint32_t last) {
   for (std::size_t c = first; c < last; c += kDoubles) {
     renew(g, r, c, gather(g.x, g.a + c) - gather(g.x, g.b + c));
+  }
+}
+
+void renew_from_start_run(const Geometry& g, kernels::VectorsView start, const Relaxation& r,
+                          const Run& run) {
+  for (std::size_t k = 0; k < run.length; k += kDoubles) {
+    const std::size_t a = run.a + k, b = run.b + k;
+    renew_from_start(g, r, run.constraint + k, load(g.x, a) - load(g.x, b),
+                     load(start, a) - load(start, b));
+  }
+}
+
+void renew_from_start_singles(const Geometry& g, kernels::VectorsView start, const Relaxation& r,
+                              std::uint32_t first, std::uint32_t last) {
+  for (std::size_t c = first; c < last; c += kDoubles) {
+    renew_from_start(g, r, c, gather(g.x, g.a + c) - gather(g.x, g.b + c),
+                     gather(start, g.a + c) - gather(start, g.b + c));
   }
 }
 

@@ -1,6 +1,7 @@
-/// predict, apply_displacements and commit, in double. The formulas are those of the reference
-/// (kernels/reference/integrate.h); the predicted position is formed twice, by the same operations,
-/// rather than kept.
+/// predict, apply_displacements, commit and measure_kicks, in double. The formulas are those of the
+/// reference (kernels/reference/integrate.h); the predicted position is formed twice, by the same
+/// operations, rather than kept. Sums are kept in kLanes columns, as those of strain are
+/// (measure.h).
 #pragma once
 
 #include "kernels/simd/lanes.h"
@@ -43,6 +44,44 @@ void commit(const Motion& m, double h, std::size_t first, std::size_t last) {
           {fused(rate, d.x, fused(step, a.x, v.x)), fused(rate, d.y, fused(step, a.y, v.y)),
            fused(rate, d.z, fused(step, a.z, v.z))});
   }
+}
+
+struct KickColumns {
+  alignas(64) double first[kernels::kLanes] = {};
+  alignas(64) double second[kernels::kLanes] = {};
+  alignas(64) double gain[kernels::kLanes] = {};
+
+  kernels::Kicks sums() const {
+    kernels::Kicks kicks;
+    for (std::uint32_t k = 0; k < kernels::kLanes; ++k) kicks.add({first[k], second[k], gain[k]});
+    return kicks;
+  }
+};
+
+[[gnu::always_inline]] inline void add(double* column, Doubles mass, Doubles square) {
+  fused(mass, square, load(column)).store_aligned(column);
+}
+
+kernels::Kicks measure_kicks(const Motion& m, double h, std::size_t first, std::size_t last) {
+  KickColumns columns;
+  const Doubles step(h), rate(1 / h), two(2.), one(1.), zero(0.);
+  for (std::size_t i = first; i < last; i += kDoubles) {
+    const DoubleVector p = load(m.position, i), v = load(m.velocity, i), a = acceleration(m, i);
+    const DoubleVector x = load(m.solved, i), next = load(m.next_velocity, i);
+    const DoubleVector d = x - predicted(p, v, a, h);
+    const DoubleVector committed{fused(rate, d.x, fused(step, a.x, v.x)),
+                                 fused(rate, d.y, fused(step, a.y, v.y)),
+                                 fused(rate, d.z, fused(step, a.z, v.z))};
+    const DoubleVector kick = next - committed;
+    const Doubles w = load(m.inverse_mass + i);
+    const auto free = w > zero;
+    const Doubles mass = xsimd::select(free, one / xsimd::select(free, w, one), zero);
+    const std::size_t column = (i - first) % kernels::kLanes;
+    add(columns.first + column, mass, rate * rate * dot(d, d));
+    add(columns.second + column, mass, dot(kick, kick));
+    add(columns.gain + column, mass, dot(next, next) - dot(v, v) - two * dot(a, x - p));
+  }
+  return columns.sums();
 }
 
 void apply_quads(const kernels::VectorsView& x, float* u, std::size_t first, std::size_t last) {

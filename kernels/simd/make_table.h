@@ -17,9 +17,12 @@ namespace {
 constexpr Table make_table() {
   return {.predict = predict,
           .commit = commit,
+          .measure_kicks = measure_kicks,
           .apply_displacements = apply_displacements,
           .renew_run = renew_run,
           .renew_singles = renew_singles,
+          .renew_from_start_run = renew_from_start_run,
+          .renew_from_start_singles = renew_from_start_singles,
           .renew_velocity_run = renew_velocity_run,
           .renew_velocity_singles = renew_velocity_singles,
           .relax_run = relax_run,

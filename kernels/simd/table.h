@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/kicks.h"
 #include "kernels/runs.h"
 #include "kernels/simd/isa.h"
 #include "kernels/vectors.h"
@@ -131,6 +132,8 @@ struct Table {
   void (*predict)(const Motion&, double h, std::size_t first, std::size_t last);
   /// next_velocity = v + h a + (solved - predicted) / h, predicted formed as in predict.
   void (*commit)(const Motion&, double h, std::size_t first, std::size_t last);
+  /// Once velocities are corrected: of a range, in an order that depends on nothing but the range.
+  kernels::Kicks (*measure_kicks)(const Motion&, double h, std::size_t first, std::size_t last);
   /// x += u, u = 0.
   void (*apply_displacements)(kernels::VectorsView x, Displacements u, std::size_t first,
                               std::size_t last);
@@ -139,6 +142,11 @@ struct Table {
   void (*renew_run)(const Geometry&, const Relaxation&, const Run&);
   void (*renew_singles)(const Geometry&, const Relaxation&, std::uint32_t first,
                         std::uint32_t last);
+  /// The same with n at other positions: those at the start of the step (scheme rattle).
+  void (*renew_from_start_run)(const Geometry&, kernels::VectorsView start, const Relaxation&,
+                               const Run&);
+  void (*renew_from_start_singles)(const Geometry&, kernels::VectorsView start, const Relaxation&,
+                                   std::uint32_t first, std::uint32_t last);
   /// n as above with tau in m/s, e0 = n . (v_a - v_b) (paper 3.3).
   void (*renew_velocity_run)(const Geometry&, kernels::VectorsView v, const Relaxation&,
                              const Run&);

@@ -139,8 +139,7 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
 
 TEST_CASE("what is not available yet says so") {
   const TemporaryFolder folder;
-  for (const std::string arguments :
-       {"--solver yarn", "--solver auto", "--scheme rattle", "--substeps auto"}) {
+  for (const std::string arguments : {"--solver yarn", "--solver auto", "--substeps auto"}) {
     CAPTURE(arguments);
     const Outcome outcome = run_program(folder, "run hang " + arguments);
     CHECK(outcome.exit_code == 2);

@@ -97,6 +97,28 @@ TEST_CASE("a fresh direction is a unit vector and its error the true one; the im
   CHECK(length(problem.x[1] - Vector{2, 4, 5}) == doctest::Approx(0.75).epsilon(1e-14));
 }
 
+TEST_CASE("rattle: the direction is that of the start, the error the true one; a contact's at x") {
+  Problem problem;
+  Vectors start{2};
+  std::array<double, 3> start_target{0, 0, 2};
+  Relaxation r = problem.view();
+  r.start = start.view();
+  r.rest_length = problem.target.data();
+  r.target = r.start_target = start_target.data();
+  problem.x.set(0, {3, 4, 0});
+  start.set(0, {7, 0, 0});
+  for (const std::size_t c : {kBar, kRope}) {
+    CHECK(renew_direction(r, c) == doctest::Approx(3).epsilon(1e-15));
+    CHECK(length(r.n[c] - Vector{1, 0, 0}) < 1e-15);
+    CHECK(error(r, c) == doctest::Approx(3).epsilon(1e-15));
+  }
+  CHECK(renew_direction(r, kContact) == doctest::Approx(3).epsilon(1e-15));
+  CHECK(length(r.n[kContact] - Vector{0.6, 0.8, 0}) < 1e-15);
+  // What moves an end along the start's direction takes as much off the error.
+  problem.x.set(0, {2, 4, 0});
+  CHECK(error(r, kBar) == doctest::Approx(2).epsilon(1e-15));
+}
+
 TEST_CASE("particles that coincide get some unit direction") {
   Problem problem;
   const Relaxation r = problem.view();

@@ -73,6 +73,43 @@ TEST_CASE("renewing stores unit directions and true errors, in tolerances") {
   });
 }
 
+TEST_CASE("rattle: directions of the start, true errors") {
+  for (const simd::Isa isa : supported_isas()) {
+    for (const std::uint32_t length : kLengths) {
+      for (const bool singles : {false, true}) {
+        CAPTURE(text(isa));
+        CAPTURE(length);
+        CAPTURE(singles);
+        KernelData found(length, length + 5);
+        KernelData expected = found;
+        for (std::uint32_t c = found.first; c < found.last; ++c) {
+          renew(Rounding(isa), expected, c, ends(expected, c, singles), false);
+        }
+        // Errors are those at `position`, directions those at `solved`.
+        KernelData turned = found;
+        turned.position = found.solved;
+        for (std::uint32_t c = found.first; c < found.last; ++c) {
+          renew(Rounding(isa), turned, c, ends(turned, c, singles), false);
+          const simd::ConstraintBlock& from = turned.blocks[c / kLanes];
+          simd::ConstraintBlock& to = expected.blocks[c / kLanes];
+          to.nx[c % kLanes] = from.nx[c % kLanes];
+          to.ny[c % kLanes] = from.ny[c % kLanes];
+          to.nz[c % kLanes] = from.nz[c % kLanes];
+        }
+        const simd::Table& table = simd::table(isa);
+        const simd::Relaxation r = found.relaxation(1);
+        if (singles) {
+          table.renew_from_start_singles(found.geometry(), found.solved.view(), r, found.first,
+                                         found.last);
+        } else {
+          table.renew_from_start_run(found.geometry(), found.solved.view(), r, found.run);
+        }
+        CHECK(same(found, expected));
+      }
+    }
+  }
+}
+
 TEST_CASE("padding gets no direction and no error") {
   for_every_kernel([](simd::Isa isa, std::uint32_t length, bool singles, bool velocity) {
     KernelData data(length, length + 3);

@@ -75,6 +75,37 @@ TEST_CASE("commit: v + h a + (solved - predicted) / h, within the range and nowh
   });
 }
 
+TEST_CASE("kicks: sums over the free of a range, equal where instructions fuse") {
+  for_every_range([](const simd::Table& table, const Rounding& rounding, KernelData data,
+                     bool forces, std::size_t first, std::size_t last) {
+    const simd::Motion m = data.motion(forces);
+    const double h = 0.01;
+    kernels::Kicks expected;
+    for (std::size_t i = first; i < last; ++i) {
+      if (m.inverse_mass[i] == 0) continue;
+      const double mass = 1 / m.inverse_mass[i];
+      const Vector v = m.velocity[i], next = m.next_velocity[i], a = acceleration(rounding, m, i);
+      const Vector kick = (1 / h) * (m.solved[i] - predicted(rounding, m, i, h));
+      const Vector rest = next - (v + h * a + kick);
+      const double gain = dot(next, next) - dot(v, v) - 2 * dot(a, m.solved[i] - m.position[i]);
+      expected.add({mass * dot(kick, kick), mass * dot(rest, rest), mass * gain});
+    }
+    const kernels::Kicks found = table.measure_kicks(m, h, first, last);
+    CHECK(found.first == doctest::Approx(expected.first).epsilon(1e-12));
+    CHECK(found.second == doctest::Approx(expected.second).epsilon(1e-12));
+    CHECK(std::abs(found.gain - expected.gain) < 1e-12 * (expected.first + expected.second));
+  });
+  if (!simd::supported(simd::Isa::avx512)) return;
+  KernelData data(272, 5);
+  const auto kicks = [&](simd::Isa isa) {
+    return simd::table(isa).measure_kicks(data.motion(true), 0.01, 0, data.slots);
+  };
+  const kernels::Kicks wide = kicks(simd::Isa::avx512), narrow = kicks(simd::Isa::avx2);
+  CHECK(wide.first == narrow.first);
+  CHECK(wide.second == narrow.second);
+  CHECK(wide.gain == narrow.gain);
+}
+
 TEST_CASE("what was not corrected keeps its velocity to the last bit but the fall's") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));

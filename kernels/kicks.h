@@ -1,0 +1,20 @@
+/// What the impulses of a rattle step did to the velocities: those of the position loop brought
+/// D / h (D: by how much they moved a particle), those of the velocity loop the rest.
+#pragma once
+
+namespace weft::kernels {
+
+/// Sums over the free particles, twice an energy each.
+struct Kicks {
+  double first = 0;   // m |D / h|^2
+  double second = 0;  // m |dv|^2, dv of the velocity loop
+  double gain = 0;    // m |v'|^2 - m |v|^2 - 2 m a . (x' - x)
+
+  void add(const Kicks& other) {
+    first += other.first;
+    second += other.second;
+    gain += other.gain;
+  }
+};
+
+}  // namespace weft::kernels

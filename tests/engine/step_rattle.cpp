@@ -1,0 +1,218 @@
+/// Scheme rattle: second order, its guard, and that every solver and backend means the same by it.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+Settings rattle(Settings settings) {
+  settings.scheme = Scheme::rattle;
+  return settings;
+}
+
+Settings direct(double tolerance) {
+  Settings settings = tight(tolerance);
+  settings.solver = Solver::direct;
+  return settings;
+}
+
+/// Positions after 0.4 s, in steps of 0.01 s / `parts`.
+std::vector<Vec3> after_swinging(int size, const Settings& settings, int parts) {
+  Cloth cloth = cloth_of(scene_of("hang", size), settings);
+  run(cloth, 0.01 / parts, 40 * parts);
+  return positions(cloth);
+}
+
+struct Errors {
+  double first = 0;  ///< m, at 0.01 s
+  double order = 0;  ///< by a line through the errors at 0.01, 0.005, 0.0025, 0.00125 s
+};
+
+Errors errors(int size, const Settings& settings, const std::vector<Vec3>& converged) {
+  std::vector<double> logarithms;
+  for (const int parts : {1, 2, 4, 8}) {
+    const std::vector<Vec3> found = after_swinging(size, settings, parts);
+    logarithms.push_back(std::log2(largest_distance(found, converged)));
+  }
+  const auto& y = logarithms;
+  return {std::exp2(y[0]), (3 * (y[0] - y[3]) + y[1] - y[2]) / 10};
+}
+
+void check_order(int size) {
+  const Settings settings = direct(1e-9);
+  const std::vector<Vec3> converged = after_swinging(size, rattle(settings), 64);
+  const Errors second = errors(size, rattle(settings), converged);
+  const Errors first = errors(size, settings, converged);
+  CHECK(second.order >= 1.9);
+  CHECK(second.order < 2.2);
+  CHECK(first.order > 0.5);
+  CHECK(first.order < 1.2);
+  CHECK(second.first <= first.first / 20);
+}
+
+TEST_CASE("rattle is second order, the paper's scheme first") { check_order(8); }
+
+TEST_CASE("rattle is second order at full size" * doctest::test_suite("slow")) { check_order(20); }
+
+TEST_CASE("gauss_seidel on both backends, by all methods, moves as the direct solver does") {
+  const std::vector<Vec3> expected = after_swinging(8, rattle(direct(1e-9)), 1);
+  for (const Method& method : kAllMethods) {
+    CAPTURE(text(method));
+    CHECK(largest_distance(after_swinging(8, rattle(with(tight(1e-6), method)), 1), expected) <
+          2e-6);
+  }
+}
+
+TEST_CASE("rattle keeps the energy of a swinging sheet but for a thousandth") {
+  for (const Backend backend : kBackends) {
+    CAPTURE(std::string(name(backend)));
+    Cloth cloth = cloth_of(scene_of("hang", 10), rattle(on(backend, tight(1e-5))));
+    run(cloth, 0.01, 40);
+    CHECK(std::abs(cloth.energy().total()) < 1e-3 * cloth.energy().kinetic);
+  }
+}
+
+// A bent line of three bars, thrown spinning through space.
+TEST_CASE("rattle keeps momentum, and angular momentum") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
+  scene.velocities = {{1, 2, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 3}};
+  scene.masses = {1, 2, 3, 4};
+  scene.constraints = {{0, 1, 1}, {1, 2, 1}, {2, 3, 1}};
+  scene.gravity = {0, 0, 0};
+  Cloth cloth = cloth_of(scene, rattle(direct(1e-12)));
+  step(cloth, 0.01);  // the velocities given are not those of rigid bars
+  const Vec3 p = momentum(scene.masses, velocities(cloth));
+  const Vec3 l = angular_momentum(scene.masses, positions(cloth), velocities(cloth));
+  const double energy = cloth.energy().total();
+  for (int k = 0; k < 100; ++k) CHECK(step(cloth, 0.01).scheme_fallbacks == 0);
+  CHECK(distance(momentum(scene.masses, velocities(cloth)), p) < 1e-11);
+  CHECK(distance(angular_momentum(scene.masses, positions(cloth), velocities(cloth)), l) < 1e-9);
+  CHECK(cloth.energy().total() == doctest::Approx(energy).epsilon(1e-3));
+}
+
+/// The most that any of the frames holds above the start, J.
+double energy_gain(const SceneDescription& scene, const Settings& settings, int frames, double dt,
+                   int& fallbacks) {
+  Cloth cloth = cloth_of(scene, settings);
+  const double start = cloth.energy().total();
+  double gain = 0;
+  for (int k = 0; k < frames; ++k) {
+    const StepReport report = step(cloth, dt);
+    REQUIRE(report.status == Status::converged);
+    REQUIRE(report.max_strain <= settings.tolerance * (1 + 1e-12));
+    fallbacks += report.scheme_fallbacks;
+    gain = std::max(gain, cloth.energy().total() - start);
+  }
+  return gain;
+}
+
+TEST_CASE("where rattle would blow up the paper's scheme takes over, and is counted") {
+  for (const bool gauss_seidel : {false, true}) {
+    CAPTURE(gauss_seidel);
+    Settings settings = rattle(gauss_seidel ? tight(1e-3) : direct(1e-5));
+    settings.velocity_tolerance = 1e-4;
+    int fallbacks = 0;
+    CHECK(energy_gain(scene_of("corners", 11), settings, 100, 0.02, fallbacks) < 1e-3);
+    CHECK(fallbacks > 10);
+    CHECK(fallbacks <= 100);
+  }
+  int fallbacks = 0;
+  energy_gain(scene_of("hang", 8), rattle(direct(1e-5)), 80, 0.005, fallbacks);
+  CHECK(fallbacks == 0);
+}
+
+TEST_CASE("a substep that fell back is one of the paper's scheme with velocity correction") {
+  const SceneDescription scene = scene_of("corners", 11);
+  Settings corrected = direct(1e-6);
+  corrected.velocity_correction = true;
+  Cloth guarded = cloth_of(scene, rattle(direct(1e-6)));
+  int fallbacks = 0;
+  for (int k = 0; k < 100; ++k) {
+    Cloth paper = cloth_of(scene, corrected);
+    REQUIRE(paper.write_positions(positions(guarded)));
+    REQUIRE(paper.write_velocities(velocities(guarded)));
+    const StepReport report = step(guarded, 0.02);
+    if (report.scheme_fallbacks == 0) continue;
+    ++fallbacks;
+    step(paper, 0.02);
+    REQUIRE(largest_distance(positions(paper), positions(guarded)) < 1e-12);
+    REQUIRE(largest_distance(velocities(paper), velocities(guarded)) < 1e-10);
+  }
+  CHECK(fallbacks > 10);
+}
+
+TEST_CASE("rattle in substeps is rattle in small steps") {
+  for (const bool gauss_seidel : {false, true}) {
+    Settings settings = rattle(gauss_seidel ? Settings{} : direct(1e-4));
+    Cloth small = cloth_of(scene_of("hang", 7), settings);
+    settings.substeps = 3;
+    Cloth whole = cloth_of(scene_of("hang", 7), settings);
+    for (int frame = 0; frame < 40; ++frame) {
+      int fallbacks = 0;
+      for (int k = 0; k < 3; ++k) fallbacks += step(small, 0.01 / 3).scheme_fallbacks;
+      CHECK(step(whole, 0.01).scheme_fallbacks == fallbacks);
+      REQUIRE(whole.state_hash() == small.state_hash());
+    }
+  }
+}
+
+TEST_CASE("a fixed number of iterations is exactly that, whatever becomes of it") {
+  Settings settings = rattle(on(each_backend()));
+  settings.iterations = 5;
+  Cloth cloth = cloth_of(scene_of("corners", 11), settings);
+  for (int k = 0; k < 40; ++k) {
+    const StepReport report = step(cloth, 0.02);
+    REQUIRE(report.status == Status::fixed_iterations);
+    REQUIRE(report.iterations == 5);
+    REQUIRE(report.scheme_fallbacks == 0);
+  }
+}
+
+TEST_CASE("rattle has the velocity correction") {
+  CHECK(cloth_of(scene_of("hang", 4), rattle({})).settings().velocity_correction);
+  CHECK_FALSE(cloth_of(scene_of("hang", 4), {}).settings().velocity_correction);
+}
+
+TEST_CASE("rattle with contacts: no particle deeper than the tolerance") {
+  for (const bool gauss_seidel : {false, true}) {
+    for (const char* name : {"hang_sphere", "sphere_drop"}) {
+      CAPTURE(gauss_seidel);
+      CAPTURE(std::string(name));
+      Settings settings;
+      if (!gauss_seidel) settings.solver = Solver::direct;
+      Cloth cloth = cloth_of(scene_of(name, 10), rattle(settings));
+      for (int k = 0; k < 60; ++k) {
+        const StepReport report = step(cloth, 0.01);
+        REQUIRE(report.status == Status::converged);
+        REQUIRE(report.max_strain <= 0.01 * (1 + 1e-12));
+        REQUIRE(report.max_penetration <= settings.contact_tolerance * (1 + 1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE("a taut rope swings as a bar does") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.fixed = {0};
+  scene.gravity = {0, -10, 0};
+  scene.velocities = {{0, 0, 0}, {0, -4, 0}};
+  const Backend backend = each_backend();
+  Cloth bar = cloth_of(scene, rattle(on(backend, tight(1e-6))));
+  scene.constraints[0].kind = ConstraintKind::rope;
+  Cloth rope = cloth_of(scene, rattle(on(backend, tight(1e-6))));
+  run(bar, 0.005, 100);
+  run(rope, 0.005, 100);
+  CHECK(distance(bar.position(1), rope.position(1)) < 1e-5);
+}
+
+}  // namespace
+}  // namespace weft::test
