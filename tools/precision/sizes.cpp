@@ -40,14 +40,21 @@ double predicted_seconds(const SizeStudy& study, const SizeCurve& curve, int siz
          std::pow(growth, exponent(curve).value_or(1));
 }
 
+/// Where the search for substeps starts; 0: they are automatic.
+int first_substeps(const SizeCurve& curve) {
+  if (curve.solver == "auto") return 0;
+  return curve.points.empty() ? 1 : curve.points.back().substeps;
+}
+
 /// Fine meshes want small steps: tried are the substeps of the size before, twice and four times
 /// as many.
 Result<std::optional<SizePoint>> cheapest(const SizeStudy& study, const Task& task, Solver solver,
-                                          int first_substeps, const SizeWatch& watch) {
+                                          int first, const SizeWatch& watch) {
   const Effort effort{.repeat = 3, .seconds_limit = study.seconds_limit};
   std::optional<SizePoint> best;
   for (const int factor : {1, 2, 4}) {
-    const int substeps = first_substeps * factor;
+    const int substeps = first * factor;
+    if (factor > 1 && substeps == 0) break;
     watch(fmt::format("{}, {} substeps", name(solver), substeps));
     const auto point = measure(task, settings_of(study, solver, substeps), effort);
     if (!point) return Error{point.error()};
@@ -86,8 +93,8 @@ Result<void> measure(SizeStudy& study, const SizeWatch& watch) {
             fmt::format("{0} x {0} would take more than {1:g} s", size, study.seconds_limit);
         continue;
       }
-      const int substeps = curve.points.empty() ? 1 : curve.points.back().substeps;
-      const auto point = cheapest(study, task.value(), all_solvers()[k], substeps, watch);
+      const auto point =
+          cheapest(study, task.value(), all_solvers()[k], first_substeps(curve), watch);
       if (!point) return Error{point.error()};
       if (point.value()) {
         curve.points.push_back(*point.value());

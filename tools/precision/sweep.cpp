@@ -30,18 +30,34 @@ struct KnobSet {
   std::vector<int> many_substeps;  // of the rows of iterations
 };
 
+constexpr int kAutomatic = 0;  // substeps
+
 KnobSet knob_set(bool quick) {
-  if (quick) return {{0.1, 0.01, 1e-3, 1e-4}, {1, 4}, {1, 8}, {8, 32}};
-  return {{0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5}, {1, 2, 4, 8, 16}, {1, 4, 16, 64}, {4, 16, 64}};
+  if (quick) return {{0.1, 0.01, 1e-3, 1e-4}, {kAutomatic, 1, 4}, {1, 8}, {8, 32}};
+  return {{0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5},
+          {kAutomatic, 1, 2, 4, 8, 16},
+          {1, 4, 16, 64},
+          {4, 16, 64}};
 }
 
-std::vector<Row> rows_of(const Settings& base, const KnobSet& knobs) {
+/// The plain call: nothing but the tolerance is chosen by the user.
+KnobSet plain_knob_set(bool quick) {
+  if (quick) return {{0.1, 0.01, 1e-3, 1e-4}, {kAutomatic}, {}, {}};
+  return {{0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, {kAutomatic}, {}, {}};
+}
+
+bool is_known(const Task& task, const Settings& settings) {
+  return static_cast<bool>(Cloth::create(task.model, settings));
+}
+
+std::vector<Row> rows_of(const Task& task, Settings base, const KnobSet& knobs) {
   std::vector<Row> rows;
   for (const int substeps : knobs.substeps) {
+    base.substeps = substeps;
+    if (!is_known(task, base)) continue;
     Row& row = rows.emplace_back();
     for (const double tolerance : knobs.tolerances) {
       row.push_back(base);
-      row.back().substeps = substeps;
       row.back().tolerance = tolerance;
     }
   }
@@ -60,16 +76,13 @@ std::vector<Row> rows_of(const Settings& base, const KnobSet& knobs) {
 /// iteration.
 Curve original(const Task& task, const KnobSet& knobs) {
   Settings settings;
+  settings.solver = Solver::gauss_seidel;
   settings.backend = Backend::reference;
   settings.directions = Directions::each;
   settings.anticipate = false;
   settings.skip = false;
   settings.threads = task.threads;
-  return {"original", rows_of(settings, {knobs.tolerances, {1}, {}, {}})};
-}
-
-bool is_known(const Task& task, const Settings& settings) {
-  return static_cast<bool>(Cloth::create(task.model, settings));
+  return {"original", rows_of(task, settings, {knobs.tolerances, {1}, {}, {}})};
 }
 
 /// On one thread what other programs do on the machine should not be seen.
@@ -101,17 +114,16 @@ std::vector<Solver> all_solvers() { return all<Solver>(); }
 std::vector<Scheme> all_schemes() { return all<Scheme>(); }
 
 std::vector<Curve> weft_curves(const Task& task, bool quick) {
-  const KnobSet knobs = knob_set(quick);
-  std::vector<Curve> curves{original(task, knobs)};
+  std::vector<Curve> curves{original(task, knob_set(quick))};
   for (const Solver solver : all_solvers()) {
+    const KnobSet knobs = name(solver) == "auto" ? plain_knob_set(quick) : knob_set(quick);
     for (const Scheme scheme : all_schemes()) {
       Settings settings;
       settings.solver = solver;
       settings.scheme = scheme;
       settings.threads = task.threads;
-      if (!is_known(task, settings)) continue;
       curves.push_back(
-          {fmt::format("{}, {}", name(solver), name(scheme)), rows_of(settings, knobs)});
+          {fmt::format("{}, {}", name(solver), name(scheme)), rows_of(task, settings, knobs)});
     }
   }
   return curves;
