@@ -34,7 +34,8 @@ std::vector<Order> measure_orders(const Task& task) {
       settings.velocity_tolerance = 1e-7;
       settings.threads = task.threads;
       const auto point = measure(task, settings, {.repeat = 1});
-      all_ran = all_ran && point && point.value().outcome.trajectory_error;
+      all_ran =
+          point && point.value().outcome.is_complete() && point.value().outcome.trajectory_error;
       if (!all_ran) break;
       steps.push_back(kFrame / substeps);
       errors.push_back(*point.value().outcome.trajectory_error);

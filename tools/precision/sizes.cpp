@@ -70,7 +70,7 @@ Result<std::optional<SizePoint>> cheapest(const SizeStudy& study, const Task& ta
 
 SizeStudy size_study(bool quick) {
   SizeStudy study;
-  study.sizes = {20, 30, 40, 60, 100, 150, 200, 300, 500, 700, 1000};
+  study.sizes = {20, 30, 40, 60, 100, 200, 300, 500, 1000};
   if (quick) study.sizes = {20, 30, 40, 60};
   if (quick) study.seconds_limit = 2;
   return study;

@@ -18,8 +18,8 @@ struct SizePoint {
   Outcome outcome;
 };
 
-/// The cheapest number of substeps at each size. Frames per second of a run fall with the size, so
-/// a curve ends where a run is, or by its exponent would be, out of time.
+/// The cheapest number of substeps at each size. A curve ends where a run is out of time, or would
+/// be by the exponent so far.
 struct SizeCurve {
   std::string solver;
   std::vector<SizePoint> points;   ///< those that count
@@ -30,9 +30,9 @@ struct SizeCurve {
 struct SizeStudy {
   std::string scene = "hang";
   double tolerance = 0.01;
-  int frames = 100;
-  int threads = 0;  ///< 0: all
-  double seconds_limit = 20;
+  int frames = 50;
+  int threads = 0;            ///< 0: all
+  double seconds_limit = 20;  ///< of processor time, all threads together
   std::vector<int> sizes;
   std::vector<SizeCurve> curves;
 };
