@@ -13,6 +13,24 @@ using kernels::Vector;
 constexpr std::size_t kMostBodies = 16;
 constexpr double kLinkShift = 1e-8;  // of w_a + w_b: the spring of a link between bodies
 
+double compliance(const DirectSystem& system, const Tie& tie) {
+  return kLinkShift * (system.model.inverse_mass[tie.a] + system.model.inverse_mass[tie.b]);
+}
+
+Spring spring_of_tie(const DirectSystem& system, const Tie& tie) {
+  return {{tie.a, tie.b}, {tie.n, -1 * tie.n}, tie.error, compliance(system, tie)};
+}
+
+Spring spring_of_second(const DirectSystem& system, const Tie& second) {
+  const Tie& touch = system.touches[system.touch_of[second.b]];
+  const double c = dot(touch.n, second.n);
+  const double give = system.model.inverse_mass[second.b] * std::max(0.0, 1 - c * c);
+  return {{second.a, touch.a},
+          {second.n, -c * touch.n},
+          second.error - c * touch.error,
+          compliance(system, second) + give};
+}
+
 }  // namespace
 
 bool DirectBodies::solve(DirectSystem& system, DirectFactor& factor) {
@@ -48,6 +66,7 @@ bool DirectBodies::choose(const DirectSystem& system) {
     add(tie.b);
   }
   for (const Tie& touch : system.touches) add(touch.a);
+  for (const Tie& second : system.seconds) add(second.a);
   return bodies_.size() <= kMostBodies;
 }
 
@@ -100,7 +119,10 @@ void DirectBodies::fill_balance(const DirectSystem& system, DirectFactor& factor
     motion_[i] = -product(column, system.lambda.data());
   }
   balance_touches(system);
-  balance_ties(system);
+  for (const Tie& tie : system.ties) balance_spring(system.layout, spring_of_tie(system, tie));
+  for (const Tie& second : system.seconds) {
+    balance_spring(system.layout, spring_of_second(system, second));
+  }
 }
 
 /// A sphere in contact carries the inertia of the particle along n.
@@ -121,31 +143,26 @@ void DirectBodies::balance_touches(const DirectSystem& system) {
   }
 }
 
-/// A link between bodies: its impulse is error / compliance, the error being e + n . (y_a - y_b).
-void DirectBodies::balance_ties(const DirectSystem& system) {
+void DirectBodies::balance_spring(const DirectLayout& layout, const Spring& spring) {
   const std::size_t size = motion_.size();
-  for (const Tie& tie : system.ties) {
-    std::size_t place[6];
-    double n[6];
-    std::size_t used = 0;
-    const auto add = [&](std::uint32_t slot, double sigma) {
-      const std::uint32_t body = system.layout.body_of[slot];
-      if (body == kNoIndex) return;
-      for (std::size_t i = 0; i < 3; ++i) place[used + i] = 3 * std::size_t{column_of_[body]} + i;
-      n[used] = sigma * tie.n.x;
-      n[used + 1] = sigma * tie.n.y;
-      n[used + 2] = sigma * tie.n.z;
-      used += 3;
-    };
-    add(tie.a, 1);
-    add(tie.b, -1);
-    const double stiffness = 1 / compliance(system, tie);
-    for (std::size_t i = 0; i < used; ++i) {
-      motion_[place[i]] -= stiffness * tie.error * n[i];
-      for (std::size_t j = 0; j < used; ++j) {
-        if (place[j] > place[i]) continue;
-        balance_[place[i] * size + place[j]] += stiffness * n[i] * n[j];
-      }
+  std::size_t place[6];
+  double n[6];
+  std::size_t used = 0;
+  for (std::size_t end = 0; end < 2; ++end) {
+    const std::uint32_t body = layout.body_of[spring.slot[end]];
+    if (body == kNoIndex) continue;
+    for (std::size_t i = 0; i < 3; ++i) place[used + i] = 3 * std::size_t{column_of_[body]} + i;
+    n[used] = spring.n[end].x;
+    n[used + 1] = spring.n[end].y;
+    n[used + 2] = spring.n[end].z;
+    used += 3;
+  }
+  const double stiffness = 1 / spring.compliance;
+  for (std::size_t i = 0; i < used; ++i) {
+    motion_[place[i]] -= stiffness * spring.error * n[i];
+    for (std::size_t j = 0; j < used; ++j) {
+      if (place[j] > place[i]) continue;
+      balance_[place[i] * size + place[j]] += stiffness * n[i] * n[j];
     }
   }
 }
@@ -179,8 +196,18 @@ Vector DirectBodies::motion(const DirectLayout& layout, std::uint32_t slot) cons
   return {y[0], y[1], y[2]};
 }
 
-double DirectBodies::compliance(const DirectSystem& system, const Tie& tie) {
-  return kLinkShift * (system.model.inverse_mass[tie.a] + system.model.inverse_mass[tie.b]);
+double DirectBodies::impulse(const DirectLayout& layout, const Spring& spring) const {
+  const double error = spring.error + dot(spring.n[0], motion(layout, spring.slot[0])) +
+                       dot(spring.n[1], motion(layout, spring.slot[1]));
+  return error / spring.compliance;
+}
+
+double DirectBodies::impulse_of_tie(const DirectSystem& system, const Tie& tie) const {
+  return impulse(system.layout, spring_of_tie(system, tie));
+}
+
+double DirectBodies::impulse_of_second(const DirectSystem& system, const Tie& second) const {
+  return impulse(system.layout, spring_of_second(system, second));
 }
 
 std::size_t DirectBodies::bytes() const {

@@ -6,12 +6,24 @@
 ///
 /// three back-substitutions for each body. Links between bodies have no inverse mass in A: they act
 /// in this small system as very stiff springs, whose error the next iteration takes.
+///
+/// So does a second contact of a particle p, of the sphere s' with the normal n', while the touch
+/// of s with n holds it: p moves along n as s does, so that the spring is one between the spheres,
+/// of the error e' - c (e + n . y) + n' . y' with c = n . n', softened by the way that p may give,
+/// w_p (1 - c^2). What its rows do to p across n comes with the next iteration.
 #pragma once
 
 #include "engine/solvers/direct_factor.h"
 #include "engine/solvers/direct_system.h"
 
 namespace weft {
+
+/// An impulse (error + n[0] . y[0] + n[1] . y[1]) / compliance, y the motions of two slots.
+struct Spring {
+  std::uint32_t slot[2];
+  kernels::Vector n[2];
+  double error, compliance;
+};
 
 class DirectBodies {
  public:
@@ -21,8 +33,9 @@ class DirectBodies {
   bool solve(DirectSystem& system, DirectFactor& factor);
   /// y of what stands at a slot.
   kernels::Vector motion(const DirectLayout& layout, std::uint32_t slot) const;
-  /// Of a tie: its impulse is its error, with the bodies' motion, over this.
-  static double compliance(const DirectSystem& system, const Tie& tie);
+  /// The impulse of a tie or of a second contact, the bodies having moved.
+  double impulse_of_tie(const DirectSystem& system, const Tie& tie) const;
+  double impulse_of_second(const DirectSystem& system, const Tie& second) const;
   std::size_t bytes() const;
 
  private:
@@ -30,7 +43,8 @@ class DirectBodies {
   void fill_column(const DirectSystem& system, std::size_t body);
   void fill_balance(const DirectSystem& system, DirectFactor& factor);
   void balance_touches(const DirectSystem& system);
-  void balance_ties(const DirectSystem& system);
+  void balance_spring(const DirectLayout& layout, const Spring& spring);
+  double impulse(const DirectLayout& layout, const Spring& spring) const;
   bool solve_balance();
 
   std::vector<std::uint32_t> bodies_;     // slots of those that take part

@@ -50,17 +50,19 @@ void clamp_rows(DirectSystem& s) {
 }
 
 void clamp_ties(DirectSystem& s, const DirectBodies& bodies) {
-  for (Tie& tie : s.ties) {
-    const Vector apart = bodies.motion(s.layout, tie.a) - bodies.motion(s.layout, tie.b);
-    const double error = tie.error + dot(tie.n, apart);
-    tie.impulse = s.clamped(tie.index, error / DirectBodies::compliance(s, tie));
+  for (Tie& tie : s.ties) tie.impulse = s.clamped(tie.index, bodies.impulse_of_tie(s, tie));
+  for (Tie& second : s.seconds) {
+    second.impulse = s.clamped(second.index, bodies.impulse_of_second(s, second));
   }
 }
 
-/// A contact's impulse is what its particle, moved by its rows, lacks to move with the sphere.
+/// A contact's impulse is what its particle, moved by all others, lacks to move with the sphere.
 void clamp_touches(DirectSystem& s, const DirectBodies& bodies) {
   for (Tie& touch : s.touches) {
-    Vector impulse{0, 0, 0};  // on the particle, of its rows
+    Vector impulse{0, 0, 0};  // on the particle, of its rows and further contacts
+    for (const Tie& second : s.seconds) {
+      if (second.b == touch.b) impulse = impulse + second.impulse * second.n;
+    }
     for (const std::uint32_t row : s.layout.rows_at[touch.b]) {
       const double sigma = s.layout.a[row] == touch.b ? 1 : -1;
       impulse = impulse - (sigma * s.lambda[row]) * s.n(row);
@@ -101,6 +103,7 @@ void apply_impulses(const DirectSystem& s, VectorsView u) {
     pull(s.layout.a[row], s.layout.b[row], s.lambda[row] * s.n(row));
   }
   for (const Tie& tie : s.ties) pull(tie.a, tie.b, tie.impulse * tie.n);
+  for (const Tie& second : s.seconds) pull(second.a, second.b, second.impulse * second.n);
   for (const Tie& touch : s.touches) pull(touch.a, touch.b, touch.impulse * touch.n);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace weft {
 namespace {
@@ -71,7 +72,7 @@ void measure_links(DirectSystem& s, Judge& takes_part, Read&& read) {
   }
 }
 
-/// Of two contacts at one particle the deeper one holds it; the other waits for the next round.
+/// Of two contacts at one particle the deeper one holds it.
 void add_contact(DirectSystem& s, const Tie& contact) {
   const std::uint32_t p = contact.b;
   if (s.layout.body_of[p] != kNoIndex || s.model.inverse_mass[p] == 0) {
@@ -79,8 +80,10 @@ void add_contact(DirectSystem& s, const Tie& contact) {
   } else if (s.touch_of[p] == kNoIndex) {
     s.touch_of[p] = static_cast<std::uint32_t>(s.touches.size());
     s.touches.push_back(contact);
-  } else if (contact.error < s.touches[s.touch_of[p]].error) {
-    s.touches[s.touch_of[p]] = contact;
+  } else {
+    Tie& holding = s.touches[s.touch_of[p]];
+    s.seconds.push_back(contact);
+    if (contact.error < holding.error) std::swap(holding, s.seconds.back());
   }
 }
 
@@ -90,6 +93,7 @@ void measure_contacts(DirectSystem& s, const ContactStore& contacts, Judge& take
   s.turned |= !s.touches.empty();
   for (const Tie& touch : s.touches) s.touch_of[touch.b] = kNoIndex;
   s.touches.clear();
+  s.seconds.clear();
   for (std::uint32_t k = 0; k < contacts.count(); ++k) {
     const auto index = static_cast<std::uint32_t>(s.model.constraints.size() + k);
     const std::uint32_t a = contacts.sphere[k], b = contacts.particle[k];

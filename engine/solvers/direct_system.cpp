@@ -43,7 +43,7 @@ double DirectSystem::clamped(std::uint32_t index, double impulse) {
 
 std::size_t DirectSystem::bytes() const {
   return bytes_of(nx) + bytes_of(ny) + bytes_of(nz) + bytes_of(lambda) + bytes_of(total) +
-         bytes_of(touches) + bytes_of(touch_of) + bytes_of(ties);
+         bytes_of(touches) + bytes_of(touch_of) + bytes_of(ties) + bytes_of(seconds);
 }
 
 }  // namespace weft

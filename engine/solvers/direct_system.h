@@ -2,8 +2,8 @@
 /// its solving makes impulses of them.
 ///
 /// Which step writes what, in this order:
-///   measure   nx, ny, nz, lambda (errors), touches, ties, active, turned
-///   solve     lambda and the impulses of touches and ties; total; turned
+///   measure   nx, ny, nz, lambda (errors), touches, seconds, ties, active, turned
+///   solve     lambda and the impulses of touches, seconds and ties; total; turned
 ///   apply     nothing
 #pragma once
 
@@ -44,6 +44,7 @@ struct DirectSystem {
   std::vector<Tie> touches;             // contacts with a particle of the matrix
   std::vector<std::uint32_t> touch_of;  // per slot, kNoIndex: none; with spheres only
   std::vector<Tie> ties;                // links between bodies, contacts included
+  std::vector<Tie> seconds;             // further contacts of particles that have a touch
 
   kernels::Vector n(std::size_t row) const { return {nx[row], ny[row], nz[row]}; }
   std::int64_t count() const { return static_cast<std::int64_t>(total.size()); }

@@ -150,5 +150,50 @@ TEST_CASE("spheres collide with each other and with what is fixed") {
   CHECK(touched);
 }
 
+/// Two spheres, one above and one below the middle of what lies in the plane y = 0, move towards
+/// each other.
+SceneDescription squeezed(SceneDescription scene, Vec3 middle, double speed) {
+  scene.velocities.assign(scene.positions.size(), {0, 0, 0});
+  for (const double side : {1.0, -1.0}) {
+    scene.spheres.push_back(static_cast<std::uint32_t>(scene.positions.size()));
+    scene.positions.push_back(middle + Vec3{0.003 * side, 0.18 * side, 0.002});
+    scene.velocities.push_back({0, -side * speed, 0});
+    scene.masses.push_back(side > 0 ? 5 : 3);
+  }
+  scene.radii.assign(scene.positions.size(), 0.01);
+  for (const std::uint32_t sphere : scene.spheres) scene.radii[sphere] = 0.15;
+  scene.gravity = {0, 0, 0};
+  return scene;
+}
+
+TEST_CASE("two spheres squeeze what is between them") {
+  SceneDescription particle;
+  particle.positions = {{0, 0, 0}};
+  particle.masses = {1};
+  const SceneDescription scenes[]{squeezed(particle, {0, 0, 0}, 1),
+                                  squeezed(drifting_sheet(7, 2), {0.3, 0, 0.3}, 1)};
+  for (const SceneDescription& scene : scenes) {
+    for (const Backend backend : kBackends) {
+      Cloth cloth = cloth_of(scene, direct(on(backend, tight(1e-4))));
+      const Vec3 before = momentum(scene.masses, scene.velocities);
+      const double start = cloth.energy().total();
+      double energy = start;
+      int most = 0;
+      for (int k = 0; k < 60; ++k) {
+        const StepReport report = step(cloth, 0.005);
+        REQUIRE(report.status == Status::converged);
+        REQUIRE(max_penetration(scene, positions(cloth)) <= 1e-4 * (1 + 1e-6));
+        REQUIRE(max_strain(scene, positions(cloth)) <= 1e-4 * (1 + 1e-6));
+        CHECK(cloth.energy().total() <= energy + 1e-3);
+        energy = cloth.energy().total();
+        most = std::max(most, report.iterations);
+      }
+      CHECK(most <= 5);
+      CHECK(energy < 0.1 * start);
+      CHECK(distance(momentum(scene.masses, velocities(cloth)), before) <= 1e-9 * length(before));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace weft::test
