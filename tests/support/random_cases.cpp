@@ -283,6 +283,7 @@ RandomCase random_case(std::uint32_t seed) {
   if (large) c.settings.max_iterations = 20;
   c.steps = large ? 1 : 1 + static_cast<int>(random.below(4));
   c.moves_pins = random.below(4) == 0;
+  c.settings.scheme = one_of(std::array{Scheme::paper, Scheme::paper, Scheme::rattle}, random);
   return c;
 }
 
