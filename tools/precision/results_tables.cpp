@@ -15,6 +15,7 @@ using Text = std::back_insert_iterator<std::string>;
 std::string knobs_text(const Knobs& knobs) {
   const std::string goal =
       knobs.tolerance ? percent(*knobs.tolerance) : fmt::format("{} iterations", knobs.iterations);
+  if (knobs.substeps == 0) return goal + ", automatic substeps";
   return fmt::format("{}, {} substep{}", goal, knobs.substeps, knobs.substeps == 1 ? "" : "s");
 }
 

@@ -33,7 +33,7 @@ Result<Task> make_task(const std::string& scene, int size);
 /// third of the difference is its error, since the order is two.
 Result<void> add_reference(Task& task, int parts);
 
-/// A tolerance, or a fixed number of iterations.
+/// A tolerance, or a fixed number of iterations. 0 substeps: automatic.
 struct Knobs {
   int substeps = 1;
   std::optional<double> tolerance;
