@@ -19,13 +19,6 @@ bool is_sphere(const Model& m, std::uint32_t slot) {
   return m.hub[slot] && std::ranges::find(m.spheres, slot) != m.spheres.end();
 }
 
-/// A pair of spheres is seen once. Pairs that cannot move do not collide.
-bool may_touch(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
-  if (particle == sphere || !m.is_particle(particle)) return false;
-  if (m.inverse_mass[sphere] + m.inverse_mass[particle] == 0) return false;
-  return !(particle < sphere && is_sphere(m, particle)) && !joined(m, sphere, particle);
-}
-
 /// Calls visit(sphere, particle, r1 + r2) for every pair nearer than r1 + r2 + extra(sphere).
 template <class Extra, class Visit>
 void for_each_pair(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
@@ -68,6 +61,12 @@ void append(ContactStore& contacts, std::uint32_t s, std::uint32_t p, double dis
 }
 
 }  // namespace
+
+bool may_touch(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
+  if (particle == sphere || !m.is_particle(particle)) return false;
+  if (m.inverse_mass[sphere] + m.inverse_mass[particle] == 0) return false;
+  return !(particle < sphere && is_sphere(m, particle)) && !joined(m, sphere, particle);
+}
 
 ContactStore make_contact_store(const Model& model) {
   ContactStore contacts;

@@ -26,6 +26,10 @@ struct ContactStore {
 /// An empty store with room for the search; without spheres nothing is allocated.
 ContactStore make_contact_store(const Model& model);
 
+/// Whether they collide where they meet (slots). A pair of spheres is seen once, with the lower
+/// slot as the sphere; pairs that cannot move do not collide.
+bool may_touch(const Model& model, std::uint32_t sphere, std::uint32_t particle);
+
 /// Lists every pair whose distance at x is below r1 + r2 plus a twentieth of the sphere's radius.
 void find_contacts(const Model& model, const simd::Table& kernels, kernels::VectorsView x,
                    ContactStore& contacts);

@@ -67,6 +67,8 @@ std::string_view name(Status status) {
       return "iteration_limit";
     case Status::infeasible:
       return "infeasible";
+    case Status::passed_through:
+      return "passed_through";
     case Status::non_finite_input:
       return "non_finite_input";
     case Status::non_finite:

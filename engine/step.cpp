@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/crossings.h"
 #include "engine/measure.h"
 #include "engine/rattle.h"
 #include "engine/solvers/team.h"
@@ -301,6 +302,13 @@ void explain(State& s, double h, StepReport& report, Team& team) {
   worsen(report, input ? Status::non_finite_input : Status::non_finite);
 }
 
+void watch_crossings(State& s, StepReport& report) {
+  const std::uint32_t passed = find_crossing(*s.model, s.position, s.solved);
+  if (passed == kNoIndex) return;
+  report.passed_particle = s.model->ordering.particle_at[passed];
+  worsen(report, Status::passed_through);
+}
+
 /// With a start: by scheme rattle.
 void substep(State& s, double h, kernels::VectorsView start, StepReport& report, Team& team) {
   timed(report, Stage::predict, [&] { predict(s, h, team); });
@@ -313,7 +321,12 @@ void substep(State& s, double h, kernels::VectorsView start, StepReport& report,
   if (s.settings.velocity_correction) {
     timed(report, Stage::correct_velocities, [&] { correct_velocities(s, report, team); });
   }
-  if (s.settings.iterations > 0) report.status = Status::fixed_iterations;
+  if (s.settings.iterations > 0 && report.status <= Status::iteration_limit) {
+    report.status = Status::fixed_iterations;
+  }
+  if (s.model->has_contacts()) {
+    timed(report, Stage::find_contacts, [&] { watch_crossings(s, report); });
+  }
 }
 
 /// Until it is accepted a substep leaves position and velocity alone: it can be done again. With a
@@ -345,6 +358,7 @@ StepReport step(State& s, double dt) {
   StepReport report;
   Team team(threads_worth_having(s), s.meeting);
   run_substeps(s, dt / s.settings.substeps, report, team);
+  if (report.status != Status::passed_through) report.passed_particle = kNoIndex;
   timed(report, Stage::report, [&] { report_errors(s, report, team); });
   return report;
 }

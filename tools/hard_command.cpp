@@ -1,7 +1,6 @@
 #include "tools/hard_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -9,11 +8,13 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "tools/hard/results.h"
 #include "tools/hard/suite.h"
 #include "tools/json_output.h"
 #include "tools/output_folder.h"
+#include "tools/task_line.h"
 #include "tools/text_file.h"
 
 namespace weft::tools {
@@ -29,11 +30,14 @@ struct HardOptions {
   bool quick = false;
 };
 
-/// The case at work, on a terminal only.
-void show_progress(const std::string& name) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\r\033[K{}", name);
-  std::fflush(stderr);
+std::vector<hard::CaseResult> run_all(const std::vector<hard::Selected>& selected, bool quick) {
+  TaskLine line(selected.size());
+  std::vector<hard::CaseResult> results;
+  for (const hard::Selected& one : selected) {
+    line.next(one.name);
+    results.push_back(hard::run(one, quick));
+  }
+  return results;
 }
 
 Result<void> write_folder(const std::filesystem::path& folder,
@@ -43,6 +47,8 @@ Result<void> write_folder(const std::filesystem::path& folder,
 }
 
 Result<int> run_hard(const HardOptions& options) {
+  const auto selected = hard::select(options.name);
+  if (selected.empty()) return Error{fmt::format("--case: no case is named '{}'", options.name)};
   std::optional<JsonOutput> json;
   if (!options.json.empty()) {
     auto opened = JsonOutput::open(options.json);
@@ -52,9 +58,7 @@ Result<int> run_hard(const HardOptions& options) {
   if (!options.out.empty()) {
     if (auto made = make_output_folder(options.out); !made) return Error{made.error()};
   }
-  const auto results = hard::run_suite(options.name, options.quick, show_progress);
-  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");
-  if (results.empty()) return Error{fmt::format("--case: no case is named '{}'", options.name)};
+  const auto results = run_all(selected, options.quick);
 
   if (!options.out.empty()) {
     if (auto done = write_folder(options.out, results); !done) return Error{done.error()};

@@ -197,6 +197,8 @@ struct Settings {
 /// infeasible: some constraint is out of tolerance and thousands of iterations no longer change
 ///   that: the constraints contradict each other (a chain whose ends are too far apart), or masses
 ///   differ by more than 10^7. The state is committed, with the error shared out among them.
+/// passed_through: a particle went through a sphere within the step, faster than contacts are
+///   looked for. The state is committed; smaller steps would have seen it.
 /// non_finite_input: positions, velocities, forces and dt were such that even without a constraint
 ///   a particle would have left the range of numbers. The state is unchanged.
 /// non_finite: a position or velocity would have become NaN or infinite. The state is unchanged.
@@ -205,6 +207,7 @@ enum class Status : std::uint8_t {
   fixed_iterations,
   iteration_limit,
   infeasible,
+  passed_through,
   non_finite_input,
   non_finite
 };
@@ -249,6 +252,7 @@ struct StepReport {
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
   double max_penetration = 0;                 ///< m, 0 without contacts
   std::uint32_t failed_particle = kNoIndex;   ///< non_finite, non_finite_input: the first such
+  std::uint32_t passed_particle = kNoIndex;   ///< passed_through: one that did
   std::array<double, kStageCount> stage_seconds{};
 };
 

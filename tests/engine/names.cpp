@@ -17,6 +17,7 @@ TEST_CASE("every choice bears its enumerator's name") {
   CHECK(name(Status::fixed_iterations) == "fixed_iterations");
   CHECK(name(Status::iteration_limit) == "iteration_limit");
   CHECK(name(Status::infeasible) == "infeasible");
+  CHECK(name(Status::passed_through) == "passed_through");
   CHECK(name(Status::non_finite_input) == "non_finite_input");
   CHECK(name(Status::non_finite) == "non_finite");
   CHECK(name(Stage::find_contacts) == "find_contacts");

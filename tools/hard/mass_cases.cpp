@@ -40,27 +40,49 @@ std::vector<Case> chain_cases() {
   return cases;
 }
 
-Outcome run_drop(const Setup& setup, double sphere_mass, double slack) {
+Trial drop(const Setup& setup, double sphere_mass, double slack) {
   scenes::Options options;
   options.size = setup.quick ? 10 : 20;
   options.sphere_mass = sphere_mass;
   options.slack = slack;
   Trial trial{built_in("sphere_drop", options), setup.settings(kDropStrain)};
-  trial.steps = setup.steps(200, 60);
-  return strain_outcome(trial, kAnyEnergy);
+  trial.steps = setup.steps(200, 45);  // it lands with the 24th
+  return trial;
+}
+
+/// From so heavy a sphere on a step may be left without an answer, after bounded work: it must say
+/// so, and the sheet must hold.
+constexpr double kHeaviestCaught = 100;
+
+Outcome run_heaviest(const Setup& setup, double sphere_mass, double slack) {
+  Trial trial = drop(setup, sphere_mass, slack);
+  trial.settings.max_iterations = setup.steps(500'000, 60'000);
+  const Observed o = observe(trial);
+  Outcome outcome{static_cast<double>(o.false_claims), text(o), {}, o.ms_per_step()};
+  if (o.max_strain > 1) outcome.failure = "the sheet does not hold";
+  return outcome;
+}
+
+Case drop_case(double mass, double slack) {
+  Case drop_case;
+  drop_case.name = fmt::format("sphere_drop_{:g}_kg{}", mass, slack > 0 ? "" : "_taut");
+  if (mass <= kHeaviestCaught) {
+    drop_case.measures = "max strain";
+    drop_case.bound = kDropStrain;
+    drop_case.run = [=](const Setup& setup) {
+      return strain_outcome(drop(setup, mass, slack), kAnyEnergy);
+    };
+  } else {
+    drop_case.measures = "reports that are not true";
+    drop_case.run = [=](const Setup& setup) { return run_heaviest(setup, mass, slack); };
+  }
+  return drop_case;
 }
 
 std::vector<Case> drop_cases() {
   std::vector<Case> cases;
   for (const double slack : {0.05, 0.0}) {
-    for (const double mass : {1.0, 10.0, 100.0, 1000.0}) {
-      Case drop;
-      drop.name = fmt::format("sphere_drop_{:g}_kg{}", mass, slack > 0 ? "" : "_taut");
-      drop.measures = "max strain";
-      drop.bound = kDropStrain;
-      drop.run = [mass, slack](const Setup& setup) { return run_drop(setup, mass, slack); };
-      cases.push_back(drop);
-    }
+    for (const double mass : {1.0, 10.0, 100.0, 1000.0}) cases.push_back(drop_case(mass, slack));
   }
   return cases;
 }

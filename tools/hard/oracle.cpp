@@ -69,6 +69,22 @@ double max_penetration(const SceneDescription& scene, const Snapshot& state) {
   return deepest;
 }
 
+bool went_through(const SceneDescription& scene, const Snapshot& before, const Snapshot& after,
+                  std::uint32_t sphere) {
+  constexpr int kPlaces = 1000;  // on the way, which is straight
+  for (std::uint32_t p = 0; p < before.positions.size(); ++p) {
+    if (p == sphere) continue;
+    const double inner = 0.9 * (scene.radii[sphere] + scene.radii[p]);
+    const Vec3 from = before.positions[p] - before.positions[sphere];
+    const Vec3 to = after.positions[p] - after.positions[sphere];
+    if (length(from) < scene.radii[sphere] || length(to) < scene.radii[sphere] * 0.999) continue;
+    for (int k = 0; k <= kPlaces; ++k) {
+      if (length(from + (k / static_cast<double>(kPlaces)) * (to - from)) < inner) return true;
+    }
+  }
+  return false;
+}
+
 double kinetic_energy(const SceneDescription& scene, const Snapshot& state) {
   const std::vector<bool> fixed = fixed_particles(scene);
   double sum = 0;

@@ -19,6 +19,10 @@ bool all_finite(const Snapshot& state);
 double max_strain(const SceneDescription& scene, const Snapshot& state);
 /// m, the deepest overlap of a sphere with anything that it may touch.
 double max_penetration(const SceneDescription& scene, const Snapshot& state);
+/// Whether any particle went from one side of the sphere to the other between two states, through
+/// its inner nine tenths: where it was outside of it both times.
+bool went_through(const SceneDescription& scene, const Snapshot& before, const Snapshot& after,
+                  std::uint32_t sphere);
 /// J, kinetic and gravitational, of the particles that are not fixed.
 double energy(const SceneDescription& scene, const Snapshot& state);
 double kinetic_energy(const SceneDescription& scene, const Snapshot& state);

@@ -4,6 +4,7 @@
 #include <weft/weft.h>
 
 #include <string_view>
+#include <vector>
 
 #include "engine/scenes.h"
 
@@ -19,6 +20,25 @@ SceneDescription pulled_chain(double stretch);
 
 /// Both diagonals of every cell, as constraints, joined to a sheet of size x size particles.
 void add_diagonals(SceneDescription& scene, int size);
+
+/// `along` x `across` particles, a cell wide each, level along x, the first and the last row fixed;
+/// particle (i, j) has the number i * across + j.
+SceneDescription ribbon(int along, int across, double cell);
+
+/// A level sheet held on all sides, and a sphere above it that falls with this speed.
+SceneDescription held_sheet_under_sphere(double speed);
+
+/// A free sheet that flies and turns, without gravity.
+SceneDescription spinning_sheet(int size);
+
+/// One particle joined to so many others; it is fixed.
+SceneDescription hub(int spokes);
+
+/// So many cloths of 2 x 2 particles, each with one of them fixed.
+SceneDescription pieces(int count);
+
+/// Particles in a box, joined at random, rest lengths and masses at random too.
+SceneDescription random_graph(std::uint32_t seed);
 
 /// Moves the particles that are not fixed: place(particle's number, where it was).
 template <class Place>

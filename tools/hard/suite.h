@@ -1,7 +1,6 @@
 /// The hard cases, and the running of them.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +15,10 @@ std::vector<Case> infeasible_cases();
 std::vector<Case> start_cases();
 std::vector<Case> step_cases();
 std::vector<Case> place_cases();
+std::vector<Case> motion_cases();
+std::vector<Case> length_cases();
+std::vector<Case> graph_cases();
+std::vector<Case> input_cases();
 
 std::vector<Case> all_cases();
 
@@ -30,10 +33,16 @@ struct CaseResult {
   bool passed() const { return outcome.failure.empty() && outcome.figure <= bound; }
 };
 
-/// Called before each run with its name.
-using Progress = std::function<void(const std::string& name)>;
+/// What is still to be run.
+struct Selected {
+  std::string name;
+  Case hard_case;
+  Method method;
+};
 
-/// filter: runs whose name contains it; empty: all.
-std::vector<CaseResult> run_suite(std::string_view filter, bool quick, const Progress& progress);
+/// Cases with the methods that claim them, whose name contains the filter; empty: all.
+std::vector<Selected> select(std::string_view filter);
+
+CaseResult run(const Selected& selected, bool quick);
 
 }  // namespace weft::tools::hard

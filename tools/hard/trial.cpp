@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+
+#include "tools/cpu_time.h"
 
 namespace weft::tools::hard {
 namespace {
@@ -42,12 +43,11 @@ void add(Observed& o, const Trial& trial, const StepReport& report) {
 
 bool take_step(Observed& o, const Trial& trial, Cloth& cloth) {
   const double dt = trial.varying_dt ? trial.varying_dt(o.steps) : trial.dt;
-  const auto start = std::chrono::steady_clock::now();
+  const double start = cpu_seconds();
   const auto report = cloth.step(dt);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  const double took = cpu_seconds() - start;
   if (!report) return o.refusal = report.error(), false;
-  o.seconds += took.count();
-  o.slowest_seconds = std::max(o.slowest_seconds, took.count());
+  o.seconds += took;
   o.end = snapshot(cloth);
   add(o, trial, report.value());
   return committed(report.value().status);

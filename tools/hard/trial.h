@@ -34,8 +34,7 @@ struct Observed {
   double max_penetration = 0;
   double energy_start = 0, energy_gain = 0, energy_end = 0;  ///< J; gain: the largest over start
   double most_kinetic = 0, end_kinetic = 0;
-  double seconds = 0;          ///< in step()
-  double slowest_seconds = 0;  ///< of one step
+  double seconds = 0;  ///< of the processor, in step()
   Snapshot end = {};
 
   double ms_per_step() const { return steps > 0 ? 1e3 * seconds / steps : 0; }

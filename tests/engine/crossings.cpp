@@ -1,0 +1,75 @@
+/// What goes through a sphere within one step is prevented or reported.
+#include <doctest/doctest.h>
+
+#include "tests/support/clothes.h"
+
+namespace weft::test {
+namespace {
+
+/// A sphere of radius 0.1 at the origin, fixed, and a free particle on its way along x, `aside` of
+/// the line through the centre.
+SceneDescription shot(double from, double speed, double aside) {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {from, aside, 0}};
+  scene.velocities = {{0, 0, 0}, {speed, 0, 0}};
+  scene.masses = {1, 1};
+  scene.fixed = {0};
+  scene.spheres = {0};
+  scene.radii = {0.1, 0};
+  scene.gravity = {0, 0, 0};
+  return scene;
+}
+
+TEST_CASE("a particle that crosses a sphere in one step is reported, and where it went") {
+  const Backend backend = each_backend();
+  for (const double aside : {0.0, 0.05, 0.09}) {
+    CAPTURE(aside);
+    Cloth cloth = cloth_of(shot(-0.5, 100, aside), on(backend));
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::passed_through);
+    CHECK(report.passed_particle == 1);
+    CHECK(report.failed_particle == kNoIndex);
+    CHECK(cloth.position(1).x == doctest::Approx(0.5));
+    CHECK(step(cloth, 0.01).status == Status::converged);
+  }
+}
+
+TEST_CASE("so is one that a contact pushes out on the far side") {
+  const Backend backend = each_backend();
+  Cloth cloth = cloth_of(shot(-0.11, 15, 0.01), on(backend));
+  CHECK(step(cloth, 0.01).status == Status::passed_through);
+}
+
+TEST_CASE("what passes by, grazes, is stopped, or goes slowly enough is not") {
+  const Backend backend = each_backend();
+  const auto status = [&](double from, double speed, double aside) {
+    Cloth cloth = cloth_of(shot(from, speed, aside), on(backend));
+    return step(cloth, 0.01).status;
+  };
+  CHECK(status(-0.5, 100, 0.11) == Status::converged);   // beside it
+  CHECK(status(-0.5, 100, 0.099) == Status::converged);  // through its outermost percent
+  CHECK(status(-0.5, 35, 0) == Status::converged);       // ends before it
+  CHECK(status(-0.11, 6, 0) == Status::converged);       // in contact, pushed back
+  CHECK(status(-0.5, -100, 0) == Status::converged);     // away from it
+}
+
+TEST_CASE("smaller steps see what a long one passes over") {
+  const Backend backend = each_backend();
+  Settings settings = on(backend);
+  settings.substeps = 20;
+  Cloth cloth = cloth_of(shot(-0.5, 100, 0), settings);
+  CHECK(step(cloth, 0.01).status == Status::converged);
+  CHECK(cloth.position(1).x < 0);
+}
+
+TEST_CASE("a fixed number of iterations hides no crossing") {
+  const Backend backend = each_backend();
+  Settings settings = on(backend);
+  settings.iterations = 3;
+  Cloth cloth = cloth_of(shot(-0.5, 100, 0), settings);
+  CHECK(step(cloth, 0.01).status == Status::passed_through);
+  CHECK(step(cloth, 0.01).status == Status::fixed_iterations);
+}
+
+}  // namespace
+}  // namespace weft::test
