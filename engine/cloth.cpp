@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "engine/choose_solver.h"
 #include "engine/contacts.h"
 #include "engine/isa.h"
 #include "engine/measure.h"
@@ -59,6 +60,7 @@ Result<Cloth> Cloth::create(std::shared_ptr<const Model> model, const Settings& 
   Settings resolved = settings;
   resolved.isa = isa.value();
   resolved.velocity_correction |= settings.scheme == Scheme::rattle;
+  choose_solver(resolved);
   return Cloth(std::make_unique<Impl>(std::move(model), resolved));
 }
 

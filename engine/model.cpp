@@ -134,6 +134,10 @@ const DirectLayout& Model::direct() const {
   return direct_.get([this] { return make_direct_layout(*this); });
 }
 
+const YarnLayout& Model::yarns() const {
+  return yarns_.get([this] { return make_yarn_layout(*this); });
+}
+
 std::size_t Model::bytes() const {
   const ConstraintStore& s = constraints;
   const Ordering& o = ordering;
@@ -145,7 +149,7 @@ std::size_t Model::bytes() const {
          bytes_of(s.effective_mass) + bytes_of(s.colour) + bytes_of(s.described) +
          bytes_of(s.slot) + bytes_of(fixed_particle_) + bytes_of(hub_particle_) +
          bytes_of(described_link_) + bytes_if_made(reference_) + bytes_if_made(simd_) +
-         bytes_if_made(direct_);
+         bytes_if_made(direct_) + bytes_if_made(yarns_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

@@ -14,6 +14,7 @@
 #include "engine/solvers/direct_layout.h"
 #include "engine/solvers/reference_layout.h"
 #include "engine/solvers/simd_layout.h"
+#include "engine/solvers/yarn_layout.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -66,6 +67,7 @@ class Model {
   const ReferenceLayout& reference() const;
   const SimdLayout& simd() const;
   const DirectLayout& direct() const;
+  const YarnLayout& yarns() const;
 
  private:
   void find_hubs(const SceneDescription& description);
@@ -82,6 +84,7 @@ class Model {
   OnDemand<ReferenceLayout> reference_;
   OnDemand<SimdLayout> simd_;
   OnDemand<DirectLayout> direct_;
+  OnDemand<YarnLayout> yarns_;
 };
 
 }  // namespace weft

@@ -9,6 +9,10 @@ std::string_view name(Solver solver) {
       return "gauss_seidel";
     case Solver::direct:
       return "direct";
+    case Solver::yarn:
+      return "yarn";
+    case Solver::automatic:
+      return "auto";
   }
   return "unknown";
 }

@@ -10,7 +10,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   velocity = model->initial_velocity;
   solved.resize(model->slots());
   next_velocity.resize(model->slots());
-  if (settings.substeps > 1) {
+  if (settings.substeps != 1 || settings.solver != Solver::gauss_seidel) {
     start_position.resize(model->slots());
     start_velocity.resize(model->slots());
   }
@@ -23,6 +23,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     simd.emplace(*model, settings, to_kernel(settings.isa));
   }
   if (settings.solver == Solver::direct) direct.emplace(*model, settings, *kernels);
+  if (settings.solver == Solver::yarn) yarn.emplace(*model, settings, *kernels);
 }
 
 std::size_t State::bytes() const {
@@ -38,6 +39,7 @@ std::size_t State::bytes() const {
   if (reference) sum += reference->bytes();
   if (simd) sum += simd->bytes();
   if (direct) sum += direct->bytes();
+  if (yarn) sum += yarn->bytes();
   return sum;
 }
 

@@ -23,6 +23,7 @@
 #include "engine/solvers/reference_solver.h"
 #include "engine/solvers/simd_solver.h"
 #include "engine/solvers/team.h"
+#include "engine/solvers/yarn_solver.h"
 #include "kernels/kicks.h"
 #include "kernels/vectors.h"
 
@@ -48,6 +49,7 @@ struct State {
   kernels::Vectors predicted;  // reference only
   std::optional<SimdSolver> simd;
   std::optional<DirectSolver> direct;  // with Solver::direct; those above then are its answer
+  std::optional<YarnSolver> yarn;      // with Solver::yarn
   const simd::Table* kernels = nullptr;
   std::shared_ptr<Team::Meeting> meeting = Team::make_meeting();  // of the team of each step
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -184,9 +185,40 @@ kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView st
   return s.direct->solve_from_start(s.solved.view(), start, s.contacts, first, left);
 }
 
-kernels::LoopResult solve_positions(State& s, double h, bool first, int left,
+/// What is done where the chosen solver gives up: the substep is left to be done in halves, or
+/// Gauss-Seidel sweeps go on from there.
+enum class OnFailure : std::uint8_t { give_up, sweep };
+
+/// One way to try a substep.
+struct Attempt {
+  double h = 0;
+  int most_iterations = 1;
+  OnFailure on_failure = OnFailure::sweep;
+  kernels::VectorsView start{};  // with scheme rattle: where the directions are
+};
+
+/// Yarns; from where they leave off, if need be, sweeps.
+kernels::LoopResult solve_yarns(State& s, double h, bool first, int left, OnFailure on_failure,
+                                Standstill& standstill, Team& team) {
+  auto result = s.yarn->solve_positions(s.solved.view(), s.contacts, first, left, *s.simd, team);
+  if (!result.failed || on_failure == OnFailure::give_up) return result;
+  predict(s, h, team);
+  const auto swept = sweep_on(s, h, true, left - result.iterations, standstill, team);
+  result.iterations += swept.iterations;
+  result.direction_updates += swept.direction_updates;
+  result.visits += swept.visits;
+  result.corrections += swept.corrections;
+  result.converged = swept.converged;
+  return result;
+}
+
+kernels::LoopResult solve_positions(State& s, double h, bool first, int left, OnFailure on_failure,
                                     Standstill& standstill, Team& team) {
+  if (s.yarn) return solve_yarns(s, h, first, left, on_failure, standstill, team);
   if (!s.direct) return sweep_on(s, h, first, left, standstill, team);
+  if (on_failure == OnFailure::give_up) {
+    return s.direct->solve_positions(s.solved.view(), s.contacts, first, left, {});
+  }
   const Answer answer{s, h, standstill, team};
   const auto sweeps = [&answer](bool begin, int most) {
     auto result = sweep_on(answer.state, answer.h, begin, most, answer.standstill, answer.team);
@@ -206,14 +238,16 @@ kernels::LoopResult correct_velocities(State& s, Team& team) {
       [&answer](bool, int) { return std::apply(sweep_velocities, answer); });
 }
 
-void solve_positions(State& s, double h, kernels::VectorsView start, StepReport& report,
-                     Team& team) {
-  int left = s.settings.max_iterations;
+/// Returns whether the solver gave up.
+bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+  int left = attempt.most_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
     Standstill standstill;
     const bool first = round == 0;
-    const auto result = start.x != nullptr ? solve_from_start(s, h, start, first, left, team)
-                                           : solve_positions(s, h, first, left, standstill, team);
+    const auto result =
+        attempt.start.x != nullptr
+            ? solve_from_start(s, attempt.h, attempt.start, first, left, team)
+            : solve_positions(s, attempt.h, first, left, attempt.on_failure, standstill, team);
     add(report, result);
     if (!result.converged && standstill.reached()) worsen(report, Status::infeasible);
     report.iterations += result.iterations;
@@ -222,9 +256,10 @@ void solve_positions(State& s, double h, kernels::VectorsView start, StepReport&
     const bool again = s.model->has_contacts() && result.converged &&
                        add_missed_contacts(*s.model, *s.kernels, s.solved.view(),
                                            s.settings.contact_tolerance, s.contacts) > 0;
-    if (!again) return;
+    if (!again) return result.failed && attempt.on_failure == OnFailure::give_up;
   }
   worsen(report, Status::iteration_limit);
+  return false;
 }
 
 void correct_velocities(State& s, StepReport& report, Team& team) {
@@ -233,13 +268,7 @@ void correct_velocities(State& s, StepReport& report, Team& team) {
   report.velocity_iterations += result.iterations;
 }
 
-/// The next state becomes the state, if it is one.
-bool accept(State& s) {
-  if (!all_finite(s.solved) || !all_finite(s.next_velocity)) return false;
-  std::swap(s.position, s.solved);
-  std::swap(s.velocity, s.next_velocity);
-  return true;
-}
+bool is_finite(const State& s) { return all_finite(s.solved) && all_finite(s.next_velocity); }
 
 void report_errors(State& s, StepReport& report, Team& team) {
   const Strain strain = strain_at(s, s.position, team);
@@ -266,28 +295,32 @@ int threads_worth_having(const State& s) {
 /// there unless all are done, whatever the reason.
 class Transaction {
  public:
-  explicit Transaction(State& s) : s_(s) {
-    if (s.settings.substeps == 1) return;
-    s.start_position = s.position;
-    s.start_velocity = s.velocity;
-  }
+  explicit Transaction(State& s) : s_(s) {}
   ~Transaction() {
-    if (accepted_ == 0 || accepted_ == s_.settings.substeps) return;
+    if (!begun_ || complete_) return;
     std::swap(s_.position, s_.start_position);
     std::swap(s_.velocity, s_.start_velocity);
   }
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
 
-  bool accept() {
-    const bool accepted = weft::accept(s_);
-    accepted_ += accepted;
-    return accepted;
+  /// The substep becomes the state, if it is one; the last one ends the step.
+  bool accept(bool last) {
+    if (!is_finite(s_)) return false;
+    if (!begun_ && !last) {
+      s_.start_position = s_.position;
+      s_.start_velocity = s_.velocity;
+      begun_ = true;
+    }
+    std::swap(s_.position, s_.solved);
+    std::swap(s_.velocity, s_.next_velocity);
+    complete_ = last;
+    return true;
   }
 
  private:
   State& s_;
-  int accepted_ = 0;
+  bool begun_ = false, complete_ = false;
 };
 
 /// Of a substep that was not accepted: who left the range of numbers, and whether that would have
@@ -309,14 +342,18 @@ void watch_crossings(State& s, StepReport& report) {
   worsen(report, Status::passed_through);
 }
 
-/// With a start: by scheme rattle.
-void substep(State& s, double h, kernels::VectorsView start, StepReport& report, Team& team) {
+/// Returns whether the solver gave up; then there is no next state.
+bool substep(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+  const double h = attempt.h;
   timed(report, Stage::predict, [&] { predict(s, h, team); });
   if (s.model->has_contacts()) {
     timed(report, Stage::find_contacts,
           [&] { find_contacts(*s.model, *s.kernels, s.solved.view(), s.contacts); });
   }
-  timed(report, Stage::solve_positions, [&] { solve_positions(s, h, start, report, team); });
+  bool gave_up = false;
+  timed(report, Stage::solve_positions,
+        [&] { gave_up = solve_positions(s, attempt, report, team); });
+  if (gave_up) return true;
   timed(report, Stage::commit, [&] { commit(s, h, team); });
   if (s.settings.velocity_correction) {
     timed(report, Stage::correct_velocities, [&] { correct_velocities(s, report, team); });
@@ -327,37 +364,105 @@ void substep(State& s, double h, kernels::VectorsView start, StepReport& report,
   if (s.model->has_contacts()) {
     timed(report, Stage::find_contacts, [&] { watch_crossings(s, report); });
   }
+  return false;
 }
 
 /// Until it is accepted a substep leaves position and velocity alone: it can be done again. With a
 /// fixed number of iterations it is not.
-void substep(State& s, double h, StepReport& report, Team& team) {
-  if (s.settings.scheme == Scheme::paper) return substep(s, h, {}, report, team);
+bool substep_of_scheme(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+  if (s.settings.scheme == Scheme::paper) return substep(s, attempt, report, team);
   const Status before = std::exchange(report.status, Status::converged);
-  substep(s, h, s.position.view(), report, team);
+  Attempt by_rattle = attempt;
+  by_rattle.start = s.position.view();
+  const bool gave_up = substep(s, by_rattle, report, team);
   const bool good = report.status == Status::fixed_iterations ||
-                    (report.status == Status::converged && keeps_energy(measure_kicks(s, h, team)));
-  if (good) return worsen(report, before);
+                    (report.status == Status::converged && !gave_up &&
+                     keeps_energy(measure_kicks(s, attempt.h, team)));
+  if (good) {
+    worsen(report, before);
+    return false;
+  }
   report.status = before;
   ++report.scheme_fallbacks;
-  substep(s, h, {}, report, team);
+  return substep(s, attempt, report, team);
 }
 
-void run_substeps(State& s, double h, StepReport& report, Team& team) {
-  Transaction transaction(s);
-  for (int k = 0; k < s.settings.substeps; ++k) {
-    substep(s, h, report, team);
-    if (transaction.accept()) continue;
-    return explain(s, h, report, team);
-  }
+/// How the largest strain after a step without constraints decides about the substeps: a quarter of
+/// it for twice as many.
+constexpr double kMostBend = 0.02;
+constexpr int kMostSubsteps = 256;
+
+/// As many as the motion wants: see kMostBend.
+int choose_substeps(State& s, double dt, Team& team) {
+  if (s.settings.substeps != kAutomaticSubsteps) return s.settings.substeps;
+  predict(s, dt, team);
+  const double wanted = std::ceil(std::sqrt(strain_at(s, s.solved, team).max / kMostBend));
+  return wanted < kMostSubsteps ? std::max(1, static_cast<int>(wanted)) : kMostSubsteps;
 }
+
+/// How often a substep whose solver gives up may be cut in two.
+constexpr int kMostHalvings = 4;
+
+/// The substeps of a step.
+class Substeps {
+ public:
+  Substeps(State& s, StepReport& report, Team& team)
+      : s_(s), report_(report), team_(team), transaction_(s) {
+    halving_helps_ = s.settings.iterations == 0 && s.settings.solver != Solver::gauss_seidel;
+  }
+
+  void run(double dt) {
+    const int substeps = choose_substeps(s_, dt, team_);
+    for (int k = 1; k <= substeps; ++k) {
+      left_ = s_.settings.max_iterations;
+      if (!advance(dt / substeps, 0, k == substeps)) return;
+    }
+  }
+
+ private:
+  /// Advances by h, in halves where the solver gives up. Where even the shortest of these do not
+  /// converge, halving is no answer: the rest of the step goes without. False: the state could not
+  /// be accepted.
+  bool advance(double h, int halvings, bool last) {
+    const Status before = report_.status;
+    const bool may_halve = halving_helps_ && halvings < kMostHalvings && left_ > 0;
+    const int iterations = report_.iterations;
+    const Attempt attempt{h, std::max(left_, 1), may_halve ? OnFailure::give_up : OnFailure::sweep};
+    const bool gave_up = substep_of_scheme(s_, attempt, report_, team_);
+    left_ -= report_.iterations - iterations;
+    if (may_halve && (gave_up || !is_finite(s_))) {
+      report_.status = before;
+      halving_helps_ = begins_well();
+      if (!halving_helps_) return advance(h, halvings, last);
+      ++report_.halvings;
+      return advance(h / 2, halvings + 1, false) && advance(h / 2, halvings + 1, last);
+    }
+    halving_helps_ = halving_helps_ && report_.status <= Status::fixed_iterations;
+    if (transaction_.accept(last)) {
+      ++report_.substeps;
+      return true;
+    }
+    explain(s_, h, report_, team_);
+    return false;
+  }
+
+  /// What a state already violates becomes a velocity, error / h: the shorter, the worse.
+  bool begins_well() { return strain_at(s_, s_.position, team_).max <= 2 * s_.settings.tolerance; }
+
+  State& s_;
+  StepReport& report_;
+  Team& team_;
+  Transaction transaction_;
+  bool halving_helps_ = false;
+  int left_ = 0;  // iterations, of a substep and its parts together
+};
 
 }  // namespace
 
 StepReport step(State& s, double dt) {
   StepReport report;
   Team team(threads_worth_having(s), s.meeting);
-  run_substeps(s, dt / s.settings.substeps, report, team);
+  Substeps(s, report, team).run(dt);
   if (report.status != Status::passed_through) report.passed_particle = kNoIndex;
   timed(report, Stage::report, [&] { report_errors(s, report, team); });
   return report;

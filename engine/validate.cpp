@@ -174,7 +174,7 @@ Result<void> validate(const SceneDescription& d) {
 
 Result<void> validate(const Settings& s) {
   if (auto r = validate_positive("tolerance", s.tolerance); !r) return r;
-  if (auto r = validate_count("substeps", s.substeps, 1); !r) return r;
+  if (auto r = validate_count("substeps", s.substeps, kAutomaticSubsteps); !r) return r;
   if (auto r = validate_count("iterations", s.iterations, 0); !r) return r;
   if (auto r = validate_count("renew_after", s.renew_after, 0); !r) return r;
   if (auto r = validate_count("max_iterations", s.max_iterations, 1); !r) return r;
@@ -183,15 +183,21 @@ Result<void> validate(const Settings& s) {
   if (!std::isfinite(s.impulse_limit) || s.impulse_limit < 0) {
     return refuse("impulse_limit", "must be finite and at least 0", number(s.impulse_limit));
   }
-  if (auto r = validate_choice("solver", s.solver, Solver::direct); !r) return r;
+  if (auto r = validate_choice("solver", s.solver, Solver::automatic); !r) return r;
   if (auto r = validate_choice("scheme", s.scheme, Scheme::rattle); !r) return r;
   if (auto r = validate_choice("backend", s.backend, Backend::simd); !r) return r;
   if (s.impulse_limit > 0 && s.backend != Backend::reference) {
     return refuse("impulse_limit", "only the reference backend limits impulses",
                   number(s.impulse_limit));
   }
-  if (s.impulse_limit > 0 && s.solver == Solver::direct) {
-    return refuse("impulse_limit", "the direct solver limits no impulses", number(s.impulse_limit));
+  if (s.impulse_limit > 0 && (s.solver == Solver::direct || s.solver == Solver::yarn)) {
+    return refuse("impulse_limit", "only Gauss-Seidel limits impulses", number(s.impulse_limit));
+  }
+  if (s.solver == Solver::yarn && s.backend != Backend::simd) {
+    return refuse("solver", "yarn is for the simd backend", std::string(name(s.backend)));
+  }
+  if (s.solver == Solver::yarn && s.scheme == Scheme::rattle) {
+    return refuse("scheme", "the yarn solver has the paper's alone", std::string(name(s.scheme)));
   }
   if (s.threads < 0 || s.threads > kMaxThreads) {
     return refuse("threads", "must be from 0 to " + std::to_string(kMaxThreads),

@@ -54,7 +54,7 @@ std::string name_of(const Case& c) {
 }
 
 Settings settings_of(const Case& c) {
-  Settings settings;
+  Settings settings = paper_settings();
   settings.backend = c.backend;
   settings.isa = static_cast<Isa>(static_cast<int>(c.isa) + 1);  // Isa::automatic comes first
   settings.threads = 1;

@@ -39,10 +39,9 @@ int steps_of(double strain, bool quick) {
 }
 
 Settings settings_of(const Cell& cell, const Variant& variant) {
-  Settings settings;
+  Settings settings = paper_settings();
   settings.tolerance = cell.strain;
   settings.velocity_correction = cell.velocity_correction;
-  settings.solver = Solver::gauss_seidel;
   settings.scheme = Scheme::paper;
   settings.backend = Backend::reference;
   settings.anticipate = variant.anticipate;

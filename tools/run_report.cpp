@@ -67,6 +67,12 @@ std::string goal_text(const Settings& settings) {
 
 }  // namespace
 
+/// Of a frame: as asked for, or the mean of those chosen.
+Json substeps(const RunReport& report) {
+  if (report.settings.substeps != kAutomaticSubsteps) return report.settings.substeps;
+  return mean(report.summary.substeps, report.summary.frames);
+}
+
 Json to_json(const RunReport& report) {
   const RunSummary& summary = report.summary;
   const Settings& settings = report.settings;
@@ -83,7 +89,8 @@ Json to_json(const RunReport& report) {
       {"dt", report.plan.dt},
       {"steps", summary.frames},
       {"frames", summary.frames},
-      {"substeps", settings.substeps},
+      {"substeps", substeps(report)},
+      {"halvings", summary.halvings},
       {"tolerance", settings.tolerance},
       {"status", name(summary.status)},
       {"ms_per_frame", 1e3 * summary.seconds_per_frame()},
@@ -123,11 +130,13 @@ std::string to_table(const RunReport& report) {
                             name(settings.scheme), name(settings.backend), goal_text(settings)));
   if (settings.scheme == Scheme::rattle) {
     row("scheme", fmt::format("{} of {} substeps left to scheme paper", summary.scheme_fallbacks,
-                              std::int64_t{summary.frames} * settings.substeps));
+                              summary.substeps));
   }
-  const auto substeps =
-      settings.substeps > 1 ? fmt::format(" in {} substeps each", settings.substeps) : "";
-  row("frames", fmt::format("{} of {} s{}, status {}", summary.frames, report.plan.dt, substeps,
+  const auto in_substeps =
+      settings.substeps != 1
+          ? fmt::format(" in {:.3g} substeps each", mean(summary.substeps, summary.frames))
+          : "";
+  row("frames", fmt::format("{} of {} s{}, status {}", summary.frames, report.plan.dt, in_substeps,
                             name(summary.status)));
   row("time", fmt::format("{:.4g} ms per frame, {:.3g} times real time, at max strain {}",
                           1e3 * summary.seconds_per_frame(), real_time_factor(report),

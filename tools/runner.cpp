@@ -25,6 +25,8 @@ double lowest_y(const Cloth& cloth) {
 
 void add_work(RunSummary& summary, const StepReport& report) {
   summary.status = std::max(summary.status, report.status);
+  summary.substeps += report.substeps;
+  summary.halvings += report.halvings;
   summary.iterations += report.iterations;
   summary.velocity_iterations += report.velocity_iterations;
   summary.direction_updates += report.direction_updates;

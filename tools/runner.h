@@ -43,6 +43,8 @@ struct RunSummary {
   double solver_seconds = 0;  ///< of all stages but `report`, as the steps themselves measured it
   std::array<double, kStageCount> stage_seconds{};
 
+  std::int64_t substeps = 0;
+  std::int64_t halvings = 0;
   std::int64_t iterations = 0;
   std::int64_t velocity_iterations = 0;
   std::int64_t direction_updates = 0;

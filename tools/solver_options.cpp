@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::array<Choice<Solver>, 4> kSolvers{{
     {"gauss_seidel", Solver::gauss_seidel},
-    {"yarn", std::nullopt},
+    {"yarn", Solver::yarn},
     {"direct", Solver::direct},
-    {"auto", std::nullopt},
+    {"auto", Solver::automatic},
 }};
 constexpr std::array<Choice<Scheme>, 2> kSchemes{{
     {"paper", Scheme::paper},
@@ -65,7 +65,10 @@ Result<void> choose_tolerance(const std::optional<std::string>& text, double& fi
 
 Result<void> choose_substeps(const std::optional<std::string>& text, int& field) {
   if (!text) return {};
-  if (text == "auto") return Error{"--substeps auto: not available yet"};
+  if (text == "auto") {
+    field = kAutomaticSubsteps;
+    return {};
+  }
   const auto count = parse_count(*text);
   if (!count || *count < 1 || *count > std::numeric_limits<int>::max()) {
     return Error{fmt::format("--substeps: '{}' is not a whole number above 0", *text)};
@@ -90,7 +93,9 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
                   "m/s left along a constraint (default 0.01)");
   verb.add_option("--impulse-limit", settings.impulse_limit,
                   "N s, largest impulse of one correction (default 0: no limit)");
-  verb.add_option("--solver", options.solver, "gauss_seidel (default) or direct");
+  verb.add_option("--solver", options.solver,
+                  "auto (default), gauss_seidel, yarn or direct; gauss_seidel where "
+                  "--anticipate, --skip or --directions choose among its methods");
   verb.add_option("--scheme", options.scheme,
                   "paper (default), or rattle: second order; implies --velocity-correction on");
   verb.add_option(
@@ -112,8 +117,10 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
                   "sse2, avx2, avx512 or auto (default: WEFT_ISA, else the best there is)");
   verb.add_option("--threads", settings.threads,
                   "most threads of a step (default 0: one for each processor)");
-  verb.add_option("--substeps", options.substeps,
-                  "steps that a frame is done in, each to the tolerances (default 1)");
+  verb.add_option(
+      "--substeps", options.substeps,
+      "steps that a frame is done in, each to the tolerances; auto: as many as the motion "
+      "wants (default: auto with --solver auto, else 1)");
 }
 
 Result<Settings> settings_of(const SolverOptions& options) {
@@ -134,6 +141,9 @@ Result<Settings> settings_of(const SolverOptions& options) {
   for (const Result<void>& check : checks) {
     if (!check) return Error{check.error()};
   }
+  const bool methods = options.anticipate || options.skip || options.directions;
+  if (methods && !options.solver) settings.solver = Solver::gauss_seidel;
+  if (settings.solver != Solver::automatic && !options.substeps) settings.substeps = 1;
   return settings;
 }
 

@@ -40,6 +40,8 @@ class Team {
 
   static std::shared_ptr<Meeting> make_meeting();
 
+  /// Threads, if all that were asked for come.
+  std::size_t size() const { return static_cast<std::size_t>(helpers_ > 0 ? helpers_ + 1 : 1); }
   /// work(i) for i in [0, count), in shares of consecutive i; returns when all are done.
   template <class Work>
   void for_each(std::size_t count, Work&& work) {

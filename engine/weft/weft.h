@@ -133,7 +133,7 @@ ModelInfo describe(const Model& model);
 ///   bends edges by much of their length: use substeps), Gauss-Seidel answers, and
 ///   StepReport::iterations counts its passes too. Not yet for a free sphere in substeps at a loose
 ///   tolerance: sphere_drop in 4 substeps at 1 % gains energy (10 J; at 0.01 % it does not).
-enum class Solver : std::uint8_t { gauss_seidel, direct };
+enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
 /// paper: impulses along the directions of the previewed state; first order, and dissipative.
 /// rattle: along those at the start of the substep, and the velocity correction always: second
 ///   order (hang, 20 x 20, dt 0.01: 27 times less far from the converged motion). Contacts come
@@ -154,13 +154,16 @@ enum class Backend : std::uint8_t { reference, simd };
 enum class Isa : std::uint8_t { automatic, sse2, avx2, avx512 };
 
 inline constexpr int kMaxThreads = 256;
+inline constexpr int kAutomaticSubsteps = 0;
 
 /// How a cloth is solved. The defaults converge to 1 % with all of the paper's optimisations.
 struct Settings {
   double tolerance = 0.01;  ///< strain, | |a-b| - rest | / rest, that every step must reach; > 0
-  /// A step of dt is done as so many steps of dt / substeps, each to the tolerances; >= 1. Fine
+  /// A step of dt is done as so many steps of dt / substeps, each to the tolerances; 0
+  /// (kAutomaticSubsteps): as many as the motion wants. A substep whose solver gives up before
+  /// max_iterations is done again in halves, up to 16 parts of it (StepReport::halvings). Fine
   /// meshes want small steps. Iterations, and their bounds, are those of one substep.
-  int substeps = 1;
+  int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per step whatever the error, nothing
   /// skipped, frozen directions renewed once per step.
   int iterations = 0;
@@ -173,7 +176,7 @@ struct Settings {
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
   double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit
-  Solver solver = Solver::gauss_seidel;
+  Solver solver = Solver::automatic;
   Scheme scheme = Scheme::paper;
   Backend backend = Backend::simd;
   Isa isa = Isa::automatic;
@@ -189,6 +192,14 @@ struct Settings {
   bool velocity_correction = false;  ///< sections 3.2, 3.3: a second loop, on velocities; rattle
                                      ///< has it always
 };
+
+/// The method of the paper, with all its optimisations: Gauss-Seidel, one substep.
+inline Settings paper_settings() {
+  Settings settings;
+  settings.solver = Solver::gauss_seidel;
+  settings.substeps = 1;
+  return settings;
+}
 
 /// converged: every constraint is within its tolerance.
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
@@ -240,6 +251,8 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 /// is the worst of them, the errors are those at the end.
 struct StepReport {
   Status status = Status::converged;
+  int substeps = 0;              ///< that the step was done in
+  int halvings = 0;              ///< substeps that were done again in halves
   int iterations = 0;            ///< passes over the position constraints; direct: solves
   int direction_updates = 0;     ///< renewals of the constraint directions
   int velocity_iterations = 0;   ///< passes of the velocity loop
@@ -284,7 +297,7 @@ class Cloth {
 
   std::size_t particle_count() const;
   const Model& model() const;
-  const Settings& settings() const;  ///< isa and velocity_correction resolved
+  const Settings& settings() const;  ///< isa, solver and velocity_correction resolved
 
   Vec3 position(std::uint32_t particle) const;
   Vec3 velocity(std::uint32_t particle) const;

@@ -9,6 +9,8 @@
 #include "kernels/simd/masks.h"
 #include "kernels/simd/measure.h"
 #include "kernels/simd/relax.h"
+#include "kernels/simd/split.h"
+#include "kernels/simd/yarn_system.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {
@@ -40,6 +42,15 @@ constexpr Table make_table() {
           .relax_anticipated_singles = relax_anticipated_singles,
           .apply_sums_run = apply_sums_run,
           .apply_sums_singles = apply_sums_singles,
+          .split_positions = split_positions,
+          .join_positions = join_positions,
+          .yarn_place = yarn_place,
+          .yarn_sweep = yarn_sweep,
+          .yarn_linearise = yarn_linearise,
+          .yarn_precondition = yarn_precondition,
+          .yarn_push = yarn_push,
+          .yarn_pull = yarn_pull,
+          .yarn_finish = yarn_finish,
           .strain_run = strain_run,
           .strain_singles = strain_singles,
           .eliminate_front = eliminate_front,

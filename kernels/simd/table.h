@@ -119,6 +119,48 @@ struct Front {
   double* scratch = nullptr;      // as large as panel
 };
 
+/// A vector in each lane.
+struct alignas(64) LaneVectors {
+  float x[kernels::kLanes], y[kernels::kLanes], z[kernels::kLanes];
+};
+
+/// Row k of a block of yarns (yarns.h): particle k of kLanes yarns, and what joins it to particle
+/// k + 1; rest length 0: nothing does.
+struct alignas(64) YarnRow {
+  LaneVectors base;
+  float rest[kernels::kLanes];
+  float inverse_mass[kernels::kLanes];
+};
+
+/// The same row of the linear system (yarn_system.h).
+struct alignas(64) YarnSystemRow {
+  LaneVectors n;
+  float m[kernels::kLanes], reciprocal[kernels::kLanes];  // factors
+  float lambda[kernels::kLanes], residual[kernels::kLanes];
+  float z[kernels::kLanes], p[kernels::kLanes], q[kernels::kLanes];
+};
+
+/// What a sweep keeps of a row between the way down and the way up; y = r b.
+struct alignas(64) YarnScratch {
+  LaneVectors u, n;
+  float m[kernels::kLanes], y[kernels::kLanes];
+};
+
+struct YarnBlock {
+  std::uint32_t first = 0, last = 0;  // rows
+};
+
+struct Yarns {
+  YarnRow* rows = nullptr;
+  YarnSystemRow* system = nullptr;
+  const std::uint32_t* slot = nullptr;  // per row and lane; padding: slots of no particle
+};
+
+struct YarnProducts {
+  float product = 0;  // residual . z
+  float worst = 0;    // largest |residual| / rest
+};
+
 /// Sums over a run, in an order that depends on nothing but the run.
 struct StrainSums {
   double largest = 0;
@@ -183,6 +225,23 @@ struct Table {
   void (*apply_sums_run)(const Anticipation&, const Relaxation&, const Run&);
   void (*apply_sums_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
                              std::uint32_t last);
+
+  /// base = x rounded to float, u = x - base, and x = base + u; quads.
+  void (*split_positions)(kernels::VectorsView x, Displacements base, Displacements u,
+                          std::size_t first, std::size_t last);
+  void (*join_positions)(kernels::VectorsView x, Displacements base, Displacements u,
+                         std::size_t first, std::size_t last);
+  /// Fetches the base of a block's positions.
+  void (*yarn_place)(const Yarns&, const YarnBlock&, Displacements base);
+  /// Solves the yarns of a block; returns the largest |error| / length that it found. scratch: as
+  /// many rows as the block.
+  float (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
+  /// Conjugate gradients over all yarns (yarn_system.h); push goes family by family.
+  float (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);
+  YarnProducts (*yarn_precondition)(const Yarns&, const YarnBlock&, float alpha);
+  void (*yarn_push)(const Yarns&, const YarnBlock&, float beta, Displacements t);
+  float (*yarn_pull)(const Yarns&, const YarnBlock&, Displacements t);
+  void (*yarn_finish)(const Yarns&, const YarnBlock&, Displacements u);
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);

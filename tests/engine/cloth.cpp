@@ -41,7 +41,7 @@ TEST_CASE("packed floats are the positions, x y z") {
 TEST_CASE("a state that is read and written into another cloth goes on bit for bit") {
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
-    Settings settings = with({}, method);
+    Settings settings = with(paper_settings(), method);
     settings.velocity_correction = true;
     const SceneDescription scene = scene_of("hang_sphere", 8);
     Cloth first = cloth_of(scene, settings);

@@ -211,7 +211,7 @@ TEST_CASE("no step ends with more penetration than the tolerance") {
   const SceneDescription scene = hail();
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
-    Settings settings = with({}, method);
+    Settings settings = with(paper_settings(), method);
     settings.contact_tolerance = 1e-6;
     Cloth cloth = cloth_of(scene, settings);
     int most = 0;

@@ -46,7 +46,7 @@ TEST_CASE("a warm step allocates nothing") {
         CAPTURE(std::string(name));
         CAPTURE(text(method));
         CAPTURE(velocity_correction);
-        Settings settings = with({}, method);
+        Settings settings = with(paper_settings(), method);
         settings.velocity_correction = velocity_correction;
         CHECK(allocations_when_warm(name, settings) == 0);
       }
@@ -57,7 +57,7 @@ TEST_CASE("a warm step allocates nothing") {
 TEST_CASE("without contacts even the first step allocates nothing") {
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
-    Cloth cloth = cloth_of(scene_of("hang", 7), with({}, method));
+    Cloth cloth = cloth_of(scene_of("hang", 7), with(paper_settings(), method));
     const std::size_t before = allocations();
     const auto report = cloth.step(0.01);
     const std::size_t after = allocations();

@@ -89,7 +89,7 @@ void check_directions(const Case& c, bool velocity_correction) {
     CAPTURE(c.tolerance);
     CAPTURE(name(directions));
     CAPTURE(velocity_correction);
-    Settings settings;
+    Settings settings = paper_settings();
     settings.tolerance = c.tolerance;
     settings.directions = directions;
     settings.velocity_correction = velocity_correction;

@@ -48,7 +48,7 @@ template <class F>
 void for_every_case(F f) {
   for (const Case& c : cases()) {
     for (const bool other : {false, true}) {
-      Settings settings;
+      Settings settings = paper_settings();
       settings.directions = other ? Directions::each : Directions::frozen;
       settings.velocity_correction = other;
       CAPTURE(c.scene.name);
@@ -121,7 +121,7 @@ TEST_CASE("skipping leaves out much of what is at rest") {
   v.back() = {0, 0, 30};  // one corner is pulled away
   std::int64_t visits[3];
   for (int method = 0; method < 3; ++method) {
-    Settings settings;
+    Settings settings = paper_settings();
     settings.skip = method > 0;
     settings.anticipate = method != 1;
     Cloth cloth = cloth_of(scene, settings);

@@ -51,7 +51,7 @@ TEST_CASE("hang never holds more energy than it started with") {
         CAPTURE(text(method));
         CAPTURE(velocity_correction);
         CAPTURE(tolerance);
-        Settings settings = with({}, method);
+        Settings settings = with(paper_settings(), method);
         settings.tolerance = tolerance;
         settings.velocity_correction = velocity_correction;
         check_hang(8, settings);

@@ -19,7 +19,7 @@ TEST_CASE("a fixed number of iterations visits every constraint so many times") 
     for (const int iterations : {1, 7}) {
       CAPTURE(text(method));
       CAPTURE(iterations);
-      Settings settings = with({}, method);
+      Settings settings = with(paper_settings(), method);
       settings.iterations = iterations;
       Cloth cloth = cloth_of(scene, settings);
       for (int k = 0; k < 20; ++k) {

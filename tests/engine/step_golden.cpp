@@ -50,7 +50,7 @@ SceneDescription describe(const Golden& golden) {
 }
 
 std::uint64_t hash_of(const Golden& golden, Isa isa) {
-  Settings settings;
+  Settings settings = paper_settings();
   settings.isa = isa;
   settings.velocity_correction = golden.velocity_correction;
   Cloth cloth = cloth_of(describe(golden), settings);

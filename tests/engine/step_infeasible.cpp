@@ -45,7 +45,7 @@ TEST_CASE("a chain with its ends too far apart says so, and comes to rest") {
   for (int k = 0; k < 50; ++k) {
     const StepReport report = step(cloth, 0.01);
     CHECK(report.status == Status::infeasible);
-    CHECK(report.iterations < 200'000);
+    CHECK(report.iterations < 300'000);
     CHECK(report.max_strain > 0.1);  // some edge has its share or more
     CHECK(report.max_strain < 0.25);
     CHECK(report.worst_constraint < kLinks);

@@ -136,7 +136,7 @@ TEST_CASE("every method ends every step with every true error within tolerance")
     for (const Method& method : kAllMethods) {
       CAPTURE(std::string(c.scene));
       CAPTURE(text(method));
-      Settings settings = with({}, method);
+      Settings settings = with(paper_settings(), method);
       settings.tolerance = 0.002;
       Cloth cloth = cloth_of(scene, settings);
       for (int k = 0; k < kSteps; ++k) {
@@ -158,7 +158,7 @@ TEST_CASE("at full size, at the paper's tolerances: skipping changes no bit" *
         CAPTURE(std::string(scene_name));
         CAPTURE(tolerance);
         CAPTURE(text(kAllMethods[m]));
-        Settings settings;
+        Settings settings = paper_settings();
         settings.tolerance = tolerance;
         const SceneDescription scene = scene_of(scene_name, 20);
         const Motion all = simulate(scene, with(settings, kAllMethods[m]), 50);
@@ -177,7 +177,7 @@ TEST_CASE("a chain whose end weighs as much as 10,000 links stays within toleran
   REQUIRE(scene);
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
-    const Motion motion = simulate(scene.value(), with({}, method), 10);
+    const Motion motion = simulate(scene.value(), with(paper_settings(), method), 10);
     CHECK(max_strain(scene.value(), motion.positions) <= 0.01 * (1 + 1e-9));
   }
 }

@@ -76,7 +76,7 @@ TEST_CASE("ropes, bars and contacts together: 4.2 and 4.3 change nothing") {
   REQUIRE(describe(*model_of(scene)).ropes > 50);
   for (const bool velocity_correction : {false, true}) {
     for (std::size_t base = 0; base < kAllMethods.size(); base += 4) {
-      Settings settings;
+      Settings settings = paper_settings();
       settings.tolerance = 1e-4;
       settings.velocity_correction = velocity_correction;
       Run runs[4];
@@ -103,7 +103,7 @@ TEST_CASE("ropes, bars and contacts together: all eight methods tend to one moti
     // On the simd backend methods differ in what they pass over, not in what they do.
     if (method.backend == Backend::simd && !(method.anticipate && method.skip)) continue;
     CAPTURE(text(method));
-    Settings settings = with({}, method);
+    Settings settings = with(paper_settings(), method);
     settings.tolerance = 1e-5;
     settings.contact_tolerance = 1e-6;
     const Run run = simulate(scene, settings, 12);

@@ -30,7 +30,7 @@ double lost(Backend backend, std::int64_t corrections) {
 }
 
 Settings fixed_iterations(const Method& method, int iterations) {
-  Settings settings = with({}, method);
+  Settings settings = with(paper_settings(), method);
   settings.iterations = iterations;
   return settings;
 }
@@ -42,7 +42,7 @@ TEST_CASE("linear momentum is kept by both loops over many steps") {
     for (const bool velocity_correction : {false, true}) {
       CAPTURE(text(method));
       CAPTURE(velocity_correction);
-      Settings settings = with({}, method);
+      Settings settings = with(paper_settings(), method);
       settings.velocity_correction = velocity_correction;
       Cloth cloth = cloth_of(scene, settings);
       std::int64_t corrections = 0;
@@ -109,7 +109,7 @@ TEST_CASE("the velocity loop keeps momentum and angular momentum at the committe
   const SceneDescription scene = drifting_sheet(kSize, 5);
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
-    Settings settings = with({}, method);
+    Settings settings = with(paper_settings(), method);
     Cloth without = cloth_of(scene, settings);
     settings.velocity_correction = true;
     settings.velocity_tolerance = 1e-6;
@@ -134,7 +134,7 @@ TEST_CASE("the velocity loop leaves no constraint's ends approaching or parting"
   const SceneDescription scene = drifting_sheet(kSize, 6);
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
-    Settings settings = with({}, method);
+    Settings settings = with(paper_settings(), method);
     settings.velocity_correction = true;
     settings.velocity_tolerance = 1e-7;
     Cloth cloth = cloth_of(scene, settings);

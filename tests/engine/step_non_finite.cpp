@@ -18,7 +18,7 @@ void check_overflow(std::uint32_t spoilt, const std::function<void(Cloth&)>& spo
     for (const bool velocity_correction : {false, true}) {
       CAPTURE(text(method));
       CAPTURE(velocity_correction);
-      Settings settings = with({}, method);
+      Settings settings = with(paper_settings(), method);
       settings.velocity_correction = velocity_correction;
       settings.max_iterations = 1000;
       const SceneDescription scene = scene_of("hang_sphere", 4);
@@ -58,7 +58,7 @@ TEST_CASE("an overflow ends the step early: no iteration can mend it") {
     for (const bool velocity_correction : {false, true}) {
       CAPTURE(text(method));
       CAPTURE(velocity_correction);
-      Settings settings = with({}, method);
+      Settings settings = with(paper_settings(), method);
       settings.max_iterations = 1000;
       settings.velocity_correction = velocity_correction;
       SceneDescription scene = free_bar(1, 1);

@@ -55,8 +55,8 @@ TEST_CASE("renumbered particles move the same, with every method") {
     for (const Method& method : kMethods) {
       CAPTURE(std::string(name));
       CAPTURE(text(method));
-      Cloth plain = cloth_of(scene, with({}, method));
-      Cloth permuted = cloth_of(renumbered(scene, to), with({}, method));
+      Cloth plain = cloth_of(scene, with(paper_settings(), method));
+      Cloth permuted = cloth_of(renumbered(scene, to), with(paper_settings(), method));
       run(plain, 0.01, 100);
       run(permuted, 0.01, 100);
       CHECK(largest_distance(positions(plain), taken_back(positions(permuted), to)) < 1e-9);

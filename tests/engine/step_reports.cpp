@@ -66,7 +66,7 @@ TEST_CASE("counts stand in a sane relation") {
     CAPTURE(text(method));
     const SceneDescription scene = scene_of("hang", 9);
     const auto constraints = static_cast<std::int64_t>(scene.constraints.size());
-    Cloth cloth = cloth_of(scene, with({}, method));
+    Cloth cloth = cloth_of(scene, with(paper_settings(), method));
     for (int k = 0; k < 60; ++k) {
       const StepReport report = step(cloth, 0.01);
       REQUIRE(report.iterations >= 1);

@@ -94,7 +94,7 @@ Settings with(Settings settings, const Method& method) {
 }
 
 Settings tight(double tolerance) {
-  Settings settings;
+  Settings settings = paper_settings();
   settings.tolerance = tolerance;
   settings.contact_tolerance = tolerance;
   settings.velocity_tolerance = tolerance;

@@ -27,7 +27,7 @@ double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
 SceneDescription free_bar(double mass_a, double mass_b);
 
 inline constexpr std::array kBackends{Backend::reference, Backend::simd};
-Settings on(Backend backend, Settings settings = {});
+Settings on(Backend backend, Settings settings = paper_settings());
 /// What stands after it in a test case runs twice: once for each backend.
 Backend each_backend();
 

@@ -72,7 +72,7 @@ TEST_CASE("a run goes on from its last state as if it had not stopped") {
   const auto run_from = [](const SceneDescription& start) {
     auto model = build_model(start);
     REQUIRE(model);
-    auto cloth = Cloth::create(model.value(), {});
+    auto cloth = Cloth::create(model.value(), paper_settings());
     REQUIRE(cloth);
     for (int frame = 0; frame < 20; ++frame) REQUIRE(cloth.value().step(0.01));
     return std::move(cloth.value());

@@ -1,0 +1,147 @@
+#include "engine/solvers/yarn_layout.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "engine/bytes_of.h"
+#include "engine/model.h"
+#include "engine/ordering/used_colours.h"
+#include "engine/ordering/yarns.h"
+
+namespace weft {
+namespace {
+
+using kernels::kLanes;
+
+/// An open yarn: link k joins particles k and k + 1.
+struct Chain {
+  std::vector<std::uint32_t> particles, links;
+  std::uint32_t family = 0;
+};
+
+std::vector<Link> links_of(const ConstraintStore& store) {
+  std::vector<Link> links;
+  links.reserve(store.plain);
+  for (std::size_t c = 0; c < store.plain; ++c) links.push_back({store.a[c], store.b[c]});
+  return links;
+}
+
+std::vector<Vec3> positions_of(const Model& model) {
+  std::vector<Vec3> positions;
+  positions.reserve(model.slots());
+  for (std::size_t i = 0; i < model.slots(); ++i) {
+    const kernels::Vector x = model.initial_position[i];
+    positions.push_back({x.x, x.y, x.z});
+  }
+  return positions;
+}
+
+std::vector<Chain> open_chains(const Yarns& yarns, std::size_t slots) {
+  std::vector<Chain> chains;
+  std::vector<Chain> cut;
+  UsedColours used(slots);
+  for (const Yarn& yarn : yarns.yarns) {
+    const auto particles = yarns.particles_of(yarn);
+    const auto links = yarns.links_of(yarn);
+    Chain chain{{particles.begin(), particles.end()}, {links.begin(), links.end()}, yarn.family};
+    for (const std::uint32_t p : particles) used.insert(p, yarn.family);
+    if (yarn.closed) {
+      cut.push_back({{particles.back(), particles.front()}, {chain.links.back()}});
+      chain.links.pop_back();
+    }
+    chains.push_back(std::move(chain));
+  }
+  for (Chain& chain : cut) {
+    chain.family = used.lowest_free(chain.particles);
+    for (const std::uint32_t p : chain.particles) used.insert(p, chain.family);
+    chains.push_back(std::move(chain));
+  }
+  return chains;
+}
+
+/// Family by family, long chains first; those of one length in the order of memory.
+void sort(std::vector<Chain>& chains) {
+  for (Chain& chain : chains) {
+    if (chain.particles.front() < chain.particles.back()) continue;
+    std::ranges::reverse(chain.particles);
+    std::ranges::reverse(chain.links);
+  }
+  std::ranges::sort(chains, [](const Chain& one, const Chain& two) {
+    if (one.family != two.family) return one.family < two.family;
+    if (one.links.size() != two.links.size()) return one.links.size() > two.links.size();
+    return one.particles < two.particles;
+  });
+}
+
+class Builder {
+ public:
+  Builder(const Model& model, YarnLayout& layout) : model_(model), layout_(layout) {
+    heaviest_ = std::ranges::max(model.inverse_mass);
+  }
+
+  /// Lanes first ... last - 1 of the chains make a block; the first is the longest.
+  void add_block(std::span<const Chain> chains) {
+    const std::size_t rows = chains.front().particles.size();
+    const auto first = static_cast<std::uint32_t>(layout_.rows);
+    const std::size_t padding = model_.slots() + kLanes * layout_.blocks.size();
+    layout_.rows += rows;
+    layout_.longest = std::max(layout_.longest, rows);
+    layout_.slots = padding + kLanes;
+    layout_.blocks.push_back({first, static_cast<std::uint32_t>(layout_.rows)});
+    layout_.rest.resize(layout_.rows * kLanes);
+    layout_.inverse_mass.resize(layout_.rows * kLanes);
+    for (std::size_t i = first * kLanes; i < layout_.rows * kLanes; ++i) {
+      layout_.slot.push_back(static_cast<std::uint32_t>(padding + i % kLanes));
+    }
+    for (std::size_t lane = 0; lane < chains.size(); ++lane) fill(chains[lane], first, lane);
+  }
+
+ private:
+  void fill(const Chain& chain, std::size_t first, std::size_t lane) {
+    for (std::size_t k = 0; k < chain.particles.size(); ++k) {
+      const std::size_t at = (first + k) * kLanes + lane;
+      const std::uint32_t slot = chain.particles[k];
+      layout_.slot[at] = slot;
+      layout_.inverse_mass[at] = static_cast<float>(model_.inverse_mass[slot] / heaviest_);
+      if (k == chain.links.size()) continue;
+      layout_.rest[at] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
+    }
+  }
+
+  const Model& model_;
+  YarnLayout& layout_;
+  double heaviest_ = 1;
+};
+
+}  // namespace
+
+YarnLayout make_yarn_layout(const Model& model) {
+  YarnLayout layout;
+  layout.slots = model.slots();
+  const auto plain = static_cast<std::uint32_t>(model.constraints.plain);
+  layout.others.resize(model.constraints.size() - plain);
+  std::iota(layout.others.begin(), layout.others.end(), plain);
+  const Yarns yarns = find_yarns(positions_of(model), links_of(model.constraints));
+  std::vector<Chain> chains = open_chains(yarns, model.slots());
+  sort(chains);
+  Builder builder(model, layout);
+  for (std::size_t first = 0, last; first < chains.size(); first = last) {
+    const std::uint32_t family = chains[first].family;
+    for (last = first; last < chains.size() && last < first + kLanes; ++last) {
+      if (chains[last].family != family) break;
+    }
+    while (layout.family_begin.size() <= family) {
+      layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
+    }
+    builder.add_block(std::span(chains).subspan(first, last - first));
+  }
+  layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
+  return layout;
+}
+
+std::size_t YarnLayout::bytes() const {
+  return bytes_of(blocks) + bytes_of(family_begin) + bytes_of(slot) + bytes_of(rest) +
+         bytes_of(inverse_mass) + bytes_of(others);
+}
+
+}  // namespace weft

@@ -1,0 +1,41 @@
+/// Where the yarns of a model stand in memory, for the yarn solver.
+///
+///   families   the yarns of a family share no particle: all of them may be solved at once
+///   block      kLanes yarns of a family, of about the same length, a lane each
+///   row        particle k of these yarns, and what joins it to particle k + 1
+///
+///     family 0: | block | block | ... | family 1: | block | ...
+///     block:    | row 0 | row 1 | ... | row of the last particles |
+///
+/// A closed yarn is cut: its last link is a yarn of its own, in another family. What no yarn can
+/// hold (ropes, which only pull, and constraints at hubs) is left to Gauss-Seidel: `others`.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+class Model;
+
+struct YarnLayout {
+  std::vector<simd::YarnBlock> blocks;
+  std::vector<std::uint32_t> family_begin;     // blocks of family f: [f], ... [f + 1] - 1
+  std::vector<std::uint32_t> slot;             // per row and lane
+  kernels::AlignedVector<float> rest;          // per row and lane; 0: no constraint
+  kernels::AlignedVector<float> inverse_mass;  // per row and lane, over the model's largest
+  std::vector<std::uint32_t> others;           // constraints that are in no yarn
+
+  std::size_t rows = 0;
+  std::size_t longest = 0;  // rows of the longest block
+  std::size_t slots = 0;    // of the model, then kLanes of padding for each block
+
+  std::size_t families() const { return family_begin.size() - 1; }
+  std::size_t bytes() const;
+};
+
+YarnLayout make_yarn_layout(const Model& model);
+
+}  // namespace weft

@@ -1,0 +1,63 @@
+/// What no yarn holds: ropes, constraints at hubs, contacts. After a sweep they are relaxed one by
+/// one; in the linear system each of them is a family of its own, solved by its diagonal.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <vector>
+
+#include "engine/contacts.h"
+#include "engine/model.h"
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+/// Positions and displacements are in quads, as in kernels/simd/yarns.h.
+class YarnOthers {
+ public:
+  YarnOthers(const Model& model, const Settings& settings);
+
+  /// first_round: accumulated impulses start at 0; else contacts may have been added.
+  void start(const ContactStore& contacts, bool first_round);
+  std::size_t count() const { return pairs_.size(); }
+  /// One pass, at the positions base + u. One-sided ones keep the sum of their impulses on their
+  /// side: a rope that has pulled too much gives back what it had.
+  void relax(const float* base, float* u);
+  /// Deepest penetration of the contacts, in m.
+  double penetration(const float* base, const float* u) const;
+
+  // The stages of conjugate gradients (kernels/simd/yarn_system.h). Of the one-sided those take
+  // part that are violated or have pushed or pulled before; finish() clamps the sums, and the next
+  // linearise() sees what that leaves.
+  void linearise(const float* base, const float* u);
+  /// worst: in strains, where a contact's tolerance counts as much as `goal`.
+  simd::YarnProducts precondition(double alpha, double goal);
+  void push(double beta, float* t);
+  double pull(const float* t);
+  void finish(float* u);
+
+  std::size_t bytes() const;
+
+ private:
+  struct Pair {
+    std::uint32_t a = 0, b = 0;
+    int side = 0;  // +1: pulls only, -1: pushes only
+    double distance = 0;
+    double wa = 0, wb = 0;  // inverse masses over the model's largest
+    double sum = 0;         // of its impulses
+  };
+  struct Row {
+    kernels::Vector n{};
+    double lambda = 0, residual = 0, z = 0, p = 0, q = 0;
+  };
+  void add(std::uint32_t a, std::uint32_t b, double distance, int side);
+
+  const Model& model_;
+  const double contact_tolerance_;
+  double heaviest_ = 1;
+  std::size_t constraints_ = 0;  // the first of pairs_; contacts come behind
+  std::vector<Pair> pairs_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace weft

@@ -1,0 +1,233 @@
+#include "engine/solvers/yarn_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/bytes_of.h"
+
+namespace weft {
+namespace {
+
+using kernels::kLanes;
+
+/// Newton's method comes where sweeps leave more than kSlow of the error and the strain is below
+/// kSmall: beyond, directions change so much that a linear system says little (corners, 41 x 41, 4
+/// substeps, 0.1 %: 60 iterations a frame; with no such bound, or three times as much, some steps
+/// fail).
+constexpr double kSlow = 0.8;
+constexpr double kSmall = 0.01;
+/// Newton steps are solved to this share of the error they found, or of the tolerance.
+constexpr double kForcing = 0.05;
+constexpr double kWithin = 0.5;
+constexpr int kMostIterations = 300;  // of conjugate gradients, in one Newton step
+/// What is aimed at where the tolerance is larger: what is left is noise that the next steps would
+/// have to fight (corners, 81 x 81, 1 %: as many iterations a frame at a quarter of the error).
+constexpr double kGoal = 0.003;
+constexpr double kFall = 0.7;  // what counts as progress,
+constexpr int kPatience = 20;  // and how many passes may make none
+constexpr std::size_t kStretch = 1024;
+
+template <class Work>
+void for_all_slots(std::size_t slots, Team& team, Work&& work) {
+  team.for_each((slots + kStretch - 1) / kStretch,
+                [&](std::size_t i) { work(i * kStretch, std::min(slots, (i + 1) * kStretch)); });
+}
+
+simd::Displacements quads(kernels::AlignedVector<float>& u) { return {u.data(), 1, 4}; }
+
+/// Blocks of a family that one thread takes at a time, for want of more scratch.
+constexpr std::size_t kMostShares = 16;
+
+}  // namespace
+
+YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd::Table& table)
+    : model_(model),
+      layout_(model.yarns()),
+      settings_(settings),
+      table_(table),
+      rows_(layout_.rows),
+      base_(4 * layout_.slots),
+      u_(4 * layout_.slots),
+      products_(layout_.blocks.size()),
+      others_(model, settings) {
+  for (std::size_t k = 0; k < layout_.rows; ++k) {
+    std::copy_n(&layout_.rest[k * kLanes], kLanes, rows_[k].rest);
+    std::copy_n(&layout_.inverse_mass[k * kLanes], kLanes, rows_[k].inverse_mass);
+  }
+  const auto wanted =
+      static_cast<std::size_t>(settings.threads > 0 ? settings.threads : kMostShares);
+  scratch_.resize(layout_.longest * std::min(wanted, kMostShares));
+}
+
+/// work(block, its number, scratch); shares of blocks side by side.
+template <class Work>
+void YarnSolver::for_each_block(std::size_t first, std::size_t last, Team& team, Work&& work) {
+  if (first == last) return;
+  const simd::Yarns yarns{rows_.data(), system_.data(), layout_.slot.data()};
+  const std::size_t shares =
+      std::min({scratch_.size() / layout_.longest, last - first, team.size()});
+  team.for_each(shares, [&](std::size_t share) {
+    const std::size_t begin = first + (last - first) * share / shares;
+    const std::size_t end = first + (last - first) * (share + 1) / shares;
+    for (std::size_t i = begin; i < end; ++i) {
+      work(yarns, i, scratch_.data() + layout_.longest * share);
+    }
+  });
+}
+
+/// One family after the other.
+template <class Work>
+void YarnSolver::for_each_family(Team& team, Work&& work) {
+  for (std::size_t f = 0; f < layout_.families(); ++f) {
+    for_each_block(layout_.family_begin[f], layout_.family_begin[f + 1], team, work);
+  }
+}
+
+void YarnSolver::place(kernels::VectorsView x, Team& team) {
+  for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
+    table_.split_positions(x, quads(base_), quads(u_), first, last);
+  });
+  for_each_block(0, layout_.blocks.size(), team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                   table_.yarn_place(yarns, layout_.blocks[i], quads(base_));
+                 });
+}
+
+void YarnSolver::join(kernels::VectorsView x, Team& team) {
+  for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
+    table_.join_positions(x, quads(base_), quads(u_), first, last);
+  });
+}
+
+void YarnSolver::sweep(Team& team, kernels::LoopResult& result) {
+  for_each_family(team, [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
+    table_.yarn_sweep(yarns, layout_.blocks[i], quads(u_), scratch);
+  });
+  others_.relax(base_.data(), u_.data());
+  count(1, result);
+}
+
+void YarnSolver::count(int passes, kernels::LoopResult& result) const {
+  const auto constraints = static_cast<std::int64_t>(model_.constraints.plain + others_.count());
+  result.iterations += passes;
+  ++result.direction_updates;
+  result.visits += passes * constraints;
+  result.corrections += passes * constraints;
+}
+
+void YarnSolver::linearise(Team& team) {
+  for_each_block(0, layout_.blocks.size(), team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                   table_.yarn_linearise(yarns, layout_.blocks[i], quads(u_));
+                 });
+  others_.linearise(base_.data(), u_.data());
+}
+
+YarnSolver::Products YarnSolver::precondition(double alpha, double goal, Team& team) {
+  for_each_block(0, layout_.blocks.size(), team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                   products_[i] = table_.yarn_precondition(yarns, layout_.blocks[i],
+                                                           static_cast<float>(alpha));
+                 });
+  const simd::YarnProducts others = others_.precondition(alpha, goal);
+  Products sum{static_cast<double>(others.product), static_cast<double>(others.worst)};
+  for (const simd::YarnProducts& p : products_) {
+    sum.product += static_cast<double>(p.product);
+    sum.worst = std::max(sum.worst, static_cast<double>(p.worst));
+  }
+  return sum;
+}
+
+void YarnSolver::push(double beta, Team& team) {
+  std::ranges::fill(t_, 0.f);
+  for_each_family(team, [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+    table_.yarn_push(yarns, layout_.blocks[i], static_cast<float>(beta), quads(t_));
+  });
+  others_.push(beta, t_.data());
+}
+
+double YarnSolver::pull(Team& team) {
+  for_each_block(0, layout_.blocks.size(), team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                   products_[i].product = table_.yarn_pull(yarns, layout_.blocks[i], quads(t_));
+                 });
+  double sum = others_.pull(t_.data());
+  for (const simd::YarnProducts& p : products_) sum += static_cast<double>(p.product);
+  return sum;
+}
+
+void YarnSolver::finish(Team& team) {
+  for_each_family(team, [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+    table_.yarn_finish(yarns, layout_.blocks[i], quads(u_));
+  });
+  others_.finish(u_.data());
+}
+
+/// Preconditioned conjugate gradients on A lambda = e, then u -= M^-1 J^T lambda.
+void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result) {
+  system_.resize(layout_.rows);
+  t_.resize(u_.size());
+  linearise(team);
+  Products now = precondition(0, goal, team);
+  const double enough = std::max(goal, kForcing * now.worst);
+  double beta = 0;
+  int done = 0;
+  while (now.worst > enough && done < max_iterations) {
+    push(beta, team);
+    const double curvature = pull(team);
+    if (!(curvature > 0 && now.product > 0)) break;
+    const Products next = precondition(now.product / curvature, goal, team);
+    beta = next.product / now.product;
+    now = next;
+    ++done;
+  }
+  finish(team);
+  count(done, result);
+}
+
+kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x,
+                                                const ContactStore& contacts, bool first_round,
+                                                int max_iterations, SimdSolver& measure,
+                                                Team& team) {
+  kernels::LoopResult result;
+  others_.start(contacts, first_round);
+  place(x, team);
+  if (settings_.iterations > 0) {
+    while (result.iterations < settings_.iterations) sweep(team, result);
+    join(x, team);
+    return result;
+  }
+  const double goal = std::min(settings_.tolerance, kGoal);
+  double before = std::numeric_limits<double>::infinity(), best = before;
+  int stale = 0;
+  sweep(team, result);
+  for (;;) {
+    join(x, team);
+    const double strain = measure.measure_strain(x, team).max;
+    const double depth = others_.penetration(base_.data(), u_.data());
+    const bool touching = depth <= settings_.contact_tolerance;
+    result.converged = strain <= settings_.tolerance && touching;
+    if (strain <= goal && touching) return result;
+    const double worst = std::max(strain / goal, depth / settings_.contact_tolerance);
+    if (result.iterations >= max_iterations) return result;
+    stale = worst < kFall * best ? 0 : stale + 1;
+    best = std::min(best, worst);
+    result.failed = !result.converged && (!std::isfinite(worst) || stale > kPatience);
+    if (result.failed || stale > kPatience) return result;
+    if (strain < kSmall && strain > kSlow * before) {
+      place(x, team);
+      newton(kWithin * goal, std::min(kMostIterations, max_iterations - result.iterations), team,
+             result);
+    }
+    sweep(team, result);
+    before = strain;
+  }
+}
+
+std::size_t YarnSolver::bytes() const {
+  return bytes_of(rows_) + bytes_of(system_) + bytes_of(scratch_) + bytes_of(base_) + bytes_of(u_) +
+         bytes_of(t_) + bytes_of(products_) + others_.bytes();
+}
+
+}  // namespace weft

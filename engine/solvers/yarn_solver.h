@@ -1,0 +1,79 @@
+/// The yarn solver: whole chains of constraints at a time.
+///
+/// A sweep solves the yarns of each family exactly, directions and errors taken anew, one family
+/// after the other: block Gauss-Seidel (kernels/simd/yarns.h). After it come the constraints that
+/// no yarn holds (ropes, hubs, contacts), one by one, their accumulated impulses clamped. Every
+/// block minimises the same convex quadratic of the impulses, 1/2 l'Al - e'l, over its own ones
+/// with the others held, so that along fixed directions a pass never raises it: this is why the
+/// coupling converges.
+///
+/// Where sweeps gain too little, Newton's method takes over: all yarns as one linear system, solved
+/// by conjugate gradients with the yarns as preconditioner (kernels/simd/yarn_system.h).
+///
+/// Errors are judged in double after each sweep or Newton step. If they do not fall the solver
+/// gives up early, for its caller to answer.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <vector>
+
+#include "engine/contacts.h"
+#include "engine/model.h"
+#include "engine/solvers/simd_solver.h"
+#include "engine/solvers/team.h"
+#include "engine/solvers/yarn_others.h"
+#include "kernels/loop.h"
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+class YarnSolver {
+ public:
+  YarnSolver(const Model& model, const Settings& settings, const simd::Table& table);
+
+  /// Moves x until every constraint and listed contact is within tolerance, or as far as it gets.
+  /// strain: measures the true errors. LoopResult::iterations counts sweeps and iterations of
+  /// conjugate gradients.
+  kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
+                                      bool first_round, int max_iterations, SimdSolver& measure,
+                                      Team& team);
+  std::size_t bytes() const;
+
+ private:
+  struct Products {
+    double product = 0;  // residual . z
+    double worst = 0;    // largest strain left
+  };
+  /// Starts at the positions x.
+  void place(kernels::VectorsView x, Team& team);
+  void join(kernels::VectorsView x, Team& team);
+  /// Each family once, then the others.
+  void sweep(Team& team, kernels::LoopResult& result);
+  /// One linear system, to the strain `goal`.
+  void newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
+  void linearise(Team& team);
+  Products precondition(double alpha, double goal, Team& team);
+  void push(double beta, Team& team);
+  double pull(Team& team);
+  void finish(Team& team);
+  void count(int passes, kernels::LoopResult& result) const;
+  template <class Work>
+  void for_each_family(Team& team, Work&& work);
+  template <class Work>
+  void for_each_block(std::size_t first, std::size_t last, Team& team, Work&& work);
+
+  const Model& model_;
+  const YarnLayout& layout_;
+  const Settings settings_;
+  const simd::Table& table_;
+
+  kernels::AlignedVector<simd::YarnRow> rows_;
+  kernels::AlignedVector<simd::YarnSystemRow> system_;  // from the first Newton step on
+  kernels::AlignedVector<simd::YarnScratch> scratch_;   // for each thread
+  kernels::AlignedVector<float> base_, u_, t_;          // quads
+  std::vector<simd::YarnProducts> products_;            // per block
+  YarnOthers others_;
+};
+
+}  // namespace weft

@@ -1,0 +1,35 @@
+/// Double positions as two floats in quads (quads.h): base is the position rounded, u what that
+/// lost.
+#pragma once
+
+#include "kernels/simd/lanes.h"
+
+namespace weft::simd {
+inline namespace WEFT_LANES {
+namespace {
+
+void split_positions(kernels::VectorsView x, Displacements base, Displacements u, std::size_t first,
+                     std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    const double at[3] = {x.x[i], x.y[i], x.z[i]};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto rounded = static_cast<float>(at[axis]);
+      base.x[4 * i + axis] = rounded;
+      u.x[4 * i + axis] = static_cast<float>(at[axis] - static_cast<double>(rounded));
+    }
+  }
+}
+
+void join_positions(kernels::VectorsView x, Displacements base, Displacements u, std::size_t first,
+                    std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    const auto sum = [&](std::size_t axis) {
+      return static_cast<double>(base.x[4 * i + axis]) + static_cast<double>(u.x[4 * i + axis]);
+    };
+    x.set(i, {sum(0), sum(1), sum(2)});
+  }
+}
+
+}  // namespace
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

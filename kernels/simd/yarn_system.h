@@ -1,0 +1,137 @@
+/// The linear system of all yarns, for conjugate gradients (engine/solvers/yarn_newton.h): A of all
+/// families is
+///
+///     | T_0      C_01 ... |     T_f   tridiagonal: the yarns of family f, solved exactly
+///     | C_10     T_1      |     C_fg  where yarns of two families share a particle
+///
+/// and blockdiag(T_f) is the preconditioner. A p is never formed by entries: the impulses p push
+/// the particles by t = M^-1 J^T p (yarn_push, one family after the other), and each constraint
+/// reads off how much that changes it, J t (yarn_pull).
+#pragma once
+
+#include "kernels/simd/yarns.h"
+
+namespace weft::simd {
+inline namespace WEFT_LANES {
+namespace {
+
+[[gnu::always_inline]] inline float sum(const float* lanes) {
+  float total = 0;
+  for (std::uint32_t k = 0; k < kernels::kLanes; ++k) total += lanes[k];
+  return total;
+}
+
+/// Directions, factors and errors at base + u; lambda = p = q = 0.
+float yarn_linearise(const Yarns& y, const YarnBlock& block, Displacements u) {
+  float most = 0;
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    Floats worst(0.f);
+    const Floats zero(0.f);
+    go_down(y, block, lane, u,
+            [&](std::uint32_t k, const FloatVector&, const YarnLink& link, Floats m,
+                Floats reciprocal) {
+              YarnSystemRow& row = y.system[k];
+              worst = larger(worst, link.strain);
+              store(row.n, lane, link.n);
+              m.store_unaligned(row.m + lane);
+              reciprocal.store_unaligned(row.reciprocal + lane);
+              link.error.store_unaligned(row.residual + lane);
+              zero.store_unaligned(row.lambda + lane);
+              zero.store_unaligned(row.p + lane);
+              zero.store_unaligned(row.q + lane);
+            });
+    most = larger(most, worst);
+  }
+  return most;
+}
+
+/// lambda += alpha p, residual -= alpha q, z = T^-1 residual.
+YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alpha) {
+  YarnProducts result;
+  alignas(64) float products[kernels::kLanes];
+  const Floats step(alpha);
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    Floats b(0.f), worst(0.f);
+    for (std::uint32_t k = block.first; k < block.last; ++k) {
+      YarnSystemRow& row = y.system[k];
+      fused(step, load(row.p + lane), load(row.lambda + lane)).store_unaligned(row.lambda + lane);
+      const Floats residual = load(row.residual + lane) - step * load(row.q + lane);
+      residual.store_unaligned(row.residual + lane);
+      const Floats rest = load(y.rows[k].rest + lane);
+      worst = larger(worst, residual / xsimd::select(rest > Floats(0.f), rest, Floats(1.f)));
+      b = fused(load(row.m + lane), b, residual);
+      (b * load(row.reciprocal + lane)).store_unaligned(row.z + lane);
+    }
+    Floats z(0.f), m(0.f), product(0.f);
+    for (std::uint32_t k = block.last; k-- > block.first;) {
+      YarnSystemRow& row = y.system[k];
+      z = fused(m, z, load(row.z + lane));
+      m = load(row.m + lane);
+      z.store_unaligned(row.z + lane);
+      product = fused(z, load(row.residual + lane), product);
+    }
+    product.store_unaligned(products + lane);
+    result.worst = larger(result.worst, worst);
+  }
+  result.product = sum(products);
+  return result;
+}
+
+/// p = z + beta p, t += M^-1 J^T p.
+void yarn_push(const Yarns& y, const YarnBlock& block, float beta, Displacements t) {
+  QuadLanes at;
+  const Floats factor(beta);
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    FloatVector above = no_vector();
+    for (std::uint32_t k = block.first; k < block.last; ++k) {
+      YarnSystemRow& row = y.system[k];
+      const Floats p = fused(factor, load(row.p + lane), load(row.z + lane));
+      p.store_unaligned(row.p + lane);
+      const FloatVector below = p * load(row.n, lane);
+      const std::uint32_t* slot = slots(y, k, lane);
+      const Floats w = load(y.rows[k].inverse_mass + lane);
+      at.put(t, slot, fused(w, below - above, at.get(t, slot)));
+      above = below;
+    }
+  }
+}
+
+/// q = J t; returns p . q.
+float yarn_pull(const Yarns& y, const YarnBlock& block, Displacements t) {
+  QuadLanes at;
+  alignas(64) float products[kernels::kLanes];
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    FloatVector here = at.get(t, slots(y, block.first, lane));
+    Floats product(0.f);
+    for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
+      YarnSystemRow& row = y.system[k];
+      const FloatVector next = at.get(t, slots(y, k + 1, lane));
+      const Floats q = dot(load(row.n, lane), here - next);
+      q.store_unaligned(row.q + lane);
+      product = fused(q, load(row.p + lane), product);
+      here = next;
+    }
+    product.store_unaligned(products + lane);
+  }
+  return sum(products);
+}
+
+/// u -= M^-1 J^T lambda.
+void yarn_finish(const Yarns& y, const YarnBlock& block, Displacements u) {
+  QuadLanes at;
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    FloatVector above = no_vector();
+    for (std::uint32_t k = block.first; k < block.last; ++k) {
+      const YarnSystemRow& row = y.system[k];
+      const FloatVector below = load(row.lambda + lane) * load(row.n, lane);
+      const std::uint32_t* slot = slots(y, k, lane);
+      const Floats w = load(y.rows[k].inverse_mass + lane);
+      at.put(u, slot, fused(w, above - below, at.get(u, slot)));
+      above = below;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

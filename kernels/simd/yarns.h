@@ -1,0 +1,190 @@
+/// Yarns: chains of constraints solved exactly, kLanes chains side by side, one in each lane.
+///
+/// Row k of a block holds particle k of every yarn, and the constraint that joins it to particle
+/// k + 1. Along a yarn the matrix A = J M^-1 J^T of the impulses is tridiagonal,
+///
+///     A(k, k) = w_k + w_{k+1},     A(k, k - 1) = -c_k,     c_k = w_k n_{k-1} . n_k
+///
+/// and is factorised on the way down, A = L D L^T, and solved on the way up:
+///
+///     m_k = c_k r_{k-1},   r_k = 1 / (A(k, k) - m_k c_k),   b_k = e_k + m_k b_{k-1}
+///     lambda_k = r_k b_k + m_{k+1} lambda_{k+1}
+///     x_k += w_k (lambda_{k-1} n_{k-1} - lambda_k n_k)
+///
+/// Where a yarn has ended, or a lane has none, rows have rest length 0: their n, e and lambda are
+/// 0. A pivot that all but vanishes belongs to a constraint that those before it imply (a straight
+/// yarn between two fixed ends): its impulse is taken as 0.
+///
+/// Positions are base + u, two floats in quads (quads.h): base is the double position rounded, u
+/// begins with what the rounding lost. Differences of neighbours are exact to the last bits of u.
+///
+/// One chain per lane is bound by work, not by the latency of its recurrence: two vectors at a time
+/// took 1.4 times as long on AVX2 for want of registers.
+#pragma once
+
+#include "kernels/simd/quads.h"
+
+namespace weft::simd {
+inline namespace WEFT_LANES {
+namespace {
+
+constexpr float kLeastPivot = 1e-4f;  // of w_k + w_{k+1}
+
+[[gnu::always_inline]] inline Floats dot(const FloatVector& a, const FloatVector& b) {
+  return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
+}
+[[gnu::always_inline]] inline FloatVector operator+(const FloatVector& a, const FloatVector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+[[gnu::always_inline]] inline FloatVector operator*(Floats s, const FloatVector& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+/// s b + a
+[[gnu::always_inline]] inline FloatVector fused(Floats s, const FloatVector& b,
+                                                const FloatVector& a) {
+  return {fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.z, a.z)};
+}
+[[gnu::always_inline]] inline FloatVector load(const LaneVectors& v, std::uint32_t lane) {
+  return {load(v.x + lane), load(v.y + lane), load(v.z + lane)};
+}
+[[gnu::always_inline]] inline void store(LaneVectors& v, std::uint32_t lane, const FloatVector& f) {
+  f.x.store_unaligned(v.x + lane);
+  f.y.store_unaligned(v.y + lane);
+  f.z.store_unaligned(v.z + lane);
+}
+[[gnu::always_inline]] inline FloatVector no_vector() {
+  return {Floats(0.f), Floats(0.f), Floats(0.f)};
+}
+
+/// The slots of a row, from `lane` on.
+[[gnu::always_inline]] inline const std::uint32_t* slots(const Yarns& y, std::size_t row,
+                                                         std::uint32_t lane) {
+  return y.slot + row * kernels::kLanes + lane;
+}
+
+struct YarnLink {
+  FloatVector n;
+  Floats error;
+  Floats strain;  // error / length
+};
+
+/// d: from particle k + 1 to particle k. Ends that coincide have no direction: n = (0, 1, 0).
+[[gnu::always_inline]] inline YarnLink make_link(const FloatVector& d, Floats rest) {
+  const Floats zero(0.f), one(1.f);
+  const Floats length = xsimd::sqrt(dot(d, d));
+  const FloatMask present = rest > zero, together = length == zero;
+  const Floats inverse = xsimd::select(present, one / xsimd::select(together, rest, length), zero);
+  FloatVector n = inverse * d;
+  n.y = xsimd::select(present & together, one, n.y);
+  const Floats error = xsimd::select(present, length - rest, zero);
+  return {n, error, error * inverse};
+}
+
+/// The factorisation, row by row.
+struct Elimination {
+  FloatVector n = no_vector();      // of the row above
+  Floats reciprocal = Floats(0.f);  // r
+
+  /// Takes the next row; returns its m.
+  [[gnu::always_inline]] Floats step(const FloatVector& next, Floats wa, Floats wb) {
+    const Floats c = wa * dot(n, next);
+    const Floats m = c * reciprocal;
+    const Floats diagonal = wa + wb;
+    const Floats pivot = diagonal - m * c;
+    const FloatMask regular = pivot > Floats(kLeastPivot) * diagonal;
+    reciprocal = xsimd::select(regular, Floats(1.f) / xsimd::select(regular, pivot, Floats(1.f)),
+                               Floats(0.f));
+    n = next;
+    return m;
+  }
+};
+
+/// Of absolute values; what is not a number wins.
+[[gnu::always_inline]] inline Floats larger(Floats most, Floats v) {
+  return xsimd::select(xsimd::abs(v) <= most, most, xsimd::abs(v));
+}
+[[gnu::always_inline]] inline float larger(float most, Floats v) {
+  alignas(64) float lanes[kFloats];
+  v.store_aligned(lanes);
+  for (const float lane : lanes) most = lane <= most ? most : lane;
+  return most;
+}
+
+void yarn_place(const Yarns& y, const YarnBlock& block, Displacements base) {
+  QuadLanes at;
+  for (std::uint32_t k = block.first; k < block.last; ++k) {
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      store(y.rows[k].base, lane, at.get(base, slots(y, k, lane)));
+    }
+  }
+}
+
+/// Down the yarns: take(row, u of its particle, link, m) for each.
+template <class Take>
+[[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block,
+                                           std::uint32_t lane, Displacements u, Take&& take) {
+  QuadLanes at;
+  Elimination elimination;
+  FloatVector here = at.get(u, slots(y, block.first, lane));
+  FloatVector base = load(y.rows[block.first].base, lane);
+  Floats w = load(y.rows[block.first].inverse_mass + lane);
+  for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
+    const YarnRow& next = y.rows[k + 1];
+    const FloatVector u_next = at.get(u, slots(y, k + 1, lane));
+    const FloatVector base_next = load(next.base, lane);
+    const Floats w_next = load(next.inverse_mass + lane);
+    const YarnLink link =
+        make_link((base - base_next) + (here - u_next), load(y.rows[k].rest + lane));
+    const Floats m = elimination.step(link.n, w, w_next);
+    take(k, here, link, m, elimination.reciprocal);
+    here = u_next;
+    base = base_next;
+    w = w_next;
+  }
+  const Floats none(0.f);
+  take(block.last - 1, here, YarnLink{no_vector(), none, none}, none, none);
+}
+
+/// Up again: impulses, and the particles moved by them.
+[[gnu::always_inline]] inline void go_up(const Yarns& y, const YarnBlock& block, std::uint32_t lane,
+                                         Displacements u, const YarnScratch* scratch) {
+  QuadLanes at;
+  FloatVector below = no_vector();  // impulse of the row's own constraint
+  Floats lambda(0.f), m(0.f);
+  for (std::uint32_t k = block.last - 1; k > block.first; --k) {
+    const YarnScratch &row = scratch[k - block.first], &link = scratch[k - block.first - 1];
+    lambda = fused(m, lambda, load(link.y + lane));
+    m = load(link.m + lane);
+    const FloatVector above = lambda * load(link.n, lane);
+    const Floats w = load(y.rows[k].inverse_mass + lane);
+    at.put(u, slots(y, k, lane), fused(w, above - below, load(row.u, lane)));
+    below = above;
+  }
+  const Floats w = load(y.rows[block.first].inverse_mass + lane);
+  at.put(u, slots(y, block.first, lane), fused(w, no_vector() - below, load(scratch->u, lane)));
+}
+
+float yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
+  float most = 0;
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    Floats b(0.f), worst(0.f);
+    go_down(y, block, lane, u,
+            [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, Floats m,
+                Floats reciprocal) {
+              YarnScratch& row = scratch[k - block.first];
+              b = fused(m, b, link.error);
+              worst = larger(worst, link.strain);
+              store(row.u, lane, here);
+              store(row.n, lane, link.n);
+              m.store_unaligned(row.m + lane);
+              (reciprocal * b).store_unaligned(row.y + lane);
+            });
+    most = larger(most, worst);
+    go_up(y, block, lane, u, scratch);
+  }
+  return most;
+}
+
+}  // namespace
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

@@ -1,0 +1,181 @@
+/// The yarn solver: where its chains stand, and what it promises of a step.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "engine/model.h"
+#include "tests/support/clothes.h"
+#include "tests/support/meshes.h"
+#include "tests/support/motion.h"
+
+namespace weft::test {
+namespace {
+
+Settings yarn(double tolerance, int substeps = 1) {
+  Settings settings;
+  settings.solver = Solver::yarn;
+  settings.tolerance = tolerance;
+  settings.substeps = substeps;
+  return settings;
+}
+
+/// A closed hoop of particles around the y axis, one of them fixed.
+SceneDescription hoop(std::uint32_t particles) {
+  SceneDescription scene;
+  const double radius = 0.1 / (2 * std::sin(std::numbers::pi / particles));
+  for (std::uint32_t i = 0; i < particles; ++i) {
+    const double angle = 2 * std::numbers::pi * i / particles;
+    scene.positions.push_back({radius * std::cos(angle), 0, radius * std::sin(angle)});
+    scene.masses.push_back(0.01);
+    scene.constraints.push_back({i, (i + 1) % particles, 0.1});
+  }
+  scene.fixed = {0};
+  return scene;
+}
+
+void check_layout(const Model& model) {
+  const YarnLayout& layout = model.yarns();
+  std::multiset<std::pair<std::uint32_t, std::uint32_t>> expected, found;
+  const auto pair = [](std::uint32_t a, std::uint32_t b) {
+    return std::pair(std::min(a, b), std::max(a, b));
+  };
+  for (std::size_t c = 0; c < model.constraints.plain; ++c) {
+    expected.insert(pair(model.constraints.a[c], model.constraints.b[c]));
+  }
+  for (std::size_t f = 0; f < layout.families(); ++f) {
+    std::set<std::uint32_t> in_family;
+    for (std::uint32_t i = layout.family_begin[f]; i < layout.family_begin[f + 1]; ++i) {
+      const simd::YarnBlock block = layout.blocks[i];
+      for (std::uint32_t k = block.first; k < block.last; ++k) {
+        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+          const std::size_t at = k * kLanes + lane;
+          const std::uint32_t slot = layout.slot[at];
+          if (slot >= model.slots())
+            CHECK(layout.rest[at] == 0);
+          else
+            CHECK(in_family.insert(slot).second);
+          if (layout.rest[at] > 0) found.insert(pair(slot, layout.slot[at + kLanes]));
+        }
+      }
+    }
+  }
+  CHECK(found == expected);
+}
+
+TEST_CASE("every constraint is in one yarn, no particle twice in a family") {
+  check_layout(*model_of(scene_of("hang", 20)));
+  check_layout(*model_of(scene_of("hang_sphere", 7)));
+  check_layout(*model_of(hoop(12)));
+  check_layout(*model_of(scene_of("chain", 20)));
+}
+
+TEST_CASE("a step ends within tolerance, and no step gains energy") {
+  for (const std::string scene : {"hang", "corners", "hang_sphere"}) {
+    for (const double tolerance : {0.01, 0.0001}) {
+      for (const int substeps : {1, 4}) {
+        CAPTURE(scene);
+        CAPTURE(tolerance);
+        CAPTURE(substeps);
+        Cloth cloth = cloth_of(scene_of(scene, 21), yarn(tolerance, substeps));
+        const double start = cloth.energy().total();
+        for (int i = 0; i < 60; ++i) {
+          const StepReport report = step(cloth, 0.01);
+          REQUIRE(report.status == Status::converged);
+          CHECK(report.max_strain <= tolerance);
+          CHECK(report.max_penetration <= cloth.settings().contact_tolerance);
+          CHECK(cloth.energy().total() - start < 1e-4);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("one step is that of the direct solver") {
+  for (const std::string scene : {"hang", "corners"}) {
+    CAPTURE(scene);
+    Settings direct = yarn(1e-7);
+    direct.solver = Solver::direct;
+    Cloth one = cloth_of(scene_of(scene, 15), yarn(1e-6)),
+          other = cloth_of(scene_of(scene, 15), direct);
+    for (int i = 0; i < 10; ++i) {
+      REQUIRE(step(one, 0.002).status == Status::converged);
+      REQUIRE(step(other, 0.002).status == Status::converged);
+    }
+    CHECK(largest_distance(positions(one), positions(other)) < 1e-5);
+  }
+}
+
+TEST_CASE("closed yarns, ropes and hubs converge too") {
+  SUBCASE("a hoop") {
+    Cloth cloth = cloth_of(hoop(40), yarn(1e-4));
+    for (int i = 0; i < 50; ++i) REQUIRE(step(cloth, 0.005).status == Status::converged);
+  }
+  SUBCASE("ropes across the cells of a sheet") {
+    SceneDescription scene = scene_of("hang", 10);
+    for (std::uint32_t i = 0; i + 1 < 10; ++i) {
+      for (std::uint32_t k = 0; k + 1 < 10; ++k) {
+        const double diagonal = std::numbers::sqrt2 / 9;
+        scene.constraints.push_back({10 * i + k, 10 * i + k + 11, diagonal, ConstraintKind::rope});
+      }
+    }
+    Cloth cloth = cloth_of(scene, yarn(0.001));
+    for (int i = 0; i < 50; ++i) {
+      const StepReport report = step(cloth, 0.01);
+      REQUIRE(report.status == Status::converged);
+      CHECK(report.max_strain <= 0.001);
+    }
+  }
+  SUBCASE("a hub with a hundred spokes") {
+    SceneDescription scene;
+    scene.positions.push_back({0, 0, 0});
+    scene.masses.push_back(0.1);
+    for (std::uint32_t i = 1; i <= 100; ++i) {
+      const double angle = 2 * std::numbers::pi * i / 100;
+      scene.positions.push_back({std::cos(angle), 0, std::sin(angle)});
+      scene.masses.push_back(0.01);
+      scene.constraints.push_back({0, i, 1});
+      if (i > 1) scene.constraints.push_back({i - 1, i, 2 * std::sin(std::numbers::pi / 100)});
+    }
+    scene.fixed = {1, 50};
+    Cloth cloth = cloth_of(scene, yarn(0.001));
+    for (int i = 0; i < 30; ++i) REQUIRE(step(cloth, 0.005).status == Status::converged);
+  }
+}
+
+TEST_CASE("the result depends neither on threads nor, fused, on the instruction set") {
+  const auto hash = [](Isa isa, int threads) {
+    Settings settings = yarn(0.001, 2);
+    settings.isa = isa;
+    settings.threads = threads;
+    Cloth cloth = cloth_of(scene_of("corners", 81), settings);
+    run(cloth, 0.004, 5);
+    return cloth.state_hash();
+  };
+  const std::uint64_t one = hash(Isa::automatic, 1);
+  CHECK(hash(Isa::automatic, 2) == one);
+  if (simd::supported(simd::Isa::avx512)) CHECK(hash(Isa::avx2, 1) == hash(Isa::avx512, 1));
+}
+
+TEST_CASE("a step too large for the mesh is done in halves, and says so") {
+  Cloth cloth = cloth_of(scene_of("corners", 41), yarn(0.001));
+  int halvings = 0;
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = step(cloth, 0.03);
+    REQUIRE(report.status == Status::converged);
+    CHECK(report.substeps == 1 + report.halvings);
+    halvings += report.halvings;
+  }
+  CHECK(halvings > 0);
+}
+
+TEST_CASE("automatic substeps follow the motion") {
+  Cloth cloth = cloth_of(scene_of("hang", 20), yarn(0.001, kAutomaticSubsteps));
+  CHECK(step(cloth, 0.001).substeps == 1);
+  CHECK(step(cloth, 0.1).substeps > 3);
+}
+
+}  // namespace
+}  // namespace weft::test
