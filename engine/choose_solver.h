@@ -5,7 +5,7 @@
 
 namespace weft {
 
-/// Replaces Solver::automatic by a solver, and chooses what goes with it.
-void choose_solver(Settings& settings);
+/// Replaces Solver::automatic by a solver that suits the model, and chooses what goes with it.
+void choose_solver(const Model& model, Settings& settings);
 
 }  // namespace weft

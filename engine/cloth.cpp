@@ -60,7 +60,7 @@ Result<Cloth> Cloth::create(std::shared_ptr<const Model> model, const Settings& 
   Settings resolved = settings;
   resolved.isa = isa.value();
   resolved.velocity_correction |= settings.scheme == Scheme::rattle;
-  choose_solver(resolved);
+  choose_solver(*model, resolved);
   return Cloth(std::make_unique<Impl>(std::move(model), resolved));
 }
 

@@ -37,15 +37,25 @@ namespace {
 
 constexpr double kMost = 1e150;  // 12 kMost^2, the largest squared distance, is finite
 
+/// In columns, which become lanes: asked one number after the other this took a fifth of a step.
+bool all_finite(const kernels::AlignedVector<double>& v) {
+  constexpr std::size_t kColumns = 8;
+  double beyond[kColumns] = {};
+  const auto judge = [&](std::size_t i, std::size_t column) {
+    beyond[column] += std::abs(v[i]) <= kMost ? 0. : 1.;
+  };
+  const std::size_t whole = v.size() / kColumns * kColumns;
+  for (std::size_t i = 0; i < whole; i += kColumns) {
+    for (std::size_t column = 0; column < kColumns; ++column) judge(i + column, column);
+  }
+  for (std::size_t i = whole; i < v.size(); ++i) judge(i, 0);
+  return std::ranges::all_of(beyond, [](double count) { return count == 0; });
+}
+
 }  // namespace
 
 bool all_finite(const kernels::Vectors& v) {
-  bool beyond = false;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    beyond |=
-        !(std::abs(v.x[i]) <= kMost) | !(std::abs(v.y[i]) <= kMost) | !(std::abs(v.z[i]) <= kMost);
-  }
-  return !beyond;
+  return all_finite(v.x) && all_finite(v.y) && all_finite(v.z);
 }
 
 std::size_t first_not_finite(const kernels::Vectors& v) {

@@ -304,9 +304,8 @@ class Transaction {
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
 
-  /// The substep becomes the state, if it is one; the last one ends the step.
-  bool accept(bool last) {
-    if (!is_finite(s_)) return false;
+  /// The substep becomes the state; the last one ends the step.
+  void accept(bool last) {
     if (!begun_ && !last) {
       s_.start_position = s_.position;
       s_.start_velocity = s_.velocity;
@@ -315,7 +314,6 @@ class Transaction {
     std::swap(s_.position, s_.solved);
     std::swap(s_.velocity, s_.next_velocity);
     complete_ = last;
-    return true;
   }
 
  private:
@@ -389,7 +387,7 @@ bool substep_of_scheme(State& s, const Attempt& attempt, StepReport& report, Tea
 
 /// How the largest strain after a step without constraints decides about the substeps: a quarter of
 /// it for twice as many.
-constexpr double kMostBend = 0.02;
+constexpr double kMostBend = 0.04;
 constexpr int kMostSubsteps = 256;
 
 /// As many as the motion wants: see kMostBend.
@@ -430,7 +428,8 @@ class Substeps {
     const Attempt attempt{h, std::max(left_, 1), may_halve ? OnFailure::give_up : OnFailure::sweep};
     const bool gave_up = substep_of_scheme(s_, attempt, report_, team_);
     left_ -= report_.iterations - iterations;
-    if (may_halve && (gave_up || !is_finite(s_))) {
+    const bool finite = !gave_up && is_finite(s_);
+    if (may_halve && !finite) {
       report_.status = before;
       halving_helps_ = begins_well();
       if (!halving_helps_) return advance(h, halvings, last);
@@ -438,12 +437,13 @@ class Substeps {
       return advance(h / 2, halvings + 1, false) && advance(h / 2, halvings + 1, last);
     }
     halving_helps_ = halving_helps_ && report_.status <= Status::fixed_iterations;
-    if (transaction_.accept(last)) {
-      ++report_.substeps;
-      return true;
+    if (!finite) {
+      explain(s_, h, report_, team_);
+      return false;
     }
-    explain(s_, h, report_, team_);
-    return false;
+    transaction_.accept(last);
+    ++report_.substeps;
+    return true;
   }
 
   /// What a state already violates becomes a velocity, error / h: the shorter, the worse.

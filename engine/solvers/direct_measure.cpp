@@ -78,8 +78,8 @@ void add_contact(DirectSystem& s, const Tie& contact) {
   if (s.layout.body_of[p] != kNoIndex || s.model.inverse_mass[p] == 0) {
     s.ties.push_back(contact);
   } else if (s.touch_of[p] == kNoIndex) {
-    s.touch_of[p] = static_cast<std::uint32_t>(s.touches.size());
-    s.touches.push_back(contact);
+    s.touches.push_back(contact);  // first: memory may run out
+    s.touch_of[p] = static_cast<std::uint32_t>(s.touches.size() - 1);
   } else {
     Tie& holding = s.touches[s.touch_of[p]];
     s.seconds.push_back(contact);

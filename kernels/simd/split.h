@@ -20,13 +20,15 @@ void split_positions(kernels::VectorsView x, Displacements base, Displacements u
   }
 }
 
+/// x keeps the bits that two floats cannot hold, and all of them where u has not changed.
 void join_positions(kernels::VectorsView x, Displacements base, Displacements u, std::size_t first,
                     std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
-    const auto sum = [&](std::size_t axis) {
-      return static_cast<double>(base.x[4 * i + axis]) + static_cast<double>(u.x[4 * i + axis]);
-    };
-    x.set(i, {sum(0), sum(1), sum(2)});
+    double* const at[3] = {x.x + i, x.y + i, x.z + i};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto before = static_cast<float>(*at[axis] - static_cast<double>(base.x[4 * i + axis]));
+      *at[axis] += static_cast<double>(u.x[4 * i + axis]) - static_cast<double>(before);
+    }
   }
 }
 

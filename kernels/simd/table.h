@@ -226,7 +226,7 @@ struct Table {
   void (*apply_sums_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
                              std::uint32_t last);
 
-  /// base = x rounded to float, u = x - base, and x = base + u; quads.
+  /// base = x rounded to float, u = x - base; and x moved to base + u. Quads.
   void (*split_positions)(kernels::VectorsView x, Displacements base, Displacements u,
                           std::size_t first, std::size_t last);
   void (*join_positions)(kernels::VectorsView x, Displacements base, Displacements u,

@@ -284,6 +284,10 @@ RandomCase random_case(std::uint32_t seed) {
   c.steps = large ? 1 : 1 + static_cast<int>(random.below(4));
   c.moves_pins = random.below(4) == 0;
   c.settings.scheme = one_of(std::array{Scheme::paper, Scheme::paper, Scheme::rattle}, random);
+  const bool lanes = c.settings.backend == Backend::simd && c.settings.scheme == Scheme::paper;
+  const std::uint32_t newer = random.below(4);
+  if (newer == 0) c.settings.solver = Solver::automatic;
+  if (newer == 1 && lanes) c.settings.solver = Solver::yarn;
   return c;
 }
 
