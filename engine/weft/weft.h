@@ -129,19 +129,24 @@ ModelInfo describe(const Model& model);
 
 /// gauss_seidel: the impulse loop of the paper (section 3.2), one constraint after the other.
 /// direct: all impulses at once, from the factors of their matrix, repeated until the true errors
-///   are within tolerance: two or three solves, at any tolerance. Where that fails (a step that
-///   bends edges by much of their length: use substeps), Gauss-Seidel answers, and
-///   StepReport::iterations counts its passes too. Not yet for a free sphere in substeps at a loose
-///   tolerance: sphere_drop in 4 substeps at 1 % gains energy (10 J; at 0.01 % it does not).
+///   are within tolerance: two or three solves, at any tolerance. The choice for masses that differ
+///   by many thousands.
+/// yarn: chains of constraints that run straight on through the cloth, as the yarns of a woven one
+///   do, each solved exactly and many side by side in lanes; conjugate gradients over all of them
+///   where such sweeps are slow. Ropes, hubs and contacts are relaxed one by one after each sweep,
+///   and take part in the linear system. On the simd backend, with scheme paper.
+/// automatic: yarn; direct with scheme rattle, and where the masses of joined particles differ by
+///   more than 10^4; gauss_seidel on the reference backend and with Settings::iterations.
+/// Where yarn or direct give up, the substep is done in halves, and where that is no answer either,
+/// Gauss-Seidel goes on; StepReport::iterations counts all of it.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
 /// paper: impulses along the directions of the previewed state; first order, and dissipative.
 /// rattle: along those at the start of the substep, and the velocity correction always: second
-///   order (hang, 20 x 20, dt 0.01: 27 times less far from the converged motion). Contacts come
-///   about within a substep and act along their directions at its end, in both schemes. A substep
-///   too large for it is done again by the paper's scheme with velocity correction, from the same
-///   state: where rattle does not converge, or its impulses would bring in energy
-///   (engine/rattle.h). StepReport::scheme_fallbacks counts these. With Settings::iterations
-///   nothing is done again.
+///   order. Contacts come about within a substep and act along their directions at its end, in both
+///   schemes. A substep too large for it is done again by the paper's scheme with velocity
+///   correction, from the same state: where rattle does not converge, or its impulses would bring
+///   in energy (engine/rattle.h). StepReport::scheme_fallbacks counts these. With
+///   Settings::iterations nothing is done again.
 enum class Scheme : std::uint8_t { paper, rattle };
 /// each: directions renewed before every iteration (sections 3.2, 4.1).
 /// frozen: only once all errors along them are within tolerance (section 4.4).
@@ -156,7 +161,8 @@ enum class Isa : std::uint8_t { automatic, sse2, avx2, avx512 };
 inline constexpr int kMaxThreads = 256;
 inline constexpr int kAutomaticSubsteps = 0;
 
-/// How a cloth is solved. The defaults converge to 1 % with all of the paper's optimisations.
+/// How a cloth is solved. The defaults converge to 1 % the fastest way that is known here;
+/// paper_settings() are the paper's.
 struct Settings {
   double tolerance = 0.01;  ///< strain, | |a-b| - rest | / rest, that every step must reach; > 0
   /// A step of dt is done as so many steps of dt / substeps, each to the tolerances; 0
