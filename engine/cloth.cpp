@@ -103,6 +103,8 @@ Result<void> Cloth::write_positions(std::span<const Vec3> in) {
   for (std::uint32_t i = 0; i < in.size(); ++i) {
     impl_->position.set(impl_->slot(i), to_internal(in[i]));
   }
+  impl_->pins.put_down(impl_->position);
+  impl_->placed = true;
   return {};
 }
 
@@ -139,6 +141,7 @@ Result<void> Cloth::move_fixed(std::uint32_t particle, Vec3 position) {
     return Error{"particle: is not fixed (" + std::to_string(particle) + ")"};
   }
   if (auto r = validate_vector("position", particle, position); !r) return r;
+  impl_->pins.watch(*impl_->model, impl_->position);
   impl_->position.set(slot, to_internal(position));
   return {};
 }

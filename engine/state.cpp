@@ -36,6 +36,7 @@ std::size_t State::bytes() const {
   sum += list(contacts.sphere) + list(contacts.particle) + list(contacts.distance) +
          list(contacts.first) + list(contacts.next) + list(contacts.found);
   sum += kicks.capacity() * sizeof(kernels::Kicks);
+  sum += pins.bytes();
   if (reference) sum += reference->bytes();
   if (simd) sum += simd->bytes();
   if (direct) sum += direct->bytes();

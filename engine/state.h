@@ -19,6 +19,7 @@
 
 #include "engine/contacts.h"
 #include "engine/model.h"
+#include "engine/pins.h"
 #include "engine/solvers/direct_solver.h"
 #include "engine/solvers/reference_solver.h"
 #include "engine/solvers/simd_solver.h"
@@ -39,8 +40,10 @@ struct State {
   kernels::Vectors force;   // empty: none
   kernels::Vectors solved;  // where the position loop works; the next positions
   kernels::Vectors next_velocity;
-  kernels::Vectors start_position, start_velocity;  // of the step; with substeps only
+  kernels::Vectors start_position, start_velocity;  // of the step; only where needed
   ContactStore contacts;
+  Pins pins;
+  bool placed = true;  // positions were given, not stepped to: they may violate constraints
 
   std::vector<kernels::Kicks> kicks;  // per stretch of slots; scheme rattle only
 

@@ -178,7 +178,8 @@ struct Settings {
   /// that will change are wasted: 32 saves a fifth of the iterations and more.
   /// (simd: 0 is 1024, since floats see an error fall by seven digits at most between renewals.)
   int renew_after = 32;
-  int max_iterations = 1'000'000;    ///< bound on the work of one step, in iterations; > 0
+  int max_iterations = 1'000'000;    ///< bound on the work of one substep, in iterations; > 0; half
+                                     ///< as many besides for a start that is projected
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
   double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit
@@ -313,12 +314,17 @@ class Cloth {
   /// Packed x y z floats for a vertex buffer; out.size() must be 3 * particle_count().
   Result<void> read_positions(std::span<float> out) const;
 
-  /// Replace the state; finite values, one per particle.
+  /// Replace the state; finite values, one per particle. Positions that were given, here or in the
+  /// description, and violate constraints by more than the tolerance are put right as the next step
+  /// begins, without a change of velocity (but not with Settings::iterations).
   Result<void> write_positions(std::span<const Vec3> in);
   Result<void> write_velocities(std::span<const Vec3> in);
   /// External forces in N besides gravity, kept until replaced. Empty: none.
   Result<void> write_forces(std::span<const Vec3> in);
-  /// Places a fixed particle; the constraints follow it at the next step.
+  /// Sends a fixed particle elsewhere, where position() finds it from now on. It travels there in a
+  /// straight line during the next step, and the cloth takes on its speed. But a move that takes
+  /// more than 200 m/s^2, from the one in the last step to this one, is a jump: the particle is put
+  /// down as the step begins, and the cloth follows without a change of velocity.
   Result<void> move_fixed(std::uint32_t particle, Vec3 position);
 
   Strain strain() const;           ///< recomputed from the positions

@@ -44,9 +44,14 @@ Vec3 acceleration(const RandomCase& c, std::size_t i) {
 Solution solve(const RandomCase& c) {
   const double h = c.dt;
   const std::vector<bool> fixed = are_fixed(c.scene);
-  const std::vector<Vec3>& x = c.scene.positions;
+  std::vector<Vec3> x = c.scene.positions;
   Solution s;
   if (describe(*model_of(c.scene)).constraints == 0) return s;
+  if (max_strain(c.scene, x) > c.settings.tolerance) {  // a start is put right, at no speed
+    DenseProjection start(c.scene);
+    if (!start.project_positions(x) || start.reciprocal_condition() < kLeastCondition) return s;
+    s.largest_share = start.largest_share();
+  }
   s.predicted = x;
   s.velocities.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -59,7 +64,7 @@ Solution solve(const RandomCase& c) {
   s.known = dense.project_positions(s.positions) && dense.reciprocal_condition() > kLeastCondition;
   if (!s.known) return s;
   s.motion_per_error = dense.motion_per_error();
-  s.largest_share = dense.largest_share();
+  s.largest_share += dense.largest_share();
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (fixed[i]) continue;
     s.velocities[i] = (1 / h) * (s.positions[i] - x[i]) + (h / 2) * acceleration(c, i);

@@ -82,7 +82,7 @@ TEST_CASE("velocity correction leaves a spinning bar only its tangential velocit
   check_spinning_bar(backend, true, [](double theta) { return std::atan(std::sin(theta)); });
 }
 
-TEST_CASE("a stretched bar at rest closes along its line, each end by its share of mass") {
+TEST_CASE("a stretched bar at rest closes along its line, by shares of mass, and stays at rest") {
   const Backend backend = each_backend();
   SceneDescription scene = free_bar(3, 1);
   scene.constraints[0].rest_length = 0.6;
@@ -90,8 +90,9 @@ TEST_CASE("a stretched bar at rest closes along its line, each end by its share 
   step(cloth, 0.01);
   CHECK(distance(cloth.position(0), {0.1, 0, 0}) < exactness(backend, 1e-15, 0.4));
   CHECK(distance(cloth.position(1), {0.7, 0, 0}) < exactness(backend, 1e-15, 0.4));
-  CHECK(distance(cloth.velocity(0), {10, 0, 0}) < exactness(backend, 1e-12, 40));
-  CHECK(distance(cloth.velocity(1), {-30, 0, 0}) < exactness(backend, 1e-12, 40));
+  for (const std::uint32_t i : {0u, 1u}) {
+    CHECK(length(cloth.velocity(i)) < exactness(backend, 1e-12, 40));
+  }
 }
 
 /// The time that a pendulum of length 1, released at rest at `amplitude`, takes to hang straight.

@@ -124,7 +124,7 @@ TEST_CASE("no correction exceeds the impulse limit") {
     settings.impulse_limit = 7;
     Cloth cloth = cloth_of(scene, settings);
     CHECK(step(cloth, 0.01).corrections == 5);
-    CHECK(distance(cloth.velocity(1), {-30, 0, 0}) < 1e-9);
+    CHECK(distance(cloth.position(1), {0.7, 0, 0}) < 1e-9);
 
     settings.iterations = 2;
     Cloth stopped = cloth_of(scene, settings);

@@ -1,0 +1,183 @@
+/// Starts that violate constraints are projected without adding velocity; pins that move drive the
+/// cloth, pins that jump do not.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+/// Both schemes, both backends, and the direct solver.
+std::vector<Settings> all_settings(double tolerance) {
+  std::vector<Settings> all;
+  for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+    for (int k = 0; k < 3; ++k) {
+      Settings settings = tight(tolerance);
+      settings.scheme = scheme;
+      if (k == 0) settings.backend = Backend::reference;
+      if (k == 2) settings.solver = Solver::direct;
+      all.push_back(settings);
+    }
+  }
+  return all;
+}
+
+std::string text(const Settings& settings) {
+  return std::string(name(settings.scheme)) + " " + std::string(name(settings.backend)) + " " +
+         std::string(name(settings.solver));
+}
+
+SceneDescription weightless(const char* scene, int size) {
+  SceneDescription description = scene_of(scene, size);
+  description.gravity = {0, 0, 0};
+  return description;
+}
+
+TEST_CASE("a stretched start is put right and stays at rest") {
+  SceneDescription scene = weightless("hang", 6);
+  for (Vec3& p : scene.positions) p.x *= 1.3;
+  for (const Settings& settings : all_settings(1e-5)) {
+    CAPTURE(text(settings));
+    Cloth cloth = cloth_of(scene, settings);
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::converged);
+    CHECK(report.max_strain <= 1e-5 * (1 + 1e-9));
+    CHECK(cloth.energy().kinetic < 1e-6);  // 0.3 m in 0.01 s would be hundreds of joules
+  }
+}
+
+TEST_CASE("so is a state that is written, but a violation within tolerance is left alone") {
+  const SceneDescription scene = weightless("hang", 6);
+  for (const Settings& settings : all_settings(1e-3)) {
+    CAPTURE(text(settings));
+    Cloth cloth = cloth_of(scene, settings);
+    step(cloth, 0.01);
+    std::vector<Vec3> stretched = scene.positions;
+    for (Vec3& p : stretched) p.x *= 1.2;
+    REQUIRE(cloth.write_positions(stretched));
+    step(cloth, 0.01);
+    CHECK(cloth.energy().kinetic < 1e-6);
+  }
+  Settings loose = tight(0.1);
+  Cloth cloth = cloth_of(scene, loose);
+  std::vector<Vec3> stretched = scene.positions;
+  for (Vec3& p : stretched) p.x *= 1.05;
+  REQUIRE(cloth.write_positions(stretched));
+  step(cloth, 0.01);
+  CHECK(largest_distance(positions(cloth), stretched) == 0);
+}
+
+TEST_CASE("what flies goes on flying: projecting changes positions alone") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.positions[1].x = 1.5;
+  scene.velocities = {{0, 3, 0}, {0, 3, 0}};
+  for (const Settings& settings : all_settings(1e-6)) {
+    CAPTURE(text(settings));
+    Cloth cloth = cloth_of(scene, settings);
+    step(cloth, 0.01);
+    for (const std::uint32_t i : {0u, 1u}) CHECK(distance(cloth.velocity(i), {0, 3, 0}) < 1e-5);
+    CHECK(distance(cloth.position(0), {0.25, 0.03, 0}) < 1e-5);
+  }
+}
+
+TEST_CASE("with a fixed number of iterations nothing is projected") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.positions[1].x = 1.5;
+  Settings settings = on(each_backend());
+  settings.iterations = 1;
+  Cloth cloth = cloth_of(scene, settings);
+  CHECK(step(cloth, 0.01).iterations == 1);
+  CHECK(cloth.velocity(1).x == doctest::Approx(-25).epsilon(1e-6));
+}
+
+TEST_CASE("a jump of the pins moves a cloth without making it fast") {
+  for (const Settings& settings : all_settings(1e-5)) {
+    for (const double jump : {0.1, 1.0}) {
+      CAPTURE(text(settings));
+      CAPTURE(jump);
+      const SceneDescription scene = weightless("hang", 6);
+      Cloth cloth = cloth_of(scene, settings);
+      step(cloth, 0.01);
+      for (const std::uint32_t pin : scene.fixed) {
+        const Vec3 p = scene.positions[pin];
+        REQUIRE(cloth.move_fixed(pin, {p.x - jump, p.y, p.z}));
+      }
+      CHECK(step(cloth, 0.01).status == Status::converged);
+      CHECK(cloth.energy().kinetic < 1e-6);
+      run(cloth, 0.01, 3);
+      CHECK(cloth.energy().kinetic < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("a pin that moves step by step takes the cloth along at its speed") {
+  for (Settings settings : all_settings(1e-5)) {
+    for (const int substeps : {1, 3}) {
+      CAPTURE(text(settings));
+      CAPTURE(substeps);
+      settings.substeps = substeps;
+      SceneDescription scene = free_bar(1, 1);
+      scene.fixed = {0};
+      Cloth cloth = cloth_of(scene, settings);
+      for (int k = 1; k <= 20; ++k) {
+        REQUIRE(cloth.move_fixed(0, {-0.01 * k, 0, 0}));
+        CHECK(step(cloth, 0.01).status == Status::converged);
+        CHECK(distance(cloth.position(0), {-0.01 * k, 0, 0}) == 0);
+        CHECK(distance(cloth.position(1), {1 - 0.01 * k, 0, 0}) < 1e-4);
+        CHECK(distance(cloth.velocity(1), {-1, 0, 0}) < 1e-3);
+        CHECK(length(cloth.velocity(0)) == 0);
+      }
+    }
+  }
+}
+
+// The pin swings as A sin(w t), slowly beside the pendulum that hangs from it.
+TEST_CASE("rattle follows a moving pin to second order") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0, -1, 0}};
+  scene.masses = {1, 1};
+  scene.fixed = {0};
+  scene.constraints = {{0, 1, 1}};
+  const auto end = [&](int parts) {
+    Settings settings = tight(1e-10);
+    settings.scheme = Scheme::rattle;
+    settings.solver = Solver::direct;
+    Cloth cloth = cloth_of(scene, settings);
+    const double dt = 0.02 / parts;
+    for (int k = 1; k <= 50 * parts; ++k) {
+      REQUIRE(cloth.move_fixed(0, {0.1 * (1 - std::cos(3 * k * dt)), 0, 0}));
+      CHECK(step(cloth, dt).scheme_fallbacks == 0);
+    }
+    return cloth.position(1);
+  };
+  const Vec3 converged = end(32);
+  const double coarse = distance(end(1), converged), fine = distance(end(4), converged);
+  CHECK(std::log2(coarse / fine) / 2 > 1.8);
+}
+
+TEST_CASE("a step that is refused leaves moved pins and written positions as they were") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.fixed = {0};
+  Cloth cloth = cloth_of(scene, on(each_backend()));
+  step(cloth, 0.01);
+  std::vector<Vec3> stretched = {{0, 0, 0}, {1.5, 0, 0}};
+  REQUIRE(cloth.write_positions(stretched));
+  REQUIRE(cloth.move_fixed(0, {-0.001, 0, 0}));
+  REQUIRE(cloth.write_forces(std::vector<Vec3>{{0, 0, 0}, {1e300, 1e300, 0}}));
+  const std::uint64_t before = cloth.state_hash();
+  CHECK(step(cloth, 0.01).status == Status::non_finite_input);
+  CHECK(cloth.state_hash() == before);
+  REQUIRE(cloth.write_forces({}));
+  step(cloth, 0.01);
+  CHECK(distance(cloth.position(1), {0.999, 0, 0}) < 0.011);
+  CHECK(length(cloth.velocity(1)) < 2);
+}
+
+}  // namespace
+}  // namespace weft::test
