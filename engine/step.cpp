@@ -197,12 +197,15 @@ struct Attempt {
   kernels::VectorsView start{};  // with scheme rattle: where the directions are
 };
 
-/// Yarns; from where they leave off, if need be, sweeps.
+/// Yarns; if need be, from the same positions, sweeps. Until the commit nobody needs next_velocity:
+/// it remembers the positions.
 kernels::LoopResult solve_yarns(State& s, double h, bool first, int left, OnFailure on_failure,
                                 Standstill& standstill, Team& team) {
+  const bool may_sweep = on_failure == OnFailure::sweep;
+  if (may_sweep) s.next_velocity = s.solved;
   auto result = s.yarn->solve_positions(s.solved.view(), s.contacts, first, left, *s.simd, team);
-  if (!result.failed || on_failure == OnFailure::give_up) return result;
-  predict(s, h, team);
+  if (!result.failed || !may_sweep) return result;
+  s.solved = s.next_velocity;
   const auto swept = sweep_on(s, h, true, left - result.iterations, standstill, team);
   result.iterations += swept.iterations;
   result.direction_updates += swept.direction_updates;
