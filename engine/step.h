@@ -1,4 +1,4 @@
-/// One time step, from top to bottom: substep() in step.cpp is the list of its stages.
+/// One time step: its substeps, and what becomes of them. The list of stages is in substep.cpp.
 #pragma once
 
 #include <weft/weft.h>

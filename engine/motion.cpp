@@ -1,0 +1,76 @@
+#include "engine/motion.h"
+
+#include <algorithm>
+
+#include "kernels/reference/integrate.h"
+
+namespace weft {
+namespace {
+
+reference::Motion reference_motion(State& s) {
+  reference::Motion m;
+  m.particles = s.model->slots();
+  m.inverse_mass = s.model->inverse_mass.data();
+  m.gravity = s.model->gravity;
+  if (s.force.size() > 0) m.force = s.force.view();
+  m.position = s.position.view();
+  m.velocity = s.velocity.view();
+  m.predicted = s.predicted.view();
+  m.solved = s.solved.view();
+  return m;
+}
+
+simd::Motion simd_motion(State& s) {
+  simd::Motion m;
+  m.inverse_mass = s.model->inverse_mass.data();
+  m.gravity = s.model->gravity;
+  if (s.force.size() > 0) m.force = s.force.view();
+  m.position = s.position.view();
+  m.velocity = s.velocity.view();
+  m.solved = s.solved.view();
+  m.next_velocity = s.next_velocity.view();
+  return m;
+}
+
+/// work(first, last) over all slots, shared out in stretches.
+template <class Work>
+void for_all_slots(const State& s, Team& team, Work&& work) {
+  const std::size_t slots = s.model->slots();
+  team.for_each((slots + kStretch - 1) / kStretch,
+                [&](std::size_t i) { work(i * kStretch, std::min(slots, (i + 1) * kStretch)); });
+}
+
+}  // namespace
+
+void predict(State& s, double h, Team& team) {
+  if (s.reference) return reference::predict(reference_motion(s), h);
+  const simd::Motion motion = simd_motion(s);
+  for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
+    s.kernels->predict(motion, h, first, last);
+  });
+}
+
+void commit(State& s, double h, Team& team) {
+  if (s.reference) {
+    return reference::commit(reference_motion(s), h, s.next_velocity.view());
+  }
+  const simd::Motion motion = simd_motion(s);
+  for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
+    s.kernels->commit(motion, h, first, last);
+  });
+}
+
+kernels::Kicks measure_kicks(State& s, double h, Team& team) {
+  if (s.reference) {
+    return reference::measure_kicks(reference_motion(s), h, s.next_velocity.view());
+  }
+  const simd::Motion motion = simd_motion(s);
+  for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
+    s.kicks[first / kStretch] = s.kernels->measure_kicks(motion, h, first, last);
+  });
+  kernels::Kicks sum;
+  for (const kernels::Kicks& kicks : s.kicks) sum.add(kicks);
+  return sum;
+}
+
+}  // namespace weft

@@ -1,0 +1,178 @@
+#include "engine/solve.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "engine/reporting.h"
+#include "engine/standstill.h"
+
+namespace weft {
+
+Strain strain_at(State& s, kernels::Vectors& x, Team& team) {
+  return s.simd ? s.simd->measure_strain(x.view(), team) : measure_strain(*s.model, x);
+}
+
+double penetration_at(State& s, kernels::Vectors& x) {
+  if (!s.model->has_contacts()) return 0;
+  return max_penetration(*s.model, *s.kernels, x.view(), s.contacts);
+}
+
+namespace {
+
+/// Solves that ran into contacts from beyond the margin are repeated; each round adds at least one
+/// contact, in practice one round is rare and two were not seen.
+constexpr int kMaxContactRounds = 16;
+
+void count(kernels::LoopResult& sum, const kernels::LoopResult& part) {
+  sum.iterations += part.iterations;
+  sum.direction_updates += part.direction_updates;
+  sum.visits += part.visits;
+  sum.corrections += part.corrections;
+  sum.converged = part.converged;
+}
+
+void add(StepReport& report, const kernels::LoopResult& result) {
+  report.visits += result.visits;
+  report.corrections += result.corrections;
+  if (!result.converged) worsen(report, Status::iteration_limit);
+}
+
+/// With a start: along the directions there (scheme rattle).
+kernels::LoopResult sweep_positions(State& s, double h, kernels::VectorsView start, bool first,
+                                    const LoopBudget& budget, Team& team) {
+  const auto x = s.solved.view();
+  return s.reference ? s.reference->solve_positions(x, start, h, s.contacts, first, budget)
+                     : s.simd->solve_positions(x, start, s.contacts, first, budget, team);
+}
+
+/// Sweeps until nothing is out of tolerance, `most` iterations are done, or none of them brings
+/// anything any more.
+kernels::LoopResult sweep_on(State& s, double h, bool first, int most, Standstill& standstill,
+                             Team& team) {
+  if (s.settings.iterations > 0)
+    return sweep_positions(s, h, {}, first, whole_budget(s.settings), team);
+  kernels::LoopResult sum;
+  while (sum.iterations < most && !standstill.reached()) {
+    const int part = std::min(most - sum.iterations, kPassesBetweenLooks);
+    const LoopBudget budget{part, standstill.in_doubt() ? 1 : s.settings.renew_after};
+    count(sum, sweep_positions(s, h, {}, first && sum.iterations == 0, budget, team));
+    if (sum.converged || part < kPassesBetweenLooks) break;
+    standstill.look(strain_at(s, s.solved, team), penetration_at(s, s.solved));
+  }
+  return sum;
+}
+
+/// Scheme rattle, as long as sweeps bring the largest strain down: if they do not, the paper's
+/// scheme is quicker than waiting.
+kernels::LoopResult sweep_from_start(State& s, double h, kernels::VectorsView start, bool first,
+                                     int most, Team& team) {
+  constexpr int kPasses = 256;
+  if (s.settings.iterations > 0) {
+    return sweep_positions(s, h, start, first, whole_budget(s.settings), team);
+  }
+  kernels::LoopResult sum;
+  double strain = std::numeric_limits<double>::infinity();
+  for (;;) {
+    const LoopBudget budget{std::min(most - sum.iterations, kPasses), s.settings.renew_after};
+    count(sum, sweep_positions(s, h, start, first && sum.iterations == 0, budget, team));
+    if (sum.converged || sum.iterations >= most) return sum;
+    const double before = std::exchange(strain, strain_at(s, s.solved, team).max);
+    if (!(strain < before)) return sum;
+  }
+}
+
+kernels::LoopResult sweep_velocities(State& s, Team& team) {
+  const auto x = s.solved.view(), v = s.next_velocity.view();
+  return s.reference ? s.reference->correct_velocities(x, v, s.contacts)
+                     : s.simd->correct_velocities(x, v, s.contacts, team);
+}
+
+/// What a lambda for the direct solver sees, as one reference: std::function then allocates
+/// nothing.
+struct Answer {
+  State& state;
+  double h;
+  Standstill& standstill;
+  Team& team;
+};
+
+kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView start, bool first,
+                                     int left, Team& team) {
+  if (!s.direct) return sweep_from_start(s, h, start, first, left, team);
+  return s.direct->solve_from_start(s.solved.view(), start, s.contacts, first, left);
+}
+
+/// Yarns; if need be, from the same positions, sweeps. Until the commit nobody needs next_velocity:
+/// it remembers the positions.
+kernels::LoopResult solve_yarns(State& s, double h, bool first, int left, OnFailure on_failure,
+                                Standstill& standstill, Team& team) {
+  const bool may_sweep = on_failure == OnFailure::sweep;
+  if (may_sweep) s.next_velocity = s.solved;
+  auto result = s.yarn->solve_positions(s.solved.view(), s.contacts, first, left, *s.simd, team);
+  if (!result.failed || !may_sweep) return result;
+  s.solved = s.next_velocity;
+  const auto swept = sweep_on(s, h, true, left - result.iterations, standstill, team);
+  count(result, swept);
+  return result;
+}
+
+kernels::LoopResult solve_positions(State& s, double h, bool first, int left, OnFailure on_failure,
+                                    Standstill& standstill, Team& team) {
+  if (s.yarn) return solve_yarns(s, h, first, left, on_failure, standstill, team);
+  if (!s.direct) return sweep_on(s, h, first, left, standstill, team);
+  if (on_failure == OnFailure::give_up) {
+    return s.direct->solve_positions(s.solved.view(), s.contacts, first, left, {});
+  }
+  const Answer answer{s, h, standstill, team};
+  const auto sweeps = [&answer](bool begin, int most) {
+    auto result = sweep_on(answer.state, answer.h, begin, most, answer.standstill, answer.team);
+    result.converged |= answer.standstill.reached();  // nobody will find a better answer
+    return result;
+  };
+  auto result = s.direct->solve_positions(s.solved.view(), s.contacts, first, left, sweeps);
+  result.converged &= !standstill.reached();
+  return result;
+}
+
+kernels::LoopResult correct_velocities(State& s, Team& team) {
+  if (!s.direct) return sweep_velocities(s, team);
+  const auto answer = std::tie(s, team);
+  return s.direct->correct_velocities(
+      s.solved.view(), s.next_velocity.view(), s.contacts,
+      [&answer](bool, int) { return std::apply(sweep_velocities, answer); });
+}
+
+}  // namespace
+
+bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+  int left = attempt.most_iterations;
+  for (int round = 0; round < kMaxContactRounds; ++round) {
+    Standstill standstill;
+    const bool first = round == 0;
+    const auto result =
+        attempt.start.x != nullptr
+            ? solve_from_start(s, attempt.h, attempt.start, first, left, team)
+            : solve_positions(s, attempt.h, first, left, attempt.on_failure, standstill, team);
+    add(report, result);
+    if (!result.converged && standstill.reached()) worsen(report, Status::infeasible);
+    report.iterations += result.iterations;
+    left -= result.iterations;
+    report.direction_updates += result.direction_updates;
+    const bool again = s.model->has_contacts() && result.converged &&
+                       add_missed_contacts(*s.model, *s.kernels, s.solved.view(),
+                                           s.settings.contact_tolerance, s.contacts) > 0;
+    if (!again) return result.failed && attempt.on_failure == OnFailure::give_up;
+  }
+  worsen(report, Status::iteration_limit);
+  return false;
+}
+
+void correct_velocities(State& s, StepReport& report, Team& team) {
+  const auto result = correct_velocities(s, team);
+  add(report, result);
+  report.velocity_iterations += result.iterations;
+}
+
+}  // namespace weft

@@ -1,0 +1,71 @@
+#include "engine/substep.h"
+
+#include <utility>
+
+#include "engine/contacts.h"
+#include "engine/crossings.h"
+#include "engine/motion.h"
+#include "engine/rattle.h"
+#include "engine/reporting.h"
+
+namespace weft {
+
+void find_contacts(State& s, StepReport& report) {
+  if (!s.model->has_contacts()) return;
+  timed(report, Stage::find_contacts,
+        [&] { find_contacts(*s.model, *s.kernels, s.solved.view(), s.contacts); });
+}
+
+namespace {
+
+void watch_crossings(State& s, StepReport& report) {
+  const std::uint32_t passed = find_crossing(*s.model, s.position, s.solved);
+  if (passed == kNoIndex) return;
+  report.passed_particle = s.model->ordering.particle_at[passed];
+  worsen(report, Status::passed_through);
+}
+
+bool run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+  const double h = attempt.h;
+  timed(report, Stage::predict, [&] { predict(s, h, team); });
+  find_contacts(s, report);
+  bool gave_up = false;
+  timed(report, Stage::solve_positions,
+        [&] { gave_up = solve_positions(s, attempt, report, team); });
+  if (gave_up) return true;
+  timed(report, Stage::commit, [&] { commit(s, h, team); });
+  if (s.settings.velocity_correction) {
+    timed(report, Stage::correct_velocities, [&] { correct_velocities(s, report, team); });
+  }
+  if (s.settings.iterations > 0 && report.status <= Status::iteration_limit) {
+    report.status = Status::fixed_iterations;
+  }
+  if (s.model->has_contacts()) {
+    timed(report, Stage::find_contacts, [&] { watch_crossings(s, report); });
+  }
+  return false;
+}
+
+}  // namespace
+
+/// Until it is accepted a substep leaves position and velocity alone: it can be done again. With a
+/// fixed number of iterations it is not.
+bool substep(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+  if (s.settings.scheme == Scheme::paper) return run_stages(s, attempt, report, team);
+  const Status before = std::exchange(report.status, Status::converged);
+  Attempt by_rattle = attempt;
+  by_rattle.start = s.position.view();
+  const bool gave_up = run_stages(s, by_rattle, report, team);
+  const bool good = report.status == Status::fixed_iterations ||
+                    (report.status == Status::converged && !gave_up &&
+                     keeps_energy(measure_kicks(s, attempt.h, team)));
+  if (good) {
+    worsen(report, before);
+    return false;
+  }
+  report.status = before;
+  ++report.scheme_fallbacks;
+  return run_stages(s, attempt, report, team);
+}
+
+}  // namespace weft

@@ -1,0 +1,16 @@
+/// One substep, from top to bottom: substep.cpp is the list of its stages.
+#pragma once
+
+#include "engine/solve.h"
+#include "engine/state.h"
+
+namespace weft {
+
+/// Computes the next state, in solved and next_velocity, by the scheme of the settings; position
+/// and velocity stay. Returns whether the solver gave up; then there is no next state.
+bool substep(State& s, const Attempt& attempt, StepReport& report, Team& team);
+
+/// Lists who may touch whom at solved.
+void find_contacts(State& s, StepReport& report);
+
+}  // namespace weft
