@@ -106,26 +106,26 @@ kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView st
 
 /// Yarns; if need be, from the same positions, sweeps. Until the commit nobody needs next_velocity:
 /// it remembers the positions.
-kernels::LoopResult solve_yarns(State& s, double h, bool first, int left, OnFailure on_failure,
+kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, bool first, int left,
                                 Standstill& standstill, Team& team) {
-  const bool may_sweep = on_failure == OnFailure::sweep;
+  const bool may_sweep = attempt.on_failure == OnFailure::sweep;
   if (may_sweep) s.next_velocity = s.solved;
-  auto result = s.yarn->solve_positions(s.solved.view(), s.contacts, first, left, *s.simd, team);
-  if (!result.failed || !may_sweep) return result;
+  auto result = s.yarn->solve_positions(s.solved.view(), s.contacts, first, left, attempt.care,
+                                        *s.simd, team);
+  if (!result.failed || result.converged || !may_sweep) return result;
   s.solved = s.next_velocity;
-  const auto swept = sweep_on(s, h, true, left - result.iterations, standstill, team);
-  count(result, swept);
+  count(result, sweep_on(s, attempt.h, true, left - result.iterations, standstill, team));
   return result;
 }
 
-kernels::LoopResult solve_positions(State& s, double h, bool first, int left, OnFailure on_failure,
+kernels::LoopResult solve_positions(State& s, const Attempt& attempt, bool first, int left,
                                     Standstill& standstill, Team& team) {
-  if (s.yarn) return solve_yarns(s, h, first, left, on_failure, standstill, team);
-  if (!s.direct) return sweep_on(s, h, first, left, standstill, team);
-  if (on_failure == OnFailure::give_up) {
+  if (s.yarn) return solve_yarns(s, attempt, first, left, standstill, team);
+  if (!s.direct) return sweep_on(s, attempt.h, first, left, standstill, team);
+  if (attempt.on_failure != OnFailure::sweep) {
     return s.direct->solve_positions(s.solved.view(), s.contacts, first, left, {});
   }
-  const Answer answer{s, h, standstill, team};
+  const Answer answer{s, attempt.h, standstill, team};
   const auto sweeps = [&answer](bool begin, int most) {
     auto result = sweep_on(answer.state, answer.h, begin, most, answer.standstill, answer.team);
     result.converged |= answer.standstill.reached();  // nobody will find a better answer
@@ -144,6 +144,11 @@ kernels::LoopResult correct_velocities(State& s, Team& team) {
       [&answer](bool, int) { return std::apply(sweep_velocities, answer); });
 }
 
+bool gave_up(const kernels::LoopResult& result, OnFailure on_failure) {
+  return result.failed &&
+         (on_failure == OnFailure::halve || (on_failure == OnFailure::leave && !result.converged));
+}
+
 }  // namespace
 
 bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team) {
@@ -151,10 +156,9 @@ bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team&
   for (int round = 0; round < kMaxContactRounds; ++round) {
     Standstill standstill;
     const bool first = round == 0;
-    const auto result =
-        attempt.start.x != nullptr
-            ? solve_from_start(s, attempt.h, attempt.start, first, left, team)
-            : solve_positions(s, attempt.h, first, left, attempt.on_failure, standstill, team);
+    const auto result = attempt.start.x != nullptr
+                            ? solve_from_start(s, attempt.h, attempt.start, first, left, team)
+                            : solve_positions(s, attempt, first, left, standstill, team);
     add(report, result);
     if (!result.converged && standstill.reached()) worsen(report, Status::infeasible);
     report.iterations += result.iterations;
@@ -163,7 +167,7 @@ bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team&
     const bool again = s.model->has_contacts() && result.converged &&
                        add_missed_contacts(*s.model, *s.kernels, s.solved.view(),
                                            s.settings.contact_tolerance, s.contacts) > 0;
-    if (!again) return result.failed && attempt.on_failure == OnFailure::give_up;
+    if (!again) return gave_up(result, attempt.on_failure);
   }
   worsen(report, Status::iteration_limit);
   return false;

@@ -8,15 +8,17 @@
 
 namespace weft {
 
-/// What is done where the chosen solver gives up: the substep is left to be done in halves, or
-/// Gauss-Seidel sweeps go on from there.
-enum class OnFailure : std::uint8_t { give_up, sweep };
+/// What is done where the chosen solver gives up. halve: the substep is left to be done in halves,
+/// also where the solver came within tolerance and no nearer. leave: the substep is left unless the
+/// solver came within tolerance. sweep: Gauss-Seidel sweeps do it.
+enum class OnFailure : std::uint8_t { halve, leave, sweep };
 
 /// One way to try a substep.
 struct Attempt {
   double h = 0;
   int most_iterations = 1;
   OnFailure on_failure = OnFailure::sweep;
+  double care = 1;               // yarns may leave this share of what they usually leave
   kernels::VectorsView start{};  // with scheme rattle: where the directions are
 };
 

@@ -43,6 +43,7 @@ struct State {
   kernels::Vectors start_position, start_velocity;  // of the step; only where needed
   ContactStore contacts;
   Pins pins;
+  double care = 1;     // less for a while after a step in which a solver gave up: substeps.cpp
   bool placed = true;  // positions were given, not stepped to: they may violate constraints
 
   std::vector<kernels::Kicks> kicks;  // per stretch of slots; scheme rattle only

@@ -8,11 +8,10 @@
 #include "engine/reporting.h"
 #include "engine/solvers/team.h"
 #include "engine/substep.h"
+#include "engine/substeps.h"
 
 namespace weft {
 namespace {
-
-bool is_finite(const State& s) { return all_finite(s.solved) && all_finite(s.next_velocity); }
 
 void report_errors(State& s, StepReport& report, Team& team) {
   const Strain strain = strain_at(s, s.position, team);
@@ -35,40 +34,6 @@ int threads_worth_having(const State& s) {
   return static_cast<int>(std::min(most, wanted));
 }
 
-/// accept() makes a transaction of one substep; a step that changes the state before it has done
-/// all must remember where it began, and returns there whatever the reason.
-class Transaction {
- public:
-  explicit Transaction(State& s) : s_(s) {}
-  ~Transaction() {
-    if (!begun_ || complete_) return;
-    std::swap(s_.position, s_.start_position);
-    std::swap(s_.velocity, s_.start_velocity);
-  }
-  Transaction(const Transaction&) = delete;
-  Transaction& operator=(const Transaction&) = delete;
-
-  /// The state is about to change.
-  void begin() {
-    if (begun_) return;
-    s_.start_position = s_.position;
-    s_.start_velocity = s_.velocity;
-    begun_ = true;
-  }
-
-  /// The substep becomes the state; the last one ends the step.
-  void accept(bool last) {
-    if (!last) begin();
-    std::swap(s_.position, s_.solved);
-    std::swap(s_.velocity, s_.next_velocity);
-    complete_ = last;
-  }
-
- private:
-  State& s_;
-  bool begun_ = false, complete_ = false;
-};
-
 /// The pins under way: whatever becomes of the step, they stand in the end where they were sent.
 class Travel {
  public:
@@ -86,140 +51,6 @@ class Travel {
   bool arrived_ = false;
 };
 
-/// With a fixed number of iterations nobody asks.
-bool violates_constraints(State& s, Team& team) {
-  return s.settings.iterations == 0 &&
-         (strain_at(s, s.position, team).max > s.settings.tolerance ||
-          penetration_at(s, s.position) > s.settings.contact_tolerance);
-}
-
-/// Moves the positions onto the constraints and leaves the velocities: the error of a start would
-/// become a velocity of error / h. What cannot be put right with half of the iterations that a
-/// substep may take is left to the step, and to its status.
-void project(State& s, double h, StepReport& report, Team& team) {
-  const Status before = report.status;
-  s.solved = s.position;
-  find_contacts(s, report);
-  const Attempt attempt{h, std::max(1, s.settings.max_iterations / 2), OnFailure::sweep};
-  timed(report, Stage::solve_positions, [&] { solve_positions(s, attempt, report, team); });
-  if (all_finite(s.solved)) s.position = s.solved;
-  report.status = before;
-}
-
-/// Of a substep that was not accepted: who left the range of numbers, and whether that would have
-/// happened without any constraint.
-void explain(State& s, double h, StepReport& report, Team& team) {
-  const std::size_t solved =
-      std::min(first_not_finite(s.solved), first_not_finite(s.next_velocity));
-  predict(s, h, team);
-  const std::size_t predicted = first_not_finite(s.solved);
-  const bool input = predicted < s.model->slots();
-  report.failed_particle = s.model->ordering.particle_at[input ? predicted : solved];
-  worsen(report, input ? Status::non_finite_input : Status::non_finite);
-}
-
-/// How the largest strain after a step without constraints decides about the substeps: a quarter of
-/// it for twice as many.
-constexpr double kMostBend = 0.04;
-constexpr int kMostSubsteps = 256;
-
-/// As many as the motion wants: see kMostBend.
-int choose_substeps(State& s, double dt, Team& team) {
-  if (s.settings.substeps != kAutomaticSubsteps) return s.settings.substeps;
-  predict(s, dt, team);
-  const double wanted = std::ceil(std::sqrt(strain_at(s, s.solved, team).max / kMostBend));
-  return wanted < kMostSubsteps ? std::max(1, static_cast<int>(wanted)) : kMostSubsteps;
-}
-
-/// How often a substep whose solver gives up may be cut in two.
-constexpr int kMostHalvings = 4;
-
-/// The substeps of a step.
-class Substeps {
- public:
-  Substeps(State& s, StepReport& report, Team& team)
-      : s_(s), report_(report), team_(team), transaction_(s) {
-    halving_helps_ = s.settings.iterations == 0 && s.settings.solver != Solver::gauss_seidel;
-  }
-
-  /// Returns whether all of dt was done.
-  bool run(double dt, bool jumped) {
-    if ((s_.placed || jumped) && violates_constraints(s_, team_)) {
-      transaction_.begin();
-      project(s_, dt, report_, team_);
-    }
-    const int substeps = choose_substeps(s_, dt, team_);
-    for (int k = 1; k <= substeps; ++k) {
-      left_ = s_.settings.max_iterations;
-      parts_ = 0;
-      Outcome outcome = advance(dt / substeps, 0, k == substeps);
-      if (outcome == Outcome::hopeless) {
-        halving_helps_ = false;
-        outcome = advance(dt / substeps, 0, k == substeps);
-      }
-      if (outcome == Outcome::refused) return false;
-    }
-    s_.placed = false;
-    return true;
-  }
-
- private:
-  /// refused: the state could not be accepted. hopeless: halving is no answer to this substep, of
-  /// which nothing has been done.
-  enum class Outcome : std::uint8_t { done, refused, hopeless };
-
-  /// Advances by h, in halves where the solver gives up. Where even the first of the shortest parts
-  /// does not converge there is no hope in halving, and Gauss-Seidel sweeps go on for the rest of
-  /// the step.
-  Outcome advance(double h, int halvings, bool last) {
-    const Status before = report_.status;
-    const bool may_halve = halving_helps_ && halvings < kMostHalvings && left_ > 0;
-    const bool may_give_up = may_halve || (halving_helps_ && parts_ == 0);
-    const int iterations = report_.iterations;
-    const Attempt attempt{h, std::max(left_, 1),
-                          may_give_up ? OnFailure::give_up : OnFailure::sweep};
-    const bool gave_up = substep(s_, attempt, report_, team_);
-    left_ -= report_.iterations - iterations;
-    const bool finite = !gave_up && is_finite(s_);
-    if (may_give_up && !finite) {
-      report_.status = before;
-      if (parts_ == 0 && !(may_halve && begins_well(h))) return Outcome::hopeless;
-      ++report_.halvings;
-      const Outcome first = advance(h / 2, halvings + 1, false);
-      return first == Outcome::done ? advance(h / 2, halvings + 1, last) : first;
-    }
-    if (!finite) {
-      explain(s_, h, report_, team_);
-      return Outcome::refused;
-    }
-    transaction_.accept(last);
-    ++report_.substeps;
-    ++parts_;
-    return Outcome::done;
-  }
-
-  /// What a state already violates becomes a velocity, error / h: the shorter, the worse. For
-  /// direct solutions, which remove all of it at once, it must be little, or little beside what the
-  /// motion of h would add. (As strict with yarns, steps of corners, 81 x 81, at 1 % end in sweeps:
-  /// 48 ms a frame instead of 5.)
-  bool begins_well(double h) {
-    const double tolerance = s_.settings.tolerance;
-    const double before = strain_at(s_, s_.position, team_).max;
-    if (s_.settings.solver == Solver::yarn) return before <= 2 * tolerance;
-    if (before <= 0.5 * tolerance) return true;
-    predict(s_, h, team_);
-    return before <= tolerance && before <= 0.5 * strain_at(s_, s_.solved, team_).max;
-  }
-
-  State& s_;
-  StepReport& report_;
-  Team& team_;
-  Transaction transaction_;
-  bool halving_helps_ = false;
-  int left_ = 0;   // iterations, of a substep and its parts together
-  int parts_ = 0;  // of the present substep, done
-};
-
 }  // namespace
 
 StepReport step(State& s, double dt) {
@@ -227,7 +58,7 @@ StepReport step(State& s, double dt) {
   Team team(threads_worth_having(s), s.meeting);
   {
     Travel travel(s, dt);
-    if (Substeps(s, report, team).run(dt, travel.jumped())) travel.arrive();
+    if (run_substeps(s, dt, travel.jumped(), report, team)) travel.arrive();
   }
   if (report.status != Status::passed_through) report.passed_particle = kNoIndex;
   timed(report, Stage::report, [&] { report_errors(s, report, team); });

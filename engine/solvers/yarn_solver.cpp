@@ -16,7 +16,7 @@ using kernels::kLanes;
 /// substeps, 0.1 %: 60 iterations a frame; with no such bound, or three times as much, some steps
 /// fail).
 constexpr double kSlow = 0.8;
-constexpr double kSmall = 0.01;
+constexpr double kSmall = 0.02;
 /// Newton steps are solved to this share of the error they found, or of the tolerance.
 constexpr double kForcing = 0.05;
 constexpr double kWithin = 0.5;
@@ -188,8 +188,8 @@ void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::Lo
 
 kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x,
                                                 const ContactStore& contacts, bool first_round,
-                                                int max_iterations, SimdSolver& measure,
-                                                Team& team) {
+                                                int max_iterations, double care,
+                                                SimdSolver& measure, Team& team) {
   kernels::LoopResult result;
   others_.start(contacts, first_round);
   place(x, team);
@@ -198,7 +198,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x,
     join(x, team);
     return result;
   }
-  const double goal = std::min(settings_.tolerance, kGoal);
+  const double goal = care * std::min(settings_.tolerance, kGoal);
   double before = std::numeric_limits<double>::infinity(), best = before;
   int stale = 0;
   sweep(team, result);
@@ -213,8 +213,8 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x,
     if (result.iterations >= max_iterations) return result;
     stale = worst < kFall * best ? 0 : stale + 1;
     best = std::min(best, worst);
-    result.failed = !result.converged && (!std::isfinite(worst) || stale > kPatience);
-    if (result.failed || stale > kPatience) return result;
+    result.failed = !std::isfinite(worst) || stale > kPatience;
+    if (result.failed) return result;
     if (strain < kSmall && strain > kSlow * before) {
       place(x, team);
       newton(kWithin * goal, std::min(kMostIterations, max_iterations - result.iterations), team,

@@ -32,12 +32,13 @@ class YarnSolver {
  public:
   YarnSolver(const Model& model, const Settings& settings, const simd::Table& table);
 
-  /// Moves x until every constraint and listed contact is within tolerance, or as far as it gets.
-  /// strain: measures the true errors. LoopResult::iterations counts sweeps and iterations of
-  /// conjugate gradients.
+  /// Moves x until every constraint and listed contact is well within tolerance, or as far as it
+  /// gets: failed where that is not as far as it wanted. care: the share of what it usually leaves
+  /// that may be left. measure: of the true errors. LoopResult::iterations counts sweeps and
+  /// iterations of conjugate gradients.
   kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
-                                      bool first_round, int max_iterations, SimdSolver& measure,
-                                      Team& team);
+                                      bool first_round, int max_iterations, double care,
+                                      SimdSolver& measure, Team& team);
   std::size_t bytes() const;
 
  private:

@@ -138,7 +138,10 @@ ModelInfo describe(const Model& model);
 /// automatic: yarn; direct with scheme rattle, and where the masses of joined particles differ by
 ///   more than 10^4; gauss_seidel on the reference backend and with Settings::iterations.
 /// Where yarn or direct give up, the substep is done in halves, and where that is no answer either,
-/// Gauss-Seidel goes on; StepReport::iterations counts all of it.
+/// Gauss-Seidel goes on; StepReport::iterations counts all of it. Such a substep gains no energy:
+/// velocities are scaled down, all by one factor, if it would. For some steps after it automatic
+/// substeps are shorter and yarns stop at a smaller error: the next step depends a little on how
+/// the state came about, until positions are written.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
 /// paper: impulses along the directions of the previewed state; first order, and dissipative.
 /// rattle: along those at the start of the substep, and the velocity correction always: second
