@@ -3,6 +3,9 @@
 ///
 ///   satisfied lane:  clear its bit at both ends
 ///   corrected lane:  set all bits but its own at both ends
+///
+/// Rounding may leave a corrected lane out of tolerance: displacements of 2^24 times the tolerance
+/// are not known any better. Its own bit is then set as well.
 #pragma once
 
 #include "kernels/simd/relax.h"
@@ -23,15 +26,19 @@ struct Marks {
       words[i] = Words::load_unaligned(mask + i * kWords);
     }
   }
+  /// As bits, one per lane: which were corrected, and which of these are still out of tolerance.
   [[gnu::always_inline]] void update(std::uint64_t* mask, std::uint32_t corrected,
-                                     std::uint64_t bit) const {
+                                     std::uint32_t left, std::uint64_t bit) const {
     alignas(64) static constexpr std::uint64_t kLaneBits[16] = {
         1u << 0, 1u << 1, 1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
         1u << 8, 1u << 9, 1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15};
-    const Words others(~bit), lanes(corrected), none(std::uint64_t{0});
+    const Words all(~std::uint64_t{0}), others(~bit), none(std::uint64_t{0});
+    const Words moved_lanes(corrected), left_lanes(left);
     for (std::uint32_t i = 0; i < kFloats / kWords; ++i) {
-      const auto still = (lanes & Words::load_aligned(kLaneBits + i * kWords)) == none;
-      xsimd::select(still, words[i] & others, others).store_unaligned(mask + i * kWords);
+      const Words lane = Words::load_aligned(kLaneBits + i * kWords);
+      const Words moved = xsimd::select((left_lanes & lane) == none, others, all);
+      xsimd::select((moved_lanes & lane) == none, words[i] & others, moved)
+          .store_unaligned(mask + i * kWords);
     }
   }
 };
@@ -57,14 +64,17 @@ std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_
     FloatVector ua = load(r.u, a), ub = load(r.u, b);
     const Corrected corrected = correct_distances(r, c, errors(p, n, ua - ub), threshold);
     const std::uint32_t lanes = bits(corrected.lanes);
-    at_a.update(r.mask + a, lanes, bit);
-    at_b.update(r.mask + b, lanes, bit);
-    if (lanes == 0) continue;
-    corrections += count(corrected.lanes);
-    move(ua, n, corrected.by * p.gain_a());
-    move(ub, n, corrected.by * p.gain_b());
-    store(r.u, a, ua);
-    store(r.u, b, ub);
+    std::uint32_t left = 0;
+    if (lanes != 0) {
+      corrections += count(corrected.lanes);
+      move(ua, n, corrected.by * p.gain_a());
+      move(ub, n, corrected.by * p.gain_b());
+      store(r.u, a, ua);
+      store(r.u, b, ub);
+      left = bits(xsimd::abs(errors(p, n, ua - ub)) > threshold);
+    }
+    at_a.update(r.mask + a, lanes, left, bit);
+    at_b.update(r.mask + b, lanes, left, bit);
   }
   return corrections;
 }

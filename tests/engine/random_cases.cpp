@@ -185,7 +185,7 @@ bool is_resolved(const RandomCase& c) {
 
 TEST_CASE("random cases: what is passed over changes no bit") {
   for_each_case(4000, random_case, [](const RandomCase& c) {
-    if (!is_resolved(c)) return;
+    if (c.settings.backend == Backend::reference && !is_resolved(c)) return;
     INFO(text(c));
     Settings other = c.settings;
     other.skip = !other.skip;
