@@ -64,6 +64,7 @@ DirectSolver::DirectSolver(const Model& model, const Settings& settings, const s
       system_(model, settings),
       factor_(model.direct(), kernels),
       bodies_(model.direct()),
+      balance_(model),
       stiff_(model),
       start_(model.slots()) {}
 
@@ -76,11 +77,15 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
     iterate_fixed(x, {}, contacts, result);
     return result;
   }
+  if (first_round) balance_.start(x);
   copy(x, start_.view(), start_.size());
   int wanted = kFirstSweeps;
   for (int attempt = 0;; ++attempt) {
     DirectOutcome outcome = iterate(x, {}, contacts, max_iterations, sweeps != nullptr, result);
     if (outcome == DirectOutcome::exhausted) return result;
+    if (outcome == DirectOutcome::converged && !balance_.is_explained(system_, x)) {
+      outcome = DirectOutcome::failed;
+    }
     if (outcome == DirectOutcome::failed && attempt == 0 && stiff_.wanted()) {
       outcome = iterate_stiff(x, contacts, max_iterations, result);
     }
@@ -90,12 +95,12 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
     copy(start_.view(), x, start_.size());
     const int left = max_iterations - result.iterations;
     if (left <= 0) return result;
-    system_.start(contacts, true);
     const LoopResult swept = sweeps(attempt == 0, std::min(wanted, left));
     count(result, swept);
     result.converged = swept.converged;
     if (result.converged || result.iterations >= max_iterations) return result;
     copy(x, start_.view(), start_.size());
+    restart(x, contacts);
     wanted = std::min(wanted, max_iterations) * kMoreSweeps;
   }
 }
@@ -136,11 +141,17 @@ DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const Cont
   }
 }
 
+/// No impulses yet, from x on.
+void DirectSolver::restart(VectorsView x, const ContactStore& contacts) {
+  system_.start(contacts, true);
+  balance_.start(x);
+}
+
 DirectOutcome DirectSolver::iterate_stiff(VectorsView x, const ContactStore& contacts,
                                           int max_iterations, LoopResult& result) {
   copy(start_.view(), x, start_.size());
-  system_.start(contacts, true);
-  return stiff_.iterate(system_, factor_, x, contacts, max_iterations, result);
+  restart(x, contacts);
+  return stiff_.iterate(system_, factor_, balance_, x, contacts, max_iterations, result);
 }
 
 DirectOutcome DirectSolver::iterate_fixed(VectorsView x, VectorsView start,
@@ -197,7 +208,8 @@ bool DirectSolver::solve(VectorsView u, LoopResult& result) {
 }
 
 std::size_t DirectSolver::bytes() const {
-  return system_.bytes() + factor_.bytes() + bodies_.bytes() + stiff_.bytes() + start_.bytes();
+  return system_.bytes() + factor_.bytes() + bodies_.bytes() + balance_.bytes() + stiff_.bytes() +
+         start_.bytes();
 }
 
 }  // namespace weft

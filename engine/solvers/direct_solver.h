@@ -14,12 +14,14 @@
 ///   direct_system    what one solve works on
 ///   direct_measure   directions, errors, the active set of ropes and contacts
 ///   direct_impulses  errors become impulses become motion
+///   direct_balance   whether impulses explain a motion
 ///   direct_bodies    spheres and hubs, unknowns beside the matrix
 ///   direct_stiff     an attempt for masses that differ by thousands
 ///
 /// Newton's method fails where a step bends edges by much of their length, where masses differ by
 /// thousands, and where A is singular and the errors inconsistent (compressed straight chains).
-/// That is seen by errors that no longer fall. A caller who can take a smaller step gives no sweeps
+/// That is seen by errors that no longer fall, or by a motion that its impulses do not explain
+/// (direct_balance.h). A caller who can take a smaller step gives no sweeps
 /// and is told (LoopResult::failed). The other answer is to start again from the predicted state
 /// with sweeps of Gauss-Seidel, which take the short waves out, and to try again from there, with
 /// four times as many sweeps after each failure; Settings::max_iterations bounds the sum. Smaller
@@ -30,6 +32,7 @@
 
 #include <functional>
 
+#include "engine/solvers/direct_balance.h"
 #include "engine/solvers/direct_bodies.h"
 #include "engine/solvers/direct_factor.h"
 #include "engine/solvers/direct_stiff.h"
@@ -65,6 +68,7 @@ class DirectSolver {
   DirectOutcome iterate(kernels::VectorsView x, kernels::VectorsView start,
                         const ContactStore& contacts, int max_iterations, bool noise_will_do,
                         kernels::LoopResult& result);
+  void restart(kernels::VectorsView x, const ContactStore& contacts);
   DirectOutcome iterate_stiff(kernels::VectorsView x, const ContactStore& contacts,
                               int max_iterations, kernels::LoopResult& result);
   DirectOutcome iterate_fixed(kernels::VectorsView x, kernels::VectorsView start,
@@ -77,6 +81,7 @@ class DirectSolver {
   DirectSystem system_;
   DirectFactor factor_;
   DirectBodies bodies_;
+  DirectBalance balance_;
   DirectStiff stiff_;
   kernels::Vectors start_;  // where an attempt begins
 };

@@ -52,25 +52,24 @@ int most_solves(const DirectLayout& layout) {
 
 DirectStiff::DirectStiff(const Model& model) {
   if (!is_uneven(model) || !model.direct().bodies.empty() || model.has_contacts()) return;
-  predicted_.resize(model.slots());
-  g_.resize(model.slots());
   soft_.resize(model.slots());
 }
 
-DirectOutcome DirectStiff::iterate(DirectSystem& system, DirectFactor& factor, VectorsView x,
+DirectOutcome DirectStiff::iterate(DirectSystem& system, DirectFactor& factor,
+                                   DirectBalance& balance, VectorsView x,
                                    const ContactStore& contacts, int max_iterations,
                                    LoopResult& result) {
   const Model& model = system.model;
-  for (std::size_t p = 0; p < model.slots(); ++p) predicted_.set(p, x[p]);
   const int most = most_solves(system.layout);
   for (int solves = 0;; ++solves) {
     const double worst = measure_positions(system, x, {}, contacts);
     result.visits += system.count();
-    const double imbalance = find_imbalance(system, x);
+    const double imbalance = balance.find(system, x);
     if (worst <= 0.5 && imbalance <= 0.1) {
-      for (std::size_t p = 0; p < model.slots(); ++p) x.add(p, -model.inverse_mass[p] * g_[p]);
+      for (std::size_t p = 0; p < model.slots(); ++p)
+        x.add(p, -model.inverse_mass[p] * balance.g()[p]);
       if (measure_positions(system, x, {}, contacts) <= 1) return DirectOutcome::converged;
-      find_imbalance(system, x);
+      balance.find(system, x);
     }
     if (!std::isfinite(worst + imbalance) || solves == most) return DirectOutcome::failed;
     if (result.iterations >= max_iterations) return DirectOutcome::exhausted;
@@ -78,31 +77,8 @@ DirectOutcome DirectStiff::iterate(DirectSystem& system, DirectFactor& factor, V
     ++result.direction_updates;
     result.corrections += system.active;
     stiffen(system);
-    solve(system, factor, x);
+    solve(system, factor, balance.g(), x);
   }
-}
-
-/// g = M (x - x~) + J^T lambda, in g_; the largest |W g| in tolerances.
-double DirectStiff::find_imbalance(const DirectSystem& system, VectorsView x) {
-  const Model& model = system.model;
-  const DirectLayout& layout = system.layout;
-  for (std::size_t p = 0; p < model.slots(); ++p) {
-    const double w = model.inverse_mass[p];
-    g_.set(p, w > 0 ? (1 / w) * (x[p] - predicted_[p]) : Vector{0, 0, 0});
-  }
-  double shortest = std::numeric_limits<double>::infinity();
-  for (std::size_t row = 0; row < layout.rows(); ++row) {
-    const std::uint32_t c = layout.row_constraint[row];
-    const Vector j = system.total[c] * system.n(row);
-    g_.view().add(layout.a[row], j);
-    g_.view().add(layout.b[row], -1 * j);
-    shortest = std::min(shortest, system.tolerance(c));
-  }
-  double worst = 0;
-  for (std::size_t p = 0; p < model.slots(); ++p) {
-    worst = std::max(worst, model.inverse_mass[p] * length(g_[p]));
-  }
-  return worst / shortest;
 }
 
 /// W~ = (M + sum k (1 - n n^T))^-1 per particle.
@@ -133,11 +109,12 @@ void DirectStiff::stiffen(const DirectSystem& system) {
   }
 }
 
-void DirectStiff::solve(DirectSystem& system, DirectFactor& factor, VectorsView x) {
+void DirectStiff::solve(DirectSystem& system, DirectFactor& factor, kernels::Vectors& g,
+                        VectorsView x) {
   const DirectLayout& layout = system.layout;
   for (std::size_t row = 0; row < layout.rows(); ++row) {
     const std::uint32_t a = layout.a[row], b = layout.b[row];
-    system.lambda[row] -= dot(system.n(row), soft_[a] * g_[a] - soft_[b] * g_[b]);
+    system.lambda[row] -= dot(system.n(row), soft_[a] * g[a] - soft_[b] * g[b]);
   }
   factor.factorise(
       [&](std::size_t e) {
@@ -154,12 +131,12 @@ void DirectStiff::solve(DirectSystem& system, DirectFactor& factor, VectorsView 
   factor.solve(system.lambda.data());
   for (std::size_t row = 0; row < layout.rows(); ++row) {
     const double impulse = system.clamped(layout.row_constraint[row], system.lambda[row]);
-    g_.view().add(layout.a[row], impulse * system.n(row));
-    g_.view().add(layout.b[row], -impulse * system.n(row));
+    g.view().add(layout.a[row], impulse * system.n(row));
+    g.view().add(layout.b[row], -impulse * system.n(row));
   }
-  for (std::size_t p = 0; p < system.model.slots(); ++p) x.add(p, -1 * (soft_[p] * g_[p]));
+  for (std::size_t p = 0; p < system.model.slots(); ++p) x.add(p, -1 * (soft_[p] * g[p]));
 }
 
-std::size_t DirectStiff::bytes() const { return predicted_.bytes() + g_.bytes() + bytes_of(soft_); }
+std::size_t DirectStiff::bytes() const { return bytes_of(soft_); }
 
 }  // namespace weft

@@ -1,13 +1,10 @@
 /// The stiff attempt of the direct solver.
 ///
 /// Under a heavy end the impulses are so large that a light particle at the least kink is thrown
-/// far: the turning of n, which A leaves out, matters most. The projection onto the constraints is
-/// stationary where
-///
-///     g = M (x - x~) + J^T lambda = 0,     x~ predicted, J at x itself
-///
-/// and the derivative of J^T lambda is the geometric stiffness of the tensions (Tournier et al.
-/// 2015), here bounded from above by a block for each particle (Andrews et al. 2017):
+/// far: the turning of n, which A leaves out, matters most. It is part of the derivative of the
+/// balance g (direct_balance.h): that of J^T lambda is the geometric stiffness of the tensions
+/// (Tournier et al. 2015), here bounded from above by a block for each particle (Andrews et al.
+/// 2017):
 ///
 ///     W~ = (M + sum over its constraints of 2 |lambda| / rest (1 - n n^T))^-1
 ///     (J W~ J^T) d = e - J W~ g,     x -= W~ (g + J^T d),     lambda += d
@@ -18,6 +15,7 @@
 /// that momentum is kept to rounding.
 #pragma once
 
+#include "engine/solvers/direct_balance.h"
 #include "engine/solvers/direct_factor.h"
 #include "engine/solvers/direct_system.h"
 #include "kernels/loop.h"
@@ -35,19 +33,17 @@ class DirectStiff {
 
   /// Whether masses are such that the attempt may be needed.
   bool wanted() const { return !soft_.empty(); }
-  /// From x, which is the prediction.
-  DirectOutcome iterate(DirectSystem& system, DirectFactor& factor, kernels::VectorsView x,
-                        const ContactStore& contacts, int max_iterations,
+  /// From x, where the balance starts.
+  DirectOutcome iterate(DirectSystem& system, DirectFactor& factor, DirectBalance& balance,
+                        kernels::VectorsView x, const ContactStore& contacts, int max_iterations,
                         kernels::LoopResult& result);
   std::size_t bytes() const;
 
  private:
-  double find_imbalance(const DirectSystem& system, kernels::VectorsView x);
   void stiffen(const DirectSystem& system);
-  void solve(DirectSystem& system, DirectFactor& factor, kernels::VectorsView x);
+  void solve(DirectSystem& system, DirectFactor& factor, kernels::Vectors& g,
+             kernels::VectorsView x);
 
-  kernels::Vectors predicted_;
-  kernels::Vectors g_;           // imbalance, per slot
   std::vector<Symmetric> soft_;  // W~, per slot
 };
 
