@@ -5,17 +5,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tools/hard/results.h"
 #include "tools/hard/suite.h"
-#include "tools/json_output.h"
 #include "tools/output_folder.h"
+#include "tools/study_outputs.h"
 #include "tools/task_line.h"
-#include "tools/text_file.h"
 
 namespace weft::tools {
 namespace {
@@ -49,26 +46,13 @@ Result<void> write_folder(const std::filesystem::path& folder,
 Result<int> run_hard(const HardOptions& options) {
   const auto selected = hard::select(options.name);
   if (selected.empty()) return Error{fmt::format("--case: no case is named '{}'", options.name)};
-  std::optional<JsonOutput> json;
-  if (!options.json.empty()) {
-    auto opened = JsonOutput::open(options.json);
-    if (!opened) return Error{fmt::format("--json: {}", opened.error())};
-    json = std::move(opened.value());
-  }
-  if (!options.out.empty()) {
-    if (auto made = make_output_folder(options.out); !made) return Error{made.error()};
-  }
+  auto outputs = StudyOutputs::open(options.json, options.out);
+  if (!outputs) return Error{outputs.error()};
   const auto results = run_all(selected, options.quick);
-
-  if (!options.out.empty()) {
-    if (auto done = write_folder(options.out, results); !done) return Error{done.error()};
-  }
-  if (json) {
-    if (auto done = json->write(hard::to_json(results)); !done) return Error{done.error()};
-  }
-  if (!json || !json->is_stdout()) {
-    if (auto done = print_text(hard::to_text(results)); !done) return Error{done.error()};
-  }
+  const auto done = outputs.value().write(
+      hard::to_text(results), hard::to_json(results),
+      [&](const std::filesystem::path& folder) { return write_folder(folder, results); });
+  if (!done) return Error{done.error()};
   return hard::failed(results) > 0 ? kExitFailed : 0;
 }
 

@@ -15,6 +15,7 @@
 #include "tools/paper_results.h"
 #include "tools/paper_study.h"
 #include "tools/plotting.h"
+#include "tools/study_outputs.h"
 #include "tools/task_line.h"
 
 namespace weft::tools {
@@ -79,29 +80,14 @@ int fail(const std::string& message) {
 }
 
 int run_paper(const PaperOptions& options) {
-  // Destinations are opened before minutes of work, not after.
-  std::optional<JsonOutput> json;
-  if (!options.json.empty()) {
-    auto opened = JsonOutput::open(options.json);
-    if (!opened) return fail(opened.error());
-    json = std::move(opened.value());
-  }
-  if (!options.out.empty()) {
-    if (const auto made = make_output_folder(options.out); !made) return fail(made.error());
-  }
-
+  auto outputs = StudyOutputs::open(options.json, options.out);
+  if (!outputs) return fail(outputs.error());
   const auto study = carry_out(options);
   if (!study) return fail(study.error());
-
-  if (!json || !json->is_stdout()) fmt::print("{}", paper::to_text(study.value()));
-  if (json) {
-    if (const auto done = json->write(paper::to_json(study.value())); !done)
-      return fail(done.error());
-  }
-  if (!options.out.empty()) {
-    if (const auto done = write_folder(options.out, study.value()); !done)
-      return fail(done.error());
-  }
+  const auto done = outputs.value().write(
+      paper::to_text(study.value()), paper::to_json(study.value()),
+      [&](const std::filesystem::path& folder) { return write_folder(folder, study.value()); });
+  if (!done) return fail(done.error());
   return paper::all_reached_tolerance(study.value()) ? 0 : kExitNotConverged;
 }
 

@@ -21,11 +21,11 @@ Result<double> parse_tolerance(std::string_view option, std::string_view text);
 /// "on" or "off".
 Result<bool> parse_switch(std::string_view option, std::string_view text);
 
-/// A name that an option accepts. Without a value it is known but not available yet.
+/// A name that an option accepts.
 template <class Value>
 struct Choice {
   std::string_view name;
-  std::optional<Value> value;
+  Value value;
 };
 
 /// The value of a name, looked up in the option's table.
@@ -34,8 +34,7 @@ Result<Value> parse_choice(std::string_view option, std::string_view text,
                            std::span<const Choice<Value>> table) {
   std::string names;
   for (const Choice<Value>& choice : table) {
-    if (choice.name == text && choice.value) return *choice.value;
-    if (choice.name == text) return Error{fmt::format("{} {}: not available yet", option, text)};
+    if (choice.name == text) return choice.value;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", choice.name);
   }
   return Error{fmt::format("{}: '{}' is not one of {}", option, text, names)};

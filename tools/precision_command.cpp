@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "tools/precision/results_json.h"
 #include "tools/precision/results_tables.h"
 #include "tools/precision/sweep.h"
+#include "tools/study_outputs.h"
 #include "tools/task_line.h"
 
 namespace weft::tools {
@@ -123,16 +125,16 @@ Result<Study> carry_out(const std::vector<Task>& tasks, const PrecisionOptions& 
 }
 
 /// The data first: the pictures are drawn from it, and a machine without matplotlib keeps it.
-Result<void> write_folder(const std::string& folder, const Study& study) {
-  if (auto done = write_file(folder + "/points.csv", points_csv(study)); !done) return done;
+Result<void> write_folder(const std::filesystem::path& folder, const Study& study) {
+  if (auto done = write_file(folder / "points.csv", points_csv(study)); !done) return done;
   if (study.sizes) {
-    if (auto done = write_file(folder + "/sizes.csv", sizes_csv(*study.sizes)); !done) return done;
+    if (auto done = write_file(folder / "sizes.csv", sizes_csv(*study.sizes)); !done) return done;
   }
-  if (auto done = write_file(folder + "/precision.md", to_markdown(study)); !done) return done;
-  const std::string json = folder + "/precision.json";
+  if (auto done = write_file(folder / "precision.md", to_markdown(study)); !done) return done;
+  const std::string json = folder / "precision.json";
   if (auto done = write_json(json, to_json(study)); !done) return done;
   const auto drawn = plot("precision_charts.py", {json, "--out", folder});
-  if (!drawn) fmt::print(stderr, "weft: {}; the data is in {}\n", drawn.error(), folder);
+  if (!drawn) fmt::print(stderr, "weft: {}; the data is in {}\n", drawn.error(), folder.c_str());
   return {};
 }
 
@@ -144,30 +146,14 @@ int fail(const std::string& message) {
 int run_precision(const PrecisionOptions& options) {
   const auto tasks = tasks_of(options);
   if (!tasks) return fail(tasks.error());
-  // Destinations are opened before minutes of work, not after.
-  std::optional<JsonOutput> json;
-  if (!options.json.empty()) {
-    auto opened = JsonOutput::open(options.json);
-    if (!opened) return fail(opened.error());
-    json = std::move(opened.value());
-  }
-  if (!options.out.empty()) {
-    if (const auto made = make_output_folder(options.out); !made) return fail(made.error());
-  }
-
+  auto outputs = StudyOutputs::open(options.json, options.out);
+  if (!outputs) return fail(outputs.error());
   const auto study = carry_out(tasks.value(), options);
   if (!study) return fail(study.error());
-
-  if (!json || !json->is_stdout()) fmt::print("{}", to_text(study.value()));
-  if (json) {
-    if (const auto done = json->write(to_json(study.value())); !done) return fail(done.error());
-  }
-  if (!options.out.empty()) {
-    if (const auto done = write_folder(options.out, study.value()); !done) {
-      return fail(done.error());
-    }
-  }
-  return 0;
+  const auto done = outputs.value().write(
+      to_text(study.value()), to_json(study.value()),
+      [&](const std::filesystem::path& folder) { return write_folder(folder, study.value()); });
+  return done ? 0 : fail(done.error());
 }
 
 }  // namespace

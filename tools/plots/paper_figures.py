@@ -4,13 +4,8 @@
     paper_figures.py paper.json --out FOLDER
 """
 
-import argparse
-import json
-import os
-import sys
+import study_figures
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 
@@ -22,11 +17,6 @@ COLOURS = {"original": "#8c8c8c", "4.3": "#d9a441", "4.2": "#4f93b8", "4.2+4.3":
 PAPER_AVERAGES = {
     ("4.3", "each"): (103, 95), ("4.2", "each"): (72, 66), ("4.2+4.3", "each"): (66, 59),
     ("4.3", "frozen"): (59, 62), ("4.2", "frozen"): (40, 40), ("4.2+4.3", "frozen"): (28, 30),
-}
-STYLE = {
-    "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True,
-    "axes.titlesize": 10, "axes.titlelocation": "left", "axes.edgecolor": "0.4",
-    "xtick.color": "0.2", "ytick.color": "0.2", "legend.frameon": False, "svg.fonttype": "none",
 }
 
 
@@ -151,30 +141,15 @@ def figure_4(study):
     return figure
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("json", help="written by `weft paper --json`")
-    parser.add_argument("--out", required=True, help="the folder to write into")
-    options = parser.parse_args()
-    with open(options.json, encoding="utf-8") as file:
-        study = json.load(file)
-    os.makedirs(options.out, exist_ok=True)
-    plt.rcParams.update(STYLE)
-    figures = {
+def figures_of(study):
+    return {
         "figure2": runtime_figure(study, 2, ["4.3", "4.2", "4.2+4.3"], "each",
                                   "directions renewed in every iteration"),
         "figure3": runtime_figure(study, 3, ["original", "4.3", "4.2", "4.2+4.3"], "frozen",
                                   "directions renewed only when satisfied (4.4)"),
         "figure4": figure_4(study),
     }
-    for name, figure in figures.items():
-        for ending in ("png", "svg"):
-            figure.savefig(os.path.join(options.out, f"{name}.{ending}"), dpi=130)
-    return 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except (OSError, ValueError, KeyError) as problem:
-        sys.exit(f"paper_figures.py: {type(problem).__name__}: {problem}")
+    study_figures.run(__doc__, "paper", figures_of)

@@ -6,13 +6,8 @@
 precision: error against time per frame, a row for each scene; sizes: time against size.
 """
 
-import argparse
-import json
-import os
-import sys
+import study_figures
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.patheffects
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
@@ -24,11 +19,6 @@ COLOURS = {"auto": "#d55e00", "yarn": "#009e73", "direct": "#0072b2", "gauss_sei
            "original": "#cc79a7", "bullet": "#808080"}
 OTHER = "#56b4e9"
 NAMES = {"original": "the paper's original", "bullet": "Bullet"}
-STYLE = {
-    "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True,
-    "axes.titlesize": 10, "axes.titlelocation": "left", "axes.edgecolor": "0.4",
-    "xtick.color": "0.2", "ytick.color": "0.2", "legend.frameon": False, "svg.fonttype": "none",
-}
 FRAME_MS = 10
 SMALLEST_STRAIN, LARGEST_STRAIN = 4e-6, 0.25
 ENERGY_BOUND = "0.001 J"
@@ -259,26 +249,12 @@ def sizes_figure(sizes, quick):
     return figure
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("json", help="written by `weft precision --json`")
-    parser.add_argument("--out", required=True, help="the folder to write into")
-    options = parser.parse_args()
-    with open(options.json, encoding="utf-8") as file:
-        study = json.load(file)
-    os.makedirs(options.out, exist_ok=True)
-    plt.rcParams.update(STYLE)
+def figures_of(study):
     figures = {"precision": precision_figure(study)}
     if "sizes" in study:
         figures["sizes"] = sizes_figure(study["sizes"], study["quick"])
-    for name, figure in figures.items():
-        for ending in ("png", "svg"):
-            figure.savefig(os.path.join(options.out, f"{name}.{ending}"), dpi=130)
-    return 0
+    return figures
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except (OSError, ValueError, KeyError) as problem:
-        sys.exit(f"precision_charts.py: {type(problem).__name__}: {problem}")
+    study_figures.run(__doc__, "precision", figures_of)

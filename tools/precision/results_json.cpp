@@ -16,6 +16,11 @@ void add_outcome(Json& json, const Outcome& outcome) {
   json["counts"] = outcome.counts();
 }
 
+/// Those that were asked for; where they are automatic, what it came to.
+Json substeps(int asked, const Outcome& outcome) {
+  return asked == kAutomaticSubsteps ? Json(outcome.substeps) : Json(asked);
+}
+
 Json point_json(const Task& task, const Point& point) {
   Json json{{"scene", task.scene},
             {"size", task.size},
@@ -23,7 +28,7 @@ Json point_json(const Task& task, const Point& point) {
             {"solver", point.solver},
             {"scheme", point.scheme},
             {"backend", point.backend},
-            {"substeps", point.knobs.substeps},
+            {"substeps", substeps(point.knobs.substeps, point.outcome)},
             {"tolerance", optional_json(point.knobs.tolerance)},
             {"iterations", point.knobs.iterations}};
   add_outcome(json, point.outcome);
@@ -79,7 +84,8 @@ Json sizes_json(const SizeStudy& study) {
   for (const SizeCurve& curve : study.curves) {
     Json points = Json::array();
     for (const SizePoint& point : curve.points) {
-      Json& row = points.emplace_back(Json{{"size", point.size}, {"substeps", point.substeps}});
+      Json& row = points.emplace_back(
+          Json{{"size", point.size}, {"substeps", substeps(point.substeps, point.outcome)}});
       add_outcome(row, point.outcome);
       row.erase("trajectory_error");
     }

@@ -40,9 +40,9 @@ double predicted_seconds(const SizeStudy& study, const SizeCurve& curve, int siz
          std::pow(growth, exponent(curve).value_or(1));
 }
 
-/// Where the search for substeps starts; 0: they are automatic.
-int first_substeps(const SizeCurve& curve) {
-  if (curve.solver == "auto") return 0;
+/// Where the search for substeps starts.
+int first_substeps(Solver solver, const SizeCurve& curve) {
+  if (solver == Solver::automatic) return kAutomaticSubsteps;
   return curve.points.empty() ? 1 : curve.points.back().substeps;
 }
 
@@ -54,7 +54,7 @@ Result<std::optional<SizePoint>> cheapest(const SizeStudy& study, const Task& ta
   std::optional<SizePoint> best;
   for (const int factor : {1, 2, 4}) {
     const int substeps = first * factor;
-    if (factor > 1 && substeps == 0) break;
+    if (factor > 1 && substeps == kAutomaticSubsteps) break;
     watch(fmt::format("{}, {} substeps", name(solver), substeps));
     const auto point = measure(task, settings_of(study, solver, substeps), effort);
     if (!point) return Error{point.error()};
@@ -93,8 +93,9 @@ Result<void> measure(SizeStudy& study, const SizeWatch& watch) {
             fmt::format("{0} x {0} would take more than {1:g} s", size, study.seconds_limit);
         continue;
       }
+      const Solver solver = all_solvers()[k];
       const auto point =
-          cheapest(study, task.value(), all_solvers()[k], first_substeps(curve), watch);
+          cheapest(study, task.value(), solver, first_substeps(solver, curve), watch);
       if (!point) return Error{point.error()};
       if (point.value()) {
         curve.points.push_back(*point.value());

@@ -30,20 +30,18 @@ struct KnobSet {
   std::vector<int> many_substeps;  // of the rows of iterations
 };
 
-constexpr int kAutomatic = 0;  // substeps
-
 KnobSet knob_set(bool quick) {
-  if (quick) return {{0.1, 0.01, 1e-3, 1e-4}, {kAutomatic, 1, 4}, {1, 8}, {8, 32}};
+  if (quick) return {{0.1, 0.01, 1e-3, 1e-4}, {kAutomaticSubsteps, 1, 4}, {1, 8}, {8, 32}};
   return {{0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5},
-          {kAutomatic, 1, 2, 4, 8, 16},
+          {kAutomaticSubsteps, 1, 2, 4, 8, 16},
           {1, 4, 16, 64},
           {4, 16, 64}};
 }
 
 /// The plain call: nothing but the tolerance is chosen by the user.
 KnobSet plain_knob_set(bool quick) {
-  if (quick) return {{0.1, 0.01, 1e-3, 1e-4}, {kAutomatic}, {}, {}};
-  return {{0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, {kAutomatic}, {}, {}};
+  if (quick) return {{0.1, 0.01, 1e-3, 1e-4}, {kAutomaticSubsteps}, {}, {}};
+  return {{0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, {kAutomaticSubsteps}, {}, {}};
 }
 
 bool is_known(const Task& task, const Settings& settings) {
@@ -97,6 +95,7 @@ Outcome outcome_of(const Task& task, const RunSummary& summary) {
   outcome.max_strain = summary.max_strain;
   outcome.mean_max_strain = summary.mean_max_strain;
   outcome.energy_gain = summary.energy_gain;
+  outcome.substeps = static_cast<double>(summary.substeps) / std::max(summary.frames, 1);
   const bool out_of_time = summary.frames < task.frames && committed(summary.status);
   outcome.status = out_of_time ? "out_of_time" : name(summary.status);
   return outcome;
@@ -116,7 +115,7 @@ std::vector<Scheme> all_schemes() { return all<Scheme>(); }
 std::vector<Curve> weft_curves(const Task& task, bool quick) {
   std::vector<Curve> curves{original(task, knob_set(quick))};
   for (const Solver solver : all_solvers()) {
-    const KnobSet knobs = name(solver) == "auto" ? plain_knob_set(quick) : knob_set(quick);
+    const KnobSet knobs = solver == Solver::automatic ? plain_knob_set(quick) : knob_set(quick);
     for (const Scheme scheme : all_schemes()) {
       Settings settings;
       settings.solver = solver;

@@ -47,6 +47,7 @@ struct Outcome {
   double max_strain = 0;                     ///< over all frames and constraints
   double mean_max_strain = 0;                ///< mean over the frames
   double energy_gain = 0;                    ///< J
+  double substeps = 0;                       ///< per frame, mean
   std::optional<double> trajectory_error{};  ///< m
 
   bool is_complete() const { return status == "converged" || status == "fixed_iterations"; }
