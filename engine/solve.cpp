@@ -14,6 +14,10 @@ Strain strain_at(State& s, kernels::Vectors& x, Team& team) {
   return s.simd ? s.simd->measure_strain(x.view(), team) : measure_strain(*s.model, x);
 }
 
+double max_strain_at(State& s, kernels::Vectors& x, Team& team) {
+  return s.simd ? s.simd->max_strain(x.view(), team) : measure_strain(*s.model, x).max;
+}
+
 double penetration_at(State& s, kernels::Vectors& x) {
   if (!s.model->has_contacts()) return 0;
   return max_penetration(*s.model, *s.kernels, x.view(), s.contacts);
@@ -78,7 +82,7 @@ kernels::LoopResult sweep_from_start(State& s, double h, kernels::VectorsView st
     const LoopBudget budget{std::min(most - sum.iterations, kPasses), s.settings.renew_after};
     count(sum, sweep_positions(s, h, start, first && sum.iterations == 0, budget, team));
     if (sum.converged || sum.iterations >= most) return sum;
-    const double before = std::exchange(strain, strain_at(s, s.solved, team).max);
+    const double before = std::exchange(strain, max_strain_at(s, s.solved, team));
     if (!(strain < before)) return sum;
   }
 }

@@ -29,6 +29,7 @@ void correct_velocities(State& s, StepReport& report, Team& team);
 
 /// True errors at x.
 Strain strain_at(State& s, kernels::Vectors& x, Team& team);
+double max_strain_at(State& s, kernels::Vectors& x, Team& team);
 double penetration_at(State& s, kernels::Vectors& x);
 
 }  // namespace weft

@@ -18,7 +18,7 @@ bool is_finite(const State& s) { return all_finite(s.solved) && all_finite(s.nex
 /// With a fixed number of iterations nobody asks.
 bool violates_constraints(State& s, Team& team) {
   return s.settings.iterations == 0 &&
-         (strain_at(s, s.position, team).max > s.settings.tolerance ||
+         (max_strain_at(s, s.position, team) > s.settings.tolerance ||
           penetration_at(s, s.position) > s.settings.contact_tolerance);
 }
 
@@ -63,7 +63,7 @@ int choose_substeps(State& s, double dt, Team& team) {
   if (s.settings.substeps != kAutomaticSubsteps) return s.settings.substeps;
   predict(s, dt, team);
   const double wanted =
-      std::ceil(std::sqrt(strain_at(s, s.solved, team).max / (s.care * kMostBend)));
+      std::ceil(std::sqrt(max_strain_at(s, s.solved, team) / (s.care * kMostBend)));
   return wanted < kMostSubsteps ? std::max(1, static_cast<int>(wanted)) : kMostSubsteps;
 }
 
@@ -149,11 +149,11 @@ class Substeps {
   /// 48 ms a frame instead of 5.)
   bool begins_well(double h) {
     const double tolerance = s_.settings.tolerance;
-    const double before = strain_at(s_, s_.position, team_).max;
+    const double before = max_strain_at(s_, s_.position, team_);
     if (s_.settings.solver == Solver::yarn) return before <= 2 * tolerance;
     if (before <= 0.5 * tolerance) return true;
     predict(s_, h, team_);
-    return before <= tolerance && before <= 0.5 * strain_at(s_, s_.solved, team_).max;
+    return before <= tolerance && before <= 0.5 * max_strain_at(s_, s_.solved, team_);
   }
 
   State& s_;

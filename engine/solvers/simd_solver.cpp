@@ -202,8 +202,8 @@ simd::Geometry SimdSolver::geometry(kernels::VectorsView x, bool velocity) {
           layout_.a.data(), layout_.b.data()};
 }
 
-/// Chunk by chunk side by side, then added in order.
-Strain SimdSolver::measure_strain(kernels::VectorsView x, Team& team) {
+/// Fills strains_, chunk by chunk side by side.
+void SimdSolver::measure_chunks(kernels::VectorsView x, Team& team) {
   const simd::Geometry g = geometry(x, false);
   const auto measure = [&](const Chunk& chunk) {
     const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
@@ -216,6 +216,23 @@ Strain SimdSolver::measure_strain(kernels::VectorsView x, Team& team) {
     const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
     for (std::size_t i = piece * kPiece; i < last; ++i) strains_[i] = measure(layout_.chunks[i]);
   });
+}
+
+double SimdSolver::max_strain(kernels::VectorsView x, Team& team) {
+  measure_chunks(x, team);
+  double most = 0;
+  for (std::size_t i = 0; i < layout_.chunks.size(); ++i) {
+    most = std::max(most, strains_[i].largest);
+  }
+  for (std::uint32_t c = layout_.hub_first; c < layout_.hub_last; ++c) {
+    most = std::max(most, strain_of(x, c));
+  }
+  return most;
+}
+
+Strain SimdSolver::measure_strain(kernels::VectorsView x, Team& team) {
+  measure_chunks(x, team);
+  const std::size_t chunks = layout_.chunks.size();
   Strain strain;
   double squares = 0;
   std::size_t worst = chunks;
@@ -230,16 +247,18 @@ Strain SimdSolver::measure_strain(kernels::VectorsView x, Team& team) {
   return strain;
 }
 
+/// Of the constraint in a slot of the layout.
+double SimdSolver::strain_of(kernels::VectorsView x, std::uint32_t slot) const {
+  const double rest = layout_.rest_length[slot];
+  const double stretch = (length(x[layout_.a[slot]] - x[layout_.b[slot]]) - rest) / rest;
+  return layout_.constraint_at[slot] < model_.constraints.bilateral ? std::abs(stretch)
+                                                                    : std::max(0.0, stretch);
+}
+
 /// Adds the constraints at hubs, and finds the constraint that the largest strain belongs to.
 void SimdSolver::finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
                                Strain& strain) const {
   const ConstraintStore& store = model_.constraints;
-  const auto strain_of = [&](std::uint32_t slot) {
-    const double rest = layout_.rest_length[slot];
-    const double stretch = (length(x[layout_.a[slot]] - x[layout_.b[slot]]) - rest) / rest;
-    return layout_.constraint_at[slot] < store.bilateral ? std::abs(stretch)
-                                                         : std::max(0.0, stretch);
-  };
   double nearest = -1;
   const auto consider = [&](std::uint32_t slot, double s) {
     if (s <= nearest) return;
@@ -249,11 +268,11 @@ void SimdSolver::finish_strain(kernels::VectorsView x, std::size_t worst_chunk, 
   if (worst_chunk < layout_.chunks.size()) {
     const kernels::Run& run = layout_.chunks[worst_chunk].run;
     for (std::uint32_t c = run.constraint; c < run.constraint + run.length; ++c) {
-      if (layout_.constraint_at[c] != kNoIndex) consider(c, strain_of(c));
+      if (layout_.constraint_at[c] != kNoIndex) consider(c, strain_of(x, c));
     }
   }
   for (std::uint32_t c = layout_.hub_first; c < layout_.hub_last; ++c) {
-    const double s = strain_of(c);
+    const double s = strain_of(x, c);
     squares += s * s;
     strain.max = std::max(strain.max, s);
     consider(c, s);

@@ -56,6 +56,7 @@ class SimdSolver {
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts, Team& team);
   Strain measure_strain(kernels::VectorsView x, Team& team);
+  double max_strain(kernels::VectorsView x, Team& team);  // the same, and nothing besides
 
   const simd::Table& kernels() const { return table_; }
   std::size_t bytes() const;
@@ -68,6 +69,8 @@ class SimdSolver {
   void fill_gains(bool velocity);
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
   void choose_active(kernels::VectorsView x);
+  void measure_chunks(kernels::VectorsView x, Team& team);
+  double strain_of(kernels::VectorsView x, std::uint32_t slot) const;
   void finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
                      Strain& strain) const;
   simd::Relaxation relaxation(bool velocity);

@@ -204,7 +204,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x,
   sweep(team, result);
   for (;;) {
     join(x, team);
-    const double strain = measure.measure_strain(x, team).max;
+    const double strain = measure.max_strain(x, team);
     const double depth = others_.penetration(base_.data(), u_.data());
     const bool touching = depth <= settings_.contact_tolerance;
     result.converged = strain <= settings_.tolerance && touching;
