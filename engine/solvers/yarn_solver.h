@@ -39,6 +39,7 @@ class YarnSolver {
   kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
                                       bool first_round, int max_iterations, double care,
                                       SimdSolver& measure, Team& team);
+  std::size_t longest() const { return layout_.longest; }  // particles of the longest yarn
   std::size_t bytes() const;
 
  private:
