@@ -148,6 +148,17 @@ constexpr Kernel kKernels[] = {
      [](const Arguments& x, const Piece& piece) {
        benchmark::DoNotOptimize(x.table.strain_singles(x.g, piece.first(), piece.last(), false));
      }},
+    {"stretch",
+     {8, 24, 16, 24},
+     false,
+     false,
+     0,
+     [](const Arguments& x, const Piece& piece) {
+       benchmark::DoNotOptimize(x.table.stretch_run(x.g, piece.run, false));
+     },
+     [](const Arguments& x, const Piece& piece) {
+       benchmark::DoNotOptimize(x.table.stretch_singles(x.g, piece.first(), piece.last(), false));
+     }},
 };
 
 void pass(const Kernel& kernel, const Arguments& x, const Workbench& bench) {

@@ -50,11 +50,13 @@ void Workbench::place_constraints(const SceneDescription& scene) {
   blocks_.resize(size / kLanes + 2);
   impulse.resize(size);
   rest_length_.assign(size, 1);
+  inverse_square_.assign(size, 0);
   scale_.resize(size);
   for (std::size_t c = 0; c < size; ++c) {
     if (ordering.link_at[c] == kNoIndex) continue;
     const double rest = scene.constraints[ordering.link_at[c]].rest_length;
     rest_length_[c] = rest;
+    inverse_square_[c] = 1 / (rest * rest);
     scale_[c] = 1 / rest;
     block(c).gain_a[c % kLanes] = static_cast<float>(-rest * rest / 2);
     block(c).gain_b[c % kLanes] = static_cast<float>(rest * rest / 2);
@@ -109,8 +111,8 @@ simd::Relaxation Workbench::relaxation(bool in_quads) {
 }
 
 simd::Geometry Workbench::geometry() {
-  return {position.view(), rest_length_.data(), scale_.data(), ordering.a.data(),
-          ordering.b.data()};
+  return {position.view(), rest_length_.data(), inverse_square_.data(),
+          scale_.data(),   ordering.a.data(),   ordering.b.data()};
 }
 
 simd::Motion Workbench::motion() {

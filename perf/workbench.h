@@ -63,7 +63,7 @@ class Workbench {
   kernels::AlignedVector<float> u_;
   std::size_t stride_ = 0;
   kernels::AlignedVector<simd::ConstraintBlock> blocks_;  // with a spare one at either end
-  kernels::AlignedVector<double> rest_length_, scale_;
+  kernels::AlignedVector<double> rest_length_, inverse_square_, scale_;
   std::unique_ptr<PullLayout> pulls_;
 };
 

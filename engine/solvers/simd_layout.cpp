@@ -80,7 +80,9 @@ void place(SimdLayout& layout, std::uint32_t slot, std::uint32_t constraint,
   layout.a[slot] = a;
   layout.b[slot] = b;
   layout.constraint_at[slot] = constraint;
-  layout.rest_length[slot] = store.rest_length[constraint];
+  const double rest = store.rest_length[constraint];
+  layout.rest_length[slot] = rest;
+  layout.inverse_square[slot] = 1 / (rest * rest);
   layout.share_a[slot] = inverse_mass[a] / sum;
   layout.share_b[slot] = inverse_mass[b] / sum;
   if (constraint >= store.bilateral) layout.has_ropes = true;
@@ -107,6 +109,7 @@ SimdLayout make_simd_layout(const Model& model) {
   layout.b.resize(layout.constraint_slots);
   layout.constraint_at.assign(layout.constraint_slots, kNoIndex);
   layout.rest_length.assign(layout.constraint_slots, 1);
+  layout.inverse_square.assign(layout.constraint_slots, 0);
   layout.share_a.resize(layout.constraint_slots);
   layout.share_b.resize(layout.constraint_slots);
   for (std::uint32_t c = 0; c < store.size(); ++c) {
@@ -124,7 +127,8 @@ SimdLayout make_simd_layout(const Model& model) {
 std::size_t SimdLayout::bytes() const {
   return bytes_of(chunks) + bytes_of(runs) + bytes_of(batch_chunks) + bytes_of(batch_singles) +
          neighbours.bytes() + chunks_at.bytes() + bytes_of(a) + bytes_of(b) +
-         bytes_of(constraint_at) + bytes_of(rest_length) + bytes_of(share_a) + bytes_of(share_b);
+         bytes_of(constraint_at) + bytes_of(rest_length) + bytes_of(inverse_square) +
+         bytes_of(share_a) + bytes_of(share_b);
 }
 
 }  // namespace weft

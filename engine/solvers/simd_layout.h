@@ -44,6 +44,7 @@ struct SimdLayout {
   std::vector<std::uint32_t> a, b;                           // per constraint slot
   std::vector<std::uint32_t> constraint_at;                  // in the ConstraintStore, or kNoIndex
   kernels::AlignedVector<double> rest_length;                // padding: 1
+  kernels::AlignedVector<double> inverse_square;             // 1 / rest_length^2; padding: 0
   kernels::AlignedVector<double> share_a, share_b;           // w_a / (w_a + w_b), padding: 0
   bool has_ropes = false;
 

@@ -51,6 +51,7 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa i
   }
   sweeps_.resize(std::max(model.ordering.tiles.size(), layout_.chunks.size() / kPiece + 1));
   strains_.resize(layout_.chunks.size() + 1);
+  stretches_.resize(layout_.chunks.size());
   corrections_.resize(layout_.chunks.size());
 }
 
@@ -198,32 +199,40 @@ simd::Relaxation SimdSolver::relaxation(bool velocity) {
 }
 
 simd::Geometry SimdSolver::geometry(kernels::VectorsView x, bool velocity) {
-  return {x, layout_.rest_length.data(), velocity ? velocity_scale_.data() : scale_.data(),
-          layout_.a.data(), layout_.b.data()};
+  return {x,
+          layout_.rest_length.data(),
+          layout_.inverse_square.data(),
+          velocity ? velocity_scale_.data() : scale_.data(),
+          layout_.a.data(),
+          layout_.b.data()};
 }
 
-/// Fills strains_, chunk by chunk side by side.
-void SimdSolver::measure_chunks(kernels::VectorsView x, Team& team) {
-  const simd::Geometry g = geometry(x, false);
-  const auto measure = [&](const Chunk& chunk) {
-    const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
-    return chunk.singles ? table_.strain_singles(g, first, last, chunk.rope)
-                         : table_.strain_run(g, chunk.run, chunk.rope);
-  };
+/// work(chunk, its number), side by side.
+template <class Work>
+void SimdSolver::for_each_chunk(Team& team, Work&& work) {
   const std::size_t chunks = layout_.chunks.size();
-  const std::size_t pieces = (chunks + kPiece - 1) / kPiece;
-  team.for_each(pieces, [&](std::size_t piece) {
+  team.for_each((chunks + kPiece - 1) / kPiece, [&](std::size_t piece) {
     const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
-    for (std::size_t i = piece * kPiece; i < last; ++i) strains_[i] = measure(layout_.chunks[i]);
+    for (std::size_t i = piece * kPiece; i < last; ++i) work(layout_.chunks[i], i);
   });
 }
 
+/// Rounded up by more than measure_strain() may say for the same positions.
 double SimdSolver::max_strain(kernels::VectorsView x, Team& team) {
-  measure_chunks(x, team);
-  double most = 0;
+  constexpr double kRounding = 1e-15;
+  const simd::Geometry g = geometry(x, false);
+  for_each_chunk(team, [&](const Chunk& chunk, std::size_t i) {
+    const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
+    stretches_[i] = chunk.singles ? table_.stretch_singles(g, first, last, chunk.rope)
+                                  : table_.stretch_run(g, chunk.run, chunk.rope);
+  });
+  simd::StretchRange range;
   for (std::size_t i = 0; i < layout_.chunks.size(); ++i) {
-    most = std::max(most, strains_[i].largest);
+    range.least = std::min(range.least, stretches_[i].least);
+    range.most = std::max(range.most, stretches_[i].most);
   }
+  double most = std::max(std::sqrt(range.most) - 1, 1 - std::sqrt(range.least));
+  if (most > 0) most += kRounding;
   for (std::uint32_t c = layout_.hub_first; c < layout_.hub_last; ++c) {
     most = std::max(most, strain_of(x, c));
   }
@@ -231,7 +240,12 @@ double SimdSolver::max_strain(kernels::VectorsView x, Team& team) {
 }
 
 Strain SimdSolver::measure_strain(kernels::VectorsView x, Team& team) {
-  measure_chunks(x, team);
+  const simd::Geometry g = geometry(x, false);
+  for_each_chunk(team, [&](const Chunk& chunk, std::size_t i) {
+    const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
+    strains_[i] = chunk.singles ? table_.strain_singles(g, first, last, chunk.rope)
+                                : table_.strain_run(g, chunk.run, chunk.rope);
+  });
   const std::size_t chunks = layout_.chunks.size();
   Strain strain;
   double squares = 0;
@@ -284,7 +298,7 @@ std::size_t SimdSolver::bytes() const {
   return bytes_of(u_) + bytes_of(impulse_) + bytes_of(blocks_) + bytes_of(velocity_blocks_) +
          bytes_of(scale_) + bytes_of(velocity_scale_) + bytes_of(mask_) + bytes_of(changed_) +
          bytes_of(stale_) + bytes_of(corrections_) + bytes_of(sweeps_) + bytes_of(strains_) +
-         contacts_.bytes() + bytes_of(contact_impulse_);
+         bytes_of(stretches_) + contacts_.bytes() + bytes_of(contact_impulse_);
 }
 
 }  // namespace weft

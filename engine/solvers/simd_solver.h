@@ -69,7 +69,8 @@ class SimdSolver {
   void fill_gains(bool velocity);
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
   void choose_active(kernels::VectorsView x);
-  void measure_chunks(kernels::VectorsView x, Team& team);
+  template <class Work>
+  void for_each_chunk(Team& team, Work&& work);
   double strain_of(kernels::VectorsView x, std::uint32_t slot) const;
   void finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
                      Strain& strain) const;
@@ -93,6 +94,7 @@ class SimdSolver {
   std::vector<std::uint32_t> corrections_;  // per chunk, of the present pass
   std::vector<kernels::Sweep> sweeps_;      // per piece of parallel work
   std::vector<simd::StrainSums> strains_;   // per chunk
+  std::vector<simd::StretchRange> stretches_;
   ContactLanes contacts_;
   std::vector<float> contact_impulse_;  // per contact of the ContactStore
 };

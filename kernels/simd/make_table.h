@@ -53,6 +53,8 @@ constexpr Table make_table() {
           .yarn_finish = yarn_finish,
           .strain_run = strain_run,
           .strain_singles = strain_singles,
+          .stretch_run = stretch_run,
+          .stretch_singles = stretch_singles,
           .eliminate_front = eliminate_front,
           .solve_front_forward = solve_front_forward,
           .solve_front_backward = solve_front_backward,

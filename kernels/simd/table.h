@@ -86,10 +86,11 @@ struct Anticipation {
 
 /// What renewing directions and measuring strain read.
 struct Geometry {
-  kernels::VectorsView x;               // per slot: positions
-  const double* rest_length = nullptr;  // per constraint; padding: 1
-  const double* scale = nullptr;        // per constraint: 1 / tau; padding: 0
-  const std::uint32_t* a = nullptr;     // constraint -> slot, for singles
+  kernels::VectorsView x;                  // per slot: positions
+  const double* rest_length = nullptr;     // per constraint; padding: 1
+  const double* inverse_square = nullptr;  // per constraint: 1 / rest^2; padding: 0
+  const double* scale = nullptr;           // per constraint: 1 / tau; padding: 0
+  const std::uint32_t* a = nullptr;        // constraint -> slot, for singles
   const std::uint32_t* b = nullptr;
 };
 
@@ -165,6 +166,12 @@ struct YarnProducts {
 struct StrainSums {
   double largest = 0;
   double squares = 0;
+};
+
+/// Of (length / rest)^2.
+struct StretchRange {
+  double least = 1;
+  double most = 1;
 };
 
 /// Ranges of slots are multiples of kLanes; runs and singles likewise. Kernels for runs take planar
@@ -245,6 +252,9 @@ struct Table {
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);
+  StretchRange (*stretch_run)(const Geometry&, const Run&, bool rope);
+  StretchRange (*stretch_singles)(const Geometry&, std::uint32_t first, std::uint32_t last,
+                                  bool rope);
 
   /// Eliminates a front's columns; reciprocal, scratch and update are written too.
   void (*eliminate_front)(const Front&);

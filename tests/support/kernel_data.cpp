@@ -62,6 +62,7 @@ KernelData::KernelData(std::uint32_t length, std::uint32_t seed)
     block.gain_b[k] = to_float(random.between(0, 1) * tau * tau);
     impulse.push_back(to_float(random.between(0, 1)));
     rest_length.push_back(random.between(0.5, 2));
+    inverse_square.push_back(1 / (rest_length[c] * rest_length[c]));
     scale.push_back(1 / tau);
   }
   const std::vector<std::uint32_t> order = random.permutation(slots);
@@ -82,6 +83,7 @@ void KernelData::make_padding(std::uint32_t c) {
   }
   impulse[c] = 0;
   rest_length[c] = 1;
+  inverse_square[c] = 0;
   scale[c] = 0;
 }
 
@@ -98,7 +100,8 @@ simd::Relaxation KernelData::relaxation(float threshold) {
 }
 
 simd::Geometry KernelData::geometry() {
-  return {position.view(), rest_length.data(), scale.data(), a.data(), b.data()};
+  return {position.view(), rest_length.data(), inverse_square.data(),
+          scale.data(),    a.data(),           b.data()};
 }
 
 simd::Motion KernelData::motion(bool forces) {

@@ -61,6 +61,47 @@ TEST_CASE("strains are those of the positions, ropes' and padding's left out whe
   }
 }
 
+simd::StretchRange expected_range(const Rounding& rounding, const KernelData& data, bool singles,
+                                  bool rope) {
+  simd::StretchRange range;
+  for (std::uint32_t c = data.first; c < data.last; ++c) {
+    if (data.is_padding(c)) continue;
+    const std::uint32_t k = c - data.first;
+    const Vector d = data.position[singles ? data.a[c] : data.run.a + k] -
+                     data.position[singles ? data.b[c] : data.run.b + k];
+    const double ratio = data.inverse_square[c] * rounding.dot(d, d);
+    range.most = std::max(range.most, ratio);
+    if (!rope) range.least = std::min(range.least, ratio);
+  }
+  return range;
+}
+
+TEST_CASE("the range of stretches holds the largest strain") {
+  for (const simd::Isa isa : supported_isas()) {
+    for (const std::uint32_t length : kLengths) {
+      for (const bool singles : {false, true}) {
+        for (const bool rope : {false, true}) {
+          CAPTURE(text(isa));
+          CAPTURE(length);
+          CAPTURE(singles);
+          CAPTURE(rope);
+          KernelData data(length, length + 5);
+          const simd::Table& table = simd::table(isa);
+          const simd::StretchRange range =
+              singles ? table.stretch_singles(data.geometry(), data.first, data.last, rope)
+                      : table.stretch_run(data.geometry(), data.run, rope);
+          const simd::StretchRange wanted = expected_range(Rounding(isa), data, singles, rope);
+          CHECK(range.least == wanted.least);
+          CHECK(range.most == wanted.most);
+          const double strain = std::max(std::sqrt(range.most) - 1, 1 - std::sqrt(range.least));
+          const double largest = expected_sums(Rounding(isa), data, singles, rope).largest;
+          CHECK(strain == doctest::Approx(largest).epsilon(1e-14));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("a batch of padding has no strain") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
@@ -69,6 +110,9 @@ TEST_CASE("a batch of padding has no strain") {
     const simd::StrainSums run = simd::table(isa).strain_run(data.geometry(), data.run, false);
     CHECK(run.largest == 0);
     CHECK(run.squares == 0);
+    const simd::StretchRange range = simd::table(isa).stretch_run(data.geometry(), data.run, false);
+    CHECK(range.least == 1);
+    CHECK(range.most == 1);
   }
 }
 
