@@ -113,6 +113,21 @@ class Builder {
   double heaviest_ = 1;
 };
 
+void find_beyond_first(YarnLayout& layout) {
+  std::vector<bool> held(layout.slots, false);
+  const std::uint32_t last = layout.families() > 0 ? layout.family_begin[1] : 0;
+  for (std::uint32_t block = 0; block < last; ++block) {
+    for (std::size_t row = layout.blocks[block].first; row < layout.blocks[block].last; ++row) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        held[layout.slot[row * kLanes + lane]] = true;
+      }
+    }
+  }
+  for (std::uint32_t slot = 0; slot < layout.slots; ++slot) {
+    if (!held[slot]) layout.beyond_first.push_back(slot);
+  }
+}
+
 }  // namespace
 
 YarnLayout make_yarn_layout(const Model& model) {
@@ -136,12 +151,13 @@ YarnLayout make_yarn_layout(const Model& model) {
     builder.add_block(std::span(chains).subspan(first, last - first));
   }
   layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
+  find_beyond_first(layout);
   return layout;
 }
 
 std::size_t YarnLayout::bytes() const {
   return bytes_of(blocks) + bytes_of(family_begin) + bytes_of(slot) + bytes_of(rest) +
-         bytes_of(inverse_mass) + bytes_of(others);
+         bytes_of(inverse_mass) + bytes_of(others) + bytes_of(beyond_first);
 }
 
 }  // namespace weft

@@ -27,6 +27,7 @@ struct YarnLayout {
   kernels::AlignedVector<float> rest;          // per row and lane; 0: no constraint
   kernels::AlignedVector<float> inverse_mass;  // per row and lane, over the model's largest
   std::vector<std::uint32_t> others;           // constraints that are in no yarn
+  std::vector<std::uint32_t> beyond_first;     // slots that the first family does not hold
 
   std::size_t rows = 0;
   std::size_t longest = 0;  // rows of the longest block

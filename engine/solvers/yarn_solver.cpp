@@ -139,16 +139,27 @@ YarnSolver::Products YarnSolver::precondition(double alpha, double goal, Team& t
   return sum;
 }
 
-void YarnSolver::push(double beta, Team& team) {
-  std::ranges::fill(t_, 0.f);
-  for_each_family(team, [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-    table_.yarn_push(yarns, layout_.blocks[i], static_cast<float>(beta), quads(t_));
-  });
+/// t = M^-1 J^T p, q = J t; returns p . q. The last family finds t complete, if it is not the
+/// first.
+double YarnSolver::push_pull(double beta, Team& team) {
+  const auto factor = static_cast<float>(beta);
+  const std::vector<std::uint32_t>& begin = layout_.family_begin;
+  const std::size_t families = layout_.families(), last = families > 1 ? families - 1 : families;
+  for (const std::uint32_t slot : layout_.beyond_first) std::fill_n(&t_[4 * slot], 4, 0.f);
+  for (std::size_t f = 0; f < last; ++f) {
+    const auto push = f == 0 ? table_.yarn_push_first : table_.yarn_push;
+    for_each_block(begin[f], begin[f + 1], team,
+                   [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                     push(yarns, layout_.blocks[i], factor, quads(t_));
+                   });
+  }
   others_.push(beta, t_.data());
-}
-
-double YarnSolver::pull(Team& team) {
-  for_each_block(0, layout_.blocks.size(), team,
+  for_each_block(begin[last], begin[families], team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                   products_[i].product =
+                       table_.yarn_push_pull(yarns, layout_.blocks[i], factor, quads(t_));
+                 });
+  for_each_block(0, begin[last], team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
                    products_[i].product = table_.yarn_pull(yarns, layout_.blocks[i], quads(t_));
                  });
@@ -174,8 +185,7 @@ void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::Lo
   double beta = 0;
   int done = 0;
   while (now.worst > enough && done < max_iterations) {
-    push(beta, team);
-    const double curvature = pull(team);
+    const double curvature = push_pull(beta, team);
     if (!(curvature > 0 && now.product > 0)) break;
     const Products next = precondition(now.product / curvature, goal, team);
     beta = next.product / now.product;

@@ -56,8 +56,7 @@ class YarnSolver {
   void newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
   void linearise(Team& team);
   Products precondition(double alpha, double goal, Team& team);
-  void push(double beta, Team& team);
-  double pull(Team& team);
+  double push_pull(double beta, Team& team);
   void finish(Team& team);
   void count(int passes, kernels::LoopResult& result) const;
   template <class Work>

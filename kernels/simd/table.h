@@ -246,7 +246,9 @@ struct Table {
   /// Conjugate gradients over all yarns (yarn_system.h); push goes family by family.
   float (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);
   YarnProducts (*yarn_precondition)(const Yarns&, const YarnBlock&, float alpha);
+  void (*yarn_push_first)(const Yarns&, const YarnBlock&, float beta, Displacements t);
   void (*yarn_push)(const Yarns&, const YarnBlock&, float beta, Displacements t);
+  float (*yarn_push_pull)(const Yarns&, const YarnBlock&, float beta, Displacements t);
   float (*yarn_pull)(const Yarns&, const YarnBlock&, Displacements t);
   void (*yarn_finish)(const Yarns&, const YarnBlock&, Displacements u);
 

@@ -6,7 +6,8 @@
 ///
 /// and blockdiag(T_f) is the preconditioner. A p is never formed by entries: the impulses p push
 /// the particles by t = M^-1 J^T p (yarn_push, one family after the other), and each constraint
-/// reads off how much that changes it, J t (yarn_pull).
+/// reads off how much that changes it, J t (yarn_pull). The first family writes t without reading
+/// it, and the last one reads off while it pushes: a sixth of an iteration less.
 #pragma once
 
 #include "kernels/simd/yarns.h"
@@ -77,23 +78,67 @@ YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alp
   return result;
 }
 
-/// p = z + beta p, t += M^-1 J^T p.
+/// Down the yarns with p = z + beta p: push(row, slots, t of the row's particles, p, n) for each.
+template <class Push>
+[[gnu::always_inline]] inline void push_down(const Yarns& y, const YarnBlock& block,
+                                             std::uint32_t lane, float beta, Push&& push) {
+  const Floats factor(beta);
+  FloatVector above = no_vector();
+  for (std::uint32_t k = block.first; k < block.last; ++k) {
+    YarnSystemRow& row = y.system[k];
+    const Floats p = fused(factor, load(row.p + lane), load(row.z + lane));
+    p.store_unaligned(row.p + lane);
+    const FloatVector n = load(row.n, lane), below = p * n;
+    const Floats w = load(y.rows[k].inverse_mass + lane);
+    push(k, slots(y, k, lane), w * (below - above), p, n);
+    above = below;
+  }
+}
+
+/// Of the first family: t = M^-1 J^T p at its particles, whatever it was.
+void yarn_push_first(const Yarns& y, const YarnBlock& block, float beta, Displacements t) {
+  QuadLanes at;
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    push_down(y, block, lane, beta,
+              [&](std::uint32_t, const std::uint32_t* slot, const FloatVector& own, Floats,
+                  const FloatVector&) { at.put(t, slot, own); });
+  }
+}
+
+/// t += M^-1 J^T p.
 void yarn_push(const Yarns& y, const YarnBlock& block, float beta, Displacements t) {
   QuadLanes at;
-  const Floats factor(beta);
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    FloatVector above = no_vector();
-    for (std::uint32_t k = block.first; k < block.last; ++k) {
-      YarnSystemRow& row = y.system[k];
-      const Floats p = fused(factor, load(row.p + lane), load(row.z + lane));
-      p.store_unaligned(row.p + lane);
-      const FloatVector below = p * load(row.n, lane);
-      const std::uint32_t* slot = slots(y, k, lane);
-      const Floats w = load(y.rows[k].inverse_mass + lane);
-      at.put(t, slot, fused(w, below - above, at.get(t, slot)));
-      above = below;
-    }
+    push_down(y, block, lane, beta,
+              [&](std::uint32_t, const std::uint32_t* slot, const FloatVector& own, Floats,
+                  const FloatVector&) { at.put(t, slot, at.get(t, slot) + own); });
   }
+}
+
+/// Of the last family, after which t is complete: yarn_push and yarn_pull in one pass.
+float yarn_push_pull(const Yarns& y, const YarnBlock& block, float beta, Displacements t) {
+  QuadLanes at;
+  alignas(64) float products[kernels::kLanes];
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    FloatVector t_above = no_vector(), n_above = no_vector();
+    Floats p_above(0.f), product(0.f);
+    push_down(y, block, lane, beta,
+              [&](std::uint32_t k, const std::uint32_t* slot, const FloatVector& own, Floats p,
+                  const FloatVector& n) {
+                const FloatVector here = at.get(t, slot) + own;
+                at.put(t, slot, here);
+                if (k > block.first) {
+                  const Floats q = dot(n_above, t_above - here);
+                  q.store_unaligned(y.system[k - 1].q + lane);
+                  product = fused(q, p_above, product);
+                }
+                t_above = here;
+                n_above = n;
+                p_above = p;
+              });
+    product.store_unaligned(products + lane);
+  }
+  return sum(products);
 }
 
 /// q = J t; returns p . q.

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <bit>
 #include <vector>
 
@@ -22,13 +23,14 @@ struct Block {
   kernels::AlignedVector<simd::YarnRow> rows;
   kernels::AlignedVector<simd::YarnSystemRow> system;
   kernels::AlignedVector<simd::YarnScratch> scratch;
-  kernels::AlignedVector<float> base, u;
+  kernels::AlignedVector<float> base, u, t;
   kernels::Vectors x;
 
   Block() : rows(kRows), system(kRows), scratch(kRows) {
     const std::size_t slots = kRows * kLanes + kLanes;
     base.resize(4 * slots);
     u.resize(4 * slots);
+    t.resize(4 * slots);
     x.resize(slots);
     Random random(7);
     for (std::uint32_t k = 0; k < kRows; ++k) {
@@ -134,12 +136,11 @@ TEST_CASE("what conjugate gradients are made of agrees with one exact solve") {
     Block b;
     const simd::Table& table = simd::table(isa);
     b.start(table);
-    kernels::AlignedVector<float> t(b.u.size());
     table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
     // One family is its own preconditioner: the first step is the solution.
     const simd::YarnProducts before = table.yarn_precondition(b.yarns(), b.block(), 0);
-    table.yarn_push(b.yarns(), b.block(), 0, b.quads(t));
-    const float curvature = table.yarn_pull(b.yarns(), b.block(), b.quads(t));
+    table.yarn_push(b.yarns(), b.block(), 0, b.quads(b.t));
+    const float curvature = table.yarn_pull(b.yarns(), b.block(), b.quads(b.t));
     CHECK(before.product / curvature == doctest::Approx(1).epsilon(1e-5));
     CHECK(before.worst == doctest::Approx(0.01).epsilon(0.05));
     const auto after = table.yarn_precondition(b.yarns(), b.block(), before.product / curvature);
@@ -150,6 +151,50 @@ TEST_CASE("what conjugate gradients are made of agrees with one exact solve") {
       const auto expected = solved_densely(untouched, lane);
       for (std::uint32_t k = 0; k < Block::length(lane); ++k) {
         CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 1e-7);
+      }
+    }
+  }
+}
+
+/// A block whose system has p, z and q of a second iteration.
+Block in_conjugate_gradients(const simd::Table& table) {
+  Block b;
+  b.start(table);
+  table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+  table.yarn_precondition(b.yarns(), b.block(), 0);
+  table.yarn_push(b.yarns(), b.block(), 0, b.quads(b.t));
+  table.yarn_pull(b.yarns(), b.block(), b.quads(b.t));
+  table.yarn_precondition(b.yarns(), b.block(), 0.5f);
+  return b;
+}
+
+TEST_CASE(
+    "pushing first, or pushing and pulling at once, is pushing onto nothing and then pulling") {
+  constexpr float kBeta = 0.25f;
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    Block apart = in_conjugate_gradients(table), first = apart, together = apart;
+    std::ranges::fill(apart.t, 0.f);
+    std::ranges::fill(first.t, 7.f);
+    std::ranges::fill(together.t, 0.f);
+    table.yarn_push(apart.yarns(), apart.block(), kBeta, apart.quads(apart.t));
+    table.yarn_push_first(first.yarns(), first.block(), kBeta, first.quads(first.t));
+    const float product =
+        table.yarn_push_pull(together.yarns(), together.block(), kBeta, together.quads(together.t));
+    for (const std::uint32_t slot : apart.slot) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        CHECK(first.t[4 * slot + axis] == apart.t[4 * slot + axis]);
+        CHECK(together.t[4 * slot + axis] == apart.t[4 * slot + axis]);
+      }
+    }
+    CHECK(product == table.yarn_pull(apart.yarns(), apart.block(), apart.quads(apart.t)));
+    CHECK(product > 0);
+    for (std::uint32_t k = 0; k < Block::kRows; ++k) {
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        CHECK(together.system[k].p[lane] == apart.system[k].p[lane]);
+        CHECK(first.system[k].p[lane] == apart.system[k].p[lane]);
+        CHECK(together.system[k].q[lane] == apart.system[k].q[lane]);
       }
     }
   }
