@@ -1,0 +1,131 @@
+/// Kernels of the yarn solver, each over all families of `hang`.
+#include "engine/model.h"
+#include "engine/scenes.h"
+#include "engine/solvers/yarn_layout.h"
+#include "perf/benchmarks.h"
+
+namespace weft::perf {
+namespace {
+
+using kernels::kLanes;
+
+/// The arrays of a YarnSolver, at the start of the scene.
+struct Loom {
+  std::shared_ptr<const Model> model;
+  const YarnLayout& layout;
+  kernels::Vectors x;
+  kernels::AlignedVector<simd::YarnRow> rows;
+  kernels::AlignedVector<simd::YarnSystemRow> system;
+  kernels::AlignedVector<simd::YarnScratch> scratch;
+  kernels::AlignedVector<float> base, u, t;
+
+  Loom(int size, const simd::Table& table)
+      : model(model_of(size)),
+        layout(model->yarns()),
+        x(model->initial_position),
+        rows(layout.rows),
+        system(layout.rows),
+        scratch(layout.longest),
+        base(4 * layout.slots),
+        u(4 * layout.slots),
+        t(4 * layout.slots) {
+    for (std::size_t k = 0; k < layout.rows; ++k) {
+      std::copy_n(&layout.rest[k * kLanes], kLanes, rows[k].rest);
+      std::copy_n(&layout.inverse_mass[k * kLanes], kLanes, rows[k].inverse_mass);
+    }
+    table.split_positions(x.view(), quads(base), quads(u), 0, model->slots());
+    for (const simd::YarnBlock& block : layout.blocks)
+      table.yarn_place(yarns(), block, quads(base));
+    for (const simd::YarnBlock& block : layout.blocks)
+      table.yarn_linearise(yarns(), block, quads(u));
+    for (const simd::YarnBlock& block : layout.blocks) table.yarn_precondition(yarns(), block, 0);
+  }
+  static std::shared_ptr<const Model> model_of(int size) {
+    scenes::Options options;
+    options.size = size;
+    return build_model(scenes::make("hang", options).value()).value();
+  }
+  simd::Yarns yarns() { return {rows.data(), system.data(), layout.slot.data()}; }
+  static simd::Displacements quads(kernels::AlignedVector<float>& v) { return {v.data(), 1, 4}; }
+  std::size_t first_family() const { return layout.family_begin[1]; }
+};
+
+struct Kernel {
+  const char* name;
+  double bytes_per_lane;      // of a row: read + written
+  double footprint_per_lane;  // touched
+  void (*pass)(const simd::Table& table, Loom& loom);
+};
+
+/// work(block) for all blocks.
+template <class Work>
+void for_each_block(Loom& loom, std::size_t first, std::size_t last, Work&& work) {
+  for (std::size_t i = first; i < last; ++i) work(loom.layout.blocks[i]);
+}
+
+/// As the solver does it: the first family writes, the last reads off what it has pushed.
+void push_pull(const simd::Table& table, Loom& loom) {
+  const std::size_t first = loom.first_family(), all = loom.layout.blocks.size();
+  const simd::Displacements t = Loom::quads(loom.t);
+  for_each_block(loom, 0, first, [&](const simd::YarnBlock& block) {
+    table.yarn_push_first(loom.yarns(), block, 0, t);
+  });
+  for_each_block(loom, first, all, [&](const simd::YarnBlock& block) {
+    benchmark::DoNotOptimize(table.yarn_push_pull(loom.yarns(), block, 0, t));
+  });
+  for_each_block(loom, 0, first, [&](const simd::YarnBlock& block) {
+    benchmark::DoNotOptimize(table.yarn_pull(loom.yarns(), block, t));
+  });
+}
+
+constexpr Kernel kKernels[] = {
+    {"yarn_sweep", 56, 40,
+     [](const simd::Table& table, Loom& loom) {
+       for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
+         table.yarn_sweep(loom.yarns(), block, Loom::quads(loom.u), loom.scratch.data());
+       });
+     }},
+    {"yarn_linearise", 76, 80,
+     [](const simd::Table& table, Loom& loom) {
+       for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
+         table.yarn_linearise(loom.yarns(), block, Loom::quads(loom.u));
+       });
+     }},
+    {"yarn_precondition", 44, 44,
+     [](const simd::Table& table, Loom& loom) {
+       for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
+         benchmark::DoNotOptimize(table.yarn_precondition(loom.yarns(), block, 0));
+       });
+     }},
+    {"yarn_push_pull", 78, 44, push_pull},
+};
+
+void run(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Isa isa, int size) {
+  const simd::Table& table = simd::table(isa);
+  Loom loom(size, table);
+  for (auto _ : state) kernel.pass(table, loom);
+  const auto lanes = static_cast<double>(loom.layout.rows * kLanes);
+  count(state,
+        {static_cast<double>(loom.model->constraints.size()), kernel.bytes_per_lane * lanes,
+         kernel.footprint_per_lane * lanes, false},
+        shared.bandwidth);
+}
+
+}  // namespace
+
+void register_yarn_benchmarks(Shared& shared) {
+  for (const Kernel& kernel : kKernels) {
+    for (const simd::Isa isa : supported_isas()) {
+      for (const int size : kGridSizes) {
+        const std::string name =
+            std::string(kernel.name) + '/' + name_of(isa) + '/' + std::to_string(size);
+        benchmark::RegisterBenchmark(name.c_str(),
+                                     [&shared, &kernel, isa, size](benchmark::State& state) {
+                                       run(state, shared, kernel, isa, size);
+                                     });
+      }
+    }
+  }
+}
+
+}  // namespace weft::perf
