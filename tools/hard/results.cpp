@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <utility>
 
 namespace weft::tools::hard {
 namespace {
@@ -14,6 +16,22 @@ std::string detail(const CaseResult& result) {
   const Outcome& outcome = result.outcome;
   if (outcome.failure.empty()) return outcome.detail;
   return fmt::format("{}: {}", outcome.failure, outcome.detail);
+}
+
+/// The name without the method.
+std::string case_of(const CaseResult& result) {
+  return result.name.substr(0, result.name.rfind('/'));
+}
+
+/// Figure / ms per step.
+std::string cell(const CaseResult& result) {
+  const std::string text =
+      fmt::format("{:.2g} / {:.2g}", result.outcome.figure, result.outcome.ms_per_step);
+  return result.passed() ? text : fmt::format("**fail** {}", text);
+}
+
+void add_new(std::vector<std::string>& list, const std::string& item) {
+  if (std::ranges::find(list, item) == list.end()) list.push_back(item);
 }
 
 std::string quoted(std::string text) {
@@ -58,12 +76,26 @@ std::string to_csv(const std::vector<CaseResult>& results) {
 }
 
 std::string to_markdown(const std::vector<CaseResult>& results) {
-  std::string text =
-      "| case | result | figure | bound | of what | ms per step |\n|---|---|---|---|---|---|\n";
+  std::vector<std::string> methods, cases;
+  std::map<std::pair<std::string, std::string>, std::string> cells;
   for (const CaseResult& r : results) {
-    fmt::format_to(std::back_inserter(text), "| {} | {} | {:.3g} | {:.3g} | {} | {:.3g} |\n",
-                   r.name, verdict(r), r.outcome.figure, r.bound, r.measures,
-                   r.outcome.ms_per_step);
+    const std::string method = label(r.method);
+    const std::string row = fmt::format("| {}: {} | {:.3g} |", case_of(r), r.measures, r.bound);
+    add_new(methods, method);
+    add_new(cases, row);
+    cells[{row, method}] = cell(r);
+  }
+  std::string text = "| case: figure | bound |";
+  std::string rule = "|---|---|";
+  for (const std::string& method : methods) {
+    text += fmt::format(" {} |", method);
+    rule += "---|";
+  }
+  text += '\n' + rule + '\n';
+  for (const std::string& row : cases) {
+    text += row;
+    for (const std::string& method : methods) text += fmt::format(" {} |", cells[{row, method}]);
+    text += '\n';
   }
   return text;
 }

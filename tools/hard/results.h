@@ -13,6 +13,7 @@ int failed(const std::vector<CaseResult>& results);
 
 Json to_json(const std::vector<CaseResult>& results);
 std::string to_csv(const std::vector<CaseResult>& results);
+/// A row for each case, a column for each method: figure / ms per step.
 std::string to_markdown(const std::vector<CaseResult>& results);
 std::string to_text(const std::vector<CaseResult>& results);
 
