@@ -27,14 +27,16 @@ bool has_uneven_masses(const Model& model) {
 
 }  // namespace
 
-/// Measured (perf/README.md): yarns are the fastest at every size and tolerance, on sheets that
-/// hang, are stretched between corners, or carry spheres. The reference backend, and a count of
-/// iterations in place of a tolerance, are about the paper's loop. Yarns know no directions but the
-/// present ones: scheme rattle wants the direct solver.
+/// Measured (perf/README.md): yarns are the fastest at every size and tolerance, by either scheme,
+/// on sheets that hang, are stretched between corners, or carry spheres. A heavy sphere that a taut
+/// sheet catches in a rattle step is one impact too many for their velocities (weft hard,
+/// sphere_drop_10_kg_taut). The reference backend, and a count of iterations in place of a
+/// tolerance, are about the paper's loop.
 void choose_solver(const Model& model, Settings& settings) {
   const bool paper = settings.backend == Backend::reference || settings.iterations > 0;
   if (settings.solver == Solver::automatic) {
-    const bool exact = settings.scheme == Scheme::rattle || has_uneven_masses(model);
+    const bool impacts = settings.scheme == Scheme::rattle && model.has_contacts();
+    const bool exact = impacts || has_uneven_masses(model);
     settings.solver = paper ? Solver::gauss_seidel : exact ? Solver::direct : Solver::yarn;
   }
   if (paper && settings.substeps == kAutomaticSubsteps) settings.substeps = 1;

@@ -104,6 +104,10 @@ struct Answer {
 
 kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView start, bool first,
                                      int left, Team& team) {
+  if (s.yarn) {
+    return s.yarn->solve_positions(s.solved.view(), start, s.contacts, first, left, 1, *s.simd,
+                                   team);
+  }
   if (!s.direct) return sweep_from_start(s, h, start, first, left, team);
   return s.direct->solve_from_start(s.solved.view(), start, s.contacts, first, left);
 }
@@ -114,7 +118,7 @@ kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, bool first, in
                                 Standstill& standstill, Team& team) {
   const bool may_sweep = attempt.on_failure == OnFailure::sweep;
   if (may_sweep) s.next_velocity = s.solved;
-  auto result = s.yarn->solve_positions(s.solved.view(), s.contacts, first, left, attempt.care,
+  auto result = s.yarn->solve_positions(s.solved.view(), {}, s.contacts, first, left, attempt.care,
                                         *s.simd, team);
   if (!result.failed || result.converged || !may_sweep) return result;
   s.solved = s.next_velocity;
@@ -140,11 +144,20 @@ kernels::LoopResult solve_positions(State& s, const Attempt& attempt, bool first
   return result;
 }
 
-kernels::LoopResult correct_velocities(State& s, Team& team) {
+/// The sweeps that follow judge in double; as a rule the first finds nothing to do.
+kernels::LoopResult correct_by_yarns(State& s, bool exact, Team& team) {
+  auto result =
+      s.yarn->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts, exact, team);
+  count(result, sweep_velocities(s, team));
+  return result;
+}
+
+kernels::LoopResult correct_velocities(State& s, bool exact, Team& team) {
+  if (s.yarn && s.settings.iterations == 0) return correct_by_yarns(s, exact, team);
   if (!s.direct) return sweep_velocities(s, team);
   const auto answer = std::tie(s, team);
   return s.direct->correct_velocities(
-      s.solved.view(), s.next_velocity.view(), s.contacts,
+      s.solved.view(), s.next_velocity.view(), s.contacts, exact,
       [&answer](bool, int) { return std::apply(sweep_velocities, answer); });
 }
 
@@ -177,8 +190,8 @@ bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team&
   return false;
 }
 
-void correct_velocities(State& s, StepReport& report, Team& team) {
-  const auto result = correct_velocities(s, team);
+void correct_velocities(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+  const auto result = correct_velocities(s, attempt.start.x != nullptr, team);
   add(report, result);
   report.velocity_iterations += result.iterations;
 }

@@ -25,7 +25,7 @@ struct Attempt {
 /// Moves solved until every constraint is within tolerance. Returns whether the solver gave up.
 bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team);
 /// The velocity loop: changes next_velocity.
-void correct_velocities(State& s, StepReport& report, Team& team);
+void correct_velocities(State& s, const Attempt& attempt, StepReport& report, Team& team);
 
 /// True errors at x.
 Strain strain_at(State& s, kernels::Vectors& x, Team& team);

@@ -35,7 +35,7 @@ bool run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team
   if (gave_up) return true;
   timed(report, Stage::commit, [&] { commit(s, h, team); });
   if (s.settings.velocity_correction) {
-    timed(report, Stage::correct_velocities, [&] { correct_velocities(s, report, team); });
+    timed(report, Stage::correct_velocities, [&] { correct_velocities(s, attempt, report, team); });
   }
   if (s.settings.iterations > 0 && report.status <= Status::iteration_limit) {
     report.status = Status::fixed_iterations;

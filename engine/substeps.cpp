@@ -53,6 +53,9 @@ void explain(State& s, double h, StepReport& report, Team& team) {
 /// frame without, 14 with it; corners, 151 x 151: 69 and 45 ms.)
 constexpr double kMostBend = 0.04;
 constexpr double kLongestBend = 1.5;
+/// Scheme rattle must resolve the motion and gets twice as many: with fewer half of them fall back
+/// (hang, 40 x 40: 45 % instead of 3 %), and are done twice.
+constexpr double kRattleBend = 0.25;  // of kMostBend
 constexpr int kMostSubsteps = 256;
 /// How much of kMostBend, and the square root of it of what yarns leave, is allowed after a step in
 /// which a solver gave up, and how fast that passes. What is left of a tolerance is noise that
@@ -62,8 +65,9 @@ constexpr double kLeastCare = 0.25;
 constexpr double kRecovery = 1.01;  // per step
 
 double most_bend(const State& s) {
-  if (!s.yarn) return kMostBend;
-  return std::min(kMostBend, kLongestBend / static_cast<double>(s.yarn->longest()));
+  const double most = s.settings.scheme == Scheme::rattle ? kRattleBend * kMostBend : kMostBend;
+  if (!s.yarn) return most;
+  return std::min(most, kLongestBend / static_cast<double>(s.yarn->longest()));
 }
 
 /// As many as the motion wants: see kMostBend.

@@ -196,9 +196,6 @@ Result<void> validate(const Settings& s) {
   if (s.solver == Solver::yarn && s.backend != Backend::simd) {
     return refuse("solver", "yarn is for the simd backend", std::string(name(s.backend)));
   }
-  if (s.solver == Solver::yarn && s.scheme == Scheme::rattle) {
-    return refuse("scheme", "the yarn solver has the paper's alone", std::string(name(s.scheme)));
-  }
   if (s.threads < 0 || s.threads > kMaxThreads) {
     return refuse("threads", "must be from 0 to " + std::to_string(kMaxThreads),
                   std::to_string(s.threads));

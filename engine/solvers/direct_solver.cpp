@@ -166,11 +166,12 @@ DirectOutcome DirectSolver::iterate_fixed(VectorsView x, VectorsView start,
 }
 
 LoopResult DirectSolver::correct_velocities(VectorsView x, VectorsView v,
-                                            const ContactStore& contacts, const Sweeps& sweeps) {
+                                            const ContactStore& contacts, bool exact,
+                                            const Sweeps& sweeps) {
   LoopResult result;
   system_.start(contacts, true);
   copy(v, start_.view(), start_.size());
-  const DirectOutcome outcome = iterate_velocities(x, v, contacts, result);
+  const DirectOutcome outcome = iterate_velocities(x, v, contacts, exact, result);
   result.converged = outcome == DirectOutcome::converged;
   if (result.converged || settings_.iterations > 0) return result;
   copy(start_.view(), v, start_.size());
@@ -184,13 +185,15 @@ LoopResult DirectSolver::correct_velocities(VectorsView x, VectorsView v,
 
 /// Linear: more than one solve only where the active set changes.
 DirectOutcome DirectSolver::iterate_velocities(VectorsView x, VectorsView v,
-                                               const ContactStore& contacts, LoopResult& result) {
+                                               const ContactStore& contacts, bool exact,
+                                               LoopResult& result) {
   const bool fixed = settings_.iterations > 0;
   Progress progress;
   for (;;) {
     const double worst = measure_velocities(system_, x, v, contacts);
     result.visits += system_.count();
-    if (!fixed && worst <= 1) return DirectOutcome::converged;
+    const bool wanted = exact && result.iterations == 0 && worst > kNegligible;
+    if (!fixed && worst <= 1 && !wanted) return DirectOutcome::converged;
     if (fixed && result.iterations == settings_.iterations) return DirectOutcome::exhausted;
     if (!fixed && !progress.goes_on(worst)) return DirectOutcome::failed;
     if (!fixed && result.iterations >= settings_.max_iterations) return DirectOutcome::exhausted;

@@ -59,9 +59,10 @@ class DirectSolver {
   kernels::LoopResult solve_from_start(kernels::VectorsView x, kernels::VectorsView start,
                                        const ContactStore& contacts, bool first_round,
                                        int max_iterations);
-  /// Corrects v at the positions x.
+  /// Corrects v at the positions x; with `exact` also what is within tolerance, once.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts, const Sweeps& sweeps);
+                                         const ContactStore& contacts, bool exact,
+                                         const Sweeps& sweeps);
   std::size_t bytes() const;
 
  private:
@@ -74,7 +75,8 @@ class DirectSolver {
   DirectOutcome iterate_fixed(kernels::VectorsView x, kernels::VectorsView start,
                               const ContactStore& contacts, kernels::LoopResult& result);
   DirectOutcome iterate_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                   const ContactStore& contacts, kernels::LoopResult& result);
+                                   const ContactStore& contacts, bool exact,
+                                   kernels::LoopResult& result);
   bool solve(kernels::VectorsView u, kernels::LoopResult& result);
 
   const Settings settings_;

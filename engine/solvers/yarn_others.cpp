@@ -50,6 +50,7 @@ double clamped(int side, double& sum, double impulse) {
 
 YarnOthers::YarnOthers(const Model& model, const Settings& settings)
     : model_(model),
+      tolerance_(settings.tolerance),
       contact_tolerance_(settings.contact_tolerance),
       heaviest_(std::ranges::max(model.inverse_mass)) {
   const ConstraintStore& store = model.constraints;
@@ -74,14 +75,29 @@ void YarnOthers::start(const ContactStore& contacts, bool first_round) {
   }
 }
 
+void YarnOthers::keep_start(const float* base, const float* u) {
+  from_start_ = true;
+  for (std::size_t i = 0; i < constraints_; ++i) {
+    const Vector d = difference(base, u, pairs_[i].a, pairs_[i].b);
+    pairs_[i].start = direction(d, length(d));
+  }
+}
+
+/// A constraint that has turned too far from where its impulses act is left alone.
 void YarnOthers::relax(const float* base, float* u) {
-  for (Pair& pair : pairs_) {
+  constexpr double kLeastCosine = 0.1;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    Pair& pair = pairs_[i];
     const Vector d = difference(base, u, pair.a, pair.b);
     const double l = length(d);
-    const double impulse = clamped(pair.side, pair.sum, (l - pair.distance) / (pair.wa + pair.wb));
-    if (impulse == 0) continue;
     const Vector n = direction(d, l);
-    move_together(pair.a, pair.wa, pair.b, pair.wb, impulse * n, u);
+    const Vector along = from_start(i) ? pair.start : n;
+    const double cosine = from_start(i) ? dot(n, along) : 1;
+    if (cosine < kLeastCosine) continue;
+    const double weight = (pair.wa + pair.wb) * cosine;
+    const double impulse = clamped(pair.side, pair.sum, (l - pair.distance) / weight);
+    if (impulse == 0) continue;
+    move_together(pair.a, pair.wa, pair.b, pair.wb, impulse * along, u);
   }
 }
 
@@ -94,17 +110,44 @@ double YarnOthers::penetration(const float* base, const float* u) const {
   return deepest;
 }
 
+/// One-sided ones take part where they are violated or have acted.
+void YarnOthers::set_error(std::size_t i, double error) {
+  const Pair& pair = pairs_[i];
+  Row& row = rows_[i];
+  row.active = row.near && (pair.side == 0 || pair.side * error > 0 || pair.sum != 0);
+  row.residual = row.active ? error : 0;
+  row.lambda = row.p = row.q = 0;
+}
+
 void YarnOthers::linearise(const float* base, const float* u) {
+  velocities_ = false;
   rows_.resize(pairs_.size());
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Pair& pair = pairs_[i];
     const Vector d = difference(base, u, pair.a, pair.b);
-    const double l = length(d), error = l - pair.distance;
-    const bool active = pair.side == 0 || pair.side * error > 0 || pair.sum != 0;
-    rows_[i] = {};
-    if (!active) continue;
+    const double l = length(d);
+    rows_[i].near = true;
+    rows_[i].n = from_start(i) ? pair.start : direction(d, l);
+    set_error(i, l - pair.distance);
+  }
+}
+
+void YarnOthers::linearise_velocities(const float* base, const float* u) {
+  velocities_ = true;
+  rows_.resize(pairs_.size());
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const Pair& pair = pairs_[i];
+    const Vector d = difference(base, u, pair.a, pair.b);
+    const double l = length(d);
+    const double slack = i < constraints_ ? tolerance_ * pair.distance : contact_tolerance_;
+    rows_[i].near = pair.side * (l - pair.distance) >= -slack;
     rows_[i].n = direction(d, l);
-    rows_[i].residual = error;
+  }
+}
+
+void YarnOthers::read(const float* base, const float* u) {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    set_error(i, dot(rows_[i].n, difference(base, u, pairs_[i].a, pairs_[i].b)));
   }
 }
 
@@ -117,7 +160,9 @@ simd::YarnProducts YarnOthers::precondition(double alpha, double goal) {
     row.residual -= alpha * row.q;
     row.z = row.residual / (pair.wa + pair.wb);
     product += row.residual * row.z;
-    const double unit = i < constraints_ ? pair.distance : contact_tolerance_ / goal;
+    const double unit = velocities_        ? 1
+                        : i < constraints_ ? pair.distance
+                                           : contact_tolerance_ / goal;
     worst = std::max(worst, std::abs(row.residual) / unit);
   }
   return {static_cast<float>(product), static_cast<float>(worst)};
@@ -136,7 +181,7 @@ double YarnOthers::pull(const float* t) {
   double product = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Row& row = rows_[i];
-    row.q = dot(row.n, difference(t, pairs_[i].a, pairs_[i].b));
+    row.q = row.active ? dot(row.n, difference(t, pairs_[i].a, pairs_[i].b)) : 0;
     product += row.p * row.q;
   }
   return product;

@@ -20,6 +20,10 @@ class YarnOthers {
   /// first_round: accumulated impulses start at 0; else contacts may have been added.
   void start(const ContactStore& contacts, bool first_round);
   std::size_t count() const { return pairs_.size(); }
+  /// From here on impulses of constraints act along their present directions, or, with scheme
+  /// rattle, along those at base + u. Contacts come about within a step: theirs are present ones.
+  void use_present() { from_start_ = false; }
+  void keep_start(const float* base, const float* u);
   /// One pass, at the positions base + u. One-sided ones keep the sum of their impulses on their
   /// side: a rope that has pulled too much gives back what it had.
   void relax(const float* base, float* u);
@@ -30,7 +34,12 @@ class YarnOthers {
   // part that are violated or have pushed or pulled before; finish() clamps the sums, and the next
   // linearise() sees what that leaves.
   void linearise(const float* base, const float* u);
-  /// worst: in strains, where a contact's tolerance counts as much as `goal`.
+  /// Of velocities: the directions at the positions base + u, and who is taut or touches there;
+  /// then the errors, at the velocities base + u.
+  void linearise_velocities(const float* base, const float* u);
+  void read(const float* base, const float* u);
+  /// worst: in strains, where a contact's tolerance counts as much as `goal`; of velocities as they
+  /// are.
   simd::YarnProducts precondition(double alpha, double goal);
   void push(double beta, float* t);
   double pull(const float* t);
@@ -45,17 +54,23 @@ class YarnOthers {
     double distance = 0;
     double wa = 0, wb = 0;  // inverse masses over the model's largest
     double sum = 0;         // of its impulses
+    kernels::Vector start{};
   };
   struct Row {
     kernels::Vector n{};
+    bool near = true;  // may act at all
+    bool active = false;
     double lambda = 0, residual = 0, z = 0, p = 0, q = 0;
   };
+  bool from_start(std::size_t i) const { return from_start_ && i < constraints_; }
+  void set_error(std::size_t i, double error);
   void add(std::uint32_t a, std::uint32_t b, double distance, int side);
 
   const Model& model_;
-  const double contact_tolerance_;
+  const double tolerance_, contact_tolerance_;
   double heaviest_ = 1;
   std::size_t constraints_ = 0;  // the first of pairs_; contacts come behind
+  bool from_start_ = false, velocities_ = false;
   std::vector<Pair> pairs_;
   std::vector<Row> rows_;
 };

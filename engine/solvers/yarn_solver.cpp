@@ -25,8 +25,21 @@ constexpr int kMostIterations = 300;  // of conjugate gradients, in one Newton s
 /// What is aimed at where the tolerance is larger: what is left is noise that the next steps would
 /// have to fight (corners, 81 x 81, 1 %: as many iterations a frame at a quarter of the error).
 constexpr double kGoal = 0.003;
-constexpr double kFall = 0.7;  // what counts as progress,
-constexpr int kPatience = 20;  // and how many passes may make none
+/// With scheme rattle, whose guard takes noise for a gain of energy: corners, 41 x 41, 8 substeps
+/// leaves a sixth of them to scheme paper, at 0.003 a third, at 1e-5 as few for twice the work.
+constexpr double kRattleGoal = 1e-4;
+/// How far a pass must bring the error down, and how many may not.
+struct Patience {
+  double fall;
+  int passes;
+};
+constexpr Patience kPatience{0.7, 20};
+/// Another scheme is waiting: four give up as many substeps as twenty, in half the iterations.
+constexpr Patience kRattlePatience{0.9, 4};
+/// Velocities that are to be exact are brought to this share of what they were out by.
+constexpr double kExact = 0.01;
+constexpr Patience kVelocityPatience{0.7, 3};
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 constexpr std::size_t kStretch = 1024;
 
 template <class Work>
@@ -58,14 +71,20 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
   }
   const auto wanted =
       static_cast<std::size_t>(settings.threads > 0 ? settings.threads : kMostShares);
+  if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows);
   scratch_.resize(layout_.longest * std::min(wanted, kMostShares));
 }
 
-/// work(block, its number, scratch); shares of blocks side by side.
+simd::Yarns YarnSolver::yarns() {
+  return {rows_.data(), system_.data(), layout_.slot.data(), from_start_ ? start_.data() : nullptr,
+          velocities_};
+}
+
+/// work(yarns, block's number, scratch); shares of blocks side by side.
 template <class Work>
 void YarnSolver::for_each_block(std::size_t first, std::size_t last, Team& team, Work&& work) {
   if (first == last) return;
-  const simd::Yarns yarns{rows_.data(), system_.data(), layout_.slot.data()};
+  const simd::Yarns yarns = this->yarns();
   const std::size_t shares =
       std::min({scratch_.size() / layout_.longest, last - first, team.size()});
   team.for_each(shares, [&](std::size_t share) {
@@ -85,14 +104,30 @@ void YarnSolver::for_each_family(Team& team, Work&& work) {
   }
 }
 
-void YarnSolver::place(kernels::VectorsView x, Team& team) {
+/// The padding is put right too: a solve that left the range of numbers may have reached it.
+void YarnSolver::split(kernels::VectorsView x, Team& team) {
+  std::fill(u_.begin() + static_cast<std::ptrdiff_t>(4 * model_.slots()), u_.end(), 0.f);
   for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
     table_.split_positions(x, quads(base_), quads(u_), first, last);
   });
+}
+
+void YarnSolver::place(kernels::VectorsView x, Team& team) {
+  split(x, team);
   for_each_block(0, layout_.blocks.size(), team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
                    table_.yarn_place(yarns, layout_.blocks[i], quads(base_));
                  });
+}
+
+void YarnSolver::keep_start(kernels::VectorsView start, Team& team) {
+  place(start, team);
+  from_start_ = true;
+  for_each_block(0, layout_.blocks.size(), team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                   table_.yarn_keep_start(yarns, layout_.blocks[i], quads(u_));
+                 });
+  others_.keep_start(base_.data(), u_.data());
 }
 
 void YarnSolver::join(kernels::VectorsView x, Team& team) {
@@ -123,6 +158,22 @@ void YarnSolver::linearise(Team& team) {
                    table_.yarn_linearise(yarns, layout_.blocks[i], quads(u_));
                  });
   others_.linearise(base_.data(), u_.data());
+}
+
+void YarnSolver::linearise_velocities(Team& team) {
+  for_each_block(0, layout_.blocks.size(), team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                   table_.yarn_linearise(yarns, layout_.blocks[i], quads(u_));
+                 });
+  others_.linearise_velocities(base_.data(), u_.data());
+}
+
+void YarnSolver::read_velocities(Team& team) {
+  for_each_block(0, layout_.blocks.size(), team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                   table_.yarn_read(yarns, layout_.blocks[i], quads(base_), quads(u_));
+                 });
+  others_.read(base_.data(), u_.data());
 }
 
 YarnSolver::Products YarnSolver::precondition(double alpha, double goal, Team& team) {
@@ -176,13 +227,10 @@ void YarnSolver::finish(Team& team) {
   others_.finish(u_.data());
 }
 
-/// Preconditioned conjugate gradients on A lambda = e, then u -= M^-1 J^T lambda.
-void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result) {
-  system_.resize(layout_.rows);
-  t_.resize(u_.size());
-  linearise(team);
-  Products now = precondition(0, goal, team);
-  const double enough = std::max(goal, kForcing * now.worst);
+/// Preconditioned conjugate gradients on A lambda = e, from its first preconditioned residual on,
+/// then u -= M^-1 J^T lambda.
+void YarnSolver::solve(Products now, double goal, double enough, int max_iterations, Team& team,
+                       kernels::LoopResult& result) {
   double beta = 0;
   int done = 0;
   while (now.worst > enough && done < max_iterations) {
@@ -193,24 +241,95 @@ void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::Lo
     now = next;
     ++done;
   }
-  finish(team);
+  if (std::isfinite(now.product)) finish(team);
   count(done, result);
 }
 
-kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x,
+void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result) {
+  linearise(team);
+  const Products now = precondition(0, goal, team);
+  solve(now, goal, std::max(goal, kForcing * now.worst), max_iterations, team, result);
+}
+
+/// Room for the linear system, from when it is first wanted.
+void YarnSolver::make_system() {
+  system_.resize(layout_.rows);
+  t_.resize(u_.size());
+}
+
+/// More than one system only where one-sided constraints join in or let go, or where floats lost
+/// sight of the last digits.
+kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
+                                                   const ContactStore& contacts, bool exact,
+                                                   Team& team) {
+  kernels::LoopResult result;
+  make_system();
+  from_start_ = false;
+  velocities_ = true;
+  others_.start(contacts, true);
+  others_.use_present();
+  place(x, team);
+  linearise_velocities(team);
+  split(v, team);
+  const double tolerated = kWithin * settings_.velocity_tolerance;
+  double goal = tolerated, best = kNoBound;
+  for (int stale = 0; stale <= kVelocityPatience.passes;) {
+    read_velocities(team);
+    const Products now = precondition(0, goal, team);
+    const double worst = std::isfinite(now.product) ? now.worst : kNoBound;
+    if (exact && best == kNoBound) goal = std::min(goal, kExact * worst);
+    result.converged = worst <= tolerated;
+    const int left = settings_.max_iterations - result.iterations;
+    const bool enough = worst <= goal || (result.converged && best < kNoBound);
+    if (enough || left <= 0) break;
+    stale = worst < kVelocityPatience.fall * best ? 0 : stale + 1;
+    best = std::min(best, worst);
+    solve(now, goal, goal, std::min(kMostIterations, left), team, result);
+  }
+  velocities_ = false;
+  result.converged = result.converged && loses_energy(v);
+  if (result.converged) join(v, team);
+  return result;
+}
+
+/// Whether base + u has no more energy than v. A projection has not, and neither have conjugate
+/// gradients on their way to it; clamped impulses of one-sided constraints, where these depend on
+/// each other, may bring in any amount.
+bool YarnSolver::loses_energy(kernels::VectorsView v) const {
+  constexpr double kRounding = 1e-6;
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    if (model_.inverse_mass[i] == 0) continue;
+    const auto axis = [&](std::size_t k) {
+      return static_cast<double>(base_[4 * i + k]) + static_cast<double>(u_[4 * i + k]);
+    };
+    const kernels::Vector now{axis(0), axis(1), axis(2)};
+    before += model_.mass[i] * kernels::dot(v[i], v[i]);
+    after += model_.mass[i] * kernels::dot(now, now);
+  }
+  return after <= (1 + kRounding) * before;
+}
+
+kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                                 const ContactStore& contacts, bool first_round,
                                                 int max_iterations, double care,
                                                 SimdSolver& measure, Team& team) {
   kernels::LoopResult result;
   others_.start(contacts, first_round);
+  others_.use_present();
+  from_start_ = false;
+  if (start.x != nullptr) keep_start(start, team);
   place(x, team);
   if (settings_.iterations > 0) {
     while (result.iterations < settings_.iterations) sweep(team, result);
     join(x, team);
     return result;
   }
-  const double goal = care * std::min(settings_.tolerance, kGoal);
-  double before = std::numeric_limits<double>::infinity(), best = before;
+  const bool rattle = settings_.scheme == Scheme::rattle;
+  const double wanted = care * std::min(settings_.tolerance, kGoal);
+  const double goal = rattle ? std::min(wanted, kRattleGoal) : wanted;
+  const Patience patience = from_start_ ? kRattlePatience : kPatience;
+  double before = kNoBound, best = kNoBound;
   int stale = 0;
   sweep(team, result);
   for (;;) {
@@ -222,12 +341,15 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x,
     if (strain <= goal && touching) return result;
     const double worst = std::max(strain / goal, depth / settings_.contact_tolerance);
     if (result.iterations >= max_iterations) return result;
-    stale = worst < kFall * best ? 0 : stale + 1;
+    stale = worst < patience.fall * best ? 0 : stale + 1;
     best = std::min(best, worst);
-    result.failed = !std::isfinite(worst) || stale > kPatience;
-    if (result.failed) return result;
+    if (!std::isfinite(worst) || stale > patience.passes) {
+      result.failed = !(from_start_ ? result.converged : strain <= wanted && touching);
+      return result;
+    }
     if (strain < kSmall && strain > kSlow * before) {
       place(x, team);
+      make_system();
       newton(kWithin * goal, std::min(kMostIterations, max_iterations - result.iterations), team,
              result);
     }
@@ -237,8 +359,8 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x,
 }
 
 std::size_t YarnSolver::bytes() const {
-  return bytes_of(rows_) + bytes_of(system_) + bytes_of(scratch_) + bytes_of(base_) + bytes_of(u_) +
-         bytes_of(t_) + bytes_of(products_) + others_.bytes();
+  return bytes_of(rows_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
+         bytes_of(base_) + bytes_of(u_) + bytes_of(t_) + bytes_of(products_) + others_.bytes();
 }
 
 }  // namespace weft

@@ -10,6 +10,8 @@
 /// Where sweeps gain too little, Newton's method takes over: all yarns as one linear system, solved
 /// by conjugate gradients with the yarns as preconditioner (kernels/simd/yarn_system.h).
 ///
+/// Velocities are linear: one system, solved in the same way.
+///
 /// Errors are judged in double after each sweep or Newton step. If they do not fall the solver
 /// gives up early, for its caller to answer.
 #pragma once
@@ -33,28 +35,44 @@ class YarnSolver {
   YarnSolver(const Model& model, const Settings& settings, const simd::Table& table);
 
   /// Moves x until every constraint and listed contact is well within tolerance, or as far as it
-  /// gets: failed where that is not as far as it wanted. care: the share of what it usually leaves
-  /// that may be left. measure: of the true errors. LoopResult::iterations counts sweeps and
-  /// iterations of conjugate gradients.
-  kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
-                                      bool first_round, int max_iterations, double care,
-                                      SimdSolver& measure, Team& team);
+  /// gets: failed where that is not as far as it wanted. Scheme rattle applies impulses along the
+  /// directions at `start`, if given. care: the share of what it usually leaves that may be left.
+  /// measure: of the true errors. LoopResult::iterations counts sweeps and iterations of conjugate
+  /// gradients.
+  kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
+                                      const ContactStore& contacts, bool first_round,
+                                      int max_iterations, double care, SimdSolver& measure,
+                                      Team& team);
+  /// Brings the velocities at the positions x within half of the tolerance, or as far as it gets;
+  /// with `exact` to a small part of what they were out by, however little that is.
+  kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
+                                         const ContactStore& contacts, bool exact, Team& team);
   std::size_t longest() const { return layout_.longest; }  // particles of the longest yarn
   std::size_t bytes() const;
 
  private:
   struct Products {
     double product = 0;  // residual . z
-    double worst = 0;    // largest strain left
+    double worst = 0;    // largest strain left, or velocity
   };
+  simd::Yarns yarns();
   /// Starts at the positions x.
   void place(kernels::VectorsView x, Team& team);
+  void split(kernels::VectorsView x, Team& team);
+  void keep_start(kernels::VectorsView start, Team& team);
   void join(kernels::VectorsView x, Team& team);
   /// Each family once, then the others.
   void sweep(Team& team, kernels::LoopResult& result);
   /// One linear system, to the strain `goal`.
   void newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
+  /// What was linearised, and preconditioned once, until no error is above `enough`.
+  void solve(Products now, double goal, double enough, int max_iterations, Team& team,
+             kernels::LoopResult& result);
+  void make_system();
   void linearise(Team& team);
+  void linearise_velocities(Team& team);
+  void read_velocities(Team& team);
+  bool loses_energy(kernels::VectorsView v) const;
   Products precondition(double alpha, double goal, Team& team);
   double push_pull(double beta, Team& team);
   void finish(Team& team);
@@ -69,7 +87,9 @@ class YarnSolver {
   const Settings settings_;
   const simd::Table& table_;
 
+  bool from_start_ = false, velocities_ = false;  // what is being solved
   kernels::AlignedVector<simd::YarnRow> rows_;
+  kernels::AlignedVector<simd::LaneVectors> start_;     // scheme rattle only
   kernels::AlignedVector<simd::YarnSystemRow> system_;  // from the first Newton step on
   kernels::AlignedVector<simd::YarnScratch> scratch_;   // for each thread
   kernels::AlignedVector<float> base_, u_, t_;          // quads

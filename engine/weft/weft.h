@@ -134,9 +134,9 @@ ModelInfo describe(const Model& model);
 /// yarn: chains of constraints that run straight on through the cloth, as the yarns of a woven one
 ///   do, each solved exactly and many side by side in lanes; conjugate gradients over all of them
 ///   where such sweeps are slow. Ropes, hubs and contacts are relaxed one by one after each sweep,
-///   and take part in the linear system. On the simd backend, with scheme paper.
-/// automatic: yarn; direct with scheme rattle, and where the masses of joined particles differ by
-///   more than 10^4; gauss_seidel on the reference backend and with Settings::iterations.
+///   and take part in the linear system. On the simd backend.
+/// automatic: yarn; direct where the masses of joined particles differ by more than 10^4, and with
+///   both scheme rattle and spheres; gauss_seidel on the reference backend, for fixed iterations.
 /// Where yarn or direct give up, the substep is done in halves, and where that is no answer either,
 /// Gauss-Seidel goes on; StepReport::iterations counts all of it. Such a substep gains no energy:
 /// velocities are scaled down, all by one factor, if it would. For some steps after it automatic
@@ -145,11 +145,11 @@ ModelInfo describe(const Model& model);
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
 /// paper: impulses along the directions of the previewed state; first order, and dissipative.
 /// rattle: along those at the start of the substep, and the velocity correction always: second
-///   order. Contacts come about within a substep and act along their directions at its end, in both
-///   schemes. A substep too large for it is done again by the paper's scheme with velocity
-///   correction, from the same state: where rattle does not converge, or its impulses would bring
-///   in energy (engine/rattle.h). StepReport::scheme_fallbacks counts these. With
-///   Settings::iterations nothing is done again.
+///   order. Ropes likewise, also those that become taut within the substep; contacts come about in
+///   it and act along their directions at its end, in both schemes. A substep too large for it is
+///   done again by the paper's scheme with velocity correction, from the same state: where rattle
+///   does not converge, or its impulses would bring in energy (engine/rattle.h).
+///   StepReport::scheme_fallbacks counts these. With Settings::iterations nothing is done again.
 enum class Scheme : std::uint8_t { paper, rattle };
 /// each: directions renewed before every iteration (sections 3.2, 4.1).
 /// frozen: only once all errors along them are within tolerance (section 4.4).
@@ -169,9 +169,10 @@ inline constexpr int kAutomaticSubsteps = 0;
 struct Settings {
   double tolerance = 0.01;  ///< strain, | |a-b| - rest | / rest, that every step must reach; > 0
   /// A step of dt is done as so many steps of dt / substeps, each to the tolerances; 0
-  /// (kAutomaticSubsteps): as many as the motion wants. A substep whose solver gives up before
-  /// max_iterations is done again in halves, up to 16 parts of it (StepReport::halvings). Fine
-  /// meshes want small steps. Iterations, and their bounds, are those of one substep.
+  /// (kAutomaticSubsteps): as many as the motion wants, of scheme rattle twice as many. A substep
+  /// whose solver gives up before max_iterations is done again in halves, up to 16 parts of it
+  /// (StepReport::halvings). Fine meshes want small steps. Iterations, and their bounds, are those
+  /// of one substep.
   int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per step whatever the error, nothing
   /// skipped, frozen directions renewed once per step.
@@ -265,7 +266,7 @@ struct StepReport {
   int halvings = 0;              ///< substeps that were done again in halves
   int iterations = 0;            ///< passes over the position constraints; direct: solves
   int direction_updates = 0;     ///< renewals of the constraint directions
-  int velocity_iterations = 0;   ///< passes of the velocity loop
+  int velocity_iterations = 0;   ///< passes of the velocity loop; direct: solves
   std::int64_t visits = 0;       ///< constraints whose error was looked at, both loops
   std::int64_t corrections = 0;  ///< impulses applied, both loops
   int scheme_fallbacks = 0;      ///< substeps that scheme rattle left to the paper's

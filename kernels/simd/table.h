@@ -155,11 +155,13 @@ struct Yarns {
   YarnRow* rows = nullptr;
   YarnSystemRow* system = nullptr;
   const std::uint32_t* slot = nullptr;  // per row and lane; padding: slots of no particle
+  LaneVectors* start = nullptr;         // per row: scheme rattle's directions; null: present ones
+  bool velocities = false;              // that is what the system's errors are of
 };
 
 struct YarnProducts {
   float product = 0;  // residual . z
-  float worst = 0;    // largest |residual| / rest
+  float worst = 0;    // largest |residual| / rest; of velocities, largest |residual|
 };
 
 /// Sums over a run, in an order that depends on nothing but the run.
@@ -240,11 +242,15 @@ struct Table {
                          std::size_t first, std::size_t last);
   /// Fetches the base of a block's positions.
   void (*yarn_place)(const Yarns&, const YarnBlock&, Displacements base);
+  /// start = the directions at base + u.
+  void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
   /// Solves the yarns of a block; returns the largest |error| / length that it found. scratch: as
   /// many rows as the block.
   float (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
   /// Conjugate gradients over all yarns (yarn_system.h); push goes family by family.
   float (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);
+  /// The velocities base + u become the right side.
+  void (*yarn_read)(const Yarns&, const YarnBlock&, Displacements base, Displacements u);
   YarnProducts (*yarn_precondition)(const Yarns&, const YarnBlock&, float alpha);
   void (*yarn_push_first)(const Yarns&, const YarnBlock&, float beta, Displacements t);
   void (*yarn_push)(const Yarns&, const YarnBlock&, float beta, Displacements t);

@@ -1,4 +1,4 @@
-/// The linear system of all yarns, for conjugate gradients (engine/solvers/yarn_newton.h): A of all
+/// The linear system of all yarns, for conjugate gradients (engine/solvers/yarn_solver.h): A of all
 /// families is
 ///
 ///     | T_0      C_01 ... |     T_f   tridiagonal: the yarns of family f, solved exactly
@@ -8,7 +8,17 @@
 /// the particles by t = M^-1 J^T p (yarn_push, one family after the other), and each constraint
 /// reads off how much that changes it, J t (yarn_pull). The first family writes t without reading
 /// it, and the last one reads off while it pushes: a sixth of an iteration less.
+///
+/// With scheme rattle A is that of the directions at the start, J(q) M^-1 J(q)^T, which is
+/// symmetric and off by what constraints have turned by since: each Newton step leaves that part of
+/// the error (simplified Newton), and the sweep after it, whose tridiagonal matrices are exact,
+/// some of it.
+///
+/// Velocities have the same system, directions and factors of the positions, with J v on the right
+/// (yarn_read).
 #pragma once
+
+#include <algorithm>
 
 #include "kernels/simd/yarns.h"
 
@@ -22,28 +32,57 @@ namespace {
   return total;
 }
 
-/// Directions, factors and errors at base + u; lambda = p = q = 0.
-float yarn_linearise(const Yarns& y, const YarnBlock& block, Displacements u) {
+template <Along kAlong>
+[[gnu::always_inline]] inline float linearise_yarns(const Yarns& y, const YarnBlock& block,
+                                                    Displacements u) {
   float most = 0;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     Floats worst(0.f);
     const Floats zero(0.f);
-    go_down(y, block, lane, u,
-            [&](std::uint32_t k, const FloatVector&, const YarnLink& link, Floats m,
-                Floats reciprocal) {
-              YarnSystemRow& row = y.system[k];
-              worst = larger(worst, link.strain);
-              store(row.n, lane, link.n);
-              m.store_unaligned(row.m + lane);
-              reciprocal.store_unaligned(row.reciprocal + lane);
-              link.error.store_unaligned(row.residual + lane);
-              zero.store_unaligned(row.lambda + lane);
-              zero.store_unaligned(row.p + lane);
-              zero.store_unaligned(row.q + lane);
-            });
+    go_down<kAlong>(
+        y, block, lane, u,
+        [&](std::uint32_t k, const FloatVector&, const YarnLink& link, const Factors& f) {
+          YarnSystemRow& row = y.system[k];
+          worst = larger(worst, link.strain);
+          store(row.n, lane, link.n);
+          f.down.store_unaligned(row.m + lane);
+          f.reciprocal.store_unaligned(row.reciprocal + lane);
+          link.error.store_unaligned(row.residual + lane);
+          zero.store_unaligned(row.lambda + lane);
+          zero.store_unaligned(row.p + lane);
+          zero.store_unaligned(row.q + lane);
+        });
     most = larger(most, worst);
   }
   return most;
+}
+
+/// Directions, factors and errors at base + u; lambda = p = q = 0.
+float yarn_linearise(const Yarns& y, const YarnBlock& block, Displacements u) {
+  return y.start == nullptr ? linearise_yarns<Along::present>(y, block, u)
+                            : linearise_yarns<Along::frozen>(y, block, u);
+}
+
+/// residual = J (base + u), of velocities; lambda = p = q = 0.
+void yarn_read(const Yarns& y, const YarnBlock& block, Displacements base, Displacements u) {
+  QuadLanes at;
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    const Floats zero(0.f);
+    FloatVector base_here = at.get(base, slots(y, block.first, lane));
+    FloatVector here = at.get(u, slots(y, block.first, lane));
+    for (std::uint32_t k = block.first; k < block.last; ++k) {
+      YarnSystemRow& row = y.system[k];
+      const std::uint32_t* next = slots(y, std::min(k + 1, block.last - 1), lane);
+      const FloatVector base_next = at.get(base, next), u_next = at.get(u, next);
+      dot(load(row.n, lane), (base_here - base_next) + (here - u_next))
+          .store_unaligned(row.residual + lane);
+      zero.store_unaligned(row.lambda + lane);
+      zero.store_unaligned(row.p + lane);
+      zero.store_unaligned(row.q + lane);
+      base_here = base_next;
+      here = u_next;
+    }
+  }
 }
 
 /// lambda += alpha p, residual -= alpha q, z = T^-1 residual.
@@ -58,8 +97,8 @@ YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alp
       fused(step, load(row.p + lane), load(row.lambda + lane)).store_unaligned(row.lambda + lane);
       const Floats residual = load(row.residual + lane) - step * load(row.q + lane);
       residual.store_unaligned(row.residual + lane);
-      const Floats rest = load(y.rows[k].rest + lane);
-      worst = larger(worst, residual / xsimd::select(rest > Floats(0.f), rest, Floats(1.f)));
+      const Floats unit = y.velocities ? Floats(1.f) : load(y.rows[k].rest + lane);
+      worst = larger(worst, residual / xsimd::select(unit > Floats(0.f), unit, Floats(1.f)));
       b = fused(load(row.m + lane), b, residual);
       (b * load(row.reciprocal + lane)).store_unaligned(row.z + lane);
     }

@@ -15,6 +15,14 @@
 /// 0. A pivot that all but vanishes belongs to a constraint that those before it imply (a straight
 /// yarn between two fixed ends): its impulse is taken as 0.
 ///
+/// Scheme rattle has impulses along s, the directions at the start of the substep, while errors
+/// change along n: A = J(x) M^-1 J(q)^T is not symmetric, but tridiagonal all the same,
+///
+///     A(k, k) = (w_k + w_{k+1}) n_k . s_k,   A(k, k - 1) = -w_k n_k . s_{k-1} = -l_k,
+///     A(k - 1, k) = -w_k n_{k-1} . s_k = -c_k
+///
+/// so that m_k = l_k r_{k-1} on the way down, and c_k r_{k-1} on the way up.
+///
 /// Positions are base + u, two floats in quads (quads.h): base is the double position rounded, u
 /// begins with what the rounding lost. Differences of neighbours are exact to the last bits of u.
 ///
@@ -65,7 +73,8 @@ constexpr float kLeastPivot = 1e-4f;  // of w_k + w_{k+1}
 struct YarnLink {
   FloatVector n;
   Floats error;
-  Floats strain;  // error / length
+  Floats strain;      // error / length
+  FloatVector along;  // what its impulse acts along
 };
 
 /// d: from particle k + 1 to particle k. Ends that coincide have no direction: n = (0, 1, 0).
@@ -77,25 +86,48 @@ struct YarnLink {
   FloatVector n = inverse * d;
   n.y = xsimd::select(present & together, one, n.y);
   const Floats error = xsimd::select(present, length - rest, zero);
-  return {n, error, error * inverse};
+  return {n, error, error * inverse, n};
 }
 
-/// The factorisation, row by row.
-struct Elimination {
-  FloatVector n = no_vector();      // of the row above
-  Floats reciprocal = Floats(0.f);  // r
+/// present: impulses act along the directions that errors change along. start: along those at the
+/// start of the substep. frozen: errors too are taken to change along those, so that A is symmetric
+/// and stays (yarn_system.h).
+enum class Along : std::uint8_t { present, start, frozen };
 
-  /// Takes the next row; returns its m.
-  [[gnu::always_inline]] Floats step(const FloatVector& next, Floats wa, Floats wb) {
-    const Floats c = wa * dot(n, next);
-    const Floats m = c * reciprocal;
-    const Floats diagonal = wa + wb;
-    const Floats pivot = diagonal - m * c;
-    const FloatMask regular = pivot > Floats(kLeastPivot) * diagonal;
+template <Along kAlong>
+[[gnu::always_inline]] inline void direct(YarnLink& link, const LaneVectors* start, std::uint32_t k,
+                                          std::uint32_t lane) {
+  if constexpr (kAlong == Along::present) return;
+  link.along = load(start[k], lane);
+  if constexpr (kAlong == Along::frozen) link.n = link.along;
+}
+
+/// Of a row: the factors of what it passes on.
+struct Factors {
+  Floats down, up;
+  Floats reciprocal;  // r
+};
+
+/// The factorisation, row by row.
+template <Along kAlong>
+struct Elimination {
+  FloatVector n = no_vector(), along = no_vector();  // of the row above
+  Floats reciprocal = Floats(0.f);
+
+  /// Takes the next row.
+  [[gnu::always_inline]] Factors step(const YarnLink& next, Floats wa, Floats wb) {
+    constexpr bool kSymmetric = kAlong != Along::start;
+    const Floats sum = wa + wb;
+    const Floats c = wa * dot(n, next.along);
+    const Floats l = kSymmetric ? c : wa * dot(along, next.n);
+    const Floats down = l * reciprocal, up = c * reciprocal;
+    const Floats pivot = (kSymmetric ? sum : sum * dot(next.n, next.along)) - down * c;
+    const FloatMask regular = pivot > Floats(kLeastPivot) * sum;
     reciprocal = xsimd::select(regular, Floats(1.f) / xsimd::select(regular, pivot, Floats(1.f)),
                                Floats(0.f));
-    n = next;
-    return m;
+    n = next.n;
+    along = next.along;
+    return {down, up, reciprocal};
   }
 };
 
@@ -119,12 +151,28 @@ void yarn_place(const Yarns& y, const YarnBlock& block, Displacements base) {
   }
 }
 
-/// Down the yarns: take(row, u of its particle, link, m) for each.
-template <class Take>
+/// Directions for scheme rattle, at base + u.
+void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
+  QuadLanes at;
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    FloatVector here = at.get(u, slots(y, block.first, lane));
+    for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
+      const FloatVector next = at.get(u, slots(y, k + 1, lane));
+      const FloatVector d =
+          (load(y.rows[k].base, lane) - load(y.rows[k + 1].base, lane)) + (here - next);
+      store(y.start[k], lane, make_link(d, load(y.rows[k].rest + lane)).n);
+      here = next;
+    }
+    store(y.start[block.last - 1], lane, no_vector());
+  }
+}
+
+/// Down the yarns: take(row, u of its particle, link, factors) for each.
+template <Along kAlong, class Take>
 [[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block,
                                            std::uint32_t lane, Displacements u, Take&& take) {
   QuadLanes at;
-  Elimination elimination;
+  Elimination<kAlong> elimination;
   FloatVector here = at.get(u, slots(y, block.first, lane));
   FloatVector base = load(y.rows[block.first].base, lane);
   Floats w = load(y.rows[block.first].inverse_mass + lane);
@@ -133,16 +181,16 @@ template <class Take>
     const FloatVector u_next = at.get(u, slots(y, k + 1, lane));
     const FloatVector base_next = load(next.base, lane);
     const Floats w_next = load(next.inverse_mass + lane);
-    const YarnLink link =
-        make_link((base - base_next) + (here - u_next), load(y.rows[k].rest + lane));
-    const Floats m = elimination.step(link.n, w, w_next);
-    take(k, here, link, m, elimination.reciprocal);
+    YarnLink link = make_link((base - base_next) + (here - u_next), load(y.rows[k].rest + lane));
+    direct<kAlong>(link, y.start, k, lane);
+    take(k, here, link, elimination.step(link, w, w_next));
     here = u_next;
     base = base_next;
     w = w_next;
   }
   const Floats none(0.f);
-  take(block.last - 1, here, YarnLink{no_vector(), none, none}, none, none);
+  take(block.last - 1, here, YarnLink{no_vector(), none, none, no_vector()},
+       Factors{none, none, none});
 }
 
 /// Up again: impulses, and the particles moved by them.
@@ -164,25 +212,32 @@ template <class Take>
   at.put(u, slots(y, block.first, lane), fused(w, no_vector() - below, load(scratch->u, lane)));
 }
 
-float yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
+template <Along kAlong>
+[[gnu::always_inline]] inline float sweep_yarns(const Yarns& y, const YarnBlock& block,
+                                                Displacements u, YarnScratch* scratch) {
   float most = 0;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     Floats b(0.f), worst(0.f);
-    go_down(y, block, lane, u,
-            [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, Floats m,
-                Floats reciprocal) {
-              YarnScratch& row = scratch[k - block.first];
-              b = fused(m, b, link.error);
-              worst = larger(worst, link.strain);
-              store(row.u, lane, here);
-              store(row.n, lane, link.n);
-              m.store_unaligned(row.m + lane);
-              (reciprocal * b).store_unaligned(row.y + lane);
-            });
+    go_down<kAlong>(
+        y, block, lane, u,
+        [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f) {
+          YarnScratch& row = scratch[k - block.first];
+          b = fused(f.down, b, link.error);
+          worst = larger(worst, link.strain);
+          store(row.u, lane, here);
+          store(row.n, lane, link.along);
+          f.up.store_unaligned(row.m + lane);
+          (f.reciprocal * b).store_unaligned(row.y + lane);
+        });
     most = larger(most, worst);
     go_up(y, block, lane, u, scratch);
   }
   return most;
+}
+
+float yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
+  return y.start == nullptr ? sweep_yarns<Along::present>(y, block, u, scratch)
+                            : sweep_yarns<Along::start>(y, block, u, scratch);
 }
 
 }  // namespace

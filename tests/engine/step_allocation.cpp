@@ -54,6 +54,23 @@ TEST_CASE("a warm step allocates nothing") {
   }
 }
 
+TEST_CASE("nor does a warm step by yarns") {
+  for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners"}) {
+    for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+      for (const bool velocity_correction : {false, true}) {
+        CAPTURE(std::string(name));
+        CAPTURE(weft::name(scheme));
+        CAPTURE(velocity_correction);
+        Settings settings;
+        settings.solver = Solver::yarn;
+        settings.scheme = scheme;
+        settings.velocity_correction = velocity_correction;
+        CHECK(allocations_when_warm(name, settings) == 0);
+      }
+    }
+  }
+}
+
 TEST_CASE("without contacts even the first step allocates nothing") {
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));

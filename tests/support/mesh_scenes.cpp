@@ -1,6 +1,7 @@
 #include "tests/support/mesh_scenes.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "tests/support/vectors.h"
 
@@ -30,6 +31,17 @@ SceneDescription roped_sheet(std::uint32_t size) {
   Mesh mesh = grid(size, size);
   add_diagonals(mesh, size, size, ConstraintKind::rope);
   return scene_of(mesh);
+}
+
+SceneDescription braced_sheet(std::uint32_t size) {
+  Mesh mesh = grid(size, size);
+  for (std::uint32_t k = 0; k + size < size * size; ++k) {
+    if ((k + 1) % size > 0) mesh.links.push_back({k, k + size + 1, ConstraintKind::rope});
+  }
+  SceneDescription scene = scene_of(mesh);
+  scene.fixed.resize(size);
+  std::iota(scene.fixed.begin(), scene.fixed.end(), 0u);
+  return scene;
 }
 
 SceneDescription random_sheet(std::uint32_t size, std::uint32_t seed) {

@@ -16,6 +16,8 @@ SceneDescription scene_of(const Mesh& mesh);
 
 /// A sheet whose diagonals are ropes, just taut.
 SceneDescription roped_sheet(std::uint32_t size);
+/// A sheet with one fixed side, and a rope along one diagonal of each cell.
+SceneDescription braced_sheet(std::uint32_t size);
 /// Triangles of any shape, some links missing: hardly a run in it.
 SceneDescription random_sheet(std::uint32_t size, std::uint32_t seed);
 /// A sheet whose middle holds ropes to all of its border: a hub.

@@ -129,10 +129,9 @@ Outcome run_angular_momentum(const Setup& setup) {
 }
 
 /// Scheme paper does not: impulses along the previewed directions turn a little against the
-/// positions that they lead to. Nor do direct solutions under scheme rattle: a third of their steps
-/// trips its guard and falls back to scheme paper.
+/// positions that they lead to.
 bool keeps_angular_momentum(const Method& method) {
-  return method.scheme != Scheme::paper && method.solver == Solver::gauss_seidel;
+  return method.scheme != Scheme::paper && method.solver != Solver::yarn;
 }
 
 bool runs_in_doubles(const Method& method) { return method.solver != Solver::yarn; }

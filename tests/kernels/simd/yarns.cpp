@@ -23,6 +23,7 @@ struct Block {
   kernels::AlignedVector<simd::YarnRow> rows;
   kernels::AlignedVector<simd::YarnSystemRow> system;
   kernels::AlignedVector<simd::YarnScratch> scratch;
+  kernels::AlignedVector<simd::LaneVectors> directions;  // at the start of a rattle step
   kernels::AlignedVector<float> base, u, t;
   kernels::Vectors x;
 
@@ -58,44 +59,105 @@ struct Block {
       at = at + (0.1 * random.between(0.99, 1.01) / kernels::length(d)) * d;
     }
   }
-  simd::Yarns yarns() { return {rows.data(), system.data(), slot.data()}; }
+  simd::Yarns yarns() {
+    return {rows.data(), system.data(), slot.data(),
+            directions.empty() ? nullptr : directions.data()};
+  }
   simd::YarnBlock block() const { return {0, kRows}; }
   simd::Displacements quads(kernels::AlignedVector<float>& v) { return {v.data(), 1, 4}; }
   void start(const simd::Table& table) {
     table.split_positions(x.view(), quads(base), quads(u), 0, x.size());
     table.yarn_place(yarns(), block(), quads(base));
   }
-  kernels::Vectors end(const simd::Table& table) {
-    kernels::Vectors moved = x;
+  /// Impulses act along the directions at q from now on.
+  void keep_start(const simd::Table& table, const kernels::Vectors& q) {
+    directions.resize(kRows);
+    table.split_positions(kernels::Vectors(q).view(), quads(base), quads(u), 0, q.size());
+    table.yarn_place(yarns(), block(), quads(base));
+    table.yarn_keep_start(yarns(), block(), quads(u));
+  }
+  kernels::Vectors end(const simd::Table& table) { return end(table, x); }
+  kernels::Vectors end(const simd::Table& table, kernels::Vectors moved) {
     table.join_positions(moved.view(), quads(base), quads(u), 0, x.size());
     return moved;
   }
 };
 
-/// Where one exact linear solve takes the particles of a lane.
-std::vector<kernels::Vector> solved_densely(const Block& b, std::uint32_t lane) {
-  const std::uint32_t particles = Block::length(lane), links = particles - 1;
-  std::vector<kernels::Vector> x, n;
+std::vector<kernels::Vector> directions(const Block& b, const kernels::Vectors& x,
+                                        std::uint32_t lane) {
+  std::vector<kernels::Vector> n;
+  for (std::uint32_t k = 0; k + 1 < Block::length(lane); ++k) {
+    const kernels::Vector d = x[b.slot_of(k, lane)] - x[b.slot_of(k + 1, lane)];
+    n.push_back((1 / kernels::length(d)) * d);
+  }
+  return n;
+}
+
+/// What vectors at the particles of a lane become by impulses along s that bring e, errors that
+/// change along n, to 0.
+std::vector<kernels::Vector> solved_densely(const Block& b, std::uint32_t lane,
+                                            const kernels::Vectors& at,
+                                            const std::vector<kernels::Vector>& n,
+                                            const std::vector<kernels::Vector>& s,
+                                            const Eigen::VectorXd& e) {
+  std::vector<kernels::Vector> x;
   std::vector<double> w;
-  for (std::uint32_t k = 0; k < particles; ++k) {
-    x.push_back(b.x[b.slot_of(k, lane)]);
+  for (std::uint32_t k = 0; k < Block::length(lane); ++k) {
+    x.push_back(at[b.slot_of(k, lane)]);
     w.push_back(static_cast<double>(b.rows[k].inverse_mass[lane]));
   }
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(links, links);
-  Eigen::VectorXd e(links);
-  for (std::uint32_t k = 0; k < links; ++k) {
-    const kernels::Vector d = x[k] - x[k + 1];
-    n.push_back((1 / kernels::length(d)) * d);
-    e[k] = kernels::length(d) - static_cast<double>(b.rows[k].rest[lane]);
-    a(k, k) = w[k] + w[k + 1];
-    if (k > 0) a(k, k - 1) = a(k - 1, k) = -w[k] * kernels::dot(n[k - 1], n[k]);
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(e.size(), e.size());
+  for (Eigen::Index i = 0; i < e.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    a(i, i) = (w[k] + w[k + 1]) * kernels::dot(n[k], s[k]);
+    if (k == 0) continue;
+    a(i, i - 1) = -w[k] * kernels::dot(n[k], s[k - 1]);
+    a(i - 1, i) = -w[k] * kernels::dot(n[k - 1], s[k]);
   }
-  const Eigen::VectorXd lambda = a.ldlt().solve(e);
-  for (std::uint32_t k = 0; k < links; ++k) {
-    x[k] = x[k] + (-w[k] * lambda[k]) * n[k];
-    x[k + 1] = x[k + 1] + (w[k + 1] * lambda[k]) * n[k];
+  const Eigen::VectorXd lambda = a.partialPivLu().solve(e);
+  for (std::size_t k = 0; k < n.size(); ++k) {
+    const double impulse = lambda[static_cast<Eigen::Index>(k)];
+    x[k] = x[k] + (-w[k] * impulse) * s[k];
+    x[k + 1] = x[k + 1] + (w[k + 1] * impulse) * s[k];
   }
   return x;
+}
+
+Eigen::VectorXd length_errors(const Block& b, std::uint32_t lane) {
+  Eigen::VectorXd e(Block::length(lane) - 1);
+  for (std::uint32_t k = 0; k + 1 < Block::length(lane); ++k) {
+    const kernels::Vector d = b.x[b.slot_of(k, lane)] - b.x[b.slot_of(k + 1, lane)];
+    e[k] = kernels::length(d) - static_cast<double>(b.rows[k].rest[lane]);
+  }
+  return e;
+}
+
+/// Where one exact linear solve takes the particles of a lane.
+std::vector<kernels::Vector> solved_densely(const Block& b, std::uint32_t lane) {
+  const auto n = directions(b, b.x, lane);
+  return solved_densely(b, lane, b.x, n, n, length_errors(b, lane));
+}
+
+/// Vectors of up to `size`, or beside those given.
+kernels::Vectors scattered(kernels::Vectors v, double size) {
+  Random random(11);
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const Vec3 d = random.in_box(size);
+    v.set(i, v[i] + kernels::Vector{d.x, d.y, d.z});
+  }
+  return v;
+}
+
+/// With one family, which is its own preconditioner, the first step is the solution.
+void solve_system(Block& b, const simd::Yarns& yarns, const simd::Table& table) {
+  kernels::AlignedVector<float> t(b.u.size());
+  const simd::YarnProducts before = table.yarn_precondition(yarns, b.block(), 0);
+  table.yarn_push(yarns, b.block(), 0, b.quads(t));
+  const float curvature = table.yarn_pull(yarns, b.block(), b.quads(t));
+  CHECK(before.product / curvature == doctest::Approx(1).epsilon(1e-5));
+  const auto after = table.yarn_precondition(yarns, b.block(), before.product / curvature);
+  CHECK(after.worst < 1e-4f * before.worst);
+  table.yarn_finish(yarns, b.block(), b.quads(b.u));
 }
 
 TEST_CASE("positions that do not move come back from two floats to the last bit") {
@@ -200,19 +262,102 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("rattle: a sweep solves each yarn exactly, along the directions at the start") {
+  const Block untouched;
+  const kernels::Vectors q = scattered(untouched.x, 0.02);
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    Block b;
+    const simd::Table& table = simd::table(isa);
+    b.keep_start(table, q);
+    b.start(table);
+    table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+    const kernels::Vectors moved = b.end(table);
+    for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+      const auto expected =
+          solved_densely(untouched, lane, untouched.x, directions(untouched, untouched.x, lane),
+                         directions(untouched, q, lane), length_errors(untouched, lane));
+      for (std::uint32_t k = 0; k < Block::length(lane); ++k) {
+        CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 1e-7);
+      }
+    }
+  }
+}
+
+TEST_CASE("rattle: the linear system has the directions at the start, and the errors at x") {
+  const Block untouched;
+  const kernels::Vectors q = scattered(untouched.x, 0.02);
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    Block b;
+    const simd::Table& table = simd::table(isa);
+    b.keep_start(table, q);
+    b.start(table);
+    table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+    solve_system(b, b.yarns(), table);
+    const kernels::Vectors moved = b.end(table);
+    for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+      const auto s = directions(untouched, q, lane);
+      const auto expected =
+          solved_densely(untouched, lane, untouched.x, s, s, length_errors(untouched, lane));
+      for (std::uint32_t k = 0; k < Block::length(lane); ++k) {
+        CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 1e-7);
+      }
+    }
+  }
+}
+
+TEST_CASE("velocities: the linear system takes them out along each link") {
+  const Block untouched;
+  const kernels::Vectors v = scattered(kernels::Vectors(untouched.x.size()), 1);
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    Block b;
+    const simd::Table& table = simd::table(isa);
+    simd::Yarns yarns = b.yarns();
+    yarns.velocities = true;
+    b.start(table);
+    table.yarn_linearise(yarns, b.block(), b.quads(b.u));
+    kernels::Vectors copy = v;
+    table.split_positions(copy.view(), b.quads(b.base), b.quads(b.u), 0, v.size());
+    table.yarn_read(yarns, b.block(), b.quads(b.base), b.quads(b.u));
+    solve_system(b, yarns, table);
+    const kernels::Vectors moved = b.end(table, v);
+    for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+      const auto n = directions(untouched, untouched.x, lane);
+      Eigen::VectorXd e(static_cast<Eigen::Index>(n.size()));
+      for (std::uint32_t k = 0; k < n.size(); ++k) {
+        e[k] = kernels::dot(n[k], v[b.slot_of(k, lane)] - v[b.slot_of(k + 1, lane)]);
+      }
+      const auto expected = solved_densely(untouched, lane, v, n, n, e);
+      for (std::uint32_t k = 0; k < Block::length(lane); ++k) {
+        CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 2e-5);
+      }
+    }
+  }
+}
+
 TEST_CASE("yarns: AVX2 and AVX-512 give the same bits") {
   if (!simd::supported(simd::Isa::avx512)) return;
   std::vector<std::vector<float>> results;
   for (const simd::Isa isa : {simd::Isa::avx2, simd::Isa::avx512}) {
+    std::vector<float>& result = results.emplace_back();
     Block b;
     const simd::Table& table = simd::table(isa);
-    b.start(table);
-    table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
-    table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
-    const auto p = table.yarn_precondition(b.yarns(), b.block(), 0);
-    results.emplace_back(b.u.begin(), b.u.end());
-    results.back().push_back(p.product);
-    results.back().push_back(p.worst);
+    const kernels::Vectors q = scattered(b.x, 0.02);
+    for (const bool rattle : {false, true}) {
+      if (rattle) b.keep_start(table, q);
+      b.start(table);
+      table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+      table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+      for (const bool velocities : {false, true}) {
+        if (velocities) table.yarn_read(b.yarns(), b.block(), b.quads(b.base), b.quads(b.u));
+        const auto p = table.yarn_precondition(b.yarns(), b.block(), 0);
+        result.push_back(p.product);
+        result.push_back(p.worst);
+      }
+      result.insert(result.end(), b.u.begin(), b.u.end());
+    }
   }
   CHECK(results[0] == results[1]);
 }
