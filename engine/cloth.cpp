@@ -105,7 +105,7 @@ Result<void> Cloth::write_positions(std::span<const Vec3> in) {
   }
   impl_->pins.put_down(impl_->position);
   impl_->placed = true;
-  impl_->care = 1;
+  impl_->trouble = {};
   return {};
 }
 

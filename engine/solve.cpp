@@ -161,14 +161,16 @@ kernels::LoopResult correct_velocities(State& s, bool exact, Team& team) {
       [&answer](bool, int) { return std::apply(sweep_velocities, answer); });
 }
 
-bool gave_up(const kernels::LoopResult& result, OnFailure on_failure) {
-  return result.failed &&
-         (on_failure == OnFailure::halve || (on_failure == OnFailure::leave && !result.converged));
+Ended end_of(const kernels::LoopResult& result, OnFailure on_failure) {
+  if (!result.failed) return Ended::solved;
+  const bool left =
+      on_failure == OnFailure::halve || (on_failure == OnFailure::leave && !result.converged);
+  return left ? Ended::gave_up : Ended::made_do;
 }
 
 }  // namespace
 
-bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+Ended solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   int left = attempt.most_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
     Standstill standstill;
@@ -184,10 +186,10 @@ bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team&
     const bool again = s.model->has_contacts() && result.converged &&
                        add_missed_contacts(*s.model, *s.kernels, s.solved.view(),
                                            s.settings.contact_tolerance, s.contacts) > 0;
-    if (!again) return gave_up(result, attempt.on_failure);
+    if (!again) return end_of(result, attempt.on_failure);
   }
   worsen(report, Status::iteration_limit);
-  return false;
+  return Ended::made_do;
 }
 
 void correct_velocities(State& s, const Attempt& attempt, StepReport& report, Team& team) {

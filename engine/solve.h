@@ -22,8 +22,12 @@ struct Attempt {
   kernels::VectorsView start{};  // with scheme rattle: where the directions are
 };
 
-/// Moves solved until every constraint is within tolerance. Returns whether the solver gave up.
-bool solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team);
+/// made_do: the solver failed, and sweeps, or what it had reached by then, had to do. gave_up: and
+/// that was not wanted; there is no answer.
+enum class Ended : std::uint8_t { solved, made_do, gave_up };
+
+/// Moves solved until every constraint is within tolerance.
+Ended solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team);
 /// The velocity loop: changes next_velocity.
 void correct_velocities(State& s, const Attempt& attempt, StepReport& report, Team& team);
 

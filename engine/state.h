@@ -25,6 +25,7 @@
 #include "engine/solvers/simd_solver.h"
 #include "engine/solvers/team.h"
 #include "engine/solvers/yarn_solver.h"
+#include "engine/trouble.h"
 #include "kernels/kicks.h"
 #include "kernels/vectors.h"
 
@@ -43,7 +44,7 @@ struct State {
   kernels::Vectors start_position, start_velocity;  // of the step; only where needed
   ContactStore contacts;
   Pins pins;
-  double care = 1;     // less for a while after a step in which a solver gave up: substeps.cpp
+  Trouble trouble;
   bool placed = true;  // positions were given, not stepped to: they may violate constraints
 
   std::vector<kernels::Kicks> kicks;  // per stretch of slots; scheme rattle only

@@ -25,14 +25,13 @@ void watch_crossings(State& s, StepReport& report) {
   worsen(report, Status::passed_through);
 }
 
-bool run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+Ended run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   const double h = attempt.h;
   timed(report, Stage::predict, [&] { predict(s, h, team); });
   find_contacts(s, report);
-  bool gave_up = false;
-  timed(report, Stage::solve_positions,
-        [&] { gave_up = solve_positions(s, attempt, report, team); });
-  if (gave_up) return true;
+  Ended ended = Ended::solved;
+  timed(report, Stage::solve_positions, [&] { ended = solve_positions(s, attempt, report, team); });
+  if (ended == Ended::gave_up) return ended;
   timed(report, Stage::commit, [&] { commit(s, h, team); });
   if (s.settings.velocity_correction) {
     timed(report, Stage::correct_velocities, [&] { correct_velocities(s, attempt, report, team); });
@@ -43,25 +42,25 @@ bool run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team
   if (s.model->has_contacts()) {
     timed(report, Stage::find_contacts, [&] { watch_crossings(s, report); });
   }
-  return false;
+  return ended;
 }
 
 }  // namespace
 
 /// Until it is accepted a substep leaves position and velocity alone: it can be done again. With a
 /// fixed number of iterations it is not.
-bool substep(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+Ended substep(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   if (s.settings.scheme == Scheme::paper) return run_stages(s, attempt, report, team);
   const Status before = std::exchange(report.status, Status::converged);
   Attempt by_rattle = attempt;
   by_rattle.start = s.position.view();
-  const bool gave_up = run_stages(s, by_rattle, report, team);
+  const Ended ended = run_stages(s, by_rattle, report, team);
   const bool good = report.status == Status::fixed_iterations ||
-                    (report.status == Status::converged && !gave_up &&
+                    (report.status == Status::converged && ended != Ended::gave_up &&
                      keeps_energy(measure_kicks(s, attempt.h, team)));
   if (good) {
     worsen(report, before);
-    return false;
+    return ended;
   }
   report.status = before;
   ++report.scheme_fallbacks;

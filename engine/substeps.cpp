@@ -57,12 +57,6 @@ constexpr double kLongestBend = 1.5;
 /// (hang, 40 x 40: 45 % instead of 3 %), and are done twice.
 constexpr double kRattleBend = 0.25;  // of kMostBend
 constexpr int kMostSubsteps = 256;
-/// How much of kMostBend, and the square root of it of what yarns leave, is allowed after a step in
-/// which a solver gave up, and how fast that passes. What is left of a tolerance is noise that
-/// larger sheets carry farther: without this corners, 101 x 101, at 1 % takes 300 ms a frame, most
-/// of it in sweeps, and 12 with it.
-constexpr double kLeastCare = 0.25;
-constexpr double kRecovery = 1.01;  // per step
 
 double most_bend(const State& s) {
   const double most = s.settings.scheme == Scheme::rattle ? kRattleBend * kMostBend : kMostBend;
@@ -75,7 +69,7 @@ int choose_substeps(State& s, double dt, Team& team) {
   if (s.settings.substeps != kAutomaticSubsteps) return s.settings.substeps;
   predict(s, dt, team);
   const double bend = max_strain_at(s, s.solved, team);
-  const double wanted = std::ceil(std::sqrt(bend / (s.care * most_bend(s))));
+  const double wanted = std::ceil(std::sqrt(bend / (s.trouble.care() * most_bend(s))));
   return wanted < kMostSubsteps ? std::max(1, static_cast<int>(wanted)) : kMostSubsteps;
 }
 
@@ -87,7 +81,8 @@ class Substeps {
  public:
   Substeps(State& s, StepReport& report, Team& team)
       : s_(s), report_(report), team_(team), transaction_(s) {
-    halving_helps_ = s.settings.iterations == 0 && s.settings.solver != Solver::gauss_seidel;
+    halving_helps_ = s.settings.iterations == 0 && s.settings.solver != Solver::gauss_seidel &&
+                     s.trouble.may_halve();
   }
 
   /// Returns whether all of dt was done.
@@ -103,13 +98,13 @@ class Substeps {
       gave_up_ = false;
       Outcome outcome = advance(dt / substeps, 0, k == substeps);
       if (outcome == Outcome::hopeless) {
-        halving_helps_ = false;
+        halves_helped_ = halving_helps_ = false;
         outcome = advance(dt / substeps, 0, k == substeps);
       }
       if (outcome == Outcome::refused) return false;
     }
     s_.placed = false;
-    s_.care = report_.halvings > 0 ? kLeastCare : std::min(1.0, kRecovery * s_.care);
+    s_.trouble.remember(report_.halvings > 0, halves_helped_ || !may_pause());
     return true;
   }
 
@@ -132,10 +127,10 @@ class Substeps {
                           .on_failure = may_halve   ? OnFailure::halve
                                         : may_leave ? OnFailure::leave
                                                     : OnFailure::sweep,
-                          .care = std::sqrt(s_.care)};
-    const bool gave_up = substep(s_, attempt, report_, team_);
+                          .care = std::sqrt(s_.trouble.care())};
+    const Ended ended = substep(s_, attempt, report_, team_);
     left_ -= report_.iterations - iterations;
-    const bool finite = !gave_up && is_finite(s_);
+    const bool finite = ended != Ended::gave_up && is_finite(s_);
     if (may_leave && !finite) {
       report_.status = before;
       gave_up_ = true;
@@ -147,6 +142,10 @@ class Substeps {
     if (!finite) {
       explain(s_, h, report_, team_);
       return Outcome::refused;
+    }
+    if (ended == Ended::made_do) {
+      gave_up_ = true;
+      if (halving_helps_) halves_helped_ = false;
     }
     if (gave_up_) take_gained_energy(s_);
     transaction_.accept(last);
@@ -168,11 +167,19 @@ class Substeps {
     return before <= tolerance && before <= 0.5 * max_strain_at(s_, s_.solved, team_);
   }
 
+  /// Where the next step may as well begin with sweeps: they converge, and soon, since the
+  /// tolerance is loose.
+  bool may_pause() const {
+    constexpr double kLoose = 0.003;
+    return s_.yarn && s_.settings.scheme == Scheme::paper && s_.settings.tolerance > kLoose &&
+           report_.status == Status::converged;
+  }
+
   State& s_;
   StepReport& report_;
   Team& team_;
   Transaction transaction_;
-  bool halving_helps_ = false;
+  bool halving_helps_ = false, halves_helped_ = true;
   // Of the present substep:
   int left_ = 0;          // iterations, of all its parts together
   int parts_ = 0;         // done
