@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tools/hard/results.h"
@@ -27,13 +30,27 @@ struct HardOptions {
   bool quick = false;
 };
 
+/// As many at a time as there are processors; results in the order of the cases. (Threads of our
+/// own: one of oneTBB that waits within a step might take up another case.)
 std::vector<hard::CaseResult> run_all(const std::vector<hard::Selected>& selected, bool quick) {
   TaskLine line(selected.size());
-  std::vector<hard::CaseResult> results;
-  for (const hard::Selected& one : selected) {
-    line.next(one.name);
-    results.push_back(hard::run(one, quick));
-  }
+  std::vector<hard::CaseResult> results(selected.size());
+  std::mutex turn;
+  std::size_t next = 0;
+  const auto take = [&]() -> std::size_t {
+    const std::lock_guard lock(turn);
+    if (next < selected.size()) line.next(selected[next].name);
+    return next++;
+  };
+  const auto work = [&] {
+    for (std::size_t k = take(); k < selected.size(); k = take()) {
+      results[k] = hard::run(selected[k], quick);
+    }
+  };
+  std::vector<std::jthread> others(std::max(1U, std::thread::hardware_concurrency()) - 1);
+  for (std::jthread& other : others) other = std::jthread(work);
+  work();
+  others.clear();  // joins
   return results;
 }
 

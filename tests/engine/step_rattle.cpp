@@ -79,7 +79,8 @@ TEST_CASE("gauss_seidel on both backends, by all methods, moves as the direct so
   }
 }
 
-TEST_CASE("the yarn solver moves as the direct solver does, over ropes, hubs and contacts too") {
+TEST_CASE("the yarn solver moves as the direct solver does, over ropes, hubs and contacts too" *
+          doctest::test_suite("slow")) {
   struct Case {
     NamedScene scene;
     int steps;

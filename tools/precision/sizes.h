@@ -32,7 +32,7 @@ struct SizeStudy {
   double tolerance = 0.01;
   int frames = 50;
   int threads = 0;            ///< 0: all
-  double seconds_limit = 20;  ///< of processor time, all threads together
+  double seconds_limit = 45;  ///< of processor time, all threads together
   std::vector<int> sizes;
   std::vector<SizeCurve> curves;
 };
