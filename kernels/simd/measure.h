@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "kernels/simd/directions.h"
 
@@ -59,22 +60,29 @@ StrainSums strain_singles(const Geometry& g, std::uint32_t first, std::uint32_t 
   return columns.sums();
 }
 
-/// Largest and smallest of what was taken; their order does not matter.
+/// Largest and smallest of what was taken; their order does not matter. What is not finite is
+/// remembered apart: among lanes a maximum may lose it.
 struct StretchLanes {
   Doubles least = Doubles(1.), most = Doubles(1.);
+  Doubles poison = Doubles(0.);  // 0, or not a number
 
   [[gnu::always_inline]] void take(const Geometry& g, std::size_t c, const DoubleVector& d,
                                    bool rope) {
     const Doubles inverse = load(g.inverse_square + c), one(1.);
     const Doubles ratio = xsimd::select(inverse > Doubles(0.), inverse * dot(d, d), one);
-    most = xsimd::max(most, ratio);
-    if (!rope) least = xsimd::min(least, ratio);
+    poison = fused(ratio, Doubles(0.), poison);
+    most = xsimd::select(ratio > most, ratio, most);
+    if (!rope) least = xsimd::select(ratio < least, ratio, least);
   }
   StretchRange range() const {
     alignas(64) double low[kDoubles], high[kDoubles];
     least.store_aligned(low);
     most.store_aligned(high);
-    return {*std::ranges::min_element(low), *std::ranges::max_element(high)};
+    alignas(64) double poisoned[kDoubles];
+    poison.store_aligned(poisoned);
+    const bool finite = std::ranges::all_of(poisoned, [](double p) { return p == 0; });
+    return {*std::ranges::min_element(low),
+            finite ? *std::ranges::max_element(high) : std::numeric_limits<double>::infinity()};
   }
 };
 

@@ -170,7 +170,7 @@ struct StrainSums {
   double squares = 0;
 };
 
-/// Of (length / rest)^2.
+/// Of (length / rest)^2; most is infinite where one is not finite.
 struct StretchRange {
   double least = 1;
   double most = 1;

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "tests/support/kernel_data.h"
 
@@ -97,6 +99,26 @@ TEST_CASE("the range of stretches holds the largest strain") {
           const double largest = expected_sums(Rounding(isa), data, singles, rope).largest;
           CHECK(strain == doctest::Approx(largest).epsilon(1e-14));
         }
+      }
+    }
+  }
+}
+
+TEST_CASE("what is not a number is an infinite stretch, wherever it stands") {
+  for (const simd::Isa isa : supported_isas()) {
+    for (const bool singles : {false, true}) {
+      for (std::uint32_t k = 0; k < 64; ++k) {
+        CAPTURE(text(isa));
+        CAPTURE(k);
+        KernelData data(64, 1);
+        const std::uint32_t c = data.first + k;
+        if (data.is_padding(c)) continue;
+        data.position.x[singles ? data.a[c] : data.run.a + k] = std::nan("");
+        const simd::Table& table = simd::table(isa);
+        const simd::StretchRange range =
+            singles ? table.stretch_singles(data.geometry(), data.first, data.last, false)
+                    : table.stretch_run(data.geometry(), data.run, false);
+        CHECK(range.most == std::numeric_limits<double>::infinity());
       }
     }
   }
