@@ -31,6 +31,22 @@ std::string name_of(simd::Isa isa);
 inline constexpr int kGridSizes[] = {20, 40, 100, 300, 1000};
 inline constexpr int kIrregularSizes[] = {40, 120, 300};  // 14,400 particles: 120
 
+/// kernel/ISA/size for each kernel, on grids: run(state, shared, kernel, isa, size).
+template <class Kernels, class Run>
+void register_on_grids(const Kernels& kernels, Shared& shared, Run&& run) {
+  for (const auto& kernel : kernels) {
+    for (const simd::Isa isa : supported_isas()) {
+      for (const int size : kGridSizes) {
+        const std::string name =
+            std::string(kernel.name) + '/' + name_of(isa) + '/' + std::to_string(size);
+        benchmark::RegisterBenchmark(name.c_str(), [=, &kernel, &shared](benchmark::State& state) {
+          run(state, shared, kernel, isa, size);
+        });
+      }
+    }
+  }
+}
+
 void register_particle_benchmarks(Shared& shared);
 void register_constraint_benchmarks(Shared& shared);
 void register_batch_benchmarks(Shared& shared);

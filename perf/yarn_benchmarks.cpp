@@ -113,19 +113,6 @@ void run(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Is
 
 }  // namespace
 
-void register_yarn_benchmarks(Shared& shared) {
-  for (const Kernel& kernel : kKernels) {
-    for (const simd::Isa isa : supported_isas()) {
-      for (const int size : kGridSizes) {
-        const std::string name =
-            std::string(kernel.name) + '/' + name_of(isa) + '/' + std::to_string(size);
-        benchmark::RegisterBenchmark(name.c_str(),
-                                     [&shared, &kernel, isa, size](benchmark::State& state) {
-                                       run(state, shared, kernel, isa, size);
-                                     });
-      }
-    }
-  }
-}
+void register_yarn_benchmarks(Shared& shared) { register_on_grids(kKernels, shared, run); }
 
 }  // namespace weft::perf

@@ -1,7 +1,6 @@
 #include "engine/solvers/yarn_layout.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "engine/bytes_of.h"
 #include "engine/model.h"
@@ -133,9 +132,6 @@ void find_beyond_first(YarnLayout& layout) {
 YarnLayout make_yarn_layout(const Model& model) {
   YarnLayout layout;
   layout.slots = model.slots();
-  const auto plain = static_cast<std::uint32_t>(model.constraints.plain);
-  layout.others.resize(model.constraints.size() - plain);
-  std::iota(layout.others.begin(), layout.others.end(), plain);
   const Yarns yarns = find_yarns(positions_of(model), links_of(model.constraints));
   std::vector<Chain> chains = open_chains(yarns, model.slots());
   sort(chains);
@@ -157,7 +153,7 @@ YarnLayout make_yarn_layout(const Model& model) {
 
 std::size_t YarnLayout::bytes() const {
   return bytes_of(blocks) + bytes_of(family_begin) + bytes_of(slot) + bytes_of(rest) +
-         bytes_of(inverse_mass) + bytes_of(others) + bytes_of(beyond_first);
+         bytes_of(inverse_mass) + bytes_of(beyond_first);
 }
 
 }  // namespace weft

@@ -8,7 +8,7 @@
 ///     block:    | row 0 | row 1 | ... | row of the last particles |
 ///
 /// A closed yarn is cut: its last link is a yarn of its own, in another family. What no yarn can
-/// hold (ropes, which only pull, and constraints at hubs) is left to Gauss-Seidel: `others`.
+/// hold (ropes, which only pull, and constraints at hubs) is left to YarnOthers.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,6 @@ struct YarnLayout {
   std::vector<std::uint32_t> slot;             // per row and lane
   kernels::AlignedVector<float> rest;          // per row and lane; 0: no constraint
   kernels::AlignedVector<float> inverse_mass;  // per row and lane, over the model's largest
-  std::vector<std::uint32_t> others;           // constraints that are in no yarn
   std::vector<std::uint32_t> beyond_first;     // slots that the first family does not hold
 
   std::size_t rows = 0;

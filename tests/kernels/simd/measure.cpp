@@ -20,6 +20,12 @@ double strain(const Rounding& rounding, const KernelData& data, std::uint32_t c,
   return rope ? std::max(stretch, 0.0) : std::abs(stretch);
 }
 
+Vector between_ends(const KernelData& data, std::uint32_t c, bool singles) {
+  const std::uint32_t k = c - data.first;
+  return data.position[singles ? data.a[c] : data.run.a + k] -
+         data.position[singles ? data.b[c] : data.run.b + k];
+}
+
 /// Sixteen columns, whatever the width of a vector, then the columns in order.
 simd::StrainSums expected_sums(const Rounding& rounding, const KernelData& data, bool singles,
                                bool rope) {
@@ -27,9 +33,7 @@ simd::StrainSums expected_sums(const Rounding& rounding, const KernelData& data,
   simd::StrainSums sums;
   for (std::uint32_t c = data.first; c < data.last; ++c) {
     const std::uint32_t k = c - data.first;
-    const std::uint32_t a = singles ? data.a[c] : data.run.a + k;
-    const std::uint32_t b = singles ? data.b[c] : data.run.b + k;
-    const double s = strain(rounding, data, c, data.position[a] - data.position[b], rope);
+    const double s = strain(rounding, data, c, between_ends(data, c, singles), rope);
     sums.largest = std::max(sums.largest, s);
     squares[k % kLanes] = rounding.fused(s, s, squares[k % kLanes]);
   }
@@ -68,9 +72,7 @@ simd::StretchRange expected_range(const Rounding& rounding, const KernelData& da
   simd::StretchRange range;
   for (std::uint32_t c = data.first; c < data.last; ++c) {
     if (data.is_padding(c)) continue;
-    const std::uint32_t k = c - data.first;
-    const Vector d = data.position[singles ? data.a[c] : data.run.a + k] -
-                     data.position[singles ? data.b[c] : data.run.b + k];
+    const Vector d = between_ends(data, c, singles);
     const double ratio = data.inverse_square[c] * rounding.dot(d, d);
     range.most = std::max(range.most, ratio);
     if (!rope) range.least = std::min(range.least, ratio);
