@@ -3,7 +3,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <thread>
 
 namespace weft {
@@ -15,8 +14,9 @@ constexpr std::uint32_t kClosed = 0xffffffffu;
 constexpr int kGrace = 100;
 /// Pauses before a waiting thread gives its processor away: some tens of microseconds.
 constexpr int kPatience = 2000;
-/// A share that takes so much longer than the leader's own is on a thread without a processor.
-constexpr std::chrono::milliseconds kLost{1};
+/// Ticks of the processor's clock, about a millisecond. A share that takes so much longer than twice
+/// the leader's own is on a thread without a processor.
+constexpr std::uint64_t kLost = 3'000'000;
 
 std::uint64_t call_of(std::uint64_t epoch, std::uint32_t members) { return epoch << 32 | members; }
 std::uint64_t epoch_of(std::uint64_t call) { return call >> 32; }
@@ -32,13 +32,10 @@ bool spin_until(int most, Ready&& ready) {
   return ready();
 }
 
-/// Waits until ready() holds. Returns whether it took less than kLost.
 template <class Ready>
-bool wait_until(Ready&& ready) {
-  if (spin_until(kPatience, ready)) return true;
-  const auto start = std::chrono::steady_clock::now();
+void wait_until(Ready&& ready) {
+  if (spin_until(kPatience, ready)) return;
   while (!ready()) std::this_thread::yield();
-  return std::chrono::steady_clock::now() - start < kLost;
 }
 
 }  // namespace
@@ -78,19 +75,21 @@ void Team::run(const Job& job) {
   if (members == 1 || job.count < 2) return job.work(job.context, 0, job.count);
   m.call.job = job;
   m.call.word.store(call_of(++m.epoch, members), std::memory_order_release);
+  const std::uint64_t start = __builtin_ia32_rdtsc();
   m.do_share(m.epoch, 0, members);
-  for (std::uint32_t share = 1; share < members; ++share) {
-    if (!finish_share(share, members)) alone_ = true;
-  }
+  const std::uint64_t own = __builtin_ia32_rdtsc() - start;
+  for (std::uint32_t share = 1; share < members; ++share) finish_share(share, members);
+  const std::uint64_t waited = __builtin_ia32_rdtsc() - start - own;
+  if (waited > own + kLost) alone_ = true;
 }
 
-/// Sees to it that the share of a member gets done. Returns whether that went smoothly.
-bool Team::finish_share(std::uint32_t share, std::uint32_t members) {
+/// Sees to it that the share of a member gets done.
+void Team::finish_share(std::uint32_t share, std::uint32_t members) {
   Meeting& m = *meeting_;
   const auto done = [&] { return m.shares[share].done.load(std::memory_order_acquire) == m.epoch; };
-  if (spin_until(kGrace, done)) return true;
+  if (spin_until(kGrace, done)) return;
   m.do_share(m.epoch, share, members);
-  return wait_until(done);
+  wait_until(done);
 }
 
 /// A member's life. Epoch and members are one word so that a thread cannot mistake one call for the

@@ -12,8 +12,8 @@
 ///
 /// Nobody is waited for who has not come: a task that the scheduler never starts, or starts late,
 /// is simply no member yet, and the leader does itself what a member has not begun after a while.
-/// If a share that was begun keeps it waiting for long, its thread has lost its processor: the
-/// leader goes on alone for the rest of the step. Who does a share is left to chance; results must
+/// If a share that was begun keeps it waiting for long, beside the time of its own, its thread has
+/// lost its processor: the leader goes on alone for the rest of the step. Who does a share is left to chance; results must
 /// not depend on it.
 #pragma once
 
@@ -60,7 +60,7 @@ class Team {
   };
 
   void run(const Job& job);
-  bool finish_share(std::uint32_t share, std::uint32_t members);
+  void finish_share(std::uint32_t share, std::uint32_t members);
 
   std::shared_ptr<Meeting> meeting_;
   int helpers_ = 0;
