@@ -35,7 +35,7 @@ Energy measure_energy(const Model& m, const kernels::Vectors& x, const kernels::
 
 namespace {
 
-constexpr double kMost = 1e150;  // 12 kMost^2, the largest squared distance, is finite
+using kernels::kMost;
 
 /// In columns, which become lanes: asked one number after the other this took a fifth of a step.
 bool all_finite(const kernels::AlignedVector<double>& v) {

@@ -1,7 +1,9 @@
 #include "engine/motion.h"
 
 #include <algorithm>
+#include <atomic>
 
+#include "engine/measure.h"
 #include "kernels/reference/integrate.h"
 
 namespace weft {
@@ -50,14 +52,17 @@ void predict(State& s, double h, Team& team) {
   });
 }
 
-void commit(State& s, double h, Team& team) {
+bool commit(State& s, double h, Team& team) {
   if (s.reference) {
-    return reference::commit(reference_motion(s), h, s.next_velocity.view());
+    reference::commit(reference_motion(s), h, s.next_velocity.view());
+    return all_finite(s.solved) && all_finite(s.next_velocity);
   }
   const simd::Motion motion = simd_motion(s);
+  std::atomic<bool> finite{true};
   for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
-    s.kernels->commit(motion, h, first, last);
+    if (!s.kernels->commit(motion, h, first, last)) finite.store(false, std::memory_order_relaxed);
   });
+  return finite;
 }
 
 kernels::Kicks measure_kicks(State& s, double h, Team& team) {

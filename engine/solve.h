@@ -23,8 +23,9 @@ struct Attempt {
 };
 
 /// made_do: the solver failed, and sweeps, or what it had reached by then, had to do. gave_up: and
-/// that was not wanted; there is no answer.
-enum class Ended : std::uint8_t { solved, made_do, gave_up };
+/// that was not wanted; there is no answer. lost: the answer is not finite.
+enum class Ended : std::uint8_t { solved, made_do, gave_up, lost };
+inline bool has_answer(Ended ended) { return ended <= Ended::made_do; }
 
 /// Moves solved until every constraint is within tolerance.
 Ended solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team);

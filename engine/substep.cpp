@@ -32,9 +32,12 @@ Ended run_stages(State& s, const Attempt& attempt, StepReport& report, Team& tea
   Ended ended = Ended::solved;
   timed(report, Stage::solve_positions, [&] { ended = solve_positions(s, attempt, report, team); });
   if (ended == Ended::gave_up) return ended;
-  timed(report, Stage::commit, [&] { commit(s, h, team); });
+  bool finite = true;
+  timed(report, Stage::commit, [&] { finite = commit(s, h, team); });
+  if (!finite) return Ended::lost;
   if (s.settings.velocity_correction) {
     timed(report, Stage::correct_velocities, [&] { correct_velocities(s, attempt, report, team); });
+    if (!all_finite(s.next_velocity)) return Ended::lost;
   }
   if (s.settings.iterations > 0 && report.status <= Status::iteration_limit) {
     report.status = Status::fixed_iterations;
@@ -56,7 +59,7 @@ Ended substep(State& s, const Attempt& attempt, StepReport& report, Team& team) 
   by_rattle.start = s.position.view();
   const Ended ended = run_stages(s, by_rattle, report, team);
   const bool good = report.status == Status::fixed_iterations ||
-                    (report.status == Status::converged && ended != Ended::gave_up &&
+                    (report.status == Status::converged && has_answer(ended) &&
                      keeps_energy(measure_kicks(s, attempt.h, team)));
   if (good) {
     worsen(report, before);

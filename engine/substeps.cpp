@@ -13,8 +13,6 @@
 namespace weft {
 namespace {
 
-bool is_finite(const State& s) { return all_finite(s.solved) && all_finite(s.next_velocity); }
-
 /// With a fixed number of iterations nobody asks.
 bool violates_constraints(State& s, Team& team) {
   return s.settings.iterations == 0 &&
@@ -130,8 +128,8 @@ class Substeps {
                           .care = std::sqrt(s_.trouble.care())};
     const Ended ended = substep(s_, attempt, report_, team_);
     left_ -= report_.iterations - iterations;
-    const bool finite = ended != Ended::gave_up && is_finite(s_);
-    if (may_leave && !finite) {
+    const bool answered = has_answer(ended);
+    if (may_leave && !answered) {
       report_.status = before;
       gave_up_ = true;
       if (parts_ == 0 && !(may_halve && begins_well(h))) return Outcome::hopeless;
@@ -139,7 +137,7 @@ class Substeps {
       const Outcome first = advance(h / 2, halvings + 1, false);
       return first == Outcome::done ? advance(h / 2, halvings + 1, last) : first;
     }
-    if (!finite) {
+    if (!answered) {
       explain(s_, h, report_, team_);
       return Outcome::refused;
     }

@@ -9,6 +9,8 @@
 namespace weft::kernels {
 
 inline constexpr std::size_t kAlignment = 64;  // a cache line, and the widest vector register
+/// Components beyond are as good as infinite: 12 kMost^2, the largest squared distance, is not.
+inline constexpr double kMost = 1e150;
 
 template <class T>
 struct AlignedAllocator {

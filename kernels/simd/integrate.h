@@ -35,15 +35,25 @@ void predict(const Motion& m, double h, std::size_t first, std::size_t last) {
   }
 }
 
-void commit(const Motion& m, double h, std::size_t first, std::size_t last) {
+[[gnu::always_inline]] inline DoubleMask within_range(const DoubleVector& d) {
+  const Doubles most(kernels::kMost);
+  return xsimd::abs(d.x) <= most && xsimd::abs(d.y) <= most && xsimd::abs(d.z) <= most;
+}
+
+bool commit(const Motion& m, double h, std::size_t first, std::size_t last) {
   const Doubles step(h), rate(1 / h);
+  DoubleMask good(true);
   for (std::size_t i = first; i < last; i += kDoubles) {
     const DoubleVector v = load(m.velocity, i), a = acceleration(m, i);
-    const DoubleVector d = load(m.solved, i) - predicted(load(m.position, i), v, a, h);
-    store(m.next_velocity, i,
-          {fused(rate, d.x, fused(step, a.x, v.x)), fused(rate, d.y, fused(step, a.y, v.y)),
-           fused(rate, d.z, fused(step, a.z, v.z))});
+    const DoubleVector x = load(m.solved, i);
+    const DoubleVector d = x - predicted(load(m.position, i), v, a, h);
+    const DoubleVector next{fused(rate, d.x, fused(step, a.x, v.x)),
+                            fused(rate, d.y, fused(step, a.y, v.y)),
+                            fused(rate, d.z, fused(step, a.z, v.z))};
+    store(m.next_velocity, i, next);
+    good = good && within_range(x) && within_range(next);
   }
+  return xsimd::all(good);
 }
 
 struct KickColumns {

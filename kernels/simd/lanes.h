@@ -36,6 +36,7 @@ using Arch = xsimd::sse2;
 using Floats = xsimd::batch<float, Arch>;
 using Doubles = xsimd::batch<double, Arch>;
 using FloatMask = Floats::batch_bool_type;
+using DoubleMask = Doubles::batch_bool_type;
 
 constexpr std::uint32_t kFloats = Floats::size;
 constexpr std::uint32_t kDoubles = Doubles::size;
@@ -135,6 +136,38 @@ struct DoubleVector {
   _mm_storeu_ps(p, _mm256_cvtpd_ps(d));
 #else
   _mm_storel_pi(reinterpret_cast<__m64*>(p), _mm_cvtpd_ps(d));
+#endif
+}
+
+/// Rounds 2 kDoubles doubles to float.
+[[gnu::always_inline]] inline Floats narrow(Doubles first, Doubles second) {
+#if defined(__AVX512F__)
+  return Floats(_mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(first)),
+                                   _mm512_cvtpd_ps(second), 1));
+#elif defined(__AVX2__)
+  return Floats(_mm256_set_m128(_mm256_cvtpd_ps(second), _mm256_cvtpd_ps(first)));
+#else
+  return Floats(_mm_movelh_ps(_mm_cvtpd_ps(first), _mm_cvtpd_ps(second)));
+#endif
+}
+
+/// Widens the first half of the lanes, and the second.
+[[gnu::always_inline]] inline Doubles widen_first(Floats f) {
+#if defined(__AVX512F__)
+  return Doubles(_mm512_cvtps_pd(_mm512_castps512_ps256(f)));
+#elif defined(__AVX2__)
+  return Doubles(_mm256_cvtps_pd(_mm256_castps256_ps128(f)));
+#else
+  return Doubles(_mm_cvtps_pd(f));
+#endif
+}
+[[gnu::always_inline]] inline Doubles widen_second(Floats f) {
+#if defined(__AVX512F__)
+  return Doubles(_mm512_cvtps_pd(_mm512_extractf32x8_ps(f, 1)));
+#elif defined(__AVX2__)
+  return Doubles(_mm256_cvtps_pd(_mm256_extractf128_ps(f, 1)));
+#else
+  return Doubles(_mm_cvtps_pd(_mm_movehl_ps(f, f)));
 #endif
 }
 

@@ -2,33 +2,70 @@
 /// lost.
 #pragma once
 
-#include "kernels/simd/lanes.h"
+#include "kernels/simd/quads.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
+/// kFloats slots in a row.
+struct SlotsInRow {
+  std::uint32_t slot[kFloats];
+  explicit SlotsInRow() {
+    for (std::uint32_t k = 0; k < kFloats; ++k) slot[k] = k;
+  }
+};
+
+/// A component of kFloats slots, in double.
+struct Component {
+  Doubles first, second;
+};
+[[gnu::always_inline]] inline Component load_component(const double* x) {
+  return {load(x), load(x + kDoubles)};
+}
+[[gnu::always_inline]] inline Component widen(Floats f) {
+  return {widen_first(f), widen_second(f)};
+}
+[[gnu::always_inline]] inline Component operator-(const Component& a, const Component& b) {
+  return {a.first - b.first, a.second - b.second};
+}
+[[gnu::always_inline]] inline Floats narrow(const Component& c) {
+  return narrow(c.first, c.second);
+}
+
 void split_positions(kernels::VectorsView x, Displacements base, Displacements u, std::size_t first,
                      std::size_t last) {
-  for (std::size_t i = first; i < last; ++i) {
-    const double at[3] = {x.x[i], x.y[i], x.z[i]};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto rounded = static_cast<float>(at[axis]);
-      base.x[4 * i + axis] = rounded;
-      u.x[4 * i + axis] = static_cast<float>(at[axis] - static_cast<double>(rounded));
-    }
+  const SlotsInRow row;
+  QuadLanes at;
+  for (std::size_t i = first; i < last; i += kFloats) {
+    const Component px = load_component(x.x + i), py = load_component(x.y + i);
+    const Component pz = load_component(x.z + i);
+    const FloatVector rounded{narrow(px), narrow(py), narrow(pz)};
+    at.put({base.x + 4 * i, 1, 4}, row.slot, rounded);
+    at.put({u.x + 4 * i, 1, 4}, row.slot,
+           {narrow(px - widen(rounded.x)), narrow(py - widen(rounded.y)),
+            narrow(pz - widen(rounded.z))});
   }
 }
 
 /// x keeps the bits that two floats cannot hold, and all of them where u has not changed.
+[[gnu::always_inline]] inline void move(double* x, Floats base, Floats u) {
+  const Component before = load_component(x), after = widen(u);
+  const Component known = widen(narrow(before - widen(base)));
+  (before.first + (after.first - known.first)).store_unaligned(x);
+  (before.second + (after.second - known.second)).store_unaligned(x + kDoubles);
+}
+
 void join_positions(kernels::VectorsView x, Displacements base, Displacements u, std::size_t first,
                     std::size_t last) {
-  for (std::size_t i = first; i < last; ++i) {
-    double* const at[3] = {x.x + i, x.y + i, x.z + i};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto before = static_cast<float>(*at[axis] - static_cast<double>(base.x[4 * i + axis]));
-      *at[axis] += static_cast<double>(u.x[4 * i + axis]) - static_cast<double>(before);
-    }
+  const SlotsInRow row;
+  QuadLanes at;
+  for (std::size_t i = first; i < last; i += kFloats) {
+    const FloatVector from = at.get({base.x + 4 * i, 1, 4}, row.slot);
+    const FloatVector by = at.get({u.x + 4 * i, 1, 4}, row.slot);
+    move(x.x + i, from.x, by.x);
+    move(x.y + i, from.y, by.y);
+    move(x.z + i, from.z, by.z);
   }
 }
 

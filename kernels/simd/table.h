@@ -181,8 +181,9 @@ struct StretchRange {
 struct Table {
   /// solved = p + h v + h^2/2 a (paper eq. 2).
   void (*predict)(const Motion&, double h, std::size_t first, std::size_t last);
-  /// next_velocity = v + h a + (solved - predicted) / h, predicted formed as in predict.
-  void (*commit)(const Motion&, double h, std::size_t first, std::size_t last);
+  /// next_velocity = v + h a + (solved - predicted) / h, predicted formed as in predict. Returns
+  /// whether solved and next_velocity are finite.
+  bool (*commit)(const Motion&, double h, std::size_t first, std::size_t last);
   /// Once velocities are corrected: of a range, in an order that depends on nothing but the range.
   kernels::Kicks (*measure_kicks)(const Motion&, double h, std::size_t first, std::size_t last);
   /// x += u, u = 0.
