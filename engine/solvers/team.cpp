@@ -17,10 +17,15 @@ constexpr int kPatience = 2000;
 /// Ticks of the processor's clock, about a millisecond. A share that takes so much longer than twice
 /// the leader's own is on a thread without a processor.
 constexpr std::uint64_t kLost = 3'000'000;
+/// The leader then goes on alone for so many times what it waited, so that lost processors cost no
+/// more than this part of the time.
+constexpr std::uint64_t kAlone = 8;
 
 std::uint64_t call_of(std::uint64_t epoch, std::uint32_t members) { return epoch << 32 | members; }
 std::uint64_t epoch_of(std::uint64_t call) { return call >> 32; }
 std::uint32_t members_of(std::uint64_t call) { return static_cast<std::uint32_t>(call); }
+
+std::uint64_t ticks() { return __builtin_ia32_rdtsc(); }
 
 /// Spins until ready() holds, at most so many times. Returns whether it does.
 template <class Ready>
@@ -49,9 +54,8 @@ std::shared_ptr<Team::Meeting> Team::make_meeting() { return std::make_shared<Me
 // Nothing waits for a task that has not started; it only counts as asked for.
 Team::Team(int threads, std::shared_ptr<Meeting> meeting)
     : meeting_(std::move(meeting)),
-      helpers_(std::min({threads, kMostMembers, tbb::this_task_arena::max_concurrency()}) - 1),
-      alone_(helpers_ <= 0) {
-  if (alone_) return;
+      helpers_(std::min({threads, kMostMembers, tbb::this_task_arena::max_concurrency()}) - 1) {
+  if (helpers_ <= 0) return;
   meeting_->left.store(0, std::memory_order_relaxed);
   meeting_->door.store(0, std::memory_order_release);
   while (meeting_->asked.load(std::memory_order_relaxed) < helpers_) {
@@ -69,18 +73,26 @@ Team::~Team() {
   wait_until([&] { return m.left.load(std::memory_order_acquire) == came; });
 }
 
+/// How many share the next loop.
+std::uint32_t Team::members() {
+  if (helpers_ <= 0) return 1;
+  if (alone_until_ > 0 && ticks() < alone_until_) return 1;
+  alone_until_ = 0;
+  return 1 + meeting_->door.load(std::memory_order_relaxed);
+}
+
 void Team::run(const Job& job) {
   Meeting& m = *meeting_;
-  const std::uint32_t members = 1 + (alone_ ? 0 : m.door.load(std::memory_order_relaxed));
+  const std::uint32_t members = this->members();
   if (members == 1 || job.count < 2) return job.work(job.context, 0, job.count);
   m.call.job = job;
   m.call.word.store(call_of(++m.epoch, members), std::memory_order_release);
-  const std::uint64_t start = __builtin_ia32_rdtsc();
+  const std::uint64_t start = ticks();
   m.do_share(m.epoch, 0, members);
-  const std::uint64_t own = __builtin_ia32_rdtsc() - start;
+  const std::uint64_t own = ticks() - start;
   for (std::uint32_t share = 1; share < members; ++share) finish_share(share, members);
-  const std::uint64_t waited = __builtin_ia32_rdtsc() - start - own;
-  if (waited > own + kLost) alone_ = true;
+  const std::uint64_t end = ticks(), waited = end - start - own;
+  if (waited > own + kLost) alone_until_ = end + kAlone * waited;
 }
 
 /// Sees to it that the share of a member gets done.

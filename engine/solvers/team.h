@@ -13,7 +13,7 @@
 /// Nobody is waited for who has not come: a task that the scheduler never starts, or starts late,
 /// is simply no member yet, and the leader does itself what a member has not begun after a while.
 /// If a share that was begun keeps it waiting for long, beside the time of its own, its thread has
-/// lost its processor: the leader goes on alone for the rest of the step. Who does a share is left to chance; results must
+/// lost its processor: the leader goes on alone for a while. Who does a share is left to chance; results must
 /// not depend on it.
 #pragma once
 
@@ -60,11 +60,12 @@ class Team {
   };
 
   void run(const Job& job);
+  std::uint32_t members();
   void finish_share(std::uint32_t share, std::uint32_t members);
 
   std::shared_ptr<Meeting> meeting_;
   int helpers_ = 0;
-  bool alone_ = true;
+  std::uint64_t alone_until_ = 0;  // on the processor's clock; 0: not alone
 };
 
 /// Where leader and members meet. It outlives the team, since a task may start when the team is

@@ -81,15 +81,13 @@ class Builder {
   /// Lanes first ... last - 1 of the chains make a block; the first is the longest.
   void add_block(std::span<const Chain> chains) {
     const std::size_t rows = chains.front().particles.size();
-    const auto first = static_cast<std::uint32_t>(layout_.rows);
+    const std::size_t first = layout_.rows.size(), last = first + rows;
     const std::size_t padding = model_.slots() + kLanes * layout_.blocks.size();
-    layout_.rows += rows;
+    layout_.rows.resize(last);
     layout_.longest = std::max(layout_.longest, rows);
     layout_.slots = padding + kLanes;
-    layout_.blocks.push_back({first, static_cast<std::uint32_t>(layout_.rows)});
-    layout_.rest.resize(layout_.rows * kLanes);
-    layout_.inverse_mass.resize(layout_.rows * kLanes);
-    for (std::size_t i = first * kLanes; i < layout_.rows * kLanes; ++i) {
+    layout_.blocks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)});
+    for (std::size_t i = first * kLanes; i < last * kLanes; ++i) {
       layout_.slot.push_back(static_cast<std::uint32_t>(padding + i % kLanes));
     }
     for (std::size_t lane = 0; lane < chains.size(); ++lane) fill(chains[lane], first, lane);
@@ -98,12 +96,12 @@ class Builder {
  private:
   void fill(const Chain& chain, std::size_t first, std::size_t lane) {
     for (std::size_t k = 0; k < chain.particles.size(); ++k) {
-      const std::size_t at = (first + k) * kLanes + lane;
       const std::uint32_t slot = chain.particles[k];
-      layout_.slot[at] = slot;
-      layout_.inverse_mass[at] = static_cast<float>(model_.inverse_mass[slot] / heaviest_);
+      layout_.slot[(first + k) * kLanes + lane] = slot;
+      simd::YarnRow& row = layout_.rows[first + k];
+      row.inverse_mass[lane] = static_cast<float>(model_.inverse_mass[slot] / heaviest_);
       if (k == chain.links.size()) continue;
-      layout_.rest[at] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
+      row.rest[lane] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
     }
   }
 
@@ -152,8 +150,8 @@ YarnLayout make_yarn_layout(const Model& model) {
 }
 
 std::size_t YarnLayout::bytes() const {
-  return bytes_of(blocks) + bytes_of(family_begin) + bytes_of(slot) + bytes_of(rest) +
-         bytes_of(inverse_mass) + bytes_of(beyond_first);
+  return bytes_of(blocks) + bytes_of(family_begin) + bytes_of(slot) + bytes_of(rows) +
+         bytes_of(beyond_first);
 }
 
 }  // namespace weft

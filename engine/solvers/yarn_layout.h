@@ -24,14 +24,14 @@ struct YarnLayout {
   std::vector<simd::YarnBlock> blocks;
   std::vector<std::uint32_t> family_begin;     // blocks of family f: [f], ... [f + 1] - 1
   std::vector<std::uint32_t> slot;             // per row and lane
-  kernels::AlignedVector<float> rest;          // per row and lane; 0: no constraint
-  kernels::AlignedVector<float> inverse_mass;  // per row and lane, over the model's largest
+  kernels::AlignedVector<simd::YarnRow> rows;  // inverse masses over the model's largest
   std::vector<std::uint32_t> beyond_first;     // slots that the first family does not hold
 
-  std::size_t rows = 0;
   std::size_t longest = 0;  // rows of the longest block
   std::size_t slots = 0;    // of the model, then kLanes of padding for each block
 
+  /// Whether quads, 16 bytes a slot, are too many for the caches.
+  bool from_memory() const { return slots > (std::size_t{4} << 20) / 16; }
   std::size_t families() const { return family_begin.size() - 1; }
   std::size_t bytes() const;
 };

@@ -60,24 +60,26 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       layout_(model.yarns()),
       settings_(settings),
       table_(table),
-      rows_(layout_.rows),
       base_(4 * layout_.slots),
       u_(4 * layout_.slots),
       products_(layout_.blocks.size()),
       others_(model, settings) {
-  for (std::size_t k = 0; k < layout_.rows; ++k) {
-    std::copy_n(&layout_.rest[k * kLanes], kLanes, rows_[k].rest);
-    std::copy_n(&layout_.inverse_mass[k * kLanes], kLanes, rows_[k].inverse_mass);
-  }
+  if (!layout_.from_memory()) base_of_row_.resize(layout_.rows.size());
   const auto wanted =
       static_cast<std::size_t>(settings.threads > 0 ? settings.threads : kMostShares);
-  if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows);
+  if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows.size());
   scratch_.resize(layout_.longest * std::min(wanted, kMostShares));
 }
 
 simd::Yarns YarnSolver::yarns() {
-  return {rows_.data(), system_.data(), layout_.slot.data(), from_start_ ? start_.data() : nullptr,
-          velocities_};
+  return {layout_.rows.data(),
+          base_of_row_.data(),
+          system_.data(),
+          layout_.slot.data(),
+          from_start_ ? start_.data() : nullptr,
+          velocities_,
+          moved_ || layout_.from_memory() ? base_.data() : nullptr,
+          layout_.from_memory()};
 }
 
 /// work(yarns, block's number, scratch); shares of blocks side by side.
@@ -110,18 +112,11 @@ void YarnSolver::split(kernels::VectorsView x, Team& team) {
   for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
     table_.split_positions(x, quads(base_), quads(u_), first, last);
   });
-}
-
-void YarnSolver::place(kernels::VectorsView x, Team& team) {
-  split(x, team);
-  for_each_block(0, layout_.blocks.size(), team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-                   table_.yarn_place(yarns, layout_.blocks[i], quads(base_));
-                 });
+  moved_ = true;
 }
 
 void YarnSolver::keep_start(kernels::VectorsView start, Team& team) {
-  place(start, team);
+  split(start, team);
   from_start_ = true;
   for_each_block(0, layout_.blocks.size(), team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
@@ -140,6 +135,7 @@ void YarnSolver::sweep(Team& team, kernels::LoopResult& result) {
   for_each_family(team, [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
     table_.yarn_sweep(yarns, layout_.blocks[i], quads(u_), scratch);
   });
+  moved_ = false;
   others_.relax(base_.data(), u_.data());
   count(1, result);
 }
@@ -157,6 +153,7 @@ void YarnSolver::linearise(Team& team) {
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
                    table_.yarn_linearise(yarns, layout_.blocks[i], quads(u_));
                  });
+  moved_ = false;
   others_.linearise(base_.data(), u_.data());
 }
 
@@ -165,6 +162,7 @@ void YarnSolver::linearise_velocities(Team& team) {
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
                    table_.yarn_linearise(yarns, layout_.blocks[i], quads(u_));
                  });
+  moved_ = false;
   others_.linearise_velocities(base_.data(), u_.data());
 }
 
@@ -253,7 +251,7 @@ void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::Lo
 
 /// Room for the linear system, from when it is first wanted.
 void YarnSolver::make_system() {
-  system_.resize(layout_.rows);
+  system_.resize(layout_.rows.size());
   t_.resize(u_.size());
 }
 
@@ -268,7 +266,7 @@ kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kerne
   velocities_ = true;
   others_.start(contacts, true);
   others_.use_present();
-  place(x, team);
+  split(x, team);
   linearise_velocities(team);
   split(v, team);
   const double tolerated = kWithin * settings_.velocity_tolerance;
@@ -319,7 +317,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
   others_.use_present();
   from_start_ = false;
   if (start.x != nullptr) keep_start(start, team);
-  place(x, team);
+  split(x, team);
   if (settings_.iterations > 0) {
     while (result.iterations < settings_.iterations) sweep(team, result);
     join(x, team);
@@ -348,7 +346,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
       return result;
     }
     if (strain < kSmall && strain > kSlow * before) {
-      place(x, team);
+      split(x, team);
       make_system();
       newton(kWithin * goal, std::min(kMostIterations, max_iterations - result.iterations), team,
              result);
@@ -359,7 +357,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
 }
 
 std::size_t YarnSolver::bytes() const {
-  return bytes_of(rows_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
+  return bytes_of(base_of_row_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
          bytes_of(base_) + bytes_of(u_) + bytes_of(t_) + bytes_of(products_) + others_.bytes();
 }
 

@@ -57,7 +57,6 @@ class YarnSolver {
   };
   simd::Yarns yarns();
   /// Starts at the positions x.
-  void place(kernels::VectorsView x, Team& team);
   void split(kernels::VectorsView x, Team& team);
   void keep_start(kernels::VectorsView start, Team& team);
   void join(kernels::VectorsView x, Team& team);
@@ -88,12 +87,13 @@ class YarnSolver {
   const simd::Table& table_;
 
   bool from_start_ = false, velocities_ = false;  // what is being solved
-  kernels::AlignedVector<simd::YarnRow> rows_;
-  kernels::AlignedVector<simd::LaneVectors> start_;     // scheme rattle only
-  kernels::AlignedVector<simd::YarnSystemRow> system_;  // from the first Newton step on
-  kernels::AlignedVector<simd::YarnScratch> scratch_;   // for each thread
-  kernels::AlignedVector<float> base_, u_, t_;          // quads
-  std::vector<simd::YarnProducts> products_;            // per block
+  bool moved_ = false;                            // the rows do not remember the present base
+  kernels::AlignedVector<simd::LaneVectors> base_of_row_;  // unless quads come from memory
+  kernels::AlignedVector<simd::LaneVectors> start_;        // scheme rattle only
+  kernels::AlignedVector<simd::YarnSystemRow> system_;     // from the first Newton step on
+  kernels::AlignedVector<simd::YarnScratch> scratch_;      // for each thread
+  kernels::AlignedVector<float> base_, u_, t_;             // quads
+  std::vector<simd::YarnProducts> products_;               // per block
   YarnOthers others_;
 };
 

@@ -44,7 +44,6 @@ constexpr Table make_table() {
           .apply_sums_singles = apply_sums_singles,
           .split_positions = split_positions,
           .join_positions = join_positions,
-          .yarn_place = yarn_place,
           .yarn_keep_start = yarn_keep_start,
           .yarn_sweep = yarn_sweep,
           .yarn_linearise = yarn_linearise,

@@ -91,8 +91,11 @@ namespace {
 /// Displacements of scattered slots, in quads, brought side by side.
 struct QuadLanes {
   [[gnu::always_inline]] FloatVector get(const Displacements& u, const std::uint32_t* slot) {
-    const Floats q0 = load_quads(u.x, slot), q1 = load_quads(u.x, slot + 1);
-    const Floats q2 = load_quads(u.x, slot + 2), q3 = load_quads(u.x, slot + 3);
+    return get(u.x, slot);
+  }
+  [[gnu::always_inline]] FloatVector get(const float* u, const std::uint32_t* slot) {
+    const Floats q0 = load_quads(u, slot), q1 = load_quads(u, slot + 1);
+    const Floats q2 = load_quads(u, slot + 2), q3 = load_quads(u, slot + 3);
     const Floats xy01 = unpack_low(q0, q1), xy23 = unpack_low(q2, q3);
     const Floats z01 = unpack_high(q0, q1), z23 = unpack_high(q2, q3);
     return {low_pairs(xy01, xy23), high_pairs(xy01, xy23), low_pairs(z01, z23)};

@@ -128,7 +128,6 @@ struct alignas(64) LaneVectors {
 /// Row k of a block of yarns (yarns.h): particle k of kLanes yarns, and what joins it to particle
 /// k + 1; rest length 0: nothing does.
 struct alignas(64) YarnRow {
-  LaneVectors base;
   float rest[kernels::kLanes];
   float inverse_mass[kernels::kLanes];
 };
@@ -152,11 +151,14 @@ struct YarnBlock {
 };
 
 struct Yarns {
-  YarnRow* rows = nullptr;
+  const YarnRow* rows = nullptr;
+  LaneVectors* base_of_row = nullptr;  // what rows remember of base
   YarnSystemRow* system = nullptr;
   const std::uint32_t* slot = nullptr;  // per row and lane; padding: slots of no particle
   LaneVectors* start = nullptr;         // per row: scheme rattle's directions; null: present ones
   bool velocities = false;              // that is what the system's errors are of
+  const float* base = nullptr;          // quads; null: as the rows remember it
+  bool from_memory = false;             // quads do not fit the caches: base is not remembered
 };
 
 struct YarnProducts {
@@ -241,8 +243,6 @@ struct Table {
                           std::size_t first, std::size_t last);
   void (*join_positions)(kernels::VectorsView x, Displacements base, Displacements u,
                          std::size_t first, std::size_t last);
-  /// Fetches the base of a block's positions.
-  void (*yarn_place)(const Yarns&, const YarnBlock&, Displacements base);
   /// start = the directions at base + u.
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
   /// Solves the yarns of a block; returns the largest |error| / length that it found. scratch: as

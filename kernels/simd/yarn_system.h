@@ -32,14 +32,14 @@ namespace {
   return total;
 }
 
-template <Along kAlong>
+template <Along kAlong, Base kBase>
 [[gnu::always_inline]] inline float linearise_yarns(const Yarns& y, const YarnBlock& block,
                                                     Displacements u) {
   float most = 0;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     Floats worst(0.f);
     const Floats zero(0.f);
-    go_down<kAlong>(
+    go_down<kAlong, kBase>(
         y, block, lane, u,
         [&](std::uint32_t k, const FloatVector&, const YarnLink& link, const Factors& f) {
           YarnSystemRow& row = y.system[k];
@@ -59,8 +59,10 @@ template <Along kAlong>
 
 /// Directions, factors and errors at base + u; lambda = p = q = 0.
 float yarn_linearise(const Yarns& y, const YarnBlock& block, Displacements u) {
-  return y.start == nullptr ? linearise_yarns<Along::present>(y, block, u)
-                            : linearise_yarns<Along::frozen>(y, block, u);
+  return with_base(y, [&](auto base) {
+    return y.start == nullptr ? linearise_yarns<Along::present, base>(y, block, u)
+                              : linearise_yarns<Along::frozen, base>(y, block, u);
+  });
 }
 
 /// residual = J (base + u), of velocities; lambda = p = q = 0.

@@ -30,6 +30,9 @@
 /// took 1.4 times as long on AVX2 for want of registers.
 #pragma once
 
+#include <algorithm>
+#include <type_traits>
+
 #include "kernels/simd/quads.h"
 
 namespace weft::simd {
@@ -142,13 +145,25 @@ struct Elimination {
   return most;
 }
 
-void yarn_place(const Yarns& y, const YarnBlock& block, Displacements base) {
-  QuadLanes at;
-  for (std::uint32_t k = block.first; k < block.last; ++k) {
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      store(y.rows[k].base, lane, at.get(base, slots(y, k, lane)));
-    }
-  }
+/// Where the base of a row's particles is. rows: they remember it. quads: it is fetched, and then
+/// remembered, which saves transposes. memory: it is fetched each time, which saves traffic.
+enum class Base : std::uint8_t { rows, quads, memory };
+
+template <Base kBase>
+[[gnu::always_inline]] inline FloatVector base_of(const Yarns& y, std::uint32_t row,
+                                                  std::uint32_t lane) {
+  if constexpr (kBase == Base::rows) return load(y.base_of_row[row], lane);
+  const FloatVector base = QuadLanes().get(y.base, slots(y, row, lane));
+  if constexpr (kBase == Base::quads) store(y.base_of_row[row], lane, base);
+  return base;
+}
+
+/// work(where the base is)
+template <class Work>
+[[gnu::always_inline]] inline float with_base(const Yarns& y, Work&& work) {
+  if (y.base == nullptr) return work(std::integral_constant<Base, Base::rows>());
+  if (y.from_memory) return work(std::integral_constant<Base, Base::memory>());
+  return work(std::integral_constant<Base, Base::quads>());
 }
 
 /// Directions for scheme rattle, at base + u.
@@ -156,30 +171,46 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
   QuadLanes at;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     FloatVector here = at.get(u, slots(y, block.first, lane));
+    FloatVector base = base_of<Base::memory>(y, block.first, lane);
     for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
       const FloatVector next = at.get(u, slots(y, k + 1, lane));
-      const FloatVector d =
-          (load(y.rows[k].base, lane) - load(y.rows[k + 1].base, lane)) + (here - next);
+      const FloatVector base_next = base_of<Base::memory>(y, k + 1, lane);
+      const FloatVector d = (base - base_next) + (here - next);
       store(y.start[k], lane, make_link(d, load(y.rows[k].rest + lane)).n);
       here = next;
+      base = base_next;
     }
     store(y.start[block.last - 1], lane, no_vector());
   }
 }
 
+/// Of a yarn that runs across memory no prefetcher sees where it goes.
+[[gnu::always_inline]] inline void fetch_ahead(const Yarns& y, const YarnBlock& block,
+                                               std::uint32_t row, std::uint32_t lane,
+                                               const Displacements& u) {
+  constexpr std::uint32_t kAhead = 8;
+  const std::uint32_t* slot = slots(y, std::min(row + kAhead, block.last - 1), lane);
+  for (std::uint32_t k = 0; k < kFloats; ++k) {
+    const std::size_t quad = 4 * std::size_t{slot[k]};
+    __builtin_prefetch(u.x + quad, 1);
+    __builtin_prefetch(y.base + quad);
+  }
+}
+
 /// Down the yarns: take(row, u of its particle, link, factors) for each.
-template <Along kAlong, class Take>
+template <Along kAlong, Base kBase, class Take>
 [[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block,
                                            std::uint32_t lane, Displacements u, Take&& take) {
   QuadLanes at;
   Elimination<kAlong> elimination;
   FloatVector here = at.get(u, slots(y, block.first, lane));
-  FloatVector base = load(y.rows[block.first].base, lane);
+  FloatVector base = base_of<kBase>(y, block.first, lane);
   Floats w = load(y.rows[block.first].inverse_mass + lane);
   for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
     const YarnRow& next = y.rows[k + 1];
+    if constexpr (kBase == Base::memory) fetch_ahead(y, block, k, lane, u);
     const FloatVector u_next = at.get(u, slots(y, k + 1, lane));
-    const FloatVector base_next = load(next.base, lane);
+    const FloatVector base_next = base_of<kBase>(y, k + 1, lane);
     const Floats w_next = load(next.inverse_mass + lane);
     YarnLink link = make_link((base - base_next) + (here - u_next), load(y.rows[k].rest + lane));
     direct<kAlong>(link, y.start, k, lane);
@@ -212,13 +243,13 @@ template <Along kAlong, class Take>
   at.put(u, slots(y, block.first, lane), fused(w, no_vector() - below, load(scratch->u, lane)));
 }
 
-template <Along kAlong>
+template <Along kAlong, Base kBase>
 [[gnu::always_inline]] inline float sweep_yarns(const Yarns& y, const YarnBlock& block,
                                                 Displacements u, YarnScratch* scratch) {
   float most = 0;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     Floats b(0.f), worst(0.f);
-    go_down<kAlong>(
+    go_down<kAlong, kBase>(
         y, block, lane, u,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f) {
           YarnScratch& row = scratch[k - block.first];
@@ -236,8 +267,10 @@ template <Along kAlong>
 }
 
 float yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
-  return y.start == nullptr ? sweep_yarns<Along::present>(y, block, u, scratch)
-                            : sweep_yarns<Along::start>(y, block, u, scratch);
+  return with_base(y, [&](auto base) {
+    return y.start == nullptr ? sweep_yarns<Along::present, base>(y, block, u, scratch)
+                              : sweep_yarns<Along::start, base>(y, block, u, scratch);
+  });
 }
 
 }  // namespace

@@ -54,10 +54,10 @@ void check_layout(const Model& model) {
           const std::size_t at = k * kLanes + lane;
           const std::uint32_t slot = layout.slot[at];
           if (slot >= model.slots())
-            CHECK(layout.rest[at] == 0);
+            CHECK(layout.rows[k].rest[lane] == 0);
           else
             CHECK(in_family.insert(slot).second);
-          if (layout.rest[at] > 0) found.insert(pair(slot, layout.slot[at + kLanes]));
+          if (layout.rows[k].rest[lane] > 0) found.insert(pair(slot, layout.slot[at + kLanes]));
         }
       }
     }

@@ -22,12 +22,15 @@ struct Block {
   std::vector<std::uint32_t> slot;
   kernels::AlignedVector<simd::YarnRow> rows;
   kernels::AlignedVector<simd::YarnSystemRow> system;
+  kernels::AlignedVector<simd::LaneVectors> base_of_row;
   kernels::AlignedVector<simd::YarnScratch> scratch;
   kernels::AlignedVector<simd::LaneVectors> directions;  // at the start of a rattle step
   kernels::AlignedVector<float> base, u, t;
   kernels::Vectors x;
+  bool placed = false;  // the rows have the base
+  bool from_memory = false;
 
-  Block() : rows(kRows), system(kRows), scratch(kRows) {
+  Block() : rows(kRows), system(kRows), base_of_row(kRows), scratch(kRows) {
     const std::size_t slots = kRows * kLanes + kLanes;
     base.resize(4 * slots);
     u.resize(4 * slots);
@@ -60,20 +63,21 @@ struct Block {
     }
   }
   simd::Yarns yarns() {
-    return {rows.data(), system.data(), slot.data(),
-            directions.empty() ? nullptr : directions.data()};
+    simd::Yarns yarns{rows.data(), base_of_row.data(), system.data(), slot.data()};
+    if (!directions.empty()) yarns.start = directions.data();
+    if (!placed) yarns.base = base.data();
+    yarns.from_memory = from_memory;
+    return yarns;
   }
   simd::YarnBlock block() const { return {0, kRows}; }
   simd::Displacements quads(kernels::AlignedVector<float>& v) { return {v.data(), 1, 4}; }
   void start(const simd::Table& table) {
     table.split_positions(x.view(), quads(base), quads(u), 0, x.size());
-    table.yarn_place(yarns(), block(), quads(base));
   }
   /// Impulses act along the directions at q from now on.
   void keep_start(const simd::Table& table, const kernels::Vectors& q) {
     directions.resize(kRows);
     table.split_positions(kernels::Vectors(q).view(), quads(base), quads(u), 0, q.size());
-    table.yarn_place(yarns(), block(), quads(base));
     table.yarn_keep_start(yarns(), block(), quads(u));
   }
   kernels::Vectors end(const simd::Table& table) { return end(table, x); }
@@ -259,6 +263,24 @@ TEST_CASE(
         CHECK(together.system[k].q[lane] == apart.system[k].q[lane]);
       }
     }
+  }
+}
+
+TEST_CASE("rows remember the base, or it is fetched: the same bits") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    Block kept, fetched;
+    fetched.from_memory = true;
+    for (Block* b : {&fetched, &kept}) {
+      b->start(table);
+      table.yarn_sweep(b->yarns(), b->block(), b->quads(b->u), b->scratch.data());
+    }
+    kept.placed = true;
+    for (Block* b : {&fetched, &kept}) {
+      table.yarn_sweep(b->yarns(), b->block(), b->quads(b->u), b->scratch.data());
+    }
+    CHECK(fetched.u == kept.u);
   }
 }
 
