@@ -245,11 +245,10 @@ struct Table {
                          std::size_t first, std::size_t last);
   /// start = the directions at base + u.
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
-  /// Solves the yarns of a block; returns the largest |error| / length that it found. scratch: as
-  /// many rows as the block.
-  float (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
+  /// Solves the yarns of a block. scratch: as many rows as the block.
+  void (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
   /// Conjugate gradients over all yarns (yarn_system.h); push goes family by family.
-  float (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);
+  void (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);
   /// The velocities base + u become the right side.
   void (*yarn_read)(const Yarns&, const YarnBlock&, Displacements base, Displacements u);
   YarnProducts (*yarn_precondition)(const Yarns&, const YarnBlock&, float alpha);

@@ -32,18 +32,26 @@ namespace {
   return total;
 }
 
+/// Of absolute values; what is not a number wins.
+[[gnu::always_inline]] inline Floats larger(Floats most, Floats v) {
+  return xsimd::select(xsimd::abs(v) <= most, most, xsimd::abs(v));
+}
+[[gnu::always_inline]] inline float larger(float most, Floats v) {
+  alignas(64) float lanes[kFloats];
+  v.store_aligned(lanes);
+  for (const float lane : lanes) most = lane <= most ? most : lane;
+  return most;
+}
+
 template <Along kAlong, Base kBase>
-[[gnu::always_inline]] inline float linearise_yarns(const Yarns& y, const YarnBlock& block,
-                                                    Displacements u) {
-  float most = 0;
+[[gnu::always_inline]] inline void linearise_yarns(const Yarns& y, const YarnBlock& block,
+                                                   Displacements u) {
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    Floats worst(0.f);
     const Floats zero(0.f);
     go_down<kAlong, kBase>(
-        y, block, lane, u,
+        y, block, lane, u, unit_link,
         [&](std::uint32_t k, const FloatVector&, const YarnLink& link, const Factors& f) {
           YarnSystemRow& row = y.system[k];
-          worst = larger(worst, link.strain);
           store(row.n, lane, link.n);
           f.down.store_unaligned(row.m + lane);
           f.reciprocal.store_unaligned(row.reciprocal + lane);
@@ -52,16 +60,16 @@ template <Along kAlong, Base kBase>
           zero.store_unaligned(row.p + lane);
           zero.store_unaligned(row.q + lane);
         });
-    most = larger(most, worst);
   }
-  return most;
 }
 
 /// Directions, factors and errors at base + u; lambda = p = q = 0.
-float yarn_linearise(const Yarns& y, const YarnBlock& block, Displacements u) {
-  return with_base(y, [&](auto base) {
-    return y.start == nullptr ? linearise_yarns<Along::present, base>(y, block, u)
-                              : linearise_yarns<Along::frozen, base>(y, block, u);
+void yarn_linearise(const Yarns& y, const YarnBlock& block, Displacements u) {
+  with_base(y, [&](auto base) {
+    if (y.start == nullptr)
+      linearise_yarns<Along::present, base>(y, block, u);
+    else
+      linearise_yarns<Along::frozen, base>(y, block, u);
   });
 }
 

@@ -73,15 +73,20 @@ constexpr float kLeastPivot = 1e-4f;  // of w_k + w_{k+1}
   return y.slot + row * kernels::kLanes + lane;
 }
 
+/// present: impulses act along the directions that errors change along. start: along those at the
+/// start of the substep. frozen: errors too are taken to change along those, so that A is symmetric
+/// and stays (yarn_system.h).
+enum class Along : std::uint8_t { present, start, frozen };
+
 struct YarnLink {
   FloatVector n;
   Floats error;
-  Floats strain;      // error / length
+  Floats size;        // |n|, or n . along where that is known
   FloatVector along;  // what its impulse acts along
 };
 
 /// d: from particle k + 1 to particle k. Ends that coincide have no direction: n = (0, 1, 0).
-[[gnu::always_inline]] inline YarnLink make_link(const FloatVector& d, Floats rest) {
+[[gnu::always_inline]] inline YarnLink unit_link(const FloatVector& d, Floats rest) {
   const Floats zero(0.f), one(1.f);
   const Floats length = xsimd::sqrt(dot(d, d));
   const FloatMask present = rest > zero, together = length == zero;
@@ -89,13 +94,23 @@ struct YarnLink {
   FloatVector n = inverse * d;
   n.y = xsimd::select(present & together, one, n.y);
   const Floats error = xsimd::select(present, length - rest, zero);
-  return {n, error, error * inverse, n};
+  return {n, error, one, n};
 }
 
-/// present: impulses act along the directions that errors change along. start: along those at the
-/// start of the substep. frozen: errors too are taken to change along those, so that A is symmetric
-/// and stays (yarn_system.h).
-enum class Along : std::uint8_t { present, start, frozen };
+/// The same row of the system times the constraint's length, n = d, and its impulse over it: a
+/// division less. Without a constraint d is anything, but size, and so the pivot, is 0.
+template <Along kAlong>
+[[gnu::always_inline]] inline YarnLink scaled_link(FloatVector d, Floats rest) {
+  const Floats zero(0.f);
+  const Floats square = xsimd::select(rest > zero, dot(d, d), zero);
+  const Floats length = xsimd::sqrt(square);
+  const FloatMask together = square == zero;
+  d.y = xsimd::select(together, rest, d.y);
+  const Floats error = xsimd::select(together, zero - rest * rest, square - rest * length);
+  const Floats whole = kAlong == Along::present ? square : length;
+  const Floats rest_of_it = kAlong == Along::present ? rest * rest : rest;
+  return {d, error, xsimd::select(together, rest_of_it, whole), d};
+}
 
 template <Along kAlong>
 [[gnu::always_inline]] inline void direct(YarnLink& link, const LaneVectors* start, std::uint32_t k,
@@ -124,8 +139,9 @@ struct Elimination {
     const Floats c = wa * dot(n, next.along);
     const Floats l = kSymmetric ? c : wa * dot(along, next.n);
     const Floats down = l * reciprocal, up = c * reciprocal;
-    const Floats pivot = (kSymmetric ? sum : sum * dot(next.n, next.along)) - down * c;
-    const FloatMask regular = pivot > Floats(kLeastPivot) * sum;
+    const Floats size = sum * next.size;
+    const Floats pivot = (kSymmetric ? size : sum * dot(next.n, next.along)) - down * c;
+    const FloatMask regular = pivot > Floats(kLeastPivot) * size;
     reciprocal = xsimd::select(regular, Floats(1.f) / xsimd::select(regular, pivot, Floats(1.f)),
                                Floats(0.f));
     n = next.n;
@@ -133,17 +149,6 @@ struct Elimination {
     return {down, up, reciprocal};
   }
 };
-
-/// Of absolute values; what is not a number wins.
-[[gnu::always_inline]] inline Floats larger(Floats most, Floats v) {
-  return xsimd::select(xsimd::abs(v) <= most, most, xsimd::abs(v));
-}
-[[gnu::always_inline]] inline float larger(float most, Floats v) {
-  alignas(64) float lanes[kFloats];
-  v.store_aligned(lanes);
-  for (const float lane : lanes) most = lane <= most ? most : lane;
-  return most;
-}
 
 /// Where the base of a row's particles is. rows: they remember it. quads: it is fetched, and then
 /// remembered, which saves transposes. memory: it is fetched each time, which saves traffic.
@@ -160,7 +165,7 @@ template <Base kBase>
 
 /// work(where the base is)
 template <class Work>
-[[gnu::always_inline]] inline float with_base(const Yarns& y, Work&& work) {
+[[gnu::always_inline]] inline void with_base(const Yarns& y, Work&& work) {
   if (y.base == nullptr) return work(std::integral_constant<Base, Base::rows>());
   if (y.from_memory) return work(std::integral_constant<Base, Base::memory>());
   return work(std::integral_constant<Base, Base::quads>());
@@ -176,7 +181,7 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
       const FloatVector next = at.get(u, slots(y, k + 1, lane));
       const FloatVector base_next = base_of<Base::memory>(y, k + 1, lane);
       const FloatVector d = (base - base_next) + (here - next);
-      store(y.start[k], lane, make_link(d, load(y.rows[k].rest + lane)).n);
+      store(y.start[k], lane, unit_link(d, load(y.rows[k].rest + lane)).n);
       here = next;
       base = base_next;
     }
@@ -197,10 +202,11 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
   }
 }
 
-/// Down the yarns: take(row, u of its particle, link, factors) for each.
-template <Along kAlong, Base kBase, class Take>
+/// Down the yarns: take(row, u of its particle, link, factors) for each link = make_link(d, rest).
+template <Along kAlong, Base kBase, class MakeLink, class Take>
 [[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block,
-                                           std::uint32_t lane, Displacements u, Take&& take) {
+                                           std::uint32_t lane, Displacements u,
+                                           MakeLink&& make_link, Take&& take) {
   QuadLanes at;
   Elimination<kAlong> elimination;
   FloatVector here = at.get(u, slots(y, block.first, lane));
@@ -244,32 +250,30 @@ template <Along kAlong, Base kBase, class Take>
 }
 
 template <Along kAlong, Base kBase>
-[[gnu::always_inline]] inline float sweep_yarns(const Yarns& y, const YarnBlock& block,
-                                                Displacements u, YarnScratch* scratch) {
-  float most = 0;
+[[gnu::always_inline]] inline void sweep_yarns(const Yarns& y, const YarnBlock& block,
+                                               Displacements u, YarnScratch* scratch) {
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    Floats b(0.f), worst(0.f);
+    Floats b(0.f);
     go_down<kAlong, kBase>(
-        y, block, lane, u,
+        y, block, lane, u, scaled_link<kAlong>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f) {
           YarnScratch& row = scratch[k - block.first];
           b = fused(f.down, b, link.error);
-          worst = larger(worst, link.strain);
           store(row.u, lane, here);
           store(row.n, lane, link.along);
           f.up.store_unaligned(row.m + lane);
           (f.reciprocal * b).store_unaligned(row.y + lane);
         });
-    most = larger(most, worst);
     go_up(y, block, lane, u, scratch);
   }
-  return most;
 }
 
-float yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
-  return with_base(y, [&](auto base) {
-    return y.start == nullptr ? sweep_yarns<Along::present, base>(y, block, u, scratch)
-                              : sweep_yarns<Along::start, base>(y, block, u, scratch);
+void yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
+  with_base(y, [&](auto base) {
+    if (y.start == nullptr)
+      sweep_yarns<Along::present, base>(y, block, u, scratch);
+    else
+      sweep_yarns<Along::start, base>(y, block, u, scratch);
   });
 }
 

@@ -183,8 +183,7 @@ TEST_CASE("a sweep over a block solves each of its yarns exactly") {
     Block b;
     const simd::Table& table = simd::table(isa);
     b.start(table);
-    const float worst = table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
-    CHECK(worst == doctest::Approx(0.01).epsilon(0.05));
+    table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
     const kernels::Vectors moved = b.end(table);
     for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
       const auto expected = solved_densely(untouched, lane);
