@@ -100,16 +100,16 @@ struct YarnLink {
 /// The same row of the system times the constraint's length, n = d, and its impulse over it: a
 /// division less. Without a constraint d is anything, but size, and so the pivot, is 0.
 template <Along kAlong>
-[[gnu::always_inline]] inline YarnLink scaled_link(FloatVector d, Floats rest) {
+[[gnu::always_inline]] inline YarnLink scaled_link(const FloatVector& d, Floats rest) {
   const Floats zero(0.f);
   const Floats square = xsimd::select(rest > zero, dot(d, d), zero);
   const Floats length = xsimd::sqrt(square);
   const FloatMask together = square == zero;
-  d.y = xsimd::select(together, rest, d.y);
+  const FloatVector n{d.x, xsimd::select(together, rest, d.y), d.z};
   const Floats error = xsimd::select(together, zero - rest * rest, square - rest * length);
   const Floats whole = kAlong == Along::present ? square : length;
   const Floats rest_of_it = kAlong == Along::present ? rest * rest : rest;
-  return {d, error, xsimd::select(together, rest_of_it, whole), d};
+  return {d, error, xsimd::select(together, rest_of_it, whole), n};
 }
 
 template <Along kAlong>
