@@ -101,13 +101,18 @@ void YarnOthers::relax(const float* base, float* u) {
   }
 }
 
-double YarnOthers::penetration(const float* base, const float* u) const {
-  double deepest = 0;
-  for (std::size_t k = constraints_; k < pairs_.size(); ++k) {
-    const Pair& pair = pairs_[k];
-    deepest = std::max(deepest, pair.distance - length(difference(base, u, pair.a, pair.b)));
+double YarnOthers::violation(const float* base, const float* u) const {
+  double most = 0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const Pair& pair = pairs_[i];
+    const bool contact = i >= constraints_;
+    if (!contact && (pair.side == 0 || pair.sum == 0)) continue;
+    const double error = pair.side * (length(difference(base, u, pair.a, pair.b)) - pair.distance);
+    const double unit = contact ? contact_tolerance_ : tolerance_ * pair.distance;
+    const bool counts = contact ? error > 0 || pair.sum != 0 : error < 0;
+    if (counts) most = std::max(most, std::abs(error) / unit);
   }
-  return deepest;
+  return most;
 }
 
 /// One-sided ones take part where they are violated or have acted.

@@ -333,16 +333,16 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
   for (;;) {
     join(x, team);
     const double strain = measure.max_strain(x, team);
-    const double depth = others_.penetration(base_.data(), u_.data());
-    const bool touching = depth <= settings_.contact_tolerance;
-    result.converged = strain <= settings_.tolerance && touching;
-    if (strain <= goal && touching) return result;
-    const double worst = std::max(strain / goal, depth / settings_.contact_tolerance);
+    const double violation = others_.violation(base_.data(), u_.data());
+    const bool just = violation <= 1;
+    result.converged = strain <= settings_.tolerance && just;
+    if (strain <= goal && just) return result;
+    const double worst = std::max(strain / goal, violation);
     if (result.iterations >= max_iterations) return result;
     stale = worst < patience.fall * best ? 0 : stale + 1;
     best = std::min(best, worst);
     if (!std::isfinite(worst) || stale > patience.passes) {
-      result.failed = !(from_start_ ? result.converged : strain <= wanted && touching);
+      result.failed = !(from_start_ ? result.converged : strain <= wanted && just);
       return result;
     }
     if (strain < kSmall && strain > kSlow * before) {
