@@ -341,9 +341,6 @@ RandomCase roped_case(std::uint32_t seed) {
   c.settings.iterations = 0;
   c.settings.max_iterations = 3000;
   c.settings.velocity_correction = false;
-  if (random.below(4) == 0 && c.settings.backend == Backend::simd) {
-    c.settings.solver = Solver::yarn;
-  }
   c.steps = 8;
   return c;
 }
