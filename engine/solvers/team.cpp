@@ -14,8 +14,8 @@ constexpr std::uint32_t kClosed = 0xffffffffu;
 constexpr int kGrace = 100;
 /// Pauses before a waiting thread gives its processor away: some tens of microseconds.
 constexpr int kPatience = 2000;
-/// Ticks of the processor's clock, about a millisecond. A share that takes so much longer than twice
-/// the leader's own is on a thread without a processor.
+/// Ticks of the processor's clock, about a millisecond. A share that takes so much longer than
+/// twice the leader's own is on a thread without a processor.
 constexpr std::uint64_t kLost = 3'000'000;
 /// The leader then goes on alone for so many times what it waited, so that lost processors cost no
 /// more than this part of the time.

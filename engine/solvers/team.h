@@ -13,8 +13,8 @@
 /// Nobody is waited for who has not come: a task that the scheduler never starts, or starts late,
 /// is simply no member yet, and the leader does itself what a member has not begun after a while.
 /// If a share that was begun keeps it waiting for long, beside the time of its own, its thread has
-/// lost its processor: the leader goes on alone for a while. Who does a share is left to chance; results must
-/// not depend on it.
+/// lost its processor: the leader goes on alone for a while. Who does a share is left to chance;
+/// results must not depend on it.
 #pragma once
 
 #include <array>

@@ -27,9 +27,9 @@ class YarnOthers {
   /// One pass, at the positions base + u. One-sided ones keep the sum of their impulses on their
   /// side: a rope that has pulled too much gives back what it had.
   void relax(const float* base, float* u);
-  /// Largest error in tolerances: of contacts, and of what has pulled or pushed and holds nothing any
-  /// more: a rope that ends slack has given what was not its to give. (Ropes that are too long are
-  /// the strain's.)
+  /// Largest error in tolerances: of contacts, and of what has pulled or pushed and holds nothing
+  /// any more: a rope that ends slack has given what was not its to give. (Ropes that are too long
+  /// are the strain's.)
   double violation(const float* base, const float* u) const;
 
   // The stages of conjugate gradients (kernels/simd/yarn_system.h). Of the one-sided those take
