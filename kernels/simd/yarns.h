@@ -106,7 +106,7 @@ template <Along kAlong>
   const Floats length = xsimd::sqrt(square);
   const FloatMask together = square == zero;
   const FloatVector n{d.x, xsimd::select(together, rest, d.y), d.z};
-  const Floats error = xsimd::select(together, zero - rest * rest, square - rest * length);
+  const Floats error = xsimd::select(together, zero - rest * rest, length * (length - rest));
   const Floats whole = kAlong == Along::present ? square : length;
   const Floats rest_of_it = kAlong == Along::present ? rest * rest : rest;
   return {d, error, xsimd::select(together, rest_of_it, whole), n};
