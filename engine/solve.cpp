@@ -173,7 +173,7 @@ Ended end_of(const kernels::LoopResult& result, OnFailure on_failure) {
 Ended solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   int left = attempt.most_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
-    Standstill standstill;
+    Standstill standstill(s.settings);
     const bool first = round == 0;
     const auto result = attempt.start.x != nullptr
                             ? solve_from_start(s, attempt.h, attempt.start, first, left, team)
