@@ -81,7 +81,7 @@ enum class Along : std::uint8_t { present, start, frozen };
 struct YarnLink {
   FloatVector n;
   Floats error;
-  Floats size;        // |n|, or n . along where that is known
+  Floats size;        // of A(k, k) over w_k + w_{k+1}: n . n; n's length if along is another
   FloatVector along;  // what its impulse acts along
 };
 
@@ -109,7 +109,7 @@ template <Along kAlong>
   const Floats error = xsimd::select(together, zero - rest * rest, length * (length - rest));
   const Floats whole = kAlong == Along::present ? square : length;
   const Floats rest_of_it = kAlong == Along::present ? rest * rest : rest;
-  return {d, error, xsimd::select(together, rest_of_it, whole), n};
+  return {n, error, xsimd::select(together, rest_of_it, whole), n};
 }
 
 template <Along kAlong>

@@ -265,6 +265,27 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a link whose ends coincide is solved together with its neighbour") {
+  constexpr std::uint32_t kLane = 3;  // of three particles
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    Block b;
+    const double rest = static_cast<double>(b.rows[0].rest[kLane]);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      b.rows[k].inverse_mass[kLane] = 1;
+      b.x.set(b.slot_of(k, kLane), {0, k < 2 ? 0 : -rest, 0});
+    }
+    b.start(table);
+    table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+    const kernels::Vectors moved = b.end(table);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const kernels::Vector expected{0, (2.0 / 3 - k) * rest, 0};
+      CHECK(kernels::length(moved[b.slot_of(k, kLane)] - expected) < 3e-8);
+    }
+  }
+}
+
 TEST_CASE("rows remember the base, or it is fetched: the same bits") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
