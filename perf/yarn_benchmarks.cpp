@@ -14,7 +14,7 @@ struct Loom {
   std::shared_ptr<const Model> model;
   const YarnLayout& layout;
   kernels::Vectors x;
-  kernels::AlignedVector<simd::LaneVectors> base_of_row;
+  kernels::AlignedVector<simd::LaneVectors> base_step;
   kernels::AlignedVector<simd::YarnSystemRow> system;
   kernels::AlignedVector<simd::YarnScratch> scratch;
   kernels::AlignedVector<float> base, u, t;
@@ -23,7 +23,7 @@ struct Loom {
       : model(model_of(size)),
         layout(model->yarns()),
         x(model->initial_position),
-        base_of_row(layout.rows.size()),
+        base_step(layout.rows.size()),
         system(layout.rows.size()),
         scratch(layout.longest),
         base(4 * layout.slots),
@@ -47,7 +47,7 @@ struct Loom {
   }
   /// Where positions have changed.
   simd::Yarns yarns_anew() {
-    simd::Yarns yarns{layout.rows.data(), base_of_row.data(), system.data(), layout.slot.data()};
+    simd::Yarns yarns{layout.rows.data(), base_step.data(), system.data(), layout.slot.data()};
     yarns.base = base.data();
     yarns.from_memory = layout.from_memory();
     return yarns;
@@ -69,17 +69,17 @@ void for_each_block(Loom& loom, std::size_t first, std::size_t last, Work&& work
   for (std::size_t i = first; i < last; ++i) work(loom.layout.blocks[i]);
 }
 
-/// As the solver does it: the first family writes, the last reads off what it has pushed.
-void push_pull(const simd::Table& table, Loom& loom) {
+/// An iteration of conjugate gradients without its preconditioner.
+void multiply(const simd::Table& table, Loom& loom) {
   const std::size_t first = loom.first_family(), all = loom.layout.blocks.size();
   const simd::Displacements t = Loom::quads(loom.t);
-  for_each_block(loom, 0, first, [&](const simd::YarnBlock& block) {
+  for_each_block(loom, first, all, [&](const simd::YarnBlock& block) {
     table.yarn_push_first(loom.yarns(), block, 0, t);
   });
-  for_each_block(loom, first, all, [&](const simd::YarnBlock& block) {
-    benchmark::DoNotOptimize(table.yarn_push_pull(loom.yarns(), block, 0, t));
-  });
   for_each_block(loom, 0, first, [&](const simd::YarnBlock& block) {
+    table.yarn_eliminate(loom.yarns(), block, t, false, loom.scratch.data());
+  });
+  for_each_block(loom, first, all, [&](const simd::YarnBlock& block) {
     benchmark::DoNotOptimize(table.yarn_pull(loom.yarns(), block, t));
   });
 }
@@ -109,7 +109,7 @@ constexpr Kernel kKernels[] = {
          benchmark::DoNotOptimize(table.yarn_precondition(loom.yarns(), block, 0));
        });
      }},
-    {"yarn_push_pull", 78, 44, push_pull},
+    {"yarn_multiply", 78, 44, multiply},
 };
 
 void run(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Isa isa, int size) {

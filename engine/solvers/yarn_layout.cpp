@@ -72,6 +72,33 @@ void sort(std::vector<Chain>& chains) {
   });
 }
 
+/// A 4 x 4 transpose, its own inverse.
+constexpr std::size_t lane_of(std::size_t i) { return 4 * (i % 4) + i / 4; }
+/// Whether these chains stand side by side in memory, particle by particle.
+bool in_four(std::span<const Chain> chains) {
+  for (std::size_t i = 1; i < chains.size(); ++i) {
+    if (chains[i].particles.size() != chains[0].particles.size()) return false;
+    for (std::size_t k = 0; k < chains[0].particles.size(); ++k) {
+      if (chains[i].particles[k] != chains[0].particles[k] + i) return false;
+    }
+  }
+  return true;
+}
+
+/// Of a family: fours first.
+void bring_fours_forward(std::span<Chain> chains) {
+  std::vector<Chain> fours, others;
+  for (std::size_t i = 0; i < chains.size();) {
+    const bool four = i + 4 <= chains.size() && in_four(chains.subspan(i, 4));
+    std::vector<Chain>& to = four ? fours : others;
+    for (const std::size_t last = i + (four ? 4 : 1); i < last; ++i) {
+      to.push_back(std::move(chains[i]));
+    }
+  }
+  std::ranges::move(fours, chains.begin());
+  std::ranges::move(others, chains.begin() + static_cast<std::ptrdiff_t>(fours.size()));
+}
+
 class Builder {
  public:
   Builder(const Model& model, YarnLayout& layout) : model_(model), layout_(layout) {
@@ -88,12 +115,22 @@ class Builder {
     layout_.slots = padding + kLanes;
     layout_.blocks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)});
     for (std::size_t i = first * kLanes; i < last * kLanes; ++i) {
-      layout_.slot.push_back(static_cast<std::uint32_t>(padding + i % kLanes));
+      layout_.slot.push_back(static_cast<std::uint32_t>(padding + lane_of(i % kLanes)));
     }
-    for (std::size_t lane = 0; lane < chains.size(); ++lane) fill(chains[lane], first, lane);
+    for (std::size_t i = 0; i < chains.size(); ++i) fill(chains[i], first, lane_of(i));
+    layout_.blocks.back().in_fours = in_fours(first, last);
   }
 
  private:
+  bool in_fours(std::size_t first, std::size_t last) const {
+    for (std::size_t k = first; k < last; ++k) {
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const std::uint32_t* slot = &layout_.slot[k * kLanes];
+        if (slot[lane_of(i)] != slot[lane_of(i - i % 4)] + i % 4) return false;
+      }
+    }
+    return true;
+  }
   void fill(const Chain& chain, std::size_t first, std::size_t lane) {
     for (std::size_t k = 0; k < chain.particles.size(); ++k) {
       const std::uint32_t slot = chain.particles[k];
@@ -110,10 +147,12 @@ class Builder {
   double heaviest_ = 1;
 };
 
-void find_beyond_first(YarnLayout& layout) {
+void find_beyond_second(YarnLayout& layout) {
   std::vector<bool> held(layout.slots, false);
-  const std::uint32_t last = layout.families() > 0 ? layout.family_begin[1] : 0;
-  for (std::uint32_t block = 0; block < last; ++block) {
+  const bool two = layout.families() > 1;
+  const std::uint32_t first = two ? layout.family_begin[1] : 0;
+  const std::uint32_t last = two ? layout.family_begin[2] : 0;
+  for (std::uint32_t block = first; block < last; ++block) {
     for (std::size_t row = layout.blocks[block].first; row < layout.blocks[block].last; ++row) {
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         held[layout.slot[row * kLanes + lane]] = true;
@@ -121,7 +160,7 @@ void find_beyond_first(YarnLayout& layout) {
     }
   }
   for (std::uint32_t slot = 0; slot < layout.slots; ++slot) {
-    if (!held[slot]) layout.beyond_first.push_back(slot);
+    if (!held[slot]) layout.beyond_second.push_back(slot);
   }
 }
 
@@ -136,22 +175,22 @@ YarnLayout make_yarn_layout(const Model& model) {
   Builder builder(model, layout);
   for (std::size_t first = 0, last; first < chains.size(); first = last) {
     const std::uint32_t family = chains[first].family;
-    for (last = first; last < chains.size() && last < first + kLanes; ++last) {
-      if (chains[last].family != family) break;
+    for (last = first; last < chains.size() && chains[last].family == family;) ++last;
+    layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
+    const std::span<Chain> all(&chains[first], last - first);
+    bring_fours_forward(all);
+    for (std::size_t i = 0; i < all.size(); i += kLanes) {
+      builder.add_block(all.subspan(i, std::min<std::size_t>(kLanes, all.size() - i)));
     }
-    while (layout.family_begin.size() <= family) {
-      layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
-    }
-    builder.add_block(std::span(chains).subspan(first, last - first));
   }
   layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
-  find_beyond_first(layout);
+  find_beyond_second(layout);
   return layout;
 }
 
 std::size_t YarnLayout::bytes() const {
   return bytes_of(blocks) + bytes_of(family_begin) + bytes_of(slot) + bytes_of(rows) +
-         bytes_of(beyond_first);
+         bytes_of(beyond_second);
 }
 
 }  // namespace weft

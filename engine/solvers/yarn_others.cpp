@@ -150,10 +150,13 @@ void YarnOthers::linearise_velocities(const float* base, const float* u) {
   }
 }
 
-void YarnOthers::read(const float* base, const float* u) {
+double YarnOthers::read(const float* base, const float* u) {
+  double worst = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     set_error(i, dot(rows_[i].n, difference(base, u, pairs_[i].a, pairs_[i].b)));
+    worst = std::max(worst, std::abs(rows_[i].residual));
   }
+  return worst;
 }
 
 simd::YarnProducts YarnOthers::precondition(double alpha, double goal) {

@@ -39,7 +39,7 @@ class YarnOthers {
   /// Of velocities: the directions at the positions base + u, and who is taut or touches there;
   /// then the errors, at the velocities base + u.
   void linearise_velocities(const float* base, const float* u);
-  void read(const float* base, const float* u);
+  double read(const float* base, const float* u);
   /// worst: in strains, where a contact's tolerance counts as much as `goal`; of velocities as they
   /// are.
   simd::YarnProducts precondition(double alpha, double goal);

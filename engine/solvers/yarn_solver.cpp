@@ -12,11 +12,9 @@ namespace {
 using kernels::kLanes;
 
 /// Newton's method comes where sweeps leave more than kSlow of the error and the strain is below
-/// kSmall: beyond, directions change so much that a linear system says little (corners, 41 x 41, 4
-/// substeps, 0.1 %: 60 iterations a frame; with no such bound, or three times as much, some steps
-/// fail).
+/// kSmall: beyond, directions change so much that a linear system says little.
 constexpr double kSlow = 0.8;
-constexpr double kSmall = 0.02;
+constexpr double kSmall = 0.03;
 /// Newton steps are solved to this share of the error they found, or of the tolerance. (0.05: a
 /// tenth more iterations on corners; 0.4: spheres make steps fail.)
 constexpr double kForcing = 0.2;
@@ -62,9 +60,10 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       table_(table),
       base_(4 * layout_.slots),
       u_(4 * layout_.slots),
+      first_end_(layout_.families() > 0 ? layout_.family_begin[1] : 0),
       products_(layout_.blocks.size()),
       others_(model, settings) {
-  if (!layout_.from_memory()) base_of_row_.resize(layout_.rows.size());
+  if (!layout_.from_memory()) base_step_.resize(layout_.rows.size());
   const auto wanted =
       static_cast<std::size_t>(settings.threads > 0 ? settings.threads : kMostShares);
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows.size());
@@ -73,7 +72,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
 
 simd::Yarns YarnSolver::yarns() {
   return {layout_.rows.data(),
-          base_of_row_.data(),
+          base_step_.data(),
           system_.data(),
           layout_.slot.data(),
           from_start_ ? start_.data() : nullptr,
@@ -166,73 +165,106 @@ void YarnSolver::linearise_velocities(Team& team) {
   others_.linearise_velocities(base_.data(), u_.data());
 }
 
-void YarnSolver::read_velocities(Team& team) {
+double YarnSolver::read_velocities(Team& team) {
   for_each_block(0, layout_.blocks.size(), team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-                   table_.yarn_read(yarns, layout_.blocks[i], quads(base_), quads(u_));
+                   products_[i].worst =
+                       table_.yarn_read(yarns, layout_.blocks[i], quads(base_), quads(u_));
                  });
-  others_.read(base_.data(), u_.data());
+  double worst = others_.read(base_.data(), u_.data());
+  for (const simd::YarnProducts& p : products_) {
+    if (!(p.worst <= worst)) worst = static_cast<double>(p.worst);
+  }
+  return worst;
 }
 
 YarnSolver::Products YarnSolver::precondition(double alpha, double goal, Team& team) {
-  for_each_block(0, layout_.blocks.size(), team,
+  for_each_block(first_end_, layout_.blocks.size(), team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
                    products_[i] = table_.yarn_precondition(yarns, layout_.blocks[i],
                                                            static_cast<float>(alpha));
                  });
   const simd::YarnProducts others = others_.precondition(alpha, goal);
   Products sum{static_cast<double>(others.product), static_cast<double>(others.worst)};
-  for (const simd::YarnProducts& p : products_) {
-    sum.product += static_cast<double>(p.product);
-    sum.worst = std::max(sum.worst, static_cast<double>(p.worst));
+  for (std::size_t i = first_end_; i < products_.size(); ++i) {
+    sum.product += static_cast<double>(products_[i].product);
+    sum.worst = std::max(sum.worst, static_cast<double>(products_[i].worst));
   }
   return sum;
 }
 
-/// t = M^-1 J^T p, q = J t; returns p . q. The last family finds t complete, if it is not the
-/// first.
-double YarnSolver::push_pull(double beta, Team& team) {
+/// The right side without the first family, and its first preconditioned residual.
+YarnSolver::Products YarnSolver::reduce(double goal, Team& team) {
+  std::ranges::fill(t_, 0.f);
+  eliminate(true, team);
+  pull(team);
+  return precondition(-1, goal, team);
+}
+
+/// t = M^-1 J^T p of all but the first family.
+void YarnSolver::push(double beta, Team& team) {
   const auto factor = static_cast<float>(beta);
   const std::vector<std::uint32_t>& begin = layout_.family_begin;
-  const std::size_t families = layout_.families(), last = families > 1 ? families - 1 : families;
-  for (const std::uint32_t slot : layout_.beyond_first) std::fill_n(&t_[4 * slot], 4, 0.f);
-  for (std::size_t f = 0; f < last; ++f) {
-    const auto push = f == 0 ? table_.yarn_push_first : table_.yarn_push;
+  for (const std::uint32_t slot : layout_.beyond_second) std::fill_n(&t_[4 * slot], 4, 0.f);
+  for (std::size_t f = 1; f < layout_.families(); ++f) {
+    const auto push = f == 1 ? table_.yarn_push_first : table_.yarn_push;
     for_each_block(begin[f], begin[f + 1], team,
                    [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
                      push(yarns, layout_.blocks[i], factor, quads(t_));
                    });
   }
   others_.push(beta, t_.data());
-  for_each_block(begin[last], begin[families], team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-                   products_[i].product =
-                       table_.yarn_push_pull(yarns, layout_.blocks[i], factor, quads(t_));
+}
+
+/// t -= M^-1 J^T T^-1 J t of the first family; with errors, T^-1 (e + J t).
+void YarnSolver::eliminate(bool errors, Team& team) {
+  for_each_block(0, first_end_, team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
+                   table_.yarn_eliminate(yarns, layout_.blocks[i], quads(t_), errors, scratch);
                  });
-  for_each_block(0, begin[last], team,
+}
+
+/// q = J t of all but the first family; returns p . q.
+double YarnSolver::pull(Team& team) {
+  for_each_block(first_end_, layout_.blocks.size(), team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
                    products_[i].product = table_.yarn_pull(yarns, layout_.blocks[i], quads(t_));
                  });
   double sum = others_.pull(t_.data());
-  for (const simd::YarnProducts& p : products_) sum += static_cast<double>(p.product);
+  for (std::size_t i = first_end_; i < products_.size(); ++i) {
+    sum += static_cast<double>(products_[i].product);
+  }
   return sum;
 }
 
+/// u -= M^-1 J^T lambda, the first family's impulses from those of all others.
 void YarnSolver::finish(Team& team) {
-  for_each_family(team, [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-    table_.yarn_finish(yarns, layout_.blocks[i], quads(u_));
+  const std::vector<std::uint32_t>& begin = layout_.family_begin;
+  std::ranges::fill(t_, 0.f);
+  for (std::size_t f = 1; f < layout_.families(); ++f) {
+    for_each_block(begin[f], begin[f + 1], team,
+                   [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                     table_.yarn_finish(yarns, layout_.blocks[i], quads(t_));
+                   });
+  }
+  others_.finish(t_.data());
+  eliminate(true, team);
+  for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
+    table_.add_quads(quads(u_), quads(t_), first, last);
   });
-  others_.finish(u_.data());
 }
 
-/// Preconditioned conjugate gradients on A lambda = e, from its first preconditioned residual on,
-/// then u -= M^-1 J^T lambda.
-void YarnSolver::solve(Products now, double goal, double enough, int max_iterations, Team& team,
+/// Preconditioned conjugate gradients on the reduced system, then u -= M^-1 J^T lambda.
+void YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
                        kernels::LoopResult& result) {
+  Products now = reduce(goal, team);
+  const double enough = std::max(goal, part * now.worst);
   double beta = 0;
   int done = 0;
   while (now.worst > enough && done < max_iterations) {
-    const double curvature = push_pull(beta, team);
+    push(beta, team);
+    eliminate(false, team);
+    const double curvature = pull(team);
     if (!(curvature > 0 && now.product > 0)) break;
     const Products next = precondition(now.product / curvature, goal, team);
     beta = next.product / now.product;
@@ -240,13 +272,12 @@ void YarnSolver::solve(Products now, double goal, double enough, int max_iterati
     ++done;
   }
   if (std::isfinite(now.product)) finish(team);
-  count(done, result);
+  count(std::max(1, done), result);
 }
 
 void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result) {
   linearise(team);
-  const Products now = precondition(0, goal, team);
-  solve(now, goal, std::max(goal, kForcing * now.worst), max_iterations, team, result);
+  solve(goal, kForcing, max_iterations, team, result);
 }
 
 /// Room for the linear system, from when it is first wanted.
@@ -272,9 +303,8 @@ kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kerne
   const double tolerated = kWithin * settings_.velocity_tolerance;
   double goal = tolerated, best = kNoBound;
   for (int stale = 0; stale <= kVelocityPatience.passes;) {
-    read_velocities(team);
-    const Products now = precondition(0, goal, team);
-    const double worst = std::isfinite(now.product) ? now.worst : kNoBound;
+    const double read = read_velocities(team);
+    const double worst = std::isfinite(read) ? read : kNoBound;
     if (exact && best == kNoBound) goal = std::min(goal, kExact * worst);
     result.converged = worst <= tolerated;
     const int left = settings_.max_iterations - result.iterations;
@@ -282,7 +312,7 @@ kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kerne
     if (enough || left <= 0) break;
     stale = worst < kVelocityPatience.fall * best ? 0 : stale + 1;
     best = std::min(best, worst);
-    solve(now, goal, goal, std::min(kMostIterations, left), team, result);
+    solve(goal, 0, std::min(kMostIterations, left), team, result);
   }
   velocities_ = false;
   result.converged = result.converged && loses_energy(v);
@@ -357,7 +387,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
 }
 
 std::size_t YarnSolver::bytes() const {
-  return bytes_of(base_of_row_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
+  return bytes_of(base_step_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
          bytes_of(base_) + bytes_of(u_) + bytes_of(t_) + bytes_of(products_) + others_.bytes();
 }
 

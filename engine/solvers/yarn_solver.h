@@ -7,8 +7,9 @@
 /// with the others held, so that along fixed directions a pass never raises it: this is why the
 /// coupling converges.
 ///
-/// Where sweeps gain too little, Newton's method takes over: all yarns as one linear system, solved
-/// by conjugate gradients with the yarns as preconditioner (kernels/simd/yarn_system.h).
+/// Where sweeps gain too little, Newton's method takes over: all yarns as one linear system, the
+/// first family eliminated, the rest solved by conjugate gradients with its yarns as preconditioner
+/// (kernels/simd/yarn_system.h).
 ///
 /// Velocities are linear: one system, solved in the same way.
 ///
@@ -64,16 +65,18 @@ class YarnSolver {
   void sweep(Team& team, kernels::LoopResult& result);
   /// One linear system, to the strain `goal`.
   void newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
-  /// What was linearised, and preconditioned once, until no error is above `enough`.
-  void solve(Products now, double goal, double enough, int max_iterations, Team& team,
-             kernels::LoopResult& result);
+  /// What was linearised, until no error is above `goal`, or the share `part` of what there was.
+  void solve(double goal, double part, int max_iterations, Team& team, kernels::LoopResult& result);
   void make_system();
   void linearise(Team& team);
   void linearise_velocities(Team& team);
-  void read_velocities(Team& team);
+  double read_velocities(Team& team);  // the largest
   bool loses_energy(kernels::VectorsView v) const;
   Products precondition(double alpha, double goal, Team& team);
-  double push_pull(double beta, Team& team);
+  Products reduce(double goal, Team& team);
+  void push(double beta, Team& team);
+  void eliminate(bool errors, Team& team);
+  double pull(Team& team);
   void finish(Team& team);
   void count(int passes, kernels::LoopResult& result) const;
   template <class Work>
@@ -88,12 +91,13 @@ class YarnSolver {
 
   bool from_start_ = false, velocities_ = false;  // what is being solved
   bool moved_ = false;                            // the rows do not remember the present base
-  kernels::AlignedVector<simd::LaneVectors> base_of_row_;  // unless quads come from memory
-  kernels::AlignedVector<simd::LaneVectors> start_;        // scheme rattle only
-  kernels::AlignedVector<simd::YarnSystemRow> system_;     // from the first Newton step on
-  kernels::AlignedVector<simd::YarnScratch> scratch_;      // for each thread
-  kernels::AlignedVector<float> base_, u_, t_;             // quads
-  std::vector<simd::YarnProducts> products_;               // per block
+  kernels::AlignedVector<simd::LaneVectors> base_step_;  // unless quads come from memory
+  kernels::AlignedVector<simd::LaneVectors> start_;      // scheme rattle only
+  kernels::AlignedVector<simd::YarnSystemRow> system_;   // from the first Newton step on
+  kernels::AlignedVector<simd::YarnScratch> scratch_;    // for each thread
+  kernels::AlignedVector<float> base_, u_, t_;           // quads
+  const std::size_t first_end_;                          // blocks of the first family
+  std::vector<simd::YarnProducts> products_;             // per block
   YarnOthers others_;
 };
 

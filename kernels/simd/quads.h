@@ -42,6 +42,13 @@ namespace {
   return Floats(_mm512_shuffle_ps(a, b, 0xee));
 }
 
+/// Lanes 0, 4, 8, 12, 1, ... put in order, and back: a transpose of 4 x 4, its own inverse.
+[[gnu::always_inline]] inline Floats in_order(Floats v) {
+  const __m512i from = _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
+  return Floats(_mm512_permutexvar_ps(from, v));
+}
+[[gnu::always_inline]] inline Floats out_of_order(Floats v) { return in_order(v); }
+
 #elif defined(__AVX2__)
 
 [[gnu::always_inline]] inline Floats load_quads(const float* u, const std::uint32_t* slot) {
@@ -65,6 +72,14 @@ namespace {
   return Floats(_mm256_shuffle_ps(a, b, 0xee));
 }
 
+/// Lanes 0, 2, 4, 6, 1, 3, 5, 7 put in order, and back.
+[[gnu::always_inline]] inline Floats in_order(Floats v) {
+  return Floats(_mm256_permutevar8x32_ps(v, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7)));
+}
+[[gnu::always_inline]] inline Floats out_of_order(Floats v) {
+  return Floats(_mm256_permutevar8x32_ps(v, _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7)));
+}
+
 #else
 
 [[gnu::always_inline]] inline Floats load_quads(const float* u, const std::uint32_t* slot) {
@@ -86,29 +101,72 @@ namespace {
   return Floats(_mm_shuffle_ps(a, b, 0xee));
 }
 
+[[gnu::always_inline]] inline Floats in_order(Floats v) { return v; }
+[[gnu::always_inline]] inline Floats out_of_order(Floats v) { return v; }
+
 #endif
 
-/// Displacements of scattered slots, in quads, brought side by side.
-struct QuadLanes {
-  [[gnu::always_inline]] FloatVector get(const Displacements& u, const std::uint32_t* slot) {
+/// Four vectors of quads and the vectors of their components: a transpose of 4 x 4 in each 128
+/// bits.
+struct Quads {
+  Floats q0, q1, q2, q3;
+};
+[[gnu::always_inline]] inline FloatVector transposed(Floats q0, Floats q1, Floats q2, Floats q3) {
+  const Floats xy01 = unpack_low(q0, q1), xy23 = unpack_low(q2, q3);
+  const Floats z01 = unpack_high(q0, q1), z23 = unpack_high(q2, q3);
+  return {low_pairs(xy01, xy23), high_pairs(xy01, xy23), low_pairs(z01, z23)};
+}
+[[gnu::always_inline]] inline Quads transposed(const FloatVector& v) {
+  const Floats none(0.f);
+  const Floats xy01 = unpack_low(v.x, v.y), xy23 = unpack_high(v.x, v.y);
+  const Floats z01 = unpack_low(v.z, none), z23 = unpack_high(v.z, none);
+  return {low_pairs(xy01, z01), high_pairs(xy01, z01), low_pairs(xy23, z23), high_pairs(xy23, z23)};
+}
+
+/// Scattered slots. Where they stand in fours (table.h), a vector of quads is one load.
+template <bool kInFours>
+struct QuadsAt {
+  [[gnu::always_inline]] FloatVector get(const Displacements& u, const std::uint32_t* slot) const {
     return get(u.x, slot);
   }
-  [[gnu::always_inline]] FloatVector get(const float* u, const std::uint32_t* slot) {
-    const Floats q0 = load_quads(u, slot), q1 = load_quads(u, slot + 1);
-    const Floats q2 = load_quads(u, slot + 2), q3 = load_quads(u, slot + 3);
-    const Floats xy01 = unpack_low(q0, q1), xy23 = unpack_low(q2, q3);
-    const Floats z01 = unpack_high(q0, q1), z23 = unpack_high(q2, q3);
-    return {low_pairs(xy01, xy23), high_pairs(xy01, xy23), low_pairs(z01, z23)};
+  [[gnu::always_inline]] FloatVector get(const float* u, const std::uint32_t* slot) const {
+    return transposed(load_at(u, slot), load_at(u, slot + 1), load_at(u, slot + 2),
+                      load_at(u, slot + 3));
   }
   [[gnu::always_inline]] void put(const Displacements& u, const std::uint32_t* slot,
-                                  const FloatVector& v) {
-    const Floats none(0.f);
-    const Floats xy01 = unpack_low(v.x, v.y), xy23 = unpack_high(v.x, v.y);
-    const Floats z01 = unpack_low(v.z, none), z23 = unpack_high(v.z, none);
-    store_quads(u.x, slot, low_pairs(xy01, z01));
-    store_quads(u.x, slot + 1, high_pairs(xy01, z01));
-    store_quads(u.x, slot + 2, low_pairs(xy23, z23));
-    store_quads(u.x, slot + 3, high_pairs(xy23, z23));
+                                  const FloatVector& v) const {
+    const Quads q = transposed(v);
+    store_at(u.x, slot, q.q0);
+    store_at(u.x, slot + 1, q.q1);
+    store_at(u.x, slot + 2, q.q2);
+    store_at(u.x, slot + 3, q.q3);
+  }
+
+ private:
+  [[gnu::always_inline]] static Floats load_at(const float* u, const std::uint32_t* slot) {
+    if constexpr (kInFours) return load(u + 4 * std::size_t{*slot});
+    return load_quads(u, slot);
+  }
+  [[gnu::always_inline]] static void store_at(float* u, const std::uint32_t* slot, Floats q) {
+    if constexpr (kInFours) return q.store_unaligned(u + 4 * std::size_t{*slot});
+    return store_quads(u, slot, q);
+  }
+};
+using QuadLanes = QuadsAt<false>;
+
+/// Quads of kFloats slots in a row.
+struct QuadsInRow {
+  [[gnu::always_inline]] FloatVector get(const float* u) const {
+    const FloatVector v =
+        transposed(load(u), load(u + kFloats), load(u + 2 * kFloats), load(u + 3 * kFloats));
+    return {in_order(v.x), in_order(v.y), in_order(v.z)};
+  }
+  [[gnu::always_inline]] void put(float* u, const FloatVector& v) const {
+    const Quads q = transposed({out_of_order(v.x), out_of_order(v.y), out_of_order(v.z)});
+    q.q0.store_unaligned(u);
+    q.q1.store_unaligned(u + kFloats);
+    q.q2.store_unaligned(u + 2 * kFloats);
+    q.q3.store_unaligned(u + 3 * kFloats);
   }
 };
 

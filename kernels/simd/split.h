@@ -8,14 +8,6 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-/// kFloats slots in a row.
-struct SlotsInRow {
-  std::uint32_t slot[kFloats];
-  explicit SlotsInRow() {
-    for (std::uint32_t k = 0; k < kFloats; ++k) slot[k] = k;
-  }
-};
-
 /// A component of kFloats slots, in double.
 struct Component {
   Doubles first, second;
@@ -35,16 +27,14 @@ struct Component {
 
 void split_positions(kernels::VectorsView x, Displacements base, Displacements u, std::size_t first,
                      std::size_t last) {
-  const SlotsInRow row;
-  QuadLanes at;
+  QuadsInRow at;
   for (std::size_t i = first; i < last; i += kFloats) {
     const Component px = load_component(x.x + i), py = load_component(x.y + i);
     const Component pz = load_component(x.z + i);
     const FloatVector rounded{narrow(px), narrow(py), narrow(pz)};
-    at.put({base.x + 4 * i, 1, 4}, row.slot, rounded);
-    at.put({u.x + 4 * i, 1, 4}, row.slot,
-           {narrow(px - widen(rounded.x)), narrow(py - widen(rounded.y)),
-            narrow(pz - widen(rounded.z))});
+    at.put(base.x + 4 * i, rounded);
+    at.put(u.x + 4 * i, {narrow(px - widen(rounded.x)), narrow(py - widen(rounded.y)),
+                         narrow(pz - widen(rounded.z))});
   }
 }
 
@@ -58,11 +48,10 @@ void split_positions(kernels::VectorsView x, Displacements base, Displacements u
 
 void join_positions(kernels::VectorsView x, Displacements base, Displacements u, std::size_t first,
                     std::size_t last) {
-  const SlotsInRow row;
-  QuadLanes at;
+  QuadsInRow at;
   for (std::size_t i = first; i < last; i += kFloats) {
-    const FloatVector from = at.get({base.x + 4 * i, 1, 4}, row.slot);
-    const FloatVector by = at.get({u.x + 4 * i, 1, 4}, row.slot);
+    const FloatVector from = at.get(base.x + 4 * i);
+    const FloatVector by = at.get(u.x + 4 * i);
     move(x.x + i, from.x, by.x);
     move(x.y + i, from.y, by.y);
     move(x.z + i, from.z, by.z);

@@ -146,13 +146,16 @@ struct alignas(64) YarnScratch {
   float m[kernels::kLanes], y[kernels::kLanes];
 };
 
+/// In fours: in every row the slots of lanes k, k + 4, k + 8 and k + 12 stand side by side in
+/// memory, for k < 4.
 struct YarnBlock {
   std::uint32_t first = 0, last = 0;  // rows
+  bool in_fours = false;
 };
 
 struct Yarns {
   const YarnRow* rows = nullptr;
-  LaneVectors* base_of_row = nullptr;  // what rows remember of base
+  LaneVectors* base_step = nullptr;  // what rows remember: base, less that of the next row
   YarnSystemRow* system = nullptr;
   const std::uint32_t* slot = nullptr;  // per row and lane; padding: slots of no particle
   LaneVectors* start = nullptr;         // per row: scheme rattle's directions; null: present ones
@@ -247,16 +250,18 @@ struct Table {
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
   /// Solves the yarns of a block. scratch: as many rows as the block.
   void (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
-  /// Conjugate gradients over all yarns (yarn_system.h); push goes family by family.
+  /// Conjugate gradients over all yarns (yarn_system.h); what writes quads goes family by family.
   void (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);
-  /// The velocities base + u become the right side.
-  void (*yarn_read)(const Yarns&, const YarnBlock&, Displacements base, Displacements u);
+  /// The velocities base + u become the right side; returns the largest.
+  float (*yarn_read)(const Yarns&, const YarnBlock&, Displacements base, Displacements u);
   YarnProducts (*yarn_precondition)(const Yarns&, const YarnBlock&, float alpha);
   void (*yarn_push_first)(const Yarns&, const YarnBlock&, float beta, Displacements t);
   void (*yarn_push)(const Yarns&, const YarnBlock&, float beta, Displacements t);
-  float (*yarn_push_pull)(const Yarns&, const YarnBlock&, float beta, Displacements t);
+  void (*yarn_eliminate)(const Yarns&, const YarnBlock&, Displacements t, bool errors,
+                         YarnScratch* scratch);
   float (*yarn_pull)(const Yarns&, const YarnBlock&, Displacements t);
-  void (*yarn_finish)(const Yarns&, const YarnBlock&, Displacements u);
+  void (*yarn_finish)(const Yarns&, const YarnBlock&, Displacements t);
+  void (*add_quads)(Displacements u, Displacements t, std::size_t first, std::size_t last);
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);

@@ -150,17 +150,40 @@ struct Elimination {
   }
 };
 
-/// Where the base of a row's particles is. rows: they remember it. quads: it is fetched, and then
-/// remembered, which saves transposes. memory: it is fetched each time, which saves traffic.
+/// Where the base of a row's particles is. rows: they remember its difference to that of the next.
+/// quads: it is fetched, and then remembered, which saves transposes. memory: it is fetched each
+/// time, which saves traffic.
 enum class Base : std::uint8_t { rows, quads, memory };
 
-template <Base kBase>
-[[gnu::always_inline]] inline FloatVector base_of(const Yarns& y, std::uint32_t row,
-                                                  std::uint32_t lane) {
-  if constexpr (kBase == Base::rows) return load(y.base_of_row[row], lane);
-  const FloatVector base = QuadLanes().get(y.base, slots(y, row, lane));
-  if constexpr (kBase == Base::quads) store(y.base_of_row[row], lane, base);
-  return base;
+/// The base, from row to row.
+template <Base kBase, class At>
+struct BaseDown {
+  const Yarns& y;
+  At at;
+  std::uint32_t lane;
+  FloatVector here = no_vector();
+
+  [[gnu::always_inline]] BaseDown(const Yarns& yarns, At quads, std::uint32_t row,
+                                  std::uint32_t first_lane)
+      : y(yarns), at(quads), lane(first_lane) {
+    if constexpr (kBase != Base::rows) here = at.get(y.base, slots(y, row, lane));
+  }
+  /// From particle k + 1 to particle k.
+  [[gnu::always_inline]] FloatVector step(std::uint32_t k) {
+    if constexpr (kBase == Base::rows) return load(y.base_step[k], lane);
+    const FloatVector next = at.get(y.base, slots(y, k + 1, lane));
+    const FloatVector difference = here - next;
+    if constexpr (kBase == Base::quads) store(y.base_step[k], lane, difference);
+    here = next;
+    return difference;
+  }
+};
+
+/// work(how quads are fetched)
+template <class Work>
+[[gnu::always_inline]] inline void with_quads(const YarnBlock& block, Work&& work) {
+  if (block.in_fours && kFloats > 4) return work(QuadsAt<true>());
+  return work(QuadsAt<false>());
 }
 
 /// work(where the base is)
@@ -176,14 +199,12 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
   QuadLanes at;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     FloatVector here = at.get(u, slots(y, block.first, lane));
-    FloatVector base = base_of<Base::memory>(y, block.first, lane);
+    BaseDown<Base::memory, QuadLanes> base(y, at, block.first, lane);
     for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
       const FloatVector next = at.get(u, slots(y, k + 1, lane));
-      const FloatVector base_next = base_of<Base::memory>(y, k + 1, lane);
-      const FloatVector d = (base - base_next) + (here - next);
+      const FloatVector d = base.step(k) + (here - next);
       store(y.start[k], lane, unit_link(d, load(y.rows[k].rest + lane)).n);
       here = next;
-      base = base_next;
     }
     store(y.start[block.last - 1], lane, no_vector());
   }
@@ -203,26 +224,23 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
 }
 
 /// Down the yarns: take(row, u of its particle, link, factors) for each link = make_link(d, rest).
-template <Along kAlong, Base kBase, class MakeLink, class Take>
-[[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block,
+template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
+[[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block, At at,
                                            std::uint32_t lane, Displacements u,
                                            MakeLink&& make_link, Take&& take) {
-  QuadLanes at;
   Elimination<kAlong> elimination;
   FloatVector here = at.get(u, slots(y, block.first, lane));
-  FloatVector base = base_of<kBase>(y, block.first, lane);
+  BaseDown<kBase, At> base(y, at, block.first, lane);
   Floats w = load(y.rows[block.first].inverse_mass + lane);
   for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
     const YarnRow& next = y.rows[k + 1];
     if constexpr (kBase == Base::memory) fetch_ahead(y, block, k, lane, u);
     const FloatVector u_next = at.get(u, slots(y, k + 1, lane));
-    const FloatVector base_next = base_of<kBase>(y, k + 1, lane);
     const Floats w_next = load(next.inverse_mass + lane);
-    YarnLink link = make_link((base - base_next) + (here - u_next), load(y.rows[k].rest + lane));
+    YarnLink link = make_link(base.step(k) + (here - u_next), load(y.rows[k].rest + lane));
     direct<kAlong>(link, y.start, k, lane);
     take(k, here, link, elimination.step(link, w, w_next));
     here = u_next;
-    base = base_next;
     w = w_next;
   }
   const Floats none(0.f);
@@ -230,32 +248,33 @@ template <Along kAlong, Base kBase, class MakeLink, class Take>
        Factors{none, none, none});
 }
 
-/// Up again: impulses, and the particles moved by them.
-[[gnu::always_inline]] inline void go_up(const Yarns& y, const YarnBlock& block, std::uint32_t lane,
-                                         Displacements u, const YarnScratch* scratch) {
-  QuadLanes at;
+/// Up again: impulses, and the particles moved by them. factors: has n and m of the rows.
+template <class At, class Row>
+[[gnu::always_inline]] inline void go_up(const Yarns& y, const YarnBlock& block, At at,
+                                         std::uint32_t lane, Displacements u,
+                                         const YarnScratch* scratch, const Row* factors) {
   FloatVector below = no_vector();  // impulse of the row's own constraint
   Floats lambda(0.f), m(0.f);
   for (std::uint32_t k = block.last - 1; k > block.first; --k) {
-    const YarnScratch &row = scratch[k - block.first], &link = scratch[k - block.first - 1];
-    lambda = fused(m, lambda, load(link.y + lane));
-    m = load(link.m + lane);
-    const FloatVector above = lambda * load(link.n, lane);
+    const std::uint32_t row = k - block.first;
+    lambda = fused(m, lambda, load(scratch[row - 1].y + lane));
+    m = load(factors[row - 1].m + lane);
+    const FloatVector above = lambda * load(factors[row - 1].n, lane);
     const Floats w = load(y.rows[k].inverse_mass + lane);
-    at.put(u, slots(y, k, lane), fused(w, above - below, load(row.u, lane)));
+    at.put(u, slots(y, k, lane), fused(w, above - below, load(scratch[row].u, lane)));
     below = above;
   }
   const Floats w = load(y.rows[block.first].inverse_mass + lane);
   at.put(u, slots(y, block.first, lane), fused(w, no_vector() - below, load(scratch->u, lane)));
 }
 
-template <Along kAlong, Base kBase>
-[[gnu::always_inline]] inline void sweep_yarns(const Yarns& y, const YarnBlock& block,
+template <Along kAlong, Base kBase, class At>
+[[gnu::always_inline]] inline void sweep_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                Displacements u, YarnScratch* scratch) {
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     Floats b(0.f);
     go_down<kAlong, kBase>(
-        y, block, lane, u, scaled_link<kAlong>,
+        y, block, at, lane, u, scaled_link<kAlong>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f) {
           YarnScratch& row = scratch[k - block.first];
           b = fused(f.down, b, link.error);
@@ -264,16 +283,18 @@ template <Along kAlong, Base kBase>
           f.up.store_unaligned(row.m + lane);
           (f.reciprocal * b).store_unaligned(row.y + lane);
         });
-    go_up(y, block, lane, u, scratch);
+    go_up(y, block, at, lane, u, scratch, scratch);
   }
 }
 
 void yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
-  with_base(y, [&](auto base) {
-    if (y.start == nullptr)
-      sweep_yarns<Along::present, base>(y, block, u, scratch);
-    else
-      sweep_yarns<Along::start, base>(y, block, u, scratch);
+  with_quads(block, [&](auto at) {
+    with_base(y, [&](auto base) {
+      if (y.start == nullptr)
+        sweep_yarns<Along::present, base>(y, block, at, u, scratch);
+      else
+        sweep_yarns<Along::start, base>(y, block, at, u, scratch);
+    });
   });
 }
 

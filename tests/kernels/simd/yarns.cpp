@@ -22,15 +22,16 @@ struct Block {
   std::vector<std::uint32_t> slot;
   kernels::AlignedVector<simd::YarnRow> rows;
   kernels::AlignedVector<simd::YarnSystemRow> system;
-  kernels::AlignedVector<simd::LaneVectors> base_of_row;
+  kernels::AlignedVector<simd::LaneVectors> base_step;
   kernels::AlignedVector<simd::YarnScratch> scratch;
   kernels::AlignedVector<simd::LaneVectors> directions;  // at the start of a rattle step
   kernels::AlignedVector<float> base, u, t;
   kernels::Vectors x;
   bool placed = false;  // the rows have the base
   bool from_memory = false;
+  bool in_fours = false;
 
-  Block() : rows(kRows), system(kRows), base_of_row(kRows), scratch(kRows) {
+  Block() : rows(kRows), system(kRows), base_step(kRows), scratch(kRows) {
     const std::size_t slots = kRows * kLanes + kLanes;
     base.resize(4 * slots);
     u.resize(4 * slots);
@@ -63,13 +64,40 @@ struct Block {
     }
   }
   simd::Yarns yarns() {
-    simd::Yarns yarns{rows.data(), base_of_row.data(), system.data(), slot.data()};
+    simd::Yarns yarns{rows.data(), base_step.data(), system.data(), slot.data()};
     if (!directions.empty()) yarns.start = directions.data();
     if (!placed) yarns.base = base.data();
     yarns.from_memory = from_memory;
     return yarns;
   }
-  simd::YarnBlock block() const { return {0, kRows}; }
+  simd::YarnBlock block() const { return {0, kRows, in_fours}; }
+  /// Lanes k, k + 4, k + 8 and k + 12 side by side.
+  void stand_in_fours() {
+    for (std::uint32_t i = 0; i < slot.size(); ++i) {
+      const std::uint32_t lane = i % kLanes;
+      slot[i] = i - lane + 4 * (lane % 4) + lane / 4;
+    }
+    Random random(7);
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) place(lane, random);
+  }
+  void push(const kernels::Vectors& d) {
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      t[4 * i] = static_cast<float>(d[i].x);
+      t[4 * i + 1] = static_cast<float>(d[i].y);
+      t[4 * i + 2] = static_cast<float>(d[i].z);
+    }
+  }
+  kernels::Vector t_of(std::uint32_t k, std::uint32_t lane) const {
+    const float* at = &t[4 * slot_of(k, lane)];
+    return {static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};
+  }
+  std::vector<float> p() const {
+    std::vector<float> values;
+    for (const simd::YarnSystemRow& row : system) {
+      values.insert(values.end(), std::begin(row.p), std::end(row.p));
+    }
+    return values;
+  }
   simd::Displacements quads(kernels::AlignedVector<float>& v) { return {v.data(), 1, 4}; }
   void start(const simd::Table& table) {
     table.split_positions(x.view(), quads(base), quads(u), 0, x.size());
@@ -233,34 +261,94 @@ Block in_conjugate_gradients(const simd::Table& table) {
   return b;
 }
 
-TEST_CASE(
-    "pushing first, or pushing and pulling at once, is pushing onto nothing and then pulling") {
+TEST_CASE("pushing first is pushing onto nothing") {
   constexpr float kBeta = 0.25f;
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
     const simd::Table& table = simd::table(isa);
-    Block apart = in_conjugate_gradients(table), first = apart, together = apart;
-    std::ranges::fill(apart.t, 0.f);
+    Block onto = in_conjugate_gradients(table), first = onto;
+    std::ranges::fill(onto.t, 0.f);
     std::ranges::fill(first.t, 7.f);
-    std::ranges::fill(together.t, 0.f);
-    table.yarn_push(apart.yarns(), apart.block(), kBeta, apart.quads(apart.t));
+    table.yarn_push(onto.yarns(), onto.block(), kBeta, onto.quads(onto.t));
     table.yarn_push_first(first.yarns(), first.block(), kBeta, first.quads(first.t));
-    const float product =
-        table.yarn_push_pull(together.yarns(), together.block(), kBeta, together.quads(together.t));
-    for (const std::uint32_t slot : apart.slot) {
+    for (const std::uint32_t slot : onto.slot) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        CHECK(first.t[4 * slot + axis] == apart.t[4 * slot + axis]);
-        CHECK(together.t[4 * slot + axis] == apart.t[4 * slot + axis]);
+        CHECK(first.t[4 * slot + axis] == onto.t[4 * slot + axis]);
       }
     }
-    CHECK(product == table.yarn_pull(apart.yarns(), apart.block(), apart.quads(apart.t)));
-    CHECK(product > 0);
-    for (std::uint32_t k = 0; k < Block::kRows; ++k) {
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-        CHECK(together.system[k].p[lane] == apart.system[k].p[lane]);
-        CHECK(first.system[k].p[lane] == apart.system[k].p[lane]);
-        CHECK(together.system[k].q[lane] == apart.system[k].q[lane]);
+    CHECK(table.yarn_pull(onto.yarns(), onto.block(), onto.quads(onto.t)) > 0);
+    CHECK(first.p() == onto.p());
+  }
+}
+
+TEST_CASE("elimination leaves nothing that changes a length, errors and all") {
+  const Block untouched;
+  const kernels::Vectors pushed = scattered(kernels::Vectors(untouched.x.size()), 0.01);
+  for (const simd::Isa isa : supported_isas()) {
+    for (const bool errors : {false, true}) {
+      CAPTURE(text(isa));
+      CAPTURE(errors);
+      Block b;
+      const simd::Table& table = simd::table(isa);
+      b.start(table);
+      table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+      b.push(pushed);
+      table.yarn_eliminate(b.yarns(), b.block(), b.quads(b.t), errors, b.scratch.data());
+      for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+        const auto n = directions(untouched, untouched.x, lane);
+        Eigen::VectorXd e = length_errors(untouched, lane);
+        if (!errors) e.setZero();
+        for (std::uint32_t k = 0; k < n.size(); ++k) {
+          const kernels::Vector d = pushed[b.slot_of(k, lane)] - pushed[b.slot_of(k + 1, lane)];
+          e[k] += kernels::dot(n[k], d);
+        }
+        const auto expected = solved_densely(untouched, lane, pushed, n, n, e);
+        for (std::uint32_t k = 0; k < Block::length(lane); ++k) {
+          CHECK(kernels::length(b.t_of(k, lane) - expected[k]) < 1e-7);
+        }
       }
+    }
+  }
+}
+
+TEST_CASE("slots in fours, or one by one: the same bits") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    Block one_by_one, in_fours;
+    in_fours.stand_in_fours();
+    one_by_one.stand_in_fours();
+    in_fours.in_fours = true;
+    for (Block* b : {&one_by_one, &in_fours}) {
+      b->start(table);
+      const simd::Displacements u = b->quads(b->u), t = b->quads(b->t);
+      table.yarn_sweep(b->yarns(), b->block(), u, b->scratch.data());
+      table.yarn_linearise(b->yarns(), b->block(), u);
+      table.yarn_precondition(b->yarns(), b->block(), 0);
+      table.yarn_push_first(b->yarns(), b->block(), 0, t);
+      table.yarn_push(b->yarns(), b->block(), 0.5f, t);
+      table.yarn_pull(b->yarns(), b->block(), t);
+      table.yarn_eliminate(b->yarns(), b->block(), t, true, b->scratch.data());
+    }
+    CHECK(in_fours.u == one_by_one.u);
+    CHECK(in_fours.t == one_by_one.t);
+    CHECK(in_fours.p() == one_by_one.p());
+    CHECK(std::ranges::count(in_fours.t, 0.f) < std::ssize(in_fours.t) * 3 / 4);
+  }
+}
+
+TEST_CASE("quads are added slot by slot") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    kernels::AlignedVector<float> u(4 * 3 * kLanes), t(u.size());
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      u[i] = static_cast<float>(i);
+      t[i] = 0.5f;
+    }
+    simd::table(isa).add_quads({u.data(), 1, 4}, {t.data(), 1, 4}, kLanes, 2 * kLanes);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const bool inside = i >= 4 * kLanes && i < 8 * kLanes;
+      CHECK(u[i] == static_cast<float>(i) + (inside ? 0.5f : 0.f));
     }
   }
 }
