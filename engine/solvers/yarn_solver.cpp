@@ -14,7 +14,7 @@ using kernels::kLanes;
 /// Newton's method comes where sweeps leave more than kSlow of the error and the strain is below
 /// kSmall: beyond, directions change so much that a linear system says little.
 constexpr double kSlow = 0.8;
-constexpr double kSmall = 0.03;
+constexpr double kSmall = 0.025;
 /// Newton steps are solved to this share of the error they found, or of the tolerance. (0.05: a
 /// tenth more iterations on corners; 0.4: spheres make steps fail.)
 constexpr double kForcing = 0.2;
