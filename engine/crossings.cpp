@@ -21,16 +21,17 @@ double least_distance(kernels::Vector from, kernels::Vector to) {
 
 }  // namespace
 
-std::uint32_t find_crossing(const Model& m, const kernels::Vectors& before,
-                            const kernels::Vectors& after) {
+std::uint32_t find_crossing(const Model& m, const simd::Table& kernels,
+                            kernels::VectorsView before, kernels::VectorsView after,
+                            std::vector<std::uint32_t>& moved) {
   for (const std::uint32_t s : m.spheres) {
-    const kernels::Vector start = before[s], moved = after[s] - start;
-    for (std::uint32_t p = 0; p < m.slots(); ++p) {
-      const double reach = m.radius[s] + m.radius[p];
-      const kernels::Vector way = after[p] - before[p] - moved;
-      if (!(dot(way, way) > kShortest * kShortest * reach * reach)) continue;
-      const kernels::Vector from = before[p] - start, to = from + way;
-      const double surface = (1 - kDeep) * reach;
+    const kernels::Vector start = before[s], along = after[s] - start;
+    const std::size_t far = kernels.find_moved(before, after, along, m.radius.data(), m.radius[s],
+                                               kShortest, 0, m.slots(), moved.data());
+    for (std::size_t i = 0; i < far; ++i) {
+      const std::uint32_t p = moved[i];
+      const kernels::Vector from = before[p] - start, to = from + (after[p] - before[p] - along);
+      const double surface = (1 - kDeep) * (m.radius[s] + m.radius[p]);
       if (length(from) < surface || least_distance(from, to) >= surface) continue;
       if (length(to) < surface) continue;  // still in there: that is a penetration, and measured
       if (may_touch(m, s, p)) return p;

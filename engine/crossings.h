@@ -1,7 +1,10 @@
 /// What went through a sphere within one step.
 #pragma once
 
+#include <vector>
+
 #include "engine/model.h"
+#include "kernels/simd/table.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -10,7 +13,9 @@ namespace weft {
 /// of a sphere before the step and behind it afterwards was in no contact. This looks at the way,
 /// which is straight within a step. Returns the slot of a particle that went through a sphere
 /// deeper than a contact is watched for, or kNoIndex.
-std::uint32_t find_crossing(const Model& model, const kernels::Vectors& before,
-                            const kernels::Vectors& after);
+/// `moved` has room for every slot.
+std::uint32_t find_crossing(const Model& model, const simd::Table& kernels,
+                            kernels::VectorsView before, kernels::VectorsView after,
+                            std::vector<std::uint32_t>& moved);
 
 }  // namespace weft

@@ -10,15 +10,19 @@ namespace {
 
 using kernels::Vector;
 
+/// In floats, as between neighbours on a yarn.
 Vector difference(const float* u, std::uint32_t a, std::uint32_t b) {
-  const auto axis = [&](std::size_t k) {
-    return static_cast<double>(u[4 * a + k]) - static_cast<double>(u[4 * b + k]);
-  };
+  const float *to = u + 4 * std::size_t{a}, *from = u + 4 * std::size_t{b};
+  const auto axis = [&](std::size_t k) { return static_cast<double>(to[k] - from[k]); };
   return {axis(0), axis(1), axis(2)};
 }
 
 Vector difference(const float* base, const float* u, std::uint32_t a, std::uint32_t b) {
-  return difference(base, a, b) + difference(u, a, b);
+  const std::size_t to = 4 * std::size_t{a}, from = 4 * std::size_t{b};
+  const auto axis = [&](std::size_t k) {
+    return static_cast<double>((base[to + k] - base[from + k]) + (u[to + k] - u[from + k]));
+  };
+  return {axis(0), axis(1), axis(2)};
 }
 
 void move(float* u, std::uint32_t slot, Vector d) {
@@ -83,12 +87,19 @@ void YarnOthers::keep_start(const float* base, const float* u) {
   }
 }
 
+/// One-sided, not violated, and without an impulse to take back: most contacts, seen without a root.
+bool YarnOthers::at_rest(const Pair& pair, Vector d) {
+  return pair.side != 0 && pair.sum == 0 &&
+         pair.side * (dot(d, d) - pair.distance * pair.distance) <= 0;
+}
+
 /// A constraint that has turned too far from where its impulses act is left alone.
 void YarnOthers::relax(const float* base, float* u) {
   constexpr double kLeastCosine = 0.1;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     const Vector d = difference(base, u, pair.a, pair.b);
+    if (at_rest(pair, d)) continue;
     const double l = length(d);
     const Vector n = direction(d, l);
     const Vector along = from_start(i) ? pair.start : n;
@@ -102,17 +113,20 @@ void YarnOthers::relax(const float* base, float* u) {
 }
 
 double YarnOthers::violation(const float* base, const float* u) const {
-  double most = 0;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+  const auto error_of = [&](const Pair& pair) {
+    return pair.side * (length(difference(base, u, pair.a, pair.b)) - pair.distance);
+  };
+  double ropes = 0, contacts = 0;
+  for (std::size_t i = 0; i < constraints_; ++i) {
     const Pair& pair = pairs_[i];
-    const bool contact = i >= constraints_;
-    if (!contact && (pair.side == 0 || pair.sum == 0)) continue;
-    const double error = pair.side * (length(difference(base, u, pair.a, pair.b)) - pair.distance);
-    const double unit = contact ? contact_tolerance_ : tolerance_ * pair.distance;
-    const bool counts = contact ? error > 0 || pair.sum != 0 : error < 0;
-    if (counts) most = std::max(most, std::abs(error) / unit);
+    if (pair.sum != 0) ropes = std::max(ropes, -error_of(pair) / pair.distance);
   }
-  return most;
+  for (std::size_t i = constraints_; i < pairs_.size(); ++i) {  // no branch here can be foreseen
+    const double error = error_of(pairs_[i]);
+    const double acted = pairs_[i].sum != 0;
+    contacts = std::max({contacts, error, -acted * error});
+  }
+  return std::max(ropes / tolerance_, contacts / contact_tolerance_);
 }
 
 /// One-sided ones take part where they are violated or have acted.

@@ -64,6 +64,7 @@ class YarnOthers {
     bool active = false;
     double lambda = 0, residual = 0, z = 0, p = 0, q = 0;
   };
+  static bool at_rest(const Pair& pair, kernels::Vector d);
   bool from_start(std::size_t i) const { return from_start_ && i < constraints_; }
   void set_error(std::size_t i, double error);
   void add(std::uint32_t a, std::uint32_t b, double distance, int side);

@@ -16,6 +16,19 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
+/// The slots of the lanes in the mask; returns how many.
+[[gnu::always_inline]] inline std::size_t list(DoubleMask mask, std::size_t slot,
+                                               std::uint32_t* out) {
+  if (!xsimd::any(mask)) return 0;
+  bool lanes[kDoubles];
+  mask.store_unaligned(lanes);
+  std::size_t listed = 0;
+  for (std::uint32_t k = 0; k < kDoubles; ++k) {
+    if (lanes[k]) out[listed++] = static_cast<std::uint32_t>(slot + k);
+  }
+  return listed;
+}
+
 std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vector centre,
                       double extra, std::size_t first, std::size_t last, std::uint32_t* out) {
   const DoubleVector c{Doubles(centre.x), Doubles(centre.y), Doubles(centre.z)};
@@ -23,13 +36,20 @@ std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vect
   for (std::size_t i = first; i < last; i += kDoubles) {
     const DoubleVector d = load(x, i) - c;
     const Doubles limit = load(reach + i) + Doubles(extra);
-    const auto near = dot(d, d) < limit * limit;
-    if (!xsimd::any(near)) continue;
-    bool lanes[kDoubles];
-    near.store_unaligned(lanes);
-    for (std::uint32_t k = 0; k < kDoubles; ++k) {
-      if (lanes[k]) out[found++] = static_cast<std::uint32_t>(i + k);
-    }
+    found += list(dot(d, d) < limit * limit, i, out + found);
+  }
+  return found;
+}
+
+std::size_t find_moved(kernels::VectorsView before, kernels::VectorsView after,
+                       kernels::Vector along, const double* reach, double extra, double part,
+                       std::size_t first, std::size_t last, std::uint32_t* out) {
+  const DoubleVector with{Doubles(along.x), Doubles(along.y), Doubles(along.z)};
+  std::size_t found = 0;
+  for (std::size_t i = first; i < last; i += kDoubles) {
+    const DoubleVector way = load(after, i) - load(before, i) - with;
+    const Doubles limit = Doubles(part) * (load(reach + i) + Doubles(extra));
+    found += list(dot(way, way) > limit * limit, i, out + found);
   }
   return found;
 }

@@ -62,7 +62,8 @@ constexpr Table make_table() {
           .eliminate_front = eliminate_front,
           .solve_front_forward = solve_front_forward,
           .solve_front_backward = solve_front_backward,
-          .find_near = find_near};
+          .find_near = find_near,
+          .find_moved = find_moved};
 }
 
 }  // namespace

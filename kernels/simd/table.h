@@ -279,6 +279,10 @@ struct Table {
   /// returns how many.
   std::size_t (*find_near)(kernels::VectorsView x, const double* reach, kernels::Vector centre,
                            double extra, std::size_t first, std::size_t last, std::uint32_t* out);
+  /// Likewise those that have moved, beside `along`, by more than part (reach[slot] + extra).
+  std::size_t (*find_moved)(kernels::VectorsView before, kernels::VectorsView after,
+                            kernels::Vector along, const double* reach, double extra, double part,
+                            std::size_t first, std::size_t last, std::uint32_t* out);
 };
 
 /// The isa must be supported.

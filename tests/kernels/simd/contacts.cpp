@@ -110,5 +110,35 @@ TEST_CASE("find_near lists what is nearer than its reach, in order, within the r
   }
 }
 
+TEST_CASE("find_moved lists what has moved farther than its reach, in order, within the range") {
+  for (const simd::Isa isa : supported_isas()) {
+    for (const std::uint32_t length : kLengths) {
+      for (const double part : {0.0, 0.4, 50.0}) {
+        CAPTURE(text(isa));
+        CAPTURE(length);
+        CAPTURE(part);
+        KernelData data(length, length + 9);
+        const kernels::Vector along{0.1, -0.2, 0.3};
+        const std::size_t first = kLanes, last = data.slots - kLanes;
+        std::vector<std::uint32_t> expected;
+        for (std::size_t i = first; i < last; ++i) {
+          const kernels::Vector way = data.position[i] - data.velocity[i] - along;
+          const double limit = part * (data.reach[i] + 1.5);
+          if (Rounding(isa).dot(way, way) > limit * limit) {
+            expected.push_back(static_cast<std::uint32_t>(i));
+          }
+        }
+        std::vector<std::uint32_t> found(data.slots);
+        found.resize(simd::table(isa).find_moved(data.velocity.view(), data.position.view(), along,
+                                                 data.reach.data(), 1.5, part, first, last,
+                                                 found.data()));
+        CHECK(found == expected);
+        CHECK((part != 0 || found.size() == last - first));
+        CHECK((part != 50 || found.empty()));
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace weft::test
