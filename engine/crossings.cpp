@@ -21,9 +21,8 @@ double least_distance(kernels::Vector from, kernels::Vector to) {
 
 }  // namespace
 
-std::uint32_t find_crossing(const Model& m, const simd::Table& kernels,
-                            kernels::VectorsView before, kernels::VectorsView after,
-                            std::vector<std::uint32_t>& moved) {
+std::uint32_t find_crossing(const Model& m, const simd::Table& kernels, kernels::VectorsView before,
+                            kernels::VectorsView after, std::vector<std::uint32_t>& moved) {
   for (const std::uint32_t s : m.spheres) {
     const kernels::Vector start = before[s], along = after[s] - start;
     const std::size_t far = kernels.find_moved(before, after, along, m.radius.data(), m.radius[s],

@@ -19,8 +19,8 @@ void find_contacts(State& s, StepReport& report) {
 namespace {
 
 void watch_crossings(State& s, StepReport& report) {
-  const std::uint32_t passed = find_crossing(
-      *s.model, *s.kernels, s.position.view(), s.solved.view(), s.contacts.found);
+  const std::uint32_t passed =
+      find_crossing(*s.model, *s.kernels, s.position.view(), s.solved.view(), s.contacts.found);
   if (passed == kNoIndex) return;
   report.passed_particle = s.model->ordering.particle_at[passed];
   worsen(report, Status::passed_through);

@@ -87,7 +87,8 @@ void YarnOthers::keep_start(const float* base, const float* u) {
   }
 }
 
-/// One-sided, not violated, and without an impulse to take back: most contacts, seen without a root.
+/// One-sided, not violated, and without an impulse to take back: most contacts, seen without a
+/// root.
 bool YarnOthers::at_rest(const Pair& pair, Vector d) {
   return pair.side != 0 && pair.sum == 0 &&
          pair.side * (dot(d, d) - pair.distance * pair.distance) <= 0;

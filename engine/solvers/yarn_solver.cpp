@@ -15,6 +15,9 @@ using kernels::kLanes;
 /// kSmall: beyond, directions change so much that a linear system says little.
 constexpr double kSlow = 0.8;
 constexpr double kSmall = 0.025;
+/// Where one more sweep is not expected to come within so many times the goal, nobody looks at the
+/// errors before the second: a look takes half as long as a sweep.
+constexpr double kFar = 2;
 /// Newton steps are solved to this share of the error they found, or of the tolerance. (0.05: a
 /// tenth more iterations on corners; 0.4: spheres make steps fail.)
 constexpr double kForcing = 0.2;
@@ -359,6 +362,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
   const Patience patience = from_start_ ? kRattlePatience : kPatience;
   double before = kNoBound, best = kNoBound;
   int stale = 0;
+  int swept = 1;  // times since the last look
   sweep(team, result);
   for (;;) {
     join(x, team);
@@ -375,11 +379,16 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
       result.failed = !(from_start_ ? result.converged : strain <= wanted && just);
       return result;
     }
-    if (strain < kSmall && strain > kSlow * before) {
+    const double fall = swept == 1 ? strain / before : std::sqrt(strain / before);
+    swept = 1;
+    if (strain < kSmall && fall > kSlow) {
       split(x, team);
       make_system();
       newton(kWithin * goal, std::min(kMostIterations, max_iterations - result.iterations), team,
              result);
+    } else if (fall < 1 && fall * strain > kFar * goal && result.iterations + 1 < max_iterations) {
+      sweep(team, result);
+      swept = 2;
     }
     sweep(team, result);
     before = strain;
