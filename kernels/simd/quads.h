@@ -19,9 +19,10 @@ namespace {
 
 [[gnu::always_inline]] inline Floats load_quads(const float* u, const std::uint32_t* slot) {
   const auto quad = [&](std::uint32_t k) { return _mm_load_ps(u + 4 * std::size_t{slot[k]}); };
-  const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(quad(0)), quad(4), 1);
-  const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(quad(8)), quad(12), 1);
-  return Floats(_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1));
+  __m512 v = _mm512_castps128_ps512(quad(0));
+  v = _mm512_mask_broadcast_f32x4(v, 0x00f0, quad(4));
+  v = _mm512_mask_broadcast_f32x4(v, 0x0f00, quad(8));
+  return Floats(_mm512_mask_broadcast_f32x4(v, 0xf000, quad(12)));
 }
 [[gnu::always_inline]] inline void store_quads(float* u, const std::uint32_t* slot, Floats q) {
   _mm_store_ps(u + 4 * std::size_t{slot[0]}, _mm512_castps512_ps128(q));
