@@ -10,19 +10,19 @@ namespace {
 
 using kernels::Vector;
 
-/// In floats, as between neighbours on a yarn.
 Vector difference(const float* u, std::uint32_t a, std::uint32_t b) {
   const float *to = u + 4 * std::size_t{a}, *from = u + 4 * std::size_t{b};
   const auto axis = [&](std::size_t k) { return static_cast<double>(to[k] - from[k]); };
   return {axis(0), axis(1), axis(2)};
 }
 
+/// Of base in double: its ends may be far apart, and then a difference of floats is rounded.
 Vector difference(const float* base, const float* u, std::uint32_t a, std::uint32_t b) {
-  const std::size_t to = 4 * std::size_t{a}, from = 4 * std::size_t{b};
+  const float *to = base + 4 * std::size_t{a}, *from = base + 4 * std::size_t{b};
   const auto axis = [&](std::size_t k) {
-    return static_cast<double>((base[to + k] - base[from + k]) + (u[to + k] - u[from + k]));
+    return static_cast<double>(to[k]) - static_cast<double>(from[k]);
   };
-  return {axis(0), axis(1), axis(2)};
+  return Vector{axis(0), axis(1), axis(2)} + difference(u, a, b);
 }
 
 void move(float* u, std::uint32_t slot, Vector d) {
@@ -56,7 +56,7 @@ YarnOthers::YarnOthers(const Model& model, const Settings& settings)
     : model_(model),
       tolerance_(settings.tolerance),
       contact_tolerance_(settings.contact_tolerance),
-      heaviest_(std::ranges::max(model.inverse_mass)) {
+      lightest_(1 / std::ranges::max(model.inverse_mass)) {
   const ConstraintStore& store = model.constraints;
   for (std::size_t c = store.plain; c < store.size(); ++c) {
     add(store.a[c], store.b[c], store.rest_length[c], c < store.bilateral ? 0 : 1);
@@ -65,8 +65,8 @@ YarnOthers::YarnOthers(const Model& model, const Settings& settings)
 }
 
 void YarnOthers::add(std::uint32_t a, std::uint32_t b, double distance, int side) {
-  const double wa = model_.inverse_mass[a] / heaviest_, wb = model_.inverse_mass[b] / heaviest_;
-  pairs_.push_back({a, b, side, distance, wa, wb});
+  const double wa = model_.inverse_mass[a] * lightest_, wb = model_.inverse_mass[b] * lightest_;
+  pairs_.push_back({a, b, side, distance, wa, wb, 1 / (wa + wb)});
 }
 
 void YarnOthers::start(const ContactStore& contacts, bool first_round) {
@@ -102,12 +102,15 @@ void YarnOthers::relax(const float* base, float* u) {
     const Vector d = difference(base, u, pair.a, pair.b);
     if (at_rest(pair, d)) continue;
     const double l = length(d);
-    const Vector n = direction(d, l);
-    const Vector along = from_start(i) ? pair.start : n;
-    const double cosine = from_start(i) ? dot(n, along) : 1;
-    if (cosine < kLeastCosine) continue;
-    const double weight = (pair.wa + pair.wb) * cosine;
-    const double impulse = clamped(pair.side, pair.sum, (l - pair.distance) / weight);
+    Vector along = direction(d, l);
+    double change = (l - pair.distance) * pair.reciprocal;
+    if (from_start(i)) {
+      const double cosine = dot(along, pair.start);
+      if (cosine < kLeastCosine) continue;
+      along = pair.start;
+      change /= cosine;
+    }
+    const double impulse = clamped(pair.side, pair.sum, change);
     if (impulse == 0) continue;
     move_together(pair.a, pair.wa, pair.b, pair.wb, impulse * along, u);
   }
@@ -181,7 +184,7 @@ simd::YarnProducts YarnOthers::precondition(double alpha, double goal) {
     Row& row = rows_[i];
     row.lambda += alpha * row.p;
     row.residual -= alpha * row.q;
-    row.z = row.residual / (pair.wa + pair.wb);
+    row.z = row.residual * pair.reciprocal;
     product += row.residual * row.z;
     const double unit = velocities_        ? 1
                         : i < constraints_ ? pair.distance

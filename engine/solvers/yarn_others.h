@@ -55,6 +55,7 @@ class YarnOthers {
     int side = 0;  // +1: pulls only, -1: pushes only
     double distance = 0;
     double wa = 0, wb = 0;  // inverse masses over the model's largest
+    double reciprocal = 0;  // of their sum
     double sum = 0;         // of its impulses
     kernels::Vector start{};
   };
@@ -71,7 +72,7 @@ class YarnOthers {
 
   const Model& model_;
   const double tolerance_, contact_tolerance_;
-  double heaviest_ = 1;
+  const double lightest_;        // mass of a particle
   std::size_t constraints_ = 0;  // the first of pairs_; contacts come behind
   bool from_start_ = false, velocities_ = false;
   std::vector<Pair> pairs_;
