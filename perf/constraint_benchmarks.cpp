@@ -154,7 +154,7 @@ constexpr Kernel kKernels[] = {
      false,
      0,
      [](const Arguments& x, const Piece& piece) {
-       benchmark::DoNotOptimize(x.table.stretch_run(x.g, piece.run, false));
+       benchmark::DoNotOptimize(x.table.stretch_runs(x.g, &piece.run, 1, false));
      },
      [](const Arguments& x, const Piece& piece) {
        benchmark::DoNotOptimize(x.table.stretch_singles(x.g, piece.first(), piece.last(), false));

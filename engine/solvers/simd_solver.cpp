@@ -51,7 +51,7 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa i
   }
   sweeps_.resize(std::max(model.ordering.tiles.size(), layout_.chunks.size() / kPiece + 1));
   strains_.resize(layout_.chunks.size() + 1);
-  stretches_.resize(layout_.chunks.size());
+  stretches_.resize(model.ordering.tiles.size() + layout_.chunks.size() / kPiece + 1);
   corrections_.resize(layout_.chunks.size());
 }
 
@@ -217,17 +217,46 @@ void SimdSolver::for_each_chunk(Team& team, Work&& work) {
   });
 }
 
+/// Of consecutive chunks.
+simd::StretchRange SimdSolver::stretch(const simd::Geometry& g, std::size_t first,
+                                       std::size_t last) const {
+  simd::StretchRange range;
+  for (std::size_t end; first < last; first = end) {
+    const Chunk& chunk = layout_.chunks[first];
+    const auto alike = [&](const Chunk& other) {
+      return !chunk.singles && !other.singles && other.rope == chunk.rope;
+    };
+    for (end = first + 1; end < last && alike(layout_.chunks[end]);) ++end;
+    const std::uint32_t c = chunk.run.constraint;
+    const simd::StretchRange part =
+        chunk.singles ? table_.stretch_singles(g, c, c + chunk.run.length, chunk.rope)
+                      : table_.stretch_runs(g, &layout_.runs[first], end - first, chunk.rope);
+    range = {std::min(range.least, part.least), std::max(range.most, part.most)};
+  }
+  return range;
+}
+
 /// Rounded up by more than measure_strain() may say for the same positions.
-double SimdSolver::max_strain(kernels::VectorsView x, Team& team) {
+double SimdSolver::max_strain(kernels::VectorsView x, Team& team, const BeforeTile& before_tile) {
   constexpr double kRounding = 1e-15;
   const simd::Geometry g = geometry(x, false);
-  for_each_chunk(team, [&](const Chunk& chunk, std::size_t i) {
-    const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
-    stretches_[i] = chunk.singles ? table_.stretch_singles(g, first, last, chunk.rope)
-                                  : table_.stretch_run(g, chunk.run, chunk.rope);
+  const std::vector<Tile>& tiles = model_.ordering.tiles;
+  team.for_each(tiles.size(), [&](std::size_t i) {
+    if (before_tile) before_tile(tiles[i].first_slot, tiles[i].last_slot);
+    stretches_[i] = stretch(g, layout_.batch_chunks[tiles[i].first_batch],
+                            layout_.batch_chunks[tiles[i].last_batch]);
+  });
+  const std::size_t tiled = tiles.empty() ? 0 : tiles.back().last_slot;
+  if (before_tile && tiled < layout_.slots) before_tile(tiled, layout_.slots);
+  const std::size_t between = layout_.batch_chunks[model_.ordering.between_tiles];
+  const std::size_t pieces = (layout_.chunks.size() - between + kPiece - 1) / kPiece;
+  team.for_each(pieces, [&](std::size_t i) {
+    const std::size_t first = between + i * kPiece;
+    stretches_[tiles.size() + i] =
+        stretch(g, first, std::min(first + kPiece, layout_.chunks.size()));
   });
   simd::StretchRange range;
-  for (std::size_t i = 0; i < layout_.chunks.size(); ++i) {
+  for (std::size_t i = 0; i < tiles.size() + pieces; ++i) {
     range.least = std::min(range.least, stretches_[i].least);
     range.most = std::max(range.most, stretches_[i].most);
   }

@@ -13,6 +13,7 @@
 #include <weft/weft.h>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/contacts.h"
@@ -56,7 +57,10 @@ class SimdSolver {
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts, Team& team);
   Strain measure_strain(kernels::VectorsView x, Team& team);
-  double max_strain(kernels::VectorsView x, Team& team);  // the same, and nothing besides
+  /// Slots of a tile, before its strains are looked at; in the end those of no tile.
+  using BeforeTile = std::function<void(std::size_t first, std::size_t last)>;
+  /// The largest strain, and nothing besides.
+  double max_strain(kernels::VectorsView x, Team& team, const BeforeTile& before_tile = {});
 
   const simd::Table& kernels() const { return table_; }
   std::size_t bytes() const;
@@ -71,6 +75,7 @@ class SimdSolver {
   void choose_active(kernels::VectorsView x);
   template <class Work>
   void for_each_chunk(Team& team, Work&& work);
+  simd::StretchRange stretch(const simd::Geometry& g, std::size_t first, std::size_t last) const;
   double strain_of(kernels::VectorsView x, std::uint32_t slot) const;
   void finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
                      Strain& strain) const;
@@ -91,10 +96,10 @@ class SimdSolver {
   // Per chunk, skip only: something in it, or in a chunk that shares a particle with it, was
   // corrected since it was last visited; since its directions were last renewed.
   std::vector<std::uint8_t> changed_, stale_;
-  std::vector<std::uint32_t> corrections_;  // per chunk, of the present pass
-  std::vector<kernels::Sweep> sweeps_;      // per piece of parallel work
-  std::vector<simd::StrainSums> strains_;   // per chunk
-  std::vector<simd::StretchRange> stretches_;
+  std::vector<std::uint32_t> corrections_;     // per chunk, of the present pass
+  std::vector<kernels::Sweep> sweeps_;         // per piece of parallel work
+  std::vector<simd::StrainSums> strains_;      // per chunk
+  std::vector<simd::StretchRange> stretches_;  // per tile, then per piece between tiles
   ContactLanes contacts_;
   std::vector<float> contact_impulse_;  // per contact of the ContactStore
 };

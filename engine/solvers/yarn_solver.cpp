@@ -365,8 +365,9 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
   int swept = 1;  // times since the last look
   sweep(team, result);
   for (;;) {
-    join(x, team);
-    const double strain = measure.max_strain(x, team);
+    const double strain = measure.max_strain(x, team, [&](std::size_t first, std::size_t last) {
+      table_.join_positions(x, quads(base_), quads(u_), first, last);
+    });
     const double violation = others_.violation(base_.data(), u_.data());
     const bool just = violation <= 1;
     result.converged = strain <= settings_.tolerance && just;

@@ -57,7 +57,7 @@ constexpr Table make_table() {
           .add_quads = add_quads,
           .strain_run = strain_run,
           .strain_singles = strain_singles,
-          .stretch_run = stretch_run,
+          .stretch_runs = stretch_runs,
           .stretch_singles = stretch_singles,
           .eliminate_front = eliminate_front,
           .solve_front_forward = solve_front_forward,

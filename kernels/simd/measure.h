@@ -86,10 +86,12 @@ struct StretchLanes {
   }
 };
 
-StretchRange stretch_run(const Geometry& g, const Run& run, bool rope) {
+StretchRange stretch_runs(const Geometry& g, const Run* runs, std::size_t count, bool rope) {
   StretchLanes lanes;
-  for (std::size_t k = 0; k < run.length; k += kDoubles) {
-    lanes.take(g, run.constraint + k, load(g.x, run.a + k) - load(g.x, run.b + k), rope);
+  for (const Run* run = runs; run != runs + count; ++run) {
+    for (std::size_t k = 0; k < run->length; k += kDoubles) {
+      lanes.take(g, run->constraint + k, load(g.x, run->a + k) - load(g.x, run->b + k), rope);
+    }
   }
   return lanes.range();
 }

@@ -265,7 +265,7 @@ struct Table {
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);
-  StretchRange (*stretch_run)(const Geometry&, const Run&, bool rope);
+  StretchRange (*stretch_runs)(const Geometry&, const Run*, std::size_t count, bool rope);
   StretchRange (*stretch_singles)(const Geometry&, std::uint32_t first, std::uint32_t last,
                                   bool rope);
 

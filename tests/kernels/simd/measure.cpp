@@ -93,7 +93,7 @@ TEST_CASE("the range of stretches holds the largest strain") {
           const simd::Table& table = simd::table(isa);
           const simd::StretchRange range =
               singles ? table.stretch_singles(data.geometry(), data.first, data.last, rope)
-                      : table.stretch_run(data.geometry(), data.run, rope);
+                      : table.stretch_runs(data.geometry(), &data.run, 1, rope);
           const simd::StretchRange wanted = expected_range(Rounding(isa), data, singles, rope);
           CHECK(range.least == wanted.least);
           CHECK(range.most == wanted.most);
@@ -103,6 +103,26 @@ TEST_CASE("the range of stretches holds the largest strain") {
         }
       }
     }
+  }
+}
+
+TEST_CASE("the range of many runs is that of all their constraints") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    KernelData data(5 * kLanes, 3);
+    const simd::Table& table = simd::table(isa);
+    std::vector<Run> runs;
+    simd::StretchRange wanted;
+    for (std::uint32_t k = 0; k < data.run.length; k += kLanes) {
+      runs.push_back({data.run.constraint + k, data.run.a + k, data.run.b + k, kLanes});
+      const simd::StretchRange one = table.stretch_runs(data.geometry(), &runs.back(), 1, false);
+      wanted = {std::min(wanted.least, one.least), std::max(wanted.most, one.most)};
+    }
+    const simd::StretchRange range =
+        table.stretch_runs(data.geometry(), runs.data(), runs.size(), false);
+    CHECK(range.least == wanted.least);
+    CHECK(range.most == wanted.most);
+    CHECK(range.most > range.least);
   }
 }
 
@@ -119,7 +139,7 @@ TEST_CASE("what is not a number is an infinite stretch, wherever it stands") {
         const simd::Table& table = simd::table(isa);
         const simd::StretchRange range =
             singles ? table.stretch_singles(data.geometry(), data.first, data.last, false)
-                    : table.stretch_run(data.geometry(), data.run, false);
+                    : table.stretch_runs(data.geometry(), &data.run, 1, false);
         CHECK(range.most == std::numeric_limits<double>::infinity());
       }
     }
@@ -134,7 +154,8 @@ TEST_CASE("a batch of padding has no strain") {
     const simd::StrainSums run = simd::table(isa).strain_run(data.geometry(), data.run, false);
     CHECK(run.largest == 0);
     CHECK(run.squares == 0);
-    const simd::StretchRange range = simd::table(isa).stretch_run(data.geometry(), data.run, false);
+    const simd::StretchRange range =
+        simd::table(isa).stretch_runs(data.geometry(), &data.run, 1, false);
     CHECK(range.least == 1);
     CHECK(range.most == 1);
   }
