@@ -137,14 +137,22 @@ double YarnOthers::violation(const float* base, const float* u) const {
 void YarnOthers::set_error(std::size_t i, double error) {
   const Pair& pair = pairs_[i];
   Row& row = rows_[i];
-  row.active = row.near && (pair.side == 0 || pair.side * error > 0 || pair.sum != 0);
-  row.residual = row.active ? error : 0;
+  const bool active = row.near && (pair.side == 0 || pair.side * error > 0 || pair.sum != 0);
+  if (!active) return;
+  active_.push_back(static_cast<std::uint32_t>(i));
+  row.residual = error;
   row.lambda = row.p = row.q = 0;
+}
+
+void YarnOthers::make_rows() {
+  rows_.resize(pairs_.size());
+  active_.reserve(pairs_.size());
+  active_.clear();
 }
 
 void YarnOthers::linearise(const float* base, const float* u) {
   velocities_ = false;
-  rows_.resize(pairs_.size());
+  make_rows();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Pair& pair = pairs_[i];
     const Vector d = difference(base, u, pair.a, pair.b);
@@ -157,7 +165,7 @@ void YarnOthers::linearise(const float* base, const float* u) {
 
 void YarnOthers::linearise_velocities(const float* base, const float* u) {
   velocities_ = true;
-  rows_.resize(pairs_.size());
+  make_rows();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Pair& pair = pairs_[i];
     const Vector d = difference(base, u, pair.a, pair.b);
@@ -169,17 +177,18 @@ void YarnOthers::linearise_velocities(const float* base, const float* u) {
 }
 
 double YarnOthers::read(const float* base, const float* u) {
-  double worst = 0;
+  active_.clear();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     set_error(i, dot(rows_[i].n, difference(base, u, pairs_[i].a, pairs_[i].b)));
-    worst = std::max(worst, std::abs(rows_[i].residual));
   }
+  double worst = 0;
+  for (const std::uint32_t i : active_) worst = std::max(worst, std::abs(rows_[i].residual));
   return worst;
 }
 
 simd::YarnProducts YarnOthers::precondition(double alpha, double goal) {
   double product = 0, worst = 0;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+  for (const std::uint32_t i : active_) {
     const Pair& pair = pairs_[i];
     Row& row = rows_[i];
     row.lambda += alpha * row.p;
@@ -195,7 +204,7 @@ simd::YarnProducts YarnOthers::precondition(double alpha, double goal) {
 }
 
 void YarnOthers::push(double beta, float* t) {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+  for (const std::uint32_t i : active_) {
     Row& row = rows_[i];
     row.p = row.z + beta * row.p;
     if (row.p == 0) continue;
@@ -205,16 +214,16 @@ void YarnOthers::push(double beta, float* t) {
 
 double YarnOthers::pull(const float* t) {
   double product = 0;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+  for (const std::uint32_t i : active_) {
     Row& row = rows_[i];
-    row.q = row.active ? dot(row.n, difference(t, pairs_[i].a, pairs_[i].b)) : 0;
+    row.q = dot(row.n, difference(t, pairs_[i].a, pairs_[i].b));
     product += row.p * row.q;
   }
   return product;
 }
 
 void YarnOthers::finish(float* u) {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+  for (const std::uint32_t i : active_) {
     Pair& pair = pairs_[i];
     const double impulse = clamped(pair.side, pair.sum, rows_[i].lambda);
     if (impulse == 0) continue;
@@ -222,6 +231,8 @@ void YarnOthers::finish(float* u) {
   }
 }
 
-std::size_t YarnOthers::bytes() const { return bytes_of(pairs_) + bytes_of(rows_); }
+std::size_t YarnOthers::bytes() const {
+  return bytes_of(pairs_) + bytes_of(rows_) + bytes_of(active_);
+}
 
 }  // namespace weft

@@ -62,11 +62,11 @@ class YarnOthers {
   struct Row {
     kernels::Vector n{};
     bool near = true;  // may act at all
-    bool active = false;
     double lambda = 0, residual = 0, z = 0, p = 0, q = 0;
   };
   static bool at_rest(const Pair& pair, kernels::Vector d);
   bool from_start(std::size_t i) const { return from_start_ && i < constraints_; }
+  void make_rows();
   void set_error(std::size_t i, double error);
   void add(std::uint32_t a, std::uint32_t b, double distance, int side);
 
@@ -76,7 +76,8 @@ class YarnOthers {
   std::size_t constraints_ = 0;  // the first of pairs_; contacts come behind
   bool from_start_ = false, velocities_ = false;
   std::vector<Pair> pairs_;
-  std::vector<Row> rows_;
+  std::vector<Row> rows_;              // of the linear system,
+  std::vector<std::uint32_t> active_;  // and those that take part in it
 };
 
 }  // namespace weft
