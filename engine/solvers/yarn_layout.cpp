@@ -74,10 +74,9 @@ void sort(std::vector<Chain>& chains) {
 
 /// A 4 x 4 transpose, its own inverse.
 constexpr std::size_t lane_of(std::size_t i) { return 4 * (i % 4) + i / 4; }
-/// Whether these chains stand side by side in memory, particle by particle.
-bool in_four(std::span<const Chain> chains) {
+/// Whether these chains, of one length, stand side by side in memory, particle by particle.
+bool side_by_side(std::span<const Chain> chains) {
   for (std::size_t i = 1; i < chains.size(); ++i) {
-    if (chains[i].particles.size() != chains[0].particles.size()) return false;
     for (std::size_t k = 0; k < chains[0].particles.size(); ++k) {
       if (chains[i].particles[k] != chains[0].particles[k] + i) return false;
     }
@@ -85,11 +84,11 @@ bool in_four(std::span<const Chain> chains) {
   return true;
 }
 
-/// Of a family: fours first.
+/// Of chains of one length: fours that stand side by side first.
 void bring_fours_forward(std::span<Chain> chains) {
   std::vector<Chain> fours, others;
   for (std::size_t i = 0; i < chains.size();) {
-    const bool four = i + 4 <= chains.size() && in_four(chains.subspan(i, 4));
+    const bool four = i + 4 <= chains.size() && side_by_side(chains.subspan(i, 4));
     std::vector<Chain>& to = four ? fours : others;
     for (const std::size_t last = i + (four ? 4 : 1); i < last; ++i) {
       to.push_back(std::move(chains[i]));
@@ -99,10 +98,23 @@ void bring_fours_forward(std::span<Chain> chains) {
   std::ranges::move(others, chains.begin() + static_cast<std::ptrdiff_t>(fours.size()));
 }
 
+/// How many of the first are alike.
+template <class Alike>
+std::size_t stretch(std::span<const Chain> chains, Alike&& alike) {
+  std::size_t n = 1;
+  while (n < chains.size() && alike(chains[0], chains[n])) ++n;
+  return n;
+}
+
+bool of_one_family(const Chain& one, const Chain& two) { return one.family == two.family; }
+bool of_one_length(const Chain& one, const Chain& two) {
+  return of_one_family(one, two) && one.links.size() == two.links.size();
+}
+
 class Builder {
  public:
   Builder(const Model& model, YarnLayout& layout) : model_(model), layout_(layout) {
-    heaviest_ = std::ranges::max(model.inverse_mass);
+    lightest_ = 1 / std::ranges::max(model.inverse_mass);
   }
 
   /// Lanes first ... last - 1 of the chains make a block; the first is the longest.
@@ -136,7 +148,7 @@ class Builder {
       const std::uint32_t slot = chain.particles[k];
       layout_.slot[(first + k) * kLanes + lane] = slot;
       simd::YarnRow& row = layout_.rows[first + k];
-      row.inverse_mass[lane] = static_cast<float>(model_.inverse_mass[slot] / heaviest_);
+      row.inverse_mass[lane] = static_cast<float>(model_.inverse_mass[slot] * lightest_);
       if (k == chain.links.size()) continue;
       row.rest[lane] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
     }
@@ -144,10 +156,10 @@ class Builder {
 
   const Model& model_;
   YarnLayout& layout_;
-  double heaviest_ = 1;
+  double lightest_ = 1;  // mass of a particle
 };
 
-void find_beyond_second(YarnLayout& layout) {
+void find_not_in_second(YarnLayout& layout) {
   std::vector<bool> held(layout.slots, false);
   const bool two = layout.families() > 1;
   const std::uint32_t first = two ? layout.family_begin[1] : 0;
@@ -160,7 +172,7 @@ void find_beyond_second(YarnLayout& layout) {
     }
   }
   for (std::uint32_t slot = 0; slot < layout.slots; ++slot) {
-    if (!held[slot]) layout.beyond_second.push_back(slot);
+    if (!held[slot]) layout.not_in_second.push_back(slot);
   }
 }
 
@@ -173,24 +185,27 @@ YarnLayout make_yarn_layout(const Model& model) {
   std::vector<Chain> chains = open_chains(yarns, model.slots());
   sort(chains);
   Builder builder(model, layout);
-  for (std::size_t first = 0, last; first < chains.size(); first = last) {
-    const std::uint32_t family = chains[first].family;
-    for (last = first; last < chains.size() && chains[last].family == family;) ++last;
+  for (std::span<Chain> left = chains; !left.empty();) {
+    const std::size_t n = stretch(left, of_one_length);
+    bring_fours_forward(left.first(n));
+    left = left.subspan(n);
+  }
+  for (std::span<const Chain> left = chains; !left.empty();) {
+    const std::size_t n = stretch(left, of_one_family);
     layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
-    const std::span<Chain> all(&chains[first], last - first);
-    bring_fours_forward(all);
-    for (std::size_t i = 0; i < all.size(); i += kLanes) {
-      builder.add_block(all.subspan(i, std::min<std::size_t>(kLanes, all.size() - i)));
+    for (std::size_t i = 0; i < n; i += kLanes) {
+      builder.add_block(left.subspan(i, std::min<std::size_t>(kLanes, n - i)));
     }
+    left = left.subspan(n);
   }
   layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
-  find_beyond_second(layout);
+  find_not_in_second(layout);
   return layout;
 }
 
 std::size_t YarnLayout::bytes() const {
   return bytes_of(blocks) + bytes_of(family_begin) + bytes_of(slot) + bytes_of(rows) +
-         bytes_of(beyond_second);
+         bytes_of(not_in_second);
 }
 
 }  // namespace weft

@@ -25,7 +25,7 @@ struct YarnLayout {
   std::vector<std::uint32_t> family_begin;     // blocks of family f: [f], ... [f + 1] - 1
   std::vector<std::uint32_t> slot;             // per row and lane
   kernels::AlignedVector<simd::YarnRow> rows;  // inverse masses over the model's largest
-  std::vector<std::uint32_t> beyond_second;    // slots that the second family does not hold
+  std::vector<std::uint32_t> not_in_second;    // slots that yarn_push_first does not write
 
   std::size_t longest = 0;  // rows of the longest block
   std::size_t slots = 0;    // of the model, then kLanes of padding for each block

@@ -26,9 +26,10 @@ Vector difference(const float* base, const float* u, std::uint32_t a, std::uint3
 }
 
 void move(float* u, std::uint32_t slot, Vector d) {
-  u[4 * slot] += static_cast<float>(d.x);
-  u[4 * slot + 1] += static_cast<float>(d.y);
-  u[4 * slot + 2] += static_cast<float>(d.z);
+  float* at = u + 4 * std::size_t{slot};
+  at[0] += static_cast<float>(d.x);
+  at[1] += static_cast<float>(d.y);
+  at[2] += static_cast<float>(d.z);
 }
 
 /// Each by its inverse mass times the impulse. What is fixed is not even written to: every next
@@ -182,7 +183,11 @@ double YarnOthers::read(const float* base, const float* u) {
     set_error(i, dot(rows_[i].n, difference(base, u, pairs_[i].a, pairs_[i].b)));
   }
   double worst = 0;
-  for (const std::uint32_t i : active_) worst = std::max(worst, std::abs(rows_[i].residual));
+  for (const std::uint32_t i : active_) {
+    const double error = std::abs(rows_[i].residual);
+    if (!(error <= worst)) worst = error;
+    if (std::isnan(error)) break;
+  }
   return worst;
 }
 
@@ -222,12 +227,12 @@ double YarnOthers::pull(const float* t) {
   return product;
 }
 
-void YarnOthers::finish(float* u) {
+void YarnOthers::finish(float* t) {
   for (const std::uint32_t i : active_) {
     Pair& pair = pairs_[i];
     const double impulse = clamped(pair.side, pair.sum, rows_[i].lambda);
     if (impulse == 0) continue;
-    move_together(pair.a, pair.wa, pair.b, pair.wb, impulse * rows_[i].n, u);
+    move_together(pair.a, pair.wa, pair.b, pair.wb, impulse * rows_[i].n, t);
   }
 }
 

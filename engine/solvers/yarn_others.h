@@ -1,5 +1,5 @@
 /// What no yarn holds: ropes, constraints at hubs, contacts. After a sweep they are relaxed one by
-/// one; in the linear system each of them is a family of its own, solved by its diagonal.
+/// one; in the linear system each is a family of its own, with its diagonal as preconditioner.
 #pragma once
 
 #include <weft/weft.h>
@@ -39,13 +39,13 @@ class YarnOthers {
   /// Of velocities: the directions at the positions base + u, and who is taut or touches there;
   /// then the errors, at the velocities base + u.
   void linearise_velocities(const float* base, const float* u);
-  double read(const float* base, const float* u);
+  double read(const float* base, const float* u);  // returns the largest, or what is not a number
   /// worst: in strains, where a contact's tolerance counts as much as `goal`; of velocities as they
   /// are.
   simd::YarnProducts precondition(double alpha, double goal);
   void push(double beta, float* t);
   double pull(const float* t);
-  void finish(float* u);
+  void finish(float* t);
 
   std::size_t bytes() const;
 

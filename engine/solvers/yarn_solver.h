@@ -8,13 +8,14 @@
 /// coupling converges.
 ///
 /// Where sweeps gain too little, Newton's method takes over: all yarns as one linear system, the
-/// first family eliminated, the rest solved by conjugate gradients with its yarns as preconditioner
-/// (kernels/simd/yarn_system.h).
+/// first family eliminated, the others solved by conjugate gradients with their yarns as
+/// preconditioner (kernels/simd/yarn_system.h).
 ///
 /// Velocities are linear: one system, solved in the same way.
 ///
-/// Errors are judged in double after each sweep or Newton step. If they do not fall the solver
-/// gives up early, for its caller to answer.
+/// Errors are judged in double after each sweep, while they are far off after every second; a
+/// Newton step has a sweep behind it. If they do not fall the solver gives up early, for its caller
+/// to answer.
 #pragma once
 
 #include <weft/weft.h>
@@ -39,7 +40,7 @@ class YarnSolver {
   /// gets: failed where that is not as far as it wanted. Scheme rattle applies impulses along the
   /// directions at `start`, if given. care: the share of what it usually leaves that may be left.
   /// measure: of the true errors. LoopResult::iterations counts sweeps and iterations of conjugate
-  /// gradients.
+  /// gradients, at least one in each Newton step.
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                       const ContactStore& contacts, bool first_round,
                                       int max_iterations, double care, SimdSolver& measure,
@@ -65,12 +66,14 @@ class YarnSolver {
   void sweep(Team& team, kernels::LoopResult& result);
   /// One linear system, to the strain `goal`.
   void newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
-  /// What was linearised, until no error is above `goal`, or the share `part` of what there was.
+  /// What was linearised, until no error is above `goal`, or the share `part` of what is left
+  /// when the first family is eliminated.
   void solve(double goal, double part, int max_iterations, Team& team, kernels::LoopResult& result);
   void make_system();
   void linearise(Team& team);
+  void linearise_yarns(Team& team);
   void linearise_velocities(Team& team);
-  double read_velocities(Team& team);  // the largest
+  double read_velocities(Team& team);  // the largest; infinite if one is not a number
   bool loses_energy(kernels::VectorsView v) const;
   Products precondition(double alpha, double goal, Team& team);
   Products reduce(double goal, Team& team);

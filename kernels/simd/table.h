@@ -250,17 +250,21 @@ struct Table {
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
   /// Solves the yarns of a block. scratch: as many rows as the block.
   void (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
-  /// Conjugate gradients over all yarns (yarn_system.h); what writes quads goes family by family.
+  /// Conjugate gradients (yarn_system.h) over all yarns, or all but those of the first family,
+  /// which is eliminated; what writes quads goes family by family.
   void (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);
   /// The velocities base + u become the right side; returns the largest.
   float (*yarn_read)(const Yarns&, const YarnBlock&, Displacements base, Displacements u);
   YarnProducts (*yarn_precondition)(const Yarns&, const YarnBlock&, float alpha);
   void (*yarn_push_first)(const Yarns&, const YarnBlock&, float beta, Displacements t);
   void (*yarn_push)(const Yarns&, const YarnBlock&, float beta, Displacements t);
+  /// The block's impulses take what t changes its lengths by out of t again; with errors, those
+  /// too.
   void (*yarn_eliminate)(const Yarns&, const YarnBlock&, Displacements t, bool errors,
                          YarnScratch* scratch);
   float (*yarn_pull)(const Yarns&, const YarnBlock&, Displacements t);
   void (*yarn_finish)(const Yarns&, const YarnBlock&, Displacements t);
+  /// u += t.
   void (*add_quads)(Displacements u, Displacements t, std::size_t first, std::size_t last);
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);

@@ -38,7 +38,7 @@ namespace {
   return total;
 }
 
-/// Of absolute values; what is not a number wins.
+/// Of absolute values. What is not a number may be lost: sums have it too.
 [[gnu::always_inline]] inline Floats larger(Floats most, Floats v) {
   return xsimd::select(xsimd::abs(v) <= most, most, xsimd::abs(v));
 }
@@ -81,13 +81,15 @@ void yarn_linearise(const Yarns& y, const YarnBlock& block, Displacements u) {
   });
 }
 
-/// residual = J (base + u), of velocities; lambda = p = q = 0. Returns the largest.
+/// residual = J (base + u), of velocities; lambda = p = q = 0. Returns the largest; not a number if
+/// one is not finite.
 float yarn_read(const Yarns& y, const YarnBlock& block, Displacements base, Displacements u) {
   QuadLanes at;
   float most = 0;
+  alignas(64) float poison[kernels::kLanes];
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     const Floats zero(0.f);
-    Floats worst(0.f);
+    Floats worst(0.f), poisoned(0.f);
     FloatVector base_here = at.get(base, slots(y, block.first, lane));
     FloatVector here = at.get(u, slots(y, block.first, lane));
     for (std::uint32_t k = block.first; k < block.last; ++k) {
@@ -96,6 +98,7 @@ float yarn_read(const Yarns& y, const YarnBlock& block, Displacements base, Disp
       const FloatVector base_next = at.get(base, next), u_next = at.get(u, next);
       const Floats change = dot(load(row.n, lane), (base_here - base_next) + (here - u_next));
       worst = larger(worst, change);
+      poisoned = fused(change, zero, poisoned);
       change.store_unaligned(row.residual + lane);
       zero.store_unaligned(row.lambda + lane);
       zero.store_unaligned(row.p + lane);
@@ -104,8 +107,9 @@ float yarn_read(const Yarns& y, const YarnBlock& block, Displacements base, Disp
       here = u_next;
     }
     most = larger(most, worst);
+    poisoned.store_unaligned(poison + lane);
   }
-  return most;
+  return most + sum(poison);
 }
 
 /// lambda += alpha p, residual -= alpha q, z = T^-1 residual.

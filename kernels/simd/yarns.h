@@ -182,7 +182,9 @@ struct BaseDown {
 /// work(how quads are fetched)
 template <class Work>
 [[gnu::always_inline]] inline void with_quads(const YarnBlock& block, Work&& work) {
-  if (block.in_fours && kFloats > 4) return work(QuadsAt<true>());
+  if constexpr (kFloats > 4) {
+    if (block.in_fours) return work(QuadsAt<true>());
+  }
   return work(QuadsAt<false>());
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/model.h"
 #include "tests/support/clothes.h"
+#include "tests/support/mesh_scenes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/motion.h"
 
@@ -70,6 +71,15 @@ TEST_CASE("every constraint is in one yarn, no particle twice in a family") {
   check_layout(*model_of(scene_of("hang_sphere", 7)));
   check_layout(*model_of(hoop(12)));
   check_layout(*model_of(scene_of("chain", 20)));
+  check_layout(*model_of(random_sheet(20, 3)));
+  check_layout(*model_of(scene_of(both(grid(42, 40), grid(20, 10)))));
+}
+
+TEST_CASE("of a sheet, the yarns that stand side by side in memory go in fours") {
+  const auto model = model_of(scene_of("hang", 40));
+  const std::vector<simd::YarnBlock>& blocks = model->yarns().blocks;
+  CHECK(std::ranges::count_if(blocks, &simd::YarnBlock::in_fours) >= 2);
+  CHECK(std::ranges::count_if(blocks, &simd::YarnBlock::in_fours) < std::ssize(blocks));
 }
 
 TEST_CASE("a step ends within tolerance, and no step gains energy") {
