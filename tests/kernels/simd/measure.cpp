@@ -15,8 +15,7 @@ using kernels::Vector;
 double strain(const Rounding& rounding, const KernelData& data, std::uint32_t c, Vector d,
               bool rope) {
   if (data.is_padding(c)) return 0;
-  const double rest = data.rest_length[c];
-  const double stretch = (std::sqrt(rounding.dot(d, d)) - rest) / rest;
+  const double stretch = std::sqrt(data.inverse_square[c] * rounding.dot(d, d)) - 1;
   return rope ? std::max(stretch, 0.0) : std::abs(stretch);
 }
 
