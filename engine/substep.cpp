@@ -26,13 +26,20 @@ void watch_crossings(State& s, StepReport& report) {
   worsen(report, Status::passed_through);
 }
 
+/// An attempt by scheme rattle whose positions miss their tolerance is not worth its velocities: as
+/// a rule it is far beyond any numbers that a velocity loop could end with.
+bool blown_up(const State& s, const Attempt& attempt, const StepReport& report) {
+  return attempt.start.x != nullptr && s.settings.iterations == 0 &&
+         report.status != Status::converged;
+}
+
 Ended run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   const double h = attempt.h;
   timed(report, Stage::predict, [&] { predict(s, h, team); });
   find_contacts(s, report);
   Ended ended = Ended::solved;
   timed(report, Stage::solve_positions, [&] { ended = solve_positions(s, attempt, report, team); });
-  if (ended == Ended::gave_up) return ended;
+  if (ended == Ended::gave_up || blown_up(s, attempt, report)) return ended;
   bool finite = true;
   timed(report, Stage::commit, [&] { finite = commit(s, h, team); });
   if (!finite) return Ended::lost;

@@ -46,7 +46,7 @@ constexpr Golden kGolden[] = {
     {Way::automatic, "hang_sphere", 21, 40, false, 0x50e95db552f7f92f},
     {Way::automatic, "sphere_drop", 21, 40, false, 0xea5312d24218b95c},
     {Way::automatic, "corners", 41, 20, false, 0x7d56ed9ba1957d7c},
-    {Way::automatic, "ropes", 33, 10, true, 0xb021ec071ea7f944},
+    {Way::automatic, "ropes", 33, 10, true, 0x56410a6f7c2f5a11},
     {Way::automatic, "random", 33, 10, false, 0x1e9cf85d29243c90},
     {Way::automatic, "hub", 17, 6, true, 0x3db894d45ba4cfeb},
 };
