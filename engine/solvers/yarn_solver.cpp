@@ -198,9 +198,15 @@ YarnSolver::Products YarnSolver::precondition(double alpha, double goal, Team& t
   return sum;
 }
 
+void YarnSolver::clear_push(Team& team) {
+  for_all_slots(layout_.slots, team, [&](std::size_t first, std::size_t last) {
+    std::fill(t_.data() + 4 * first, t_.data() + 4 * last, 0.f);
+  });
+}
+
 /// The right side without the first family, and its first preconditioned residual.
 YarnSolver::Products YarnSolver::reduce(double goal, Team& team) {
-  std::ranges::fill(t_, 0.f);
+  clear_push(team);
   eliminate(true, team);
   pull(team);
   return precondition(-1, goal, team);
@@ -246,7 +252,7 @@ double YarnSolver::pull(Team& team) {
 /// u -= M^-1 J^T lambda, the first family's impulses from those of all others.
 void YarnSolver::finish(Team& team) {
   const std::vector<std::uint32_t>& begin = layout_.family_begin;
-  std::ranges::fill(t_, 0.f);
+  clear_push(team);
   for (std::size_t f = 1; f < layout_.families(); ++f) {
     for_each_block(begin[f], begin[f + 1], team,
                    [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {

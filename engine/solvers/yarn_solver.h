@@ -76,6 +76,7 @@ class YarnSolver {
   double read_velocities(Team& team);  // the largest; infinite if one is not a number
   bool loses_energy(kernels::VectorsView v) const;
   Products precondition(double alpha, double goal, Team& team);
+  void clear_push(Team& team);
   Products reduce(double goal, Team& team);
   void push(double beta, Team& team);
   void eliminate(bool errors, Team& team);

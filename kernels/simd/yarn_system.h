@@ -211,18 +211,19 @@ float yarn_pull(const Yarns& y, const YarnBlock& block, Displacements t) {
 
 /// t -= M^-1 J^T lambda.
 void yarn_finish(const Yarns& y, const YarnBlock& block, Displacements t) {
-  QuadLanes at;
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    FloatVector above = no_vector();
-    for (std::uint32_t k = block.first; k < block.last; ++k) {
-      const YarnSystemRow& row = y.system[k];
-      const FloatVector below = load(row.lambda + lane) * load(row.n, lane);
-      const std::uint32_t* slot = slots(y, k, lane);
-      const Floats w = load(y.rows[k].inverse_mass + lane);
-      at.put(t, slot, fused(w, above - below, at.get(t, slot)));
-      above = below;
+  with_quads(block, [&](auto at) {
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      FloatVector above = no_vector();
+      for (std::uint32_t k = block.first; k < block.last; ++k) {
+        const YarnSystemRow& row = y.system[k];
+        const FloatVector below = load(row.lambda + lane) * load(row.n, lane);
+        const std::uint32_t* slot = slots(y, k, lane);
+        const Floats w = load(y.rows[k].inverse_mass + lane);
+        at.put(t, slot, fused(w, above - below, at.get(t, slot)));
+        above = below;
+      }
     }
-  }
+  });
 }
 
 template <bool kErrors, class At>
