@@ -1,4 +1,4 @@
-/// Kernels that go through all slots: predict, commit, apply_displacements, find_near.
+/// Kernels that go through all slots: predict, commit, find_near, split_positions, ...
 #include "perf/benchmarks.h"
 
 namespace weft::perf {
@@ -12,6 +12,8 @@ struct Kernel {
 };
 
 constexpr double kStep = 0.01;
+
+simd::Displacements quads(kernels::AlignedVector<float>& v) { return {v.data(), 1, 4}; }
 
 constexpr Kernel kKernels[] = {
     {"predict", 80, 80,
@@ -35,6 +37,23 @@ constexpr Kernel kKernels[] = {
        const kernels::Vector centre{0.5, 0, 0.5};
        benchmark::DoNotOptimize(t.find_near(w.position.view(), w.reach.data(), centre, 0.1, 0,
                                             w.slots(), w.near.data()));
+     }},
+    {"find_moved", 56, 56,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       benchmark::DoNotOptimize(t.find_moved(w.position.view(), w.solved.view(), {}, w.reach.data(),
+                                             1, 1, 0, w.slots(), w.near.data()));
+     }},
+    {"split_positions", 56, 56,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       t.split_positions(w.position.view(), quads(w.base), quads(w.change), 0, w.slots());
+     }},
+    {"join_positions", 80, 56,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       t.join_positions(w.position.view(), quads(w.base), quads(w.change), 0, w.slots());
+     }},
+    {"add_quads", 48, 32,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       t.add_quads(quads(w.base), quads(w.change), 0, w.slots());
      }},
 };
 

@@ -33,6 +33,8 @@ void Workbench::place_particles(const SceneDescription& scene) {
   inverse_mass.resize(slots());
   reach.resize(slots());
   near.resize(slots());
+  base.resize(4 * slots());
+  change.resize(4 * slots());
   mask.assign(slots(), ~std::uint64_t{0});
   stride_ = slots() + kLanes;
   u_.resize(4 * stride_);
