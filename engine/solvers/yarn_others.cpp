@@ -10,19 +10,17 @@ namespace {
 
 using kernels::Vector;
 
+/// In double: what is judged by it may be nearly as small as what floats round off.
 Vector difference(const float* u, std::uint32_t a, std::uint32_t b) {
   const float *to = u + 4 * std::size_t{a}, *from = u + 4 * std::size_t{b};
-  const auto axis = [&](std::size_t k) { return static_cast<double>(to[k] - from[k]); };
-  return {axis(0), axis(1), axis(2)};
-}
-
-/// Of base in double: its ends may be far apart, and then a difference of floats is rounded.
-Vector difference(const float* base, const float* u, std::uint32_t a, std::uint32_t b) {
-  const float *to = base + 4 * std::size_t{a}, *from = base + 4 * std::size_t{b};
   const auto axis = [&](std::size_t k) {
     return static_cast<double>(to[k]) - static_cast<double>(from[k]);
   };
-  return Vector{axis(0), axis(1), axis(2)} + difference(u, a, b);
+  return {axis(0), axis(1), axis(2)};
+}
+
+Vector difference(const float* base, const float* u, std::uint32_t a, std::uint32_t b) {
+  return difference(base, a, b) + difference(u, a, b);
 }
 
 void move(float* u, std::uint32_t slot, Vector d) {

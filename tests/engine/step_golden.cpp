@@ -46,9 +46,9 @@ constexpr Golden kGolden[] = {
     {Way::automatic, "hang_sphere", 21, 40, false, 0x50e95db552f7f92f},
     {Way::automatic, "sphere_drop", 21, 40, false, 0xea5312d24218b95c},
     {Way::automatic, "corners", 41, 20, false, 0x7d56ed9ba1957d7c},
-    {Way::automatic, "ropes", 33, 10, true, 0x56410a6f7c2f5a11},
+    {Way::automatic, "ropes", 33, 10, true, 0x4e1174a3b2ce0c7b},
     {Way::automatic, "random", 33, 10, false, 0x1e9cf85d29243c90},
-    {Way::automatic, "hub", 17, 6, true, 0x3db894d45ba4cfeb},
+    {Way::automatic, "hub", 17, 6, true, 0xddb172f0c8726bce},
 };
 
 SceneDescription describe(const Golden& golden) {
