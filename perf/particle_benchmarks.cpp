@@ -49,11 +49,11 @@ constexpr Kernel kKernels[] = {
      }},
     {"join_positions", 80, 56,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
-       t.join_positions(w.position.view(), quads(w.base), quads(w.change), 0, w.slots());
+       t.join_positions(w.solved.view(), quads(w.base), quads(w.change), 0, w.slots());
      }},
     {"add_quads", 48, 32,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
-       t.add_quads(quads(w.base), quads(w.change), 0, w.slots());
+       t.add_quads(quads(w.change), quads(w.push), 0, w.slots());
      }},
 };
 
