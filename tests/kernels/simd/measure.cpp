@@ -113,7 +113,7 @@ TEST_CASE("the range of many runs is that of all their constraints") {
     std::vector<Run> runs;
     simd::StretchRange wanted;
     for (std::uint32_t k = 0; k < data.run.length; k += kLanes) {
-      runs.push_back({data.run.constraint + k, data.run.a + k, data.run.b + k, kLanes});
+      runs.push_back({data.run.a + k, data.run.b + k, data.run.constraint + k, kLanes});
       const simd::StretchRange one = table.stretch_runs(data.geometry(), &runs.back(), 1, false);
       wanted = {std::min(wanted.least, one.least), std::max(wanted.most, one.most)};
     }
