@@ -1,0 +1,178 @@
+/// The linear system of yarns against dense solutions in double, on every instruction set.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/support/isas.h"
+#include "tests/support/yarn_block.h"
+
+namespace weft::test {
+namespace {
+
+/// With one family, which is its own preconditioner, the first step is the solution.
+void solve_system(BlockOfYarns& b, const simd::Yarns& yarns, const simd::Table& table) {
+  kernels::AlignedVector<float> t(b.u.size());
+  const simd::YarnProducts before = table.yarn_precondition(yarns, b.block(), 0);
+  table.yarn_push(yarns, b.block(), 0, b.quads(t));
+  const float curvature = table.yarn_pull(yarns, b.block(), b.quads(t));
+  CHECK(before.product / curvature == doctest::Approx(1).epsilon(1e-5));
+  const auto after = table.yarn_precondition(yarns, b.block(), before.product / curvature);
+  CHECK(after.worst < 1e-4f * before.worst);
+  table.yarn_finish(yarns, b.block(), b.quads(b.u));
+}
+
+TEST_CASE("what conjugate gradients are made of agrees with one exact solve") {
+  const BlockOfYarns untouched;
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    BlockOfYarns b;
+    const simd::Table& table = simd::table(isa);
+    b.start(table);
+    table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+    CHECK(table.yarn_precondition(b.yarns(), b.block(), 0).worst ==
+          doctest::Approx(0.01).epsilon(0.05));
+    solve_system(b, b.yarns(), table);
+    const kernels::Vectors moved = b.end(table);
+    for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+      const auto expected = solved_densely(untouched, lane);
+      for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
+        CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 1e-7);
+      }
+    }
+  }
+}
+
+/// A block whose system has p, z and q of a second iteration.
+BlockOfYarns in_conjugate_gradients(const simd::Table& table) {
+  BlockOfYarns b;
+  b.start(table);
+  table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+  table.yarn_precondition(b.yarns(), b.block(), 0);
+  table.yarn_push(b.yarns(), b.block(), 0, b.quads(b.t));
+  table.yarn_pull(b.yarns(), b.block(), b.quads(b.t));
+  table.yarn_precondition(b.yarns(), b.block(), 0.5f);
+  return b;
+}
+
+TEST_CASE("pushing first is pushing onto nothing") {
+  constexpr float kBeta = 0.25f;
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    BlockOfYarns onto = in_conjugate_gradients(table), first = onto;
+    std::ranges::fill(onto.t, 0.f);
+    std::ranges::fill(first.t, 7.f);
+    table.yarn_push(onto.yarns(), onto.block(), kBeta, onto.quads(onto.t));
+    table.yarn_push_first(first.yarns(), first.block(), kBeta, first.quads(first.t));
+    for (const std::uint32_t slot : onto.slot) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        CHECK(first.t[4 * slot + axis] == onto.t[4 * slot + axis]);
+      }
+    }
+    CHECK(table.yarn_pull(onto.yarns(), onto.block(), onto.quads(onto.t)) > 0);
+    CHECK(first.p() == onto.p());
+  }
+}
+
+TEST_CASE("elimination leaves nothing that changes a length, errors and all") {
+  const BlockOfYarns untouched;
+  const kernels::Vectors pushed = scattered(kernels::Vectors(untouched.x.size()), 0.01);
+  for (const simd::Isa isa : supported_isas()) {
+    for (const bool errors : {false, true}) {
+      CAPTURE(text(isa));
+      CAPTURE(errors);
+      BlockOfYarns b;
+      const simd::Table& table = simd::table(isa);
+      b.start(table);
+      table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+      b.push(pushed);
+      table.yarn_eliminate(b.yarns(), b.block(), b.quads(b.t), errors, b.scratch.data());
+      for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+        const auto n = directions(untouched, untouched.x, lane);
+        Eigen::VectorXd e = length_errors(untouched, lane);
+        if (!errors) e.setZero();
+        for (std::uint32_t k = 0; k < n.size(); ++k) {
+          const kernels::Vector d = pushed[b.slot_of(k, lane)] - pushed[b.slot_of(k + 1, lane)];
+          e[k] += kernels::dot(n[k], d);
+        }
+        const auto expected = solved_densely(untouched, lane, pushed, n, n, e);
+        for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
+          CHECK(kernels::length(b.t_of(k, lane) - expected[k]) < 1e-7);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("quads are added slot by slot") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    kernels::AlignedVector<float> u(4 * 3 * kLanes), t(u.size());
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      u[i] = static_cast<float>(i);
+      t[i] = 0.5f;
+    }
+    simd::table(isa).add_quads({u.data(), 1, 4}, {t.data(), 1, 4}, kLanes, 2 * kLanes);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const bool inside = i >= 4 * kLanes && i < 8 * kLanes;
+      CHECK(u[i] == static_cast<float>(i) + (inside ? 0.5f : 0.f));
+    }
+  }
+}
+
+TEST_CASE("rattle: the linear system has the directions at the start, and the errors at x") {
+  const BlockOfYarns untouched;
+  const kernels::Vectors q = scattered(untouched.x, 0.02);
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    BlockOfYarns b;
+    const simd::Table& table = simd::table(isa);
+    b.keep_start(table, q);
+    b.start(table);
+    table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+    solve_system(b, b.yarns(), table);
+    const kernels::Vectors moved = b.end(table);
+    for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+      const auto s = directions(untouched, q, lane);
+      const auto expected =
+          solved_densely(untouched, lane, untouched.x, s, s, length_errors(untouched, lane));
+      for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
+        CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 1e-7);
+      }
+    }
+  }
+}
+
+TEST_CASE("velocities: the linear system takes them out along each link") {
+  const BlockOfYarns untouched;
+  const kernels::Vectors v = scattered(kernels::Vectors(untouched.x.size()), 1);
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    BlockOfYarns b;
+    const simd::Table& table = simd::table(isa);
+    simd::Yarns yarns = b.yarns();
+    yarns.velocities = true;
+    b.start(table);
+    table.yarn_linearise(yarns, b.block(), b.quads(b.u));
+    kernels::Vectors copy = v;
+    table.split_positions(copy.view(), b.quads(b.base), b.quads(b.u), 0, v.size());
+    table.yarn_read(yarns, b.block(), b.quads(b.base), b.quads(b.u));
+    solve_system(b, yarns, table);
+    const kernels::Vectors moved = b.end(table, v);
+    for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+      const auto n = directions(untouched, untouched.x, lane);
+      Eigen::VectorXd e(static_cast<Eigen::Index>(n.size()));
+      for (std::uint32_t k = 0; k < n.size(); ++k) {
+        e[k] = kernels::dot(n[k], v[b.slot_of(k, lane)] - v[b.slot_of(k + 1, lane)]);
+      }
+      const auto expected = solved_densely(untouched, lane, v, n, n, e);
+      for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
+        CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 2e-5);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::test
