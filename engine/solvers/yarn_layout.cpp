@@ -129,7 +129,11 @@ class Builder {
     for (std::size_t i = first * kLanes; i < last * kLanes; ++i) {
       layout_.slot.push_back(static_cast<std::uint32_t>(padding + lane_of(i % kLanes)));
     }
-    for (std::size_t i = 0; i < chains.size(); ++i) fill(chains[i], first, lane_of(i));
+    layout_.links.push_back(0);
+    for (std::size_t i = 0; i < chains.size(); ++i) {
+      fill(chains[i], first, lane_of(i));
+      layout_.links.back() += static_cast<std::uint32_t>(chains[i].links.size());
+    }
     layout_.blocks.back().in_fours = in_fours(first, last);
   }
 
@@ -204,8 +208,8 @@ YarnLayout make_yarn_layout(const Model& model) {
 }
 
 std::size_t YarnLayout::bytes() const {
-  return bytes_of(blocks) + bytes_of(family_begin) + bytes_of(slot) + bytes_of(rows) +
-         bytes_of(not_in_second);
+  return bytes_of(blocks) + bytes_of(links) + bytes_of(family_begin) + bytes_of(slot) +
+         bytes_of(rows) + bytes_of(not_in_second);
 }
 
 }  // namespace weft

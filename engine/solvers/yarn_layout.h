@@ -22,6 +22,7 @@ class Model;
 
 struct YarnLayout {
   std::vector<simd::YarnBlock> blocks;
+  std::vector<std::uint32_t> links;            // constraints of each block
   std::vector<std::uint32_t> family_begin;     // blocks of family f: [f], ... [f + 1] - 1
   std::vector<std::uint32_t> slot;             // per row and lane
   kernels::AlignedVector<simd::YarnRow> rows;  // inverse masses over the model's largest

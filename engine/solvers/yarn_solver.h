@@ -1,8 +1,9 @@
 /// The yarn solver: whole chains of constraints at a time.
 ///
-/// A sweep solves the yarns of each family exactly, directions and errors taken anew, one family
-/// after the other: block Gauss-Seidel (kernels/simd/yarns.h). After it come the constraints that
-/// no yarn holds (ropes, hubs, contacts), one by one, their accumulated impulses clamped. Every
+/// A sweep solves the yarns of each family, one family after the other, until their own errors are
+/// small: Newton's method on kLanes yarns at a time, directions and errors taken anew, between
+/// families block Gauss-Seidel (kernels/simd/yarns.h). After it come the constraints that no yarn
+/// holds (ropes, hubs, contacts), one by one, their accumulated impulses clamped. Every
 /// block minimises the same convex quadratic of the impulses, 1/2 l'Al - e'l, over its own ones
 /// with the others held, so that along fixed directions a pass never raises it: this is why the
 /// coupling converges.
@@ -40,7 +41,7 @@ class YarnSolver {
   /// gets: failed where that is not as far as it wanted. Scheme rattle applies impulses along the
   /// directions at `start`, if given. care: the share of what it usually leaves that may be left.
   /// measure: of the true errors. LoopResult::iterations counts sweeps and iterations of conjugate
-  /// gradients, at least one in each Newton step.
+  /// gradients, at least one in each Newton step; visits, every solve of a constraint.
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                       const ContactStore& contacts, bool first_round,
                                       int max_iterations, double care, SimdSolver& measure,
@@ -62,8 +63,10 @@ class YarnSolver {
   void split(kernels::VectorsView x, Team& team);
   void keep_start(kernels::VectorsView start, Team& team);
   void join(kernels::VectorsView x, Team& team);
-  /// Each family once, then the others.
-  void sweep(Team& team, kernels::LoopResult& result);
+  /// Each family, its blocks until their lengths are within the share `enough`, then the others.
+  void sweep(double enough, Team& team, kernels::LoopResult& result);
+  std::uint32_t solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
+                            simd::YarnScratch* scratch);
   /// One linear system, to the strain `goal`.
   void newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
   /// What was linearised, until no error is above `goal`, or the share `part` of what is left
@@ -82,7 +85,7 @@ class YarnSolver {
   void eliminate(bool errors, Team& team);
   double pull(Team& team);
   void finish(Team& team);
-  void count(int passes, kernels::LoopResult& result) const;
+  void count(int passes, std::int64_t solved, kernels::LoopResult& result) const;
   template <class Work>
   void for_each_family(Team& team, Work&& work);
   template <class Work>
@@ -102,6 +105,7 @@ class YarnSolver {
   kernels::AlignedVector<float> base_, u_, t_;           // quads
   const std::size_t first_end_;                          // blocks of the first family
   std::vector<simd::YarnProducts> products_;             // per block
+  std::vector<std::uint32_t> solves_;                    // per block, in one sweep
   YarnOthers others_;
 };
 

@@ -264,7 +264,8 @@ struct StepReport {
   Status status = Status::converged;
   int substeps = 0;              ///< that the step was done in
   int halvings = 0;              ///< substeps that were done again in halves
-  int iterations = 0;            ///< passes over the position constraints; direct: solves
+  int iterations = 0;            ///< passes over the position constraints, in which a yarn may be
+                                 ///< solved several times; direct: solves
   int direction_updates = 0;     ///< renewals of the constraint directions
   int velocity_iterations = 0;   ///< passes of the velocity loop; direct: solves
   std::int64_t visits = 0;       ///< constraints whose error was looked at, both loops

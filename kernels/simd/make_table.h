@@ -46,6 +46,7 @@ constexpr Table make_table() {
           .join_positions = join_positions,
           .yarn_keep_start = yarn_keep_start,
           .yarn_sweep = yarn_sweep,
+          .yarn_sweep_watched = yarn_sweep_watched,
           .yarn_linearise = yarn_linearise,
           .yarn_read = yarn_read,
           .yarn_precondition = yarn_precondition,

@@ -250,6 +250,9 @@ struct Table {
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
   /// Solves the yarns of a block. scratch: as many rows as the block.
   void (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
+  /// The same; returns whether a length is out by more than the share `enough` even so.
+  bool (*yarn_sweep_watched)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch,
+                             float enough);
   /// Conjugate gradients (yarn_system.h) over all yarns, or all but those of the first family,
   /// which is eliminated; what writes quads goes family by family.
   void (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);

@@ -244,7 +244,8 @@ template <bool kErrors, class At>
       here = next;
     }
     store(scratch[block.last - 1 - block.first].u, lane, here);
-    go_up(y, block, at, lane, t, scratch, y.system + block.first);
+    Unwatched watch;
+    go_up(y, block, at, lane, t, scratch, y.system + block.first, watch);
   }
 }
 

@@ -253,29 +253,61 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
        Factors{none, none, none});
 }
 
+/// Nobody looks what becomes of the lengths.
+struct Unwatched {
+  [[gnu::always_inline]] void take(std::uint32_t, Floats, const FloatVector&) {}
+};
+
+/// What lengths are out by, on the way up; scratch has the vectors that were to get them. In terms
+/// of squares: | length^2 - rest^2 | = 2 rest | length - rest |, nearly.
+struct Watch {
+  const YarnRow* rows;
+  const YarnScratch* scratch;
+  std::uint32_t lane;
+  Floats allowed;
+  Floats out = Floats(0.f);         // the most by which one is out beyond what is allowed
+  FloatVector below = no_vector();  // what the next particle was moved by
+
+  /// Row k is moved by w times the impulse.
+  [[gnu::always_inline]] void take(std::uint32_t k, Floats w, const FloatVector& impulse) {
+    const FloatVector by = w * impulse, d = load(scratch[k].n, lane) + (by - below);
+    const Floats rest = load(rows[k].rest + lane), square = rest * rest;
+    const Floats beyond = xsimd::abs(dot(d, d) - square) - allowed * square;
+    out = xsimd::select(rest > Floats(0.f), xsimd::max(out, beyond), out);
+    below = by;
+  }
+};
+
 /// Up again: impulses, and the particles moved by them. factors: has n and m of the rows.
-template <class At, class Row>
+template <class At, class Row, class Watching>
 [[gnu::always_inline]] inline void go_up(const Yarns& y, const YarnBlock& block, At at,
                                          std::uint32_t lane, Displacements u,
-                                         const YarnScratch* scratch, const Row* factors) {
+                                         const YarnScratch* scratch, const Row* factors,
+                                         Watching& watch) {
   FloatVector below = no_vector();  // impulse of the row's own constraint
   Floats lambda(0.f), m(0.f);
   for (std::uint32_t k = block.last - 1; k > block.first; --k) {
     const std::uint32_t row = k - block.first;
     lambda = fused(m, lambda, load(scratch[row - 1].y + lane));
     m = load(factors[row - 1].m + lane);
-    const FloatVector above = lambda * load(factors[row - 1].n, lane);
+    const FloatVector above = lambda * load(factors[row - 1].n, lane), impulse = above - below;
     const Floats w = load(y.rows[k].inverse_mass + lane);
-    at.put(u, slots(y, k, lane), fused(w, above - below, load(scratch[row].u, lane)));
+    at.put(u, slots(y, k, lane), fused(w, impulse, load(scratch[row].u, lane)));
+    watch.take(row, w, impulse);
     below = above;
   }
+  const FloatVector impulse = no_vector() - below;
   const Floats w = load(y.rows[block.first].inverse_mass + lane);
-  at.put(u, slots(y, block.first, lane), fused(w, no_vector() - below, load(scratch->u, lane)));
+  at.put(u, slots(y, block.first, lane), fused(w, impulse, load(scratch->u, lane)));
+  watch.take(0, w, impulse);
 }
 
-template <Along kAlong, Base kBase, class At>
-[[gnu::always_inline]] inline void sweep_yarns(const Yarns& y, const YarnBlock& block, At at,
-                                               Displacements u, YarnScratch* scratch) {
+/// Returns whether what is watched finds a length that is out by more than `enough`.
+template <Along kAlong, Base kBase, bool kWatched, class At>
+[[gnu::always_inline]] inline bool sweep_yarns(const Yarns& y, const YarnBlock& block, At at,
+                                               Displacements u, YarnScratch* scratch,
+                                               float enough) {
+  bool out = false;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     Floats b(0.f);
     go_down<kAlong, kBase>(
@@ -288,19 +320,38 @@ template <Along kAlong, Base kBase, class At>
           f.up.store_unaligned(row.m + lane);
           (f.reciprocal * b).store_unaligned(row.y + lane);
         });
-    go_up(y, block, at, lane, u, scratch, scratch);
+    if constexpr (kWatched) {
+      Watch watch{y.rows + block.first, scratch, lane, Floats(2 * enough)};
+      go_up(y, block, at, lane, u, scratch, scratch, watch);
+      out = out || xsimd::any(watch.out > Floats(0.f));
+    } else {
+      Unwatched watch;
+      go_up(y, block, at, lane, u, scratch, scratch, watch);
+    }
   }
+  return out;
 }
 
 void yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
   with_quads(block, [&](auto at) {
     with_base(y, [&](auto base) {
       if (y.start == nullptr)
-        sweep_yarns<Along::present, base>(y, block, at, u, scratch);
+        sweep_yarns<Along::present, base, false>(y, block, at, u, scratch, 0);
       else
-        sweep_yarns<Along::start, base>(y, block, at, u, scratch);
+        sweep_yarns<Along::start, base, false>(y, block, at, u, scratch, 0);
     });
   });
+}
+
+bool yarn_sweep_watched(const Yarns& y, const YarnBlock& block, Displacements u,
+                        YarnScratch* scratch, float enough) {
+  bool out = false;
+  with_quads(block, [&](auto at) {
+    with_base(y, [&](auto base) {
+      out = sweep_yarns<Along::present, base, true>(y, block, at, u, scratch, enough);
+    });
+  });
+  return out;
 }
 
 }  // namespace

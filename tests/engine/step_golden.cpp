@@ -43,10 +43,11 @@ constexpr Golden kGolden[] = {
     {Way::paper, "hub", 17, 6, true, 0xfa09a294848129c1},
     {Way::automatic, "hang", 20, 40, false, 0xf00cab2550662309},
     {Way::automatic, "hang", 41, 12, true, 0x40ddf4fa179dd5d2},
+    {Way::automatic, "hang", 90, 30, false, 0x3e5a9497498a8499},
     {Way::automatic, "hang_sphere", 21, 40, false, 0x50e95db552f7f92f},
     {Way::automatic, "sphere_drop", 21, 40, false, 0xea5312d24218b95c},
-    {Way::automatic, "corners", 41, 20, false, 0x7d56ed9ba1957d7c},
-    {Way::automatic, "ropes", 33, 10, true, 0x4e1174a3b2ce0c7b},
+    {Way::automatic, "corners", 41, 20, false, 0xf7b1915523b30864},
+    {Way::automatic, "ropes", 33, 10, true, 0x3b79e01fcee1494a},
     {Way::automatic, "random", 33, 10, false, 0x1e9cf85d29243c90},
     {Way::automatic, "hub", 17, 6, true, 0xddb172f0c8726bce},
 };

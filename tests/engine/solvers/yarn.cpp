@@ -198,10 +198,27 @@ TEST_CASE("a step that left the range of numbers leaves nothing behind") {
   CHECK(cloth.state_hash() == fresh.state_hash());
 }
 
+TEST_CASE("yarns that bend are straight again after a sweep or two, of several solves") {
+  const SceneDescription scene = scene_of("hang", 40);
+  const auto constraints = static_cast<std::int64_t>(describe(*model_of(scene)).constraints);
+  Cloth cloth = cloth_of(scene, yarn(0.001));
+  int iterations = 0;
+  std::int64_t visits = 0;
+  for (int i = 0; i < 40; ++i) {
+    const StepReport report = step(cloth, 0.01);
+    REQUIRE(report.status == Status::converged);
+    iterations += report.iterations;
+    visits += report.visits;
+  }
+  CHECK(iterations < 60);
+  CHECK(visits > 3 * constraints / 2 * iterations);
+  CHECK(visits < 20 * constraints * iterations);
+}
+
 TEST_CASE("automatic substeps follow the motion") {
   Cloth cloth = cloth_of(scene_of("hang", 20), yarn(0.001, kAutomaticSubsteps));
   CHECK(step(cloth, 0.001).substeps == 1);
-  CHECK(step(cloth, 0.1).substeps > 3);
+  CHECK(step(cloth, 0.1).substeps >= 3);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "tests/support/isas.h"
@@ -37,6 +38,39 @@ TEST_CASE("a sweep over a block solves each of its yarns exactly") {
         CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 3e-8);
       }
     }
+  }
+}
+
+double largest_strain(const BlockOfYarns& b, const kernels::Vectors& x) {
+  double largest = 0;
+  for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+    for (std::uint32_t k = 0; k + 1 < BlockOfYarns::length(lane); ++k) {
+      const double l = kernels::length(x[b.slot_of(k, lane)] - x[b.slot_of(k + 1, lane)]);
+      largest = std::max(largest, std::abs(l / static_cast<double>(b.rows[k].rest[lane]) - 1));
+    }
+  }
+  return largest;
+}
+
+TEST_CASE("a watched sweep moves as any other, and tells whether much is left") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    const auto sweep = [&](BlockOfYarns& b, double enough) {
+      b.start(table);
+      return table.yarn_sweep_watched(b.yarns(), b.block(), b.quads(b.u), b.scratch.data(),
+                                      static_cast<float>(enough));
+    };
+    BlockOfYarns plain, strict, easy;
+    plain.start(table);
+    table.yarn_sweep(plain.yarns(), plain.block(), plain.quads(plain.u), plain.scratch.data());
+    const double left = largest_strain(plain, plain.end(table));
+    CHECK(left > 1e-5);
+    CHECK(left < 0.1 * largest_strain(plain, plain.x));
+    CHECK(sweep(strict, 0.95 * left));
+    CHECK_FALSE(sweep(easy, 1.05 * left));
+    CHECK(strict.u == plain.u);
+    CHECK(easy.u == plain.u);
   }
 }
 
@@ -138,7 +172,9 @@ TEST_CASE("yarns: AVX2 and AVX-512 give the same bits") {
     for (const bool rattle : {false, true}) {
       if (rattle) b.keep_start(table, q);
       b.start(table);
-      table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+      const bool out =
+          table.yarn_sweep_watched(b.yarns(), b.block(), b.quads(b.u), b.scratch.data(), 1e-4f);
+      result.push_back(out ? 1.f : 0.f);
       table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
       for (const bool velocities : {false, true}) {
         if (velocities) table.yarn_read(b.yarns(), b.block(), b.quads(b.base), b.quads(b.u));
