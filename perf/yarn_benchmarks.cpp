@@ -95,7 +95,7 @@ constexpr Kernel kKernels[] = {
      [](const simd::Table& table, Loom& loom) {
        for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
          benchmark::DoNotOptimize(table.yarn_sweep_watched(loom.yarns(), block, Loom::quads(loom.u),
-                                                           loom.scratch.data(), 1));
+                                                           loom.scratch.data(), -1));
        });
      }},
     {"yarn_sweep_first", 72, 56,

@@ -20,7 +20,10 @@ constexpr double kFar = 2;
 /// What bends is straightened, turns, and is out again by the square of that. A block that is out
 /// by more than kLeft of the goal when it has been solved is solved again at once, while it is in
 /// the caches, kMostSolves times at most: the sweeps, and looks, that are saved cost far more
-/// (hang, 300 x 300, 1 %: 21 sweeps a frame without, 5 with it). Floats do not see less than kSeen.
+/// (hang, 300 x 300, 1 %: 21 sweeps a frame without, 5 with it). One that is not out by a
+/// hundredth of that is left alone. In floats nobody can tell below kSeen: every block is solved
+/// once then. So it is with scheme rattle: along the directions at the start twenty solves lead no
+/// further than one, and its guard takes what is left alone for a gain of energy.
 constexpr double kLeft = 0.3;
 constexpr std::uint32_t kMostSolves = 20;
 constexpr double kSeen = 1e-6;
@@ -141,7 +144,7 @@ void YarnSolver::join(kernels::VectorsView x, Team& team) {
   });
 }
 
-/// Returns how often.
+/// Returns how often; 0: it was good enough.
 std::uint32_t YarnSolver::solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
                                       simd::YarnScratch* scratch) {
   const simd::YarnBlock& block = layout_.blocks[i];
@@ -149,13 +152,15 @@ std::uint32_t YarnSolver::solve_block(const simd::Yarns& yarns, std::size_t i, d
     table_.yarn_sweep(yarns, block, quads(u_), scratch);
     return 1;
   }
-  const auto watched = [&](const simd::Yarns& y) {
-    return table_.yarn_sweep_watched(y, block, quads(u_), scratch, static_cast<float>(enough));
-  };
+  const auto share = static_cast<float>(enough);
   simd::Yarns again = yarns;
   if (!layout_.from_memory()) again.base = nullptr;
+  simd::Swept swept = table_.yarn_sweep_watched(yarns, block, quads(u_), scratch, share);
+  if (swept == simd::Swept::left_alone) return 0;
   std::uint32_t solves = 1;
-  for (bool out = watched(yarns); out && solves < kMostSolves; ++solves) out = watched(again);
+  for (; swept == simd::Swept::out && solves < kMostSolves; ++solves) {
+    swept = table_.yarn_sweep_watched(again, block, quads(u_), scratch, share);
+  }
   return solves;
 }
 
@@ -165,19 +170,22 @@ void YarnSolver::sweep(double enough, Team& team, kernels::LoopResult& result) {
   });
   moved_ = false;
   others_.relax(base_.data(), u_.data());
-  std::int64_t solved = 0;
-  for (std::size_t i = 0; i < solves_.size(); ++i)
-    solved += std::int64_t{solves_[i]} * layout_.links[i];
-  count(1, solved, result);
+  std::int64_t visits = 0, corrections = 0;
+  for (std::size_t i = 0; i < solves_.size(); ++i) {
+    visits += std::int64_t{std::max(1u, solves_[i])} * layout_.links[i];
+    corrections += std::int64_t{solves_[i]} * layout_.links[i];
+  }
+  count(1, visits, corrections, result);
 }
 
-/// solved: constraints of yarns, each as often as it was.
-void YarnSolver::count(int passes, std::int64_t solved, kernels::LoopResult& result) const {
-  const std::int64_t visits = solved + passes * static_cast<std::int64_t>(others_.count());
+/// visits, corrections: of constraints in yarns; all others are visited in every pass.
+void YarnSolver::count(int passes, std::int64_t visits, std::int64_t corrections,
+                       kernels::LoopResult& result) const {
+  const std::int64_t others = passes * static_cast<std::int64_t>(others_.count());
   result.iterations += passes;
   ++result.direction_updates;
-  result.visits += visits;
-  result.corrections += visits;
+  result.visits += visits + others;
+  result.corrections += corrections + others;
 }
 
 void YarnSolver::linearise(Team& team) {
@@ -315,7 +323,8 @@ void YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
   }
   if (std::isfinite(now.product)) finish(team);
   const int passes = std::max(1, done);
-  count(passes, passes * static_cast<std::int64_t>(model_.constraints.plain), result);
+  const std::int64_t visits = passes * static_cast<std::int64_t>(model_.constraints.plain);
+  count(passes, visits, visits, result);
 }
 
 void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result) {
@@ -399,7 +408,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
   const double wanted = care * std::min(settings_.tolerance, kGoal);
   const double goal = rattle ? std::min(wanted, kRattleGoal) : wanted;
   const Patience patience = from_start_ ? kRattlePatience : kPatience;
-  const double enough = from_start_ ? kNoBound : std::max(kLeft * goal, kSeen);
+  const double enough = rattle || kLeft * goal < kSeen ? kNoBound : kLeft * goal;
   double before = kNoBound, best = kNoBound;
   int stale = 0;
   int swept = 1;  // sweeps since the last look

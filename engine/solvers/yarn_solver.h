@@ -85,7 +85,8 @@ class YarnSolver {
   void eliminate(bool errors, Team& team);
   double pull(Team& team);
   void finish(Team& team);
-  void count(int passes, std::int64_t solved, kernels::LoopResult& result) const;
+  void count(int passes, std::int64_t visits, std::int64_t corrections,
+             kernels::LoopResult& result) const;
   template <class Work>
   void for_each_family(Team& team, Work&& work);
   template <class Work>

@@ -164,6 +164,9 @@ struct Yarns {
   bool from_memory = false;             // quads do not fit the caches: base is not remembered
 };
 
+/// How a watched sweep found, or left, the lengths of a block.
+enum class Swept : std::uint8_t { left_alone, within, out };
+
 struct YarnProducts {
   float product = 0;  // residual . z
   float worst = 0;    // largest |residual| / rest; of velocities, largest |residual|
@@ -250,9 +253,9 @@ struct Table {
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
   /// Solves the yarns of a block. scratch: as many rows as the block.
   void (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
-  /// The same; returns whether a length is out by more than the share `enough` even so.
-  bool (*yarn_sweep_watched)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch,
-                             float enough);
+  /// The same, unless all lengths are far within the share `enough`.
+  Swept (*yarn_sweep_watched)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch,
+                              float enough);
   /// Conjugate gradients (yarn_system.h) over all yarns, or all but those of the first family,
   /// which is eliminated; what writes quads goes family by family.
   void (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);

@@ -41,15 +41,15 @@ constexpr Golden kGolden[] = {
     {Way::paper, "ropes", 33, 10, true, 0x1155b4cb72c5a2a8},
     {Way::paper, "random", 33, 10, false, 0x90abc61cb7cbea3b},
     {Way::paper, "hub", 17, 6, true, 0xfa09a294848129c1},
-    {Way::automatic, "hang", 20, 40, false, 0xf00cab2550662309},
+    {Way::automatic, "hang", 20, 40, false, 0x65d29ecb85df5bfd},
     {Way::automatic, "hang", 41, 12, true, 0x40ddf4fa179dd5d2},
     {Way::automatic, "hang", 90, 30, false, 0x3e5a9497498a8499},
-    {Way::automatic, "hang_sphere", 21, 40, false, 0x50e95db552f7f92f},
+    {Way::automatic, "hang_sphere", 21, 40, false, 0xcbde59884819982b},
     {Way::automatic, "sphere_drop", 21, 40, false, 0xea5312d24218b95c},
-    {Way::automatic, "corners", 41, 20, false, 0xf7b1915523b30864},
-    {Way::automatic, "ropes", 33, 10, true, 0x3b79e01fcee1494a},
-    {Way::automatic, "random", 33, 10, false, 0x1e9cf85d29243c90},
-    {Way::automatic, "hub", 17, 6, true, 0xddb172f0c8726bce},
+    {Way::automatic, "corners", 41, 20, false, 0xb8024c66b1b37e84},
+    {Way::automatic, "ropes", 33, 10, true, 0xbc0c2bd2c2d10758},
+    {Way::automatic, "random", 33, 10, false, 0x3ce1d89104d082e7},
+    {Way::automatic, "hub", 17, 6, true, 0x452912cc2dc68f16},
 };
 
 SceneDescription describe(const Golden& golden) {
