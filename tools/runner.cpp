@@ -9,6 +9,7 @@
 #include <tbb/task_arena.h>
 
 #include "tools/cpu_time.h"
+#include "tools/warm_up.h"
 
 namespace weft::tools {
 namespace {
@@ -126,7 +127,10 @@ Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& setti
   const tbb::global_control at_most(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(std::max(threads, 2)));
   tbb::task_arena arena(threads);
-  auto result = arena.execute([&] { return run_repeatedly(model, settings, plan, on_frame); });
+  auto result = arena.execute([&] {
+    if (threads > 1) warm_up(threads);
+    return run_repeatedly(model, settings, plan, on_frame);
+  });
   if (result) result.value().threads = threads;
   return result;
 }

@@ -1,5 +1,6 @@
 #include "engine/solvers/team.h"
 
+#include <sched.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace weft {
 namespace {
 
-constexpr std::uint32_t kStop = 0xffffffffu;
+constexpr std::uint32_t kStop = 0xffffu;
 constexpr std::uint32_t kClosed = 0xffffffffu;
 /// Pauses before the leader begins a share that is not its own: some microseconds.
 constexpr int kGrace = 100;
@@ -17,13 +18,18 @@ constexpr int kPatience = 2000;
 /// Ticks of the processor's clock, about a millisecond. A share that takes so much longer than
 /// twice the leader's own is on a thread without a processor.
 constexpr std::uint64_t kLost = 3'000'000;
+/// Ticks that a task waits at the door at most: 0.2 ms.
+constexpr std::uint64_t kLinger = 600'000;
 /// The leader then goes on alone for so many times what it waited, so that lost processors cost no
 /// more than this part of the time.
 constexpr std::uint64_t kAlone = 8;
 
-std::uint64_t call_of(std::uint64_t epoch, std::uint32_t members) { return epoch << 32 | members; }
-std::uint64_t epoch_of(std::uint64_t call) { return call >> 32; }
-std::uint32_t members_of(std::uint64_t call) { return static_cast<std::uint32_t>(call); }
+/// By all teams.
+std::atomic<std::uint64_t> tasks_enqueued{0};
+
+std::uint64_t call_of(std::uint64_t epoch, std::uint32_t members) { return epoch << 16 | members; }
+std::uint64_t epoch_of(std::uint64_t call) { return call >> 16; }
+std::uint32_t members_of(std::uint64_t call) { return call & 0xffffu; }
 
 std::uint64_t ticks() { return __builtin_ia32_rdtsc(); }
 
@@ -43,6 +49,18 @@ void wait_until(Ready&& ready) {
   while (!ready()) std::this_thread::yield();
 }
 
+/// Linux may wake a thread on the processor of who wakes it, though others are idle: in a virtual
+/// machine these look as if they were taken. It stays there for many milliseconds, unless it is
+/// told to go.
+void leave_processor(int processor) {
+  cpu_set_t allowed, others;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
+  others = allowed;
+  CPU_CLR(processor, &others);
+  if (CPU_COUNT(&others) == 0 || sched_setaffinity(0, sizeof others, &others) != 0) return;
+  sched_setaffinity(0, sizeof allowed, &allowed);
+}
+
 }  // namespace
 
 Team::Meeting::Meeting() : door(kClosed) {}
@@ -56,10 +74,16 @@ Team::Team(int threads, std::shared_ptr<Meeting> meeting)
     : meeting_(std::move(meeting)),
       helpers_(std::min({threads, kMostMembers, tbb::this_task_arena::max_concurrency()}) - 1) {
   if (helpers_ <= 0) return;
-  meeting_->left.store(0, std::memory_order_relaxed);
-  meeting_->door.store(0, std::memory_order_release);
-  while (meeting_->asked.load(std::memory_order_relaxed) < helpers_) {
-    meeting_->asked.fetch_add(1, std::memory_order_relaxed);
+  Meeting& m = *meeting_;
+  const auto helpers = static_cast<std::uint32_t>(helpers_);
+  m.left.store(0, std::memory_order_relaxed);
+  m.seats.store(helpers, std::memory_order_relaxed);
+  m.leaders_processor.store(sched_getcpu(), std::memory_order_relaxed);
+  m.call.word.store(call_of(++m.epoch, 1), std::memory_order_relaxed);
+  m.door.store(0);
+  while (m.asked.load() < helpers_) {
+    m.asked.fetch_add(1);
+    tasks_enqueued.fetch_add(1, std::memory_order_relaxed);
     tbb::this_task_arena::enqueue([shared = meeting_] { shared->attend(); });
   }
 }
@@ -104,23 +128,52 @@ void Team::finish_share(std::uint32_t share, std::uint32_t members) {
   wait_until(done);
 }
 
-/// A member's life. Epoch and members are one word so that a thread cannot mistake one call for the
-/// next. A share that is begun in an epoch keeps the leader in it; a thread that has begun none
-/// must not touch the job.
+/// The life of a task.
 void Team::Meeting::attend() {
-  asked.fetch_sub(1, std::memory_order_relaxed);
-  std::uint64_t heard = call.word.load(std::memory_order_acquire);
-  std::uint32_t came = door.load(std::memory_order_acquire);
+  std::uint64_t patience = kLinger;
+  while (const std::uint32_t me = come_in(patience)) {
+    const std::uint64_t start = ticks();
+    take_part(me);
+    patience = std::min(kLinger, ticks() - start);
+  }
+}
+
+/// Waits at the door, patience in ticks. Returns the member's number, 0 for none. Whoever else has
+/// work for this processor gets it.
+std::uint32_t Team::Meeting::come_in(std::uint64_t patience) {
+  const std::uint64_t start = ticks(), enqueued = tasks_enqueued.load(std::memory_order_relaxed);
+  std::uint32_t me = 0;
+  const int leaders = leaders_processor.load(std::memory_order_relaxed);
+  if (leaders == sched_getcpu()) leave_processor(leaders);
+  const auto entered = [&] { return (me = enter()) > 0; };
+  while (!spin_until(kGrace, entered) && ticks() - start < patience &&
+         tasks_enqueued.load(std::memory_order_relaxed) == enqueued) {
+    std::this_thread::yield();
+  }
+  asked.fetch_sub(1);
+  return me > 0 ? me : enter();  // a team that has just come may have counted on this task
+}
+
+std::uint32_t Team::Meeting::enter() {
+  std::uint32_t came = door.load();
   do {
-    if (came == kClosed || came + 1 >= kMostMembers) return;
+    if (came == kClosed || came >= seats.load(std::memory_order_relaxed)) return 0;
   } while (!door.compare_exchange_weak(came, came + 1, std::memory_order_acq_rel));
-  const std::uint32_t me = came + 1;
+  return came + 1;
+}
+
+/// Epoch and members are one word so that a thread cannot mistake one call for the next. A share
+/// that is begun in an epoch keeps the leader in it; a thread that has begun none must not touch
+/// the job.
+void Team::Meeting::take_part(std::uint32_t me) {
+  std::uint64_t heard = 0;  // no epoch
   for (;;) {
     const std::uint64_t before = heard;
     wait_until([&] { return (heard = call.word.load(std::memory_order_acquire)) != before; });
     if (members_of(heard) == kStop) break;
     if (me < members_of(heard)) do_share(epoch_of(heard), me, members_of(heard));
   }
+  asked.fetch_add(1);
   left.fetch_add(1, std::memory_order_release);
 }
 

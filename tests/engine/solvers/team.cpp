@@ -2,6 +2,7 @@
 #include "engine/solvers/team.h"
 
 #include <doctest/doctest.h>
+#include <sched.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -100,6 +101,43 @@ TEST_CASE("a second thread comes to help, if the arena has one") {
     for (int loop = 0; loop < 1000; ++loop) {
       team.for_each(2, [&](std::size_t) { REQUIRE(std::this_thread::get_id() == leader); });
     }
+  });
+}
+
+/// Of the thread that asks.
+int processors_allowed() {
+  cpu_set_t allowed;
+  REQUIRE(sched_getaffinity(0, sizeof allowed, &allowed) == 0);
+  return CPU_COUNT(&allowed);
+}
+
+TEST_CASE("whoever was sent to another processor may still use them all") {
+  const int allowed = processors_allowed();
+  for (int i = 0; i < 20; ++i) {
+    in_arena(2, [allowed] {
+      Team team(2);
+      for (int loop = 0; loop < 1000; ++loop) {
+        team.for_each(2, [&](std::size_t) {
+          if (loop % 100 == 0) REQUIRE(processors_allowed() == allowed);
+        });
+      }
+    });
+  }
+}
+
+TEST_CASE("teams that follow each other keep their helpers, those that do not let them go") {
+  in_arena(2, [] {
+    const auto meeting = Team::make_meeting(), other = Team::make_meeting();
+    std::size_t sum = 0;
+    for (int team = 0; team < 2000; ++team) {
+      Team one(2, meeting);
+      sum += done_by(one, 10).size();
+    }
+    for (int team = 0; team < 2000; ++team) {
+      Team one(2, team % 2 == 0 ? meeting : other);
+      sum += done_by(one, 10).size();
+    }
+    CHECK(sum == 40'000);
   });
 }
 
