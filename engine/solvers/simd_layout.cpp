@@ -42,6 +42,52 @@ void cut_batches(const Ordering& ordering, SimdLayout& layout) {
   for (const Chunk& chunk : layout.chunks) layout.runs.push_back(chunk.run);
 }
 
+/// Of a slot; the number of tiles for those that are in none.
+std::uint32_t tile_of(const Ordering& ordering, std::uint32_t slot) {
+  const auto tile = std::ranges::upper_bound(ordering.tiles, slot, {}, &Tile::last_slot);
+  return static_cast<std::uint32_t>(tile - ordering.tiles.begin());
+}
+
+struct TilesOfChunk {
+  std::uint32_t chunk, first, last;
+};
+
+/// Padding counts: it is written to.
+TilesOfChunk tiles_of(const Ordering& ordering, const SimdLayout& layout, std::uint32_t chunk) {
+  TilesOfChunk tiles{chunk, kNoIndex, 0};
+  const kernels::Run& run = layout.chunks[chunk].run;
+  for (std::uint32_t c = run.constraint; c < run.constraint + run.length; ++c) {
+    for (const std::uint32_t slot : {layout.a[c], layout.b[c]}) {
+      tiles.first = std::min(tiles.first, tile_of(ordering, slot));
+      tiles.last = std::max(tiles.last, tile_of(ordering, slot));
+    }
+  }
+  return tiles;
+}
+
+void find_seams(const Ordering& ordering, SimdLayout& layout) {
+  std::vector<TilesOfChunk> chunks;
+  if (ordering.tiles.size() > 1 && ordering.between_tiles < ordering.batches.size()) {
+    const std::uint32_t last = layout.batch_chunks[ordering.between_tiles + 1];
+    for (std::uint32_t i = layout.batch_chunks[ordering.between_tiles]; i < last; ++i) {
+      chunks.push_back(tiles_of(ordering, layout, i));
+    }
+  }
+  std::ranges::stable_sort(chunks, {}, &TilesOfChunk::last);
+  auto next = chunks.begin();
+  for (std::uint32_t tile = 0; tile <= ordering.tiles.size(); ++tile) {
+    layout.seams_at.push_back(static_cast<std::uint32_t>(layout.seams.size()));
+    for (; next != chunks.end() && next->last == tile; ++next) {
+      const bool longer = layout.seams.size() > layout.seams_at.back() &&
+                          layout.seams.back().last_chunk == next->chunk &&
+                          layout.seams.back().first_tile == next->first;
+      if (!longer) layout.seams.push_back({next->chunk, next->chunk, next->first});
+      ++layout.seams.back().last_chunk;
+    }
+  }
+  layout.seams_at.push_back(static_cast<std::uint32_t>(layout.seams.size()));
+}
+
 /// The slots of a chunk's real constraints.
 template <class Visit>
 void for_each_slot(const SimdLayout& layout, const Chunk& chunk, Visit&& visit) {
@@ -120,15 +166,16 @@ SimdLayout make_simd_layout(const Model& model) {
     for (const std::uint32_t c : *list) place(layout, next++, c, store, inverse_mass);
   }
   cut_batches(ordering, layout);
+  find_seams(ordering, layout);
   list_neighbours(layout);
   return layout;
 }
 
 std::size_t SimdLayout::bytes() const {
   return bytes_of(chunks) + bytes_of(runs) + bytes_of(batch_chunks) + bytes_of(batch_singles) +
-         neighbours.bytes() + chunks_at.bytes() + bytes_of(a) + bytes_of(b) +
-         bytes_of(constraint_at) + bytes_of(rest_length) + bytes_of(inverse_square) +
-         bytes_of(share_a) + bytes_of(share_b);
+         bytes_of(seams) + bytes_of(seams_at) + neighbours.bytes() + chunks_at.bytes() +
+         bytes_of(a) + bytes_of(b) + bytes_of(constraint_at) + bytes_of(rest_length) +
+         bytes_of(inverse_square) + bytes_of(share_a) + bytes_of(share_b);
 }
 
 }  // namespace weft

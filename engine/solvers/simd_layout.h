@@ -30,13 +30,21 @@ struct Chunk {
   bool rope = false;
 };
 
+/// Chunks of the first batch between tiles whose slots are in tiles first_tile and following.
+struct Seam {
+  std::uint32_t first_chunk = 0, last_chunk = 0;
+  std::uint32_t first_tile = 0;
+};
+
 struct SimdLayout {
   std::vector<Chunk> chunks;
   std::vector<kernels::Run> runs;            // of the chunks, side by side
   std::vector<std::uint32_t> batch_chunks;   // batch i: chunks batch_chunks[i] ... [i + 1] - 1,
   std::vector<std::uint32_t> batch_singles;  // its singles from batch_singles[i] on
-  Lists neighbours;                          // chunks that share a slot with chunk i, and i itself
-  Lists chunks_at;                           // slot -> chunks
+  std::vector<Seam> seams;                   // by the last tile that they need; those of tile i are
+  std::vector<std::uint32_t> seams_at;  // [i] ... [i + 1] - 1, of padding [number of tiles] ...
+  Lists neighbours;                     // chunks that share a slot with chunk i, and i itself
+  Lists chunks_at;                      // slot -> chunks
 
   std::size_t slots = 0;
   std::uint32_t hub_first = 0, hub_ropes = 0, hub_last = 0;  // constraint slots, not padded

@@ -101,10 +101,16 @@ void SimdLoop::renew_rest() {
 kernels::Sweep SimdLoop::sweep() {
   kernels::Sweep sweep;
   const Ordering& ordering = s_.model_.ordering;
-  team_.for_each(ordering.tiles.size(),
-                 [&](std::size_t i) { s_.sweeps_[i] = sweep_tile(ordering.tiles[i]); });
+  team_.for_each_share(ordering.tiles.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      s_.sweeps_[i] = sweep_tile(ordering.tiles[i]);
+      sweep_seams(i, first, s_.sweeps_[i]);
+    }
+  });
   for (std::size_t i = 0; i < ordering.tiles.size(); ++i) add(sweep, s_.sweeps_[i]);
-  for (std::size_t i = ordering.between_tiles; i < ordering.batches.size(); ++i) {
+  sweep_open_seams(sweep);
+  const std::size_t done = layout_.seams.empty() ? 0 : 1;
+  for (std::size_t i = ordering.between_tiles + done; i < ordering.batches.size(); ++i) {
     add(sweep, sweep_batch_between_tiles(i));
   }
   sweep_hubs(sweep);
@@ -131,6 +137,38 @@ kernels::Sweep SimdLoop::sweep_tile(const Tile& tile) {
     add(sweep, sweep_chunks(batch, layout_.batch_chunks[batch], layout_.batch_chunks[batch + 1]));
   }
   return sweep;
+}
+
+/// The first batch between tiles need not wait for all of them: what joins a tile to others of the
+/// same share is done as soon as it is, while both are in the caches, and nobody is met for it.
+void SimdLoop::sweep_seams(std::size_t tile, std::size_t first_tile, kernels::Sweep& sweep) {
+  const std::size_t batch = s_.model_.ordering.between_tiles;
+  for (std::size_t i = layout_.seams_at[tile]; i < layout_.seams_at[tile + 1]; ++i) {
+    const Seam& seam = layout_.seams[i];
+    s_.open_seam_[i] = seam.first_tile < first_tile;
+    if (!s_.open_seam_[i]) add(sweep, sweep_chunks(batch, seam.first_chunk, seam.last_chunk));
+  }
+}
+
+/// Between shares: as a rule few.
+void SimdLoop::sweep_open_seams(kernels::Sweep& sweep) {
+  const std::size_t batch = s_.model_.ordering.between_tiles, count = layout_.seams.size();
+  std::size_t open_chunks = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Seam& seam = layout_.seams[i];
+    if (s_.open_seam_[i]) open_chunks += seam.last_chunk - seam.first_chunk;
+  }
+  const auto sweep_seam = [&](std::size_t i) {
+    const Seam& seam = layout_.seams[i];
+    s_.sweeps_[i] = s_.open_seam_[i] ? sweep_chunks(batch, seam.first_chunk, seam.last_chunk)
+                                     : kernels::Sweep{};
+  };
+  if (open_chunks > kPiece) {
+    team_.for_each(count, sweep_seam);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) sweep_seam(i);
+  }
+  for (std::size_t i = 0; i < count; ++i) add(sweep, s_.sweeps_[i]);
 }
 
 kernels::Sweep SimdLoop::sweep_batch_between_tiles(std::size_t batch) {

@@ -33,6 +33,8 @@ class SimdLoop {
   void renew_singles(std::uint32_t first, std::uint32_t last);
   void renew_rest();
   kernels::Sweep sweep_tile(const Tile& tile);
+  void sweep_seams(std::size_t tile, std::size_t first_tile, kernels::Sweep& sweep);
+  void sweep_open_seams(kernels::Sweep& sweep);
   kernels::Sweep sweep_batch_between_tiles(std::size_t batch);
   kernels::Sweep sweep_chunks(std::size_t batch, std::size_t first, std::size_t last);
   void relax_runs(const Batch& batch, std::size_t first, std::size_t last, kernels::Sweep& sweep);

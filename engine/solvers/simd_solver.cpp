@@ -49,7 +49,9 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa i
     changed_.resize(layout_.chunks.size());
     stale_.resize(layout_.chunks.size());
   }
-  sweeps_.resize(std::max(model.ordering.tiles.size(), layout_.chunks.size() / kPiece + 1));
+  sweeps_.resize(std::max(
+      {model.ordering.tiles.size(), layout_.seams.size(), layout_.chunks.size() / kPiece + 1}));
+  open_seam_.assign(layout_.seams.size(), 1);
   strains_.resize(layout_.chunks.size() + 1);
   stretches_.resize(model.ordering.tiles.size() + layout_.chunks.size() / kPiece + 1);
   corrections_.resize(layout_.chunks.size());
@@ -326,8 +328,8 @@ void SimdSolver::finish_strain(kernels::VectorsView x, std::size_t worst_chunk, 
 std::size_t SimdSolver::bytes() const {
   return bytes_of(u_) + bytes_of(impulse_) + bytes_of(blocks_) + bytes_of(velocity_blocks_) +
          bytes_of(scale_) + bytes_of(velocity_scale_) + bytes_of(mask_) + bytes_of(changed_) +
-         bytes_of(stale_) + bytes_of(corrections_) + bytes_of(sweeps_) + bytes_of(strains_) +
-         bytes_of(stretches_) + contacts_.bytes() + bytes_of(contact_impulse_);
+         bytes_of(stale_) + bytes_of(corrections_) + bytes_of(sweeps_) + bytes_of(open_seam_) +
+         bytes_of(strains_) + bytes_of(stretches_) + contacts_.bytes() + bytes_of(contact_impulse_);
 }
 
 }  // namespace weft

@@ -98,6 +98,7 @@ class SimdSolver {
   std::vector<std::uint8_t> changed_, stale_;
   std::vector<std::uint32_t> corrections_;     // per chunk, of the present pass
   std::vector<kernels::Sweep> sweeps_;         // per piece of parallel work
+  std::vector<std::uint8_t> open_seam_;        // no share of the present pass had all its tiles
   std::vector<simd::StrainSums> strains_;      // per chunk
   std::vector<simd::StretchRange> stretches_;  // per tile, then per piece between tiles
   ContactLanes contacts_;

@@ -50,9 +50,15 @@ class Team {
   /// work(i) for i in [0, count), in shares of consecutive i; returns when all are done.
   template <class Work>
   void for_each(std::size_t count, Work&& work) {
+    for_each_share(count, [&work](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) work(i);
+    });
+  }
+  /// work(first, last) of each share.
+  template <class Work>
+  void for_each_share(std::size_t count, Work&& work) {
     const auto share = [](void* context, std::size_t first, std::size_t last) {
-      auto& body = *static_cast<std::remove_reference_t<Work>*>(context);
-      for (std::size_t i = first; i < last; ++i) body(i);
+      (*static_cast<std::remove_reference_t<Work>*>(context))(first, last);
     };
     run({share, &work, count});
   }
