@@ -70,7 +70,7 @@ double most_bend(const State& s) {
   return std::min(bend.most, bend.longest / static_cast<double>(s.yarn->longest()));
 }
 
-/// As many as the motion wants: see kMostBend.
+/// As many as the motion wants: see Bend.
 int choose_substeps(State& s, double dt, Team& team) {
   if (s.settings.substeps != kAutomaticSubsteps) return s.settings.substeps;
   predict(s, dt, team);

@@ -31,7 +31,7 @@ std::size_t processors_at_work(std::size_t threads) {
 void warm_up(int threads) {
   const auto wanted = static_cast<std::size_t>(std::max(threads, 1));
   const auto start = Clock::now();
-  while (processors_at_work(wanted) < wanted && Clock::now() - start < microseconds(100'000)) {
+  while (processors_at_work(wanted) < wanted && Clock::now() - start < microseconds(50'000)) {
   }
 }
 

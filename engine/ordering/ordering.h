@@ -9,8 +9,8 @@
 ///               plain loads and stores, no indices
 ///   singles     the rest of a batch: constraints that find their slots through an index
 ///
-/// One pass over the constraints goes through the batches in order: tile after tile (tiles may go
-/// side by side), then the batches between tiles one after the other.
+/// One pass over the constraints goes through the batches as if in order: tile after tile (tiles
+/// may go side by side), then the batches between tiles one after the other.
 ///
 ///   constraint slots of a batch:  | run | run | ... | run | singles |
 ///                                 ^first                  ^singles  ^last

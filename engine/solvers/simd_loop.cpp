@@ -261,21 +261,20 @@ void SimdLoop::sweep_contacts(kernels::Sweep& sweep) {
 }
 
 /// Several threads may set the flags of a chunk between tiles, all to the same value.
+void SimdLoop::mark(std::size_t chunk) {
+  std::atomic_ref(s_.changed_[chunk]).store(1, std::memory_order_relaxed);
+  std::atomic_ref(s_.stale_[chunk]).store(1, std::memory_order_relaxed);
+}
+
 void SimdLoop::mark_neighbours(std::size_t chunk) {
-  for (const std::uint32_t i : layout_.neighbours[chunk]) {
-    std::atomic_ref(s_.changed_[i]).store(1, std::memory_order_relaxed);
-    std::atomic_ref(s_.stale_[i]).store(1, std::memory_order_relaxed);
-  }
+  for (const std::uint32_t i : layout_.neighbours[chunk]) mark(i);
 }
 
 void SimdLoop::mark_slots(const std::uint32_t* slots, std::size_t first, std::size_t last) {
   for (std::size_t c = first; c < last; ++c) {
     if (masks()) s_.mask_[slots[c]] = ~std::uint64_t{0};
     if (!marks()) continue;
-    for (const std::uint32_t i : layout_.chunks_at[slots[c]]) {
-      s_.changed_[i] = 1;
-      s_.stale_[i] = 1;
-    }
+    for (const std::uint32_t i : layout_.chunks_at[slots[c]]) mark(i);
   }
 }
 

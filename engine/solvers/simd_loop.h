@@ -44,6 +44,7 @@ class SimdLoop {
   void choose_density(const kernels::Sweep& sweep);
   void sweep_hubs(kernels::Sweep& sweep);
   void sweep_contacts(kernels::Sweep& sweep);
+  void mark(std::size_t chunk);
   void mark_neighbours(std::size_t chunk);
   void mark_slots(const std::uint32_t* slots, std::size_t first, std::size_t last);
 

@@ -2,7 +2,8 @@
 /// being
 ///
 ///     for each tile (side by side):  for each of its batches:  for each chunk
-///     for each batch between tiles:  for each chunk (side by side)
+///     for each batch between tiles:  for each chunk (side by side; of the first, what joins the
+///                                    tiles of one thread, at once: sweep_seams)
 ///     constraints at hubs, one after the other
 ///     contacts, sphere by sphere
 ///

@@ -92,6 +92,7 @@ Team::Team(int threads, std::shared_ptr<Meeting> meeting)
 Team::~Team() {
   if (helpers_ <= 0) return;
   Meeting& m = *meeting_;
+  m.leaders_processor.store(sched_getcpu(), std::memory_order_relaxed);  // it may have moved
   const std::uint32_t came = m.door.exchange(kClosed, std::memory_order_acq_rel);
   m.call.word.store(call_of(++m.epoch, kStop), std::memory_order_release);
   wait_until([&] { return m.left.load(std::memory_order_acquire) == came; });
@@ -130,7 +131,7 @@ void Team::finish_share(std::uint32_t share, std::uint32_t members) {
 
 /// The life of a task.
 void Team::Meeting::attend() {
-  std::uint64_t patience = kLinger;
+  std::uint64_t patience = 0;
   while (const std::uint32_t me = come_in(patience)) {
     const std::uint64_t start = ticks();
     take_part(me);
@@ -138,8 +139,8 @@ void Team::Meeting::attend() {
   }
 }
 
-/// Waits at the door, patience in ticks. Returns the member's number, 0 for none. Whoever else has
-/// work for this processor gets it.
+/// Waits at the door, patience in ticks. Returns the member's number, 0 for none. Other threads
+/// that are ready to run on this processor may.
 std::uint32_t Team::Meeting::come_in(std::uint64_t patience) {
   const std::uint64_t start = ticks(), enqueued = tasks_enqueued.load(std::memory_order_relaxed);
   std::uint32_t me = 0;

@@ -19,11 +19,12 @@ constexpr double kSmall = 0.025;
 constexpr double kFar = 2;
 /// What bends is straightened, turns, and is out again by the square of that. A block that is out
 /// by more than kLeft of the goal when it has been solved is solved again at once, while it is in
-/// the caches, kMostSolves times at most: the sweeps, and looks, that are saved cost far more
-/// (hang, 300 x 300, 1 %: 21 sweeps a frame without, 5 with it). One that is not out by a
-/// hundredth of that is left alone. In floats nobody can tell below kSeen: every block is solved
-/// once then. So it is with scheme rattle: along the directions at the start twenty solves lead no
-/// further than one, and its guard takes what is left alone for a gain of energy.
+/// the caches: the sweeps, and looks, that are saved cost far more (hang, 300 x 300, 1 %: 21 sweeps
+/// a frame without, 5 with it). If kMostSolves do not bring it there, none but the first do until
+/// the next substep. One that is not out by a hundredth of that is left alone. In floats nobody can
+/// tell below kSeen: every block is solved once then. So it is with scheme rattle: along the
+/// directions at the start twenty solves lead no further than one, and its guard takes what is left
+/// alone for a gain of energy.
 constexpr double kLeft = 0.3;
 constexpr std::uint32_t kMostSolves = 20;
 constexpr double kSeen = 1e-6;
@@ -76,6 +77,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       first_end_(layout_.families() > 0 ? layout_.family_begin[1] : 0),
       products_(layout_.blocks.size()),
       solves_(layout_.blocks.size()),
+      stubborn_(layout_.blocks.size()),
       others_(model, settings) {
   if (!layout_.from_memory()) base_step_.resize(layout_.rows.size());
   const auto wanted =
@@ -157,10 +159,12 @@ std::uint32_t YarnSolver::solve_block(const simd::Yarns& yarns, std::size_t i, d
   if (!layout_.from_memory()) again.base = nullptr;
   simd::Swept swept = table_.yarn_sweep_watched(yarns, block, quads(u_), scratch, share);
   if (swept == simd::Swept::left_alone) return 0;
+  const std::uint32_t most = stubborn_[i] ? 1 : kMostSolves;
   std::uint32_t solves = 1;
-  for (; swept == simd::Swept::out && solves < kMostSolves; ++solves) {
+  for (; swept == simd::Swept::out && solves < most; ++solves) {
     swept = table_.yarn_sweep_watched(again, block, quads(u_), scratch, share);
   }
+  if (swept == simd::Swept::out) stubborn_[i] = 1;
   return solves;
 }
 
@@ -398,6 +402,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
   others_.use_present();
   from_start_ = false;
   if (start.x != nullptr) keep_start(start, team);
+  std::ranges::fill(stubborn_, std::uint8_t{0});
   split(x, team);
   if (settings_.iterations > 0) {
     while (result.iterations < settings_.iterations) sweep(kNoBound, team, result);

@@ -107,6 +107,7 @@ class YarnSolver {
   const std::size_t first_end_;                          // blocks of the first family
   std::vector<simd::YarnProducts> products_;             // per block
   std::vector<std::uint32_t> solves_;                    // per block, in one sweep
+  std::vector<std::uint8_t> stubborn_;                   // per block: kMostSolves were too few
   YarnOthers others_;
 };
 

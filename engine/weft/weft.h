@@ -15,7 +15,9 @@
 ///     velocity loop.
 ///  3. A Model is immutable and may be shared by any number of Cloths and threads. A Cloth is not
 ///     synchronised: one thread at a time.
-///  4. weft owns no threads and no globals. Parallel work runs in the caller's oneTBB arena.
+///  4. weft owns no threads, and no state but what it hands out. Parallel work runs in the caller's
+///     oneTBB arena; a worker that helped with a step waits for the next one for as long as that
+///     took, 0.2 ms at most, and may be moved off the processor of the thread that steps.
 ///  5. A step allocates nothing once warm (contact lists grow to their largest size and stay).
 ///  6. Errors are values. Bad input yields one line that names the field, the index and the value,
 ///     and nothing is built or changed. weft throws only what the standard allocator throws.
@@ -169,10 +171,10 @@ inline constexpr int kAutomaticSubsteps = 0;
 struct Settings {
   double tolerance = 0.01;  ///< strain, | |a-b| - rest | / rest, that every step must reach; > 0
   /// A step of dt is done as so many steps of dt / substeps, each to the tolerances; 0
-  /// (kAutomaticSubsteps): as many as the motion wants, of scheme rattle twice as many. A substep
-  /// whose solver gives up before max_iterations is done again in halves, up to 16 parts of it
-  /// (StepReport::halvings). Fine meshes want small steps. Iterations, and their bounds, are those
-  /// of one substep.
+  /// (kAutomaticSubsteps): as many as the motion wants, of scheme rattle up to 2.5 times as
+  /// many. A substep whose solver gives up before max_iterations is done again in halves, up to 16
+  /// parts of it (StepReport::halvings). Fine meshes want small steps. Iterations, and their
+  /// bounds, are those of one substep.
   int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per step whatever the error, nothing
   /// skipped, frozen directions renewed once per step.

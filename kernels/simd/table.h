@@ -253,7 +253,7 @@ struct Table {
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
   /// Solves the yarns of a block. scratch: as many rows as the block.
   void (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
-  /// The same, unless all lengths are far within the share `enough`.
+  /// The same along present directions, unless all lengths are far within the share `enough`.
   Swept (*yarn_sweep_watched)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch,
                               float enough);
   /// Conjugate gradients (yarn_system.h) over all yarns, or all but those of the first family,

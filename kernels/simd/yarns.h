@@ -302,8 +302,8 @@ template <class At, class Row, class Watching>
   watch.take(0, w, impulse);
 }
 
-/// Down a block, into the scratch. Returns whether no length is out by more than the share
-/// `enough`.
+/// Down a block, into the scratch. kWatched: returns whether no length is out by more than the
+/// share `enough`.
 template <Along kAlong, Base kBase, bool kWatched, class At>
 [[gnu::always_inline]] inline bool find_impulses(const Yarns& y, const YarnBlock& block, At at,
                                                  Displacements u, YarnScratch* scratch,
@@ -318,7 +318,11 @@ template <Along kAlong, Base kBase, bool kWatched, class At>
           b = fused(f.down, b, link.error);
           if constexpr (kWatched) {
             const Floats rest = load(y.rows[k].rest + lane);
-            beyond = xsimd::max(beyond, xsimd::abs(link.error) - Floats(enough) * (rest * rest));
+            const Floats square = rest * rest, half(0.5f);
+            // of a link that has collapsed, l | l - rest | is small too
+            const Floats out =
+                xsimd::max(xsimd::abs(link.error), half * xsimd::abs(link.size - square));
+            beyond = xsimd::max(beyond, out - Floats(enough) * square);
           }
           store(row.u, lane, here);
           store(row.n, lane, link.along);

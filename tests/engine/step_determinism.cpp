@@ -20,6 +20,7 @@ struct Case {
 std::vector<Case> cases() {
   return {{{"hang, 41", scene_of("hang", 41)}, 12},
           {{"hang, 90", scene_of("hang", 90)}, 8},
+          {{"hang, 130", scene_of("hang", 130)}, 2},
           {{"hang_sphere, 41", scene_of("hang_sphere", 41)}, 10},
           {{"sphere_drop, 33", scene_of("sphere_drop", 33)}, 4},
           {{"corners, 41", scene_of("corners", 41)}, 4},
@@ -79,6 +80,7 @@ TEST_CASE("the number of threads changes no bit") {
     CHECK(hash_after(c, settings, 1) == alone);
     settings.threads = 0;
     CHECK(hash_after(c, settings, 2) == alone);
+    CHECK(hash_after(c, settings, 3) == alone);
   });
 }
 

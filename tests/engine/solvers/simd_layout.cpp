@@ -34,6 +34,7 @@ TEST_CASE("seams have every chunk of the first batch between tiles once, behind 
     REQUIRE(tiles > 1);
     REQUIRE(ordering.between_tiles < ordering.batches.size());
     CHECK(layout.seams_at.size() == tiles + 2);
+    CHECK(layout.seams_at[tiles] > 0);
     std::vector<int> found(layout.chunks.size());
     for (std::size_t tile = 0; tile <= tiles; ++tile) {
       for (std::size_t i = layout.seams_at[tile]; i < layout.seams_at[tile + 1]; ++i) {

@@ -104,28 +104,29 @@ TEST_CASE("a second thread comes to help, if the arena has one") {
   });
 }
 
-/// Of the thread that asks.
+/// Of the thread that asks; -1 if that cannot be known.
 int processors_allowed() {
   cpu_set_t allowed;
-  REQUIRE(sched_getaffinity(0, sizeof allowed, &allowed) == 0);
-  return CPU_COUNT(&allowed);
+  return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : -1;
 }
 
 TEST_CASE("whoever was sent to another processor may still use them all") {
   const int allowed = processors_allowed();
+  std::atomic<int> changed{0};
   for (int i = 0; i < 20; ++i) {
-    in_arena(2, [allowed] {
+    in_arena(2, [allowed, &changed] {
       Team team(2);
       for (int loop = 0; loop < 1000; ++loop) {
         team.for_each(2, [&](std::size_t) {
-          if (loop % 100 == 0) REQUIRE(processors_allowed() == allowed);
+          if (loop % 100 == 0 && processors_allowed() != allowed) ++changed;
         });
       }
     });
   }
+  CHECK(changed == 0);
 }
 
-TEST_CASE("teams that follow each other keep their helpers, those that do not let them go") {
+TEST_CASE("teams that follow each other at one meeting, or at two in turn") {
   in_arena(2, [] {
     const auto meeting = Team::make_meeting(), other = Team::make_meeting();
     std::size_t sum = 0;
