@@ -15,9 +15,9 @@
 ///     velocity loop.
 ///  3. A Model is immutable and may be shared by any number of Cloths and threads. A Cloth is not
 ///     synchronised: one thread at a time.
-///  4. weft owns no threads, and no state but what it hands out. Parallel work runs in the caller's
-///     oneTBB arena; a worker that helped with a step waits for the next one for as long as that
-///     took, 0.2 ms at most, and may be moved off the processor of the thread that steps.
+///  4. weft owns no threads, and no globals that a result depends on. Parallel work runs in the
+///     caller's oneTBB arena; a worker that helped with a step waits for the next one for as long
+///     as that took, 0.2 ms at most, and may be moved off the processor of the thread that steps.
 ///  5. A step allocates nothing once warm (contact lists grow to their largest size and stay).
 ///  6. Errors are values. Bad input yields one line that names the field, the index and the value,
 ///     and nothing is built or changed. weft throws only what the standard allocator throws.
