@@ -91,7 +91,7 @@ constexpr Kernel kKernels[] = {
          table.yarn_sweep(loom.yarns(), block, Loom::quads(loom.u), loom.scratch.data());
        });
      }},
-    {"yarn_sweep_watched", 56, 40,
+    {"yarn_sweep_watched", 56, 40,  // nothing is enough: no block is left alone
      [](const simd::Table& table, Loom& loom) {
        for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
          benchmark::DoNotOptimize(table.yarn_sweep_watched(loom.yarns(), block, Loom::quads(loom.u),
