@@ -61,7 +61,9 @@ struct Kernel {
   double bytes_per_lane;      // of a row: read + written
   double footprint_per_lane;  // touched
   void (*pass)(const simd::Table& table, Loom& loom);
+  int solves = 1;
 };
+constexpr int kRepeats = 12;
 
 /// work(block) for all blocks.
 template <class Work>
@@ -84,6 +86,14 @@ void multiply(const simd::Table& table, Loom& loom) {
   });
 }
 
+/// Nothing is enough: no block is left alone.
+void watched(const simd::Table& table, Loom& loom, std::uint32_t most) {
+  for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
+    benchmark::DoNotOptimize(table.yarn_sweep_watched(loom.yarns(), block, Loom::quads(loom.u),
+                                                      loom.scratch.data(), -1, most));
+  });
+}
+
 constexpr Kernel kKernels[] = {
     {"yarn_sweep", 56, 40,
      [](const simd::Table& table, Loom& loom) {
@@ -91,13 +101,9 @@ constexpr Kernel kKernels[] = {
          table.yarn_sweep(loom.yarns(), block, Loom::quads(loom.u), loom.scratch.data());
        });
      }},
-    {"yarn_sweep_watched", 56, 40,  // nothing is enough: no block is left alone
-     [](const simd::Table& table, Loom& loom) {
-       for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
-         benchmark::DoNotOptimize(table.yarn_sweep_watched(loom.yarns(), block, Loom::quads(loom.u),
-                                                           loom.scratch.data(), -1));
-       });
-     }},
+    {"yarn_sweep_watched", 56, 40, [](const auto& table, Loom& loom) { watched(table, loom, 1); }},
+    {"yarn_sweep_repeated", 1020, 72,
+     [](const auto& table, Loom& loom) { watched(table, loom, kRepeats); }, kRepeats},
     {"yarn_sweep_first", 72, 56,
      [](const simd::Table& table, Loom& loom) {
        for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
@@ -125,8 +131,8 @@ void run(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Is
   for (auto _ : state) kernel.pass(table, loom);
   const auto lanes = static_cast<double>(loom.layout.rows.size() * kLanes);
   count(state,
-        {static_cast<double>(loom.model->constraints.size()), kernel.bytes_per_lane * lanes,
-         kernel.footprint_per_lane * lanes, false},
+        {static_cast<double>(loom.model->constraints.size()) * kernel.solves,
+         kernel.bytes_per_lane * lanes, kernel.footprint_per_lane * lanes, false},
         shared.bandwidth);
 }
 

@@ -154,18 +154,10 @@ std::uint32_t YarnSolver::solve_block(const simd::Yarns& yarns, std::size_t i, d
     table_.yarn_sweep(yarns, block, quads(u_), scratch);
     return 1;
   }
-  const auto share = static_cast<float>(enough);
-  simd::Yarns again = yarns;
-  if (!layout_.from_memory()) again.base = nullptr;
-  simd::Swept swept = table_.yarn_sweep_watched(yarns, block, quads(u_), scratch, share);
-  if (swept == simd::Swept::left_alone) return 0;
-  const std::uint32_t most = stubborn_[i] ? 1 : kMostSolves;
-  std::uint32_t solves = 1;
-  for (; swept == simd::Swept::out && solves < most; ++solves) {
-    swept = table_.yarn_sweep_watched(again, block, quads(u_), scratch, share);
-  }
-  if (swept == simd::Swept::out) stubborn_[i] = 1;
-  return solves;
+  const simd::Swept swept = table_.yarn_sweep_watched(
+      yarns, block, quads(u_), scratch, static_cast<float>(enough), stubborn_[i] ? 1 : kMostSolves);
+  if (!swept.within && swept.solves == kMostSolves) stubborn_[i] = 1;
+  return swept.solves;
 }
 
 void YarnSolver::sweep(double enough, Team& team, kernels::LoopResult& result) {

@@ -164,8 +164,11 @@ struct Yarns {
   bool from_memory = false;             // quads do not fit the caches: base is not remembered
 };
 
-/// How a watched sweep found, or left, the lengths of a block.
-enum class Swept : std::uint8_t { left_alone, within, out };
+/// What a watched sweep did to a block, and whether its lengths are good enough now.
+struct Swept {
+  std::uint32_t solves = 0;  // 0: it was left alone
+  bool within = true;
+};
 
 struct YarnProducts {
   float product = 0;  // residual . z
@@ -253,9 +256,10 @@ struct Table {
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
   /// Solves the yarns of a block. scratch: as many rows as the block.
   void (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
-  /// The same along present directions, unless all lengths are far within the share `enough`.
+  /// The same along present directions, unless all lengths are far within the share `enough`; and
+  /// again until they are within it, at most `most` times.
   Swept (*yarn_sweep_watched)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch,
-                              float enough);
+                              float enough, std::uint32_t most);
   /// Conjugate gradients (yarn_system.h) over all yarns, or all but those of the first family,
   /// which is eliminated; what writes quads goes family by family.
   void (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);

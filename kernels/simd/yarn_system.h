@@ -56,16 +56,17 @@ template <Along kAlong, Base kBase, class At>
     const Floats zero(0.f);
     go_down<kAlong, kBase>(
         y, block, at, lane, u, unit_link,
-        [&](std::uint32_t k, const FloatVector&, const YarnLink& link, const Factors& f) {
-          YarnSystemRow& row = y.system[k];
-          store(row.n, lane, link.n);
-          f.down.store_unaligned(row.m + lane);
-          f.reciprocal.store_unaligned(row.reciprocal + lane);
-          link.error.store_unaligned(row.residual + lane);
-          zero.store_unaligned(row.lambda + lane);
-          zero.store_unaligned(row.p + lane);
-          zero.store_unaligned(row.q + lane);
-        });
+        [&](std::uint32_t k, const FloatVector&, const YarnLink& link, const Factors& f)
+            __attribute__((always_inline)) {
+              YarnSystemRow& row = y.system[k];
+              store(row.n, lane, link.n);
+              f.down.store_unaligned(row.m + lane);
+              f.reciprocal.store_unaligned(row.reciprocal + lane);
+              link.error.store_unaligned(row.residual + lane);
+              zero.store_unaligned(row.lambda + lane);
+              zero.store_unaligned(row.p + lane);
+              zero.store_unaligned(row.q + lane);
+            });
   }
 }
 
@@ -244,8 +245,13 @@ template <bool kErrors, class At>
       here = next;
     }
     store(scratch[block.last - 1 - block.first].u, lane, here);
-    Unwatched watch;
-    go_up(y, block, at, lane, t, scratch, y.system + block.first, watch);
+    go_up(
+        y, block, lane, scratch, y.system + block.first,
+        [&](std::uint32_t row, Floats w, const FloatVector& impulse)
+            __attribute__((always_inline)) {
+              at.put(t, slots(y, block.first + row, lane),
+                     fused(w, impulse, load(scratch[row].u, lane)));
+            });
   }
 }
 

@@ -253,114 +253,199 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
        Factors{none, none, none});
 }
 
-/// Nobody looks what becomes of the lengths.
-struct Unwatched {
-  [[gnu::always_inline]] void take(std::uint32_t, Floats, const FloatVector&) {}
-};
-
-/// What lengths are out by, on the way up; scratch has the vectors that were to get them. In terms
-/// of squares: | length^2 - rest^2 | = 2 rest | length - rest |, nearly.
-struct Watch {
-  const YarnRow* rows;
-  const YarnScratch* scratch;
-  std::uint32_t lane;
-  Floats allowed;
-  Floats beyond = Floats(0.f);      // the most by which one is out beyond what is allowed
-  FloatVector below = no_vector();  // what the next particle was moved by
-
-  /// Row k is moved by w times the impulse.
-  [[gnu::always_inline]] void take(std::uint32_t k, Floats w, const FloatVector& impulse) {
-    const FloatVector by = w * impulse, d = load(scratch[k].n, lane) + (by - below);
-    const Floats rest = load(rows[k].rest + lane), square = rest * rest;
-    const Floats out = xsimd::abs(dot(d, d) - square) - allowed * square;
-    beyond = xsimd::select(rest > Floats(0.f), xsimd::max(beyond, out), beyond);
-    below = by;
-  }
-};
-
-/// Up again: impulses, and the particles moved by them. factors: has n and m of the rows.
-template <class At, class Row, class Watching>
-[[gnu::always_inline]] inline void go_up(const Yarns& y, const YarnBlock& block, At at,
-                                         std::uint32_t lane, Displacements u,
+/// Up again: move(row of the block, its inverse mass, its impulse). factors: has n and m of the
+/// rows.
+template <class Row, class Move>
+[[gnu::always_inline]] inline void go_up(const Yarns& y, const YarnBlock& block, std::uint32_t lane,
                                          const YarnScratch* scratch, const Row* factors,
-                                         Watching& watch) {
+                                         Move&& move) {
   FloatVector below = no_vector();  // impulse of the row's own constraint
   Floats lambda(0.f), m(0.f);
   for (std::uint32_t k = block.last - 1; k > block.first; --k) {
     const std::uint32_t row = k - block.first;
     lambda = fused(m, lambda, load(scratch[row - 1].y + lane));
     m = load(factors[row - 1].m + lane);
-    const FloatVector above = lambda * load(factors[row - 1].n, lane), impulse = above - below;
-    const Floats w = load(y.rows[k].inverse_mass + lane);
-    at.put(u, slots(y, k, lane), fused(w, impulse, load(scratch[row].u, lane)));
-    watch.take(row, w, impulse);
+    const FloatVector above = lambda * load(factors[row - 1].n, lane);
+    move(row, load(y.rows[k].inverse_mass + lane), above - below);
     below = above;
   }
-  const FloatVector impulse = no_vector() - below;
-  const Floats w = load(y.rows[block.first].inverse_mass + lane);
-  at.put(u, slots(y, block.first, lane), fused(w, impulse, load(scratch->u, lane)));
-  watch.take(0, w, impulse);
+  move(0, load(y.rows[block.first].inverse_mass + lane), no_vector() - below);
 }
 
-/// Down a block, into the scratch. kWatched: returns whether no length is out by more than the
-/// share `enough`.
-template <Along kAlong, Base kBase, bool kWatched, class At>
-[[gnu::always_inline]] inline bool find_impulses(const Yarns& y, const YarnBlock& block, At at,
-                                                 Displacements u, YarnScratch* scratch,
-                                                 float enough) {
-  bool quiet = true;
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    Floats b(0.f), beyond(0.f);
-    go_down<kAlong, kBase>(
-        y, block, at, lane, u, scaled_link<kAlong>,
-        [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f) {
-          YarnScratch& row = scratch[k - block.first];
-          b = fused(f.down, b, link.error);
-          if constexpr (kWatched) {
-            const Floats rest = load(y.rows[k].rest + lane);
-            const Floats square = rest * rest, half(0.5f);
-            // of a link that has collapsed, l | l - rest | is small too
-            const Floats out =
-                xsimd::max(xsimd::abs(link.error), half * xsimd::abs(link.size - square));
-            beyond = xsimd::max(beyond, out - Floats(enough) * square);
-          }
-          store(row.u, lane, here);
-          store(row.n, lane, link.along);
-          f.up.store_unaligned(row.m + lane);
-          (f.reciprocal * b).store_unaligned(row.y + lane);
-        });
-    if constexpr (kWatched) quiet = quiet && xsimd::all(beyond <= Floats(0.f));
+/// The right side, eliminated on the way down.
+struct Substitution {
+  Floats b = Floats(0.f);
+
+  [[gnu::always_inline]] void take(YarnScratch& row, std::uint32_t lane, Floats error,
+                                   const Factors& f) {
+    b = fused(f.down, b, error);
+    f.up.store_unaligned(row.m + lane);
+    (f.reciprocal * b).store_unaligned(row.y + lane);
   }
-  return quiet;
-}
+};
 
 template <Along kAlong, Base kBase, class At>
 [[gnu::always_inline]] inline void sweep_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                Displacements u, YarnScratch* scratch) {
-  find_impulses<kAlong, kBase, false>(y, block, at, u, scratch, 0);
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    Unwatched watch;
-    go_up(y, block, at, lane, u, scratch, scratch, watch);
+    Substitution substitution;
+    go_down<kAlong, kBase>(
+        y, block, at, lane, u, scaled_link<kAlong>,
+        [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
+            __attribute__((always_inline)) {
+              YarnScratch& row = scratch[k - block.first];
+              store(row.u, lane, here);
+              store(row.n, lane, link.along);
+              substitution.take(row, lane, link.error, f);
+            });
+    go_up(
+        y, block, lane, scratch, scratch,
+        [&](std::uint32_t row, Floats w, const FloatVector& impulse)
+            __attribute__((always_inline)) {
+              at.put(u, slots(y, block.first + row, lane),
+                     fused(w, impulse, load(scratch[row].u, lane)));
+            });
+  }
+}
+
+/// What lengths are out by before a solve.
+struct Before {
+  Floats enough;
+  Floats beyond = Floats(0.f);  // the most by which one is out beyond that, in terms of squares
+
+  [[gnu::always_inline]] void take(const YarnLink& link, Floats rest) {
+    const Floats square = rest * rest, half(0.5f);
+    // of a link that has all but collapsed, l | l - rest | is small too
+    const Floats out = xsimd::max(xsimd::abs(link.error), half * xsimd::abs(link.size - square));
+    beyond = xsimd::max(beyond, out - enough * square);
+  }
+};
+
+/// Down a block. Returns whether no length is out by more than the share `quiet`.
+template <Base kBase, class At>
+[[gnu::always_inline]] inline bool find_impulses(const Yarns& y, const YarnBlock& block, At at,
+                                                 Displacements u, YarnScratch* scratch,
+                                                 float quiet) {
+  bool is_quiet = true;
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    Substitution substitution;
+    Before before{Floats(quiet)};
+    go_down<Along::present, kBase>(
+        y, block, at, lane, u, scaled_link<Along::present>,
+        [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
+            __attribute__((always_inline)) {
+              YarnScratch& row = scratch[k - block.first];
+              before.take(link, load(y.rows[k].rest + lane));
+              store(row.u, lane, here);
+              store(row.n, lane, link.along);
+              substitution.take(row, lane, link.error, f);
+            });
+    is_quiet = is_quiet && xsimd::all(before.beyond <= Floats(0.f));
+  }
+  return is_quiet;
+}
+
+/// The same from what the last solve kept.
+[[gnu::always_inline]] inline void find_impulses_again(const Yarns& y, const YarnBlock& block,
+                                                       YarnScratch* scratch) {
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    Substitution substitution;
+    Elimination<Along::present> elimination;
+    Floats w = load(y.rows[block.first].inverse_mass + lane);
+    for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
+      YarnScratch& row = scratch[k - block.first];
+      const Floats w_next = load(y.rows[k + 1].inverse_mass + lane);
+      const YarnLink link =
+          scaled_link<Along::present>(load(row.n, lane), load(y.rows[k].rest + lane));
+      substitution.take(row, lane, link.error, elimination.step(link, w, w_next));
+      w = w_next;
+    }
+  }
+}
+
+/// What lengths are out by after a solve: | length^2 - rest^2 | = 2 rest | length - rest |, nearly.
+struct After {
+  Floats allowed;
+  Floats beyond = Floats(0.f);
+  FloatVector below = no_vector();  // what the next particle was moved by
+
+  /// d before it, and what the row's own particle is moved by. Returns d after it.
+  [[gnu::always_inline]] FloatVector take(const FloatVector& d, const FloatVector& by,
+                                          Floats rest) {
+    const FloatVector now = d + (by - below);
+    const Floats square = rest * rest;
+    const Floats out = xsimd::abs(dot(now, now) - square) - allowed * square;
+    beyond = xsimd::select(rest > Floats(0.f), xsimd::max(beyond, out), beyond);
+    below = by;
+    return now;
+  }
+};
+
+/// keep(row, lane, d, u): what they are from now on. Returns whether a length is out by more than
+/// the share `enough`.
+template <class Keep>
+[[gnu::always_inline]] inline bool apply_impulses(const Yarns& y, const YarnBlock& block,
+                                                  const YarnScratch* scratch, float enough,
+                                                  Keep&& keep) {
+  bool out = false;
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    After after{Floats(2 * enough)};
+    go_up(
+        y, block, lane, scratch, scratch,
+        [&](std::uint32_t row, Floats w, const FloatVector& impulse)
+            __attribute__((always_inline)) {
+              const FloatVector u = fused(w, impulse, load(scratch[row].u, lane));
+              const Floats rest = load(y.rows[block.first + row].rest + lane);
+              keep(row, lane, after.take(load(scratch[row].n, lane), w * impulse, rest), u);
+            });
+    out = out || xsimd::any(after.beyond > Floats(0.f));
+  }
+  return out;
+}
+
+template <class At>
+[[gnu::always_inline]] inline void put_displacements(const Yarns& y, const YarnBlock& block, At at,
+                                                     Displacements u, const YarnScratch* scratch) {
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    for (std::uint32_t k = block.first; k < block.last; ++k) {
+      at.put(u, slots(y, k, lane), load(scratch[k - block.first].u, lane));
+    }
   }
 }
 
 /// Where nothing is out by a hundredth of `enough` nothing is done. (By all of it: what a block may
-/// keep comes back as speed: sphere_drop in 8 substeps gains 2 mJ instead of less than 0.03.)
+/// keep comes back as speed: sphere_drop in 8 substeps gains 2 mJ instead of less than 0.03.) A
+/// third solve, and all that follow, stay within the scratch: 0.8 times as long in the caches; of a
+/// yarn of a thousand particles the scratch fits, quads and scratch do not: 0.35 times. (Kept by
+/// the first solve already: hang 40 x 40 takes 1.03 times as long, 300 x 300 0.97, and the n of a
+/// link that has collapsed is not its d.)
 template <Base kBase, class At>
 [[gnu::always_inline]] inline Swept sweep_watched(const Yarns& y, const YarnBlock& block, At at,
                                                   Displacements u, YarnScratch* scratch,
-                                                  float enough) {
+                                                  float enough, std::uint32_t most) {
   constexpr float kQuiet = 0.01f;
-  const float quiet = kQuiet * enough;
-  if (find_impulses<Along::present, kBase, true>(y, block, at, u, scratch, quiet))
-    return Swept::left_alone;
-  bool out = false;
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    Watch watch{y.rows + block.first, scratch, lane, Floats(2 * enough)};
-    go_up(y, block, at, lane, u, scratch, scratch, watch);
-    out = out || xsimd::any(watch.beyond > Floats(0.f));
+  constexpr Base kAgain = kBase == Base::memory ? Base::memory : Base::rows;
+  const auto put = [&](std::uint32_t row, std::uint32_t lane, const FloatVector&,
+                       const FloatVector& moved) __attribute__((always_inline)) {
+    at.put(u, slots(y, block.first + row, lane), moved);
+  };
+  const auto keep = [&](std::uint32_t row, std::uint32_t lane, const FloatVector& d,
+                        const FloatVector& moved) __attribute__((always_inline)) {
+    store(scratch[row].n, lane, d);
+    store(scratch[row].u, lane, moved);
+  };
+  if (find_impulses<kBase>(y, block, at, u, scratch, kQuiet * enough)) return {0, true};
+  bool out = apply_impulses(y, block, scratch, enough, put);
+  if (!out || most == 1) return {1, !out};
+  find_impulses<kAgain>(y, block, at, u, scratch, 0);
+  out = apply_impulses(y, block, scratch, enough, keep);
+  std::uint32_t solves = 2;
+  for (; out && solves < most; ++solves) {
+    find_impulses_again(y, block, scratch);
+    out = apply_impulses(y, block, scratch, enough, keep);
   }
-  return out ? Swept::out : Swept::within;
+  put_displacements(y, block, at, u, scratch);
+  return {solves, !out};
 }
 
 void yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
@@ -375,10 +460,11 @@ void yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScr
 }
 
 Swept yarn_sweep_watched(const Yarns& y, const YarnBlock& block, Displacements u,
-                         YarnScratch* scratch, float enough) {
-  Swept swept = Swept::within;
+                         YarnScratch* scratch, float enough, std::uint32_t most) {
+  Swept swept;
   with_quads(block, [&](auto at) {
-    with_base(y, [&](auto base) { swept = sweep_watched<base>(y, block, at, u, scratch, enough); });
+    with_base(
+        y, [&](auto base) { swept = sweep_watched<base>(y, block, at, u, scratch, enough, most); });
   });
   return swept;
 }

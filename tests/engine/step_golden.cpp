@@ -43,11 +43,11 @@ constexpr Golden kGolden[] = {
     {Way::paper, "hub", 17, 6, true, 0xfa09a294848129c1},
     {Way::automatic, "hang", 20, 40, false, 0x65d29ecb85df5bfd},
     {Way::automatic, "hang", 41, 12, true, 0x40ddf4fa179dd5d2},
-    {Way::automatic, "hang", 90, 30, false, 0x3e5a9497498a8499},
+    {Way::automatic, "hang", 90, 30, false, 0x864171763398656d},
     {Way::automatic, "hang_sphere", 21, 40, false, 0xcbde59884819982b},
     {Way::automatic, "sphere_drop", 21, 40, false, 0xea5312d24218b95c},
     {Way::automatic, "corners", 41, 20, false, 0xb8024c66b1b37e84},
-    {Way::automatic, "ropes", 33, 10, true, 0xbc0c2bd2c2d10758},
+    {Way::automatic, "ropes", 33, 10, true, 0x3baff32cc9255cc9},
     {Way::automatic, "random", 33, 10, false, 0x3ce1d89104d082e7},
     {Way::automatic, "hub", 17, 6, true, 0x452912cc2dc68f16},
 };
