@@ -2,6 +2,7 @@
 ///
 ///   renew()   take new directions and errors from the present state
 ///   sweep()   one iteration: one pass over the constraints
+///             (sweeps(n): n of them, of a method that can do better than one after the other)
 ///   finish()  leave the result where the caller expects it
 ///
 /// However often directions are renewed, the loop ends when an iteration along fresh directions
@@ -32,8 +33,8 @@ struct LoopResult {
   bool failed = false;  // gave up before its limits: from here it leads nowhere
 };
 
-inline void count(LoopResult& result, const Sweep& sweep) {
-  ++result.iterations;
+inline void count(LoopResult& result, const Sweep& sweep, int passes = 1) {
+  result.iterations += passes;
   result.visits += sweep.visits;
   result.corrections += sweep.corrections;
 }
@@ -78,7 +79,12 @@ LoopResult iterate_fixed(Loop& loop, Directions directions, int iterations) {
       loop.renew();
       ++result.direction_updates;
     }
-    count(result, loop.sweep());
+    if constexpr (requires { loop.sweeps(1); }) {
+      const int passes = directions == Directions::each ? 1 : iterations;
+      count(result, loop.sweeps(passes), passes);
+    } else {
+      count(result, loop.sweep());
+    }
   }
   loop.finish();
   return result;

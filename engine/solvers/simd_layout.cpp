@@ -83,6 +83,7 @@ void find_seams(const Ordering& ordering, SimdLayout& layout) {
                           layout.seams.back().first_tile == next->first;
       if (!longer) layout.seams.push_back({next->chunk, next->chunk, next->first});
       ++layout.seams.back().last_chunk;
+      layout.seams_join_neighbours &= tile <= next->first + 1;
     }
   }
   layout.seams_at.push_back(static_cast<std::uint32_t>(layout.seams.size()));

@@ -43,6 +43,7 @@ struct SimdLayout {
   std::vector<std::uint32_t> batch_singles;  // its singles from batch_singles[i] on
   std::vector<Seam> seams;                   // by the last tile that they need; those of tile i are
   std::vector<std::uint32_t> seams_at;  // [i] ... [i + 1] - 1, of padding [number of tiles] ...
+  bool seams_join_neighbours = true;    // or further tiles
   Lists neighbours;                     // chunks that share a slot with chunk i, and i itself
   Lists chunks_at;                      // slot -> chunks
 

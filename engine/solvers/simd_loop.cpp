@@ -99,15 +99,12 @@ void SimdLoop::renew_rest() {
 }
 
 kernels::Sweep SimdLoop::sweep() {
-  kernels::Sweep sweep;
   const Ordering& ordering = s_.model_.ordering;
+  clear_sweeps();
   team_.for_each_share(ordering.tiles.size(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      s_.sweeps_[i] = sweep_tile(ordering.tiles[i]);
-      sweep_seams(i, first, s_.sweeps_[i]);
-    }
+    sweep_tiles(first, last, first);
   });
-  for (std::size_t i = 0; i < ordering.tiles.size(); ++i) add(sweep, s_.sweeps_[i]);
+  kernels::Sweep sweep = sum_of_sweeps();
   sweep_open_seams(sweep);
   const std::size_t done = layout_.seams.empty() ? 0 : 1;
   for (std::size_t i = ordering.between_tiles + done; i < ordering.batches.size(); ++i) {
@@ -117,6 +114,73 @@ kernels::Sweep SimdLoop::sweep() {
   sweep_contacts(sweep);
   if (skips()) choose_density(sweep);
   return sweep;
+}
+
+/// What is between tiles joins each to the next one only, and no pass decides about the next.
+bool SimdLoop::meets_neighbours_only() const {
+  const Ordering& ordering = s_.model_.ordering;
+  return !ordering.tiles.empty() && layout_.seams_join_neighbours &&
+         ordering.batches.size() <= ordering.between_tiles + 1 &&
+         layout_.hub_first == layout_.hub_last && s_.contacts_.spheres.empty() && !skips();
+}
+
+/// Passes with one meeting for all of them, where they allow it: what a share needs of a pass is
+/// the seam with the share before it; what its own seam with the share behind it needs is that
+/// one's first tile.
+///
+///     share 0:  | tile 0 | tile 1 | seam | tile 0 | tile 1 | seam | ...
+///     share 1:   | tile 2 | tile 3 |     . | tile 2 | tile 3 |    . | ...
+kernels::Sweep SimdLoop::sweeps(int passes) {
+  kernels::Sweep sum;
+  if (!meets_neighbours_only()) {
+    for (int i = 0; i < passes; ++i) add(sum, sweep());
+    return sum;
+  }
+  clear_sweeps();
+  auto do_stage = [&](Team::Stage stage, std::size_t first, std::size_t last) {
+    switch (stage) {
+      case Team::Stage::front:
+        return sweep_tiles(first, first + 1, first);
+      case Team::Stage::rest:
+        return sweep_tiles(first + 1, last, first);
+      case Team::Stage::close:
+        return sweep_seams_between(first, last);
+    }
+  };
+  team_.for_each_share_in_rounds(s_.model_.ordering.tiles.size(), passes, do_stage);
+  return sum_of_sweeps();
+}
+
+void SimdLoop::clear_sweeps() {
+  for (std::size_t i = 0; i < s_.model_.ordering.tiles.size(); ++i) s_.sweeps_[i] = {};
+}
+
+kernels::Sweep SimdLoop::sum_of_sweeps() const {
+  kernels::Sweep sum;
+  for (std::size_t i = 0; i < s_.model_.ordering.tiles.size(); ++i) add(sum, s_.sweeps_[i]);
+  return sum;
+}
+
+/// With the seams that they have within their share.
+void SimdLoop::sweep_tiles(std::size_t first, std::size_t last, std::size_t share_first) {
+  kernels::Sweep sweep;
+  for (std::size_t i = first; i < last; ++i) {
+    add(sweep, sweep_tile(s_.model_.ordering.tiles[i]));
+    sweep_seams(i, share_first, sweep);
+  }
+  add(s_.sweeps_[share_first], sweep);
+}
+
+/// Of a share with the one behind it.
+void SimdLoop::sweep_seams_between(std::size_t share_first, std::size_t share_last) {
+  kernels::Sweep sweep;
+  const std::size_t batch = s_.model_.ordering.between_tiles;
+  for (std::size_t i = layout_.seams_at[share_last]; i < layout_.seams_at[share_last + 1]; ++i) {
+    const Seam& seam = layout_.seams[i];
+    if (seam.first_tile < share_last)
+      add(sweep, sweep_chunks(batch, seam.first_chunk, seam.last_chunk));
+  }
+  add(s_.sweeps_[share_first], sweep);
 }
 
 /// Leaving the dense state everything counts as changed: the next pass finds out what did.
@@ -145,8 +209,9 @@ void SimdLoop::sweep_seams(std::size_t tile, std::size_t first_tile, kernels::Sw
   const std::size_t batch = s_.model_.ordering.between_tiles;
   for (std::size_t i = layout_.seams_at[tile]; i < layout_.seams_at[tile + 1]; ++i) {
     const Seam& seam = layout_.seams[i];
-    s_.open_seam_[i] = seam.first_tile < first_tile;
-    if (!s_.open_seam_[i]) add(sweep, sweep_chunks(batch, seam.first_chunk, seam.last_chunk));
+    const bool open = seam.first_tile < first_tile;
+    if (s_.open_seam_[i] != open) s_.open_seam_[i] = open;
+    if (!open) add(sweep, sweep_chunks(batch, seam.first_chunk, seam.last_chunk));
   }
 }
 
@@ -160,8 +225,8 @@ void SimdLoop::sweep_open_seams(kernels::Sweep& sweep) {
   }
   const auto sweep_seam = [&](std::size_t i) {
     const Seam& seam = layout_.seams[i];
-    s_.sweeps_[i] = s_.open_seam_[i] ? sweep_chunks(batch, seam.first_chunk, seam.last_chunk)
-                                     : kernels::Sweep{};
+    s_.sweeps_[i] = {s_.open_seam_[i] ? sweep_chunks(batch, seam.first_chunk, seam.last_chunk)
+                                      : kernels::Sweep{}};
   };
   if (open_chunks > kPiece) {
     team_.for_each(count, sweep_seam);
@@ -176,7 +241,7 @@ kernels::Sweep SimdLoop::sweep_batch_between_tiles(std::size_t batch) {
   const std::size_t pieces = (last - first + kPiece - 1) / kPiece;
   team_.for_each(pieces, [&](std::size_t piece) {
     const std::size_t begin = first + piece * kPiece;
-    s_.sweeps_[piece] = sweep_chunks(batch, begin, std::min(last, begin + kPiece));
+    s_.sweeps_[piece] = {sweep_chunks(batch, begin, std::min(last, begin + kPiece))};
   });
   kernels::Sweep sweep;
   for (std::size_t piece = 0; piece < pieces; ++piece) add(sweep, s_.sweeps_[piece]);

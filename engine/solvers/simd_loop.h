@@ -22,6 +22,7 @@ class SimdLoop {
 
   void renew();
   kernels::Sweep sweep();
+  kernels::Sweep sweeps(int passes);
   void finish() { apply_displacements(); }
 
  private:
@@ -32,7 +33,12 @@ class SimdLoop {
   void renew_run(const kernels::Run& run);
   void renew_singles(std::uint32_t first, std::uint32_t last);
   void renew_rest();
+  bool meets_neighbours_only() const;
+  void clear_sweeps();
+  kernels::Sweep sum_of_sweeps() const;
   kernels::Sweep sweep_tile(const Tile& tile);
+  void sweep_tiles(std::size_t first, std::size_t last, std::size_t share_first);
+  void sweep_seams_between(std::size_t share_first, std::size_t share_last);
   void sweep_seams(std::size_t tile, std::size_t first_tile, kernels::Sweep& sweep);
   void sweep_open_seams(kernels::Sweep& sweep);
   kernels::Sweep sweep_batch_between_tiles(std::size_t batch);

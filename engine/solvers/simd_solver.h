@@ -44,6 +44,9 @@ struct ContactLanes {
   std::size_t bytes() const;
 };
 
+/// Threads write theirs side by side.
+struct alignas(64) SharedSweep : kernels::Sweep {};
+
 class SimdSolver {
  public:
   SimdSolver(const Model& model, const Settings& settings, simd::Isa isa);
@@ -97,11 +100,11 @@ class SimdSolver {
   // Per chunk, skip only: something in it, or in a chunk that shares a particle with it, was
   // corrected since it was last visited; since its directions were last renewed.
   std::vector<std::uint8_t> changed_, stale_;
-  std::vector<std::uint32_t> corrections_;     // per chunk, of the present pass
-  std::vector<kernels::Sweep> sweeps_;         // per piece of parallel work
-  std::vector<std::uint8_t> open_seam_;        // no share of the present pass had all its tiles
-  std::vector<simd::StrainSums> strains_;      // per chunk
-  std::vector<simd::StretchRange> stretches_;  // per tile, then per piece between tiles
+  std::vector<std::uint32_t> corrections_;      // per chunk, of the present pass
+  kernels::AlignedVector<SharedSweep> sweeps_;  // per share, or piece, of parallel work
+  std::vector<std::uint8_t> open_seam_;         // no share of the present pass had all its tiles
+  std::vector<simd::StrainSums> strains_;       // per chunk
+  std::vector<simd::StretchRange> stretches_;   // per tile, then per piece between tiles
   ContactLanes contacts_;
   std::vector<float> contact_impulse_;  // per contact of the ContactStore
 };

@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-constexpr std::uint32_t kStop = 0xffffu;
+constexpr std::uint32_t kStop = 0xffu;
 constexpr std::uint32_t kClosed = 0xffffffffu;
 /// Pauses before the leader begins a share that is not its own: some microseconds.
 constexpr int kGrace = 100;
@@ -26,10 +26,6 @@ constexpr std::uint64_t kAlone = 8;
 
 /// By all teams.
 std::atomic<std::uint64_t> tasks_enqueued{0};
-
-std::uint64_t call_of(std::uint64_t epoch, std::uint32_t members) { return epoch << 16 | members; }
-std::uint64_t epoch_of(std::uint64_t call) { return call >> 16; }
-std::uint32_t members_of(std::uint64_t call) { return call & 0xffffu; }
 
 std::uint64_t ticks() { return __builtin_ia32_rdtsc(); }
 
@@ -63,7 +59,18 @@ void leave_processor(int processor) {
 
 }  // namespace
 
+Team::Meeting::Call Team::Meeting::Call::from(std::uint64_t word) {
+  return {word >> 16, static_cast<std::uint32_t>(word >> 8 & 0xffu),
+          static_cast<std::uint32_t>(word & 0xffu)};
+}
+
+std::uint64_t Team::Meeting::Call::word() const { return first << 16 | rounds << 8 | members; }
+
 Team::Meeting::Meeting() : door(kClosed) {}
+
+void Team::Meeting::announce(const Call& call) {
+  announced.word.store(call.word(), std::memory_order_release);
+}
 
 std::shared_ptr<Team::Meeting> Team::make_meeting() { return std::make_shared<Meeting>(); }
 
@@ -79,7 +86,7 @@ Team::Team(int threads, std::shared_ptr<Meeting> meeting)
   m.left.store(0, std::memory_order_relaxed);
   m.seats.store(helpers, std::memory_order_relaxed);
   m.leaders_processor.store(sched_getcpu(), std::memory_order_relaxed);
-  m.call.word.store(call_of(++m.epoch, 1), std::memory_order_relaxed);
+  m.announce({++m.round, 1, 1});
   m.door.store(0);
   while (m.asked.load() < helpers_) {
     m.asked.fetch_add(1);
@@ -94,7 +101,7 @@ Team::~Team() {
   Meeting& m = *meeting_;
   m.leaders_processor.store(sched_getcpu(), std::memory_order_relaxed);  // it may have moved
   const std::uint32_t came = m.door.exchange(kClosed, std::memory_order_acq_rel);
-  m.call.word.store(call_of(++m.epoch, kStop), std::memory_order_release);
+  m.announce({++m.round, 1, kStop});
   wait_until([&] { return m.left.load(std::memory_order_acquire) == came; });
 }
 
@@ -106,27 +113,31 @@ std::uint32_t Team::members() {
   return 1 + meeting_->door.load(std::memory_order_relaxed);
 }
 
-void Team::run(const Job& job) {
+void Team::run(const Job& job, int rounds) {
   Meeting& m = *meeting_;
-  const std::uint32_t members = this->members();
-  if (members == 1 || job.count < 2) return job.work(job.context, 0, job.count);
-  m.call.job = job;
-  m.call.word.store(call_of(++m.epoch, members), std::memory_order_release);
+  const auto members =
+      static_cast<std::uint32_t>(std::min<std::size_t>(this->members(), job.count));
+  if (members < 2) return run_alone(job, rounds);
+  const Meeting::Call call{m.round + 1, static_cast<std::uint32_t>(rounds), members};
+  m.round += call.rounds;
+  m.waited = 0;
+  m.announced.job = job;
+  m.announce(call);
   const std::uint64_t start = ticks();
-  m.do_share(m.epoch, 0, members);
-  const std::uint64_t own = ticks() - start;
-  for (std::uint32_t share = 1; share < members; ++share) finish_share(share, members);
-  const std::uint64_t end = ticks(), waited = end - start - own;
-  if (waited > own + kLost) alone_until_ = end + kAlone * waited;
+  for (std::uint64_t round = call.first; round <= m.round; ++round) {
+    if (m.begin(call, 0, round)) m.do_share(call, 0, round, true);
+  }
+  m.wait_as_leader(call, [&] { return m.all_done(call); });
+  const std::uint64_t end = ticks(), own = end - start - m.waited;
+  if (m.waited > own + kLost) alone_until_ = end + kAlone * m.waited;
 }
 
-/// Sees to it that the share of a member gets done.
-void Team::finish_share(std::uint32_t share, std::uint32_t members) {
-  Meeting& m = *meeting_;
-  const auto done = [&] { return m.shares[share].done.load(std::memory_order_acquire) == m.epoch; };
-  if (spin_until(kGrace, done)) return;
-  m.do_share(m.epoch, share, members);
-  wait_until(done);
+void Team::run_alone(const Job& job, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    if (job.staged) job.work(job.context, Stage::front, 0, job.count);
+    job.work(job.context, Stage::rest, 0, job.count);
+    if (job.staged) job.work(job.context, Stage::close, 0, job.count);
+  }
 }
 
 /// The life of a task.
@@ -163,29 +174,100 @@ std::uint32_t Team::Meeting::enter() {
   return came + 1;
 }
 
-/// Epoch and members are one word so that a thread cannot mistake one call for the next. A share
-/// that is begun in an epoch keeps the leader in it; a thread that has begun none must not touch
-/// the job.
+/// A call is one word so that a thread cannot mistake one for the next. A share that is begun keeps
+/// the leader in the call; a thread that has begun none must not touch the job.
 void Team::Meeting::take_part(std::uint32_t me) {
-  std::uint64_t heard = 0;  // no epoch
+  std::uint64_t heard = 0;  // no call
   for (;;) {
     const std::uint64_t before = heard;
-    wait_until([&] { return (heard = call.word.load(std::memory_order_acquire)) != before; });
-    if (members_of(heard) == kStop) break;
-    if (me < members_of(heard)) do_share(epoch_of(heard), me, members_of(heard));
+    wait_until([&] { return (heard = announced.word.load(std::memory_order_acquire)) != before; });
+    const Call call = Call::from(heard);
+    if (call.members == kStop) break;
+    if (me < call.members) do_rounds(call, me);
   }
   asked.fetch_add(1);
   left.fetch_add(1, std::memory_order_release);
 }
 
-/// Unless somebody has begun it.
-void Team::Meeting::do_share(std::uint64_t now, std::uint32_t share, std::uint32_t members) {
+/// Unless somebody else has begun them.
+void Team::Meeting::do_rounds(const Call& call, std::uint32_t share) {
+  for (std::uint64_t round = call.first; round <= call.last(); ++round) {
+    wait_until([&] {
+      return shares[share].begun.load(std::memory_order_relaxed) >= round ||
+             may_begin(call, share, round);
+    });
+    if (begin(call, share, round)) do_share(call, share, round, false);
+  }
+}
+
+bool Team::Meeting::is_done(std::uint32_t share, std::uint64_t by) const {
+  return shares[share].done.load(std::memory_order_acquire) >= by;
+}
+
+bool Team::Meeting::all_done(const Call& call) const {
+  std::uint32_t share = 0;
+  while (share < call.members && is_done(share, call.last())) ++share;
+  return share == call.members;
+}
+
+/// The round before is over, as far as this share has to do with it.
+bool Team::Meeting::may_begin(const Call& call, std::uint32_t share, std::uint64_t now) const {
+  return now == call.first ||
+         (is_done(share, now - 1) && (share == 0 || is_done(share - 1, now - 1)));
+}
+
+/// Unless somebody has.
+bool Team::Meeting::begin(const Call& call, std::uint32_t share, std::uint64_t now) {
   std::uint64_t before = shares[share].begun.load(std::memory_order_relaxed);
-  if (before >= now) return;
-  if (!shares[share].begun.compare_exchange_strong(before, now, std::memory_order_acq_rel)) return;
-  const Job& job = call.job;
-  job.work(job.context, job.count * share / members, job.count * (share + 1) / members);
+  if (before >= now || !may_begin(call, share, now)) return false;
+  return shares[share].begun.compare_exchange_strong(before, now, std::memory_order_acq_rel);
+}
+
+void Team::Meeting::do_share(const Call& call, std::uint32_t share, std::uint64_t now, bool leads) {
+  const Job& job = announced.job;
+  const std::size_t first = job.count * share / call.members;
+  const std::size_t last = job.count * (share + 1) / call.members;
+  if (job.staged) {
+    job.work(job.context, Stage::front, first, last);
+    shares[share].front.store(now, std::memory_order_release);
+  }
+  job.work(job.context, Stage::rest, first, last);
+  if (job.staged) {
+    if (share + 1 < call.members) wait_for_front(call, share + 1, now, leads);
+    job.work(job.context, Stage::close, first, last);
+  }
   shares[share].done.store(now, std::memory_order_release);
+}
+
+void Team::Meeting::wait_for_front(const Call& call, std::uint32_t share, std::uint64_t of,
+                                   bool leads) {
+  const auto ready = [&] { return shares[share].front.load(std::memory_order_acquire) >= of; };
+  if (leads)
+    wait_as_leader(call, ready);
+  else
+    wait_until(ready);
+}
+
+/// It does itself what could have been begun for a while.
+template <class Ready>
+void Team::Meeting::wait_as_leader(const Call& call, Ready&& ready) {
+  if (ready()) return;
+  const std::uint64_t start = ticks(), before = waited;
+  for (int spins = 0; !spin_until(kGrace, ready); spins += kGrace) {
+    if (!help(call) && spins > kPatience) std::this_thread::yield();
+  }
+  waited = before + (ticks() - start);
+}
+
+bool Team::Meeting::help(const Call& call) {
+  for (std::uint32_t share = 1; share < call.members; ++share) {
+    const std::uint64_t begun = shares[share].begun.load(std::memory_order_relaxed);
+    const std::uint64_t next = std::max(begun + 1, call.first);
+    if (next > call.last() || !begin(call, share, next)) continue;
+    do_share(call, share, next, true);
+    return true;
+  }
+  return false;
 }
 
 }  // namespace weft

@@ -4,8 +4,8 @@
 /// would cost more than that. So the threads are asked for once per step, as oneTBB tasks in the
 /// caller's arena, and from then on meet through atomics:
 ///
-///     leader:  announces (epoch, members), does its share, waits for the others'
-///     member:  waits for a new epoch, does its share
+///     leader:  announces (round, members), does its share, waits for the others'
+///     member:  waits for a new round, does its share
 ///
 /// A meeting costs what it takes a cache line to cross between processors, twice; so everything
 /// that a call says is in one line, and nobody touches the lines of another without need.
@@ -15,6 +15,9 @@
 /// wake. It goes when tasks are enqueued for another team. One that finds itself on the leader's
 /// processor is sent to another.
 ///
+/// Rounds of one loop are announced at once where a share needs no more than its neighbours: it
+/// then meets these alone, when it comes to what they share.
+///
 /// Nobody is waited for who has not come: a task that the scheduler never starts, or starts late,
 /// is simply no member yet, and the leader does itself what a member has not begun after a while.
 /// If a share that was begun keeps it waiting for long, beside the time of its own, its thread has
@@ -22,6 +25,7 @@
 /// results must not depend on it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -35,6 +39,9 @@ class Team {
  public:
   static constexpr int kMostMembers = 64;
   struct Meeting;
+  /// Of a share in a round, one after the other. The share before it has closed the round before
+  /// when it begins; the front of the share behind it is done when it closes.
+  enum class Stage : std::uint8_t { front, rest, close };
 
   /// Asks for up to `threads` threads, this one included; at most what the arena has. A meeting may
   /// be used again by the next team, when this one is gone.
@@ -57,22 +64,34 @@ class Team {
   /// work(first, last) of each share.
   template <class Work>
   void for_each_share(std::size_t count, Work&& work) {
-    const auto share = [](void* context, std::size_t first, std::size_t last) {
+    const auto share = [](void* context, Stage, std::size_t first, std::size_t last) {
       (*static_cast<std::remove_reference_t<Work>*>(context))(first, last);
     };
-    run({share, &work, count});
+    run({share, &work, count, false}, 1);
+  }
+  /// work(stage, first, last) of each share, all stages in each round. No share is empty.
+  template <class Work>
+  void for_each_share_in_rounds(std::size_t count, int rounds, Work&& work) {
+    const auto share = [](void* context, Stage stage, std::size_t first, std::size_t last) {
+      (*static_cast<std::remove_reference_t<Work>*>(context))(stage, first, last);
+    };
+    for (int left = rounds; left > 0; left -= kMostRounds) {
+      run({share, &work, count, true}, std::min(left, kMostRounds));
+    }
   }
 
  private:
+  static constexpr int kMostRounds = 255;
   struct Job {
-    void (*work)(void* context, std::size_t first, std::size_t last) = nullptr;
+    void (*work)(void* context, Stage stage, std::size_t first, std::size_t last) = nullptr;
     void* context = nullptr;
     std::size_t count = 0;
+    bool staged = false;  // or all of it as rest
   };
 
-  void run(const Job& job);
+  void run(const Job& job, int rounds);
+  void run_alone(const Job& job, int rounds);
   std::uint32_t members();
-  void finish_share(std::uint32_t share, std::uint32_t members);
 
   std::shared_ptr<Meeting> meeting_;
   int helpers_ = 0;
@@ -83,32 +102,53 @@ class Team {
 /// gone: it finds the door closed.
 struct Team::Meeting {
   static constexpr std::size_t kCacheLine = 64;
-  /// epoch << 16 | members, leader included; kStop as members: go home.
-  struct alignas(kCacheLine) Call {
-    std::atomic<std::uint64_t> word{0};
-    Job job;  // written by the leader between epochs, read by whoever has begun a share
+  /// What is announced: rounds are numbered through, from meeting to meeting.
+  struct Call {
+    std::uint64_t first = 0;  // round
+    std::uint32_t rounds = 0;
+    std::uint32_t members = 0;  // leader included; kStop: go home
+
+    static Call from(std::uint64_t word);
+    std::uint64_t word() const;
+    std::uint64_t last() const { return first + rounds - 1; }
   };
-  /// The last epoch in which somebody began, and finished, the share of a member.
+  struct alignas(kCacheLine) Announced {
+    std::atomic<std::uint64_t> word{0};
+    Job job;  // written by the leader between calls, read by whoever has begun a share
+  };
+  /// The last round in which somebody began, did the front of, and finished the share of a member.
   struct Share {
     alignas(kCacheLine) std::atomic<std::uint64_t> begun{0};
-    alignas(kCacheLine) std::atomic<std::uint64_t> done{0};
+    alignas(kCacheLine) std::atomic<std::uint64_t> front{0};
+    std::atomic<std::uint64_t> done{0};
   };
 
-  Call call;
+  Announced announced;
   alignas(kCacheLine) std::atomic<std::uint32_t> door;  // kClosed, or how many have come in
   std::atomic<std::uint32_t> seats{0};                  // how many may
   std::atomic<int> leaders_processor{-1};
   std::atomic<std::uint32_t> left{0};  // of those who came in
   std::atomic<int> asked{0};           // tasks not started, or at the door
   std::array<Share, kMostMembers> shares;
-  std::uint64_t epoch = 0;
+  std::uint64_t round = 0;   // the last that was announced
+  std::uint64_t waited = 0;  // by the leader, in this call; ticks
 
   Meeting();
+  void announce(const Call& call);
   void attend();
   std::uint32_t come_in(std::uint64_t patience);
   std::uint32_t enter();
   void take_part(std::uint32_t me);
-  void do_share(std::uint64_t epoch, std::uint32_t share, std::uint32_t members);
+  void do_rounds(const Call& call, std::uint32_t share);
+  bool is_done(std::uint32_t share, std::uint64_t by) const;
+  bool all_done(const Call& call) const;
+  bool may_begin(const Call& call, std::uint32_t share, std::uint64_t now) const;
+  bool begin(const Call& call, std::uint32_t share, std::uint64_t now);
+  void do_share(const Call& call, std::uint32_t share, std::uint64_t now, bool leads);
+  void wait_for_front(const Call& call, std::uint32_t share, std::uint64_t of, bool leads);
+  template <class Ready>
+  void wait_as_leader(const Call& call, Ready&& ready);
+  bool help(const Call& call);
 };
 
 }  // namespace weft

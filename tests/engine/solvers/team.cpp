@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 #include <sched.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -84,6 +85,63 @@ TEST_CASE("thousands of loops: what one wrote the next one reads, in whatever th
     }
     CHECK(std::ranges::all_of(here, [](int value) { return value == kLoops; }));
   });
+}
+
+/// A row of cells whose halves depend on each other within a cell, and across the seam with the
+/// next cell.
+struct Row {
+  std::vector<std::uint64_t> left, right;
+  explicit Row(std::size_t cells) : left(cells, 1), right(cells, 2) {}
+
+  void mix(std::size_t cell) {
+    left[cell] = 3 * left[cell] + right[cell] + cell;
+    right[cell] = 5 * right[cell] + left[cell];
+  }
+  void sew(std::size_t cell) {
+    right[cell] = 7 * right[cell] + left[cell + 1];
+    left[cell + 1] = 11 * left[cell + 1] + right[cell];
+  }
+  void do_stage(Team::Stage stage, std::size_t first, std::size_t last) {
+    if (stage == Team::Stage::front) mix(first);
+    for (std::size_t i = first + 1; stage == Team::Stage::rest && i < last; ++i) {
+      mix(i);
+      sew(i - 1);
+    }
+    if (stage == Team::Stage::close && last < left.size()) sew(last - 1);
+  }
+};
+
+TEST_CASE("rounds in which shares meet their neighbours only end as if all had met") {
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 8);
+  constexpr int kRounds = 600;  // more than are announced at once
+  std::atomic<int> shared{0};   // stages done by helpers
+  for (const std::size_t cells : {1u, 2u, 3u, 4u, 9u, 50u}) {
+    CAPTURE(cells);
+    Row expected(cells);
+    for (int round = 0; round < kRounds; ++round) {
+      for (std::size_t i = 0; i < cells; ++i) expected.mix(i);
+      for (std::size_t i = 0; i + 1 < cells; ++i) expected.sew(i);
+    }
+    for (int run = 0; run < 40; ++run) {
+      const int threads = 1 + run % 4;
+      CAPTURE(threads);
+      in_arena(threads, [&] {
+        const auto leader = std::this_thread::get_id();
+        Team team(threads);
+        if (threads > 1 && run < 20) threads_seen(team);
+        Row row(cells);
+        team.for_each_share_in_rounds(cells, kRounds,
+                                      [&](Team::Stage stage, std::size_t first, std::size_t last) {
+                                        row.do_stage(stage, first, last);
+                                        shared += std::this_thread::get_id() != leader;
+                                      });
+        REQUIRE(row.left == expected.left);
+        REQUIRE(row.right == expected.right);
+        REQUIRE(each_once(done_by(team, 10)));
+      });
+    }
+  }
+  if (std::thread::hardware_concurrency() > 1) CHECK(shared > 1000);
 }
 
 TEST_CASE("a second thread comes to help, if the arena has one") {
