@@ -22,6 +22,12 @@ enum class Directions : std::uint8_t { each, frozen, constant };
 struct Sweep {
   std::int64_t visits = 0;
   std::int64_t corrections = 0;
+
+  Sweep& operator+=(const Sweep& other) {
+    visits += other.visits;
+    corrections += other.corrections;
+    return *this;
+  }
 };
 
 struct LoopResult {

@@ -45,7 +45,7 @@ struct Rows {
 /// Rows too wide for several of them to fit into a tile are cut into strips, one after the other.
 std::vector<std::uint32_t> strip_widths(std::span<const Cell> cells, std::uint32_t tile_particles,
                                         std::uint32_t period) {
-  const std::uint32_t widest = std::max(64u, tile_particles / 8);
+  const std::uint32_t widest = std::max(64u, tile_particles / 4);
   std::vector<std::uint32_t> width;
   for (const Cell& cell : cells) {
     if (cell.part >= width.size()) width.resize(cell.part + 1);
@@ -177,7 +177,9 @@ class TileLayout {
   std::uint32_t column_class(std::size_t i) const { return column(i) % period_.columns; }
 
   /// Sizes become first slots. Runs end anywhere in a group and are filled up to whole lanes, so
-  /// each group is followed by as many slots as that may take.
+  /// each group is followed by as many slots as that may take. Rows that stand at the same place in
+  /// tile after tile, and are visited side by side (yarns), must not all want the same sets of a
+  /// cache.
   void start_groups() {
     std::uint32_t slots = 0;
     for (auto& row : next_) {
@@ -187,6 +189,8 @@ class TileLayout {
         if (size > 0) slots += round_up(size, kLanes) + kLanes;
       }
     }
+    constexpr std::uint32_t kSlotsOfCacheWay = 256;  // 4 KB of quads
+    if (slots % kSlotsOfCacheWay == 0) slots += kLanes;
     particle_at_.assign(slots, kNoIndex);
   }
 

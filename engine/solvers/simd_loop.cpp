@@ -5,11 +5,6 @@
 namespace weft {
 namespace {
 
-void add(kernels::Sweep& sum, const kernels::Sweep& sweep) {
-  sum.visits += sweep.visits;
-  sum.corrections += sweep.corrections;
-}
-
 /// Slots are shared out in stretches of this many.
 constexpr std::size_t kStretch = 1024;
 
@@ -102,53 +97,18 @@ kernels::Sweep SimdLoop::sweep() {
   const Ordering& ordering = s_.model_.ordering;
   clear_sweeps();
   team_.for_each_share(ordering.tiles.size(), [&](std::size_t first, std::size_t last) {
-    sweep_tiles(first, last, first);
+    sweep_share({first, last});
   });
   kernels::Sweep sweep = sum_of_sweeps();
   sweep_open_seams(sweep);
   const std::size_t done = layout_.seams.empty() ? 0 : 1;
   for (std::size_t i = ordering.between_tiles + done; i < ordering.batches.size(); ++i) {
-    add(sweep, sweep_batch_between_tiles(i));
+    sweep += sweep_batch_between_tiles(i);
   }
   sweep_hubs(sweep);
   sweep_contacts(sweep);
   if (skips()) choose_density(sweep);
   return sweep;
-}
-
-/// What is between tiles joins each to the next one only, and no pass decides about the next.
-bool SimdLoop::meets_neighbours_only() const {
-  const Ordering& ordering = s_.model_.ordering;
-  return !ordering.tiles.empty() && layout_.seams_join_neighbours &&
-         ordering.batches.size() <= ordering.between_tiles + 1 &&
-         layout_.hub_first == layout_.hub_last && s_.contacts_.spheres.empty() && !skips();
-}
-
-/// Passes with one meeting for all of them, where they allow it: what a share needs of a pass is
-/// the seam with the share before it; what its own seam with the share behind it needs is that
-/// one's first tile.
-///
-///     share 0:  | tile 0 | tile 1 | seam | tile 0 | tile 1 | seam | ...
-///     share 1:   | tile 2 | tile 3 |     . | tile 2 | tile 3 |    . | ...
-kernels::Sweep SimdLoop::sweeps(int passes) {
-  kernels::Sweep sum;
-  if (!meets_neighbours_only()) {
-    for (int i = 0; i < passes; ++i) add(sum, sweep());
-    return sum;
-  }
-  clear_sweeps();
-  auto do_stage = [&](Team::Stage stage, std::size_t first, std::size_t last) {
-    switch (stage) {
-      case Team::Stage::front:
-        return sweep_tiles(first, first + 1, first);
-      case Team::Stage::rest:
-        return sweep_tiles(first + 1, last, first);
-      case Team::Stage::close:
-        return sweep_seams_between(first, last);
-    }
-  };
-  team_.for_each_share_in_rounds(s_.model_.ordering.tiles.size(), passes, do_stage);
-  return sum_of_sweeps();
 }
 
 void SimdLoop::clear_sweeps() {
@@ -157,30 +117,19 @@ void SimdLoop::clear_sweeps() {
 
 kernels::Sweep SimdLoop::sum_of_sweeps() const {
   kernels::Sweep sum;
-  for (std::size_t i = 0; i < s_.model_.ordering.tiles.size(); ++i) add(sum, s_.sweeps_[i]);
+  for (std::size_t i = 0; i < s_.model_.ordering.tiles.size(); ++i) sum += s_.sweeps_[i];
   return sum;
 }
 
-/// With the seams that they have within their share.
-void SimdLoop::sweep_tiles(std::size_t first, std::size_t last, std::size_t share_first) {
+/// With the seams that they have within their share; the others are left open.
+void SimdLoop::sweep_share(const Share& share) {
   kernels::Sweep sweep;
-  for (std::size_t i = first; i < last; ++i) {
-    add(sweep, sweep_tile(s_.model_.ordering.tiles[i]));
-    sweep_seams(i, share_first, sweep);
+  for (std::size_t i = share.first; i < share.last; ++i) {
+    sweep += sweep_tile(s_.model_.ordering.tiles[i]);
+    sweep += sweep_seams(i, share.first, i);
+    leave_open(i, share.first);
   }
-  add(s_.sweeps_[share_first], sweep);
-}
-
-/// Of a share with the one behind it.
-void SimdLoop::sweep_seams_between(std::size_t share_first, std::size_t share_last) {
-  kernels::Sweep sweep;
-  const std::size_t batch = s_.model_.ordering.between_tiles;
-  for (std::size_t i = layout_.seams_at[share_last]; i < layout_.seams_at[share_last + 1]; ++i) {
-    const Seam& seam = layout_.seams[i];
-    if (seam.first_tile < share_last)
-      add(sweep, sweep_chunks(batch, seam.first_chunk, seam.last_chunk));
-  }
-  add(s_.sweeps_[share_first], sweep);
+  s_.sweeps_[share.first] = {sweep};
 }
 
 /// Leaving the dense state everything counts as changed: the next pass finds out what did.
@@ -198,20 +147,30 @@ void SimdLoop::choose_density(const kernels::Sweep& sweep) {
 kernels::Sweep SimdLoop::sweep_tile(const Tile& tile) {
   kernels::Sweep sweep;
   for (std::size_t batch = tile.first_batch; batch < tile.last_batch; ++batch) {
-    add(sweep, sweep_chunks(batch, layout_.batch_chunks[batch], layout_.batch_chunks[batch + 1]));
+    sweep += sweep_chunks(batch, layout_.batch_chunks[batch], layout_.batch_chunks[batch + 1]);
   }
   return sweep;
 }
 
 /// The first batch between tiles need not wait for all of them: what joins a tile to others of the
 /// same share is done as soon as it is, while both are in the caches, and nobody is met for it.
-void SimdLoop::sweep_seams(std::size_t tile, std::size_t first_tile, kernels::Sweep& sweep) {
+/// Those of the seams at a tile that begin at tiles from ... to.
+kernels::Sweep SimdLoop::sweep_seams(std::size_t tile, std::size_t from, std::size_t to) {
+  kernels::Sweep sweep;
   const std::size_t batch = s_.model_.ordering.between_tiles;
   for (std::size_t i = layout_.seams_at[tile]; i < layout_.seams_at[tile + 1]; ++i) {
     const Seam& seam = layout_.seams[i];
-    const bool open = seam.first_tile < first_tile;
+    if (seam.first_tile < from || seam.first_tile > to) continue;
+    sweep += sweep_chunks(batch, seam.first_chunk, seam.last_chunk);
+  }
+  return sweep;
+}
+
+/// Notes which seams at a tile of a share begin before it. The flags are in one line for all.
+void SimdLoop::leave_open(std::size_t tile, std::size_t first_tile) {
+  for (std::size_t i = layout_.seams_at[tile]; i < layout_.seams_at[tile + 1]; ++i) {
+    const bool open = layout_.seams[i].first_tile < first_tile;
     if (s_.open_seam_[i] != open) s_.open_seam_[i] = open;
-    if (!open) add(sweep, sweep_chunks(batch, seam.first_chunk, seam.last_chunk));
   }
 }
 
@@ -233,7 +192,7 @@ void SimdLoop::sweep_open_seams(kernels::Sweep& sweep) {
   } else {
     for (std::size_t i = 0; i < count; ++i) sweep_seam(i);
   }
-  for (std::size_t i = 0; i < count; ++i) add(sweep, s_.sweeps_[i]);
+  for (std::size_t i = 0; i < count; ++i) sweep += s_.sweeps_[i];
 }
 
 kernels::Sweep SimdLoop::sweep_batch_between_tiles(std::size_t batch) {
@@ -244,7 +203,7 @@ kernels::Sweep SimdLoop::sweep_batch_between_tiles(std::size_t batch) {
     s_.sweeps_[piece] = {sweep_chunks(batch, begin, std::min(last, begin + kPiece))};
   });
   kernels::Sweep sweep;
-  for (std::size_t piece = 0; piece < pieces; ++piece) add(sweep, s_.sweeps_[piece]);
+  for (std::size_t piece = 0; piece < pieces; ++piece) sweep += s_.sweeps_[piece];
   return sweep;
 }
 

@@ -22,10 +22,14 @@ class SimdLoop {
 
   void renew();
   kernels::Sweep sweep();
+  /// So many, the sum of them.
   kernels::Sweep sweeps(int passes);
   void finish() { apply_displacements(); }
 
  private:
+  struct Share {
+    std::size_t first = 0, last = 0;  // tiles
+  };
   bool skips() const { return !s_.changed_.empty(); }
   bool masks() const { return !s_.mask_.empty(); }
   void apply_displacements();
@@ -33,13 +37,12 @@ class SimdLoop {
   void renew_run(const kernels::Run& run);
   void renew_singles(std::uint32_t first, std::uint32_t last);
   void renew_rest();
-  bool meets_neighbours_only() const;
   void clear_sweeps();
   kernels::Sweep sum_of_sweeps() const;
   kernels::Sweep sweep_tile(const Tile& tile);
-  void sweep_tiles(std::size_t first, std::size_t last, std::size_t share_first);
-  void sweep_seams_between(std::size_t share_first, std::size_t share_last);
-  void sweep_seams(std::size_t tile, std::size_t first_tile, kernels::Sweep& sweep);
+  void sweep_share(const Share& share);
+  kernels::Sweep sweep_seams(std::size_t tile, std::size_t from, std::size_t to);
+  void leave_open(std::size_t tile, std::size_t first_tile);
   void sweep_open_seams(kernels::Sweep& sweep);
   kernels::Sweep sweep_batch_between_tiles(std::size_t batch);
   kernels::Sweep sweep_chunks(std::size_t batch, std::size_t first, std::size_t last);
@@ -47,6 +50,12 @@ class SimdLoop {
   void relax_one(const Batch& batch, std::size_t chunk, kernels::Sweep& sweep);
   bool marks() const { return skips() && !dense_; }
   bool wanted(std::size_t chunk) const { return !marks() || s_.changed_[chunk]; }
+  // simd_trips.cpp
+  bool meets_neighbours_only() const;
+  void do_part(const Team::Part& part, int rounds, const Share& share);
+  kernels::Sweep sweep_with_seams(std::size_t tile, std::size_t from);
+  kernels::Sweep sweep_trip(const Share& share, std::size_t depth);
+  kernels::Sweep sweep_ends(const Share& share, std::size_t pass);
   void choose_density(const kernels::Sweep& sweep);
   void sweep_hubs(kernels::Sweep& sweep);
   void sweep_contacts(kernels::Sweep& sweep);

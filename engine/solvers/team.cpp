@@ -134,9 +134,9 @@ void Team::run(const Job& job, int rounds) {
 
 void Team::run_alone(const Job& job, int rounds) {
   for (int round = 0; round < rounds; ++round) {
-    if (job.staged) job.work(job.context, Stage::front, 0, job.count);
-    job.work(job.context, Stage::rest, 0, job.count);
-    if (job.staged) job.work(job.context, Stage::close, 0, job.count);
+    if (job.staged) job.work(job.context, {round, Stage::front}, 0, job.count);
+    job.work(job.context, {round, Stage::rest}, 0, job.count);
+    if (job.staged) job.work(job.context, {round, Stage::close}, 0, job.count);
   }
 }
 
@@ -227,14 +227,15 @@ void Team::Meeting::do_share(const Call& call, std::uint32_t share, std::uint64_
   const Job& job = announced.job;
   const std::size_t first = job.count * share / call.members;
   const std::size_t last = job.count * (share + 1) / call.members;
+  const int round = static_cast<int>(now - call.first);
   if (job.staged) {
-    job.work(job.context, Stage::front, first, last);
+    job.work(job.context, {round, Stage::front}, first, last);
     shares[share].front.store(now, std::memory_order_release);
   }
-  job.work(job.context, Stage::rest, first, last);
+  job.work(job.context, {round, Stage::rest}, first, last);
   if (job.staged) {
     if (share + 1 < call.members) wait_for_front(call, share + 1, now, leads);
-    job.work(job.context, Stage::close, first, last);
+    job.work(job.context, {round, Stage::close}, first, last);
   }
   shares[share].done.store(now, std::memory_order_release);
 }

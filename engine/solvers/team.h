@@ -25,7 +25,6 @@
 /// results must not depend on it.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -38,10 +37,15 @@ namespace weft {
 class Team {
  public:
   static constexpr int kMostMembers = 64;
+  static constexpr int kMostRounds = 240;
   struct Meeting;
   /// Of a share in a round, one after the other. The share before it has closed the round before
   /// when it begins; the front of the share behind it is done when it closes.
   enum class Stage : std::uint8_t { front, rest, close };
+  struct Part {
+    int round = 0;
+    Stage stage = Stage::rest;
+  };
 
   /// Asks for up to `threads` threads, this one included; at most what the arena has. A meeting may
   /// be used again by the next team, when this one is gone.
@@ -64,26 +68,24 @@ class Team {
   /// work(first, last) of each share.
   template <class Work>
   void for_each_share(std::size_t count, Work&& work) {
-    const auto share = [](void* context, Stage, std::size_t first, std::size_t last) {
+    const auto share = [](void* context, const Part&, std::size_t first, std::size_t last) {
       (*static_cast<std::remove_reference_t<Work>*>(context))(first, last);
     };
-    run({share, &work, count, false}, 1);
+    run({share, &work, count}, 1);
   }
-  /// work(stage, first, last) of each share, all stages in each round. No share is empty.
+  /// work(part, first, last) of each share, all stages in each round; at most kMostRounds. Shares
+  /// are the same in all of them, and none is empty.
   template <class Work>
   void for_each_share_in_rounds(std::size_t count, int rounds, Work&& work) {
-    const auto share = [](void* context, Stage stage, std::size_t first, std::size_t last) {
-      (*static_cast<std::remove_reference_t<Work>*>(context))(stage, first, last);
+    const auto share = [](void* context, const Part& part, std::size_t first, std::size_t last) {
+      (*static_cast<std::remove_reference_t<Work>*>(context))(part, first, last);
     };
-    for (int left = rounds; left > 0; left -= kMostRounds) {
-      run({share, &work, count, true}, std::min(left, kMostRounds));
-    }
+    run({share, &work, count, true}, rounds);
   }
 
  private:
-  static constexpr int kMostRounds = 255;
   struct Job {
-    void (*work)(void* context, Stage stage, std::size_t first, std::size_t last) = nullptr;
+    void (*work)(void* context, const Part& part, std::size_t first, std::size_t last) = nullptr;
     void* context = nullptr;
     std::size_t count = 0;
     bool staged = false;  // or all of it as rest

@@ -219,7 +219,7 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
 [[gnu::always_inline]] inline void fetch_ahead(const Yarns& y, const YarnBlock& block,
                                                std::uint32_t row, std::uint32_t lane,
                                                const Displacements& u) {
-  constexpr std::uint32_t kAhead = 8;
+  constexpr std::uint32_t kAhead = 16;
   const std::uint32_t* slot = slots(y, std::min(row + kAhead, block.last - 1), lane);
   for (std::uint32_t k = 0; k < kFloats; ++k) {
     const std::size_t quad = 4 * std::size_t{slot[k]};
