@@ -1,6 +1,7 @@
 #include "engine/solvers/simd_loop.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace weft {
 namespace {

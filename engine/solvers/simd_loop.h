@@ -1,8 +1,6 @@
 /// The three verbs of kernels/loop.h on the vector kernels.
 #pragma once
 
-#include <atomic>
-
 #include "engine/solvers/simd_solver.h"
 
 namespace weft {

@@ -23,7 +23,7 @@ namespace weft {
 namespace {
 
 constexpr int kDepth = 2;
-static_assert(Team::kMostRounds % kDepth == 0);  // the shares of a trip must not change
+static_assert(Team::kMostRounds % kDepth == 0);  // only the last trip of all may be shorter
 
 }  // namespace
 

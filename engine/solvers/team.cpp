@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 namespace weft {
 namespace {
@@ -21,7 +22,8 @@ constexpr std::uint64_t kLost = 3'000'000;
 /// Ticks that a task waits at the door at most: 0.2 ms.
 constexpr std::uint64_t kLinger = 600'000;
 /// The leader then goes on alone for so many times what it waited, so that lost processors cost no
-/// more than this part of the time.
+/// more than this part of the time. Many rounds are judged as one: a processor that is lost for
+/// less than half of them is put up with.
 constexpr std::uint64_t kAlone = 8;
 
 /// By all teams.
@@ -125,9 +127,10 @@ void Team::run(const Job& job, int rounds) {
   m.announce(call);
   const std::uint64_t start = ticks();
   for (std::uint64_t round = call.first; round <= m.round; ++round) {
-    if (m.begin(call, 0, round)) m.do_share(call, 0, round, true);
+    m.begin(call, 0, round);  // nobody else does
+    m.do_share(call, 0, round, true);
   }
-  m.wait_as_leader(call, [&] { return m.all_done(call); });
+  m.wait_as_leader(call, 1, [&] { return m.all_done(call); });
   const std::uint64_t end = ticks(), own = end - start - m.waited;
   if (m.waited > own + kLost) alone_until_ = end + kAlone * m.waited;
 }
@@ -244,24 +247,26 @@ void Team::Meeting::wait_for_front(const Call& call, std::uint32_t share, std::u
                                    bool leads) {
   const auto ready = [&] { return shares[share].front.load(std::memory_order_acquire) >= of; };
   if (leads)
-    wait_as_leader(call, ready);
+    wait_as_leader(call, share, ready);
   else
     wait_until(ready);
 }
 
-/// It does itself what could have been begun for a while.
+/// It does itself what could have been begun for a while, of the shares from `first` on: those
+/// before may need what it is in the middle of. So what it is in the middle of are shares in
+/// ascending order, and what the last of them needs is behind it.
 template <class Ready>
-void Team::Meeting::wait_as_leader(const Call& call, Ready&& ready) {
+void Team::Meeting::wait_as_leader(const Call& call, std::uint32_t first, Ready&& ready) {
   if (ready()) return;
   const std::uint64_t start = ticks(), before = waited;
-  for (int spins = 0; !spin_until(kGrace, ready); spins += kGrace) {
-    if (!help(call) && spins > kPatience) std::this_thread::yield();
+  for (int spins = 0; !spin_until(kGrace, ready); spins = std::min(spins + kGrace, kPatience)) {
+    if (!help(call, first) && spins == kPatience) std::this_thread::yield();
   }
   waited = before + (ticks() - start);
 }
 
-bool Team::Meeting::help(const Call& call) {
-  for (std::uint32_t share = 1; share < call.members; ++share) {
+bool Team::Meeting::help(const Call& call, std::uint32_t first) {
+  for (std::uint32_t share = first; share < call.members; ++share) {
     const std::uint64_t begun = shares[share].begun.load(std::memory_order_relaxed);
     const std::uint64_t next = std::max(begun + 1, call.first);
     if (next > call.last() || !begin(call, share, next)) continue;

@@ -4,8 +4,10 @@
 /// would cost more than that. So the threads are asked for once per step, as oneTBB tasks in the
 /// caller's arena, and from then on meet through atomics:
 ///
-///     leader:  announces (round, members), does its share, waits for the others'
-///     member:  waits for a new round, does its share
+///     leader:  announces a call (first round, rounds, members), does its share in each round,
+///     waits
+///              for the others'
+///     member:  waits for a new call, does its share in each round
 ///
 /// A meeting costs what it takes a cache line to cross between processors, twice; so everything
 /// that a call says is in one line, and nobody touches the lines of another without need.
@@ -149,8 +151,8 @@ struct Team::Meeting {
   void do_share(const Call& call, std::uint32_t share, std::uint64_t now, bool leads);
   void wait_for_front(const Call& call, std::uint32_t share, std::uint64_t of, bool leads);
   template <class Ready>
-  void wait_as_leader(const Call& call, Ready&& ready);
-  bool help(const Call& call);
+  void wait_as_leader(const Call& call, std::uint32_t first, Ready&& ready);
+  bool help(const Call& call, std::uint32_t first);
 };
 
 }  // namespace weft

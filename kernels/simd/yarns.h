@@ -418,7 +418,8 @@ template <class At>
 /// third solve, and all that follow, stay within the scratch: 0.8 times as long in the caches; of a
 /// yarn of a thousand particles the scratch fits, quads and scratch do not: 0.35 times. (Kept by
 /// the first solve already: hang 40 x 40 takes 1.03 times as long, 300 x 300 0.97, and the n of a
-/// link that has collapsed is not its d.)
+/// link that has collapsed is not its d. A link whose ends a solve brings together exactly is left
+/// to the next sweep.)
 template <Base kBase, class At>
 [[gnu::always_inline]] inline Swept sweep_watched(const Yarns& y, const YarnBlock& block, At at,
                                                   Displacements u, YarnScratch* scratch,

@@ -1,7 +1,6 @@
 /// The same bits from every run, with any number of threads, whatever is passed over, and from
 /// AVX2 as from AVX-512. tests/engine/step_golden.cpp holds the bits themselves.
 #include <doctest/doctest.h>
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "tests/support/clothes.h"
@@ -83,39 +82,6 @@ TEST_CASE("the number of threads changes no bit") {
     CHECK(hash_after(c, settings, 2) == alone);
     CHECK(hash_after(c, settings, 3) == alone);
   });
-}
-
-TEST_CASE("nor where passes are announced at once: of a fixed number of iterations") {
-  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 3);
-  for (const Case& c :
-       {Case{{"hang, 90", scene_of("hang", 90)}, 3}, Case{{"hang, 200", scene_of("hang", 200)}, 1},
-        Case{{"corners, 131", scene_of("corners", 131)}, 2},
-        Case{{"ropes, 70", roped_sheet(70)}, 3},
-        Case{{"random mesh, 75", random_sheet(75, 6)}, 3}}) {
-    CAPTURE(c.scene.name);
-    Settings settings = paper_settings();
-    settings.iterations = c.scene.scene.constraints.size() < 20'000 ? 270 : 61;
-    const auto constraints = static_cast<std::int64_t>(c.scene.scene.constraints.size());
-    const auto hash = [&](int threads) {
-      settings.threads = threads;
-      tbb::task_arena arena(threads);
-      return arena.execute([&] {
-        Cloth cloth = cloth_of(c.scene.scene, on(Backend::simd, settings));
-        for (int k = 0; k < c.steps; ++k) {
-          const StepReport report = step(cloth, c.dt);
-          CHECK(report.status == Status::fixed_iterations);
-          CHECK(report.iterations == settings.iterations);
-          CHECK(report.visits == settings.iterations * constraints);
-        }
-        return cloth.state_hash();
-      });
-    };
-    const std::uint64_t alone = hash(1);
-    for (int run = 0; run < 3; ++run) {
-      CHECK(hash(2) == alone);
-      CHECK(hash(3) == alone);
-    }
-  }
 }
 
 TEST_CASE("what is passed over changes no bit, on one thread as on two") {

@@ -123,7 +123,7 @@ TEST_CASE("rounds in which shares meet their neighbours only end as if all had m
       for (std::size_t i = 0; i + 1 < cells; ++i) expected.sew(i);
     }
     for (int run = 0; run < 40; ++run) {
-      const int threads = 1 + run % 4;
+      const int threads = 1 + run % 6;
       CAPTURE(threads);
       in_arena(threads, [&] {
         const auto leader = std::this_thread::get_id();
@@ -145,6 +145,39 @@ TEST_CASE("rounds in which shares meet their neighbours only end as if all had m
     }
   }
   if (std::thread::hardware_concurrency() > 1) CHECK(shared > 1000);
+}
+
+/// What a leader would hang in if it helped with a share in front of the one it is doing: share 1,
+/// whose next round needs share 2, which needs share 3, all of them late.
+TEST_CASE("a leader that helps the late does not wait for itself") {
+  struct Late {
+    std::shared_ptr<Team::Meeting> meeting = Team::make_meeting();
+    std::atomic<bool> over{false};
+    int parts = 0;
+    void do_part(const Team::Part& part, std::size_t first) {
+      ++parts;
+      const bool second_share = first == 2 && part.round == 0;
+      if (second_share && part.stage == Team::Stage::rest) meeting->shares[1].done = 1;
+    }
+  };
+  const auto late = std::make_shared<Late>();  // outlives a thread that hangs
+  late->meeting->announced.job = {
+      [](void* context, const Team::Part& part, std::size_t first, std::size_t) {
+        static_cast<Late*>(context)->do_part(part, first);
+      },
+      late.get(), 4, true};
+  late->meeting->shares[1].begun = late->meeting->shares[1].front = 1;  // somebody is at it
+  std::thread([late] {
+    const Team::Meeting::Call call{1, 2, 4};
+    for (const std::uint64_t round : {1u, 2u}) late->meeting->do_share(call, 0, round, true);
+    late->over = true;
+  }).detach();
+  for (int i = 0; i < 5000 && !late->over; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  REQUIRE(late->over);
+  CHECK(late->parts >=
+        3 * 5);  // of shares 0 and 2 in round 1, of share 0 and fronts behind it in 2
 }
 
 TEST_CASE("a second thread comes to help, if the arena has one") {
