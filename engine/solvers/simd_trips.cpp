@@ -12,9 +12,9 @@
 ///     pass 0:  | tile 0 | tile 1 | tile 2 |        | tile 3 |        | tile 4 |        |
 ///     pass 1:                             | tile 1 |        | tile 2 |        | tile 3 |
 ///
-/// In pass p the first p tiles of a share and its last p are left to the pass's own round: what
-/// they need comes from the shares beside it. Every constraint meets the same displacements as in
-/// passes one by one: the bits are the same.
+/// In pass p the first p tiles of a share and its last p, with their seams, are left to the pass's
+/// own round: what they need comes from the shares beside it. Every constraint meets the same
+/// displacements as in passes one by one: the bits are the same.
 #include <algorithm>
 
 #include "engine/solvers/simd_loop.h"

@@ -4,10 +4,8 @@
 /// would cost more than that. So the threads are asked for once per step, as oneTBB tasks in the
 /// caller's arena, and from then on meet through atomics:
 ///
-///     leader:  announces a call (first round, rounds, members), does its share in each round,
-///     waits
-///              for the others'
-///     member:  waits for a new call, does its share in each round
+///     leader:  announces a call (rounds, members), does its share of each round, waits for others
+///     member:  waits for a new call, does its share of each round
 ///
 /// A meeting costs what it takes a cache line to cross between processors, twice; so everything
 /// that a call says is in one line, and nobody touches the lines of another without need.
@@ -75,7 +73,7 @@ class Team {
     };
     run({share, &work, count}, 1);
   }
-  /// work(part, first, last) of each share, all stages in each round; at most kMostRounds. Shares
+  /// work(part, first, last) of each share, all stages in each of 1 to kMostRounds rounds. Shares
   /// are the same in all of them, and none is empty.
   template <class Work>
   void for_each_share_in_rounds(std::size_t count, int rounds, Work&& work) {

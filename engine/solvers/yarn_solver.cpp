@@ -445,7 +445,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
 std::size_t YarnSolver::bytes() const {
   return bytes_of(base_step_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
          bytes_of(base_) + bytes_of(u_) + bytes_of(t_) + bytes_of(products_) + bytes_of(solves_) +
-         others_.bytes();
+         bytes_of(stubborn_) + others_.bytes();
 }
 
 }  // namespace weft

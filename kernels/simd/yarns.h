@@ -229,6 +229,8 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
 }
 
 /// Down the yarns: take(row, u of its particle, link, factors) for each link = make_link(d, rest).
+/// What is done in each row must be inlined by force, here and in go_up: GCC 12 calls a lambda that
+/// it finds in two places, and what that one captures then lives in memory (1.3 times as long).
 template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
 [[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block, At at,
                                            std::uint32_t lane, Displacements u,
