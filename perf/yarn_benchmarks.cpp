@@ -23,8 +23,8 @@ struct Loom {
       : model(model_of(size)),
         layout(model->yarns()),
         x(model->initial_position),
-        base_step(layout.rows.size()),
-        system(layout.rows.size()),
+        base_step(layout.rows()),
+        system(layout.rows()),
         scratch(layout.longest),
         base(4 * layout.slots),
         u(4 * layout.slots),
@@ -47,7 +47,8 @@ struct Loom {
   }
   /// Where positions have changed.
   simd::Yarns yarns_anew() {
-    simd::Yarns yarns{layout.rows.data(), base_step.data(), system.data(), layout.slot.data()};
+    simd::Yarns yarns{layout.kind.data(), layout.kinds.data(), base_step.data(), system.data(),
+                      layout.slot.data()};
     yarns.base = base.data();
     yarns.from_memory = layout.from_memory();
     return yarns;
@@ -129,7 +130,7 @@ void run(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Is
   const simd::Table& table = simd::table(isa);
   Loom loom(size, table);
   for (auto _ : state) kernel.pass(table, loom);
-  const auto lanes = static_cast<double>(loom.layout.rows.size() * kLanes);
+  const auto lanes = static_cast<double>(loom.layout.rows() * kLanes);
   count(state,
         {static_cast<double>(loom.model->constraints.size()) * kernel.solves,
          kernel.bytes_per_lane * lanes, kernel.footprint_per_lane * lanes, false},

@@ -1,6 +1,8 @@
 #include "engine/solvers/yarn_layout.h"
 
 #include <algorithm>
+#include <cstring>
+#include <set>
 
 #include "engine/bytes_of.h"
 #include "engine/model.h"
@@ -111,18 +113,28 @@ bool of_one_length(const Chain& one, const Chain& two) {
   return of_one_family(one, two) && one.links.size() == two.links.size();
 }
 
+/// By their bytes: the rows of this number.
+struct Before {
+  const kernels::AlignedVector<simd::YarnRow>& rows;
+
+  bool operator()(std::uint32_t one, std::uint32_t two) const {
+    return std::memcmp(&rows[one], &rows[two], sizeof(simd::YarnRow)) < 0;
+  }
+};
+
 class Builder {
  public:
-  Builder(const Model& model, YarnLayout& layout) : model_(model), layout_(layout) {
+  Builder(const Model& model, YarnLayout& layout)
+      : model_(model), layout_(layout), known_(Before{layout.kinds}) {
     lightest_ = 1 / std::ranges::max(model.inverse_mass);
   }
 
   /// Lanes first ... last - 1 of the chains make a block; the first is the longest.
   void add_block(std::span<const Chain> chains) {
     const std::size_t rows = chains.front().particles.size();
-    const std::size_t first = layout_.rows.size(), last = first + rows;
+    const std::size_t first = layout_.rows(), last = first + rows;
     const std::size_t padding = model_.slots() + kLanes * layout_.blocks.size();
-    layout_.rows.resize(last);
+    block_.assign(rows, {});
     layout_.longest = std::max(layout_.longest, rows);
     layout_.slots = padding + kLanes;
     layout_.blocks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)});
@@ -135,9 +147,17 @@ class Builder {
       layout_.links.back() += static_cast<std::uint32_t>(chains[i].links.size());
     }
     layout_.blocks.back().in_fours = in_fours(first, last);
+    for (const simd::YarnRow& row : block_) layout_.kind.push_back(kind_of(row));
   }
 
  private:
+  std::uint32_t kind_of(const simd::YarnRow& row) {
+    layout_.kinds.push_back(row);
+    const auto [known, is_new] =
+        known_.insert(static_cast<std::uint32_t>(layout_.kinds.size() - 1));
+    if (!is_new) layout_.kinds.pop_back();
+    return *known;
+  }
   bool in_fours(std::size_t first, std::size_t last) const {
     for (std::size_t k = first; k < last; ++k) {
       for (std::size_t i = 0; i < kLanes; ++i) {
@@ -151,7 +171,7 @@ class Builder {
     for (std::size_t k = 0; k < chain.particles.size(); ++k) {
       const std::uint32_t slot = chain.particles[k];
       layout_.slot[(first + k) * kLanes + lane] = slot;
-      simd::YarnRow& row = layout_.rows[first + k];
+      simd::YarnRow& row = block_[k];
       row.inverse_mass[lane] = static_cast<float>(model_.inverse_mass[slot] * lightest_);
       if (k == chain.links.size()) continue;
       row.rest[lane] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
@@ -160,6 +180,8 @@ class Builder {
 
   const Model& model_;
   YarnLayout& layout_;
+  std::set<std::uint32_t, Before> known_;  // kinds
+  std::vector<simd::YarnRow> block_;
   double lightest_ = 1;  // mass of a particle
 };
 
@@ -209,7 +231,7 @@ YarnLayout make_yarn_layout(const Model& model) {
 
 std::size_t YarnLayout::bytes() const {
   return bytes_of(blocks) + bytes_of(links) + bytes_of(family_begin) + bytes_of(slot) +
-         bytes_of(rows) + bytes_of(not_in_second);
+         bytes_of(kind) + bytes_of(kinds) + bytes_of(not_in_second);
 }
 
 }  // namespace weft

@@ -7,6 +7,8 @@
 ///     family 0: | block | block | ... | family 1: | block | ...
 ///     block:    | row 0 | row 1 | ... | row of the last particles |
 ///
+/// Rows of one spacing and one mass are alike: what they are like is stored once.
+///
 /// A closed yarn is cut: its last link is a yarn of its own, in another family. What no yarn can
 /// hold (ropes, which only pull, and constraints at hubs) is left to YarnOthers.
 #pragma once
@@ -22,17 +24,19 @@ class Model;
 
 struct YarnLayout {
   std::vector<simd::YarnBlock> blocks;
-  std::vector<std::uint32_t> links;            // constraints of each block
-  std::vector<std::uint32_t> family_begin;     // blocks of family f: [f], ... [f + 1] - 1
-  std::vector<std::uint32_t> slot;             // per row and lane
-  kernels::AlignedVector<simd::YarnRow> rows;  // inverse masses over the model's largest
-  std::vector<std::uint32_t> not_in_second;    // slots that yarn_push_first does not write
+  std::vector<std::uint32_t> links;             // constraints of each block
+  std::vector<std::uint32_t> family_begin;      // blocks of family f: [f], ... [f + 1] - 1
+  std::vector<std::uint32_t> slot;              // per row and lane
+  std::vector<std::uint32_t> kind;              // per row
+  kernels::AlignedVector<simd::YarnRow> kinds;  // inverse masses over the model's largest
+  std::vector<std::uint32_t> not_in_second;     // slots that yarn_push_first does not write
 
   std::size_t longest = 0;  // rows of the longest block
   std::size_t slots = 0;    // of the model, then kLanes of padding for each block
 
   /// Whether quads, 16 bytes a slot, are too many for the caches.
   bool from_memory() const { return slots > (std::size_t{4} << 20) / 16; }
+  std::size_t rows() const { return kind.size(); }
   std::size_t families() const { return family_begin.size() - 1; }
   std::size_t bytes() const;
 };

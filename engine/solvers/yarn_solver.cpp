@@ -79,21 +79,18 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       solves_(layout_.blocks.size()),
       stubborn_(layout_.blocks.size()),
       others_(model, settings) {
-  if (!layout_.from_memory()) base_step_.resize(layout_.rows.size());
+  if (!layout_.from_memory()) base_step_.resize(layout_.rows());
   const auto wanted =
       static_cast<std::size_t>(settings.threads > 0 ? settings.threads : kMostShares);
-  if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows.size());
+  if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
   scratch_.resize(layout_.longest * std::min(wanted, kMostShares));
 }
 
 simd::Yarns YarnSolver::yarns() {
-  return {layout_.rows.data(),
-          base_step_.data(),
-          system_.data(),
-          layout_.slot.data(),
-          from_start_ ? start_.data() : nullptr,
-          velocities_,
-          moved_ || layout_.from_memory() ? base_.data() : nullptr,
+  return {layout_.kind.data(),  layout_.kinds.data(),
+          base_step_.data(),    system_.data(),
+          layout_.slot.data(),  from_start_ ? start_.data() : nullptr,
+          velocities_,          moved_ || layout_.from_memory() ? base_.data() : nullptr,
           layout_.from_memory()};
 }
 
@@ -330,7 +327,7 @@ void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::Lo
 
 /// Room for the linear system, from when it is first wanted.
 void YarnSolver::make_system() {
-  system_.resize(layout_.rows.size());
+  system_.resize(layout_.rows());
   t_.resize(u_.size());
 }
 

@@ -125,8 +125,8 @@ struct alignas(64) LaneVectors {
   float x[kernels::kLanes], y[kernels::kLanes], z[kernels::kLanes];
 };
 
-/// Row k of a block of yarns (yarns.h): particle k of kLanes yarns, and what joins it to particle
-/// k + 1; rest length 0: nothing does.
+/// What a row of a block of yarns (yarns.h) is like: masses of particle k of kLanes yarns, and the
+/// lengths of what joins it to particle k + 1; 0: nothing does.
 struct alignas(64) YarnRow {
   float rest[kernels::kLanes];
   float inverse_mass[kernels::kLanes];
@@ -154,8 +154,9 @@ struct YarnBlock {
 };
 
 struct Yarns {
-  const YarnRow* rows = nullptr;
-  LaneVectors* base_step = nullptr;  // what rows remember: base, less that of the next row
+  const std::uint32_t* kind = nullptr;  // per row: which of the kinds it is
+  const YarnRow* kinds = nullptr;       // rows that are alike share one
+  LaneVectors* base_step = nullptr;     // what rows remember: base, less that of the next row
   YarnSystemRow* system = nullptr;
   const std::uint32_t* slot = nullptr;  // per row and lane; padding: slots of no particle
   LaneVectors* start = nullptr;         // per row: scheme rattle's directions; null: present ones

@@ -125,7 +125,7 @@ YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alp
       fused(step, load(row.p + lane), load(row.lambda + lane)).store_unaligned(row.lambda + lane);
       const Floats residual = load(row.residual + lane) - step * load(row.q + lane);
       residual.store_unaligned(row.residual + lane);
-      const Floats unit = y.velocities ? Floats(1.f) : load(y.rows[k].rest + lane);
+      const Floats unit = y.velocities ? Floats(1.f) : rest(y, k, lane);
       worst = larger(worst, residual / xsimd::select(unit > Floats(0.f), unit, Floats(1.f)));
       b = fused(load(row.m + lane), b, residual);
       (b * load(row.reciprocal + lane)).store_unaligned(row.z + lane);
@@ -156,7 +156,7 @@ template <class Push>
     const Floats p = fused(factor, load(row.p + lane), load(row.z + lane));
     p.store_unaligned(row.p + lane);
     const FloatVector below = p * load(row.n, lane);
-    const Floats w = load(y.rows[k].inverse_mass + lane);
+    const Floats w = inverse_mass(y, k, lane);
     push(slots(y, k, lane), w * (below - above));
     above = below;
   }
@@ -219,7 +219,7 @@ void yarn_finish(const Yarns& y, const YarnBlock& block, Displacements t) {
         const YarnSystemRow& row = y.system[k];
         const FloatVector below = load(row.lambda + lane) * load(row.n, lane);
         const std::uint32_t* slot = slots(y, k, lane);
-        const Floats w = load(y.rows[k].inverse_mass + lane);
+        const Floats w = inverse_mass(y, k, lane);
         at.put(t, slot, fused(w, above - below, at.get(t, slot)));
         above = below;
       }

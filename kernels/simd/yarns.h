@@ -76,6 +76,14 @@ constexpr float kLeastPivot = 3e-5f;
   return y.slot + row * kernels::kLanes + lane;
 }
 
+[[gnu::always_inline]] inline Floats rest(const Yarns& y, std::size_t row, std::uint32_t lane) {
+  return load(y.kinds[y.kind[row]].rest + lane);
+}
+[[gnu::always_inline]] inline Floats inverse_mass(const Yarns& y, std::size_t row,
+                                                  std::uint32_t lane) {
+  return load(y.kinds[y.kind[row]].inverse_mass + lane);
+}
+
 /// present: impulses act along the directions that errors change along. start: along those at the
 /// start of the substep. frozen: errors too are taken to change along those, so that A is symmetric
 /// and stays (yarn_system.h).
@@ -208,7 +216,7 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
     for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
       const FloatVector next = at.get(u, slots(y, k + 1, lane));
       const FloatVector d = base.step(k) + (here - next);
-      store(y.start[k], lane, unit_link(d, load(y.rows[k].rest + lane)).n);
+      store(y.start[k], lane, unit_link(d, rest(y, k, lane)).n);
       here = next;
     }
     store(y.start[block.last - 1], lane, no_vector());
@@ -238,13 +246,12 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
   Elimination<kAlong> elimination;
   FloatVector here = at.get(u, slots(y, block.first, lane));
   BaseDown<kBase, At> base(y, at, block.first, lane);
-  Floats w = load(y.rows[block.first].inverse_mass + lane);
+  Floats w = inverse_mass(y, block.first, lane);
   for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
-    const YarnRow& next = y.rows[k + 1];
     if constexpr (kBase == Base::memory) fetch_ahead(y, block, k, lane, u);
     const FloatVector u_next = at.get(u, slots(y, k + 1, lane));
-    const Floats w_next = load(next.inverse_mass + lane);
-    YarnLink link = make_link(base.step(k) + (here - u_next), load(y.rows[k].rest + lane));
+    const Floats w_next = inverse_mass(y, k + 1, lane);
+    YarnLink link = make_link(base.step(k) + (here - u_next), rest(y, k, lane));
     direct<kAlong>(link, y.start, k, lane);
     take(k, here, link, elimination.step(link, w, w_next));
     here = u_next;
@@ -268,10 +275,10 @@ template <class Row, class Move>
     lambda = fused(m, lambda, load(scratch[row - 1].y + lane));
     m = load(factors[row - 1].m + lane);
     const FloatVector above = lambda * load(factors[row - 1].n, lane);
-    move(row, load(y.rows[k].inverse_mass + lane), above - below);
+    move(row, inverse_mass(y, k, lane), above - below);
     below = above;
   }
-  move(0, load(y.rows[block.first].inverse_mass + lane), no_vector() - below);
+  move(0, inverse_mass(y, block.first, lane), no_vector() - below);
 }
 
 /// The right side, eliminated on the way down.
@@ -337,7 +344,7 @@ template <Base kBase, class At>
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
               YarnScratch& row = scratch[k - block.first];
-              before.take(link, load(y.rows[k].rest + lane));
+              before.take(link, rest(y, k, lane));
               store(row.u, lane, here);
               store(row.n, lane, link.along);
               substitution.take(row, lane, link.error, f);
@@ -353,12 +360,11 @@ template <Base kBase, class At>
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     Substitution substitution;
     Elimination<Along::present> elimination;
-    Floats w = load(y.rows[block.first].inverse_mass + lane);
+    Floats w = inverse_mass(y, block.first, lane);
     for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
       YarnScratch& row = scratch[k - block.first];
-      const Floats w_next = load(y.rows[k + 1].inverse_mass + lane);
-      const YarnLink link =
-          scaled_link<Along::present>(load(row.n, lane), load(y.rows[k].rest + lane));
+      const Floats w_next = inverse_mass(y, k + 1, lane);
+      const YarnLink link = scaled_link<Along::present>(load(row.n, lane), rest(y, k, lane));
       substitution.take(row, lane, link.error, elimination.step(link, w, w_next));
       w = w_next;
     }
@@ -397,8 +403,8 @@ template <class Keep>
         [&](std::uint32_t row, Floats w, const FloatVector& impulse)
             __attribute__((always_inline)) {
               const FloatVector u = fused(w, impulse, load(scratch[row].u, lane));
-              const Floats rest = load(y.rows[block.first + row].rest + lane);
-              keep(row, lane, after.take(load(scratch[row].n, lane), w * impulse, rest), u);
+              const Floats length = rest(y, block.first + row, lane);
+              keep(row, lane, after.take(load(scratch[row].n, lane), w * impulse, length), u);
             });
     out = out || xsimd::any(after.beyond > Floats(0.f));
   }

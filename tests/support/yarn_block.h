@@ -17,7 +17,7 @@ using kernels::kLanes;
 /// random and stretched by up to a hundredth; some particles are fixed.
 struct BlockOfYarns {
   static constexpr std::uint32_t kRows = kLanes;
-  std::vector<std::uint32_t> slot;
+  std::vector<std::uint32_t> slot, kind;
   kernels::AlignedVector<simd::YarnRow> rows;
   kernels::AlignedVector<simd::YarnSystemRow> system;
   kernels::AlignedVector<simd::LaneVectors> base_step;
@@ -37,6 +37,7 @@ struct BlockOfYarns {
     x.resize(slots);
     Random random(7);
     for (std::uint32_t k = 0; k < kRows; ++k) {
+      kind.push_back(k);
       for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
         const bool real = k < length(lane);
         slot.push_back(real ? (k * kLanes + lane) * 77 % (kRows * kLanes) : kRows * kLanes + lane);
@@ -62,7 +63,7 @@ struct BlockOfYarns {
     }
   }
   simd::Yarns yarns() {
-    simd::Yarns yarns{rows.data(), base_step.data(), system.data(), slot.data()};
+    simd::Yarns yarns{kind.data(), rows.data(), base_step.data(), system.data(), slot.data()};
     if (!directions.empty()) yarns.start = directions.data();
     if (!placed) yarns.base = base.data();
     yarns.from_memory = from_memory;

@@ -51,14 +51,15 @@ void check_layout(const Model& model) {
     for (std::uint32_t i = layout.family_begin[f]; i < layout.family_begin[f + 1]; ++i) {
       const simd::YarnBlock block = layout.blocks[i];
       for (std::uint32_t k = block.first; k < block.last; ++k) {
+        const simd::YarnRow& row = layout.kinds[layout.kind[k]];
         for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
           const std::size_t at = k * kLanes + lane;
           const std::uint32_t slot = layout.slot[at];
           if (slot >= model.slots())
-            CHECK(layout.rows[k].rest[lane] == 0);
+            CHECK(row.rest[lane] == 0);
           else
             CHECK(in_family.insert(slot).second);
-          if (layout.rows[k].rest[lane] > 0) found.insert(pair(slot, layout.slot[at + kLanes]));
+          if (row.rest[lane] > 0) found.insert(pair(slot, layout.slot[at + kLanes]));
         }
       }
     }
