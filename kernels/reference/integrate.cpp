@@ -37,8 +37,9 @@ kernels::Kicks measure_kicks(const Motion& m, double h, const kernels::VectorsVi
     const Vector v = m.velocity[i], next = next_velocity[i], a = acceleration(m, i);
     const Vector first = (1 / h) * (m.solved[i] - m.predicted[i]);
     const Vector second = next - (v + h * a + first);
-    const double gain = dot(next, next) - dot(v, v) - 2 * dot(a, m.solved[i] - m.position[i]);
-    sum.add({dot(first, first) / w, dot(second, second) / w, gain / w});
+    const double square = dot(next, next);
+    const double gain = square - dot(v, v) - 2 * dot(a, m.solved[i] - m.position[i]);
+    sum.add({dot(first, first) / w, dot(second, second) / w, gain / w, square / w});
   }
   return sum;
 }

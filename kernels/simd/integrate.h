@@ -60,10 +60,13 @@ struct KickColumns {
   alignas(64) double first[kernels::kLanes] = {};
   alignas(64) double second[kernels::kLanes] = {};
   alignas(64) double gain[kernels::kLanes] = {};
+  alignas(64) double energy[kernels::kLanes] = {};
 
   kernels::Kicks sums() const {
     kernels::Kicks kicks;
-    for (std::uint32_t k = 0; k < kernels::kLanes; ++k) kicks.add({first[k], second[k], gain[k]});
+    for (std::uint32_t k = 0; k < kernels::kLanes; ++k) {
+      kicks.add({first[k], second[k], gain[k], energy[k]});
+    }
     return kicks;
   }
 };
@@ -89,7 +92,9 @@ kernels::Kicks measure_kicks(const Motion& m, double h, std::size_t first, std::
     const std::size_t column = (i - first) % kernels::kLanes;
     add(columns.first + column, mass, rate * rate * dot(d, d));
     add(columns.second + column, mass, dot(kick, kick));
-    add(columns.gain + column, mass, dot(next, next) - dot(v, v) - two * dot(a, x - p));
+    const Doubles square = dot(next, next);
+    add(columns.gain + column, mass, square - dot(v, v) - two * dot(a, x - p));
+    add(columns.energy + column, mass, square);
   }
   return columns.sums();
 }

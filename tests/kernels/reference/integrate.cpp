@@ -85,6 +85,7 @@ TEST_CASE("kicks: of the corrected position, of the corrected velocity, and the 
   const Vector way = particles.solved[0] - particles.position[0];
   CHECK(kicks.gain ==
         doctest::Approx(2 * (dot(next, next) - dot(v, v) - 2 * dot(a, way))).epsilon(1e-13));
+  CHECK(kicks.energy == doctest::Approx(2 * dot(next, next)).epsilon(1e-13));
 }
 
 }  // namespace

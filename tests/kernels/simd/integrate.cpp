@@ -87,12 +87,14 @@ TEST_CASE("kicks: sums over the free of a range, equal where instructions fuse")
       const Vector v = m.velocity[i], next = m.next_velocity[i], a = acceleration(rounding, m, i);
       const Vector kick = (1 / h) * (m.solved[i] - predicted(rounding, m, i, h));
       const Vector rest = next - (v + h * a + kick);
-      const double gain = dot(next, next) - dot(v, v) - 2 * dot(a, m.solved[i] - m.position[i]);
-      expected.add({mass * dot(kick, kick), mass * dot(rest, rest), mass * gain});
+      const double square = dot(next, next);
+      const double gain = square - dot(v, v) - 2 * dot(a, m.solved[i] - m.position[i]);
+      expected.add({mass * dot(kick, kick), mass * dot(rest, rest), mass * gain, mass * square});
     }
     const kernels::Kicks found = table.measure_kicks(m, h, first, last);
     CHECK(found.first == doctest::Approx(expected.first).epsilon(1e-12));
     CHECK(found.second == doctest::Approx(expected.second).epsilon(1e-12));
+    CHECK(found.energy == doctest::Approx(expected.energy).epsilon(1e-12));
     CHECK(std::abs(found.gain - expected.gain) < 1e-12 * (expected.first + expected.second));
   });
   if (!simd::supported(simd::Isa::avx512)) return;
@@ -104,6 +106,7 @@ TEST_CASE("kicks: sums over the free of a range, equal where instructions fuse")
   CHECK(wide.first == narrow.first);
   CHECK(wide.second == narrow.second);
   CHECK(wide.gain == narrow.gain);
+  CHECK(wide.energy == narrow.energy);
 }
 
 TEST_CASE("what was not corrected keeps its velocity to the last bit but the fall's") {
