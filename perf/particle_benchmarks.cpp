@@ -45,7 +45,7 @@ constexpr Kernel kKernels[] = {
      }},
     {"split_positions", 56, 56,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
-       t.split_positions(w.position.view(), quads(w.base), quads(w.change), 0, w.slots());
+       t.split_positions(w.position.view(), quads(w.base), quads(w.change), 0, 0, w.slots());
      }},
     {"join_positions", 80, 56,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {

@@ -1,6 +1,7 @@
 #include "engine/solvers/yarn_layout.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <set>
 
@@ -185,6 +186,13 @@ class Builder {
   double lightest_ = 1;  // mass of a particle
 };
 
+double cell_of(const ConstraintStore& store) {
+  const auto rests = std::span(store.rest_length).first(store.plain);
+  if (rests.empty()) return 0;
+  const auto [shortest, longest] = std::ranges::minmax(rests);
+  return std::exp2(std::floor(std::log2(std::min(shortest, longest / 64))));
+}
+
 void find_not_in_second(YarnLayout& layout) {
   std::vector<bool> held(layout.slots, false);
   const bool two = layout.families() > 1;
@@ -207,6 +215,7 @@ void find_not_in_second(YarnLayout& layout) {
 YarnLayout make_yarn_layout(const Model& model) {
   YarnLayout layout;
   layout.slots = model.slots();
+  layout.cell = cell_of(model.constraints);
   const Yarns yarns = find_yarns(positions_of(model), links_of(model.constraints));
   std::vector<Chain> chains = open_chains(yarns, model.slots());
   sort(chains);

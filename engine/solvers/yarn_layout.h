@@ -31,6 +31,7 @@ struct YarnLayout {
   kernels::AlignedVector<simd::YarnRow> kinds;  // inverse masses over the model's largest
   std::vector<std::uint32_t> not_in_second;     // slots that yarn_push_first does not write
 
+  double cell = 0;          // that positions are split by (kernels/simd/yarn_rows.h)
   std::size_t longest = 0;  // rows of the longest block
   std::size_t slots = 0;    // of the model, then kLanes of padding for each block
 

@@ -72,6 +72,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       layout_(model.yarns()),
       settings_(settings),
       table_(table),
+      base_step_(layout_.rows() * kernels::kLanes),
       base_(4 * layout_.slots),
       u_(4 * layout_.slots),
       first_end_(layout_.families() > 0 ? layout_.family_begin[1] : 0),
@@ -79,7 +80,6 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       solves_(layout_.blocks.size()),
       stubborn_(layout_.blocks.size()),
       others_(model, settings) {
-  if (!layout_.from_memory()) base_step_.resize(layout_.rows());
   const auto wanted =
       static_cast<std::size_t>(settings.threads > 0 ? settings.threads : kMostShares);
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
@@ -87,10 +87,16 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
 }
 
 simd::Yarns YarnSolver::yarns() {
-  return {layout_.kind.data(),  layout_.kinds.data(),
-          base_step_.data(),    system_.data(),
-          layout_.slot.data(),  from_start_ ? start_.data() : nullptr,
-          velocities_,          moved_ || layout_.from_memory() ? base_.data() : nullptr,
+  return {layout_.kind.data(),
+          layout_.kinds.data(),
+          system_.data(),
+          layout_.slot.data(),
+          from_start_ ? start_.data() : nullptr,
+          velocities_,
+          base_.data(),
+          base_step_.data(),
+          static_cast<float>(layout_.cell),
+          moved_,
           layout_.from_memory()};
 }
 
@@ -119,10 +125,10 @@ void YarnSolver::for_each_family(Team& team, Work&& work) {
 }
 
 /// The padding is put right too: a solve that left the range of numbers may have reached it.
-void YarnSolver::split(kernels::VectorsView x, Team& team) {
+void YarnSolver::split(kernels::VectorsView x, double cell, Team& team) {
   std::fill(u_.begin() + static_cast<std::ptrdiff_t>(4 * model_.slots()), u_.end(), 0.f);
   for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
-    table_.split_positions(x, quads(base_), quads(u_), first, last);
+    table_.split_positions(x, quads(base_), quads(u_), cell, first, last);
   });
   moved_ = true;
 }
@@ -344,7 +350,7 @@ kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kerne
   others_.use_present();
   split(x, team);
   linearise_velocities(team);
-  split(v, team);
+  split(v, 0, team);
   const double tolerated = kWithin * settings_.velocity_tolerance;
   double goal = tolerated, best = kNoBound;
   for (int stale = 0; stale <= kVelocityPatience.passes;) {

@@ -60,7 +60,8 @@ class YarnSolver {
   };
   simd::Yarns yarns();
   /// Starts at the positions x.
-  void split(kernels::VectorsView x, Team& team);
+  void split(kernels::VectorsView x, Team& team) { split(x, layout_.cell, team); }
+  void split(kernels::VectorsView x, double cell, Team& team);
   void keep_start(kernels::VectorsView start, Team& team);
   void join(kernels::VectorsView x, Team& team);
   /// Each family, its blocks until their lengths are within the share `enough`, then the others.
@@ -97,17 +98,17 @@ class YarnSolver {
   const Settings settings_;
   const simd::Table& table_;
 
-  bool from_start_ = false, velocities_ = false;  // what is being solved
-  bool moved_ = false;                            // the rows do not remember the present base
-  kernels::AlignedVector<simd::LaneVectors> base_step_;  // unless quads come from memory
-  kernels::AlignedVector<simd::LaneVectors> start_;      // scheme rattle only
-  kernels::AlignedVector<simd::YarnSystemRow> system_;   // from the first Newton step on
-  kernels::AlignedVector<simd::YarnScratch> scratch_;    // for each thread
-  kernels::AlignedVector<float> base_, u_, t_;           // quads
-  const std::size_t first_end_;                          // blocks of the first family
-  std::vector<simd::YarnProducts> products_;             // per block
-  std::vector<std::uint32_t> solves_;                    // per block, in one sweep
-  std::vector<std::uint8_t> stubborn_;                   // per block: kMostSolves were too few
+  bool from_start_ = false, velocities_ = false;        // what is being solved
+  bool moved_ = false;                                  // the rows do not remember the present base
+  kernels::AlignedVector<std::int32_t> base_step_;      // per row and lane
+  kernels::AlignedVector<simd::LaneVectors> start_;     // scheme rattle only
+  kernels::AlignedVector<simd::YarnSystemRow> system_;  // from the first Newton step on
+  kernels::AlignedVector<simd::YarnScratch> scratch_;   // for each thread
+  kernels::AlignedVector<float> base_, u_, t_;          // quads
+  const std::size_t first_end_;                         // blocks of the first family
+  std::vector<simd::YarnProducts> products_;            // per block
+  std::vector<std::uint32_t> solves_;                   // per block, in one sweep
+  std::vector<std::uint8_t> stubborn_;                  // per block: kMostSolves were too few
   YarnOthers others_;
 };
 

@@ -35,6 +35,7 @@ using Arch = xsimd::sse2;
 
 using Floats = xsimd::batch<float, Arch>;
 using Doubles = xsimd::batch<double, Arch>;
+using Ints = xsimd::batch<std::int32_t, Arch>;
 using FloatMask = Floats::batch_bool_type;
 using DoubleMask = Doubles::batch_bool_type;
 

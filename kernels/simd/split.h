@@ -1,5 +1,5 @@
 /// Double positions as two floats in quads (quads.h): base is the position rounded, u what that
-/// lost.
+/// lost. Where base is rounded to cells, its differences are small whole numbers of them.
 #pragma once
 
 #include "kernels/simd/quads.h"
@@ -25,13 +25,20 @@ struct Component {
   return narrow(c.first, c.second);
 }
 
-void split_positions(kernels::VectorsView x, Displacements base, Displacements u, std::size_t first,
-                     std::size_t last) {
+/// To a multiple of the cell: at 1.5 * 2^52 cells the next number is a cell away.
+[[gnu::always_inline]] inline Component in_cells(const Component& c, Doubles far) {
+  return {(c.first + far) - far, (c.second + far) - far};
+}
+
+void split_positions(kernels::VectorsView x, Displacements base, Displacements u, double cell,
+                     std::size_t first, std::size_t last) {
   QuadsInRow at;
+  const Doubles far(0x1.8p52 * cell);
   for (std::size_t i = first; i < last; i += kFloats) {
     const Component px = load_component(x.x + i), py = load_component(x.y + i);
     const Component pz = load_component(x.z + i);
-    const FloatVector rounded{narrow(px), narrow(py), narrow(pz)};
+    const FloatVector rounded{narrow(in_cells(px, far)), narrow(in_cells(py, far)),
+                              narrow(in_cells(pz, far))};
     at.put(base.x + 4 * i, rounded);
     at.put(u.x + 4 * i, {narrow(px - widen(rounded.x)), narrow(py - widen(rounded.y)),
                          narrow(pz - widen(rounded.z))});

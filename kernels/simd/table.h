@@ -156,13 +156,15 @@ struct YarnBlock {
 struct Yarns {
   const std::uint32_t* kind = nullptr;  // per row: which of the kinds it is
   const YarnRow* kinds = nullptr;       // rows that are alike share one
-  LaneVectors* base_step = nullptr;     // what rows remember: base, less that of the next row
   YarnSystemRow* system = nullptr;
   const std::uint32_t* slot = nullptr;  // per row and lane; padding: slots of no particle
   LaneVectors* start = nullptr;         // per row: scheme rattle's directions; null: present ones
   bool velocities = false;              // that is what the system's errors are of
-  const float* base = nullptr;          // quads; null: as the rows remember it
-  bool from_memory = false;             // quads do not fit the caches: base is not remembered
+  const float* base = nullptr;          // quads
+  std::int32_t* base_step = nullptr;    // per row and lane: what rows remember of it (yarn_rows.h)
+  float cell = 0;                       // that it was split by
+  bool moved = false;                   // what rows remember is not the present base
+  bool from_memory = false;             // quads do not fit the caches
 };
 
 /// What a watched sweep did to a block, and whether its lengths are good enough now.
@@ -248,8 +250,9 @@ struct Table {
   void (*apply_sums_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
                              std::uint32_t last);
 
-  /// base = x rounded to float, u = x - base; and x moved to base + u. Quads.
-  void (*split_positions)(kernels::VectorsView x, Displacements base, Displacements u,
+  /// base = x in whole cells, a power of two (0: none), rounded to float, u = x - base; and x moved
+  /// to base + u. Quads.
+  void (*split_positions)(kernels::VectorsView x, Displacements base, Displacements u, double cell,
                           std::size_t first, std::size_t last);
   void (*join_positions)(kernels::VectorsView x, Displacements base, Displacements u,
                          std::size_t first, std::size_t last);

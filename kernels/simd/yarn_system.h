@@ -73,7 +73,7 @@ template <Along kAlong, Base kBase, class At>
 /// Directions, factors and errors at base + u; lambda = p = q = 0.
 void yarn_linearise(const Yarns& y, const YarnBlock& block, Displacements u) {
   with_quads(block, [&](auto at) {
-    with_base(y, [&](auto base) {
+    with_base(y, block, [&](auto base) {
       if (y.start == nullptr)
         linearise_yarns<Along::present, base>(y, block, at, u);
       else

@@ -23,8 +23,7 @@
 ///
 /// so that m_k = l_k r_{k-1} on the way down, and c_k r_{k-1} on the way up.
 ///
-/// Positions are base + u, two floats in quads (quads.h): base is the double position rounded, u
-/// begins with what the rounding lost. Differences of neighbours are exact to the last bits of u.
+/// Positions are base + u, two floats in quads; what rows remember of the base: yarn_rows.h.
 ///
 /// One chain per lane is bound by work, not by the latency of its recurrence: two vectors at a time
 /// took 1.4 times as long on AVX2 for want of registers.
@@ -33,7 +32,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "kernels/simd/quads.h"
+#include "kernels/simd/yarn_rows.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {
@@ -43,46 +42,6 @@ namespace {
 /// however long it is. (1e-4: more velocities of a taut sheet under a sphere cannot be corrected;
 /// 1e-5: more steps of a hub are left to scheme paper.)
 constexpr float kLeastPivot = 3e-5f;
-
-[[gnu::always_inline]] inline Floats dot(const FloatVector& a, const FloatVector& b) {
-  return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
-}
-[[gnu::always_inline]] inline FloatVector operator+(const FloatVector& a, const FloatVector& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-[[gnu::always_inline]] inline FloatVector operator*(Floats s, const FloatVector& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-/// s b + a
-[[gnu::always_inline]] inline FloatVector fused(Floats s, const FloatVector& b,
-                                                const FloatVector& a) {
-  return {fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.z, a.z)};
-}
-[[gnu::always_inline]] inline FloatVector load(const LaneVectors& v, std::uint32_t lane) {
-  return {load(v.x + lane), load(v.y + lane), load(v.z + lane)};
-}
-[[gnu::always_inline]] inline void store(LaneVectors& v, std::uint32_t lane, const FloatVector& f) {
-  f.x.store_unaligned(v.x + lane);
-  f.y.store_unaligned(v.y + lane);
-  f.z.store_unaligned(v.z + lane);
-}
-[[gnu::always_inline]] inline FloatVector no_vector() {
-  return {Floats(0.f), Floats(0.f), Floats(0.f)};
-}
-
-/// The slots of a row, from `lane` on.
-[[gnu::always_inline]] inline const std::uint32_t* slots(const Yarns& y, std::size_t row,
-                                                         std::uint32_t lane) {
-  return y.slot + row * kernels::kLanes + lane;
-}
-
-[[gnu::always_inline]] inline Floats rest(const Yarns& y, std::size_t row, std::uint32_t lane) {
-  return load(y.kinds[y.kind[row]].rest + lane);
-}
-[[gnu::always_inline]] inline Floats inverse_mass(const Yarns& y, std::size_t row,
-                                                  std::uint32_t lane) {
-  return load(y.kinds[y.kind[row]].inverse_mass + lane);
-}
 
 /// present: impulses act along the directions that errors change along. start: along those at the
 /// start of the substep. frozen: errors too are taken to change along those, so that A is symmetric
@@ -161,35 +120,6 @@ struct Elimination {
   }
 };
 
-/// Where the base of a row's particles is. rows: they remember its difference to that of the next.
-/// quads: it is fetched, and then remembered, which saves transposes. memory: it is fetched each
-/// time, which saves traffic.
-enum class Base : std::uint8_t { rows, quads, memory };
-
-/// The base, from row to row.
-template <Base kBase, class At>
-struct BaseDown {
-  const Yarns& y;
-  At at;
-  std::uint32_t lane;
-  FloatVector here = no_vector();
-
-  [[gnu::always_inline]] BaseDown(const Yarns& yarns, At quads, std::uint32_t row,
-                                  std::uint32_t first_lane)
-      : y(yarns), at(quads), lane(first_lane) {
-    if constexpr (kBase != Base::rows) here = at.get(y.base, slots(y, row, lane));
-  }
-  /// From particle k + 1 to particle k.
-  [[gnu::always_inline]] FloatVector step(std::uint32_t k) {
-    if constexpr (kBase == Base::rows) return load(y.base_step[k], lane);
-    const FloatVector next = at.get(y.base, slots(y, k + 1, lane));
-    const FloatVector difference = here - next;
-    if constexpr (kBase == Base::quads) store(y.base_step[k], lane, difference);
-    here = next;
-    return difference;
-  }
-};
-
 /// work(how quads are fetched)
 template <class Work>
 [[gnu::always_inline]] inline void with_quads(const YarnBlock& block, Work&& work) {
@@ -201,9 +131,8 @@ template <class Work>
 
 /// work(where the base is)
 template <class Work>
-[[gnu::always_inline]] inline void with_base(const Yarns& y, Work&& work) {
-  if (y.base == nullptr) return work(std::integral_constant<Base, Base::rows>());
-  if (y.from_memory) return work(std::integral_constant<Base, Base::memory>());
+[[gnu::always_inline]] inline void with_base(const Yarns& y, const YarnBlock& block, Work&& work) {
+  if (remembered(y, block)) return work(std::integral_constant<Base, Base::rows>());
   return work(std::integral_constant<Base, Base::quads>());
 }
 
@@ -212,11 +141,12 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
   QuadLanes at;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     FloatVector here = at.get(u, slots(y, block.first, lane));
-    BaseDown<Base::memory, QuadLanes> base(y, at, block.first, lane);
+    BaseDown<Base::quads, QuadLanes> base(y, at, block.first, lane);
     for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
       const FloatVector next = at.get(u, slots(y, k + 1, lane));
-      const FloatVector d = base.step(k) + (here - next);
-      store(y.start[k], lane, unit_link(d, rest(y, k, lane)).n);
+      const Floats length = rest(y, k, lane);
+      const FloatVector d = base.step(k, here - next, length);
+      store(y.start[k], lane, unit_link(d, length).n);
       here = next;
     }
     store(y.start[block.last - 1], lane, no_vector());
@@ -224,6 +154,7 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
 }
 
 /// Of a yarn that runs across memory no prefetcher sees where it goes.
+template <Base kBase>
 [[gnu::always_inline]] inline void fetch_ahead(const Yarns& y, const YarnBlock& block,
                                                std::uint32_t row, std::uint32_t lane,
                                                const Displacements& u) {
@@ -232,7 +163,7 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
   for (std::uint32_t k = 0; k < kFloats; ++k) {
     const std::size_t quad = 4 * std::size_t{slot[k]};
     __builtin_prefetch(u.x + quad, 1);
-    __builtin_prefetch(y.base + quad);
+    if constexpr (kBase == Base::quads) __builtin_prefetch(y.base + quad);
   }
 }
 
@@ -248,15 +179,17 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
   BaseDown<kBase, At> base(y, at, block.first, lane);
   Floats w = inverse_mass(y, block.first, lane);
   for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
-    if constexpr (kBase == Base::memory) fetch_ahead(y, block, k, lane, u);
+    if (y.from_memory) fetch_ahead<kBase>(y, block, k, lane, u);
     const FloatVector u_next = at.get(u, slots(y, k + 1, lane));
     const Floats w_next = inverse_mass(y, k + 1, lane);
-    YarnLink link = make_link(base.step(k) + (here - u_next), rest(y, k, lane));
+    const Floats length = rest(y, k, lane);
+    YarnLink link = make_link(base.step(k, here - u_next, length), length);
     direct<kAlong>(link, y.start, k, lane);
     take(k, here, link, elimination.step(link, w, w_next));
     here = u_next;
     w = w_next;
   }
+  base.end(block.last - 1);
   const Floats none(0.f);
   take(block.last - 1, here, YarnLink{no_vector(), none, none, no_vector()},
        Factors{none, none, none});
@@ -433,7 +366,6 @@ template <Base kBase, class At>
                                                   Displacements u, YarnScratch* scratch,
                                                   float enough, std::uint32_t most) {
   constexpr float kQuiet = 0.01f;
-  constexpr Base kAgain = kBase == Base::memory ? Base::memory : Base::rows;
   const auto put = [&](std::uint32_t row, std::uint32_t lane, const FloatVector&,
                        const FloatVector& moved) __attribute__((always_inline)) {
     at.put(u, slots(y, block.first + row, lane), moved);
@@ -446,7 +378,10 @@ template <Base kBase, class At>
   if (find_impulses<kBase>(y, block, at, u, scratch, kQuiet * enough)) return {0, true};
   bool out = apply_impulses(y, block, scratch, enough, put);
   if (!out || most == 1) return {1, !out};
-  find_impulses<kAgain>(y, block, at, u, scratch, 0);
+  with_base(
+      y, block, [&](auto base) __attribute__((always_inline)) {
+        find_impulses<base>(y, block, at, u, scratch, 0);
+      });
   out = apply_impulses(y, block, scratch, enough, keep);
   std::uint32_t solves = 2;
   for (; out && solves < most; ++solves) {
@@ -459,7 +394,7 @@ template <Base kBase, class At>
 
 void yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
   with_quads(block, [&](auto at) {
-    with_base(y, [&](auto base) {
+    with_base(y, block, [&](auto base) {
       if (y.start == nullptr)
         sweep_yarns<Along::present, base>(y, block, at, u, scratch);
       else
@@ -472,8 +407,9 @@ Swept yarn_sweep_watched(const Yarns& y, const YarnBlock& block, Displacements u
                          YarnScratch* scratch, float enough, std::uint32_t most) {
   Swept swept;
   with_quads(block, [&](auto at) {
-    with_base(
-        y, [&](auto base) { swept = sweep_watched<base>(y, block, at, u, scratch, enough, most); });
+    with_base(y, block, [&](auto base) {
+      swept = sweep_watched<base>(y, block, at, u, scratch, enough, most);
+    });
   });
   return swept;
 }

@@ -20,16 +20,17 @@ struct BlockOfYarns {
   std::vector<std::uint32_t> slot, kind;
   kernels::AlignedVector<simd::YarnRow> rows;
   kernels::AlignedVector<simd::YarnSystemRow> system;
-  kernels::AlignedVector<simd::LaneVectors> base_step;
+  kernels::AlignedVector<std::int32_t> base_step;
   kernels::AlignedVector<simd::YarnScratch> scratch;
   kernels::AlignedVector<simd::LaneVectors> directions;  // at the start of a rattle step
   kernels::AlignedVector<float> base, u, t;
   kernels::Vectors x;
+  double cell = 0x1p-10;
   bool placed = false;  // the rows have the base
   bool from_memory = false;
   bool in_fours = false;
 
-  BlockOfYarns() : rows(kRows), system(kRows), base_step(kRows), scratch(kRows) {
+  BlockOfYarns() : rows(kRows), system(kRows), base_step(kRows * kLanes), scratch(kRows) {
     const std::size_t slots = kRows * kLanes + kLanes;
     base.resize(4 * slots);
     u.resize(4 * slots);
@@ -63,11 +64,17 @@ struct BlockOfYarns {
     }
   }
   simd::Yarns yarns() {
-    simd::Yarns yarns{kind.data(), rows.data(), base_step.data(), system.data(), slot.data()};
-    if (!directions.empty()) yarns.start = directions.data();
-    if (!placed) yarns.base = base.data();
-    yarns.from_memory = from_memory;
-    return yarns;
+    return {kind.data(),
+            rows.data(),
+            system.data(),
+            slot.data(),
+            directions.empty() ? nullptr : directions.data(),
+            false,
+            base.data(),
+            base_step.data(),
+            static_cast<float>(cell),
+            !placed,
+            from_memory};
   }
   simd::YarnBlock block() const { return {0, kRows, in_fours}; }
   /// Lanes k, k + 4, k + 8 and k + 12 side by side; those of k = 3 are padding.
@@ -101,12 +108,12 @@ struct BlockOfYarns {
   }
   simd::Displacements quads(kernels::AlignedVector<float>& v) { return {v.data(), 1, 4}; }
   void start(const simd::Table& table) {
-    table.split_positions(x.view(), quads(base), quads(u), 0, x.size());
+    table.split_positions(x.view(), quads(base), quads(u), cell, 0, x.size());
   }
   /// Impulses act along the directions at q from now on.
   void keep_start(const simd::Table& table, const kernels::Vectors& q) {
     directions.resize(kRows);
-    table.split_positions(kernels::Vectors(q).view(), quads(base), quads(u), 0, q.size());
+    table.split_positions(kernels::Vectors(q).view(), quads(base), quads(u), cell, 0, q.size());
     table.yarn_keep_start(yarns(), block(), quads(u));
   }
   kernels::Vectors end(const simd::Table& table) { return end(table, x); }

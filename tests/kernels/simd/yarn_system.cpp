@@ -156,7 +156,7 @@ TEST_CASE("velocities: the linear system takes them out along each link") {
     b.start(table);
     table.yarn_linearise(yarns, b.block(), b.quads(b.u));
     kernels::Vectors copy = v;
-    table.split_positions(copy.view(), b.quads(b.base), b.quads(b.u), 0, v.size());
+    table.split_positions(copy.view(), b.quads(b.base), b.quads(b.u), 0, 0, v.size());
     table.yarn_read(yarns, b.block(), b.quads(b.base), b.quads(b.u));
     solve_system(b, yarns, table);
     const kernels::Vectors moved = b.end(table, v);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "tests/support/isas.h"
@@ -194,21 +195,71 @@ TEST_CASE("a link whose ends coincide is solved together with its neighbour") {
   }
 }
 
+TEST_CASE("a base is a whole number of cells, and u what is left") {
+  for (const simd::Isa isa : supported_isas()) {
+    for (const double cell : {0x1p-4, 0x1p-10, 0x1p-20}) {
+      BlockOfYarns b;
+      b.cell = cell;
+      b.start(simd::table(isa));
+      for (std::size_t i = 0; i < b.base.size(); ++i) {
+        CHECK(std::remainder(static_cast<double>(b.base[i]), cell) == 0);
+        CHECK(std::abs(static_cast<double>(b.u[i])) <= cell / 2);
+      }
+    }
+  }
+}
+
+void sweep_twice(BlockOfYarns& b, const simd::Table& table, bool remember) {
+  b.start(table);
+  table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+  b.placed = remember;
+  table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+}
+
 TEST_CASE("rows remember the base, or it is fetched: the same bits") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
-    const simd::Table& table = simd::table(isa);
-    BlockOfYarns kept, fetched;
-    fetched.from_memory = true;
-    for (BlockOfYarns* b : {&fetched, &kept}) {
-      b->start(table);
-      table.yarn_sweep(b->yarns(), b->block(), b->quads(b->u), b->scratch.data());
+    for (const bool from_memory : {false, true}) {
+      BlockOfYarns kept, fetched;
+      kept.from_memory = fetched.from_memory = from_memory;
+      sweep_twice(kept, simd::table(isa), true);
+      sweep_twice(fetched, simd::table(isa), false);
+      CHECK(kept.u == fetched.u);
+      const auto before = kept.u;
+      std::ranges::fill(kept.base, std::numeric_limits<float>::quiet_NaN());
+      simd::table(isa).yarn_sweep(kept.yarns(), kept.block(), kept.quads(kept.u),
+                                  kept.scratch.data());
+      CHECK(kept.u != before);
+      CHECK(std::ranges::all_of(kept.u, [](float f) { return std::isfinite(f); }));
     }
-    kept.placed = true;
-    for (BlockOfYarns* b : {&fetched, &kept}) {
-      table.yarn_sweep(b->yarns(), b->block(), b->quads(b->u), b->scratch.data());
+  }
+}
+
+TEST_CASE("links too long for rows to remember are solved all the same") {
+  constexpr std::uint32_t kLane = 9;
+  struct Case {
+    double cell, stretch;  // of one link
+  };
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    for (const Case c : {Case{0x1p-10, 511 * 0x1p-10},
+                         {0x1p-10, 513 * 0x1p-10},
+                         {0x1p-10, 1e6},
+                         {0x1p-30, 0},
+                         {0, 0}}) {
+      CAPTURE(c.cell);
+      CAPTURE(c.stretch);
+      BlockOfYarns kept, fetched;
+      for (BlockOfYarns* b : {&kept, &fetched}) {
+        b->cell = c.cell;
+        const kernels::Vector end = b->x[b->slot_of(kLane - 2, kLane)];
+        if (c.stretch > 0)
+          b->x.set(b->slot_of(kLane - 1, kLane), end - kernels::Vector{c.stretch, 0, 0});
+      }
+      sweep_twice(kept, simd::table(isa), true);
+      sweep_twice(fetched, simd::table(isa), false);
+      CHECK(kept.u == fetched.u);
     }
-    CHECK(fetched.u == kept.u);
   }
 }
 

@@ -1,0 +1,137 @@
+/// The rows of a block of yarns (yarns.h): where their particles are, what they are like, and what
+/// they remember of the particles' base.
+///
+/// Positions are base + u, two floats in quads (quads.h): base is the double position rounded, u
+/// begins with what the rounding lost. Differences of neighbours are exact to the last bits of u.
+///
+/// Base is a whole number of cells: of the largest power of two that the shortest constraint and a
+/// sixty-fourth of the longest are no shorter than. Between neighbours it differs by few of them,
+/// which rows remember from the first pass over a new base on:
+///
+///     |  x: 10 bits  |  y: 10 bits  |  z: 10 bits  | 00 |     in each lane
+///
+/// a quarter of the bytes that it takes to fetch base again. A block in which a difference is
+/// larger, of a cloth torn apart, fetches it each time: the row of its last particles, which has no
+/// next, has the bits of all differences.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "kernels/simd/quads.h"
+
+namespace weft::simd {
+inline namespace WEFT_LANES {
+namespace {
+
+[[gnu::always_inline]] inline Floats dot(const FloatVector& a, const FloatVector& b) {
+  return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
+}
+[[gnu::always_inline]] inline FloatVector operator+(const FloatVector& a, const FloatVector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+[[gnu::always_inline]] inline FloatVector operator*(Floats s, const FloatVector& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+/// s b + a
+[[gnu::always_inline]] inline FloatVector fused(Floats s, const FloatVector& b,
+                                                const FloatVector& a) {
+  return {fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.z, a.z)};
+}
+[[gnu::always_inline]] inline FloatVector load(const LaneVectors& v, std::uint32_t lane) {
+  return {load(v.x + lane), load(v.y + lane), load(v.z + lane)};
+}
+[[gnu::always_inline]] inline void store(LaneVectors& v, std::uint32_t lane, const FloatVector& f) {
+  f.x.store_unaligned(v.x + lane);
+  f.y.store_unaligned(v.y + lane);
+  f.z.store_unaligned(v.z + lane);
+}
+[[gnu::always_inline]] inline FloatVector no_vector() {
+  return {Floats(0.f), Floats(0.f), Floats(0.f)};
+}
+
+/// The slots of a row, from `lane` on.
+[[gnu::always_inline]] inline const std::uint32_t* slots(const Yarns& y, std::size_t row,
+                                                         std::uint32_t lane) {
+  return y.slot + row * kernels::kLanes + lane;
+}
+
+[[gnu::always_inline]] inline Floats rest(const Yarns& y, std::size_t row, std::uint32_t lane) {
+  return load(y.kinds[y.kind[row]].rest + lane);
+}
+[[gnu::always_inline]] inline Floats inverse_mass(const Yarns& y, std::size_t row,
+                                                  std::uint32_t lane) {
+  return load(y.kinds[y.kind[row]].inverse_mass + lane);
+}
+
+/// A whole number n of -512 ... 511 as n + 512, in bits; any other float is 1024 or more.
+[[gnu::always_inline]] inline Ints ten_bits(Floats v, Floats factor) {
+  const Floats far(0x1.8p23f + 512);  // the next float is 1 away: the last bits count
+  const Ints bits = xsimd::bitwise_cast<Ints>(fused(v, factor, far));
+  return bits ^ xsimd::bitwise_cast<Ints>(Floats(0x1.8p23f));
+}
+/// Three of them, and the numbers again.
+[[gnu::always_inline]] inline Ints packed(Ints x, Ints y, Ints z) {
+  const Ints signs(static_cast<std::int32_t>(0x80200800));  // n + 512 has the sign bit of n wrong
+  return ((x << 22) | (y << 12) | (z << 2)) ^ signs;
+}
+[[gnu::always_inline]] inline FloatVector unpacked(Ints v) {
+  return {xsimd::to_float(v >> 22), xsimd::to_float((v << 10) >> 22),
+          xsimd::to_float((v << 20) >> 22)};
+}
+
+/// Where the base of a row's particles is. rows: they remember its difference to that of the next.
+/// quads: it is fetched, and then remembered.
+enum class Base : std::uint8_t { rows, quads };
+
+/// The base, from row to row.
+template <Base kBase, class At>
+struct BaseDown {
+  const Yarns& y;
+  At at;
+  std::uint32_t lane;
+  FloatVector here = no_vector();
+  Ints all = Ints(0);  // that has been remembered
+
+  [[gnu::always_inline]] BaseDown(const Yarns& yarns, At quads, std::uint32_t row,
+                                  std::uint32_t first_lane)
+      : y(yarns), at(quads), lane(first_lane) {
+    if constexpr (kBase == Base::quads) here = at.get(y.base, slots(y, row, lane));
+  }
+  /// base + u, from particle k + 1 to particle k. Without a constraint it is anything.
+  [[gnu::always_inline]] FloatVector step(std::uint32_t k, const FloatVector& u, Floats rest) {
+    if constexpr (kBase == Base::rows) {
+      return fused(Floats(y.cell), unpacked(Ints::load_unaligned(words(k))), u);
+    }
+    const FloatVector next = at.get(y.base, slots(y, k + 1, lane));
+    const FloatVector difference = here - next;
+    const Floats none(0.f), per_cell = xsimd::select(rest > none, Floats(1 / y.cell), none);
+    const Ints dx = ten_bits(difference.x, per_cell), dy = ten_bits(difference.y, per_cell);
+    const Ints dz = ten_bits(difference.z, per_cell);
+    packed(dx, dy, dz).store_unaligned(words(k));
+    all = all | dx | dy | dz;
+    here = next;
+    return difference + u;
+  }
+  /// After all but the last row.
+  [[gnu::always_inline]] void end(std::uint32_t last) {
+    if constexpr (kBase == Base::rows) return;
+    all.store_unaligned(words(last));
+  }
+
+ private:
+  [[gnu::always_inline]] std::int32_t* words(std::uint32_t row) const {
+    return y.base_step + std::size_t{row} * kernels::kLanes + lane;
+  }
+};
+
+/// Whether rows remember the present base.
+inline bool remembered(const Yarns& y, const YarnBlock& block) {
+  if (y.moved) return false;
+  const std::int32_t* all = y.base_step + std::size_t{block.last - 1} * kernels::kLanes;
+  return std::all_of(all, all + kernels::kLanes, [](std::int32_t i) { return i >= 0 && i < 1024; });
+}
+
+}  // namespace
+}  // namespace WEFT_LANES
+}  // namespace weft::simd
