@@ -190,7 +190,7 @@ double cell_of(const ConstraintStore& store) {
   const auto rests = std::span(store.rest_length).first(store.plain);
   if (rests.empty()) return 0;
   const auto [shortest, longest] = std::ranges::minmax(rests);
-  return std::exp2(std::floor(std::log2(std::min(shortest, longest / 64))));
+  return std::exp2(std::floor(std::log2(std::min(8 * shortest, longest / 64))));
 }
 
 void find_not_in_second(YarnLayout& layout) {

@@ -95,7 +95,7 @@ simd::Yarns YarnSolver::yarns() {
           velocities_,
           base_.data(),
           base_step_.data(),
-          static_cast<float>(layout_.cell),
+          static_cast<float>(cell_),
           moved_,
           layout_.from_memory()};
 }
@@ -130,6 +130,7 @@ void YarnSolver::split(kernels::VectorsView x, double cell, Team& team) {
   for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
     table_.split_positions(x, quads(base_), quads(u_), cell, first, last);
   });
+  cell_ = cell;
   moved_ = true;
 }
 

@@ -98,6 +98,7 @@ class YarnSolver {
   const Settings settings_;
   const simd::Table& table_;
 
+  double cell_ = 0;                                     // that base was split by
   bool from_start_ = false, velocities_ = false;        // what is being solved
   bool moved_ = false;                                  // the rows do not remember the present base
   kernels::AlignedVector<std::int32_t> base_step_;      // per row and lane

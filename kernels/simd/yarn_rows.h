@@ -4,15 +4,16 @@
 /// Positions are base + u, two floats in quads (quads.h): base is the double position rounded, u
 /// begins with what the rounding lost. Differences of neighbours are exact to the last bits of u.
 ///
-/// Base is a whole number of cells: of the largest power of two that the shortest constraint and a
-/// sixty-fourth of the longest are no shorter than. Between neighbours it differs by few of them,
-/// which rows remember from the first pass over a new base on:
+/// Base is a whole number of cells: of the largest power of two that is no more than a sixty-fourth
+/// of the longest constraint, nor eight times the shortest, which keeps what is left to u as small
+/// as what floats round off a difference. Between neighbours base differs by few cells, which rows
+/// remember from the first pass over a new base on:
 ///
 ///     |  x: 10 bits  |  y: 10 bits  |  z: 10 bits  | 00 |     in each lane
 ///
 /// a quarter of the bytes that it takes to fetch base again. A block in which a difference is
-/// larger, of a cloth torn apart, fetches it each time: the row of its last particles, which has no
-/// next, has the bits of all differences.
+/// larger (a cloth torn apart, constraints that are thousands of times as long as others) fetches
+/// it each time: the row of its last particles, which has no next, has the bits of all differences.
 #pragma once
 
 #include <algorithm>
@@ -64,7 +65,8 @@ namespace {
   return load(y.kinds[y.kind[row]].inverse_mass + lane);
 }
 
-/// A whole number n of -512 ... 511 as n + 512, in bits; any other float is 1024 or more.
+/// A whole number n of -512 ... 511 as n + 512, in bits; what is beyond is negative
+/// or 1024 and more, infinities and what is no number too.
 [[gnu::always_inline]] inline Ints ten_bits(Floats v, Floats factor) {
   const Floats far(0x1.8p23f + 512);  // the next float is 1 away: the last bits count
   const Ints bits = xsimd::bitwise_cast<Ints>(fused(v, factor, far));

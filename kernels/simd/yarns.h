@@ -141,12 +141,13 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
   QuadLanes at;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     FloatVector here = at.get(u, slots(y, block.first, lane));
-    BaseDown<Base::quads, QuadLanes> base(y, at, block.first, lane);
+    FloatVector base_here = at.get(y.base, slots(y, block.first, lane));
     for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
-      const FloatVector next = at.get(u, slots(y, k + 1, lane));
-      const Floats length = rest(y, k, lane);
-      const FloatVector d = base.step(k, here - next, length);
-      store(y.start[k], lane, unit_link(d, length).n);
+      const std::uint32_t* slot = slots(y, k + 1, lane);
+      const FloatVector next = at.get(u, slot), base_next = at.get(y.base, slot);
+      const FloatVector d = (base_here - base_next) + (here - next);
+      store(y.start[k], lane, unit_link(d, rest(y, k, lane)).n);
+      base_here = base_next;
       here = next;
     }
     store(y.start[block.last - 1], lane, no_vector());
@@ -378,9 +379,11 @@ template <Base kBase, class At>
   if (find_impulses<kBase>(y, block, at, u, scratch, kQuiet * enough)) return {0, true};
   bool out = apply_impulses(y, block, scratch, enough, put);
   if (!out || most == 1) return {1, !out};
+  Yarns again = y;
+  again.moved = false;
   with_base(
-      y, block, [&](auto base) __attribute__((always_inline)) {
-        find_impulses<base>(y, block, at, u, scratch, 0);
+      again, block, [&](auto base) __attribute__((always_inline)) {
+        find_impulses<base>(again, block, at, u, scratch, 0);
       });
   out = apply_impulses(y, block, scratch, enough, keep);
   std::uint32_t solves = 2;
