@@ -1,4 +1,4 @@
-/// Kernels that go through all slots: predict, commit, find_near, split_positions, ...
+/// Kernels that go through all slots: predict, commit, find_near, split_quads, ...
 #include "perf/benchmarks.h"
 
 namespace weft::perf {
@@ -12,8 +12,6 @@ struct Kernel {
 };
 
 constexpr double kStep = 0.01;
-
-simd::Displacements quads(kernels::AlignedVector<float>& v) { return {v.data(), 1, 4}; }
 
 constexpr Kernel kKernels[] = {
     {"predict", 80, 80,
@@ -43,17 +41,13 @@ constexpr Kernel kKernels[] = {
        benchmark::DoNotOptimize(t.find_moved(w.position.view(), w.solved.view(), {}, w.reach.data(),
                                              1, 1, 0, w.slots(), w.near.data()));
      }},
-    {"split_positions", 56, 56,
+    {"split_quads", 56, 56,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
-       t.split_positions(w.position.view(), quads(w.base), quads(w.change), 0, 0, w.slots());
+       t.split_quads(w.position.view(), 0, w.slots(), 0, w.base.data(), w.change.data());
      }},
-    {"join_positions", 80, 56,
+    {"join_quads", 80, 56,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
-       t.join_positions(w.solved.view(), quads(w.base), quads(w.change), 0, w.slots());
-     }},
-    {"add_quads", 48, 32,
-     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
-       t.add_quads(quads(w.change), quads(w.push), 0, w.slots());
+       t.join_quads(w.solved.view(), 0, w.slots(), w.base.data(), w.change.data());
      }},
 };
 

@@ -35,7 +35,6 @@ void Workbench::place_particles(const SceneDescription& scene) {
   near.resize(slots());
   base.resize(4 * slots());
   change.resize(4 * slots());
-  push.resize(4 * slots());
   mask.assign(slots(), ~std::uint64_t{0});
   stride_ = slots() + kLanes;
   u_.resize(4 * stride_);

@@ -47,8 +47,8 @@ class Workbench {
 
   kernels::Vectors position, velocity, solved, next_velocity;
   kernels::AlignedVector<double> inverse_mass, reach;
-  std::vector<std::uint32_t> near;                   // room for find_near
-  kernels::AlignedVector<float> base, change, push;  // quads; push stays 0
+  std::vector<std::uint32_t> near;             // room for find_near
+  kernels::AlignedVector<float> base, change;  // quads
   kernels::AlignedVector<float> impulse;
   std::vector<std::uint64_t> mask;
 

@@ -1,8 +1,10 @@
-/// Kernels of the yarn solver, each over all families of `hang`.
+/// Kernels of the yarn solver, each over all families: of `hang`, whose yarns are woven, and of an
+/// irregular triangle mesh, whose yarns find their particles in quads.
 #include "engine/model.h"
 #include "engine/scenes.h"
 #include "engine/solvers/yarn_layout.h"
 #include "perf/benchmarks.h"
+#include "perf/meshes.h"
 
 namespace weft::perf {
 namespace {
@@ -19,31 +21,30 @@ struct Loom {
   kernels::AlignedVector<simd::YarnScratch> scratch;
   kernels::AlignedVector<float> base, u, t;
 
-  Loom(int size, const simd::Table& table)
-      : model(model_of(size)),
+  Loom(std::shared_ptr<const Model> of, const simd::Table& table)
+      : model(std::move(of)),
         layout(model->yarns()),
         x(model->initial_position),
         base_step(layout.rows() * kLanes),
         system(layout.rows()),
-        scratch(layout.longest),
-        base(4 * layout.slots),
-        u(4 * layout.slots),
-        t(4 * layout.slots) {
-    table.split_positions(x.view(), quads(base), quads(u), layout.cell, 0, model->slots());
+        scratch(layout.scratch_rows()),
+        base(layout.places.floats),
+        u(layout.places.floats),
+        t(layout.places.floats) {
+    split(table);
     for (const simd::YarnBlock& block : layout.blocks)
-      table.yarn_linearise(yarns_anew(), block, quads(u));
+      table.yarn_linearise(yarns_anew(), block, u.data(), scratch.data());
     for (const simd::YarnBlock& block : layout.blocks) table.yarn_precondition(yarns(), block, 0);
   }
-  static std::shared_ptr<const Model> model_of(int size) {
-    scenes::Options options;
-    options.size = size;
-    return build_model(scenes::make("hang", options).value()).value();
+  void split(const simd::Table& table) {
+    layout.places.split(table, x.view(), layout.cell, 0, model->slots(), base.data(), u.data());
   }
   simd::Yarns yarns() {
     return {layout.kind.data(),
             layout.kinds.data(),
             system.data(),
             layout.slot.data(),
+            layout.patches.data(),
             nullptr,
             false,
             base.data(),
@@ -58,16 +59,22 @@ struct Loom {
     changed.moved = true;
     return changed;
   }
-  static simd::Displacements quads(kernels::AlignedVector<float>& v) { return {v.data(), 1, 4}; }
   std::size_t first_end() const { return layout.family_begin[1]; }
 };
 
+std::shared_ptr<const Model> hang(int size) {
+  scenes::Options options;
+  options.size = size;
+  return build_model(scenes::make("hang", options).value()).value();
+}
+
 struct Kernel {
   const char* name;
-  double bytes_per_lane;      // of a row: read + written
-  double footprint_per_lane;  // touched
+  double bytes;      // of a lane of a row, or of a particle: read + written
+  double footprint;  // touched
   void (*pass)(const simd::Table& table, Loom& loom);
   int solves = 1;
+  bool particles = false;
 };
 constexpr int kRepeats = 12;
 
@@ -80,46 +87,60 @@ void for_each_block(Loom& loom, std::size_t first, std::size_t last, Work&& work
 /// An iteration of conjugate gradients without its preconditioner.
 void multiply(const simd::Table& table, Loom& loom) {
   const std::size_t first = loom.first_end(), all = loom.layout.blocks.size();
-  const simd::Displacements t = Loom::quads(loom.t);
+  float* t = loom.t.data();
+  simd::YarnScratch* scratch = loom.scratch.data();
   for_each_block(loom, first, all, [&](const simd::YarnBlock& block) {
-    table.yarn_push_first(loom.yarns(), block, 0, t);
+    table.yarn_push_first(loom.yarns(), block, 0, t, scratch);
   });
   for_each_block(loom, 0, first, [&](const simd::YarnBlock& block) {
-    table.yarn_eliminate(loom.yarns(), block, t, false, loom.scratch.data());
+    table.yarn_eliminate(loom.yarns(), block, t, false, scratch);
   });
   for_each_block(loom, first, all, [&](const simd::YarnBlock& block) {
-    benchmark::DoNotOptimize(table.yarn_pull(loom.yarns(), block, t));
+    benchmark::DoNotOptimize(table.yarn_pull(loom.yarns(), block, t, scratch));
   });
 }
 
 /// Nothing is enough: no block is left alone.
 void watched(const simd::Table& table, Loom& loom, std::uint32_t most) {
   for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
-    benchmark::DoNotOptimize(table.yarn_sweep_watched(loom.yarns(), block, Loom::quads(loom.u),
+    benchmark::DoNotOptimize(table.yarn_sweep_watched(loom.yarns(), block, loom.u.data(),
                                                       loom.scratch.data(), -1, most));
   });
 }
 
+void sweep(const simd::Table& table, Loom& loom) {
+  for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
+    table.yarn_sweep(loom.yarns(), block, loom.u.data(), loom.scratch.data());
+  });
+}
+
 constexpr Kernel kKernels[] = {
-    {"yarn_sweep", 40, 24,
+    {"yarn_split", 48, 48, [](const auto& table, Loom& loom) { loom.split(table); }, 1, true},
+    {"yarn_join", 72, 48,
      [](const simd::Table& table, Loom& loom) {
-       for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
-         table.yarn_sweep(loom.yarns(), block, Loom::quads(loom.u), loom.scratch.data());
-       });
-     }},
-    {"yarn_sweep_watched", 40, 24, [](const auto& table, Loom& loom) { watched(table, loom, 1); }},
-    {"yarn_sweep_repeated", 828, 56,
+       loom.layout.places.join(table, loom.x.view(), 0, loom.model->slots(), loom.base.data(),
+                               loom.u.data());
+     },
+     1, true},
+    {"yarn_add", 36, 24,
+     [](const simd::Table& table, Loom& loom) {
+       table.yarn_add(loom.u.data(), loom.t.data(), 0, loom.u.size());
+     },
+     1, true},
+    {"yarn_sweep", 28, 10, sweep},
+    {"yarn_sweep_watched", 28, 10, [](const auto& table, Loom& loom) { watched(table, loom, 1); }},
+    {"yarn_sweep_repeated", 800, 42,
      [](const auto& table, Loom& loom) { watched(table, loom, kRepeats); }, kRepeats},
-    {"yarn_sweep_first", 56, 40,
+    {"yarn_sweep_first", 40, 16,
      [](const simd::Table& table, Loom& loom) {
        for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
-         table.yarn_sweep(loom.yarns_anew(), block, Loom::quads(loom.u), loom.scratch.data());
+         table.yarn_sweep(loom.yarns_anew(), block, loom.u.data(), loom.scratch.data());
        });
      }},
-    {"yarn_linearise", 60, 64,
+    {"yarn_linearise", 52, 58,
      [](const simd::Table& table, Loom& loom) {
        for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
-         table.yarn_linearise(loom.yarns(), block, Loom::quads(loom.u));
+         table.yarn_linearise(loom.yarns(), block, loom.u.data(), loom.scratch.data());
        });
      }},
     {"yarn_precondition", 40, 40,
@@ -128,22 +149,44 @@ constexpr Kernel kKernels[] = {
          benchmark::DoNotOptimize(table.yarn_precondition(loom.yarns(), block, 0));
        });
      }},
-    {"yarn_multiply", 70, 38, multiply},
+    {"yarn_multiply", 56, 28, multiply},
 };
+constexpr Kernel kInQuads{"yarn_sweep_irregular", 40, 24, sweep};
 
-void run(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Isa isa, int size) {
+void run(benchmark::State& state, const Shared& shared, const Kernel& kernel, simd::Isa isa,
+         std::shared_ptr<const Model> model) {
   const simd::Table& table = simd::table(isa);
-  Loom loom(size, table);
+  Loom loom(std::move(model), table);
   for (auto _ : state) kernel.pass(table, loom);
   const auto lanes = static_cast<double>(loom.layout.rows() * kLanes);
+  const auto particles = static_cast<double>(loom.model->particles);
+  const auto constraints = static_cast<double>(loom.model->constraints.size());
+  const double pieces = kernel.particles ? particles : lanes;
   count(state,
-        {static_cast<double>(loom.model->constraints.size()) * kernel.solves,
-         kernel.bytes_per_lane * lanes, kernel.footprint_per_lane * lanes, false},
+        {kernel.particles ? particles : constraints * kernel.solves, kernel.bytes * pieces,
+         kernel.footprint * pieces, kernel.particles},
         shared.bandwidth);
+}
+
+void register_irregular(Shared& shared) {
+  for (const simd::Isa isa : supported_isas()) {
+    for (const int size : kIrregularSizes) {
+      const std::string name =
+          std::string(kInQuads.name) + '/' + name_of(isa) + '/' + std::to_string(size);
+      benchmark::RegisterBenchmark(name.c_str(), [=, &shared](benchmark::State& state) {
+        run(state, shared, kInQuads, isa, build_model(irregular(size)).value());
+      });
+    }
+  }
 }
 
 }  // namespace
 
-void register_yarn_benchmarks(Shared& shared) { register_on_grids(kKernels, shared, run); }
+void register_yarn_benchmarks(Shared& shared) {
+  register_on_grids(kKernels, shared,
+                    [](benchmark::State& state, const Shared& all, const Kernel& kernel,
+                       simd::Isa isa, int size) { run(state, all, kernel, isa, hang(size)); });
+  register_irregular(shared);
+}
 
 }  // namespace weft::perf

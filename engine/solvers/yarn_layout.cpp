@@ -75,8 +75,6 @@ void sort(std::vector<Chain>& chains) {
   });
 }
 
-/// A 4 x 4 transpose, its own inverse.
-constexpr std::size_t lane_of(std::size_t i) { return 4 * (i % 4) + i / 4; }
 /// Whether these chains, of one length, stand side by side in memory, particle by particle.
 bool side_by_side(std::span<const Chain> chains) {
   for (std::size_t i = 1; i < chains.size(); ++i) {
@@ -137,17 +135,15 @@ class Builder {
     const std::size_t padding = model_.slots() + kLanes * layout_.blocks.size();
     block_.assign(rows, {});
     layout_.longest = std::max(layout_.longest, rows);
-    layout_.slots = padding + kLanes;
     layout_.blocks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)});
     for (std::size_t i = first * kLanes; i < last * kLanes; ++i) {
-      layout_.slot.push_back(static_cast<std::uint32_t>(padding + lane_of(i % kLanes)));
+      layout_.slot.push_back(static_cast<std::uint32_t>(padding + i % kLanes));
     }
     layout_.links.push_back(0);
     for (std::size_t i = 0; i < chains.size(); ++i) {
-      fill(chains[i], first, lane_of(i));
+      fill(chains[i], first, i);
       layout_.links.back() += static_cast<std::uint32_t>(chains[i].links.size());
     }
-    layout_.blocks.back().in_fours = in_fours(first, last);
     for (const simd::YarnRow& row : block_) layout_.kind.push_back(kind_of(row));
   }
 
@@ -158,15 +154,6 @@ class Builder {
         known_.insert(static_cast<std::uint32_t>(layout_.kinds.size() - 1));
     if (!is_new) layout_.kinds.pop_back();
     return *known;
-  }
-  bool in_fours(std::size_t first, std::size_t last) const {
-    for (std::size_t k = first; k < last; ++k) {
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        const std::uint32_t* slot = &layout_.slot[k * kLanes];
-        if (slot[lane_of(i)] != slot[lane_of(i - i % 4)] + i % 4) return false;
-      }
-    }
-    return true;
   }
   void fill(const Chain& chain, std::size_t first, std::size_t lane) {
     for (std::size_t k = 0; k < chain.particles.size(); ++k) {
@@ -193,28 +180,30 @@ double cell_of(const ConstraintStore& store) {
   return std::exp2(std::floor(std::log2(std::min(8 * shortest, longest / 64))));
 }
 
-void find_not_in_second(YarnLayout& layout) {
-  std::vector<bool> held(layout.slots, false);
-  const bool two = layout.families() > 1;
-  const std::uint32_t first = two ? layout.family_begin[1] : 0;
-  const std::uint32_t last = two ? layout.family_begin[2] : 0;
-  for (std::uint32_t block = first; block < last; ++block) {
-    for (std::size_t row = layout.blocks[block].first; row < layout.blocks[block].last; ++row) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        held[layout.slot[row * kLanes + lane]] = true;
-      }
-    }
+/// Quads: of the model's slots, then kLanes of padding for each block.
+std::size_t quads_of(const Model& model, const YarnLayout& layout) {
+  return model.slots() + kLanes * layout.blocks.size();
+}
+
+/// Slots of padding are no particle's.
+std::vector<std::uint32_t> slots_not_in_second(const Model& model, const YarnLayout& layout) {
+  std::vector<bool> held(quads_of(model, layout), false);
+  if (layout.families() > 1) {
+    const std::size_t first = layout.blocks[layout.family_begin[1]].first;
+    const std::size_t last = layout.blocks[layout.family_begin[2] - 1].last;
+    for (std::size_t i = first * kLanes; i < last * kLanes; ++i) held[layout.slot[i]] = true;
   }
-  for (std::uint32_t slot = 0; slot < layout.slots; ++slot) {
-    if (!held[slot]) layout.not_in_second.push_back(slot);
+  std::vector<std::uint32_t> slots;
+  for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
+    if (!held[slot] && model.ordering.particle_at[slot] != kNoIndex) slots.push_back(slot);
   }
+  return slots;
 }
 
 }  // namespace
 
 YarnLayout make_yarn_layout(const Model& model) {
   YarnLayout layout;
-  layout.slots = model.slots();
   layout.cell = cell_of(model.constraints);
   const Yarns yarns = find_yarns(positions_of(model), links_of(model.constraints));
   std::vector<Chain> chains = open_chains(yarns, model.slots());
@@ -234,13 +223,18 @@ YarnLayout make_yarn_layout(const Model& model) {
     left = left.subspan(n);
   }
   layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
-  find_not_in_second(layout);
+  layout.not_in_second = slots_not_in_second(model, layout);
+  layout.places.floats = 4 * quads_of(model, layout);
+  layout.places.padding = 4 * model.slots();
+  weave(model, layout);
+  for (std::uint32_t& slot : layout.not_in_second) slot = layout.places.of(slot);
   return layout;
 }
 
 std::size_t YarnLayout::bytes() const {
   return bytes_of(blocks) + bytes_of(links) + bytes_of(family_begin) + bytes_of(slot) +
-         bytes_of(kind) + bytes_of(kinds) + bytes_of(not_in_second);
+         bytes_of(patches) + bytes_of(kind) + bytes_of(kinds) + bytes_of(not_in_second) +
+         places.bytes();
 }
 
 }  // namespace weft

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/solvers/yarn_places.h"
 #include "kernels/simd/table.h"
 
 namespace weft {
@@ -26,17 +27,19 @@ struct YarnLayout {
   std::vector<simd::YarnBlock> blocks;
   std::vector<std::uint32_t> links;             // constraints of each block
   std::vector<std::uint32_t> family_begin;      // blocks of family f: [f], ... [f + 1] - 1
-  std::vector<std::uint32_t> slot;              // per row and lane
+  std::vector<std::uint32_t> slot;              // per row and lane, where blocks are in quads
+  std::vector<simd::YarnPatch> patches;         // where they are woven
   std::vector<std::uint32_t> kind;              // per row
   kernels::AlignedVector<simd::YarnRow> kinds;  // inverse masses over the model's largest
-  std::vector<std::uint32_t> not_in_second;     // slots that yarn_push_first does not write
+  std::vector<std::uint32_t> not_in_second;     // places that yarn_push_first does not write
+  YarnPlaces places;
 
   double cell = 0;          // that positions are split by (kernels/simd/yarn_rows.h)
   std::size_t longest = 0;  // rows of the longest block
-  std::size_t slots = 0;    // of the model, then kLanes of padding for each block
 
-  /// Whether quads, 16 bytes a slot, are too many for the caches.
-  bool from_memory() const { return slots > (std::size_t{4} << 20) / 16; }
+  /// Whether displacements are too many for the caches.
+  bool from_memory() const { return places.floats * sizeof(float) > (std::size_t{4} << 20); }
+  std::size_t scratch_rows() const { return patches.empty() ? longest : 2 * (longest + 1); }
   std::size_t rows() const { return kind.size(); }
   std::size_t families() const { return family_begin.size() - 1; }
   std::size_t bytes() const;

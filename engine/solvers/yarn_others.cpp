@@ -11,31 +11,32 @@ namespace {
 using kernels::Vector;
 
 /// In double: what is judged by it may be nearly as small as what floats round off.
-Vector difference(const float* u, std::uint32_t a, std::uint32_t b) {
-  const float *to = u + 4 * std::size_t{a}, *from = u + 4 * std::size_t{b};
+template <class Pair>
+Vector difference(const float* u, const Pair& pair, std::size_t stride) {
+  const float *to = u + pair.a, *from = u + pair.b;
   const auto axis = [&](std::size_t k) {
-    return static_cast<double>(to[k]) - static_cast<double>(from[k]);
+    return static_cast<double>(to[k * stride]) - static_cast<double>(from[k * stride]);
   };
   return {axis(0), axis(1), axis(2)};
 }
 
-Vector difference(const float* base, const float* u, std::uint32_t a, std::uint32_t b) {
-  return difference(base, a, b) + difference(u, a, b);
+template <class Pair>
+Vector difference(const float* base, const float* u, const Pair& pair, std::size_t stride) {
+  return difference(base, pair, stride) + difference(u, pair, stride);
 }
 
-void move(float* u, std::uint32_t slot, Vector d) {
-  float* at = u + 4 * std::size_t{slot};
-  at[0] += static_cast<float>(d.x);
-  at[1] += static_cast<float>(d.y);
-  at[2] += static_cast<float>(d.z);
+void move(float* x, Vector d, std::size_t stride) {
+  x[0] += static_cast<float>(d.x);
+  x[stride] += static_cast<float>(d.y);
+  x[2 * stride] += static_cast<float>(d.z);
 }
 
 /// Each by its inverse mass times the impulse. What is fixed is not even written to: every next
 /// contact with a fixed sphere would wait for it (hang_sphere: a fifth of a step).
-void move_together(std::uint32_t a, double wa, std::uint32_t b, double wb, Vector impulse,
-                   float* u) {
-  if (wa > 0) move(u, a, -wa * impulse);
-  if (wb > 0) move(u, b, wb * impulse);
+template <class Pair>
+void move_together(const Pair& pair, Vector impulse, float* u, std::size_t stride) {
+  if (pair.wa > 0) move(u + pair.a, -pair.wa * impulse, stride);
+  if (pair.wb > 0) move(u + pair.b, pair.wb * impulse, stride);
 }
 
 Vector direction(Vector d, double length) {
@@ -53,6 +54,7 @@ double clamped(int side, double& sum, double impulse) {
 
 YarnOthers::YarnOthers(const Model& model, const Settings& settings)
     : model_(model),
+      stride_(model.yarns().places.stride),
       tolerance_(settings.tolerance),
       contact_tolerance_(settings.contact_tolerance),
       lightest_(1 / std::ranges::max(model.inverse_mass)) {
@@ -65,7 +67,8 @@ YarnOthers::YarnOthers(const Model& model, const Settings& settings)
 
 void YarnOthers::add(std::uint32_t a, std::uint32_t b, double distance, int side) {
   const double wa = model_.inverse_mass[a] * lightest_, wb = model_.inverse_mass[b] * lightest_;
-  pairs_.push_back({a, b, side, distance, wa, wb, 1 / (wa + wb)});
+  const YarnPlaces& places = model_.yarns().places;
+  pairs_.push_back({places.of(a), places.of(b), side, distance, wa, wb, 1 / (wa + wb)});
 }
 
 void YarnOthers::start(const ContactStore& contacts, bool first_round) {
@@ -81,7 +84,7 @@ void YarnOthers::start(const ContactStore& contacts, bool first_round) {
 void YarnOthers::keep_start(const float* base, const float* u) {
   from_start_ = true;
   for (std::size_t i = 0; i < constraints_; ++i) {
-    const Vector d = difference(base, u, pairs_[i].a, pairs_[i].b);
+    const Vector d = difference(base, u, pairs_[i], stride_);
     pairs_[i].start = direction(d, length(d));
   }
 }
@@ -98,7 +101,7 @@ void YarnOthers::relax(const float* base, float* u) {
   constexpr double kLeastCosine = 0.1;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
-    const Vector d = difference(base, u, pair.a, pair.b);
+    const Vector d = difference(base, u, pair, stride_);
     if (at_rest(pair, d)) continue;
     const double l = length(d);
     Vector along = direction(d, l);
@@ -111,13 +114,13 @@ void YarnOthers::relax(const float* base, float* u) {
     }
     const double impulse = clamped(pair.side, pair.sum, change);
     if (impulse == 0) continue;
-    move_together(pair.a, pair.wa, pair.b, pair.wb, impulse * along, u);
+    move_together(pair, impulse * along, u, stride_);
   }
 }
 
 double YarnOthers::violation(const float* base, const float* u) const {
   const auto error_of = [&](const Pair& pair) {
-    return pair.side * (length(difference(base, u, pair.a, pair.b)) - pair.distance);
+    return pair.side * (length(difference(base, u, pair, stride_)) - pair.distance);
   };
   double ropes = 0, contacts = 0;
   for (std::size_t i = 0; i < constraints_; ++i) {
@@ -154,7 +157,7 @@ void YarnOthers::linearise(const float* base, const float* u) {
   make_rows();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Pair& pair = pairs_[i];
-    const Vector d = difference(base, u, pair.a, pair.b);
+    const Vector d = difference(base, u, pair, stride_);
     const double l = length(d);
     rows_[i].near = true;
     rows_[i].n = from_start(i) ? pair.start : direction(d, l);
@@ -167,7 +170,7 @@ void YarnOthers::linearise_velocities(const float* base, const float* u) {
   make_rows();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Pair& pair = pairs_[i];
-    const Vector d = difference(base, u, pair.a, pair.b);
+    const Vector d = difference(base, u, pair, stride_);
     const double l = length(d);
     const double slack = i < constraints_ ? tolerance_ * pair.distance : contact_tolerance_;
     rows_[i].near = pair.side * (l - pair.distance) >= -slack;
@@ -178,7 +181,7 @@ void YarnOthers::linearise_velocities(const float* base, const float* u) {
 double YarnOthers::read(const float* base, const float* u) {
   active_.clear();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    set_error(i, dot(rows_[i].n, difference(base, u, pairs_[i].a, pairs_[i].b)));
+    set_error(i, dot(rows_[i].n, difference(base, u, pairs_[i], stride_)));
   }
   double worst = 0;
   for (const std::uint32_t i : active_) {
@@ -211,7 +214,7 @@ void YarnOthers::push(double beta, float* t) {
     Row& row = rows_[i];
     row.p = row.z + beta * row.p;
     if (row.p == 0) continue;
-    move_together(pairs_[i].a, pairs_[i].wa, pairs_[i].b, pairs_[i].wb, -row.p * row.n, t);
+    move_together(pairs_[i], -row.p * row.n, t, stride_);
   }
 }
 
@@ -219,7 +222,7 @@ double YarnOthers::pull(const float* t) {
   double product = 0;
   for (const std::uint32_t i : active_) {
     Row& row = rows_[i];
-    row.q = dot(row.n, difference(t, pairs_[i].a, pairs_[i].b));
+    row.q = dot(row.n, difference(t, pairs_[i], stride_));
     product += row.p * row.q;
   }
   return product;
@@ -230,7 +233,7 @@ void YarnOthers::finish(float* t) {
     Pair& pair = pairs_[i];
     const double impulse = clamped(pair.side, pair.sum, rows_[i].lambda);
     if (impulse == 0) continue;
-    move_together(pair.a, pair.wa, pair.b, pair.wb, impulse * rows_[i].n, t);
+    move_together(pair, impulse * rows_[i].n, t, stride_);
   }
 }
 

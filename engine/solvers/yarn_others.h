@@ -12,7 +12,7 @@
 
 namespace weft {
 
-/// Positions and displacements are in quads, as in kernels/simd/yarns.h.
+/// Arrays of displacements, base and velocities are laid out as YarnPlaces has it.
 class YarnOthers {
  public:
   YarnOthers(const Model& model, const Settings& settings);
@@ -51,8 +51,8 @@ class YarnOthers {
 
  private:
   struct Pair {
-    std::uint32_t a = 0, b = 0;
-    int side = 0;  // +1: pulls only, -1: pushes only
+    std::uint32_t a = 0, b = 0;  // places
+    int side = 0;                // +1: pulls only, -1: pushes only
     double distance = 0;
     double wa = 0, wb = 0;  // inverse masses over the model's largest
     double reciprocal = 0;  // of their sum
@@ -71,6 +71,7 @@ class YarnOthers {
   void add(std::uint32_t a, std::uint32_t b, double distance, int side);
 
   const Model& model_;
+  const std::size_t stride_;  // YarnPlaces
   const double tolerance_, contact_tolerance_;
   const double lightest_;        // mass of a particle
   std::size_t constraints_ = 0;  // the first of pairs_; contacts come behind

@@ -52,15 +52,14 @@ constexpr Patience kRattlePatience{0.9, 4};
 constexpr double kExact = 0.01;
 constexpr Patience kVelocityPatience{0.7, 3};
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
-constexpr std::size_t kStretch = 1024;
+constexpr std::size_t kSlots = 1024, kNumbers = 4096;  // at a time
 
+/// work(first, last), of slots or of floats
 template <class Work>
-void for_all_slots(std::size_t slots, Team& team, Work&& work) {
-  team.for_each((slots + kStretch - 1) / kStretch,
-                [&](std::size_t i) { work(i * kStretch, std::min(slots, (i + 1) * kStretch)); });
+void for_all(std::size_t count, std::size_t stretch, Team& team, Work&& work) {
+  team.for_each((count + stretch - 1) / stretch,
+                [&](std::size_t i) { work(i * stretch, std::min(count, (i + 1) * stretch)); });
 }
-
-simd::Displacements quads(kernels::AlignedVector<float>& u) { return {u.data(), 1, 4}; }
 
 /// Shares that the blocks of a family are dealt out in at most, each with a scratch of its own.
 constexpr std::size_t kMostShares = 16;
@@ -73,8 +72,8 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       settings_(settings),
       table_(table),
       base_step_(layout_.rows() * kernels::kLanes),
-      base_(4 * layout_.slots),
-      u_(4 * layout_.slots),
+      base_(layout_.places.floats),
+      u_(layout_.places.floats),
       first_end_(layout_.families() > 0 ? layout_.family_begin[1] : 0),
       products_(layout_.blocks.size()),
       solves_(layout_.blocks.size()),
@@ -83,7 +82,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
   const auto wanted =
       static_cast<std::size_t>(settings.threads > 0 ? settings.threads : kMostShares);
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
-  scratch_.resize(layout_.longest * std::min(wanted, kMostShares));
+  scratch_.resize(layout_.scratch_rows() * std::min(wanted, kMostShares));
 }
 
 simd::Yarns YarnSolver::yarns() {
@@ -91,6 +90,7 @@ simd::Yarns YarnSolver::yarns() {
           layout_.kinds.data(),
           system_.data(),
           layout_.slot.data(),
+          layout_.patches.data(),
           from_start_ ? start_.data() : nullptr,
           velocities_,
           base_.data(),
@@ -106,12 +106,12 @@ void YarnSolver::for_each_block(std::size_t first, std::size_t last, Team& team,
   if (first == last) return;
   const simd::Yarns yarns = this->yarns();
   const std::size_t shares =
-      std::min({scratch_.size() / layout_.longest, last - first, team.size()});
+      std::min({scratch_.size() / layout_.scratch_rows(), last - first, team.size()});
   team.for_each(shares, [&](std::size_t share) {
     const std::size_t begin = first + (last - first) * share / shares;
     const std::size_t end = first + (last - first) * (share + 1) / shares;
     for (std::size_t i = begin; i < end; ++i) {
-      work(yarns, i, scratch_.data() + layout_.longest * share);
+      work(yarns, i, scratch_.data() + layout_.scratch_rows() * share);
     }
   });
 }
@@ -124,11 +124,10 @@ void YarnSolver::for_each_family(Team& team, Work&& work) {
   }
 }
 
-/// The padding is put right too: a solve that left the range of numbers may have reached it.
 void YarnSolver::split(kernels::VectorsView x, double cell, Team& team) {
-  std::fill(u_.begin() + static_cast<std::ptrdiff_t>(4 * model_.slots()), u_.end(), 0.f);
-  for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
-    table_.split_positions(x, quads(base_), quads(u_), cell, first, last);
+  layout_.places.clear(u_.data());
+  for_all(model_.slots(), kSlots, team, [&](std::size_t first, std::size_t last) {
+    layout_.places.split(table_, x, cell, first, last, base_.data(), u_.data());
   });
   cell_ = cell;
   moved_ = true;
@@ -138,16 +137,19 @@ void YarnSolver::keep_start(kernels::VectorsView start, Team& team) {
   split(start, team);
   from_start_ = true;
   for_each_block(0, layout_.blocks.size(), team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-                   table_.yarn_keep_start(yarns, layout_.blocks[i], quads(u_));
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
+                   table_.yarn_keep_start(yarns, layout_.blocks[i], u_.data(), scratch);
                  });
   others_.keep_start(base_.data(), u_.data());
 }
 
 void YarnSolver::join(kernels::VectorsView x, Team& team) {
-  for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
-    table_.join_positions(x, quads(base_), quads(u_), first, last);
-  });
+  for_all(model_.slots(), kSlots, team,
+          [&](std::size_t first, std::size_t last) { join(x, first, last); });
+}
+
+void YarnSolver::join(kernels::VectorsView x, std::size_t first, std::size_t last) {
+  layout_.places.join(table_, x, first, last, base_.data(), u_.data());
 }
 
 /// Returns how often; 0: it was good enough.
@@ -155,11 +157,11 @@ std::uint32_t YarnSolver::solve_block(const simd::Yarns& yarns, std::size_t i, d
                                       simd::YarnScratch* scratch) {
   const simd::YarnBlock& block = layout_.blocks[i];
   if (enough == kNoBound) {
-    table_.yarn_sweep(yarns, block, quads(u_), scratch);
+    table_.yarn_sweep(yarns, block, u_.data(), scratch);
     return 1;
   }
   const simd::Swept swept = table_.yarn_sweep_watched(
-      yarns, block, quads(u_), scratch, static_cast<float>(enough), stubborn_[i] ? 1 : kMostSolves);
+      yarns, block, u_.data(), scratch, static_cast<float>(enough), stubborn_[i] ? 1 : kMostSolves);
   if (!swept.within && swept.solves == kMostSolves) stubborn_[i] = 1;
   return swept.solves;
 }
@@ -200,17 +202,17 @@ void YarnSolver::linearise_velocities(Team& team) {
 
 void YarnSolver::linearise_yarns(Team& team) {
   for_each_block(0, layout_.blocks.size(), team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-                   table_.yarn_linearise(yarns, layout_.blocks[i], quads(u_));
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
+                   table_.yarn_linearise(yarns, layout_.blocks[i], u_.data(), scratch);
                  });
   moved_ = false;
 }
 
 double YarnSolver::read_velocities(Team& team) {
   for_each_block(0, layout_.blocks.size(), team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
                    products_[i].worst =
-                       table_.yarn_read(yarns, layout_.blocks[i], quads(base_), quads(u_));
+                       table_.yarn_read(yarns, layout_.blocks[i], u_.data(), scratch);
                  });
   double worst = others_.read(base_.data(), u_.data());
   if (!std::isfinite(worst)) return kNoBound;
@@ -237,8 +239,8 @@ YarnSolver::Products YarnSolver::precondition(double alpha, double goal, Team& t
 }
 
 void YarnSolver::clear_push(Team& team) {
-  for_all_slots(layout_.slots, team, [&](std::size_t first, std::size_t last) {
-    std::fill(t_.data() + 4 * first, t_.data() + 4 * last, 0.f);
+  for_all(t_.size(), kNumbers, team, [&](std::size_t first, std::size_t last) {
+    std::fill(t_.data() + first, t_.data() + last, 0.f);
   });
 }
 
@@ -254,13 +256,14 @@ YarnSolver::Products YarnSolver::reduce(double goal, Team& team) {
 void YarnSolver::push(double beta, Team& team) {
   const auto factor = static_cast<float>(beta);
   const std::vector<std::uint32_t>& begin = layout_.family_begin;
-  for (const std::uint32_t slot : layout_.not_in_second)
-    std::fill_n(&t_[4 * std::size_t{slot}], 4, 0.f);
+  for (const std::size_t place : layout_.not_in_second) {
+    for (std::size_t axis = 0; axis < 3; ++axis) t_[place + axis * layout_.places.stride] = 0;
+  }
   for (std::size_t f = 1; f < layout_.families(); ++f) {
     const auto push = f == 1 ? table_.yarn_push_first : table_.yarn_push;
     for_each_block(begin[f], begin[f + 1], team,
-                   [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-                     push(yarns, layout_.blocks[i], factor, quads(t_));
+                   [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
+                     push(yarns, layout_.blocks[i], factor, t_.data(), scratch);
                    });
   }
   others_.push(beta, t_.data());
@@ -270,15 +273,16 @@ void YarnSolver::push(double beta, Team& team) {
 void YarnSolver::eliminate(bool errors, Team& team) {
   for_each_block(0, first_end_, team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
-                   table_.yarn_eliminate(yarns, layout_.blocks[i], quads(t_), errors, scratch);
+                   table_.yarn_eliminate(yarns, layout_.blocks[i], t_.data(), errors, scratch);
                  });
 }
 
 /// q = J t of all but the first family; returns p . q.
 double YarnSolver::pull(Team& team) {
   for_each_block(first_end_, layout_.blocks.size(), team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-                   products_[i].product = table_.yarn_pull(yarns, layout_.blocks[i], quads(t_));
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
+                   products_[i].product =
+                       table_.yarn_pull(yarns, layout_.blocks[i], t_.data(), scratch);
                  });
   double sum = others_.pull(t_.data());
   for (std::size_t i = first_end_; i < products_.size(); ++i) {
@@ -293,14 +297,14 @@ void YarnSolver::finish(Team& team) {
   clear_push(team);
   for (std::size_t f = 1; f < layout_.families(); ++f) {
     for_each_block(begin[f], begin[f + 1], team,
-                   [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-                     table_.yarn_finish(yarns, layout_.blocks[i], quads(t_));
+                   [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
+                     table_.yarn_finish(yarns, layout_.blocks[i], t_.data(), scratch);
                    });
   }
   others_.finish(t_.data());
   eliminate(true, team);
-  for_all_slots(model_.slots(), team, [&](std::size_t first, std::size_t last) {
-    table_.add_quads(quads(u_), quads(t_), first, last);
+  for_all(t_.size(), kNumbers, team, [&](std::size_t first, std::size_t last) {
+    table_.yarn_add(u_.data(), t_.data(), first, last);
   });
 }
 
@@ -379,8 +383,10 @@ bool YarnSolver::loses_energy(kernels::VectorsView v) const {
   double before = 0, after = 0;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     if (model_.inverse_mass[i] == 0) continue;
+    const std::size_t place = layout_.places.of(static_cast<std::uint32_t>(i));
     const auto axis = [&](std::size_t k) {
-      return static_cast<double>(base_[4 * i + k]) + static_cast<double>(u_[4 * i + k]);
+      return static_cast<double>(base_[place + k * layout_.places.stride]) +
+             static_cast<double>(u_[place + k * layout_.places.stride]);
     };
     const kernels::Vector now{axis(0), axis(1), axis(2)};
     before += model_.mass[i] * kernels::dot(v[i], v[i]);
@@ -415,9 +421,8 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
   int swept = 1;  // sweeps since the last look
   sweep(enough, team, result);
   for (;;) {
-    const double strain = measure.max_strain(x, team, [&](std::size_t first, std::size_t last) {
-      table_.join_positions(x, quads(base_), quads(u_), first, last);
-    });
+    const double strain = measure.max_strain(
+        x, team, [&](std::size_t first, std::size_t last) { join(x, first, last); });
     const double violation = others_.violation(base_.data(), u_.data());
     const bool just = violation <= 1;
     result.converged = strain <= settings_.tolerance && just;

@@ -64,6 +64,7 @@ class YarnSolver {
   void split(kernels::VectorsView x, double cell, Team& team);
   void keep_start(kernels::VectorsView start, Team& team);
   void join(kernels::VectorsView x, Team& team);
+  void join(kernels::VectorsView x, std::size_t first, std::size_t last);
   /// Each family, its blocks until their lengths are within the share `enough`, then the others.
   void sweep(double enough, Team& team, kernels::LoopResult& result);
   std::uint32_t solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
@@ -105,7 +106,7 @@ class YarnSolver {
   kernels::AlignedVector<simd::LaneVectors> start_;     // scheme rattle only
   kernels::AlignedVector<simd::YarnSystemRow> system_;  // from the first Newton step on
   kernels::AlignedVector<simd::YarnScratch> scratch_;   // for each thread
-  kernels::AlignedVector<float> base_, u_, t_;          // quads
+  kernels::AlignedVector<float> base_, u_, t_;          // as YarnPlaces has it
   const std::size_t first_end_;                         // blocks of the first family
   std::vector<simd::YarnProducts> products_;            // per block
   std::vector<std::uint32_t> solves_;                   // per block, in one sweep

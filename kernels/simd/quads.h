@@ -124,36 +124,27 @@ struct Quads {
   return {low_pairs(xy01, z01), high_pairs(xy01, z01), low_pairs(xy23, z23), high_pairs(xy23, z23)};
 }
 
-/// Scattered slots. Where they stand in fours (table.h), a vector of quads is one load.
-template <bool kInFours>
-struct QuadsAt {
+/// Scattered slots.
+struct QuadLanes {
   [[gnu::always_inline]] FloatVector get(const Displacements& u, const std::uint32_t* slot) const {
     return get(u.x, slot);
   }
   [[gnu::always_inline]] FloatVector get(const float* u, const std::uint32_t* slot) const {
-    return transposed(load_at(u, slot), load_at(u, slot + 1), load_at(u, slot + 2),
-                      load_at(u, slot + 3));
+    return transposed(load_quads(u, slot), load_quads(u, slot + 1), load_quads(u, slot + 2),
+                      load_quads(u, slot + 3));
   }
   [[gnu::always_inline]] void put(const Displacements& u, const std::uint32_t* slot,
                                   const FloatVector& v) const {
+    put(u.x, slot, v);
+  }
+  [[gnu::always_inline]] void put(float* u, const std::uint32_t* slot, const FloatVector& v) const {
     const Quads q = transposed(v);
-    store_at(u.x, slot, q.q0);
-    store_at(u.x, slot + 1, q.q1);
-    store_at(u.x, slot + 2, q.q2);
-    store_at(u.x, slot + 3, q.q3);
-  }
-
- private:
-  [[gnu::always_inline]] static Floats load_at(const float* u, const std::uint32_t* slot) {
-    if constexpr (kInFours) return load(u + 4 * std::size_t{*slot});
-    return load_quads(u, slot);
-  }
-  [[gnu::always_inline]] static void store_at(float* u, const std::uint32_t* slot, Floats q) {
-    if constexpr (kInFours) return q.store_unaligned(u + 4 * std::size_t{*slot});
-    return store_quads(u, slot, q);
+    store_quads(u, slot, q.q0);
+    store_quads(u, slot + 1, q.q1);
+    store_quads(u, slot + 2, q.q2);
+    store_quads(u, slot + 3, q.q3);
   }
 };
-using QuadLanes = QuadsAt<false>;
 
 /// Quads of kFloats slots in a row.
 struct QuadsInRow {

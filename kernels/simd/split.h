@@ -1,5 +1,6 @@
-/// Double positions as two floats in quads (quads.h): base is the position rounded, u what that
-/// lost. Where base is rounded to cells, its differences are small whole numbers of them.
+/// Double positions as two floats, in quads or rows (yarn_places.h): base is the position rounded,
+/// u what that lost. Where base is rounded to cells, its differences are small whole numbers of
+/// them.
 #pragma once
 
 #include "kernels/simd/quads.h"
@@ -30,38 +31,151 @@ struct Component {
   return {(c.first + far) - far, (c.second + far) - far};
 }
 
-void split_positions(kernels::VectorsView x, Displacements base, Displacements u, double cell,
-                     std::size_t first, std::size_t last) {
+struct Split {
+  Floats base, u;
+};
+[[gnu::always_inline]] inline Split split(const Component& x, Doubles far) {
+  const Floats rounded = narrow(in_cells(x, far));
+  return {rounded, narrow(x - widen(rounded))};
+}
+
+void split_quads(kernels::VectorsView x, std::size_t first, std::size_t last, double cell,
+                 float* base, float* u) {
   QuadsInRow at;
   const Doubles far(0x1.8p52 * cell);
   for (std::size_t i = first; i < last; i += kFloats) {
-    const Component px = load_component(x.x + i), py = load_component(x.y + i);
-    const Component pz = load_component(x.z + i);
-    const FloatVector rounded{narrow(in_cells(px, far)), narrow(in_cells(py, far)),
-                              narrow(in_cells(pz, far))};
-    at.put(base.x + 4 * i, rounded);
-    at.put(u.x + 4 * i, {narrow(px - widen(rounded.x)), narrow(py - widen(rounded.y)),
-                         narrow(pz - widen(rounded.z))});
+    const Split sx = split(load_component(x.x + i), far), sy = split(load_component(x.y + i), far);
+    const Split sz = split(load_component(x.z + i), far);
+    at.put(base + 4 * i, {sx.base, sy.base, sz.base});
+    at.put(u + 4 * i, {sx.u, sy.u, sz.u});
   }
 }
 
-/// x keeps the bits that two floats cannot hold, and all of them where u has not changed.
+/// x moved to base + u: it keeps the bits that two floats cannot hold, and all of them where u has
+/// not changed.
+[[gnu::always_inline]] inline Component moved(const Component& x, Floats base, Floats u) {
+  const Component after = widen(u), known = widen(narrow(x - widen(base)));
+  return {x.first + (after.first - known.first), x.second + (after.second - known.second)};
+}
 [[gnu::always_inline]] inline void move(double* x, Floats base, Floats u) {
-  const Component before = load_component(x), after = widen(u);
-  const Component known = widen(narrow(before - widen(base)));
-  (before.first + (after.first - known.first)).store_unaligned(x);
-  (before.second + (after.second - known.second)).store_unaligned(x + kDoubles);
+  const Component after = moved(load_component(x), base, u);
+  after.first.store_unaligned(x);
+  after.second.store_unaligned(x + kDoubles);
 }
 
-void join_positions(kernels::VectorsView x, Displacements base, Displacements u, std::size_t first,
-                    std::size_t last) {
+void join_quads(kernels::VectorsView x, std::size_t first, std::size_t last, const float* base,
+                const float* u) {
   QuadsInRow at;
   for (std::size_t i = first; i < last; i += kFloats) {
-    const FloatVector from = at.get(base.x + 4 * i);
-    const FloatVector by = at.get(u.x + 4 * i);
+    const FloatVector from = at.get(base + 4 * i);
+    const FloatVector by = at.get(u + 4 * i);
     move(x.x + i, from.x, by.x);
     move(x.y + i, from.y, by.y);
     move(x.z + i, from.z, by.z);
+  }
+}
+
+/// Fours of a row, kFloats lanes in all. What is nobody's is 0, and what stands beside a row is not
+/// touched: it may be another thread's.
+struct Fours {
+  const WovenRow& row;
+  std::uint32_t first;
+
+#if defined(__AVX512F__)
+  [[gnu::always_inline]] Component get(const double* x) const {
+    return {
+        Doubles(_mm512_insertf64x4(_mm512_castpd256_pd512(get(x, first)), get(x, first + 1), 1)),
+        Doubles(
+            _mm512_insertf64x4(_mm512_castpd256_pd512(get(x, first + 2)), get(x, first + 3), 1))};
+  }
+  [[gnu::always_inline]] void put(double* x, const Component& c) const {
+    put(x, first, _mm512_castpd512_pd256(c.first));
+    put(x, first + 1, _mm512_extractf64x4_pd(c.first, 1));
+    put(x, first + 2, _mm512_castpd512_pd256(c.second));
+    put(x, first + 3, _mm512_extractf64x4_pd(c.second, 1));
+  }
+#elif defined(__AVX2__)
+  [[gnu::always_inline]] Component get(const double* x) const {
+    return {Doubles(get(x, first)), Doubles(get(x, first + 1))};
+  }
+  [[gnu::always_inline]] void put(double* x, const Component& c) const {
+    put(x, first, c.first);
+    put(x, first + 1, c.second);
+  }
+#else
+  [[gnu::always_inline]] Component get(const double* x) const {
+    if (row.count[first] == 4) return load_component(x + row.four[first]);
+    const auto lane = [&](std::uint32_t k) {
+      return k < row.count[first] ? x[row.four[first] + k] : 0;
+    };
+    return {Doubles(_mm_set_pd(lane(1), lane(0))), Doubles(_mm_set_pd(lane(3), lane(2)))};
+  }
+  [[gnu::always_inline]] void put(double* x, const Component& c) const {
+    alignas(64) double lanes[4];
+    c.first.store_aligned(lanes);
+    c.second.store_aligned(lanes + kDoubles);
+    for (std::uint32_t k = 0; k < row.count[first]; ++k) x[row.four[first] + k] = lanes[k];
+  }
+#endif
+
+#if defined(__AVX2__)
+ private:
+  [[gnu::always_inline]] __m256d get(const double* x, std::uint32_t i) const {
+    alignas(64) static constexpr std::int64_t kOwn[8] = {-1, -1, -1, -1, 0, 0, 0, 0};
+    const __m256i own =
+        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kOwn + 4 - row.count[i]));
+    return _mm256_maskload_pd(x + row.four[i], own);
+  }
+  [[gnu::always_inline]] void put(double* x, std::uint32_t i, __m256d v) const {
+    if (row.count[i] == 4) return _mm256_storeu_pd(x + row.four[i], v);
+    alignas(64) double lanes[4];
+    _mm256_store_pd(lanes, v);
+    for (std::uint32_t k = 0; k < row.count[i]; ++k) x[row.four[i] + k] = lanes[k];
+  }
+#endif
+};
+
+/// Rows are in the order of their slots: in memory they are far from each other.
+[[gnu::always_inline]] inline void fetch_ahead(const WovenRow* row, const WovenRow* last,
+                                               const float* base, const float* u) {
+  constexpr std::ptrdiff_t kAhead = 8;
+  if (last - row <= kAhead) return;
+  for (std::size_t axis = 0; axis < kRowFloats; axis += kernels::kLanes) {
+    __builtin_prefetch(base + row[kAhead].place + axis, 1);
+    __builtin_prefetch(u + row[kAhead].place + axis, 1);
+  }
+}
+
+void split_rows(kernels::VectorsView x, const WovenRow* rows, std::size_t count, double cell,
+                float* base, float* u) {
+  const Doubles far(0x1.8p52 * cell);
+  for (const WovenRow* row = rows; row < rows + count; ++row) {
+    fetch_ahead(row, rows + count, base, u);
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      const Fours fours{*row, lane / 4};
+      std::size_t place = row->place + lane;
+      for (const double* axis : {x.x, x.y, x.z}) {
+        const Split s = split(fours.get(axis), far);
+        s.base.store_unaligned(base + place);
+        s.u.store_unaligned(u + place);
+        place += kernels::kLanes;
+      }
+    }
+  }
+}
+
+void join_rows(kernels::VectorsView x, const WovenRow* rows, std::size_t count, const float* base,
+               const float* u) {
+  for (const WovenRow* row = rows; row < rows + count; ++row) {
+    fetch_ahead(row, rows + count, base, u);
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      const Fours fours{*row, lane / 4};
+      std::size_t place = row->place + lane;
+      for (double* axis : {x.x, x.y, x.z}) {
+        fours.put(axis, moved(fours.get(axis), load(base + place), load(u + place)));
+        place += kernels::kLanes;
+      }
+    }
   }
 }
 

@@ -140,31 +140,55 @@ struct alignas(64) YarnSystemRow {
   float z[kernels::kLanes], p[kernels::kLanes], q[kernels::kLanes];
 };
 
-/// What a sweep keeps of a row between the way down and the way up; y = r b.
+/// What a sweep keeps of a row between the way down and the way up; y = r b. u: of rows that do not
+/// stand in memory as they are.
 struct alignas(64) YarnScratch {
   LaneVectors u, n;
   float m[kernels::kLanes], y[kernels::kLanes];
 };
 
-/// In fours: in every row the slots of lanes k, k + 4, k + 8 and k + 12 stand side by side in
-/// memory, for k < 4.
+inline constexpr std::size_t kRowFloats = 3 * kernels::kLanes;  // of the woven layout
+
+/// Rows of a block whose lanes stand in kLanes rows of memory, a column each (yarn_places.h); what
+/// else is in these is nobody's. Or a single row whose particles stand anywhere.
+struct YarnPatch {
+  std::uint32_t place[kernels::kLanes];  // per lane: of its row of memory; single: of its particle
+  std::uint32_t row[kernels::kLanes];    // per column: of the block; nobody's: behind the last
+  bool single = false;                   // row[0]
+};
+
+/// How the rows of a block find their particles (yarn_places.h).
+enum class YarnAccess : std::uint8_t { quads, in_place, patches };
+
 struct YarnBlock {
   std::uint32_t first = 0, last = 0;  // rows
-  bool in_fours = false;
+  YarnAccess access = YarnAccess::quads;
+  std::uint32_t place = 0;  // in place: of the first row
+  std::uint32_t first_patch = 0, last_patch = 0;
+};
+
+/// A row of the woven layout, | x ... x | y ... y | z ... z |. Each four of its lanes are slots in
+/// a row, of which the first `count` are its own; the other lanes are nobody's.
+struct WovenRow {
+  static constexpr std::uint32_t kFours = kernels::kLanes / 4;
+  std::uint32_t place = 0;
+  std::uint32_t four[kFours] = {};
+  std::uint8_t count[kFours] = {};
 };
 
 struct Yarns {
   const std::uint32_t* kind = nullptr;  // per row: which of the kinds it is
   const YarnRow* kinds = nullptr;       // rows that are alike share one
   YarnSystemRow* system = nullptr;
-  const std::uint32_t* slot = nullptr;  // per row and lane; padding: slots of no particle
-  LaneVectors* start = nullptr;         // per row: scheme rattle's directions; null: present ones
-  bool velocities = false;              // that is what the system's errors are of
-  const float* base = nullptr;          // quads
-  std::int32_t* base_step = nullptr;    // per row and lane: what rows remember of it (yarn_rows.h)
-  float cell = 0;                       // that it was split by
-  bool moved = false;                   // what rows remember is not the present base
-  bool from_memory = false;             // quads do not fit the caches
+  const std::uint32_t* slot = nullptr;  // quads: per row and lane; padding: slots of no particle
+  const YarnPatch* patch = nullptr;
+  LaneVectors* start = nullptr;  // per row: scheme rattle's directions; null: present ones
+  bool velocities = false;       // that is what the system's errors are of
+  float* base = nullptr;
+  std::int32_t* base_step = nullptr;  // per row and lane: what rows remember of it (yarn_rows.h)
+  float cell = 0;                     // that it was split by
+  bool moved = false;                 // what rows remember is not the present base
+  bool from_memory = false;           // positions do not fit the caches
 };
 
 /// What a watched sweep did to a block, and whether its lengths are good enough now.
@@ -251,35 +275,42 @@ struct Table {
                              std::uint32_t last);
 
   /// base = x in whole cells, a power of two (0: none), rounded to float, u = x - base; and x moved
-  /// to base + u. Quads.
-  void (*split_positions)(kernels::VectorsView x, Displacements base, Displacements u, double cell,
-                          std::size_t first, std::size_t last);
-  void (*join_positions)(kernels::VectorsView x, Displacements base, Displacements u,
-                         std::size_t first, std::size_t last);
+  /// to base + u. Of slots first ... last - 1, in quads.
+  void (*split_quads)(kernels::VectorsView x, std::size_t first, std::size_t last, double cell,
+                      float* base, float* u);
+  void (*join_quads)(kernels::VectorsView x, std::size_t first, std::size_t last, const float* base,
+                     const float* u);
+  /// The same of woven rows.
+  void (*split_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count, double cell,
+                     float* base, float* u);
+  void (*join_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
+                    const float* base, const float* u);
+  // Of yarns. scratch: as many rows as the block has; for patches twice as many, and two.
   /// start = the directions at base + u.
-  void (*yarn_keep_start)(const Yarns&, const YarnBlock&, Displacements u);
-  /// Solves the yarns of a block. scratch: as many rows as the block.
-  void (*yarn_sweep)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch);
+  void (*yarn_keep_start)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch);
+  /// Solves the yarns of a block.
+  void (*yarn_sweep)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch);
   /// The same along present directions, unless all lengths are far within the share `enough`; and
   /// again until they are within it, at most `most` times.
-  Swept (*yarn_sweep_watched)(const Yarns&, const YarnBlock&, Displacements u, YarnScratch* scratch,
+  Swept (*yarn_sweep_watched)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
                               float enough, std::uint32_t most);
   /// Conjugate gradients (yarn_system.h) over all yarns, or all but those of the first family,
-  /// which is eliminated; what writes quads goes family by family.
-  void (*yarn_linearise)(const Yarns&, const YarnBlock&, Displacements u);
+  /// which is eliminated; what writes t goes family by family.
+  void (*yarn_linearise)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch);
   /// The velocities base + u become the right side; returns the largest.
-  float (*yarn_read)(const Yarns&, const YarnBlock&, Displacements base, Displacements u);
+  float (*yarn_read)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch);
   YarnProducts (*yarn_precondition)(const Yarns&, const YarnBlock&, float alpha);
-  void (*yarn_push_first)(const Yarns&, const YarnBlock&, float beta, Displacements t);
-  void (*yarn_push)(const Yarns&, const YarnBlock&, float beta, Displacements t);
+  void (*yarn_push_first)(const Yarns&, const YarnBlock&, float beta, float* t,
+                          YarnScratch* scratch);
+  void (*yarn_push)(const Yarns&, const YarnBlock&, float beta, float* t, YarnScratch* scratch);
   /// The block's impulses take what t changes its lengths by out of t again; with errors, those
   /// too.
-  void (*yarn_eliminate)(const Yarns&, const YarnBlock&, Displacements t, bool errors,
+  void (*yarn_eliminate)(const Yarns&, const YarnBlock&, float* t, bool errors,
                          YarnScratch* scratch);
-  float (*yarn_pull)(const Yarns&, const YarnBlock&, Displacements t);
-  void (*yarn_finish)(const Yarns&, const YarnBlock&, Displacements t);
-  /// u += t.
-  void (*add_quads)(Displacements u, Displacements t, std::size_t first, std::size_t last);
+  float (*yarn_pull)(const Yarns&, const YarnBlock&, float* t, YarnScratch* scratch);
+  void (*yarn_finish)(const Yarns&, const YarnBlock&, float* t, YarnScratch* scratch);
+  /// u += t, of the floats first ... last - 1, multiples of kLanes.
+  void (*yarn_add)(float* u, const float* t, std::size_t first, std::size_t last);
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);

@@ -1,8 +1,8 @@
-/// The rows of a block of yarns (yarns.h): where their particles are, what they are like, and what
-/// they remember of the particles' base.
+/// The rows of a block of yarns (yarns.h): what they are like, and what they remember of their
+/// particles' base.
 ///
-/// Positions are base + u, two floats in quads (quads.h): base is the double position rounded, u
-/// begins with what the rounding lost. Differences of neighbours are exact to the last bits of u.
+/// Positions are base + u, two floats: base is the double position rounded, u begins with what the
+/// rounding lost. Differences of neighbours are exact to the last bits of u.
 ///
 /// Base is a whole number of cells: of the largest power of two that is no more than a sixty-fourth
 /// of the longest constraint, nor eight times the shortest, which keeps what is left to u as small
@@ -19,7 +19,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "kernels/simd/quads.h"
+#include "kernels/simd/yarn_places.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {
@@ -39,22 +39,8 @@ namespace {
                                                 const FloatVector& a) {
   return {fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.z, a.z)};
 }
-[[gnu::always_inline]] inline FloatVector load(const LaneVectors& v, std::uint32_t lane) {
-  return {load(v.x + lane), load(v.y + lane), load(v.z + lane)};
-}
-[[gnu::always_inline]] inline void store(LaneVectors& v, std::uint32_t lane, const FloatVector& f) {
-  f.x.store_unaligned(v.x + lane);
-  f.y.store_unaligned(v.y + lane);
-  f.z.store_unaligned(v.z + lane);
-}
 [[gnu::always_inline]] inline FloatVector no_vector() {
   return {Floats(0.f), Floats(0.f), Floats(0.f)};
-}
-
-/// The slots of a row, from `lane` on.
-[[gnu::always_inline]] inline const std::uint32_t* slots(const Yarns& y, std::size_t row,
-                                                         std::uint32_t lane) {
-  return y.slot + row * kernels::kLanes + lane;
 }
 
 [[gnu::always_inline]] inline Floats rest(const Yarns& y, std::size_t row, std::uint32_t lane) {
@@ -82,30 +68,47 @@ namespace {
           xsimd::to_float((v << 20) >> 22)};
 }
 
-/// Where the base of a row's particles is. rows: they remember its difference to that of the next.
-/// quads: it is fetched, and then remembered.
-enum class Base : std::uint8_t { rows, quads };
+/// remembered: rows have its difference to that of the next. fetched: it is read, and then
+/// remembered.
+enum class Base : std::uint8_t { remembered, fetched };
+
+/// Rows of the base where it is fetched, of the kind that those of u are.
+template <Base kBase>
+[[gnu::always_inline]] inline QuadRows rows_of_base(const Yarns& y, const YarnBlock&, QuadRows of_u,
+                                                    YarnScratch*) {
+  return {y.base, of_u.slot, of_u.scratch};
+}
+template <Base kBase>
+[[gnu::always_inline]] inline Rows rows_of_base(const Yarns& y, const YarnBlock& block, Rows of_u,
+                                                YarnScratch* scratch) {
+  if (kBase == Base::remembered) return of_u;
+  if (block.access == YarnAccess::in_place) return {y.base + block.place, kRowFloats};
+  const Rows behind = rows_in(scratch + rows_of(block) + 1);
+  fetch(y, block, y.base, behind);
+  return behind;
+}
 
 /// The base, from row to row.
 template <Base kBase, class At>
 struct BaseDown {
   const Yarns& y;
-  At at;
+  At at;                // base; not looked at where it is remembered
+  std::uint32_t first;  // row of the block
   std::uint32_t lane;
   FloatVector here = no_vector();
   Ints all = Ints(0);  // that has been remembered
 
-  [[gnu::always_inline]] BaseDown(const Yarns& yarns, At quads, std::uint32_t row,
+  [[gnu::always_inline]] BaseDown(const Yarns& yarns, At base, std::uint32_t first_row,
                                   std::uint32_t first_lane)
-      : y(yarns), at(quads), lane(first_lane) {
-    if constexpr (kBase == Base::quads) here = at.get(y.base, slots(y, row, lane));
+      : y(yarns), at(base), first(first_row), lane(first_lane) {
+    if constexpr (kBase == Base::fetched) here = at.get(0, lane);
   }
   /// base + u, from particle k + 1 to particle k. Without a constraint it is anything.
   [[gnu::always_inline]] FloatVector step(std::uint32_t k, const FloatVector& u, Floats rest) {
-    if constexpr (kBase == Base::rows) {
+    if constexpr (kBase == Base::remembered) {
       return fused(Floats(y.cell), unpacked(Ints::load_unaligned(words(k))), u);
     }
-    const FloatVector next = at.get(y.base, slots(y, k + 1, lane));
+    const FloatVector next = at.get(k + 1, lane);
     const FloatVector difference = here - next;
     const Floats none(0.f), per_cell = xsimd::select(rest > none, Floats(1 / y.cell), none);
     const Ints dx = ten_bits(difference.x, per_cell), dy = ten_bits(difference.y, per_cell);
@@ -117,21 +120,21 @@ struct BaseDown {
   }
   /// After all but the last row.
   [[gnu::always_inline]] void end(std::uint32_t last) {
-    if constexpr (kBase == Base::rows) return;
+    if constexpr (kBase == Base::remembered) return;
     all.store_unaligned(words(last));
   }
 
  private:
   [[gnu::always_inline]] std::int32_t* words(std::uint32_t row) const {
-    return y.base_step + std::size_t{row} * kernels::kLanes + lane;
+    return y.base_step + std::size_t{first + row} * kLanes + lane;
   }
 };
 
 /// Whether rows remember the present base.
 inline bool remembered(const Yarns& y, const YarnBlock& block) {
   if (y.moved) return false;
-  const std::int32_t* all = y.base_step + std::size_t{block.last - 1} * kernels::kLanes;
-  return std::all_of(all, all + kernels::kLanes, [](std::int32_t i) { return i >= 0 && i < 1024; });
+  const std::int32_t* all = y.base_step + std::size_t{block.last - 1} * kLanes;
+  return std::all_of(all, all + kLanes, [](std::int32_t i) { return i >= 0 && i < 1024; });
 }
 
 }  // namespace

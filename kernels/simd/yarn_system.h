@@ -34,7 +34,7 @@ namespace {
 
 [[gnu::always_inline]] inline float sum(const float* lanes) {
   float total = 0;
-  for (std::uint32_t k = 0; k < kernels::kLanes; ++k) total += lanes[k];
+  for (std::uint32_t k = 0; k < kLanes; ++k) total += lanes[k];
   return total;
 }
 
@@ -51,14 +51,14 @@ namespace {
 
 template <Along kAlong, Base kBase, class At>
 [[gnu::always_inline]] inline void linearise_yarns(const Yarns& y, const YarnBlock& block, At at,
-                                                   Displacements u) {
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+                                                   At base) {
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
     const Floats zero(0.f);
     go_down<kAlong, kBase>(
-        y, block, at, lane, u, unit_link,
+        y, block, at, base, lane, unit_link,
         [&](std::uint32_t k, const FloatVector&, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
-              YarnSystemRow& row = y.system[k];
+              YarnSystemRow& row = y.system[block.first + k];
               store(row.n, lane, link.n);
               f.down.store_unaligned(row.m + lane);
               f.reciprocal.store_unaligned(row.reciprocal + lane);
@@ -71,32 +71,33 @@ template <Along kAlong, Base kBase, class At>
 }
 
 /// Directions, factors and errors at base + u; lambda = p = q = 0.
-void yarn_linearise(const Yarns& y, const YarnBlock& block, Displacements u) {
-  with_quads(block, [&](auto at) {
-    with_base(y, block, [&](auto base) {
+void yarn_linearise(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
+  with_rows(y, block, u, scratch, [&](auto at) {
+    with_base(y, block, [&](auto where) {
+      const auto base = rows_of_base<where>(y, block, at, scratch);
       if (y.start == nullptr)
-        linearise_yarns<Along::present, base>(y, block, at, u);
+        linearise_yarns<Along::present, where>(y, block, at, base);
       else
-        linearise_yarns<Along::frozen, base>(y, block, at, u);
+        linearise_yarns<Along::frozen, where>(y, block, at, base);
     });
+    return false;
   });
 }
 
-/// residual = J (base + u), of velocities; lambda = p = q = 0. Returns the largest; not a number if
-/// one is not finite.
-float yarn_read(const Yarns& y, const YarnBlock& block, Displacements base, Displacements u) {
-  QuadLanes at;
+template <class At>
+[[gnu::always_inline]] inline float read_yarns(const Yarns& y, const YarnBlock& block, At at,
+                                               At base) {
   float most = 0;
-  alignas(64) float poison[kernels::kLanes];
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+  alignas(64) float poison[kLanes];
+  const std::uint32_t last = rows_of(block) - 1;
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
     const Floats zero(0.f);
     Floats worst(0.f), poisoned(0.f);
-    FloatVector base_here = at.get(base, slots(y, block.first, lane));
-    FloatVector here = at.get(u, slots(y, block.first, lane));
-    for (std::uint32_t k = block.first; k < block.last; ++k) {
-      YarnSystemRow& row = y.system[k];
-      const std::uint32_t* next = slots(y, std::min(k + 1, block.last - 1), lane);
-      const FloatVector base_next = at.get(base, next), u_next = at.get(u, next);
+    FloatVector base_here = base.get(0, lane), here = at.get(0, lane);
+    for (std::uint32_t k = 0; k <= last; ++k) {
+      YarnSystemRow& row = y.system[block.first + k];
+      const std::uint32_t next = std::min(k + 1, last);
+      const FloatVector base_next = base.get(next, lane), u_next = at.get(next, lane);
       const Floats change = dot(load(row.n, lane), (base_here - base_next) + (here - u_next));
       worst = larger(worst, change);
       poisoned = fused(change, zero, poisoned);
@@ -113,12 +114,23 @@ float yarn_read(const Yarns& y, const YarnBlock& block, Displacements base, Disp
   return most + sum(poison);
 }
 
+/// residual = J (base + u), of velocities; lambda = p = q = 0. Returns the largest; not a number if
+/// one is not finite.
+float yarn_read(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
+  float most = 0;
+  with_rows(y, block, u, scratch, [&](auto at) {
+    most = read_yarns(y, block, at, rows_of_base<Base::fetched>(y, block, at, scratch));
+    return false;
+  });
+  return most;
+}
+
 /// lambda += alpha p, residual -= alpha q, z = T^-1 residual.
 YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alpha) {
   YarnProducts result;
-  alignas(64) float products[kernels::kLanes];
+  alignas(64) float products[kLanes];
   const Floats step(alpha);
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
     Floats b(0.f), worst(0.f);
     for (std::uint32_t k = block.first; k < block.last; ++k) {
       YarnSystemRow& row = y.system[k];
@@ -145,52 +157,55 @@ YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alp
   return result;
 }
 
-/// Down the yarns with p = z + beta p: push(slots, t of the row's particles) for each row.
+/// Down the yarns with p = z + beta p: push(row of the block, t of its particles).
 template <class Push>
 [[gnu::always_inline]] inline void push_down(const Yarns& y, const YarnBlock& block,
                                              std::uint32_t lane, float beta, Push&& push) {
   const Floats factor(beta);
   FloatVector above = no_vector();
-  for (std::uint32_t k = block.first; k < block.last; ++k) {
-    YarnSystemRow& row = y.system[k];
+  for (std::uint32_t k = 0; k < rows_of(block); ++k) {
+    YarnSystemRow& row = y.system[block.first + k];
     const Floats p = fused(factor, load(row.p + lane), load(row.z + lane));
     p.store_unaligned(row.p + lane);
     const FloatVector below = p * load(row.n, lane);
-    const Floats w = inverse_mass(y, k, lane);
-    push(slots(y, k, lane), w * (below - above));
+    const Floats w = inverse_mass(y, block.first + k, lane);
+    push(k, w * (below - above));
     above = below;
   }
 }
 
 /// Of the first to push: t = M^-1 J^T p at its particles, whatever it was.
-void yarn_push_first(const Yarns& y, const YarnBlock& block, float beta, Displacements t) {
-  with_quads(block, [&](auto at) {
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+void yarn_push_first(const Yarns& y, const YarnBlock& block, float beta, float* t,
+                     YarnScratch* scratch) {
+  with_rows<Old::dropped>(y, block, t, scratch, [&](auto at) {
+    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
       push_down(y, block, lane, beta,
-                [&](const std::uint32_t* slot, const FloatVector& own) { at.put(t, slot, own); });
+                [&](std::uint32_t k, const FloatVector& own) { at.put(k, lane, own); });
     }
+    return true;
   });
 }
 
 /// t += M^-1 J^T p.
-void yarn_push(const Yarns& y, const YarnBlock& block, float beta, Displacements t) {
-  with_quads(block, [&](auto at) {
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      push_down(y, block, lane, beta, [&](const std::uint32_t* slot, const FloatVector& own) {
-        at.put(t, slot, at.get(t, slot) + own);
+void yarn_push(const Yarns& y, const YarnBlock& block, float beta, float* t, YarnScratch* scratch) {
+  with_rows(y, block, t, scratch, [&](auto at) {
+    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+      push_down(y, block, lane, beta, [&](std::uint32_t k, const FloatVector& own) {
+        at.put(k, lane, at.get(k, lane) + own);
       });
     }
+    return true;
   });
 }
 
 template <class At>
 [[gnu::always_inline]] inline Floats pull_yarns(const Yarns& y, const YarnBlock& block, At at,
-                                                std::uint32_t lane, const Displacements& t) {
-  FloatVector here = at.get(t, slots(y, block.first, lane));
+                                                std::uint32_t lane) {
+  FloatVector here = at.get(0, lane);
   Floats product(0.f);
-  for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
-    YarnSystemRow& row = y.system[k];
-    const FloatVector next = at.get(t, slots(y, k + 1, lane));
+  for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
+    YarnSystemRow& row = y.system[block.first + k];
+    const FloatVector next = at.get(k + 1, lane);
     const Floats q = dot(load(row.n, lane), here - next);
     q.store_unaligned(row.q + lane);
     product = fused(q, load(row.p + lane), product);
@@ -200,76 +215,76 @@ template <class At>
 }
 
 /// q = J t; returns p . q.
-float yarn_pull(const Yarns& y, const YarnBlock& block, Displacements t) {
-  alignas(64) float products[kernels::kLanes];
-  with_quads(block, [&](auto at) {
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      pull_yarns(y, block, at, lane, t).store_unaligned(products + lane);
+float yarn_pull(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* scratch) {
+  alignas(64) float products[kLanes];
+  with_rows(y, block, t, scratch, [&](auto at) {
+    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+      pull_yarns(y, block, at, lane).store_unaligned(products + lane);
     }
+    return false;
   });
   return sum(products);
 }
 
 /// t -= M^-1 J^T lambda.
-void yarn_finish(const Yarns& y, const YarnBlock& block, Displacements t) {
-  with_quads(block, [&](auto at) {
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+void yarn_finish(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* scratch) {
+  with_rows(y, block, t, scratch, [&](auto at) {
+    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
       FloatVector above = no_vector();
-      for (std::uint32_t k = block.first; k < block.last; ++k) {
-        const YarnSystemRow& row = y.system[k];
+      for (std::uint32_t k = 0; k < rows_of(block); ++k) {
+        const YarnSystemRow& row = y.system[block.first + k];
         const FloatVector below = load(row.lambda + lane) * load(row.n, lane);
-        const std::uint32_t* slot = slots(y, k, lane);
-        const Floats w = inverse_mass(y, k, lane);
-        at.put(t, slot, fused(w, above - below, at.get(t, slot)));
+        const Floats w = inverse_mass(y, block.first + k, lane);
+        at.put(k, lane, fused(w, above - below, at.get(k, lane)));
         above = below;
       }
     }
+    return true;
   });
 }
 
 template <bool kErrors, class At>
 [[gnu::always_inline]] inline void eliminate_yarns(const Yarns& y, const YarnBlock& block, At at,
-                                                   Displacements t, YarnScratch* scratch) {
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+                                                   YarnScratch* scratch) {
+  const std::uint32_t last = rows_of(block) - 1;
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
     Floats b(0.f);
-    FloatVector here = at.get(t, slots(y, block.first, lane));
-    for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
-      const YarnSystemRow& system = y.system[k];
-      const FloatVector next = at.get(t, slots(y, k + 1, lane));
+    FloatVector here = at.get(0, lane);
+    for (std::uint32_t k = 0; k < last; ++k) {
+      const YarnSystemRow& system = y.system[block.first + k];
+      const FloatVector next = at.get(k + 1, lane);
       Floats error = dot(load(system.n, lane), here - next);
       if constexpr (kErrors) error = error + load(system.residual + lane);
       b = fused(load(system.m + lane), b, error);
-      YarnScratch& row = scratch[k - block.first];
-      store(row.u, lane, here);
-      (load(system.reciprocal + lane) * b).store_unaligned(row.y + lane);
+      at.keep(k, lane, here);
+      (load(system.reciprocal + lane) * b).store_unaligned(scratch[k].y + lane);
       here = next;
     }
-    store(scratch[block.last - 1 - block.first].u, lane, here);
+    at.keep(last, lane, here);
     go_up(
         y, block, lane, scratch, y.system + block.first,
-        [&](std::uint32_t row, Floats w, const FloatVector& impulse)
-            __attribute__((always_inline)) {
-              at.put(t, slots(y, block.first + row, lane),
-                     fused(w, impulse, load(scratch[row].u, lane)));
-            });
+        [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
+          at.put(k, lane, fused(w, impulse, at.kept(k, lane)));
+        });
   }
 }
 
 /// t -= M^-1 J^T T^-1 (J t), or with errors T^-1 (residual + J t).
-void yarn_eliminate(const Yarns& y, const YarnBlock& block, Displacements t, bool errors,
+void yarn_eliminate(const Yarns& y, const YarnBlock& block, float* t, bool errors,
                     YarnScratch* scratch) {
-  with_quads(block, [&](auto at) {
+  with_rows(y, block, t, scratch, [&](auto at) {
     if (errors)
-      eliminate_yarns<true>(y, block, at, t, scratch);
+      eliminate_yarns<true>(y, block, at, scratch);
     else
-      eliminate_yarns<false>(y, block, at, t, scratch);
+      eliminate_yarns<false>(y, block, at, scratch);
+    return true;
   });
 }
 
-/// u += t, of the slots first ... last - 1.
-void add_quads(Displacements u, Displacements t, std::size_t first, std::size_t last) {
-  for (std::size_t i = 4 * first; i < 4 * last; i += kFloats) {
-    (load(u.x + i) + load(t.x + i)).store_unaligned(u.x + i);
+/// u += t, of the floats first ... last - 1, multiples of kLanes.
+void yarn_add(float* u, const float* t, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; i += kFloats) {
+    (load(u + i) + load(t + i)).store_unaligned(u + i);
   }
 }
 

@@ -23,7 +23,8 @@
 ///
 /// so that m_k = l_k r_{k-1} on the way down, and c_k r_{k-1} on the way up.
 ///
-/// Positions are base + u, two floats in quads; what rows remember of the base: yarn_rows.h.
+/// Positions are base + u, two floats; what rows remember of the base: yarn_rows.h; where they find
+/// their particles: yarn_places.h.
 ///
 /// One chain per lane is bound by work, not by the latency of its recurrence: two vectors at a time
 /// took 1.4 times as long on AVX2 for want of registers.
@@ -120,80 +121,65 @@ struct Elimination {
   }
 };
 
-/// work(how quads are fetched)
-template <class Work>
-[[gnu::always_inline]] inline void with_quads(const YarnBlock& block, Work&& work) {
-  if constexpr (kFloats > 4) {
-    if (block.in_fours) return work(QuadsAt<true>());
-  }
-  return work(QuadsAt<false>());
-}
-
 /// work(where the base is)
 template <class Work>
 [[gnu::always_inline]] inline void with_base(const Yarns& y, const YarnBlock& block, Work&& work) {
-  if (remembered(y, block)) return work(std::integral_constant<Base, Base::rows>());
-  return work(std::integral_constant<Base, Base::quads>());
+  if (remembered(y, block)) return work(std::integral_constant<Base, Base::remembered>());
+  return work(std::integral_constant<Base, Base::fetched>());
 }
 
 /// Directions for scheme rattle, at base + u.
-void yarn_keep_start(const Yarns& y, const YarnBlock& block, Displacements u) {
-  QuadLanes at;
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    FloatVector here = at.get(u, slots(y, block.first, lane));
-    FloatVector base_here = at.get(y.base, slots(y, block.first, lane));
-    for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
-      const std::uint32_t* slot = slots(y, k + 1, lane);
-      const FloatVector next = at.get(u, slot), base_next = at.get(y.base, slot);
-      const FloatVector d = (base_here - base_next) + (here - next);
-      store(y.start[k], lane, unit_link(d, rest(y, k, lane)).n);
-      base_here = base_next;
-      here = next;
+void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
+  with_rows(y, block, u, scratch, [&](auto at) {
+    const auto base = rows_of_base<Base::fetched>(y, block, at, scratch);
+    const std::uint32_t last = rows_of(block) - 1;
+    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+      FloatVector here = at.get(0, lane), base_here = base.get(0, lane);
+      for (std::uint32_t k = 0; k < last; ++k) {
+        const FloatVector next = at.get(k + 1, lane), base_next = base.get(k + 1, lane);
+        const FloatVector d = (base_here - base_next) + (here - next);
+        const std::uint32_t row = block.first + k;
+        store(y.start[row], lane, unit_link(d, rest(y, row, lane)).n);
+        base_here = base_next;
+        here = next;
+      }
+      store(y.start[block.first + last], lane, no_vector());
     }
-    store(y.start[block.last - 1], lane, no_vector());
-  }
+    return false;
+  });
 }
 
-/// Of a yarn that runs across memory no prefetcher sees where it goes.
-template <Base kBase>
-[[gnu::always_inline]] inline void fetch_ahead(const Yarns& y, const YarnBlock& block,
-                                               std::uint32_t row, std::uint32_t lane,
-                                               const Displacements& u) {
-  constexpr std::uint32_t kAhead = 16;
-  const std::uint32_t* slot = slots(y, std::min(row + kAhead, block.last - 1), lane);
-  for (std::uint32_t k = 0; k < kFloats; ++k) {
-    const std::size_t quad = 4 * std::size_t{slot[k]};
-    __builtin_prefetch(u.x + quad, 1);
-    if constexpr (kBase == Base::quads) __builtin_prefetch(y.base + quad);
-  }
-}
-
-/// Down the yarns: take(row, u of its particle, link, factors) for each link = make_link(d, rest).
-/// What is done in each row must be inlined by force, here and in go_up: GCC 12 calls a lambda that
-/// it finds in two places, and what that one captures then lives in memory (1.3 times as long).
+/// Down the yarns: take(row of the block, u of its particle, link, factors) for each link =
+/// make_link(d, rest). What is done in each row must be inlined by force, here and in go_up: GCC 12
+/// calls a lambda that it finds in two places, and what that one captures then lives in memory (1.3
+/// times as long).
 template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
-[[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block, At at,
-                                           std::uint32_t lane, Displacements u,
-                                           MakeLink&& make_link, Take&& take) {
+[[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block, At at, At base,
+                                           std::uint32_t lane, MakeLink&& make_link, Take&& take) {
+  constexpr std::uint32_t kAhead = 16;  // of a yarn that runs across memory no prefetcher knows
+  const std::uint32_t last = rows_of(block) - 1;
   Elimination<kAlong> elimination;
-  FloatVector here = at.get(u, slots(y, block.first, lane));
-  BaseDown<kBase, At> base(y, at, block.first, lane);
+  FloatVector here = at.get(0, lane);
+  BaseDown<kBase, At> base_down(y, base, block.first, lane);
   Floats w = inverse_mass(y, block.first, lane);
-  for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
-    if (y.from_memory) fetch_ahead<kBase>(y, block, k, lane, u);
-    const FloatVector u_next = at.get(u, slots(y, k + 1, lane));
-    const Floats w_next = inverse_mass(y, k + 1, lane);
-    const Floats length = rest(y, k, lane);
-    YarnLink link = make_link(base.step(k, here - u_next, length), length);
-    direct<kAlong>(link, y.start, k, lane);
+  for (std::uint32_t k = 0; k < last; ++k) {
+    if (y.from_memory) {
+      at.fetch_ahead(std::min(k + kAhead, last), lane);
+      if constexpr (kBase == Base::fetched) base.fetch_ahead(std::min(k + kAhead, last), lane);
+    }
+    const std::uint32_t row = block.first + k;
+    const FloatVector next = at.get(k + 1, lane);
+    const Floats w_next = inverse_mass(y, row + 1, lane);
+    const Floats length = rest(y, row, lane);
+    YarnLink link = make_link(base_down.step(k, here - next, length), length);
+    direct<kAlong>(link, y.start, row, lane);
     take(k, here, link, elimination.step(link, w, w_next));
-    here = u_next;
+    here = next;
     w = w_next;
   }
-  base.end(block.last - 1);
+  base_down.end(last);
   const Floats none(0.f);
-  take(block.last - 1, here, YarnLink{no_vector(), none, none, no_vector()},
-       Factors{none, none, none});
+  take(last, here, YarnLink{no_vector(), none, none, no_vector()}, Factors{none, none, none});
 }
 
 /// Up again: move(row of the block, its inverse mass, its impulse). factors: has n and m of the
@@ -204,12 +190,11 @@ template <class Row, class Move>
                                          Move&& move) {
   FloatVector below = no_vector();  // impulse of the row's own constraint
   Floats lambda(0.f), m(0.f);
-  for (std::uint32_t k = block.last - 1; k > block.first; --k) {
-    const std::uint32_t row = k - block.first;
-    lambda = fused(m, lambda, load(scratch[row - 1].y + lane));
-    m = load(factors[row - 1].m + lane);
-    const FloatVector above = lambda * load(factors[row - 1].n, lane);
-    move(row, inverse_mass(y, k, lane), above - below);
+  for (std::uint32_t k = rows_of(block) - 1; k > 0; --k) {
+    lambda = fused(m, lambda, load(scratch[k - 1].y + lane));
+    m = load(factors[k - 1].m + lane);
+    const FloatVector above = lambda * load(factors[k - 1].n, lane);
+    move(k, inverse_mass(y, block.first + k, lane), above - below);
     below = above;
   }
   move(0, inverse_mass(y, block.first, lane), no_vector() - below);
@@ -229,25 +214,22 @@ struct Substitution {
 
 template <Along kAlong, Base kBase, class At>
 [[gnu::always_inline]] inline void sweep_yarns(const Yarns& y, const YarnBlock& block, At at,
-                                               Displacements u, YarnScratch* scratch) {
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+                                               At base, YarnScratch* scratch) {
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
     Substitution substitution;
     go_down<kAlong, kBase>(
-        y, block, at, lane, u, scaled_link<kAlong>,
+        y, block, at, base, lane, scaled_link<kAlong>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
-              YarnScratch& row = scratch[k - block.first];
-              store(row.u, lane, here);
-              store(row.n, lane, link.along);
-              substitution.take(row, lane, link.error, f);
+              at.keep(k, lane, here);
+              store(scratch[k].n, lane, link.along);
+              substitution.take(scratch[k], lane, link.error, f);
             });
     go_up(
         y, block, lane, scratch, scratch,
-        [&](std::uint32_t row, Floats w, const FloatVector& impulse)
-            __attribute__((always_inline)) {
-              at.put(u, slots(y, block.first + row, lane),
-                     fused(w, impulse, load(scratch[row].u, lane)));
-            });
+        [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
+          at.put(k, lane, fused(w, impulse, at.kept(k, lane)));
+        });
   }
 }
 
@@ -267,21 +249,19 @@ struct Before {
 /// Down a block. Returns whether no length is out by more than the share `quiet`.
 template <Base kBase, class At>
 [[gnu::always_inline]] inline bool find_impulses(const Yarns& y, const YarnBlock& block, At at,
-                                                 Displacements u, YarnScratch* scratch,
-                                                 float quiet) {
+                                                 At base, YarnScratch* scratch, float quiet) {
   bool is_quiet = true;
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
     Substitution substitution;
     Before before{Floats(quiet)};
     go_down<Along::present, kBase>(
-        y, block, at, lane, u, scaled_link<Along::present>,
+        y, block, at, base, lane, scaled_link<Along::present>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
-              YarnScratch& row = scratch[k - block.first];
-              before.take(link, rest(y, k, lane));
-              store(row.u, lane, here);
-              store(row.n, lane, link.along);
-              substitution.take(row, lane, link.error, f);
+              before.take(link, rest(y, block.first + k, lane));
+              at.keep(k, lane, here);
+              store(scratch[k].n, lane, link.along);
+              substitution.take(scratch[k], lane, link.error, f);
             });
     is_quiet = is_quiet && xsimd::all(before.beyond <= Floats(0.f));
   }
@@ -291,15 +271,16 @@ template <Base kBase, class At>
 /// The same from what the last solve kept.
 [[gnu::always_inline]] inline void find_impulses_again(const Yarns& y, const YarnBlock& block,
                                                        YarnScratch* scratch) {
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
     Substitution substitution;
     Elimination<Along::present> elimination;
     Floats w = inverse_mass(y, block.first, lane);
-    for (std::uint32_t k = block.first; k + 1 < block.last; ++k) {
-      YarnScratch& row = scratch[k - block.first];
-      const Floats w_next = inverse_mass(y, k + 1, lane);
-      const YarnLink link = scaled_link<Along::present>(load(row.n, lane), rest(y, k, lane));
-      substitution.take(row, lane, link.error, elimination.step(link, w, w_next));
+    for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
+      const std::uint32_t row = block.first + k;
+      const Floats w_next = inverse_mass(y, row + 1, lane);
+      const YarnLink link =
+          scaled_link<Along::present>(load(scratch[k].n, lane), rest(y, row, lane));
+      substitution.take(scratch[k], lane, link.error, elimination.step(link, w, w_next));
       w = w_next;
     }
   }
@@ -325,94 +306,91 @@ struct After {
 
 /// keep(row, lane, d, u): what they are from now on. Returns whether a length is out by more than
 /// the share `enough`.
-template <class Keep>
-[[gnu::always_inline]] inline bool apply_impulses(const Yarns& y, const YarnBlock& block,
+template <class At, class Keep>
+[[gnu::always_inline]] inline bool apply_impulses(const Yarns& y, const YarnBlock& block, At at,
                                                   const YarnScratch* scratch, float enough,
                                                   Keep&& keep) {
   bool out = false;
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
     After after{Floats(2 * enough)};
     go_up(
         y, block, lane, scratch, scratch,
-        [&](std::uint32_t row, Floats w, const FloatVector& impulse)
-            __attribute__((always_inline)) {
-              const FloatVector u = fused(w, impulse, load(scratch[row].u, lane));
-              const Floats length = rest(y, block.first + row, lane);
-              keep(row, lane, after.take(load(scratch[row].n, lane), w * impulse, length), u);
-            });
+        [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
+          const FloatVector u = fused(w, impulse, at.kept(k, lane));
+          const Floats length = rest(y, block.first + k, lane);
+          keep(k, lane, after.take(load(scratch[k].n, lane), w * impulse, length), u);
+        });
     out = out || xsimd::any(after.beyond > Floats(0.f));
   }
   return out;
 }
 
-template <class At>
-[[gnu::always_inline]] inline void put_displacements(const Yarns& y, const YarnBlock& block, At at,
-                                                     Displacements u, const YarnScratch* scratch) {
-  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    for (std::uint32_t k = block.first; k < block.last; ++k) {
-      at.put(u, slots(y, k, lane), load(scratch[k - block.first].u, lane));
-    }
-  }
-}
-
 /// Where nothing is out by a hundredth of `enough` nothing is done. (By all of it: what a block may
 /// keep comes back as speed: sphere_drop in 8 substeps gains 2 mJ instead of less than 0.03.) A
-/// third solve, and all that follow, stay within the scratch: 0.8 times as long in the caches; of a
-/// yarn of a thousand particles the scratch fits, quads and scratch do not: 0.35 times. (Kept by
-/// the first solve already: hang 40 x 40 takes 1.03 times as long, 300 x 300 0.97, and the n of a
-/// link that has collapsed is not its d. A link whose ends a solve brings together exactly is left
-/// to the next sweep.)
+/// third solve, and all that follow, stay within the scratch, or the rows in place: 0.8 times as
+/// long in the caches, 0.65 times where yarns have a thousand particles. (Kept by the first solve
+/// already: hang 40 x 40 takes 1.03 times as long, 300 x 300 0.97, and the n of a link that has
+/// collapsed is not its d. A link whose ends a solve brings together exactly is left to the next
+/// sweep.)
 template <Base kBase, class At>
 [[gnu::always_inline]] inline Swept sweep_watched(const Yarns& y, const YarnBlock& block, At at,
-                                                  Displacements u, YarnScratch* scratch,
-                                                  float enough, std::uint32_t most) {
+                                                  At base, YarnScratch* scratch, float enough,
+                                                  std::uint32_t most) {
   constexpr float kQuiet = 0.01f;
-  const auto put = [&](std::uint32_t row, std::uint32_t lane, const FloatVector&,
+  const auto put = [&](std::uint32_t k, std::uint32_t lane, const FloatVector&,
                        const FloatVector& moved) __attribute__((always_inline)) {
-    at.put(u, slots(y, block.first + row, lane), moved);
+    at.put(k, lane, moved);
   };
-  const auto keep = [&](std::uint32_t row, std::uint32_t lane, const FloatVector& d,
+  const auto keep = [&](std::uint32_t k, std::uint32_t lane, const FloatVector& d,
                         const FloatVector& moved) __attribute__((always_inline)) {
-    store(scratch[row].n, lane, d);
-    store(scratch[row].u, lane, moved);
+    store(scratch[k].n, lane, d);
+    at.keep_moved(k, lane, moved);
   };
-  if (find_impulses<kBase>(y, block, at, u, scratch, kQuiet * enough)) return {0, true};
-  bool out = apply_impulses(y, block, scratch, enough, put);
+  if (find_impulses<kBase>(y, block, at, base, scratch, kQuiet * enough)) return {0, true};
+  bool out = apply_impulses(y, block, at, scratch, enough, put);
   if (!out || most == 1) return {1, !out};
-  Yarns again = y;
-  again.moved = false;
-  with_base(
-      again, block, [&](auto base) __attribute__((always_inline)) {
-        find_impulses<base>(again, block, at, u, scratch, 0);
-      });
-  out = apply_impulses(y, block, scratch, enough, keep);
+  if constexpr (kBase == Base::remembered) {
+    find_impulses<Base::remembered>(y, block, at, base, scratch, 0);
+  } else {
+    Yarns again = y;
+    again.moved = false;
+    with_base(
+        again, block, [&](auto where) __attribute__((always_inline)) {
+          find_impulses<where>(again, block, at, base, scratch, 0);
+        });
+  }
+  out = apply_impulses(y, block, at, scratch, enough, keep);
   std::uint32_t solves = 2;
   for (; out && solves < most; ++solves) {
     find_impulses_again(y, block, scratch);
-    out = apply_impulses(y, block, scratch, enough, keep);
+    out = apply_impulses(y, block, at, scratch, enough, keep);
   }
-  put_displacements(y, block, at, u, scratch);
+  at.put_kept(rows_of(block));
   return {solves, !out};
 }
 
-void yarn_sweep(const Yarns& y, const YarnBlock& block, Displacements u, YarnScratch* scratch) {
-  with_quads(block, [&](auto at) {
-    with_base(y, block, [&](auto base) {
+void yarn_sweep(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
+  with_rows(y, block, u, scratch, [&](auto at) {
+    with_base(y, block, [&](auto where) {
+      const auto base = rows_of_base<where>(y, block, at, scratch);
       if (y.start == nullptr)
-        sweep_yarns<Along::present, base>(y, block, at, u, scratch);
+        sweep_yarns<Along::present, where>(y, block, at, base, scratch);
       else
-        sweep_yarns<Along::start, base>(y, block, at, u, scratch);
+        sweep_yarns<Along::start, where>(y, block, at, base, scratch);
     });
+    return true;
   });
 }
 
-Swept yarn_sweep_watched(const Yarns& y, const YarnBlock& block, Displacements u,
-                         YarnScratch* scratch, float enough, std::uint32_t most) {
+Swept yarn_sweep_watched(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch,
+                         float enough, std::uint32_t most) {
   Swept swept;
-  with_quads(block, [&](auto at) {
-    with_base(y, block, [&](auto base) {
-      swept = sweep_watched<base>(y, block, at, u, scratch, enough, most);
+  with_rows(y, block, u, scratch, [&](auto at) {
+    with_base(y, block, [&](auto where) {
+      const auto base = rows_of_base<where>(y, block, at, scratch);
+      swept = sweep_watched<where>(y, block, at, base, scratch, enough, most);
     });
+    return swept.solves > 0;
   });
   return swept;
 }

@@ -46,10 +46,10 @@ constexpr Golden kGolden[] = {
     {Way::automatic, "hang", 90, 30, false, 0x09b9a9f64496c849},
     {Way::automatic, "hang_sphere", 21, 40, false, 0xac43ece19739786a},
     {Way::automatic, "sphere_drop", 21, 40, false, 0xce83f044ead8a4ff},
-    {Way::automatic, "corners", 41, 20, false, 0xab0e70f1b62c7f63},
-    {Way::automatic, "ropes", 33, 10, true, 0xee57d350f8bcf60a},
-    {Way::automatic, "random", 33, 10, false, 0xadc28044ace7a1fb},
-    {Way::automatic, "hub", 17, 6, true, 0x7e83296d02a0639e},
+    {Way::automatic, "corners", 41, 20, false, 0x7a03e574cc5da525},
+    {Way::automatic, "ropes", 33, 10, true, 0x7d02ac681646a230},
+    {Way::automatic, "random", 33, 10, false, 0x5c128a783652ef8d},
+    {Way::automatic, "hub", 17, 6, true, 0x6f5ec908d8578c85},
 };
 
 SceneDescription describe(const Golden& golden) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <vector>
@@ -13,10 +14,16 @@ namespace weft::test {
 
 using kernels::kLanes;
 
+/// How the block finds its particles: scattered, as rows of memory, as patches, or as single rows.
+enum class Stand : std::uint8_t { quads, in_place, patches, singles };
+inline constexpr Stand kStands[] = {Stand::quads, Stand::in_place, Stand::patches, Stand::singles};
+
 /// A block of kLanes yarns of lanes 0 ... kLanes - 1 particles, each with slots of its own, bent at
 /// random and stretched by up to a hundredth; some particles are fixed.
 struct BlockOfYarns {
   static constexpr std::uint32_t kRows = kLanes;
+  Stand stand;
+  std::vector<simd::YarnPatch> patches;
   std::vector<std::uint32_t> slot, kind;
   kernels::AlignedVector<simd::YarnRow> rows;
   kernels::AlignedVector<simd::YarnSystemRow> system;
@@ -28,14 +35,21 @@ struct BlockOfYarns {
   double cell = 0x1p-10;
   bool placed = false;  // the rows have the base
   bool from_memory = false;
-  bool in_fours = false;
 
-  BlockOfYarns() : rows(kRows), system(kRows), base_step(kRows * kLanes), scratch(kRows) {
-    const std::size_t slots = kRows * kLanes + kLanes;
-    base.resize(4 * slots);
-    u.resize(4 * slots);
-    t.resize(4 * slots);
-    x.resize(slots);
+  explicit BlockOfYarns(Stand how = Stand::quads)
+      : stand(how),
+        rows(kRows),
+        system(kRows),
+        base_step(kRows * kLanes),
+        scratch(2 * (kRows + 1)),
+        x(kRows * kLanes + kLanes) {
+    for (kernels::AlignedVector<float>* array : {&base, &u, &t}) array->resize(floats());
+    if (stand == Stand::patches) {
+      for (std::uint32_t first = 0; first < kRows; first += kColumns) add_patch(first);
+    }
+    if (stand == Stand::singles) {
+      for (std::uint32_t k = 0; k < kRows; ++k) add_single(k);
+    }
     Random random(7);
     for (std::uint32_t k = 0; k < kRows; ++k) {
       kind.push_back(k);
@@ -55,6 +69,51 @@ struct BlockOfYarns {
     return slot[k * kLanes + lane];
   }
 
+  /// Places of particles, and the way from axis to axis. Patches have two rows of memory for each
+  /// lane, and columns that are nobody's; lanes without particles share a row that is nobody's.
+  static constexpr std::uint32_t kColumns = kRows / 2;
+  std::uint32_t place_of(std::uint32_t k, std::uint32_t lane) const {
+    if (stand == Stand::quads) return 4 * slot_of(k, lane);
+    if (stand == Stand::in_place) return 3 * kLanes * k + lane;
+    const std::uint32_t row = length(lane) == 0 ? 2 * kLanes : lane + kLanes * (k / kColumns);
+    return 3 * kLanes * row + k % kColumns;
+  }
+  std::size_t stride() const { return stand == Stand::quads ? 1 : kLanes; }
+  std::size_t floats() const {
+    if (stand == Stand::quads) return 4 * x.size();
+    return 3 * kLanes * (stand == Stand::in_place ? kRows : 2 * kLanes + 1);
+  }
+  void add_patch(std::uint32_t first) {
+    simd::YarnPatch patch{};
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) patch.place[lane] = place_of(first, lane);
+    for (std::uint32_t i = 0; i < kLanes; ++i) patch.row[i] = i < kColumns ? first + i : kRows;
+    patches.push_back(patch);
+  }
+  void add_single(std::uint32_t k) {
+    simd::YarnPatch patch{};
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) patch.place[lane] = place_of(k, lane);
+    patch.row[0] = k;
+    patch.single = true;
+    patches.push_back(patch);
+  }
+  /// Of all particles.
+  std::vector<float> of_particles(const kernels::AlignedVector<float>& array) const {
+    std::vector<float> values;
+    for_each_component([&](std::size_t, std::size_t place) { values.push_back(array[place]); });
+    return values;
+  }
+  /// work(index in quads, index as the block stands)
+  template <class Work>
+  void for_each_component(Work&& work) const {
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      for (std::uint32_t k = 0; k < length(lane); ++k) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          work(4 * std::size_t{slot_of(k, lane)} + axis, place_of(k, lane) + axis * stride());
+        }
+      }
+    }
+  }
+
   void place(std::uint32_t lane, Random& random) {
     kernels::Vector at{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
     for (std::uint32_t k = 0; k < length(lane); ++k) {
@@ -68,6 +127,7 @@ struct BlockOfYarns {
             rows.data(),
             system.data(),
             slot.data(),
+            patches.data(),
             directions.empty() ? nullptr : directions.data(),
             false,
             base.data(),
@@ -76,28 +136,21 @@ struct BlockOfYarns {
             !placed,
             from_memory};
   }
-  simd::YarnBlock block() const { return {0, kRows, in_fours}; }
-  /// Lanes k, k + 4, k + 8 and k + 12 side by side; those of k = 3 are padding.
-  void stand_in_fours() {
-    for (std::uint32_t i = 0; i < slot.size(); ++i) {
-      const std::uint32_t lane = i % kLanes, place = 4 * (lane % 4) + lane / 4;
-      slot[i] = lane % 4 == 3 ? kRows * kLanes + place : i - lane + place;
-      if (lane % 4 < 3) continue;
-      rows[i / kLanes].rest[lane] = rows[i / kLanes].inverse_mass[lane] = 0;
-    }
-    Random random(7);
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) place(lane, random);
+  simd::YarnBlock block() const {
+    if (stand == Stand::quads) return {0, kRows};
+    if (stand == Stand::in_place) return {0, kRows, simd::YarnAccess::in_place};
+    return {0, kRows, simd::YarnAccess::patches, 0, 0, static_cast<std::uint32_t>(patches.size())};
   }
   void push(const kernels::Vectors& d) {
-    for (std::size_t i = 0; i < d.size(); ++i) {
-      t[4 * i] = static_cast<float>(d[i].x);
-      t[4 * i + 1] = static_cast<float>(d[i].y);
-      t[4 * i + 2] = static_cast<float>(d[i].z);
-    }
+    for_each_component([&](std::size_t quad, std::size_t place) {
+      const kernels::Vector v = d[quad / 4];
+      t[place] = static_cast<float>(quad % 4 == 0 ? v.x : quad % 4 == 1 ? v.y : v.z);
+    });
   }
   kernels::Vector t_of(std::uint32_t k, std::uint32_t lane) const {
-    const float* at = &t[4 * slot_of(k, lane)];
-    return {static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};
+    const float* at = &t[place_of(k, lane)];
+    const auto axis = [&](std::size_t i) { return static_cast<double>(at[i * stride()]); };
+    return {axis(0), axis(1), axis(2)};
   }
   std::vector<float> p() const {
     std::vector<float> values;
@@ -106,19 +159,35 @@ struct BlockOfYarns {
     }
     return values;
   }
-  simd::Displacements quads(kernels::AlignedVector<float>& v) { return {v.data(), 1, 4}; }
-  void start(const simd::Table& table) {
-    table.split_positions(x.view(), quads(base), quads(u), cell, 0, x.size());
+  /// base + u = v
+  void split(const simd::Table& table, kernels::Vectors v, double in_cells) {
+    kernels::AlignedVector<float> base_quads(4 * v.size()), u_quads(4 * v.size());
+    table.split_quads(v.view(), 0, v.size(), in_cells, base_quads.data(), u_quads.data());
+    if (stand == Stand::quads) {
+      base = base_quads;
+      u = u_quads;
+    }
+    for_each_component([&](std::size_t quad, std::size_t place) {
+      base[place] = base_quads[quad];
+      u[place] = u_quads[quad];
+    });
   }
+  void start(const simd::Table& table) { split(table, x, cell); }
   /// Impulses act along the directions at q from now on.
   void keep_start(const simd::Table& table, const kernels::Vectors& q) {
     directions.resize(kRows);
-    table.split_positions(kernels::Vectors(q).view(), quads(base), quads(u), cell, 0, q.size());
-    table.yarn_keep_start(yarns(), block(), quads(u));
+    split(table, q, cell);
+    table.yarn_keep_start(yarns(), block(), u.data(), scratch.data());
   }
   kernels::Vectors end(const simd::Table& table) { return end(table, x); }
   kernels::Vectors end(const simd::Table& table, kernels::Vectors moved) {
-    table.join_positions(moved.view(), quads(base), quads(u), 0, x.size());
+    kernels::AlignedVector<float> base_quads(4 * x.size()), u_quads(4 * x.size());
+    for_each_component([&](std::size_t quad, std::size_t place) {
+      base_quads[quad] = base[place];
+      u_quads[quad] = u[place];
+    });
+    if (stand == Stand::quads) base_quads = base, u_quads = u;
+    table.join_quads(moved.view(), 0, x.size(), base_quads.data(), u_quads.data());
     return moved;
   }
 };

@@ -14,12 +14,12 @@ namespace {
 void solve_system(BlockOfYarns& b, const simd::Yarns& yarns, const simd::Table& table) {
   kernels::AlignedVector<float> t(b.u.size());
   const simd::YarnProducts before = table.yarn_precondition(yarns, b.block(), 0);
-  table.yarn_push(yarns, b.block(), 0, b.quads(t));
-  const float curvature = table.yarn_pull(yarns, b.block(), b.quads(t));
+  table.yarn_push(yarns, b.block(), 0, t.data(), b.scratch.data());
+  const float curvature = table.yarn_pull(yarns, b.block(), t.data(), b.scratch.data());
   CHECK(before.product / curvature == doctest::Approx(1).epsilon(1e-5));
   const auto after = table.yarn_precondition(yarns, b.block(), before.product / curvature);
   CHECK(after.worst < 1e-4f * before.worst);
-  table.yarn_finish(yarns, b.block(), b.quads(b.u));
+  table.yarn_finish(yarns, b.block(), b.u.data(), b.scratch.data());
 }
 
 TEST_CASE("what conjugate gradients are made of agrees with one exact solve") {
@@ -29,7 +29,7 @@ TEST_CASE("what conjugate gradients are made of agrees with one exact solve") {
     BlockOfYarns b;
     const simd::Table& table = simd::table(isa);
     b.start(table);
-    table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+    table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
     CHECK(table.yarn_precondition(b.yarns(), b.block(), 0).worst ==
           doctest::Approx(0.01).epsilon(0.05));
     solve_system(b, b.yarns(), table);
@@ -47,10 +47,10 @@ TEST_CASE("what conjugate gradients are made of agrees with one exact solve") {
 BlockOfYarns in_conjugate_gradients(const simd::Table& table) {
   BlockOfYarns b;
   b.start(table);
-  table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+  table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
   table.yarn_precondition(b.yarns(), b.block(), 0);
-  table.yarn_push(b.yarns(), b.block(), 0, b.quads(b.t));
-  table.yarn_pull(b.yarns(), b.block(), b.quads(b.t));
+  table.yarn_push(b.yarns(), b.block(), 0, b.t.data(), b.scratch.data());
+  table.yarn_pull(b.yarns(), b.block(), b.t.data(), b.scratch.data());
   table.yarn_precondition(b.yarns(), b.block(), 0.5f);
   return b;
 }
@@ -63,14 +63,15 @@ TEST_CASE("pushing first is pushing onto nothing") {
     BlockOfYarns onto = in_conjugate_gradients(table), first = onto;
     std::ranges::fill(onto.t, 0.f);
     std::ranges::fill(first.t, 7.f);
-    table.yarn_push(onto.yarns(), onto.block(), kBeta, onto.quads(onto.t));
-    table.yarn_push_first(first.yarns(), first.block(), kBeta, first.quads(first.t));
+    table.yarn_push(onto.yarns(), onto.block(), kBeta, onto.t.data(), onto.scratch.data());
+    table.yarn_push_first(first.yarns(), first.block(), kBeta, first.t.data(),
+                          first.scratch.data());
     for (const std::uint32_t slot : onto.slot) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         CHECK(first.t[4 * slot + axis] == onto.t[4 * slot + axis]);
       }
     }
-    CHECK(table.yarn_pull(onto.yarns(), onto.block(), onto.quads(onto.t)) > 0);
+    CHECK(table.yarn_pull(onto.yarns(), onto.block(), onto.t.data(), onto.scratch.data()) > 0);
     CHECK(first.p() == onto.p());
   }
 }
@@ -85,9 +86,9 @@ TEST_CASE("elimination leaves nothing that changes a length, errors and all") {
       BlockOfYarns b;
       const simd::Table& table = simd::table(isa);
       b.start(table);
-      table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+      table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
       b.push(pushed);
-      table.yarn_eliminate(b.yarns(), b.block(), b.quads(b.t), errors, b.scratch.data());
+      table.yarn_eliminate(b.yarns(), b.block(), b.t.data(), errors, b.scratch.data());
       for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
         const auto n = directions(untouched, untouched.x, lane);
         Eigen::VectorXd e = length_errors(untouched, lane);
@@ -105,17 +106,17 @@ TEST_CASE("elimination leaves nothing that changes a length, errors and all") {
   }
 }
 
-TEST_CASE("quads are added slot by slot") {
+TEST_CASE("displacements are added one by one") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
-    kernels::AlignedVector<float> u(4 * 3 * kLanes), t(u.size());
+    kernels::AlignedVector<float> u(6 * kLanes), t(u.size());
     for (std::size_t i = 0; i < u.size(); ++i) {
       u[i] = static_cast<float>(i);
       t[i] = 0.5f;
     }
-    simd::table(isa).add_quads({u.data(), 1, 4}, {t.data(), 1, 4}, kLanes, 2 * kLanes);
+    simd::table(isa).yarn_add(u.data(), t.data(), kLanes, 4 * kLanes);
     for (std::size_t i = 0; i < u.size(); ++i) {
-      const bool inside = i >= 4 * kLanes && i < 8 * kLanes;
+      const bool inside = i >= kLanes && i < 4 * kLanes;
       CHECK(u[i] == static_cast<float>(i) + (inside ? 0.5f : 0.f));
     }
   }
@@ -130,7 +131,7 @@ TEST_CASE("rattle: the linear system has the directions at the start, and the er
     const simd::Table& table = simd::table(isa);
     b.keep_start(table, q);
     b.start(table);
-    table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
+    table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
     solve_system(b, b.yarns(), table);
     const kernels::Vectors moved = b.end(table);
     for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
@@ -154,10 +155,9 @@ TEST_CASE("velocities: the linear system takes them out along each link") {
     simd::Yarns yarns = b.yarns();
     yarns.velocities = true;
     b.start(table);
-    table.yarn_linearise(yarns, b.block(), b.quads(b.u));
-    kernels::Vectors copy = v;
-    table.split_positions(copy.view(), b.quads(b.base), b.quads(b.u), 0, 0, v.size());
-    table.yarn_read(yarns, b.block(), b.quads(b.base), b.quads(b.u));
+    table.yarn_linearise(yarns, b.block(), b.u.data(), b.scratch.data());
+    b.split(table, v, 0);
+    table.yarn_read(yarns, b.block(), b.u.data(), b.scratch.data());
     solve_system(b, yarns, table);
     const kernels::Vectors moved = b.end(table, v);
     for (std::uint32_t lane = 2; lane < kLanes; ++lane) {

@@ -31,7 +31,7 @@ TEST_CASE("a sweep over a block solves each of its yarns exactly") {
     BlockOfYarns b;
     const simd::Table& table = simd::table(isa);
     b.start(table);
-    table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+    table.yarn_sweep(b.yarns(), b.block(), b.u.data(), b.scratch.data());
     const kernels::Vectors moved = b.end(table);
     for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
       const auto expected = solved_densely(untouched, lane);
@@ -68,12 +68,12 @@ TEST_CASE("a watched sweep moves as any other, tells whether much is left, and s
     const simd::Table& table = simd::table(isa);
     const auto sweep = [&](BlockOfYarns& b, double enough) {
       b.start(table);
-      return table.yarn_sweep_watched(b.yarns(), b.block(), b.quads(b.u), b.scratch.data(),
+      return table.yarn_sweep_watched(b.yarns(), b.block(), b.u.data(), b.scratch.data(),
                                       static_cast<float>(enough), 1);
     };
     BlockOfYarns plain, strict, easy;
     plain.start(table);
-    table.yarn_sweep(plain.yarns(), plain.block(), plain.quads(plain.u), plain.scratch.data());
+    table.yarn_sweep(plain.yarns(), plain.block(), plain.u.data(), plain.scratch.data());
     const double left = largest_strain(plain, plain.end(table));
     CHECK(left > 1e-5);
     CHECK(left < 0.1 * largest_strain(plain, plain.x));
@@ -83,8 +83,8 @@ TEST_CASE("a watched sweep moves as any other, tells whether much is left, and s
     CHECK(easy.u == plain.u);
     plain.start(table);
     const auto before = plain.u;
-    const simd::Swept swept = table.yarn_sweep_watched(
-        plain.yarns(), plain.block(), plain.quads(plain.u), plain.scratch.data(), 2.f, 1);
+    const simd::Swept swept = table.yarn_sweep_watched(plain.yarns(), plain.block(), plain.u.data(),
+                                                       plain.scratch.data(), 2.f, 1);
     CHECK(swept.solves == 0);
     CHECK(swept.within);
     CHECK(plain.u == before);
@@ -95,16 +95,14 @@ TEST_CASE("a block is solved again, as by as many calls, until it is within, or 
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
     const simd::Table& table = simd::table(isa);
-    for (const bool fours : {false, true}) {
+    for (const Stand stand : kStands) {
       for (const bool from_memory : {false, true}) {
-        BlockOfYarns at_once, one_by_one, limited;
+        BlockOfYarns at_once(stand), one_by_one(stand), limited(stand);
         const auto sweep = [&](BlockOfYarns& b, std::uint32_t most) {
-          return table.yarn_sweep_watched(b.yarns(), b.block(), b.quads(b.u), b.scratch.data(),
-                                          1e-5f, most);
+          return table.yarn_sweep_watched(b.yarns(), b.block(), b.u.data(), b.scratch.data(), 1e-5f,
+                                          most);
         };
         for (BlockOfYarns* b : {&at_once, &one_by_one, &limited}) {
-          if (fours) b->stand_in_fours();
-          b->in_fours = fours;
           b->from_memory = from_memory;
           bend(*b);
           b->start(table);
@@ -140,7 +138,7 @@ TEST_CASE("a link that has all but collapsed is not left alone") {
     b.x.set(b.slot_of(0, kLane), {0, 0, 0});
     b.x.set(b.slot_of(1, kLane), {1e-7 * rest, 0, 0});
     b.start(table);
-    CHECK(table.yarn_sweep_watched(b.yarns(), b.block(), b.quads(b.u), b.scratch.data(), 1e-3f, 1)
+    CHECK(table.yarn_sweep_watched(b.yarns(), b.block(), b.u.data(), b.scratch.data(), 1e-3f, 1)
               .solves == 1);
     const kernels::Vectors moved = b.end(table);
     const double l = kernels::length(moved[b.slot_of(0, kLane)] - moved[b.slot_of(1, kLane)]);
@@ -148,29 +146,66 @@ TEST_CASE("a link that has all but collapsed is not left alone") {
   }
 }
 
-TEST_CASE("slots in fours, or one by one: the same bits") {
+/// What all kernels make of a block, one after the other.
+std::vector<float> worked_on(BlockOfYarns& b, const simd::Table& table) {
+  std::vector<float> result;
+  const auto note = [&](const kernels::AlignedVector<float>& array) {
+    const std::vector<float> values = b.of_particles(array);
+    result.insert(result.end(), values.begin(), values.end());
+  };
+  float *u = b.u.data(), *t = b.t.data();
+  simd::YarnScratch* scratch = b.scratch.data();
+  const kernels::Vectors q = scattered(b.x, 0.02);
+  for (const bool rattle : {false, true}) {
+    if (rattle) b.keep_start(table, q);
+    b.start(table);
+    for (const float enough : {3e-4f, 1e-4f, 3e-5f, 1e-5f, 0.f}) {
+      const auto swept = table.yarn_sweep_watched(b.yarns(), b.block(), u, scratch, enough, 4);
+      result.push_back(static_cast<float>(swept.solves) + (swept.within ? 0.5f : 0.f));
+    }
+    note(b.u);
+    b.start(table);
+    table.yarn_sweep(b.yarns(), b.block(), u, scratch);
+    note(b.u);
+    table.yarn_linearise(b.yarns(), b.block(), u, scratch);
+    for (const bool velocities : {false, true}) {
+      if (velocities) result.push_back(table.yarn_read(b.yarns(), b.block(), u, scratch));
+      const auto p = table.yarn_precondition(b.yarns(), b.block(), 0);
+      result.push_back(p.product);
+      result.push_back(p.worst);
+      table.yarn_push_first(b.yarns(), b.block(), 0, t, scratch);
+      table.yarn_push(b.yarns(), b.block(), 0.5f, t, scratch);
+      note(b.t);
+      table.yarn_eliminate(b.yarns(), b.block(), t, velocities, scratch);
+      note(b.t);
+      result.push_back(table.yarn_pull(b.yarns(), b.block(), t, scratch));
+      table.yarn_precondition(b.yarns(), b.block(), 0.25f);
+      table.yarn_finish(b.yarns(), b.block(), t, scratch);
+      note(b.t);
+    }
+    table.yarn_add(u, t, 0, b.u.size());
+    note(b.u);
+  }
+  return result;
+}
+
+TEST_CASE("in quads, in place or in patches: the same bits, and nothing beside the particles") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
-    const simd::Table& table = simd::table(isa);
-    BlockOfYarns one_by_one, in_fours;
-    in_fours.stand_in_fours();
-    one_by_one.stand_in_fours();
-    in_fours.in_fours = true;
-    for (BlockOfYarns* b : {&one_by_one, &in_fours}) {
-      b->start(table);
-      const simd::Displacements u = b->quads(b->u), t = b->quads(b->t);
-      table.yarn_sweep(b->yarns(), b->block(), u, b->scratch.data());
-      table.yarn_linearise(b->yarns(), b->block(), u);
-      table.yarn_precondition(b->yarns(), b->block(), 0);
-      table.yarn_push_first(b->yarns(), b->block(), 0, t);
-      table.yarn_push(b->yarns(), b->block(), 0.5f, t);
-      table.yarn_pull(b->yarns(), b->block(), t);
-      table.yarn_eliminate(b->yarns(), b->block(), t, true, b->scratch.data());
+    for (const bool from_memory : {false, true}) {
+      BlockOfYarns in_quads;
+      in_quads.from_memory = from_memory;
+      const std::vector<float> expected = worked_on(in_quads, simd::table(isa));
+      CHECK(std::ranges::count(expected, 0.f) < std::ssize(expected) / 8);
+      for (const Stand stand : {Stand::in_place, Stand::patches, Stand::singles}) {
+        CAPTURE(static_cast<int>(stand));
+        BlockOfYarns b(stand);
+        b.from_memory = from_memory;
+        CHECK(worked_on(b, simd::table(isa)) == expected);
+        b.for_each_component([&](std::size_t, std::size_t place) { b.u[place] = 0; });
+        CHECK(std::ranges::count(b.u, 0.f) == std::ssize(b.u));
+      }
     }
-    CHECK(in_fours.u == one_by_one.u);
-    CHECK(in_fours.t == one_by_one.t);
-    CHECK(in_fours.p() == one_by_one.p());
-    CHECK(std::ranges::count(in_fours.t, 0.f) < std::ssize(in_fours.t) * 7 / 8);
   }
 }
 
@@ -186,7 +221,7 @@ TEST_CASE("a link whose ends coincide is solved together with its neighbour") {
       b.x.set(b.slot_of(k, kLane), {0, k < 2 ? 0 : -rest, 0});
     }
     b.start(table);
-    table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+    table.yarn_sweep(b.yarns(), b.block(), b.u.data(), b.scratch.data());
     const kernels::Vectors moved = b.end(table);
     for (std::uint32_t k = 0; k < 3; ++k) {
       const kernels::Vector expected{0, (2.0 / 3 - k) * rest, 0};
@@ -211,9 +246,9 @@ TEST_CASE("a base is a whole number of cells, and u what is left") {
 
 void sweep_twice(BlockOfYarns& b, const simd::Table& table, bool remember) {
   b.start(table);
-  table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+  table.yarn_sweep(b.yarns(), b.block(), b.u.data(), b.scratch.data());
   b.placed = remember;
-  table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+  table.yarn_sweep(b.yarns(), b.block(), b.u.data(), b.scratch.data());
 }
 
 TEST_CASE("rows remember the base, or it is fetched: the same bits") {
@@ -227,8 +262,7 @@ TEST_CASE("rows remember the base, or it is fetched: the same bits") {
       CHECK(kept.u == fetched.u);
       const auto before = kept.u;
       std::ranges::fill(kept.base, std::numeric_limits<float>::quiet_NaN());
-      simd::table(isa).yarn_sweep(kept.yarns(), kept.block(), kept.quads(kept.u),
-                                  kept.scratch.data());
+      simd::table(isa).yarn_sweep(kept.yarns(), kept.block(), kept.u.data(), kept.scratch.data());
       CHECK(kept.u != before);
       CHECK(std::ranges::all_of(kept.u, [](float f) { return std::isfinite(f); }));
     }
@@ -272,7 +306,7 @@ TEST_CASE("rattle: a sweep solves each yarn exactly, along the directions at the
     const simd::Table& table = simd::table(isa);
     b.keep_start(table, q);
     b.start(table);
-    table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+    table.yarn_sweep(b.yarns(), b.block(), b.u.data(), b.scratch.data());
     const kernels::Vectors moved = b.end(table);
     for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
       const auto expected =
@@ -287,41 +321,11 @@ TEST_CASE("rattle: a sweep solves each yarn exactly, along the directions at the
 
 TEST_CASE("yarns: AVX2 and AVX-512 give the same bits") {
   if (!simd::supported(simd::Isa::avx512)) return;
-  std::vector<std::vector<float>> results;
-  for (const simd::Isa isa : {simd::Isa::avx2, simd::Isa::avx512}) {
-    std::vector<float>& result = results.emplace_back();
-    BlockOfYarns b;
-    const simd::Table& table = simd::table(isa);
-    const kernels::Vectors q = scattered(b.x, 0.02);
-    for (const bool rattle : {false, true}) {
-      if (rattle) b.keep_start(table, q);
-      b.start(table);
-      for (const float enough : {3e-4f, 1e-4f, 3e-5f, 1e-5f, 0.f}) {
-        const auto swept = table.yarn_sweep_watched(b.yarns(), b.block(), b.quads(b.u),
-                                                    b.scratch.data(), enough, 4);
-        result.push_back(static_cast<float>(swept.solves) + (swept.within ? 0.5f : 0.f));
-      }
-      result.insert(result.end(), b.u.begin(), b.u.end());
-      b.start(table);
-      table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
-      table.yarn_linearise(b.yarns(), b.block(), b.quads(b.u));
-      for (const bool velocities : {false, true}) {
-        if (velocities) table.yarn_read(b.yarns(), b.block(), b.quads(b.base), b.quads(b.u));
-        const auto p = table.yarn_precondition(b.yarns(), b.block(), 0);
-        result.push_back(p.product);
-        result.push_back(p.worst);
-        table.yarn_push_first(b.yarns(), b.block(), 0, b.quads(b.t));
-        table.yarn_push(b.yarns(), b.block(), 0.5f, b.quads(b.t));
-        table.yarn_eliminate(b.yarns(), b.block(), b.quads(b.t), velocities, b.scratch.data());
-        result.push_back(table.yarn_pull(b.yarns(), b.block(), b.quads(b.t)));
-        table.yarn_precondition(b.yarns(), b.block(), 0.25f);
-        table.yarn_finish(b.yarns(), b.block(), b.quads(b.t));
-      }
-      table.add_quads(b.quads(b.u), b.quads(b.t), 0, b.x.size());
-      result.insert(result.end(), b.u.begin(), b.u.end());
-    }
+  for (const Stand stand : kStands) {
+    BlockOfYarns one(stand), other(stand);
+    CHECK(worked_on(one, simd::table(simd::Isa::avx2)) ==
+          worked_on(other, simd::table(simd::Isa::avx512)));
   }
-  CHECK(results[0] == results[1]);
 }
 
 TEST_CASE("a straight yarn between two fixed ends, which no impulse can shorten, stays finite") {
@@ -337,7 +341,7 @@ TEST_CASE("a straight yarn between two fixed ends, which no impulse can shorten,
     }
     const simd::Table& table = simd::table(isa);
     b.start(table);
-    table.yarn_sweep(b.yarns(), b.block(), b.quads(b.u), b.scratch.data());
+    table.yarn_sweep(b.yarns(), b.block(), b.u.data(), b.scratch.data());
     const kernels::Vectors moved = b.end(table);
     for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
       for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {

@@ -1,0 +1,228 @@
+/// Where the particles of yarns stand in memory, and how the rows of a block find them. There are
+/// two layouts; base, u and t of a cloth have the same.
+///
+/// Quads (quads.h), for any mesh: a row gathers its particles, and scatters them again.
+///
+/// Woven, for sheets: in rows of kLanes particles,
+///
+///     | x x ... x | y y ... y | z z ... z | x x ... x | ...
+///
+/// block after block of one family, whose yarns stand side by side: its blocks are in place. Where
+/// kLanes yarns of another family cross one of these blocks, each has particles in a row of memory;
+/// where it crosses nobody else's, these rows are a patch. Transposed, it is rows of the other
+/// block: patches are fetched into the scratch, and put back from there. What rows of memory have
+/// besides particles is nobody's, and 0.
+///
+///     memory, in place:  k | a b c d |      row k of the block; lanes a, b, c, d
+///                          | e f g h |
+///     a patch of it:     l | a b c d |  ->  | a e . . |   lane l has its particles a, b, c, d
+///                          | e f g h |      | b f . . |
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kernels/simd/quads.h"
+#include "kernels/simd/transpose.h"
+
+namespace weft::simd {
+inline namespace WEFT_LANES {
+namespace {
+
+using kernels::kLanes;
+
+[[gnu::always_inline]] inline FloatVector load(const LaneVectors& v, std::uint32_t lane) {
+  return {load(v.x + lane), load(v.y + lane), load(v.z + lane)};
+}
+[[gnu::always_inline]] inline void store(LaneVectors& v, std::uint32_t lane, const FloatVector& f) {
+  f.x.store_unaligned(v.x + lane);
+  f.y.store_unaligned(v.y + lane);
+  f.z.store_unaligned(v.z + lane);
+}
+
+/// Rows of a block that stand one behind the other: in place, or in the scratch.
+struct Rows {
+  float* first;
+  std::size_t stride;  // floats
+
+  [[gnu::always_inline]] FloatVector get(std::uint32_t row, std::uint32_t lane) const {
+    const float* x = at(row, lane);
+    return {load(x), load(x + kLanes), load(x + 2 * kLanes)};
+  }
+  [[gnu::always_inline]] void put(std::uint32_t row, std::uint32_t lane,
+                                  const FloatVector& v) const {
+    float* x = at(row, lane);
+    v.x.store_unaligned(x);
+    v.y.store_unaligned(x + kLanes);
+    v.z.store_unaligned(x + 2 * kLanes);
+  }
+  // Between a way down and a way up they stay where they are.
+  [[gnu::always_inline]] void keep(std::uint32_t, std::uint32_t, const FloatVector&) const {}
+  [[gnu::always_inline]] FloatVector kept(std::uint32_t row, std::uint32_t lane) const {
+    return get(row, lane);
+  }
+  [[gnu::always_inline]] void keep_moved(std::uint32_t row, std::uint32_t lane,
+                                         const FloatVector& v) const {
+    put(row, lane, v);
+  }
+  [[gnu::always_inline]] void put_kept(std::uint32_t) const {}
+  [[gnu::always_inline]] void fetch_ahead(std::uint32_t, std::uint32_t) const {}  // in a row
+
+ private:
+  [[gnu::always_inline]] float* at(std::uint32_t row, std::uint32_t lane) const {
+    return first + row * stride + lane;
+  }
+};
+
+/// Rows of a block gathered from quads. Gathering is dear: what a way down has found, the way up
+/// has from the scratch. (Found again: 1.2 times as long on AVX-512 at 40 x 40.)
+struct QuadRows {
+  float* u;
+  const std::uint32_t* slot;
+  YarnScratch* scratch;
+
+  [[gnu::always_inline]] FloatVector get(std::uint32_t row, std::uint32_t lane) const {
+    return QuadLanes().get(u, slots(row, lane));
+  }
+  [[gnu::always_inline]] void put(std::uint32_t row, std::uint32_t lane,
+                                  const FloatVector& v) const {
+    QuadLanes().put(u, slots(row, lane), v);
+  }
+  [[gnu::always_inline]] void keep(std::uint32_t row, std::uint32_t lane,
+                                   const FloatVector& v) const {
+    store(scratch[row].u, lane, v);
+  }
+  [[gnu::always_inline]] FloatVector kept(std::uint32_t row, std::uint32_t lane) const {
+    return load(scratch[row].u, lane);
+  }
+  [[gnu::always_inline]] void keep_moved(std::uint32_t row, std::uint32_t lane,
+                                         const FloatVector& v) const {
+    keep(row, lane, v);
+  }
+  [[gnu::always_inline]] void put_kept(std::uint32_t rows) const {
+    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+      for (std::uint32_t row = 0; row < rows; ++row) put(row, lane, kept(row, lane));
+    }
+  }
+  [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t lane) const {
+    for (std::uint32_t k = 0; k < kFloats; ++k) {
+      __builtin_prefetch(u + 4 * std::size_t{slots(row, lane)[k]}, 1);
+    }
+  }
+
+ private:
+  [[gnu::always_inline]] const std::uint32_t* slots(std::uint32_t row, std::uint32_t lane) const {
+    return slot + std::size_t{row} * kLanes + lane;
+  }
+};
+
+inline std::uint32_t rows_of(const YarnBlock& block) { return block.last - block.first; }
+
+/// As many as the block has, and one behind them: for what in patches is nobody's.
+[[gnu::always_inline]] inline Rows rows_in(YarnScratch* scratch) {
+  return {scratch->u.x, sizeof(YarnScratch) / sizeof(float)};
+}
+
+/// Row by row, what stands side by side in one, one below the other in the other.
+inline void transpose_rows(const float* const (&from)[kLanes], float* const (&to)[kLanes]) {
+  for (std::size_t axis = 0; axis < kRowFloats; axis += kLanes) {
+    for (std::uint32_t i = 0; i < kLanes; i += kFloats) {
+      for (std::uint32_t k = 0; k < kLanes; k += kFloats) {
+        transpose(from + i, axis + k, to + k, axis + i);
+      }
+    }
+  }
+}
+
+inline void fetch_patch(const YarnPatch& patch, const float* u, const Rows& rows) {
+  const float* from[kLanes];
+  float* to[kLanes];
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    from[i] = u + patch.place[i];
+    to[i] = rows.first + patch.row[i] * rows.stride;
+  }
+  transpose_rows(from, to);
+}
+inline void put_patch(const YarnPatch& patch, float* u, const Rows& rows) {
+  const float* from[kLanes];
+  float* to[kLanes];
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    from[i] = rows.first + patch.row[i] * rows.stride;
+    to[i] = u + patch.place[i];
+  }
+  transpose_rows(from, to);
+}
+
+/// work(a float of a single row, and where it stands in memory)
+template <class Work>
+[[gnu::always_inline]] inline void for_each_float(const YarnPatch& patch, float* u,
+                                                  const Rows& rows, Work&& work) {
+  float* row = rows.first + patch.row[0] * rows.stride;
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t axis = 0; axis < kRowFloats; axis += kLanes) {
+      work(row[axis + lane], u[patch.place[lane] + axis]);
+    }
+  }
+}
+
+/// Memory of patches a little ahead.
+inline void prefetch(const Yarns& y, const YarnBlock& block, std::uint32_t patch, const float* u) {
+  constexpr std::uint32_t kAhead = 2;
+  if (!y.from_memory || patch + kAhead >= block.last_patch) return;
+  for (const std::uint32_t place : y.patch[patch + kAhead].place) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      __builtin_prefetch(u + place + axis * kLanes, 1);
+    }
+  }
+}
+
+inline void fetch(const Yarns& y, const YarnBlock& block, float* u, const Rows& rows) {
+  for (std::uint32_t i = block.first_patch; i < block.last_patch; ++i) {
+    const YarnPatch& patch = y.patch[i];
+    prefetch(y, block, i, u);
+    if (patch.single) {
+      for_each_float(patch, u, rows, [](float& row, float& place) { row = place; });
+    } else {
+      fetch_patch(patch, u, rows);
+    }
+  }
+}
+/// What is nobody's is put back as 0.
+inline void put_back(const Yarns& y, const YarnBlock& block, float* u, const Rows& rows) {
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+    const Floats none(0.f);
+    rows.put(rows_of(block), lane, {none, none, none});
+  }
+  for (std::uint32_t i = block.first_patch; i < block.last_patch; ++i) {
+    const YarnPatch& patch = y.patch[i];
+    if (patch.single) {
+      for_each_float(patch, u, rows, [](float& row, float& place) { place = row; });
+    } else {
+      put_patch(patch, u, rows);
+    }
+  }
+}
+
+/// What rows hold is wanted, or written over.
+enum class Old : std::uint8_t { wanted, dropped };
+
+/// work(rows of the block), which returns whether it has changed any.
+template <Old kOld = Old::wanted, class Work>
+[[gnu::always_inline]] inline void with_rows(const Yarns& y, const YarnBlock& block, float* u,
+                                             YarnScratch* scratch, Work&& work) {
+  if (block.access == YarnAccess::quads) {
+    work(QuadRows{u, y.slot + std::size_t{block.first} * kLanes, scratch});
+    return;
+  }
+  if (block.access == YarnAccess::in_place) {
+    work(Rows{u + block.place, kRowFloats});
+    return;
+  }
+  const Rows rows = rows_in(scratch);
+  if (kOld == Old::wanted) fetch(y, block, u, rows);
+  if (work(rows)) put_back(y, block, u, rows);
+}
+
+}  // namespace
+}  // namespace WEFT_LANES
+}  // namespace weft::simd
