@@ -52,6 +52,15 @@ static_assert(kernels::kLanes % kFloats == 0);
 #endif
 }
 
+/// z - x y, likewise.
+[[gnu::always_inline]] inline Floats fused_from(Floats x, Floats y, Floats z) {
+#if defined(__AVX512F__)
+  return Floats(_mm512_fnmadd_ps(x, y, z));
+#else
+  return xsimd::fnma(x, y, z);
+#endif
+}
+
 [[gnu::always_inline]] inline Doubles fused(Doubles x, Doubles y, Doubles z) {
 #if defined(__AVX512F__)
   return Doubles(_mm512_fmadd_pd(x, y, z));

@@ -17,20 +17,14 @@ namespace {
   v[3] = high_pairs(high01, high23);
 }
 
-/// to[i][to_offset + k] = from[k][from_offset + i], for kFloats of each.
-[[gnu::always_inline]] inline void transpose(const float* const* from, std::size_t from_offset,
-                                             float* const* to, std::size_t to_offset) {
-  const auto at = [&](std::uint32_t k) __attribute__((always_inline)) {
-    return from[k] + from_offset;
-  };
-  const auto out = [&](std::uint32_t i) __attribute__((always_inline)) {
-    return to[i] + to_offset;
-  };
+/// to(i)[k] = from(k)[i], for kFloats of each. from, to: where a row begins.
+template <class From, class To>
+[[gnu::always_inline]] inline void transpose(const From& from, const To& to) {
 #if defined(__AVX512F__)
   // Fours of vectors first; then what is left is a transpose of 4 x 4 quarters.
   Floats v[4][4];
   for (std::uint32_t i = 0; i < 4; ++i) {
-    for (std::uint32_t k = 0; k < 4; ++k) v[i][k] = load(at(4 * i + k));
+    for (std::uint32_t k = 0; k < 4; ++k) v[i][k] = load(from(4 * i + k));
     transpose_fours(v[i]);
   }
   for (std::uint32_t k = 0; k < 4; ++k) {
@@ -38,25 +32,25 @@ namespace {
     const __m512 odd01 = _mm512_shuffle_f32x4(v[0][k], v[1][k], 0xdd);
     const __m512 even23 = _mm512_shuffle_f32x4(v[2][k], v[3][k], 0x88);
     const __m512 odd23 = _mm512_shuffle_f32x4(v[2][k], v[3][k], 0xdd);
-    _mm512_storeu_ps(out(k), _mm512_shuffle_f32x4(even01, even23, 0x88));
-    _mm512_storeu_ps(out(4 + k), _mm512_shuffle_f32x4(odd01, odd23, 0x88));
-    _mm512_storeu_ps(out(8 + k), _mm512_shuffle_f32x4(even01, even23, 0xdd));
-    _mm512_storeu_ps(out(12 + k), _mm512_shuffle_f32x4(odd01, odd23, 0xdd));
+    _mm512_storeu_ps(to(k), _mm512_shuffle_f32x4(even01, even23, 0x88));
+    _mm512_storeu_ps(to(4 + k), _mm512_shuffle_f32x4(odd01, odd23, 0x88));
+    _mm512_storeu_ps(to(8 + k), _mm512_shuffle_f32x4(even01, even23, 0xdd));
+    _mm512_storeu_ps(to(12 + k), _mm512_shuffle_f32x4(odd01, odd23, 0xdd));
   }
 #elif defined(__AVX2__)
   for (std::uint32_t half = 0; half < 8; half += 4) {
     Floats v[4];
     for (std::uint32_t k = 0; k < 4; ++k) {
-      const __m128 first = _mm_loadu_ps(at(k) + half), second = _mm_loadu_ps(at(4 + k) + half);
+      const __m128 first = _mm_loadu_ps(from(k) + half), second = _mm_loadu_ps(from(4 + k) + half);
       v[k] = Floats(_mm256_insertf128_ps(_mm256_castps128_ps256(first), second, 1));
     }
     transpose_fours(v);
-    for (std::uint32_t k = 0; k < 4; ++k) v[k].store_unaligned(out(half + k));
+    for (std::uint32_t k = 0; k < 4; ++k) v[k].store_unaligned(to(half + k));
   }
 #else
-  Floats v[4] = {load(at(0)), load(at(1)), load(at(2)), load(at(3))};
+  Floats v[4] = {load(from(0)), load(from(1)), load(from(2)), load(from(3))};
   transpose_fours(v);
-  for (std::uint32_t k = 0; k < 4; ++k) v[k].store_unaligned(out(k));
+  for (std::uint32_t k = 0; k < 4; ++k) v[k].store_unaligned(to(k));
 #endif
 }
 

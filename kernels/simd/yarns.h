@@ -73,14 +73,19 @@ struct YarnLink {
 template <Along kAlong>
 [[gnu::always_inline]] inline YarnLink scaled_link(const FloatVector& d, Floats rest) {
   const Floats zero(0.f);
-  const Floats square = xsimd::select(rest > zero, dot(d, d), zero);
+  const FloatMask present = rest > zero;
+  const Floats square = xsimd::select(present, dot(d, d), zero);
   const Floats length = xsimd::sqrt(square);
-  const FloatMask together = square == zero;
-  const FloatVector n{d.x, xsimd::select(together, rest, d.y), d.z};
-  const Floats error = xsimd::select(together, zero - rest * rest, length * (length - rest));
-  const Floats whole = kAlong == Along::present ? square : length;
-  const Floats rest_of_it = kAlong == Along::present ? rest * rest : rest;
-  return {n, error, xsimd::select(together, rest_of_it, whole), n};
+  const Floats size = kAlong == Along::present ? square : length;
+  YarnLink link{d, length * (length - rest), size, d};
+  const FloatMask together = present & (square == zero);
+  if (xsimd::any(together)) [[unlikely]] {
+    link.n.y = xsimd::select(together, rest, d.y);
+    link.along = link.n;
+    link.error = xsimd::select(together, zero - rest * rest, link.error);
+    link.size = xsimd::select(together, kAlong == Along::present ? rest * rest : rest, size);
+  }
+  return link;
 }
 
 template <Along kAlong>
@@ -111,10 +116,9 @@ struct Elimination {
     const Floats l = kSymmetric ? c : wa * dot(along, next.n);
     const Floats down = l * reciprocal, up = c * reciprocal;
     const Floats size = sum * next.size;
-    const Floats pivot = (kSymmetric ? size : sum * dot(next.n, next.along)) - down * c;
+    const Floats pivot = fused_from(down, c, kSymmetric ? size : sum * dot(next.n, next.along));
     const FloatMask regular = pivot > Floats(kLeastPivot) * size;
-    reciprocal = xsimd::select(regular, Floats(1.f) / xsimd::select(regular, pivot, Floats(1.f)),
-                               Floats(0.f));
+    reciprocal = xsimd::select(regular, Floats(1.f) / pivot, Floats(0.f));
     n = next.n;
     along = next.along;
     return {down, up, reciprocal};
@@ -154,8 +158,10 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScrat
 /// calls a lambda that it finds in two places, and what that one captures then lives in memory (1.3
 /// times as long).
 template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
-[[gnu::always_inline]] inline void go_down(const Yarns& y, const YarnBlock& block, At at, At base,
-                                           std::uint32_t lane, MakeLink&& make_link, Take&& take) {
+[[gnu::always_inline]] inline void go_down(const Yarns& yarns, const YarnBlock& block, At at,
+                                           At base, std::uint32_t lane, MakeLink&& make_link,
+                                           Take&& take) {
+  const Yarns y = yarns;  // stores of vectors could be to what a reference leads to: read again
   constexpr std::uint32_t kAhead = 16;  // of a yarn that runs across memory no prefetcher knows
   const std::uint32_t last = rows_of(block) - 1;
   Elimination<kAlong> elimination;
@@ -185,9 +191,10 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
 /// Up again: move(row of the block, its inverse mass, its impulse). factors: has n and m of the
 /// rows.
 template <class Row, class Move>
-[[gnu::always_inline]] inline void go_up(const Yarns& y, const YarnBlock& block, std::uint32_t lane,
-                                         const YarnScratch* scratch, const Row* factors,
-                                         Move&& move) {
+[[gnu::always_inline]] inline void go_up(const Yarns& yarns, const YarnBlock& block,
+                                         std::uint32_t lane, const YarnScratch* scratch,
+                                         const Row* factors, Move&& move) {
+  const Yarns y = yarns;            // as in go_down
   FloatVector below = no_vector();  // impulse of the row's own constraint
   Floats lambda(0.f), m(0.f);
   for (std::uint32_t k = rows_of(block) - 1; k > 0; --k) {
