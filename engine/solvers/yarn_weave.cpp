@@ -145,11 +145,12 @@ class Weaver {
     std::ranges::sort(places_.rows, {}, [](const simd::WovenRow& row) { return row.four[0]; });
   }
   void add_row(Slots slots, std::uint32_t place) {
-    simd::WovenRow row{place, {}, {}};
+    simd::WovenRow row{place, {}, {}, true};
     for (std::uint32_t i = 0; i < simd::WovenRow::kFours; ++i) {
       const Slots four = slots.subspan(4 * i, 4);
       row.count[i] = static_cast<std::uint8_t>(count(four));
       row.four[i] = row.count[i] > 0 ? four[0] : 0;
+      row.in_a_row = row.in_a_row && row.count[i] == 4 && row.four[i] == row.four[0] + 4 * i;
     }
     places_.rows.push_back(row);
   }

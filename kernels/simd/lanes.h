@@ -149,6 +149,16 @@ struct DoubleVector {
 #endif
 }
 
+[[gnu::always_inline]] inline Doubles to_float_and_back(Doubles d) {
+#if defined(__AVX512F__)
+  return Doubles(_mm512_cvtps_pd(_mm512_cvtpd_ps(d)));
+#elif defined(__AVX2__)
+  return Doubles(_mm256_cvtps_pd(_mm256_cvtpd_ps(d)));
+#else
+  return Doubles(_mm_cvtps_pd(_mm_cvtpd_ps(d)));
+#endif
+}
+
 /// Rounds 2 kDoubles doubles to float.
 [[gnu::always_inline]] inline Floats narrow(Doubles first, Doubles second) {
 #if defined(__AVX512F__)

@@ -16,8 +16,14 @@ struct Component {
 [[gnu::always_inline]] inline Component load_component(const double* x) {
   return {load(x), load(x + kDoubles)};
 }
+[[gnu::always_inline]] inline Component load_component(const float* x) {
+  return {load_as_double(x), load_as_double(x + kDoubles)};
+}
 [[gnu::always_inline]] inline Component widen(Floats f) {
   return {widen_first(f), widen_second(f)};
+}
+[[gnu::always_inline]] inline Component to_float_and_back(const Component& c) {
+  return {to_float_and_back(c.first), to_float_and_back(c.second)};
 }
 [[gnu::always_inline]] inline Component operator-(const Component& a, const Component& b) {
   return {a.first - b.first, a.second - b.second};
@@ -35,8 +41,8 @@ struct Split {
   Floats base, u;
 };
 [[gnu::always_inline]] inline Split split(const Component& x, Doubles far) {
-  const Floats rounded = narrow(in_cells(x, far));
-  return {rounded, narrow(x - widen(rounded))};
+  const Component base = in_cells(x, far);
+  return {narrow(base), narrow(x - to_float_and_back(base))};
 }
 
 void split_quads(kernels::VectorsView x, std::size_t first, std::size_t last, double cell,
@@ -53,12 +59,13 @@ void split_quads(kernels::VectorsView x, std::size_t first, std::size_t last, do
 
 /// x moved to base + u: it keeps the bits that two floats cannot hold, and all of them where u has
 /// not changed.
-[[gnu::always_inline]] inline Component moved(const Component& x, Floats base, Floats u) {
-  const Component after = widen(u), known = widen(narrow(x - widen(base)));
-  return {x.first + (after.first - known.first), x.second + (after.second - known.second)};
+[[gnu::always_inline]] inline Component moved(const Component& x, const Component& base,
+                                              const Component& u) {
+  const Component by = u - to_float_and_back(x - base);
+  return {x.first + by.first, x.second + by.second};
 }
 [[gnu::always_inline]] inline void move(double* x, Floats base, Floats u) {
-  const Component after = moved(load_component(x), base, u);
+  const Component after = moved(load_component(x), widen(base), widen(u));
   after.first.store_unaligned(x);
   after.second.store_unaligned(x + kDoubles);
 }
@@ -135,6 +142,30 @@ struct Fours {
 #endif
 };
 
+/// kFloats lanes of a row whose slots are all in a row.
+struct InARow {
+  std::size_t first;
+
+  [[gnu::always_inline]] Component get(const double* x) const { return load_component(x + first); }
+  [[gnu::always_inline]] void put(double* x, const Component& c) const {
+    c.first.store_unaligned(x + first);
+    c.second.store_unaligned(x + first + kDoubles);
+  }
+};
+
+/// work(lanes of the row, where they stand), kFloats at a time
+template <class Work>
+[[gnu::always_inline]] inline void for_lanes(const WovenRow& row, Work&& work) {
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    const std::size_t place = row.place + lane;
+    if (row.in_a_row) {
+      work(InARow{std::size_t{row.four[0]} + lane}, place);
+    } else {
+      work(Fours{row, lane / 4}, place);
+    }
+  }
+}
+
 /// Rows are in the order of their slots: in memory they are far from each other.
 [[gnu::always_inline]] inline void fetch_ahead(const WovenRow* row, const WovenRow* last,
                                                const float* base, const float* u) {
@@ -151,16 +182,15 @@ void split_rows(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
   const Doubles far(0x1.8p52 * cell);
   for (const WovenRow* row = rows; row < rows + count; ++row) {
     fetch_ahead(row, rows + count, base, u);
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      const Fours fours{*row, lane / 4};
-      std::size_t place = row->place + lane;
-      for (const double* axis : {x.x, x.y, x.z}) {
-        const Split s = split(fours.get(axis), far);
-        s.base.store_unaligned(base + place);
-        s.u.store_unaligned(u + place);
-        place += kernels::kLanes;
-      }
-    }
+    for_lanes(
+        *row, [&](const auto& lanes, std::size_t place) __attribute__((always_inline)) {
+          for (const double* axis : {x.x, x.y, x.z}) {
+            const Split s = split(lanes.get(axis), far);
+            s.base.store_unaligned(base + place);
+            s.u.store_unaligned(u + place);
+            place += kernels::kLanes;
+          }
+        });
   }
 }
 
@@ -168,14 +198,14 @@ void join_rows(kernels::VectorsView x, const WovenRow* rows, std::size_t count, 
                const float* u) {
   for (const WovenRow* row = rows; row < rows + count; ++row) {
     fetch_ahead(row, rows + count, base, u);
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      const Fours fours{*row, lane / 4};
-      std::size_t place = row->place + lane;
-      for (double* axis : {x.x, x.y, x.z}) {
-        fours.put(axis, moved(fours.get(axis), load(base + place), load(u + place)));
-        place += kernels::kLanes;
-      }
-    }
+    for_lanes(
+        *row, [&](const auto& lanes, std::size_t place) __attribute__((always_inline)) {
+          for (double* axis : {x.x, x.y, x.z}) {
+            lanes.put(axis, moved(lanes.get(axis), load_component(base + place),
+                                  load_component(u + place)));
+            place += kernels::kLanes;
+          }
+        });
   }
 }
 

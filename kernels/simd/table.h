@@ -174,6 +174,7 @@ struct WovenRow {
   std::uint32_t place = 0;
   std::uint32_t four[kFours] = {};
   std::uint8_t count[kFours] = {};
+  bool in_a_row = false;  // all kLanes slots are
 };
 
 struct Yarns {
