@@ -116,6 +116,11 @@ kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView st
 /// it remembers the positions.
 kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, bool first, int left,
                                 Standstill& standstill, Team& team) {
+  if (attempt.only_sweeps) {
+    auto result = sweep_on(s, attempt.h, first, left, standstill, team);
+    result.failed = !result.converged;
+    return result;
+  }
   const bool may_sweep = attempt.on_failure == OnFailure::sweep;
   if (may_sweep) s.next_velocity = s.solved;
   auto result = s.yarn->solve_positions(s.solved.view(), {}, s.contacts, first, left, attempt.care,

@@ -18,6 +18,7 @@ struct Attempt {
   double h = 0;
   int most_iterations = 1;
   OnFailure on_failure = OnFailure::sweep;
+  bool only_sweeps = false;      // of Gauss-Seidel: no yarns
   double care = 1;               // yarns may leave this share of what they usually leave
   kernels::VectorsView start{};  // with scheme rattle: where the directions are
 };

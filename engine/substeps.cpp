@@ -87,8 +87,7 @@ class Substeps {
  public:
   Substeps(State& s, StepReport& report, Team& team)
       : s_(s), report_(report), team_(team), transaction_(s) {
-    halving_helps_ = s.settings.iterations == 0 && s.settings.solver != Solver::gauss_seidel &&
-                     s.trouble.may_halve();
+    halving_helps_ = may_be_halved() && s.trouble.may_halve();
   }
 
   /// Returns whether all of dt was done.
@@ -97,12 +96,19 @@ class Substeps {
       transaction_.begin();
       project(s_, dt, report_, team_);
     }
-    const int substeps = choose_substeps(s_, dt, team_);
+    only_sweeps_ = swept_ = s_.trouble.only_sweeps() && is_loose();
+    const bool one = only_sweeps_ && s_.settings.substeps == kAutomaticSubsteps;
+    const int substeps = one ? 1 : choose_substeps(s_, dt, team_);
     for (int k = 1; k <= substeps; ++k) {
       left_ = s_.settings.max_iterations;
       parts_ = 0;
-      gave_up_ = false;
+      gave_up_ = only_sweeps_;
       Outcome outcome = advance(dt / substeps, 0, k == substeps);
+      if (outcome == Outcome::hopeless && only_sweeps_) {
+        only_sweeps_ = false;
+        halving_helps_ = may_be_halved();
+        outcome = advance(dt / substeps, 0, k == substeps);
+      }
       if (outcome == Outcome::hopeless) {
         halves_helped_ = halving_helps_ = false;
         outcome = advance(dt / substeps, 0, k == substeps);
@@ -110,7 +116,7 @@ class Substeps {
       if (outcome == Outcome::refused) return false;
     }
     s_.placed = false;
-    s_.trouble.remember(report_.halvings > 0, halves_helped_ || !may_pause());
+    s_.trouble.remember(record());
     return true;
   }
 
@@ -126,13 +132,15 @@ class Substeps {
   Outcome advance(double h, int halvings, bool last) {
     const Status before = report_.status;
     const bool may_halve = halving_helps_ && halvings < kMostHalvings && left_ > 0;
-    const bool may_leave = may_halve || (halving_helps_ && parts_ == 0);
+    const bool may_leave = may_halve || ((halving_helps_ || only_sweeps_) && parts_ == 0);
     const int iterations = report_.iterations;
+    const int most = only_sweeps_ ? std::min(left_, s_.trouble.most_sweeps()) : left_;
     const Attempt attempt{.h = h,
-                          .most_iterations = std::max(left_, 1),
+                          .most_iterations = std::max(most, 1),
                           .on_failure = may_halve   ? OnFailure::halve
                                         : may_leave ? OnFailure::leave
                                                     : OnFailure::sweep,
+                          .only_sweeps = only_sweeps_,
                           .care = std::sqrt(s_.trouble.care())};
     const Ended ended = substep(s_, attempt, report_, team_);
     left_ -= report_.iterations - iterations;
@@ -150,7 +158,7 @@ class Substeps {
       return Outcome::refused;
     }
     if (ended == Ended::made_do) {
-      gave_up_ = true;
+      gave_up_ = made_do_ = true;
       if (halving_helps_) halves_helped_ = false;
     }
     if (gave_up_) take_gained_energy(s_);
@@ -173,12 +181,25 @@ class Substeps {
     return before <= tolerance && before <= 0.5 * max_strain_at(s_, s_.solved, team_);
   }
 
-  /// Where the next step may as well begin with sweeps: they converge, and soon, since the
-  /// tolerance is loose.
-  bool may_pause() const {
+  /// Where sweeps converge, and soon.
+  bool is_loose() const {
     constexpr double kLoose = 0.003;
-    return s_.yarn && s_.settings.scheme == Scheme::paper && s_.settings.tolerance > kLoose &&
-           report_.status == Status::converged;
+    return s_.yarn && s_.settings.scheme == Scheme::paper && s_.settings.iterations == 0 &&
+           s_.settings.tolerance > kLoose;
+  }
+  bool may_be_halved() const {
+    return s_.settings.iterations == 0 && s_.settings.solver != Solver::gauss_seidel;
+  }
+  StepRecord record() const {
+    const bool may_be_swept = is_loose() && report_.status == Status::converged;
+    const auto constraints =
+        static_cast<double>(std::max<std::size_t>(1, s_.model->constraints.size()));
+    return {.halved = report_.halvings > 0,
+            .helped = halves_helped_ || !may_be_swept,
+            .made_do = made_do_,
+            .only_sweeps = swept_,
+            .may_be_swept = may_be_swept,
+            .passes = static_cast<double>(report_.visits) / constraints};
   }
 
   State& s_;
@@ -186,6 +207,9 @@ class Substeps {
   Team& team_;
   Transaction transaction_;
   bool halving_helps_ = false, halves_helped_ = true;
+  bool only_sweeps_ = false;  // of the present substep
+  bool swept_ = false;        // the step began so
+  bool made_do_ = false;
   // Of the present substep:
   int left_ = 0;          // iterations, of all its parts together
   int parts_ = 0;         // done
