@@ -96,9 +96,9 @@ class Substeps {
       transaction_.begin();
       project(s_, dt, report_, team_);
     }
+    projected_ = report_.visits;
     only_sweeps_ = swept_ = s_.trouble.only_sweeps() && is_loose();
-    const bool one = only_sweeps_ && s_.settings.substeps == kAutomaticSubsteps;
-    const int substeps = one ? 1 : choose_substeps(s_, dt, team_);
+    const int substeps = choose_substeps(s_, dt, team_);
     for (int k = 1; k <= substeps; ++k) {
       left_ = s_.settings.max_iterations;
       parts_ = 0;
@@ -134,7 +134,7 @@ class Substeps {
     const bool may_halve = halving_helps_ && halvings < kMostHalvings && left_ > 0;
     const bool may_leave = may_halve || ((halving_helps_ || only_sweeps_) && parts_ == 0);
     const int iterations = report_.iterations;
-    const int most = only_sweeps_ ? std::min(left_, s_.trouble.most_sweeps()) : left_;
+    const int most = only_sweeps_ ? std::min(left_ / 2, s_.trouble.most_sweeps()) : left_;
     const Attempt attempt{.h = h,
                           .most_iterations = std::max(most, 1),
                           .on_failure = may_halve   ? OnFailure::halve
@@ -191,15 +191,16 @@ class Substeps {
     return s_.settings.iterations == 0 && s_.settings.solver != Solver::gauss_seidel;
   }
   StepRecord record() const {
-    const bool may_be_swept = is_loose() && report_.status == Status::converged;
+    const bool sweeps_converge = is_loose() && report_.status == Status::converged;
     const auto constraints =
         static_cast<double>(std::max<std::size_t>(1, s_.model->constraints.size()));
     return {.halved = report_.halvings > 0,
-            .helped = halves_helped_ || !may_be_swept,
+            .helped = halves_helped_ || !sweeps_converge,
             .made_do = made_do_,
             .only_sweeps = swept_,
-            .may_be_swept = may_be_swept,
-            .passes = static_cast<double>(report_.visits) / constraints};
+            .swept_in_vain = swept_ && !only_sweeps_,
+            .may_be_swept = sweeps_converge && !s_.model->has_contacts(),
+            .passes = static_cast<double>(report_.visits - projected_) / constraints};
   }
 
   State& s_;
@@ -207,8 +208,9 @@ class Substeps {
   Team& team_;
   Transaction transaction_;
   bool halving_helps_ = false, halves_helped_ = true;
-  bool only_sweeps_ = false;  // of the present substep
-  bool swept_ = false;        // the step began so
+  std::int64_t projected_ = 0;  // visits of the projection
+  bool only_sweeps_ = false;    // of the present substep
+  bool swept_ = false;          // the step began so
   bool made_do_ = false;
   // Of the present substep:
   int left_ = 0;          // iterations, of all its parts together

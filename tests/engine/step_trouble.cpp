@@ -64,7 +64,7 @@ Fall fall(Solver solver, double tolerance) {
   Settings settings;
   settings.solver = solver;
   settings.tolerance = tolerance;
-  Cloth cloth = cloth_of(stiff_sheet(32), settings);
+  Cloth cloth = cloth_of(stiff_sheet(28), settings);
   const double start = cloth.energy().total();
   Fall fall;
   for (int k = 0; k < 40; ++k) {
@@ -82,9 +82,24 @@ Fall fall(Solver solver, double tolerance) {
 TEST_CASE("sheets that sweeps bring within a loose tolerance sooner than yarns are left to them") {
   const Fall sweeps = fall(Solver::gauss_seidel, 0.01);
   const Fall done = fall(Solver::automatic, 0.01);
-  CHECK(done.visits < 2.5 * sweeps.visits);  // 3.8 times if it is left to yarns
-  CHECK(done.lowest < 0.5 * sweeps.lowest);  // and 0.37: halves after halves, it hardly moves
-  CHECK(done.energy_gain < 0.002);  // what the second step leaves, the third takes back as speed
+  CHECK(done.visits < 5 * sweeps.visits);     // 8.7 times if it is left to yarns
+  CHECK(done.lowest < 0.75 * sweeps.lowest);  // and 0.46: in halves of halves it hardly moves
+  CHECK(done.energy_gain < 1e-5);
+}
+
+TEST_CASE("sweeps that do not come within tolerance leave yarns half of the iterations") {
+  Settings settings;
+  settings.tolerance = 0.01;
+  settings.max_iterations = 1800;
+  Cloth cloth = cloth_of(stiff_sheet(32), settings);
+  double strain = 0;
+  for (int k = 0; k < 60; ++k) {
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.iterations <= settings.max_iterations * report.substeps + 1);
+    strain = std::max(strain, report.max_strain);
+  }
+  CHECK(strain > settings.tolerance);  // it is too few
+  CHECK(strain < 0.1);
 }
 
 }  // namespace
