@@ -118,6 +118,7 @@ struct Elimination {
     const Floats size = sum * next.size;
     const Floats pivot = fused_from(down, c, kSymmetric ? size : sum * dot(next.n, next.along));
     const FloatMask regular = pivot > Floats(kLeastPivot) * size;
+    // What dividing by 0 gives is not taken; a divisor chosen first would lengthen the recurrence.
     reciprocal = xsimd::select(regular, Floats(1.f) / pivot, Floats(0.f));
     n = next.n;
     along = next.along;
