@@ -87,7 +87,8 @@ class Substeps {
  public:
   Substeps(State& s, StepReport& report, Team& team)
       : s_(s), report_(report), team_(team), transaction_(s) {
-    halving_helps_ = may_be_halved() && s.trouble.may_halve();
+    halving_helps_ = s.settings.iterations == 0 && s.settings.solver != Solver::gauss_seidel &&
+                     s.trouble.may_halve();
   }
 
   /// Returns whether all of dt was done.
@@ -97,7 +98,7 @@ class Substeps {
       project(s_, dt, report_, team_);
     }
     projected_ = report_.visits;
-    only_sweeps_ = swept_ = s_.trouble.only_sweeps() && is_loose();
+    only_sweeps_ = s_.trouble.only_sweeps();
     const int substeps = choose_substeps(s_, dt, team_);
     for (int k = 1; k <= substeps; ++k) {
       left_ = s_.settings.max_iterations;
@@ -106,7 +107,7 @@ class Substeps {
       Outcome outcome = advance(dt / substeps, 0, k == substeps);
       if (outcome == Outcome::hopeless && only_sweeps_) {
         only_sweeps_ = false;
-        halving_helps_ = may_be_halved();
+        halving_helps_ = true;
         outcome = advance(dt / substeps, 0, k == substeps);
       }
       if (outcome == Outcome::hopeless) {
@@ -181,24 +182,20 @@ class Substeps {
     return before <= tolerance && before <= 0.5 * max_strain_at(s_, s_.solved, team_);
   }
 
-  /// Where sweeps converge, and soon.
-  bool is_loose() const {
-    constexpr double kLoose = 0.003;
-    return s_.yarn && s_.settings.scheme == Scheme::paper && s_.settings.iterations == 0 &&
-           s_.settings.tolerance > kLoose;
-  }
-  bool may_be_halved() const {
-    return s_.settings.iterations == 0 && s_.settings.solver != Solver::gauss_seidel;
-  }
+  /// Of the whole step. Where the tolerance is loose sweeps converge, and soon.
   StepRecord record() const {
-    const bool sweeps_converge = is_loose() && report_.status == Status::converged;
+    constexpr double kLoose = 0.003;
+    const bool sweeps_converge = s_.yarn && s_.settings.scheme == Scheme::paper &&
+                                 s_.settings.tolerance > kLoose &&
+                                 report_.status == Status::converged;
+    const bool began_with_sweeps = s_.trouble.only_sweeps();
     const auto constraints =
         static_cast<double>(std::max<std::size_t>(1, s_.model->constraints.size()));
     return {.halved = report_.halvings > 0,
             .helped = halves_helped_ || !sweeps_converge,
             .made_do = made_do_,
-            .only_sweeps = swept_,
-            .swept_in_vain = swept_ && !only_sweeps_,
+            .only_sweeps = began_with_sweeps,
+            .swept_in_vain = began_with_sweeps && !only_sweeps_,
             .may_be_swept = sweeps_converge && !s_.model->has_contacts(),
             .passes = static_cast<double>(report_.visits - projected_) / constraints};
   }
@@ -209,8 +206,7 @@ class Substeps {
   Transaction transaction_;
   bool halving_helps_ = false, halves_helped_ = true;
   std::int64_t projected_ = 0;  // visits of the projection
-  bool only_sweeps_ = false;    // of the present substep
-  bool swept_ = false;          // the step began so
+  bool only_sweeps_ = false;    // until they fail
   bool made_do_ = false;
   // Of the present substep:
   int left_ = 0;          // iterations, of all its parts together

@@ -143,8 +143,9 @@ ModelInfo describe(const Model& model);
 /// Gauss-Seidel goes on; StepReport::iterations counts all of it. Such a substep gains no energy:
 /// velocities are scaled down, all by one factor, if it would. For some steps after it automatic
 /// substeps are shorter and yarns stop at a smaller error; where steps took yarns thousands of
-/// passes, and the tolerance is above 0.3 %, the next ones are done by Gauss-Seidel alone. So the
-/// next step depends a little on how the state came about, until positions are written.
+/// passes, the tolerance is above 0.3 %, and there are no spheres, the next ones are done by
+/// Gauss-Seidel alone. So the next step depends a little on how the state came about, until
+/// positions are written.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
 /// paper: impulses along the directions of the previewed state; first order, and dissipative.
 /// rattle: along those at the start of the substep, and the velocity correction always: second

@@ -74,8 +74,9 @@ Fall fall(Solver solver, double tolerance) {
     fall.visits += static_cast<double>(report.visits);
     fall.energy_gain = std::max(fall.energy_gain, cloth.energy().total() - start);
   }
-  for (std::uint32_t i = 0; i < cloth.particle_count(); ++i)
+  for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
     fall.lowest = std::min(fall.lowest, cloth.position(i).y);
+  }
   return fall;
 }
 
@@ -91,11 +92,12 @@ TEST_CASE("sweeps that do not come within tolerance leave yarns half of the iter
   Settings settings;
   settings.tolerance = 0.01;
   settings.max_iterations = 1800;
+  settings.substeps = 1;
   Cloth cloth = cloth_of(stiff_sheet(32), settings);
   double strain = 0;
   for (int k = 0; k < 60; ++k) {
     const StepReport report = step(cloth, 0.01);
-    CHECK(report.iterations <= settings.max_iterations * report.substeps + 1);
+    CHECK(report.iterations <= settings.max_iterations + 1);
     strain = std::max(strain, report.max_strain);
   }
   CHECK(strain > settings.tolerance);  // it is too few
