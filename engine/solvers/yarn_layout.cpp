@@ -135,7 +135,8 @@ class Builder {
     const std::size_t padding = model_.slots() + kLanes * layout_.blocks.size();
     block_.assign(rows, {});
     layout_.longest = std::max(layout_.longest, rows);
-    layout_.blocks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)});
+    layout_.blocks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last),
+                              static_cast<std::uint32_t>(chains.size())});
     for (std::size_t i = first * kLanes; i < last * kLanes; ++i) {
       layout_.slot.push_back(static_cast<std::uint32_t>(padding + i % kLanes));
     }

@@ -53,6 +53,9 @@ class Weaver {
           put_in_place(layout_.blocks[i]);
         } else {
           cut_patches(layout_.blocks[i]);
+          const bool is_first = i == layout_.family_begin[f];
+          if (!is_first)
+            blocks_[i - 1].patches_ahead = blocks_[i].last_patch - blocks_[i].first_patch;
         }
       }
     }

@@ -161,10 +161,12 @@ struct YarnPatch {
 enum class YarnAccess : std::uint8_t { quads, in_place, patches };
 
 struct YarnBlock {
-  std::uint32_t first = 0, last = 0;  // rows
+  std::uint32_t first = 0, last = 0;      // rows
+  std::uint32_t lanes = kernels::kLanes;  // that have yarns, the first ones
   YarnAccess access = YarnAccess::quads;
   std::uint32_t place = 0;  // in place: of the first row
   std::uint32_t first_patch = 0, last_patch = 0;
+  std::uint32_t patches_ahead = 0;  // behind these: those of the block that comes next
 };
 
 /// A row of the woven layout, | x ... x | y ... y | z ... z |. Each four of its lanes are slots in

@@ -40,10 +40,25 @@ using kernels::kLanes;
   f.z.store_unaligned(v.z + lane);
 }
 
+/// What will be wanted from memory: in place, the rows behind each of `rows` rows; or the patches
+/// of the next block.
+struct Ahead {
+  std::uint32_t rows = 0;  // of memory; 0: it is in the caches
+  const YarnPatch* patch = nullptr;
+  const float* memory = nullptr;
+};
+
+inline void prefetch_row(std::uintptr_t row) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    __builtin_prefetch(reinterpret_cast<const float*>(row) + axis * kLanes, 1);
+  }
+}
+
 /// Rows of a block that stand one behind the other: in place, or in the scratch.
 struct Rows {
   float* first;
   std::size_t stride;  // floats
+  Ahead ahead = {};
 
   [[gnu::always_inline]] FloatVector get(std::uint32_t row, std::uint32_t lane) const {
     const float* x = at(row, lane);
@@ -65,8 +80,22 @@ struct Rows {
                                          const FloatVector& v) const {
     put(row, lane, v);
   }
-  [[gnu::always_inline]] void put_kept(std::uint32_t) const {}
-  [[gnu::always_inline]] void fetch_ahead(std::uint32_t, std::uint32_t) const {}  // in a row
+  [[gnu::always_inline]] void put_kept(std::uint32_t, std::uint32_t) const {}
+  /// What stands in place is fetched some rows ahead, into the next block; the patches of the next
+  /// block while there is this one to solve in the scratch.
+  [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t,
+                                          std::uint32_t lane) const {
+    constexpr std::size_t kAhead = 32;
+    if (row >= ahead.rows || lane > 0) [[likely]]
+      return;
+    if (ahead.patch == nullptr) {
+      prefetch_row(reinterpret_cast<std::uintptr_t>(first) +
+                   (row + kAhead) * stride * sizeof(float));
+    } else {
+      prefetch_row(reinterpret_cast<std::uintptr_t>(ahead.memory +
+                                                    ahead.patch[row / kLanes].place[row % kLanes]));
+    }
+  }
 
  private:
   [[gnu::always_inline]] float* at(std::uint32_t row, std::uint32_t lane) const {
@@ -80,6 +109,7 @@ struct QuadRows {
   float* u;
   const std::uint32_t* slot;
   YarnScratch* scratch;
+  bool from_memory;
 
   [[gnu::always_inline]] FloatVector get(std::uint32_t row, std::uint32_t lane) const {
     return QuadLanes().get(u, slots(row, lane));
@@ -99,14 +129,19 @@ struct QuadRows {
                                          const FloatVector& v) const {
     keep(row, lane, v);
   }
-  [[gnu::always_inline]] void put_kept(std::uint32_t rows) const {
-    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  [[gnu::always_inline]] void put_kept(std::uint32_t rows, std::uint32_t lanes) const {
+    for (std::uint32_t lane = 0; lane < lanes; lane += kFloats) {
       for (std::uint32_t row = 0; row < rows; ++row) put(row, lane, kept(row, lane));
     }
   }
-  [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t lane) const {
+  /// Of a yarn that runs across memory no prefetcher knows.
+  [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t last,
+                                          std::uint32_t lane) const {
+    constexpr std::uint32_t kAhead = 16;
+    if (!from_memory) return;
+    const std::uint32_t* slot = slots(std::min(row + kAhead, last), lane);
     for (std::uint32_t k = 0; k < kFloats; ++k) {
-      __builtin_prefetch(u + 4 * std::size_t{slots(row, lane)[k]}, 1);
+      __builtin_prefetch(u + 4 * std::size_t{slot[k]}, 1);
     }
   }
 
@@ -117,6 +152,11 @@ struct QuadRows {
 };
 
 inline std::uint32_t rows_of(const YarnBlock& block) { return block.last - block.first; }
+/// Those that a kernel works on. Where one vector has all of them their number, and so which lane
+/// is the first of a vector, is known to the compiler: otherwise loops take a tenth longer.
+inline std::uint32_t lanes_of(const YarnBlock& block) {
+  return kFloats == kLanes ? kLanes : block.lanes;
+}
 
 constexpr std::size_t kScratchFloats = sizeof(YarnScratch) / sizeof(float);
 
@@ -127,10 +167,11 @@ constexpr std::size_t kScratchFloats = sizeof(YarnScratch) / sizeof(float);
 
 /// to(i)[k] = from(k)[i], of each axis; from and to: where a row begins.
 template <class From, class To>
-[[gnu::always_inline]] inline void transpose_rows(const From& from, const To& to) {
+[[gnu::always_inline]] inline void transpose_rows(std::uint32_t from_rows, const From& from,
+                                                  std::uint32_t to_rows, const To& to) {
   for (std::size_t axis = 0; axis < kRowFloats; axis += kLanes) {
-    for (std::uint32_t i = 0; i < kLanes; i += kFloats) {
-      for (std::uint32_t k = 0; k < kLanes; k += kFloats) {
+    for (std::uint32_t i = 0; i < to_rows; i += kFloats) {
+      for (std::uint32_t k = 0; k < from_rows; k += kFloats) {
         transpose(
             [&](std::uint32_t row)
                 __attribute__((always_inline)) { return from(k + row) + (axis + i); },
@@ -143,17 +184,19 @@ template <class From, class To>
 
 /// Where a row begins is computed for each vector anew: from arrays of pointers, filled first,
 /// transposing took 1.8 times as long.
-inline void fetch_patch(const YarnPatch& patch, const float* u, float* rows) {
+inline void fetch_patch(const YarnPatch& patch, std::uint32_t lanes, const float* u, float* rows) {
   transpose_rows(
-      [&](std::uint32_t k) __attribute__((always_inline)) { return u + patch.place[k]; },
+      lanes, [&](std::uint32_t k) __attribute__((always_inline)) { return u + patch.place[k]; },
+      kLanes,
       [&](std::uint32_t i)
           __attribute__((always_inline)) { return rows + patch.row[i] * kScratchFloats; });
 }
-inline void put_patch(const YarnPatch& patch, float* u, const float* rows) {
+inline void put_patch(const YarnPatch& patch, std::uint32_t lanes, float* u, const float* rows) {
   transpose_rows(
+      kLanes,
       [&](std::uint32_t i)
           __attribute__((always_inline)) { return rows + patch.row[i] * kScratchFloats; },
-      [&](std::uint32_t k) __attribute__((always_inline)) { return u + patch.place[k]; });
+      lanes, [&](std::uint32_t k) __attribute__((always_inline)) { return u + patch.place[k]; });
 }
 
 /// work(a float of a single row, and where it stands in memory)
@@ -173,9 +216,7 @@ inline void prefetch(const Yarns& y, const YarnBlock& block, std::uint32_t patch
   constexpr std::uint32_t kAhead = 2;
   if (!y.from_memory || patch + kAhead >= block.last_patch) return;
   for (const std::uint32_t place : y.patch[patch + kAhead].place) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      __builtin_prefetch(u + place + axis * kLanes, 1);
-    }
+    prefetch_row(reinterpret_cast<std::uintptr_t>(u + place));
   }
 }
 
@@ -186,13 +227,13 @@ inline void fetch(const Yarns& y, const YarnBlock& block, float* u, const Rows& 
     if (patch.single) {
       for_each_float(patch, u, rows, [](float& row, float& place) { row = place; });
     } else {
-      fetch_patch(patch, u, rows.first);
+      fetch_patch(patch, lanes_of(block), u, rows.first);
     }
   }
 }
 /// What is nobody's is put back as 0.
 inline void put_back(const Yarns& y, const YarnBlock& block, float* u, const Rows& rows) {
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     const Floats none(0.f);
     rows.put(rows_of(block), lane, {none, none, none});
   }
@@ -201,7 +242,7 @@ inline void put_back(const Yarns& y, const YarnBlock& block, float* u, const Row
     if (patch.single) {
       for_each_float(patch, u, rows, [](float& row, float& place) { place = row; });
     } else {
-      put_patch(patch, u, rows.first);
+      put_patch(patch, lanes_of(block), u, rows.first);
     }
   }
 }
@@ -214,14 +255,15 @@ template <Old kOld = Old::wanted, class Work>
 [[gnu::always_inline]] inline void with_rows(const Yarns& y, const YarnBlock& block, float* u,
                                              YarnScratch* scratch, Work&& work) {
   if (block.access == YarnAccess::quads) {
-    work(QuadRows{u, y.slot + std::size_t{block.first} * kLanes, scratch});
+    work(QuadRows{u, y.slot + std::size_t{block.first} * kLanes, scratch, y.from_memory});
     return;
   }
   if (block.access == YarnAccess::in_place) {
-    work(Rows{u + block.place, kRowFloats});
+    work(Rows{u + block.place, kRowFloats, {y.from_memory ? rows_of(block) : 0}});
     return;
   }
-  const Rows rows = rows_in(scratch);
+  Rows rows = rows_in(scratch);
+  if (y.from_memory) rows.ahead = {block.patches_ahead * kLanes, y.patch + block.last_patch, u};
   if (kOld == Old::wanted) fetch(y, block, u, rows);
   if (work(rows)) put_back(y, block, u, rows);
 }

@@ -9,7 +9,7 @@
 /// as what floats round off a difference. Between neighbours base differs by few cells, which rows
 /// remember from the first pass over a new base on:
 ///
-///     |  x: 10 bits  |  y: 10 bits  |  z: 10 bits  | 00 |     in each lane
+///     | 00 |  x: 10 bits  |  y: 10 bits  |  z: 10 bits  |     in each lane
 ///
 /// a quarter of the bytes that it takes to fetch base again. A block in which a difference is
 /// larger (a cloth torn apart, constraints that are thousands of times as long as others) fetches
@@ -58,15 +58,33 @@ namespace {
   const Ints bits = xsimd::bitwise_cast<Ints>(fused(v, factor, far));
   return bits ^ xsimd::bitwise_cast<Ints>(Floats(0x1.8p23f));
 }
-/// Three of them, and the numbers again.
+/// Three of them.
 [[gnu::always_inline]] inline Ints packed(Ints x, Ints y, Ints z) {
-  const Ints signs(static_cast<std::int32_t>(0x80200800));  // n + 512 has the sign bit of n wrong
-  return ((x << 22) | (y << 12) | (z << 2)) ^ signs;
+  return (x << 20) | (y << 10) | z;
 }
-[[gnu::always_inline]] inline FloatVector unpacked(Ints v) {
-  return {xsimd::to_float(v >> 22), xsimd::to_float((v << 10) >> 22),
-          xsimd::to_float((v << 20) >> 22)};
-}
+
+/// The numbers again, times a cell. A number n of ten bits is put into the middle of the fraction
+/// of a power of two of which these bits count in cells, and that is taken away again, exactly:
+///
+///     2^13 cell + (n + 512) cell  -  (2^13 + 512) cell  =  n cell
+///
+/// Conversions would take the place of additions, and shifts too, on processors that have one unit
+/// for all of these.
+struct Unpacking {
+  Ints middle = Ints(0x3ff << 10), power;
+  Floats taken;
+
+  [[gnu::always_inline]] explicit Unpacking(float cell)
+      : power(xsimd::bitwise_cast<Ints>(Floats(0x1p13f * cell))), taken(0x1.1p13f * cell) {}
+  [[gnu::always_inline]] FloatVector operator()(Ints v) const {
+    return {number(v >> 10), number(v), number(v << 10)};
+  }
+
+ private:
+  [[gnu::always_inline]] Floats number(Ints v) const {
+    return xsimd::bitwise_cast<Floats>((v & middle) | power) - taken;
+  }
+};
 
 /// remembered: rows have its difference to that of the next. fetched: it is read, and then
 /// remembered.
@@ -76,14 +94,15 @@ enum class Base : std::uint8_t { remembered, fetched };
 template <Base kBase>
 [[gnu::always_inline]] inline QuadRows rows_of_base(const Yarns& y, const YarnBlock&, QuadRows of_u,
                                                     YarnScratch*) {
-  return {y.base, of_u.slot, of_u.scratch};
+  return {y.base, of_u.slot, of_u.scratch, of_u.from_memory};
 }
 template <Base kBase>
 [[gnu::always_inline]] inline Rows rows_of_base(const Yarns& y, const YarnBlock& block, Rows of_u,
                                                 YarnScratch* scratch) {
   if (kBase == Base::remembered) return of_u;
-  if (block.access == YarnAccess::in_place) return {y.base + block.place, kRowFloats};
-  const Rows behind = rows_in(scratch + rows_of(block) + 1);
+  if (block.access == YarnAccess::in_place) return {y.base + block.place, kRowFloats, of_u.ahead};
+  Rows behind = rows_in(scratch + rows_of(block) + 1);
+  behind.ahead = {of_u.ahead.rows, of_u.ahead.patch, y.base};
   fetch(y, block, y.base, behind);
   return behind;
 }
@@ -97,16 +116,17 @@ struct BaseDown {
   std::uint32_t lane;
   FloatVector here = no_vector();
   Ints all = Ints(0);  // that has been remembered
+  Unpacking unpacked;
 
   [[gnu::always_inline]] BaseDown(const Yarns& yarns, At base, std::uint32_t first_row,
                                   std::uint32_t first_lane)
-      : y(yarns), at(base), first(first_row), lane(first_lane) {
+      : y(yarns), at(base), first(first_row), lane(first_lane), unpacked(yarns.cell) {
     if constexpr (kBase == Base::fetched) here = at.get(0, lane);
   }
   /// base + u, from particle k + 1 to particle k. Without a constraint it is anything.
   [[gnu::always_inline]] FloatVector step(std::uint32_t k, const FloatVector& u, Floats rest) {
     if constexpr (kBase == Base::remembered) {
-      return fused(Floats(y.cell), unpacked(Ints::load_unaligned(words(k))), u);
+      return unpacked(Ints::load_unaligned(words(k))) + u;
     }
     const FloatVector next = at.get(k + 1, lane);
     const FloatVector difference = here - next;

@@ -52,7 +52,7 @@ namespace {
 template <Along kAlong, Base kBase, class At>
 [[gnu::always_inline]] inline void linearise_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                    At base) {
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     const Floats zero(0.f);
     go_down<kAlong, kBase>(
         y, block, at, base, lane, unit_link,
@@ -88,9 +88,9 @@ template <class At>
 [[gnu::always_inline]] inline float read_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                At base) {
   float most = 0;
-  alignas(64) float poison[kLanes];
+  alignas(64) float poison[kLanes] = {};
   const std::uint32_t last = rows_of(block) - 1;
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     const Floats zero(0.f);
     Floats worst(0.f), poisoned(0.f);
     FloatVector base_here = base.get(0, lane), here = at.get(0, lane);
@@ -128,9 +128,9 @@ float yarn_read(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* s
 /// lambda += alpha p, residual -= alpha q, z = T^-1 residual.
 YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alpha) {
   YarnProducts result;
-  alignas(64) float products[kLanes];
+  alignas(64) float products[kLanes] = {};
   const Floats step(alpha);
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     Floats b(0.f), worst(0.f);
     for (std::uint32_t k = block.first; k < block.last; ++k) {
       YarnSystemRow& row = y.system[k];
@@ -174,7 +174,8 @@ template <class Push>
   }
 }
 
-/// Of the first to push: t = M^-1 J^T p at its particles, whatever it was.
+/// Of the first to push: t = M^-1 J^T p at its particles, whatever it was; 0 in lanes without
+/// yarns, or the scratch would be put back as it is.
 void yarn_push_first(const Yarns& y, const YarnBlock& block, float beta, float* t,
                      YarnScratch* scratch) {
   with_rows<Old::dropped>(y, block, t, scratch, [&](auto at) {
@@ -189,7 +190,7 @@ void yarn_push_first(const Yarns& y, const YarnBlock& block, float beta, float* 
 /// t += M^-1 J^T p.
 void yarn_push(const Yarns& y, const YarnBlock& block, float beta, float* t, YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
-    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+    for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
       push_down(y, block, lane, beta, [&](std::uint32_t k, const FloatVector& own) {
         at.put(k, lane, at.get(k, lane) + own);
       });
@@ -216,9 +217,9 @@ template <class At>
 
 /// q = J t; returns p . q.
 float yarn_pull(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* scratch) {
-  alignas(64) float products[kLanes];
+  alignas(64) float products[kLanes] = {};
   with_rows(y, block, t, scratch, [&](auto at) {
-    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+    for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
       pull_yarns(y, block, at, lane).store_unaligned(products + lane);
     }
     return false;
@@ -229,7 +230,7 @@ float yarn_pull(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* s
 /// t -= M^-1 J^T lambda.
 void yarn_finish(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
-    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+    for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
       FloatVector above = no_vector();
       for (std::uint32_t k = 0; k < rows_of(block); ++k) {
         const YarnSystemRow& row = y.system[block.first + k];
@@ -247,7 +248,7 @@ template <bool kErrors, class At>
 [[gnu::always_inline]] inline void eliminate_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                    YarnScratch* scratch) {
   const std::uint32_t last = rows_of(block) - 1;
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     Floats b(0.f);
     FloatVector here = at.get(0, lane);
     for (std::uint32_t k = 0; k < last; ++k) {

@@ -31,6 +31,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 
 #include "kernels/simd/yarn_rows.h"
@@ -43,6 +44,12 @@ namespace {
 /// however long it is. (1e-4: more velocities of a taut sheet under a sphere cannot be corrected;
 /// 1e-5: more steps of a hub are left to scheme paper.)
 constexpr float kLeastPivot = 3e-5f;
+/// Beyond that: what is less has no inverse among floats.
+constexpr float kLeastNormal = std::numeric_limits<float>::min();
+
+/// Ends that coincide are taken to be this share of a cell apart, in y. What it changes in others
+/// is less than what floats round off a length.
+constexpr float kApart = 0x1p-24f;
 
 /// present: impulses act along the directions that errors change along. start: along those at the
 /// start of the substep. frozen: errors too are taken to change along those, so that A is symmetric
@@ -54,38 +61,32 @@ struct YarnLink {
   Floats error;
   Floats size;        // of A(k, k) over w_k + w_{k+1}: n . n; n's length if along is another
   FloatVector along;  // what its impulse acts along
+  Floats rest;
 };
 
-/// d: from particle k + 1 to particle k. Ends that coincide have no direction: n = (0, 1, 0).
+/// v where there is a constraint, else 0. By the sign of -rest: comparisons and products are the
+/// work of the same units, which have more to do than others.
+[[gnu::always_inline]] inline Floats where_present(Floats rest, Floats v) {
+  const Ints none(0), sign = (none - xsimd::bitwise_cast<Ints>(rest)) >> 31;
+  return xsimd::bitwise_cast<Floats>(xsimd::bitwise_cast<Ints>(v) & sign);
+}
+
+/// d: from particle k + 1 to particle k, never 0 where there is a constraint.
 [[gnu::always_inline]] inline YarnLink unit_link(const FloatVector& d, Floats rest) {
-  const Floats zero(0.f), one(1.f);
-  const Floats length = xsimd::sqrt(dot(d, d));
-  const FloatMask present = rest > zero, together = length == zero;
-  const Floats inverse = xsimd::select(present, one / xsimd::select(together, rest, length), zero);
-  FloatVector n = inverse * d;
-  n.y = xsimd::select(present & together, one, n.y);
-  const Floats error = xsimd::select(present, length - rest, zero);
-  return {n, error, one, n};
+  const Floats one(1.f), length = xsimd::sqrt(dot(d, d));
+  const Floats inverse = where_present(rest, one / length);
+  YarnLink link{inverse * d, where_present(rest, length - rest), one, d, rest};
+  link.along = link.n;
+  return link;
 }
 
 /// The same row of the system times the constraint's length, n = d, and its impulse over it: a
 /// division less. Without a constraint d is anything, but size, and so the pivot, is 0.
 template <Along kAlong>
 [[gnu::always_inline]] inline YarnLink scaled_link(const FloatVector& d, Floats rest) {
-  const Floats zero(0.f);
-  const FloatMask present = rest > zero;
-  const Floats square = xsimd::select(present, dot(d, d), zero);
+  const Floats square = where_present(rest, dot(d, d));
   const Floats length = xsimd::sqrt(square);
-  const Floats size = kAlong == Along::present ? square : length;
-  YarnLink link{d, length * (length - rest), size, d};
-  const FloatMask together = present & (square == zero);
-  if (xsimd::any(together)) [[unlikely]] {
-    link.n.y = xsimd::select(together, rest, d.y);
-    link.along = link.n;
-    link.error = xsimd::select(together, zero - rest * rest, link.error);
-    link.size = xsimd::select(together, kAlong == Along::present ? rest * rest : rest, size);
-  }
-  return link;
+  return {d, length * (length - rest), kAlong == Along::present ? square : length, d, rest};
 }
 
 template <Along kAlong>
@@ -94,6 +95,10 @@ template <Along kAlong>
   if constexpr (kAlong == Along::present) return;
   link.along = load(start[k], lane);
   if constexpr (kAlong == Along::frozen) link.n = link.along;
+}
+
+[[gnu::always_inline]] inline FloatVector apart(const Yarns& y, const FloatVector& d) {
+  return {d.x, d.y + Floats(kApart * y.cell), d.z};
 }
 
 /// Of a row: the factors of what it passes on.
@@ -106,7 +111,8 @@ struct Factors {
 template <Along kAlong>
 struct Elimination {
   FloatVector n = no_vector(), along = no_vector();  // of the row above
-  Floats reciprocal = Floats(0.f);
+  Floats quotient = Floats(0.f);                     // r, but where the pivot was not regular
+  FloatMask regular = FloatMask(false);
 
   /// Takes the next row.
   [[gnu::always_inline]] Factors step(const YarnLink& next, Floats wa, Floats wb) {
@@ -114,15 +120,17 @@ struct Elimination {
     const Floats sum = wa + wb;
     const Floats c = wa * dot(n, next.along);
     const Floats l = kSymmetric ? c : wa * dot(along, next.n);
-    const Floats down = l * reciprocal, up = c * reciprocal;
+    // Selected here, not from the quotient, which would have to wait for the comparison.
+    const Floats none(0.f);
+    const Floats down = xsimd::select(regular, l * quotient, none);
+    const Floats up = kSymmetric ? down : xsimd::select(regular, c * quotient, none);
     const Floats size = sum * next.size;
     const Floats pivot = fused_from(down, c, kSymmetric ? size : sum * dot(next.n, next.along));
-    const FloatMask regular = pivot > Floats(kLeastPivot) * size;
-    // What dividing by 0 gives is not taken; a divisor chosen first would lengthen the recurrence.
-    reciprocal = xsimd::select(regular, Floats(1.f) / pivot, Floats(0.f));
+    regular = pivot > fused(Floats(kLeastPivot), size, Floats(kLeastNormal));
+    quotient = Floats(1.f) / pivot;
     n = next.n;
     along = next.along;
-    return {down, up, reciprocal};
+    return {down, up, xsimd::select(regular, quotient, none)};
   }
 };
 
@@ -138,11 +146,11 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScrat
   with_rows(y, block, u, scratch, [&](auto at) {
     const auto base = rows_of_base<Base::fetched>(y, block, at, scratch);
     const std::uint32_t last = rows_of(block) - 1;
-    for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+    for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
       FloatVector here = at.get(0, lane), base_here = base.get(0, lane);
       for (std::uint32_t k = 0; k < last; ++k) {
         const FloatVector next = at.get(k + 1, lane), base_next = base.get(k + 1, lane);
-        const FloatVector d = (base_here - base_next) + (here - next);
+        const FloatVector d = apart(y, (base_here - base_next) + (here - next));
         const std::uint32_t row = block.first + k;
         store(y.start[row], lane, unit_link(d, rest(y, row, lane)).n);
         base_here = base_next;
@@ -163,22 +171,20 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
                                            At base, std::uint32_t lane, MakeLink&& make_link,
                                            Take&& take) {
   const Yarns y = yarns;  // stores of vectors could be to what a reference leads to: read again
-  constexpr std::uint32_t kAhead = 16;  // of a yarn that runs across memory no prefetcher knows
   const std::uint32_t last = rows_of(block) - 1;
   Elimination<kAlong> elimination;
   FloatVector here = at.get(0, lane);
   BaseDown<kBase, At> base_down(y, base, block.first, lane);
   Floats w = inverse_mass(y, block.first, lane);
   for (std::uint32_t k = 0; k < last; ++k) {
-    if (y.from_memory) {
-      at.fetch_ahead(std::min(k + kAhead, last), lane);
-      if constexpr (kBase == Base::fetched) base.fetch_ahead(std::min(k + kAhead, last), lane);
-    }
+    at.fetch_ahead(k, last, lane);
+    if constexpr (kBase == Base::fetched) base.fetch_ahead(k, last, lane);
     const std::uint32_t row = block.first + k;
     const FloatVector next = at.get(k + 1, lane);
     const Floats w_next = inverse_mass(y, row + 1, lane);
     const Floats length = rest(y, row, lane);
-    YarnLink link = make_link(base_down.step(k, here - next, length), length);
+    const FloatVector d = apart(y, base_down.step(k, here - next, length));
+    YarnLink link = make_link(d, length);
     direct<kAlong>(link, y.start, row, lane);
     take(k, here, link, elimination.step(link, w, w_next));
     here = next;
@@ -186,7 +192,7 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
   }
   base_down.end(last);
   const Floats none(0.f);
-  take(last, here, YarnLink{no_vector(), none, none, no_vector()}, Factors{none, none, none});
+  take(last, here, YarnLink{no_vector(), none, none, no_vector(), none}, Factors{none, none, none});
 }
 
 /// Up again: move(row of the block, its inverse mass, its impulse). factors: has n and m of the
@@ -223,7 +229,7 @@ struct Substitution {
 template <Along kAlong, Base kBase, class At>
 [[gnu::always_inline]] inline void sweep_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                At base, YarnScratch* scratch) {
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     Substitution substitution;
     go_down<kAlong, kBase>(
         y, block, at, base, lane, scaled_link<kAlong>,
@@ -246,8 +252,8 @@ struct Before {
   Floats enough;
   Floats beyond = Floats(0.f);  // the most by which one is out beyond that, in terms of squares
 
-  [[gnu::always_inline]] void take(const YarnLink& link, Floats rest) {
-    const Floats square = rest * rest, half(0.5f);
+  [[gnu::always_inline]] void take(const YarnLink& link) {
+    const Floats square = link.rest * link.rest, half(0.5f);
     // of a link that has all but collapsed, l | l - rest | is small too
     const Floats out = xsimd::max(xsimd::abs(link.error), half * xsimd::abs(link.size - square));
     beyond = xsimd::max(beyond, out - enough * square);
@@ -259,14 +265,14 @@ template <Base kBase, class At>
 [[gnu::always_inline]] inline bool find_impulses(const Yarns& y, const YarnBlock& block, At at,
                                                  At base, YarnScratch* scratch, float quiet) {
   bool is_quiet = true;
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     Substitution substitution;
     Before before{Floats(quiet)};
     go_down<Along::present, kBase>(
         y, block, at, base, lane, scaled_link<Along::present>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
-              before.take(link, rest(y, block.first + k, lane));
+              before.take(link);
               at.keep(k, lane, here);
               store(scratch[k].n, lane, link.along);
               substitution.take(scratch[k], lane, link.error, f);
@@ -279,7 +285,7 @@ template <Base kBase, class At>
 /// The same from what the last solve kept.
 [[gnu::always_inline]] inline void find_impulses_again(const Yarns& y, const YarnBlock& block,
                                                        YarnScratch* scratch) {
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     Substitution substitution;
     Elimination<Along::present> elimination;
     Floats w = inverse_mass(y, block.first, lane);
@@ -319,7 +325,7 @@ template <class At, class Keep>
                                                   const YarnScratch* scratch, float enough,
                                                   Keep&& keep) {
   bool out = false;
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     After after{Floats(2 * enough)};
     go_up(
         y, block, lane, scratch, scratch,
@@ -373,7 +379,7 @@ template <Base kBase, class At>
     find_impulses_again(y, block, scratch);
     out = apply_impulses(y, block, at, scratch, enough, keep);
   }
-  at.put_kept(rows_of(block));
+  at.put_kept(rows_of(block), lanes_of(block));
   return {solves, !out};
 }
 

@@ -41,15 +41,15 @@ constexpr Golden kGolden[] = {
     {Way::paper, "ropes", 33, 10, true, 0x1155b4cb72c5a2a8},
     {Way::paper, "random", 33, 10, false, 0x90abc61cb7cbea3b},
     {Way::paper, "hub", 17, 6, true, 0xfa09a294848129c1},
-    {Way::automatic, "hang", 20, 40, false, 0x79481ea0c41f88a9},
-    {Way::automatic, "hang", 41, 12, true, 0xa7fd8edb145cdc79},
-    {Way::automatic, "hang", 90, 30, false, 0x0988948f4dc738d1},
-    {Way::automatic, "hang_sphere", 21, 40, false, 0xac43ece19739786a},
+    {Way::automatic, "hang", 20, 40, false, 0x34659492361c62d5},
+    {Way::automatic, "hang", 41, 12, true, 0xc0b2049c8aaa226e},
+    {Way::automatic, "hang", 90, 30, false, 0x7370395af0d084b5},
+    {Way::automatic, "hang_sphere", 21, 40, false, 0xbf61027ec9503ea8},
     {Way::automatic, "sphere_drop", 21, 40, false, 0x21e8b637d6e4e5b7},
-    {Way::automatic, "corners", 41, 20, false, 0x1dc290910531048e},
-    {Way::automatic, "ropes", 33, 10, true, 0xdff2a880a037bb24},
-    {Way::automatic, "random", 33, 10, false, 0x87631323ca3c0c70},
-    {Way::automatic, "hub", 17, 6, true, 0x3daf8d0940ce51f8},
+    {Way::automatic, "corners", 41, 20, false, 0x4624baefe407e407},
+    {Way::automatic, "ropes", 33, 10, true, 0x465f09c9b4014c03},
+    {Way::automatic, "random", 33, 10, false, 0x05d6bcfbc185c036},
+    {Way::automatic, "hub", 17, 6, true, 0x439aea5723cae410},
 };
 
 SceneDescription describe(const Golden& golden) {

@@ -33,6 +33,7 @@ struct BlockOfYarns {
   kernels::AlignedVector<float> base, u, t;
   kernels::Vectors x;
   double cell = 0x1p-10;
+  std::uint32_t lanes = kLanes;
   bool placed = false;  // the rows have the base
   bool from_memory = false;
 
@@ -137,9 +138,12 @@ struct BlockOfYarns {
             from_memory};
   }
   simd::YarnBlock block() const {
-    if (stand == Stand::quads) return {0, kRows};
-    if (stand == Stand::in_place) return {0, kRows, simd::YarnAccess::in_place};
-    return {0, kRows, simd::YarnAccess::patches, 0, 0, static_cast<std::uint32_t>(patches.size())};
+    simd::YarnBlock block{0, kRows, lanes};
+    if (stand == Stand::quads) return block;
+    block.access =
+        stand == Stand::in_place ? simd::YarnAccess::in_place : simd::YarnAccess::patches;
+    block.last_patch = static_cast<std::uint32_t>(patches.size());
+    return block;
   }
   void push(const kernels::Vectors& d) {
     for_each_component([&](std::size_t quad, std::size_t place) {

@@ -92,16 +92,19 @@ void check_layout(const Model& model) {
     std::set<std::uint32_t> in_family;
     for (std::uint32_t i = layout.family_begin[f]; i < layout.family_begin[f + 1]; ++i) {
       const simd::YarnBlock block = layout.blocks[i];
+      CHECK(block.last_patch + block.patches_ahead <= layout.patches.size());
       for (std::uint32_t k = block.first; k < block.last; ++k) {
         const simd::YarnRow& row = layout.kinds[layout.kind[k]];
         for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
           const std::size_t at = k * kLanes + lane;
           const std::uint32_t slot = slots[at];
           REQUIRE(slot != kNoIndex);
-          if (slot >= model.slots())
+          if (slot >= model.slots()) {
             CHECK(row.rest[lane] == 0);
-          else
+          } else {
             CHECK(in_family.insert(slot).second);
+            CHECK(lane < block.lanes);
+          }
           if (row.rest[lane] > 0) found.insert(pair(slot, slots[at + kLanes]));
         }
       }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -204,6 +205,28 @@ TEST_CASE("in quads, in place or in patches: the same bits, and nothing beside t
         CHECK(worked_on(b, simd::table(isa)) == expected);
         b.for_each_component([&](std::size_t, std::size_t place) { b.u[place] = 0; });
         CHECK(std::ranges::count(b.u, 0.f) == std::ssize(b.u));
+      }
+    }
+  }
+}
+
+TEST_CASE("lanes without yarns are passed over: the same bits, whatever the scratch holds") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    for (const Stand stand : kStands) {
+      CAPTURE(static_cast<int>(stand));
+      for (const std::uint32_t lanes : {2u, 4u, 5u, 8u, 9u, 12u}) {
+        CAPTURE(lanes);
+        BlockOfYarns all(stand), some(stand);
+        for (BlockOfYarns* b : {&all, &some}) {
+          for (simd::YarnRow& row : b->rows) {
+            std::fill(row.rest + lanes, row.rest + kLanes, 0.f);
+            std::fill(row.inverse_mass + lanes, row.inverse_mass + kLanes, 0.f);
+          }
+        }
+        some.lanes = lanes;
+        std::memset(some.scratch.data(), 0xff, some.scratch.size() * sizeof(simd::YarnScratch));
+        CHECK(worked_on(some, simd::table(isa)) == worked_on(all, simd::table(isa)));
       }
     }
   }
