@@ -9,7 +9,7 @@
 /// as what floats round off a difference. Between neighbours base differs by few cells, which rows
 /// remember from the first pass over a new base on:
 ///
-///     | 00 |  x: 10 bits  |  y: 10 bits  |  z: 10 bits  |     in each lane
+///     |  x: 10 bits  |  y: 10 bits  |  z: 10 bits  | 00 |     in each lane
 ///
 /// a quarter of the bytes that it takes to fetch base again. A block in which a difference is
 /// larger (a cloth torn apart, constraints that are thousands of times as long as others) fetches
@@ -60,31 +60,46 @@ namespace {
 }
 /// Three of them.
 [[gnu::always_inline]] inline Ints packed(Ints x, Ints y, Ints z) {
-  return (x << 20) | (y << 10) | z;
+  const Ints signs(static_cast<std::int32_t>(0x80200800));  // n + 512 has the sign bit of n wrong
+  return ((x << 22) | (y << 12) | (z << 2)) ^ signs;
 }
 
-/// The numbers again, times a cell. A number n of ten bits is put into the middle of the fraction
-/// of a power of two of which these bits count in cells, and that is taken away again, exactly:
+#if defined(__AVX512F__)
+/// The numbers again, times a cell, and u added. A number's bits are put into the middle of the
+/// fraction of a power of two, where they count in cells, and that is taken away again, exactly:
 ///
-///     2^13 cell + (n + 512) cell  -  (2^13 + 512) cell  =  n cell
+///     2^11 cell + (n + 512) cell  -  (2^11 + 512) cell  =  n cell
 ///
-/// Conversions would take the place of additions, and shifts too, on processors that have one unit
-/// for all of these.
+/// Conversions and most of the shifts would be work for the units that add. Without instructions
+/// that take three operands, and registers for the constants, these are faster all the same.
 struct Unpacking {
-  Ints middle = Ints(0x3ff << 10), power;
+  Ints middle = Ints(0x3ff << 12), power;
   Floats taken;
 
   [[gnu::always_inline]] explicit Unpacking(float cell)
-      : power(xsimd::bitwise_cast<Ints>(Floats(0x1p13f * cell))), taken(0x1.1p13f * cell) {}
-  [[gnu::always_inline]] FloatVector operator()(Ints v) const {
-    return {number(v >> 10), number(v), number(v << 10)};
+      : power(xsimd::bitwise_cast<Ints>(Floats(0x1p11f * cell)) ^ Ints(0x200 << 12)),
+        taken(0x1.4p11f * cell) {}
+  [[gnu::always_inline]] FloatVector plus(const FloatVector& u, Ints v) const {
+    return {number(v >> 10) + u.x, number(v) + u.y, number(v << 10) + u.z};
   }
 
  private:
   [[gnu::always_inline]] Floats number(Ints v) const {
-    return xsimd::bitwise_cast<Floats>((v & middle) | power) - taken;
+    return xsimd::bitwise_cast<Floats>((v & middle) ^ power) - taken;
   }
 };
+#else
+struct Unpacking {
+  Floats cell;
+
+  [[gnu::always_inline]] explicit Unpacking(float of) : cell(of) {}
+  [[gnu::always_inline]] FloatVector plus(const FloatVector& u, Ints v) const {
+    const FloatVector numbers{xsimd::to_float(v >> 22), xsimd::to_float((v << 10) >> 22),
+                              xsimd::to_float((v << 20) >> 22)};
+    return fused(cell, numbers, u);
+  }
+};
+#endif
 
 /// remembered: rows have its difference to that of the next. fetched: it is read, and then
 /// remembered.
@@ -116,17 +131,17 @@ struct BaseDown {
   std::uint32_t lane;
   FloatVector here = no_vector();
   Ints all = Ints(0);  // that has been remembered
-  Unpacking unpacked;
+  Unpacking unpacking;
 
   [[gnu::always_inline]] BaseDown(const Yarns& yarns, At base, std::uint32_t first_row,
                                   std::uint32_t first_lane)
-      : y(yarns), at(base), first(first_row), lane(first_lane), unpacked(yarns.cell) {
+      : y(yarns), at(base), first(first_row), lane(first_lane), unpacking(yarns.cell) {
     if constexpr (kBase == Base::fetched) here = at.get(0, lane);
   }
   /// base + u, from particle k + 1 to particle k. Without a constraint it is anything.
   [[gnu::always_inline]] FloatVector step(std::uint32_t k, const FloatVector& u, Floats rest) {
     if constexpr (kBase == Base::remembered) {
-      return unpacked(Ints::load_unaligned(words(k))) + u;
+      return unpacking.plus(u, Ints::load_unaligned(words(k)));
     }
     const FloatVector next = at.get(k + 1, lane);
     const FloatVector difference = here - next;

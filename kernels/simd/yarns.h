@@ -64,11 +64,16 @@ struct YarnLink {
   Floats rest;
 };
 
-/// v where there is a constraint, else 0. By the sign of -rest: comparisons and products are the
-/// work of the same units, which have more to do than others.
+/// v where there is a constraint, else 0. On AVX-512 by the sign of -rest: comparisons into masks
+/// are work for the units that multiply.
 [[gnu::always_inline]] inline Floats where_present(Floats rest, Floats v) {
+#if defined(__AVX512F__)
   const Ints none(0), sign = (none - xsimd::bitwise_cast<Ints>(rest)) >> 31;
   return xsimd::bitwise_cast<Floats>(xsimd::bitwise_cast<Ints>(v) & sign);
+#else
+  const Floats none(0.f);
+  return xsimd::select(rest > none, v, none);
+#endif
 }
 
 /// d: from particle k + 1 to particle k, never 0 where there is a constraint.
