@@ -1,21 +1,24 @@
 /// What a state remembers of steps in which its solver gave up, or for which it took long.
 ///
-/// care: after halves that helped, substeps are shorter and yarns solved more closely for a while.
-/// What is left of a tolerance is noise that larger sheets carry farther: without this corners,
-/// 101 x 101, at 1 % takes 300 ms a frame, most of it in sweeps, and 11 with it.
+/// care: after halves that helped, substeps are shorter and yarns solved more closely for a while,
+/// the more so if they are wanted again soon. What is left of a tolerance is noise that larger
+/// sheets carry farther: without this corners, 101 x 101, at 1 % takes 300 ms a frame, most of it
+/// in sweeps, and 11 with it. (All of it at once: a sheet that needed halves once takes 1.3 times
+/// as long for a second, and large ones are no faster.)
 ///
 /// pause: where halves were no answer either, as at loose tolerances in a sheet of triangles, which
 /// can hardly bend without stretching, they are not even tried for 1, 2, 4, ... steps.
 ///
-/// only sweeps: where kDearSteps steps took more than kDear passes, the next 8, 16, ... are done by
-/// Gauss-Seidel sweeps alone, which spread what cannot be solved over all of the cloth, up to the
-/// tolerance; then yarns are tried again, once, without halves. Where sweeps take more than yarns
-/// did, the next steps are as usual, whatever they take. Not where there are spheres: a heavy one
-/// that yarns hold, late and not within tolerance, breaks through a sheet that is only swept
-/// (sphere_drop_10_kg_taut of weft hard). (A sheet of 40 x 40 triangles hangs by a row of particles
-/// that is not straight, and so is no hinge: at 1 %, 100 frames, 178 ms a frame without, 36 with
-/// it, Gauss-Seidel alone 41; at 5 % 273, 10 and 4, and without it the sheet falls a third as far.
-/// kDear 1000: sheets that hang by a corner are swept as well, and lose half as much energy again.)
+/// only sweeps: where steps by yarns take more than kDear passes in the mean, the next 8, 16, ...
+/// are done by Gauss-Seidel sweeps alone, which spread what cannot be solved over all of the cloth,
+/// up to the tolerance; then yarns are tried again, once, without halves. Where a step takes more
+/// of them than of yarns in the mean, the next steps are as usual, whatever they take. Not where
+/// there are spheres: a heavy one that yarns hold, late and not within tolerance, breaks through a
+/// sheet that is only swept (sphere_drop_10_kg_taut of weft hard). (A sheet of 40 x 40 triangles
+/// hangs by a row of particles that is not straight, and so is no hinge: at 1 %, 100 frames, 178 ms
+/// a frame without, 36 with it, Gauss-Seidel alone 41; at 5 % 273, 5 and 4, and without it the
+/// sheet falls a third as far. kDear 1000: sheets that hang by a corner are swept as well, and lose
+/// half as much energy again.)
 #pragma once
 
 #include <algorithm>
@@ -41,20 +44,23 @@ class Trouble {
   /// All but the last step of a pause, which tries yarns again.
   bool only_sweeps() const { return sweeping_ && pause_left_ > 1; }
   /// As many as yarns take.
-  int most_sweeps() const { return static_cast<int>(std::min(dear_passes_, 1e6)); }
+  int most_sweeps() const { return static_cast<int>(std::min(mean_passes_, 1e6)); }
 
   /// After a step.
   void remember(const StepRecord& step) {
     yarns_left_ = std::max(0, yarns_left_ - 1);
-    if (!step.only_sweeps) count_dear(step.passes);
-    if (step.swept_in_vain || (step.only_sweeps && step.passes > dear_passes_)) {
+    if (!step.only_sweeps) {
+      mean_passes_ += (step.passes - mean_passes_) / kMeanSteps;
+      dearness_ += (std::min(step.passes, kMostDear) - dearness_) / kMeanSteps;
+    }
+    if (step.swept_in_vain || (step.only_sweeps && step.passes > mean_passes_)) {
       end_pause();
       yarns_left_ = kLongestPause;
     } else if (pause_left_ > 0) {
       --pause_left_;
       const bool again = sweeping_ && step.made_do && step.may_be_swept;
       if (again && pause_left_ == 0) begin_pause(kShortestSweeping);
-    } else if (dear_ >= kDearSteps && step.may_be_swept && yarns_left_ == 0) {
+    } else if (dearness_ > kDear && step.may_be_swept && yarns_left_ == 0) {
       if (!sweeping_) end_pause();
       sweeping_ = true;
       begin_pause(kShortestSweeping);
@@ -63,16 +69,11 @@ class Trouble {
       begin_pause(1);
     } else {
       end_pause();
-      care_ = step.halved ? kLeastCare : std::min(1.0, kRecovery * care_);
+      care_ = step.halved ? std::max(kLeastCare, care_ / 2) : std::min(1.0, kRecovery * care_);
     }
   }
 
  private:
-  void count_dear(double passes) {
-    const bool is_dear = passes > kDear;
-    dear_passes_ = is_dear && dear_ > 0 ? std::min(dear_passes_, passes) : passes;
-    dear_ = is_dear ? dear_ + 1 : 0;
-  }
   void begin_pause(int least) {
     pause_ = std::clamp(2 * pause_, least, kLongestPause);
     pause_left_ = pause_;
@@ -87,14 +88,15 @@ class Trouble {
   static constexpr double kRecovery = 1.01;  // per step
   static constexpr int kShortestSweeping = 8, kLongestPause = 64;
   static constexpr double kDear = 3000;
-  static constexpr int kDearSteps = 3;
+  static constexpr double kMostDear = 3 * kDear;  // of a step: one alone is not enough
+  static constexpr double kMeanSteps = 4;
 
   double care_ = 1;
   int pause_ = 0, pause_left_ = 0;  // steps
   bool sweeping_ = false;           // in this pause
-  int dear_ = 0;            // steps by yarns, one after the other, of more than kDear passes
-  double dear_passes_ = 0;  // the least of these
-  int yarns_left_ = 0;      // steps that are not swept, whatever they take
+  double mean_passes_ = 0;          // of steps by yarns, lately
+  double dearness_ = 0;             // the same, of no step more than kMostDear
+  int yarns_left_ = 0;              // steps that are not swept, whatever they take
 };
 
 }  // namespace weft

@@ -46,8 +46,8 @@ TEST_CASE("trouble passes: it never comes to thousands of sweeps, and brings in 
 }
 
 /// Triangles that hang by a row which is not straight, and so is no hinge.
-SceneDescription stiff_sheet(std::uint32_t size) {
-  Random random(3);
+SceneDescription stiff_sheet(std::uint32_t size, std::uint32_t seed = 3) {
+  Random random(seed);
   Mesh mesh = triangles(size, size, 0.3, 0.05, random);
   for (Vec3& p : mesh.positions) p.y = 0;
   SceneDescription scene = scene_of(mesh);
@@ -60,11 +60,11 @@ struct Fall {
   double visits = 0, lowest = 0, energy_gain = 0;
 };
 
-Fall fall(Solver solver, double tolerance) {
+Fall fall(Solver solver, double tolerance, std::uint32_t seed) {
   Settings settings;
   settings.solver = solver;
   settings.tolerance = tolerance;
-  Cloth cloth = cloth_of(stiff_sheet(28), settings);
+  Cloth cloth = cloth_of(stiff_sheet(28, seed), settings);
   const double start = cloth.energy().total();
   Fall fall;
   for (int k = 0; k < 40; ++k) {
@@ -81,11 +81,14 @@ Fall fall(Solver solver, double tolerance) {
 }
 
 TEST_CASE("sheets that sweeps bring within a loose tolerance sooner than yarns are left to them") {
-  const Fall sweeps = fall(Solver::gauss_seidel, 0.01);
-  const Fall done = fall(Solver::automatic, 0.01);
-  CHECK(done.visits < 5 * sweeps.visits);     // 8.7 times if it is left to yarns
-  CHECK(done.lowest < 0.75 * sweeps.lowest);  // and 0.46: in halves of halves it hardly moves
-  CHECK(done.energy_gain < 1e-5);
+  for (const std::uint32_t seed : {3u, 4u, 5u}) {
+    CAPTURE(seed);
+    const Fall sweeps = fall(Solver::gauss_seidel, 0.01, seed);
+    const Fall done = fall(Solver::automatic, 0.01, seed);
+    CHECK(done.visits < 4 * sweeps.visits);     // 8.7 times if it is left to yarns
+    CHECK(done.lowest < 0.75 * sweeps.lowest);  // and 0.46: in halves of halves it hardly moves
+    CHECK(done.energy_gain < 1e-5);
+  }
 }
 
 TEST_CASE("sweeps that do not come within tolerance leave yarns half of the iterations") {
