@@ -76,10 +76,10 @@ struct YarnLink {
 #endif
 }
 
-/// d: from particle k + 1 to particle k, never 0 where there is a constraint.
+/// d: from particle k + 1 to particle k. Should it be 0 all the same n is 0: it has no impulse.
 [[gnu::always_inline]] inline YarnLink unit_link(const FloatVector& d, Floats rest) {
   const Floats one(1.f), length = xsimd::sqrt(dot(d, d));
-  const Floats inverse = where_present(rest, one / length);
+  const Floats inverse = where_present(rest, one / xsimd::max(length, Floats(kLeastNormal)));
   YarnLink link{inverse * d, where_present(rest, length - rest), one, d, rest};
   link.along = link.n;
   return link;

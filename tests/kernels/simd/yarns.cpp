@@ -253,6 +253,24 @@ TEST_CASE("a link whose ends coincide is solved together with its neighbour") {
   }
 }
 
+TEST_CASE("ends that are as far apart as coinciding ones are taken to be, the other way: finite") {
+  constexpr std::uint32_t kLane = 3;
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    BlockOfYarns b;
+    b.x.set(b.slot_of(0, kLane), {0, 0, 0});
+    b.x.set(b.slot_of(1, kLane), {0, 0x1p-24 * b.cell, 0});
+    b.start(table);
+    const auto finite = [](float v) { return std::isfinite(v); };
+    table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
+    CHECK(std::isfinite(table.yarn_precondition(b.yarns(), b.block(), 0).product));
+    CHECK(finite(b.system[0].n.y[kLane]));
+    table.yarn_sweep(b.yarns(), b.block(), b.u.data(), b.scratch.data());
+    CHECK(std::ranges::all_of(b.u, finite));
+  }
+}
+
 TEST_CASE("a base is a whole number of cells, and u what is left") {
   for (const simd::Isa isa : supported_isas()) {
     for (const double cell : {0x1p-4, 0x1p-10, 0x1p-20}) {
