@@ -35,7 +35,7 @@ bool blown_up(const State& s, const Attempt& attempt, const StepReport& report) 
 
 Ended run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   const double h = attempt.h;
-  timed(report, Stage::predict, [&] { predict(s, h, team); });
+  if (!attempt.predicted) timed(report, Stage::predict, [&] { predict(s, h, team); });
   find_contacts(s, report);
   Ended ended = Ended::solved;
   timed(report, Stage::solve_positions, [&] { ended = solve_positions(s, attempt, report, team); });
@@ -75,7 +75,9 @@ Ended substep(State& s, const Attempt& attempt, StepReport& report, Team& team) 
   }
   report.status = before;
   ++report.scheme_fallbacks;
-  return run_stages(s, attempt, report, team);
+  Attempt by_paper = attempt;
+  by_paper.predicted = false;
+  return run_stages(s, by_paper, report, team);
 }
 
 }  // namespace weft

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/energy.h"
 #include "engine/measure.h"
@@ -70,9 +71,8 @@ double most_bend(const State& s) {
   return std::min(bend.most, bend.longest / static_cast<double>(s.yarn->longest()));
 }
 
-/// As many as the motion wants: see Bend.
-int choose_substeps(State& s, double dt, Team& team) {
-  if (s.settings.substeps != kAutomaticSubsteps) return s.settings.substeps;
+/// As many as the motion wants: see Bend. Predicts all of dt for it.
+int substeps_wanted(State& s, double dt, Team& team) {
   predict(s, dt, team);
   const double bend = max_strain_at(s, s.solved, team);
   const double wanted = std::ceil(std::sqrt(bend / (s.trouble.care() * most_bend(s))));
@@ -99,7 +99,7 @@ class Substeps {
     }
     projected_ = report_.visits;
     only_sweeps_ = s_.trouble.only_sweeps();
-    const int substeps = choose_substeps(s_, dt, team_);
+    const int substeps = choose_substeps(dt);
     for (int k = 1; k <= substeps; ++k) {
       left_ = s_.settings.max_iterations;
       parts_ = 0;
@@ -122,6 +122,14 @@ class Substeps {
   }
 
  private:
+  int choose_substeps(double dt) {
+    if (s_.settings.substeps != kAutomaticSubsteps) return s_.settings.substeps;
+    int wanted = 1;
+    timed(report_, Stage::predict, [&] { wanted = substeps_wanted(s_, dt, team_); });
+    predicted_ = wanted == 1;
+    return wanted;
+  }
+
   /// refused: the state could not be accepted. hopeless: halving is no answer to this substep, of
   /// which nothing has been done.
   enum class Outcome : std::uint8_t { done, refused, hopeless };
@@ -142,7 +150,8 @@ class Substeps {
                                         : may_leave ? OnFailure::leave
                                                     : OnFailure::sweep,
                           .only_sweeps = only_sweeps_,
-                          .care = std::sqrt(s_.trouble.care())};
+                          .care = std::sqrt(s_.trouble.care()),
+                          .predicted = std::exchange(predicted_, false)};
     const Ended ended = substep(s_, attempt, report_, team_);
     left_ -= report_.iterations - iterations;
     const bool answered = has_answer(ended);
@@ -208,6 +217,7 @@ class Substeps {
   std::int64_t projected_ = 0;  // visits of the projection
   bool only_sweeps_ = false;    // until they fail
   bool made_do_ = false;
+  bool predicted_ = false;  // the first substep, before it is tried
   // Of the present substep:
   int left_ = 0;          // iterations, of all its parts together
   int parts_ = 0;         // done

@@ -243,7 +243,7 @@ constexpr bool committed(Status status) { return status < Status::non_finite_inp
 
 /// The stages of a step, in order.
 enum class Stage : std::uint8_t {
-  predict,
+  predict,  ///< and, with automatic substeps, how many of them the motion wants
   find_contacts,
   solve_positions,
   commit,

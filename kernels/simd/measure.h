@@ -9,30 +9,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "kernels/simd/directions.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
-
-struct StrainColumns {
-  alignas(64) double largest[kernels::kLanes] = {};
-  alignas(64) double squares[kernels::kLanes] = {};
-
-  [[gnu::always_inline]] void add(std::size_t column, Doubles strain) {
-    xsimd::max(load(largest + column), strain).store_aligned(largest + column);
-    fused(strain, strain, load(squares + column)).store_aligned(squares + column);
-  }
-  StrainSums sums() const {
-    StrainSums s;
-    for (std::uint32_t k = 0; k < kernels::kLanes; ++k) {
-      s.largest = std::max(s.largest, largest[k]);
-      s.squares += squares[k];
-    }
-    return s;
-  }
-};
 
 [[gnu::always_inline]] inline Doubles strain(const Geometry& g, std::size_t c,
                                              const DoubleVector& d, bool rope) {
@@ -42,22 +25,43 @@ struct StrainColumns {
   return xsimd::select(inverse > zero, error, zero);
 }
 
-StrainSums strain_run(const Geometry& g, const Run& run, bool rope) {
-  StrainColumns columns;
-  for (std::size_t k = 0; k < run.length; k += kDoubles) {
-    const DoubleVector d = load(g.x, run.a + k) - load(g.x, run.b + k);
-    columns.add(k % kernels::kLanes, strain(g, run.constraint + k, d, rope));
+/// Of constraints first ... last, whole blocks of kLanes; between(c) is what lies between the ends
+/// of kDoubles of them. The columns stay in registers.
+template <class Between>
+[[gnu::always_inline]] inline StrainSums sum_strains(const Geometry& g, std::size_t first,
+                                                     std::size_t last, bool rope,
+                                                     Between&& between) {
+  constexpr std::size_t kVectors = kernels::kLanes / kDoubles;
+  Doubles most(0.), squares[kVectors];
+  std::ranges::fill(squares, Doubles(0.));
+  for (std::size_t block = first; block < last; block += kernels::kLanes) {
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      const std::size_t c = block + i * kDoubles;
+      const Doubles error = strain(g, c, between(c), rope);
+      most = xsimd::max(most, error);
+      squares[i] = fused(error, error, squares[i]);
+    }
   }
-  return columns.sums();
+  alignas(64) double largest[kDoubles], columns[kernels::kLanes];
+  most.store_aligned(largest);
+  for (std::size_t i = 0; i < kVectors; ++i) squares[i].store_aligned(columns + i * kDoubles);
+  return {*std::ranges::max_element(largest), std::accumulate(columns, std::end(columns), 0.)};
+}
+
+StrainSums strain_run(const Geometry& g, const Run& run, bool rope) {
+  const std::size_t a = run.a - std::size_t{run.constraint},
+                    b = run.b - std::size_t{run.constraint};
+  const auto between = [&](std::size_t c) { return load(g.x, a + c) - load(g.x, b + c); };
+  const std::size_t first = run.constraint, last = first + run.length;
+  return rope ? sum_strains(g, first, last, true, between)
+              : sum_strains(g, first, last, false, between);
 }
 
 StrainSums strain_singles(const Geometry& g, std::uint32_t first, std::uint32_t last, bool rope) {
-  StrainColumns columns;
-  for (std::size_t c = first; c < last; c += kDoubles) {
-    const DoubleVector d = gather(g.x, g.a + c) - gather(g.x, g.b + c);
-    columns.add((c - first) % kernels::kLanes, strain(g, c, d, rope));
-  }
-  return columns.sums();
+  const auto between = [&](std::size_t c) { return gather(g.x, g.a + c) - gather(g.x, g.b + c); };
+  return rope ? sum_strains(g, first, last, true, between)
+              : sum_strains(g, first, last, false, between);
 }
 
 /// Largest and smallest of what was taken; their order does not matter. What is not finite is
