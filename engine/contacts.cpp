@@ -19,15 +19,14 @@ bool is_sphere(const Model& m, std::uint32_t slot) {
   return m.hub[slot] && std::ranges::find(m.spheres, slot) != m.spheres.end();
 }
 
-/// Calls visit(sphere, particle, r1 + r2) for every pair nearer than r1 + r2 + extra(sphere).
-template <class Extra, class Visit>
+/// Calls visit(sphere, particle, r1 + r2) for every pair nearer than reach(r1) + r2, where r1 is
+/// the sphere's radius.
+template <class Reach, class Visit>
 void for_each_pair(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
-                   std::vector<std::uint32_t>& found, Extra&& extra, Visit&& visit) {
+                   std::vector<std::uint32_t>& found, Reach&& reach, Visit&& visit) {
   for (const std::uint32_t s : m.spheres) {
-    const double beyond = m.radius[s] + extra(s);
-    if (beyond <= 0) continue;
     const std::size_t near =
-        kernels.find_near(x, m.radius.data(), x[s], beyond, 0, m.slots(), found.data());
+        kernels.find_near(x, m.radius.data(), x[s], reach(m.radius[s]), 0, m.slots(), found.data());
     for (std::size_t i = 0; i < near; ++i) {
       if (may_touch(m, s, found[i])) visit(s, found[i], m.radius[s] + m.radius[found[i]]);
     }
@@ -84,7 +83,7 @@ void find_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsV
   contacts.distance.clear();
   contacts.next.clear();
   for_each_pair(
-      m, kernels, x, contacts.found, [&](std::uint32_t s) { return kMargin * m.radius[s]; },
+      m, kernels, x, contacts.found, [](double radius) { return (1 + kMargin) * radius; },
       [&](std::uint32_t s, std::uint32_t p, double distance) { append(contacts, s, p, distance); });
 }
 
@@ -92,9 +91,11 @@ std::size_t add_missed_contacts(const Model& m, const simd::Table& kernels, kern
                                 double tolerance, ContactStore& contacts) {
   const std::uint32_t before = contacts.count();
   for_each_pair(
-      m, kernels, x, contacts.found, [&](std::uint32_t) { return -tolerance; },
+      m, kernels, x, contacts.found,
+      [&](double radius) { return std::max(0.0, radius - tolerance); },
       [&](std::uint32_t s, std::uint32_t p, double distance) {
-        if (!listed(contacts, s, p)) append(contacts, s, p, distance);
+        const bool deep = distance - length(x[s] - x[p]) > tolerance;
+        if (deep && !listed(contacts, s, p)) append(contacts, s, p, distance);
       });
   return contacts.count() - before;
 }
@@ -103,7 +104,7 @@ double max_penetration(const Model& m, const simd::Table& kernels, kernels::Vect
                        ContactStore& contacts) {
   double deepest = 0;
   for_each_pair(
-      m, kernels, x, contacts.found, [](std::uint32_t) { return 0.; },
+      m, kernels, x, contacts.found, [](double radius) { return radius; },
       [&](std::uint32_t s, std::uint32_t p, double distance) {
         deepest = std::max(deepest, distance - length(x[s] - x[p]));
       });

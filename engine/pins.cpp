@@ -1,17 +1,22 @@
 #include "engine/pins.h"
 
+#include <utility>
+
 namespace weft {
 
 using kernels::Vector;
 using kernels::Vectors;
 
 void Pins::watch(const Model& model, const Vectors& position) {
-  moving_ = true;
-  if (!pins_.empty()) return;
-  for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
-    if (!model.is_particle(slot) || model.inverse_mass[slot] != 0) continue;
-    pins_.push_back({.slot = slot, .from = position[slot]});
+  if (pins_.empty()) {
+    std::vector<Pin> pins;  // all of them or, where memory runs out, none
+    for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
+      if (!model.is_particle(slot) || model.inverse_mass[slot] != 0) continue;
+      pins.push_back({.slot = slot, .from = position[slot]});
+    }
+    pins_ = std::move(pins);
   }
+  moving_ = true;
 }
 
 void Pins::put_down(const Vectors& position) {

@@ -10,10 +10,8 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   velocity = model->initial_velocity;
   solved.resize(model->slots());
   next_velocity.resize(model->slots());
-  if (settings.substeps != 1 || settings.solver != Solver::gauss_seidel) {
-    start_position.resize(model->slots());
-    start_velocity.resize(model->slots());
-  }
+  start_position.resize(model->slots());
+  start_velocity.resize(model->slots());
   if (settings.scheme == Scheme::rattle) kicks.resize((model->slots() + kStretch - 1) / kStretch);
   contacts = make_contact_store(*model);
   if (settings.backend == Backend::reference) {

@@ -7,8 +7,8 @@
 ///   commit              next_velocity
 ///   correct_velocities  next_velocity
 ///   report              nothing
-/// position and velocity change only when a substep is known to be finite (accept in step.cpp), and
-/// are taken back when a later substep of the same step is not.
+/// position and velocity change only when a substep is known to be finite (transaction.h), and are
+/// taken back when a later substep of the same step is not.
 #pragma once
 
 #include <weft/weft.h>
@@ -35,13 +35,13 @@ inline constexpr std::size_t kStretch = 1024;  // slots that a thread takes at a
 
 struct State {
   std::shared_ptr<const Model> model;
-  Settings settings;  // isa and threads resolved
+  Settings settings;  // isa, solver, substeps and velocity_correction resolved
 
   kernels::Vectors position, velocity;
   kernels::Vectors force;   // empty: none
   kernels::Vectors solved;  // where the position loop works; the next positions
   kernels::Vectors next_velocity;
-  kernels::Vectors start_position, start_velocity;  // of the step; only where needed
+  kernels::Vectors start_position, start_velocity;  // of the step
   ContactStore contacts;
   Pins pins;
   Trouble trouble;

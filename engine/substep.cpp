@@ -66,9 +66,9 @@ Ended substep(State& s, const Attempt& attempt, StepReport& report, Team& team) 
   Attempt by_rattle = attempt;
   by_rattle.start = s.position.view();
   const Ended ended = run_stages(s, by_rattle, report, team);
-  const bool good = report.status == Status::fixed_iterations ||
-                    (report.status == Status::converged && has_answer(ended) &&
-                     keeps_energy(measure_kicks(s, attempt.h, team)));
+  const bool solved = report.status == Status::converged || report.status == Status::passed_through;
+  const bool good = s.settings.iterations > 0 || (solved && has_answer(ended) &&
+                                                  keeps_energy(measure_kicks(s, attempt.h, team)));
   if (good) {
     worsen(report, before);
     return ended;

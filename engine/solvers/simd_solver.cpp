@@ -138,9 +138,10 @@ kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, kernels:
                                                                      : kernels::Directions::each;
   SimdLoop loop(*this, {.x = x, .start = start}, team);
   const auto result = kernels::iterate(loop, directions, limits(budget));
-  for (std::size_t k = 0; model_.has_contacts() && k < contacts_.contact.size(); ++k) {
-    const std::uint32_t contact = contacts_.contact[k];
-    if (contact < contact_impulse_.size()) contact_impulse_[contact] = contacts_.impulse[k];
+  for (const ContactLanes::Range& range : contacts_.spheres) {
+    for (std::size_t k = range.first; k < range.first + range.real; ++k) {
+      contact_impulse_[contacts_.contact[k]] = contacts_.impulse[k];
+    }
   }
   return result;
 }

@@ -82,6 +82,8 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
   const auto wanted =
       static_cast<std::size_t>(settings.threads > 0 ? settings.threads : kMostShares);
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
+  system_.reserve(layout_.rows());
+  t_.reserve(u_.size());
   scratch_.resize(layout_.scratch_rows() * std::min(wanted, kMostShares));
 }
 
@@ -336,7 +338,8 @@ void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::Lo
   solve(goal, kForcing, max_iterations, team, result);
 }
 
-/// Room for the linear system, from when it is first wanted.
+/// The linear system, from when it is first wanted; room for it was made, and is not touched
+/// before.
 void YarnSolver::make_system() {
   system_.resize(layout_.rows());
   t_.resize(u_.size());

@@ -313,7 +313,7 @@ class Cloth {
 
   std::size_t particle_count() const;
   const Model& model() const;
-  const Settings& settings() const;  ///< isa, solver and velocity_correction resolved
+  const Settings& settings() const;  ///< isa, solver, substeps, velocity_correction: what is used
 
   Vec3 position(std::uint32_t particle) const;
   Vec3 velocity(std::uint32_t particle) const;

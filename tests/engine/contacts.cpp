@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
@@ -130,6 +131,68 @@ TEST_CASE("an early over-push is taken back") {
     CHECK(length(cloth.velocity(0)) < exactness(method.backend, 1e-8, 50));
     CHECK(distance(cloth.position(1), {0.3, 0, 0}) < exactness(method.backend, 1e-10, 0.5));
     CHECK(distance(cloth.position(2), {0.6, 0, 0}) < exactness(method.backend, 1e-10, 0.5));
+  }
+}
+
+/// Two chains of `links` links in one line, from a fixed sphere to the left and to the right. Their
+/// inner ends fly into it, their heavy outer ends away from it.
+SceneDescription chains_at_a_sphere(std::uint32_t links) {
+  constexpr double kLink = 0.02;
+  SceneDescription scene;
+  scene.gravity = {0, 0, 0};
+  scene.positions = {{0, 0, 0}};
+  scene.velocities = {{0, 0, 0}};
+  scene.masses = {1};
+  scene.radii = {1};
+  scene.fixed = scene.spheres = {0};
+  for (const double side : {1., -1.}) {
+    for (std::uint32_t i = 0; i <= links; ++i) {
+      const auto particle = static_cast<std::uint32_t>(scene.positions.size());
+      const double speed = i == 0 ? -1 : i == links ? 1 : 0;
+      scene.positions.push_back({side * (1 + kLink * i), 0, 0});
+      scene.velocities.push_back({side * speed, 0, 0});
+      scene.masses.push_back(i == links ? 1000 : 1);
+      scene.radii.push_back(0);
+      if (i > 0) scene.constraints.push_back({particle - 1, particle, kLink});
+    }
+  }
+  return scene;
+}
+
+TEST_CASE("contacts take back over-pushes of thousands of iterations, each its own") {
+  constexpr std::uint32_t kLinks = 199;
+  for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+    CAPTURE(name(scheme));
+    Settings settings = tight(1e-3);
+    settings.scheme = scheme;
+    settings.contact_tolerance = 1e-6;
+    Cloth cloth = cloth_of(chains_at_a_sphere(kLinks), settings);
+    CHECK(step(cloth, 0.01).iterations > 4096);  // more than one look at a standstill
+    for (std::uint32_t i = 1; i <= kLinks + 1; ++i) {
+      CHECK(std::abs(cloth.position(i).x + cloth.position(i + kLinks + 1).x) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("a particle's own size keeps it off the smallest of spheres") {
+  SceneDescription scene;  // a ball, and what flies past the sphere and drags it there
+  scene.gravity = {0, 0, 0};
+  scene.positions = {{0, 0, 0}, {0.8, 0, 0}, {-0.2, 0, 0}};
+  scene.velocities = {{0, 0, 0}, {0, 0, 0}, {-45, 0, 0}};
+  scene.masses = {1, 1, 3};
+  scene.fixed = scene.spheres = {0};
+  scene.constraints = {{1, 2, 1}};
+  for (const double radius : {5e-5, 2e-4}) {
+    scene.radii = {radius, 0.5, 0};
+    for (const Solver solver : {Solver::gauss_seidel, Solver::yarn, Solver::direct}) {
+      CAPTURE(radius);
+      CAPTURE(name(solver));
+      Cloth cloth = cloth_of(scene, {.substeps = 1, .solver = solver});
+      const StepReport report = step(cloth, 0.01);
+      CHECK(report.status == Status::converged);
+      CHECK(report.contacts == 1);
+      CHECK(report.max_penetration <= 1e-4);
+    }
   }
 }
 

@@ -64,11 +64,27 @@ TEST_CASE("smaller steps see what a long one passes over") {
 
 TEST_CASE("a fixed number of iterations hides no crossing") {
   const Backend backend = each_backend();
-  Settings settings = on(backend);
-  settings.iterations = 3;
+  for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+    CAPTURE(name(scheme));
+    Settings settings = on(backend);
+    settings.scheme = scheme;
+    settings.iterations = 3;
+    Cloth cloth = cloth_of(shot(-0.5, 100, 0), settings);
+    const StepReport crossing = step(cloth, 0.01);
+    CHECK(crossing.status == Status::passed_through);
+    CHECK(crossing.iterations == 3);
+    CHECK(crossing.scheme_fallbacks == 0);
+    CHECK(step(cloth, 0.01).status == Status::fixed_iterations);
+  }
+}
+
+TEST_CASE("a crossing is no reason to leave scheme rattle") {
+  Settings settings = on(each_backend());
+  settings.scheme = Scheme::rattle;
   Cloth cloth = cloth_of(shot(-0.5, 100, 0), settings);
-  CHECK(step(cloth, 0.01).status == Status::passed_through);
-  CHECK(step(cloth, 0.01).status == Status::fixed_iterations);
+  const StepReport report = step(cloth, 0.01);
+  CHECK(report.status == Status::passed_through);
+  CHECK(report.scheme_fallbacks == 0);
 }
 
 }  // namespace

@@ -71,6 +71,26 @@ TEST_CASE("a step without memory changes nothing, and the next one is as if it h
   }
 }
 
+TEST_CASE("a fixed particle that found no memory has not moved, and travels the next time") {
+  const auto moved = [](Cloth& cloth) {
+    const Vec3 at = cloth.position(11);
+    return cloth.move_fixed(11, {at.x, at.y + 0.005, at.z});
+  };
+  Cloth cloth = cloth_of(scene_of("hang", 12), {});
+  const std::uint64_t before = cloth.state_hash();
+  for (std::size_t granted = 0; granted < 4; ++granted) {
+    const FailingAllocations failing(granted);
+    CHECK_THROWS_AS((void)moved(cloth), std::bad_alloc);
+  }
+  CHECK(cloth.state_hash() == before);
+  Cloth untouched = cloth_of(scene_of("hang", 12), {});
+  for (Cloth* each : {&cloth, &untouched}) {
+    CHECK(moved(*each));
+    CHECK(step(*each, 0.01).status == Status::converged);
+  }
+  CHECK(cloth.state_hash() == untouched.state_hash());
+}
+
 TEST_CASE("forces that found no memory are not half there") {
   Cloth cloth = cloth_of(scene_of("hang", 5), {});
   const std::vector<Vec3> forces(cloth.particle_count(), Vec3{1, 0, 0});
