@@ -16,7 +16,7 @@
 
 namespace weft::perf {
 
-/// At most kPiece constraints, all in one run or all singles: the engine's unit of work (Chunk).
+/// At most kChunk constraints, all in one run or all singles: the engine's unit of work (Chunk).
 struct Piece {
   kernels::Run run;
   std::uint32_t colour = 0;

@@ -137,10 +137,10 @@ constexpr Kernel kKernels[] = {
          table.yarn_sweep(loom.yarns_anew(), block, loom.u.data(), loom.scratch.data());
        });
      }},
-    {"yarn_linearise", 52, 58,
+    {"yarn_linearise", 64, 64,
      [](const simd::Table& table, Loom& loom) {
        for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
-         table.yarn_linearise(loom.yarns(), block, loom.u.data(), loom.scratch.data());
+         table.yarn_linearise(loom.yarns_anew(), block, loom.u.data(), loom.scratch.data());
        });
      }},
     {"yarn_precondition", 40, 40,

@@ -11,9 +11,9 @@
 ///     lambda_k = r_k b_k + m_{k+1} lambda_{k+1}
 ///     x_k += w_k (lambda_{k-1} n_{k-1} - lambda_k n_k)
 ///
-/// Where a yarn has ended, or a lane has none, rows have rest length 0: their n, e and lambda are
-/// 0. A pivot that all but vanishes belongs to a constraint that those before it imply (a straight
-/// yarn between two fixed ends): its impulse is taken as 0.
+/// Where a yarn has ended, or a lane has none, rows have rest length 0: their pivots, e and lambda
+/// are 0. A pivot that all but vanishes belongs to a constraint that those before it imply (a
+/// straight yarn between two fixed ends): its impulse is taken as 0.
 ///
 /// Scheme rattle has impulses along s, the directions at the start of the substep, while errors
 /// change along n: A = J(x) M^-1 J(q)^T is not symmetric, but tridiagonal all the same,
@@ -76,13 +76,15 @@ struct YarnLink {
 #endif
 }
 
-/// d: from particle k + 1 to particle k. Should it be 0 all the same n is 0: it has no impulse.
+/// d: from particle k + 1 to particle k. Should it be 0 all the same any direction separates them.
 [[gnu::always_inline]] inline YarnLink unit_link(const FloatVector& d, Floats rest) {
   const Floats one(1.f), length = xsimd::sqrt(dot(d, d));
-  const Floats inverse = where_present(rest, one / xsimd::max(length, Floats(kLeastNormal)));
-  YarnLink link{inverse * d, where_present(rest, length - rest), one, d, rest};
-  link.along = link.n;
-  return link;
+  const auto distinct = length >= Floats(kLeastNormal);
+  const Floats inverse = one / xsimd::select(distinct, length, one);
+  const FloatVector n{where_present(rest, inverse * d.x),
+                      where_present(rest, xsimd::select(distinct, inverse * d.y, one)),
+                      where_present(rest, inverse * d.z)};
+  return {n, where_present(rest, length - rest), one, n, rest};
 }
 
 /// The same row of the system times the constraint's length, n = d, and its impulse over it: a
@@ -348,9 +350,8 @@ template <class At, class Keep>
 /// keep comes back as speed: sphere_drop in 8 substeps gains 2 mJ instead of less than 0.03.) A
 /// third solve, and all that follow, stay within the scratch, or the rows in place: 0.8 times as
 /// long in the caches, 0.65 times where yarns have a thousand particles. (Kept by the first solve
-/// already: hang 40 x 40 takes 1.03 times as long, 300 x 300 0.97, and the n of a link that has
-/// collapsed is not its d. A link whose ends a solve brings together exactly is left to the next
-/// sweep.)
+/// already: hang 40 x 40 takes 1.03 times as long, 300 x 300 0.97. A link whose ends a solve brings
+/// together exactly is left to the next sweep.)
 template <Base kBase, class At>
 [[gnu::always_inline]] inline Swept sweep_watched(const Yarns& y, const YarnBlock& block, At at,
                                                   At base, YarnScratch* scratch, float enough,

@@ -36,6 +36,7 @@ struct BlockOfYarns {
   std::uint32_t lanes = kLanes;
   bool placed = false;  // the rows have the base
   bool from_memory = false;
+  std::uint32_t patches_ahead = 0;  // behind the block's own: of a block that comes next
 
   explicit BlockOfYarns(Stand how = Stand::quads)
       : stand(how),
@@ -142,8 +143,13 @@ struct BlockOfYarns {
     if (stand == Stand::quads) return block;
     block.access =
         stand == Stand::in_place ? simd::YarnAccess::in_place : simd::YarnAccess::patches;
-    block.last_patch = static_cast<std::uint32_t>(patches.size());
+    block.last_patch = static_cast<std::uint32_t>(patches.size()) - patches_ahead;
+    block.patches_ahead = patches_ahead;
     return block;
+  }
+  void add_patches_ahead(std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) patches.push_back(simd::YarnPatch(patches[i]));
+    patches_ahead = count;
   }
   void push(const kernels::Vectors& d) {
     for_each_component([&](std::size_t quad, std::size_t place) {

@@ -199,12 +199,16 @@ TEST_CASE("in quads, in place or in patches: the same bits, and nothing beside t
       const std::vector<float> expected = worked_on(in_quads, simd::table(isa));
       CHECK(std::ranges::count(expected, 0.f) < std::ssize(expected) / 8);
       for (const Stand stand : {Stand::in_place, Stand::patches, Stand::singles}) {
-        CAPTURE(static_cast<int>(stand));
-        BlockOfYarns b(stand);
-        b.from_memory = from_memory;
-        CHECK(worked_on(b, simd::table(isa)) == expected);
-        b.for_each_component([&](std::size_t, std::size_t place) { b.u[place] = 0; });
-        CHECK(std::ranges::count(b.u, 0.f) == std::ssize(b.u));
+        for (const std::uint32_t patches_ahead : {0u, 1u, 2u}) {
+          CAPTURE(static_cast<int>(stand));
+          CAPTURE(patches_ahead);
+          BlockOfYarns b(stand);
+          b.from_memory = from_memory;
+          if (stand != Stand::in_place) b.add_patches_ahead(patches_ahead);
+          CHECK(worked_on(b, simd::table(isa)) == expected);
+          b.for_each_component([&](std::size_t, std::size_t place) { b.u[place] = 0; });
+          CHECK(std::ranges::count(b.u, 0.f) == std::ssize(b.u));
+        }
       }
     }
   }
@@ -253,21 +257,57 @@ TEST_CASE("a link whose ends coincide is solved together with its neighbour") {
   }
 }
 
-TEST_CASE("ends that are as far apart as coinciding ones are taken to be, the other way: finite") {
-  constexpr std::uint32_t kLane = 3;
+/// Ends that are as far apart as coinciding ones are taken to be, the other way.
+void collapse_exactly(BlockOfYarns& b, std::uint32_t lane) {
+  b.x.set(b.slot_of(0, lane), {0, 0, 0});
+  b.x.set(b.slot_of(1, lane), {0, 0x1p-24 * b.cell, 0});
+}
+
+TEST_CASE("a link of length 0, after all, is swept finitely") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
     const simd::Table& table = simd::table(isa);
     BlockOfYarns b;
-    b.x.set(b.slot_of(0, kLane), {0, 0, 0});
-    b.x.set(b.slot_of(1, kLane), {0, 0x1p-24 * b.cell, 0});
+    collapse_exactly(b, 3);
     b.start(table);
-    const auto finite = [](float v) { return std::isfinite(v); };
-    table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
-    CHECK(std::isfinite(table.yarn_precondition(b.yarns(), b.block(), 0).product));
-    CHECK(finite(b.system[0].n.y[kLane]));
     table.yarn_sweep(b.yarns(), b.block(), b.u.data(), b.scratch.data());
-    CHECK(std::ranges::all_of(b.u, finite));
+    CHECK(std::ranges::all_of(b.u, [](float v) { return std::isfinite(v); }));
+  }
+}
+
+TEST_CASE("a link of length 0 has a direction in the linear system, and others their solution") {
+  constexpr std::uint32_t kLane = 3;
+  for (const simd::Isa isa : supported_isas()) {
+    for (const bool rattle : {false, true}) {
+      CAPTURE(text(isa));
+      CAPTURE(rattle);
+      const simd::Table& table = simd::table(isa);
+      BlockOfYarns usual, b;
+      for (BlockOfYarns* each : {&usual, &b}) {
+        kernels::Vectors q = each->x;
+        if (each == &b) collapse_exactly(b, kLane);
+        if (rattle) each->keep_start(table, each->x);
+        each->x = rattle ? q : each->x;
+        each->start(table);
+        float* t = each->t.data();
+        simd::YarnScratch* scratch = each->scratch.data();
+        table.yarn_linearise(each->yarns(), each->block(), each->u.data(), scratch);
+        const auto before = table.yarn_precondition(each->yarns(), each->block(), 0);
+        table.yarn_push(each->yarns(), each->block(), 0, t, scratch);
+        const float curvature = table.yarn_pull(each->yarns(), each->block(), t, scratch);
+        const float alpha = before.product / curvature;
+        CHECK(alpha == doctest::Approx(1).epsilon(1e-4));
+        CHECK(table.yarn_precondition(each->yarns(), each->block(), alpha).worst < 1e-5f);
+        table.yarn_finish(each->yarns(), each->block(), each->u.data(), scratch);
+      }
+      const kernels::Vectors moved = b.end(table), expected = usual.end(table);
+      for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+        for (std::uint32_t k = 0; lane != kLane && k < BlockOfYarns::length(lane); ++k) {
+          const std::uint32_t slot = b.slot_of(k, lane);
+          CHECK(kernels::length(moved[slot] - expected[slot]) < 1e-6);
+        }
+      }
+    }
   }
 }
 
