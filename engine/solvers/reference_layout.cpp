@@ -77,8 +77,7 @@ void list_block_neighbours(const Model& model, ReferenceLayout& layout) {
       }
     }
     std::ranges::sort(blocks);
-    const auto rest = std::ranges::unique(blocks);
-    blocks.erase(rest.begin(), rest.end());
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
     layout.block_neighbours.push_back(blocks);
   }
 }

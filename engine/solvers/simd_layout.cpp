@@ -114,8 +114,7 @@ void list_neighbours(SimdLayout& layout) {
       list.insert(list.end(), chunks.begin(), chunks.end());
     });
     std::ranges::sort(list);
-    const auto rest = std::ranges::unique(list);
-    list.erase(rest.begin(), rest.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
     layout.neighbours.push_back(list);
   }
 }

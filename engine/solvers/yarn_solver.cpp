@@ -79,8 +79,8 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       solves_(layout_.blocks.size()),
       stubborn_(layout_.blocks.size()),
       others_(model, settings) {
-  const auto wanted =
-      static_cast<std::size_t>(settings.threads > 0 ? settings.threads : kMostShares);
+  const std::size_t wanted =
+      settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
   system_.reserve(layout_.rows());
   t_.reserve(u_.size());
