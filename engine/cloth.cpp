@@ -64,6 +64,21 @@ Result<Cloth> Cloth::create(std::shared_ptr<const Model> model, const Settings& 
   return Cloth(std::make_unique<Impl>(std::move(model), resolved));
 }
 
+Cloth Cloth::clone() const {
+  Cloth copy(std::make_unique<Impl>(impl_->model, impl_->settings));
+  copy.impl_->copy(*impl_);
+  return copy;
+}
+
+Result<void> Cloth::copy_state(const Cloth& from) {
+  if (from.impl_->model != impl_->model) {
+    return Error{"from: is a cloth of another model (" + std::to_string(from.particle_count()) +
+                 " particles)"};
+  }
+  impl_->copy(*from.impl_);
+  return {};
+}
+
 Result<StepReport> Cloth::step(double dt) {
   if (auto valid = validate_time_step(dt); !valid) return Error{valid.error()};
   return weft::step(*impl_, dt);
@@ -132,6 +147,12 @@ Result<void> Cloth::write_forces(std::span<const Vec3> in) {
   return {};
 }
 
+Result<void> Cloth::set_gravity(Vec3 gravity) {
+  if (auto r = validate_gravity(gravity); !r) return r;
+  impl_->gravity = to_internal(gravity);
+  return {};
+}
+
 Result<void> Cloth::move_fixed(std::uint32_t particle, Vec3 position) {
   if (particle >= particle_count()) {
     return Error{"particle: no such particle, the scene has " + std::to_string(particle_count()) +
@@ -153,7 +174,7 @@ double Cloth::max_penetration() const {
                                impl_->contacts);
 }
 Energy Cloth::energy() const {
-  return measure_energy(*impl_->model, impl_->position, impl_->velocity);
+  return measure_energy(*impl_->model, impl_->gravity, impl_->position, impl_->velocity);
 }
 
 std::uint64_t Cloth::state_hash() const {

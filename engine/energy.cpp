@@ -18,7 +18,7 @@ Energies measure(const State& s) {
   for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
     const double w = s.model->inverse_mass[slot];
     if (w == 0) continue;
-    Vector a = s.model->gravity;
+    Vector a = s.gravity;
     if (s.force.size() > 0) a = a + w * s.force[slot];
     const Vector v = s.velocity[slot], next = s.next_velocity[slot];
     const double kinetic = dot(next, next) / w;

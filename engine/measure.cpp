@@ -23,12 +23,13 @@ Strain measure_strain(const Model& m, const kernels::Vectors& x) {
   return strain;
 }
 
-Energy measure_energy(const Model& m, const kernels::Vectors& x, const kernels::Vectors& v) {
+Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,
+                      const kernels::Vectors& v) {
   Energy energy;
   for (std::size_t i = 0; i < m.slots(); ++i) {
     if (m.inverse_mass[i] == 0) continue;
     energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
-    energy.potential -= m.mass[i] * dot(m.gravity, x[i]);
+    energy.potential -= m.mass[i] * dot(gravity, x[i]);
   }
   return energy;
 }

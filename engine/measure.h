@@ -9,7 +9,7 @@ namespace weft {
 
 /// | |a-b| - rest | / rest over all active constraints; a slack rope has none.
 Strain measure_strain(const Model& model, const kernels::Vectors& position);
-Energy measure_energy(const Model& model, const kernels::Vectors& position,
+Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
                       const kernels::Vectors& velocity);
 /// Whether all components, and the squared distances between any two vectors, are finite.
 bool all_finite(const kernels::Vectors& vectors);

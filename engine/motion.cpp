@@ -13,7 +13,7 @@ reference::Motion reference_motion(State& s) {
   reference::Motion m;
   m.particles = s.model->slots();
   m.inverse_mass = s.model->inverse_mass.data();
-  m.gravity = s.model->gravity;
+  m.gravity = s.gravity;
   if (s.force.size() > 0) m.force = s.force.view();
   m.position = s.position.view();
   m.velocity = s.velocity.view();
@@ -25,7 +25,7 @@ reference::Motion reference_motion(State& s) {
 simd::Motion simd_motion(State& s) {
   simd::Motion m;
   m.inverse_mass = s.model->inverse_mass.data();
-  m.gravity = s.model->gravity;
+  m.gravity = s.gravity;
   if (s.force.size() > 0) m.force = s.force.view();
   m.position = s.position.view();
   m.velocity = s.velocity.view();

@@ -1,5 +1,8 @@
 #include "engine/state.h"
 
+#include <utility>
+
+#include "engine/bytes_of.h"
 #include "engine/isa.h"
 
 namespace weft {
@@ -8,6 +11,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     : model(std::move(shared)), settings(chosen), kernels(&simd::table(to_kernel(chosen.isa))) {
   position = model->initial_position;
   velocity = model->initial_velocity;
+  gravity = model->gravity;
   solved.resize(model->slots());
   next_velocity.resize(model->slots());
   start_position.resize(model->slots());
@@ -24,17 +28,28 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   if (settings.solver == Solver::yarn) yarn.emplace(*model, settings, *kernels);
 }
 
+/// What needs memory first: all of it is copied or, where memory runs out, nothing.
+void State::copy(const State& from) {
+  kernels::Vectors its_force = from.force;
+  Pins its_pins = from.pins;
+  position = from.position;
+  velocity = from.velocity;
+  force = std::move(its_force);
+  gravity = from.gravity;
+  pins = std::move(its_pins);
+  trouble = from.trouble;
+  placed = from.placed;
+}
+
 std::size_t State::bytes() const {
   std::size_t sum = 0;
   for (const kernels::Vectors* v : {&position, &velocity, &force, &solved, &next_velocity,
                                     &start_position, &start_velocity, &predicted}) {
     sum += v->bytes();
   }
-  const auto list = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
-  sum += list(contacts.sphere) + list(contacts.particle) + list(contacts.distance) +
-         list(contacts.first) + list(contacts.next) + list(contacts.found);
-  sum += kicks.capacity() * sizeof(kernels::Kicks);
-  sum += pins.bytes();
+  sum += bytes_of(contacts.sphere) + bytes_of(contacts.particle) + bytes_of(contacts.distance) +
+         bytes_of(contacts.first) + bytes_of(contacts.next) + bytes_of(contacts.found);
+  sum += bytes_of(kicks) + pins.bytes();
   if (reference) sum += reference->bytes();
   if (simd) sum += simd->bytes();
   if (direct) sum += direct->bytes();

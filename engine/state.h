@@ -38,7 +38,8 @@ struct State {
   Settings settings;  // isa, solver, substeps and velocity_correction resolved
 
   kernels::Vectors position, velocity;
-  kernels::Vectors force;   // empty: none
+  kernels::Vectors force;  // empty: none
+  kernels::Vector gravity;
   kernels::Vectors solved;  // where the position loop works; the next positions
   kernels::Vectors next_velocity;
   kernels::Vectors start_position, start_velocity;  // of the step
@@ -59,6 +60,8 @@ struct State {
   std::shared_ptr<Team::Meeting> meeting = Team::make_meeting();  // of the team of each step
 
   State(std::shared_ptr<const Model> model, const Settings& settings);
+  /// Goes on from another state of the same model.
+  void copy(const State& from);
   std::size_t bytes() const;
 };
 

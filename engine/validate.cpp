@@ -8,6 +8,12 @@
 namespace weft {
 namespace {
 
+/// So that sums of radii have squares, with a margin.
+constexpr double kMostRadius = 1e150;
+/// So that places of particles and numbers of constraints, padding and all, have 32 bits.
+constexpr std::size_t kMostParticles = std::size_t{1} << 28;
+constexpr std::size_t kMostConstraints = std::size_t{1} << 29;
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", value);
@@ -31,6 +37,13 @@ Result<void> validate_positive(std::string_view field, double value) {
     return refuse(field, "must be finite and greater than 0", number(value));
   }
   return {};
+}
+
+/// Of a length: so that squares of it, and their inverses, are numbers with all digits.
+Result<void> validate_square(std::string_view field, double value) {
+  const double square = value * value;
+  if (std::isnormal(square) && std::isnormal(1 / square)) return {};
+  return refuse(field, "is too small or too large to be squared", number(value));
 }
 
 Result<void> validate_particle(const std::string& field, std::uint32_t particle,
@@ -61,7 +74,8 @@ Result<void> validate_constraint(std::size_t index, const Constraint& c, std::si
   if (c.kind != ConstraintKind::distance && c.kind != ConstraintKind::rope) {
     return refuse(field + ".kind", "unknown", std::to_string(static_cast<int>(c.kind)));
   }
-  return validate_positive(field + ".rest_length", c.rest_length);
+  if (auto r = validate_positive(field + ".rest_length", c.rest_length); !r) return r;
+  return validate_square(field + ".rest_length", c.rest_length);
 }
 
 std::uint64_t key(const Constraint& c) {
@@ -86,8 +100,9 @@ Result<void> validate_no_duplicates(std::span<const Constraint> constraints) {
 }
 
 Result<void> validate_constraints(std::span<const Constraint> constraints, std::size_t particles) {
-  if (constraints.size() >= kNoIndex) {
-    return refuse("constraints", "too many", std::to_string(constraints.size()));
+  if (constraints.size() > kMostConstraints) {
+    return refuse("constraints", "at most " + std::to_string(kMostConstraints),
+                  std::to_string(constraints.size()));
   }
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     if (auto r = validate_constraint(i, constraints[i], particles); !r) return r;
@@ -105,6 +120,10 @@ Result<void> validate_contacts(const SceneDescription& d) {
   for (std::size_t i = 0; i < d.radii.size(); ++i) {
     if (!std::isfinite(d.radii[i]) || d.radii[i] < 0) {
       return refuse(element("radii", i), "must be finite and at least 0", number(d.radii[i]));
+    }
+    if (d.radii[i] > kMostRadius) {
+      return refuse(element("radii", i), "must be at most " + number(kMostRadius),
+                    number(d.radii[i]));
     }
   }
   if (auto r = validate_index_list("spheres", d.spheres, d.positions.size()); !r) return r;
@@ -149,12 +168,24 @@ Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vect
   return {};
 }
 
-Result<void> validate_time_step(double dt) { return validate_positive("dt", dt); }
+Result<void> validate_gravity(Vec3 gravity) {
+  if (finite(gravity)) return {};
+  return refuse("gravity", "must be finite", text(gravity));
+}
+
+Result<void> validate_time_step(double dt) {
+  if (auto r = validate_positive("dt", dt); !r) return r;
+  if (!std::isfinite(1 / dt)) return refuse("dt", "is too small to be inverted", number(dt));
+  return {};
+}
 
 Result<void> validate(const SceneDescription& d) {
   const std::size_t particles = d.positions.size();
   if (particles == 0) return refuse("positions", "a scene needs at least one particle", "0");
-  if (particles >= kNoIndex) return refuse("positions", "too many", std::to_string(particles));
+  if (particles > kMostParticles) {
+    return refuse("positions", "at most " + std::to_string(kMostParticles),
+                  std::to_string(particles));
+  }
   if (auto r = validate_vectors("positions", d.positions, particles); !r) return r;
   if (!d.velocities.empty()) {
     if (auto r = validate_vectors("velocities", d.velocities, particles); !r) return r;
@@ -166,7 +197,7 @@ Result<void> validate(const SceneDescription& d) {
       return refuse(element("masses", i), "is too small to be inverted", number(d.masses[i]));
     }
   }
-  if (!finite(d.gravity)) return refuse("gravity", "must be finite", text(d.gravity));
+  if (auto r = validate_gravity(d.gravity); !r) return r;
   if (auto r = validate_index_list("fixed", d.fixed, particles); !r) return r;
   if (auto r = validate_constraints(d.constraints, particles); !r) return r;
   return validate_contacts(d);

@@ -7,6 +7,7 @@ namespace weft {
 
 Result<void> validate(const SceneDescription& description);
 Result<void> validate(const Settings& settings);
+Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_time_step(double dt);
 /// One finite vector per particle.
 Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vectors,

@@ -165,7 +165,7 @@ enum class Backend : std::uint8_t { reference, simd };
 /// that the machine has. avx2 and avx512 give the same bits.
 enum class Isa : std::uint8_t { automatic, sse2, avx2, avx512 };
 
-inline constexpr int kMaxThreads = 256;
+inline constexpr int kMaxThreads = 64;
 inline constexpr int kAutomaticSubsteps = 0;
 
 /// How a cloth is solved. The defaults converge to 1 % the fastest way that is known here;
@@ -178,8 +178,8 @@ struct Settings {
   /// parts of it (StepReport::halvings). Fine meshes want small steps. Iterations, and their
   /// bounds, are those of one substep.
   int substeps = kAutomaticSubsteps;
-  /// 0: iterate to the tolerance. K > 0: exactly K iterations per step whatever the error, nothing
-  /// skipped, frozen directions renewed once per step.
+  /// 0: iterate to the tolerance. K > 0: exactly K iterations per substep whatever the error,
+  /// nothing skipped, frozen directions renewed once per substep.
   int iterations = 0;
   /// frozen: the same directions serve for at most so many iterations; 0: until all errors along
   /// them are within tolerance, as the paper has it (section 4.4). Exact solutions along directions
@@ -190,13 +190,15 @@ struct Settings {
                                      ///< as many besides for a start that is projected
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
-  double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit
+  double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit;
+                                     ///< gauss_seidel on the reference backend only
   Solver solver = Solver::automatic;
   Scheme scheme = Scheme::paper;
   Backend backend = Backend::simd;
   Isa isa = Isa::automatic;
-  /// Most threads of the caller's arena that a step may use; 0: as many as it offers. Small cloths
-  /// use one. The result does not depend on it.
+  /// Most threads of the caller's arena that a step may use; 0: as many as it offers, up to
+  /// kMaxThreads; yarns are shared out among 16 at most, and small cloths use one. The result does
+  /// not depend on it.
   int threads = 0;
   Directions directions = Directions::frozen;
   /// Section 4.2: errors are updated, not recomputed. simd forms them from displacements either
@@ -297,8 +299,9 @@ struct Energy {
   double total() const { return kinetic + potential; }
 };
 
-/// One moving cloth: the state of a Model and the workspace of its solver. Movable, not copyable;
-/// particle numbers are those of the description.
+/// One moving cloth: the state of a Model and the workspace of its solver. Particle numbers are
+/// those of the description; position() and velocity() demand particle < particle_count(). A cloth
+/// that was moved from can only be assigned to or destroyed.
 class Cloth {
  public:
   /// Checks the settings. The state starts as described.
@@ -306,6 +309,13 @@ class Cloth {
   Cloth(Cloth&&) noexcept;
   Cloth& operator=(Cloth&&) noexcept;
   ~Cloth();
+
+  /// Another cloth of the same model and settings, which goes on bit for bit as this one does.
+  Cloth clone() const;
+  /// Goes on as `from` would, a cloth of the same Model: state, forces, gravity, pins under way,
+  /// and what it remembers of its last steps. The settings stay, and may be others: to step back
+  /// to a clone, or to change the tolerance of a cloth under way.
+  Result<void> copy_state(const Cloth& from);
 
   /// Advances by dt seconds (finite, > 0), all substeps of it or none: also where memory runs out
   /// and std::bad_alloc is thrown, the state stays as it was. An error means that dt was refused.
@@ -316,6 +326,9 @@ class Cloth {
   const Settings& settings() const;  ///< isa, solver, substeps, velocity_correction: what is used
 
   Vec3 position(std::uint32_t particle) const;
+  /// m/s; 0 of fixed particles, whatever was written, also while move_fixed() moves them. By scheme
+  /// paper without velocity correction what hangs still has half a step of gravity, g dt / 2, which
+  /// the next step takes away again.
   Vec3 velocity(std::uint32_t particle) const;
   /// Copies one Vec3 per particle; out.size() must be particle_count() (else nothing is copied).
   Result<void> read_positions(std::span<Vec3> out) const;
@@ -330,10 +343,14 @@ class Cloth {
   Result<void> write_velocities(std::span<const Vec3> in);
   /// External forces in N besides gravity, kept until replaced. Empty: none.
   Result<void> write_forces(std::span<const Vec3> in);
+  /// m/s^2, from the next step on.
+  Result<void> set_gravity(Vec3 gravity);
   /// Sends a fixed particle elsewhere, where position() finds it from now on. It travels there in a
   /// straight line during the next step, and the cloth takes on its speed. But a move that takes
   /// more than 200 m/s^2, from the one in the last step to this one, is a jump: the particle is put
-  /// down as the step begins, and the cloth follows without a change of velocity.
+  /// down as the step begins, and the cloth follows without a change of velocity. The last move
+  /// before a step counts, and write_positions ends all of them. (To teleport a whole cloth write
+  /// all its positions: what moves as a whole need not be solved.)
   Result<void> move_fixed(std::uint32_t particle, Vec3 position);
 
   Strain strain() const;           ///< recomputed from the positions

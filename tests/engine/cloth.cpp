@@ -56,6 +56,78 @@ TEST_CASE("a state that is read and written into another cloth goes on bit for b
   }
 }
 
+/// A sheet whose pins move, under forces, after some steps.
+Cloth on_its_way(const SceneDescription& scene, const Settings& settings) {
+  Cloth cloth = cloth_of(scene, settings);
+  REQUIRE(cloth.write_forces(std::vector<Vec3>(scene.positions.size(), {0.001, 0, 0})));
+  REQUIRE(cloth.set_gravity({0, -9, 1}));
+  for (int k = 0; k < 30; ++k) {
+    for (const std::uint32_t pin : scene.fixed) {
+      const Vec3 at = cloth.position(pin);
+      REQUIRE(cloth.move_fixed(pin, {at.x, at.y, at.z + 0.02}));
+    }
+    run(cloth, 0.01, 1);
+  }
+  return cloth;
+}
+
+TEST_CASE("a clone, and a cloth that copies the state of another, go on bit for bit") {
+  for (const Solver solver : {Solver::gauss_seidel, Solver::yarn, Solver::direct}) {
+    for (const char* name : {"hang_sphere", "corners"}) {
+      for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+        CAPTURE(weft::name(solver));
+        CAPTURE(name);
+        CAPTURE(weft::name(scheme));
+        const SceneDescription scene = scene_of(name, 9);
+        Cloth cloth = on_its_way(scene, {.solver = solver, .scheme = scheme});
+        Cloth clone = cloth.clone();
+        Cloth back = cloth.clone();
+        run(back, 0.01, 7);
+        REQUIRE(back.copy_state(cloth));
+        for (int k = 0; k < 20; ++k) {
+          for (Cloth* each : {&cloth, &clone, &back}) {
+            const Vec3 at = each->position(scene.fixed[0]);
+            REQUIRE(each->move_fixed(scene.fixed[0], {at.x, at.y, at.z + 0.02}));
+            run(*each, 0.01, 1);
+          }
+          REQUIRE(clone.state_hash() == cloth.state_hash());
+          REQUIRE(back.state_hash() == cloth.state_hash());
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a state goes on to another tolerance, but not to another model") {
+  const auto model = model_of(scene_of("hang", 6));
+  auto loose = Cloth::create(model, {}), tight = Cloth::create(model, {.tolerance = 1e-4});
+  REQUIRE(loose);
+  REQUIRE(tight);
+  run(loose.value(), 0.01, 20);
+  REQUIRE(tight.value().copy_state(loose.value()));
+  CHECK(tight.value().state_hash() == loose.value().state_hash());
+  CHECK(step(tight.value(), 0.01).max_strain <= 1e-4);
+  Cloth other = cloth_of(scene_of("hang", 6), {});
+  const std::uint64_t before = other.state_hash();
+  const auto refused = other.copy_state(loose.value());
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().find("another model (36 particles)") != std::string::npos);
+  CHECK(other.state_hash() == before);
+}
+
+TEST_CASE("gravity that is set is what a particle falls by, and what energy is measured in") {
+  const Backend backend = each_backend();
+  Cloth cloth = cloth_of(free_bar(1, 1), on(backend));
+  REQUIRE(cloth.set_gravity({0, 0, 3}));
+  const double before = cloth.energy().total();
+  const Vec3 from = cloth.position(0);
+  run(cloth, 0.01, 100);
+  CHECK(cloth.position(0).z - from.z == doctest::Approx(1.5));
+  CHECK(cloth.position(0).y == from.y);
+  CHECK(cloth.energy().total() == doctest::Approx(before));
+  CHECK_FALSE(cloth.set_gravity({0, std::nan(""), 0}));
+}
+
 TEST_CASE("the hash sees every particle's position and velocity") {
   Cloth cloth = cloth_of(scene_of("hang", 4), {});
   const std::uint64_t start = cloth.state_hash();

@@ -58,8 +58,8 @@ TEST_CASE("iterations, their bound and the impulse limit must be in range") {
 }
 
 TEST_CASE("threads must be in range") {
-  check_setting([](auto& s) { s.threads = -1; }, {"threads", "-1", "256"});
-  check_setting([](auto& s) { s.threads = kMaxThreads + 1; }, {"threads", "257", "256"});
+  check_setting([](auto& s) { s.threads = -1; }, {"threads", "-1", "64"});
+  check_setting([](auto& s) { s.threads = kMaxThreads + 1; }, {"threads", "65", "64"});
   for (const int threads : {0, 1, kMaxThreads}) {
     Settings settings;
     settings.threads = threads;

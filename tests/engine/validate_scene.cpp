@@ -108,6 +108,14 @@ TEST_CASE("rest lengths must be finite and positive") {
                 {"constraints[4]", "rest_length", "inf"});
 }
 
+TEST_CASE("rest lengths must have squares, and radii, all digits of them") {
+  for (const double length : {1e-160, 1e160}) {
+    check_refused([&](auto& s) { s.constraints[4].rest_length = length; },
+                  {"constraints[4]", "rest_length", "squared"});
+  }
+  check_refused([](auto& s) { s.radii[8] = 1e155; }, {"radii[8]", "1e+155", "1e+150"});
+}
+
 TEST_CASE("unknown kinds are refused") {
   check_refused([](auto& s) { s.constraints[4].kind = static_cast<ConstraintKind>(9); },
                 {"constraints[4]", "kind", "9"});
