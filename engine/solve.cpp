@@ -178,13 +178,16 @@ Ended end_of(const kernels::LoopResult& result, OnFailure on_failure) {
 Ended solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   int left = attempt.most_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
-    Standstill standstill(s.settings);
+    Standstill standstill(s.settings, attempt.stood_at);
     const bool first = round == 0;
     const auto result = attempt.start.x != nullptr
                             ? solve_from_start(s, attempt.h, attempt.start, first, left, team)
                             : solve_positions(s, attempt, first, left, standstill, team);
     add(report, result);
-    if (!result.converged && standstill.reached()) worsen(report, Status::infeasible);
+    if (!result.converged && standstill.reached()) {
+      worsen(report, Status::infeasible);
+      s.stood_at = standstill.error();
+    }
     report.iterations += result.iterations;
     left -= result.iterations;
     report.direction_updates += result.direction_updates;

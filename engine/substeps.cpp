@@ -93,6 +93,7 @@ class Substeps {
 
   /// Returns whether all of dt was done.
   bool run(double dt, bool jumped) {
+    s_.stood_at = 0;
     if ((s_.placed || jumped) && violates_constraints(s_, team_)) {
       transaction_.begin();
       project(s_, dt, report_, team_);
@@ -151,6 +152,7 @@ class Substeps {
                                                     : OnFailure::sweep,
                           .only_sweeps = only_sweeps_,
                           .care = std::sqrt(s_.trouble.care()),
+                          .stood_at = std::max(s_.stood_at, s_.trouble.stood_at()),
                           .predicted = std::exchange(predicted_, false)};
     const Ended ended = substep(s_, attempt, report_, team_);
     left_ -= report_.iterations - iterations;
@@ -206,6 +208,7 @@ class Substeps {
             .only_sweeps = began_with_sweeps,
             .swept_in_vain = began_with_sweeps && !only_sweeps_,
             .may_be_swept = sweeps_converge && !s_.model->has_contacts(),
+            .stood_at = s_.stood_at,
             .passes = static_cast<double>(report_.visits - projected_) / constraints};
   }
 

@@ -33,6 +33,7 @@ struct StepRecord {
   bool only_sweeps = false;  // it began with those of Gauss-Seidel
   bool swept_in_vain = false;
   bool may_be_swept = false;  // by them alone: the tolerance is loose, and nothing presses
+  double stood_at = 0;        // what its sweeps could not solve (standstill.h)
   double passes = 0;          // over all constraints
 };
 
@@ -43,11 +44,14 @@ class Trouble {
   bool may_halve() const { return pause_left_ == 0; }
   /// All but the last step of a pause, which tries yarns again.
   bool only_sweeps() const { return sweeping_ && pause_left_ > 1; }
+  /// What sweeps could not solve in the last step; 0: nothing.
+  double stood_at() const { return stood_at_; }
   /// As many as yarns take.
   int most_sweeps() const { return static_cast<int>(std::min(mean_passes_, 1e6)); }
 
   /// After a step.
   void remember(const StepRecord& step) {
+    stood_at_ = step.stood_at;
     yarns_left_ = std::max(0, yarns_left_ - 1);
     if (!step.only_sweeps) {
       mean_passes_ += (step.passes - mean_passes_) / kMeanSteps;
@@ -92,6 +96,7 @@ class Trouble {
   static constexpr double kMeanSteps = 4;
 
   double care_ = 1;
+  double stood_at_ = 0;
   int pause_ = 0, pause_left_ = 0;  // steps
   bool sweeping_ = false;           // in this pause
   double mean_passes_ = 0;          // of steps by yarns, lately

@@ -2,9 +2,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
+#include "tests/support/vectors.h"
 
 namespace weft::test {
 namespace {
@@ -21,6 +24,31 @@ SceneDescription pulled_chain(double stretch) {
     if (i > 0) scene.constraints.push_back({i - 1, i, kLink});
   }
   scene.fixed = {0, kLinks};
+  return scene;
+}
+
+/// A skirt: yarns down and around, the upper ring fixed, and one particle of the hem.
+SceneDescription skirt() {
+  constexpr std::uint32_t kAround = 24, kDown = 12;
+  SceneDescription scene;
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    scene.constraints.push_back({a, b, distance(scene.positions[a], scene.positions[b])});
+  };
+  for (std::uint32_t i = 0; i < kDown; ++i) {
+    for (std::uint32_t j = 0; j < kAround; ++j) {
+      const double down = i / (kDown - 1.), angle = 2 * std::numbers::pi * j / kAround;
+      const double radius = 0.15 + 0.25 * down;
+      scene.positions.push_back({radius * std::cos(angle), -0.6 * down, radius * std::sin(angle)});
+      scene.masses.push_back(0.001);
+      if (i == 0) scene.fixed.push_back(j);
+    }
+    for (std::uint32_t j = 0; j < kAround; ++j) {
+      const std::uint32_t here = i * kAround + j;
+      join(here, i * kAround + (j + 1) % kAround);
+      if (i > 0) join(here - kAround, here);
+    }
+  }
+  scene.fixed.push_back((kDown - 1) * kAround);
   return scene;
 }
 
@@ -53,6 +81,27 @@ TEST_CASE("a chain with its ends too far apart says so, and comes to rest") {
   const std::vector<Vec3> before = positions(cloth);
   step(cloth, 0.01);
   CHECK(largest_distance(positions(cloth), before) < 1e-6);
+}
+
+/// Its errors do not settle: they rise and fall for ever.
+TEST_CASE("a skirt whose hem is pulled too far is soon known to be, and sooner the next time") {
+  const SceneDescription scene = skirt();
+  for (const Solver solver : {Solver::gauss_seidel, Solver::yarn}) {
+    CAPTURE(name(solver));
+    Cloth cloth = cloth_of(scene, {.substeps = 1, .solver = solver});
+    const std::uint32_t hem = scene.fixed.back();
+    Vec3 at = cloth.position(hem);
+    for (int k = 0; k < 8; ++k) {
+      at.y -= 0.02;
+      REQUIRE(cloth.move_fixed(hem, at));
+      const StepReport report = step(cloth, 1. / 60);
+      CAPTURE(k);
+      CHECK(report.iterations < (k == 0 ? 250'000 : 30'000));
+      if (k >= 2) CHECK(report.status == Status::infeasible);
+    }
+    REQUIRE(cloth.write_positions(scene.positions));
+    CHECK(step(cloth, 1. / 60).status == Status::converged);
+  }
 }
 
 TEST_CASE("ends that come back free the chain again") {
