@@ -1,6 +1,8 @@
 /// predict, commit and apply_displacements against plain scalar code.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "tests/support/kernel_data.h"
 
 namespace weft::test {
@@ -73,6 +75,28 @@ TEST_CASE("commit: v + h a + (solved - predicted) / h, within the range and nowh
     table.commit(found.motion(forces), h, first, last);
     CHECK(same(found, expected));
   });
+}
+
+TEST_CASE("commit says whether every number is within range, whatever the lane and the axis") {
+  constexpr double kHuge = 2 * kernels::kMost;
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    KernelData data(2 * kLanes, 3);
+    const simd::Motion m = data.motion(false);
+    REQUIRE(table.commit(m, 0.01, 0, data.slots));
+    for (std::size_t i = 0; i < data.slots; ++i) {
+      for (const double bad : {std::nan(""), kHuge, -kHuge, HUGE_VAL, -HUGE_VAL}) {
+        const Vector good = m.solved[i];
+        for (const Vector& v : {Vector{bad, good.y, good.z}, Vector{good.x, bad, good.z},
+                                Vector{good.x, good.y, bad}}) {
+          m.solved.set(i, v);
+          REQUIRE_FALSE(table.commit(m, 0.01, 0, data.slots));
+        }
+        m.solved.set(i, good);
+      }
+    }
+  }
 }
 
 TEST_CASE("kicks: sums over the free of a range, equal where instructions fuse") {

@@ -2,6 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "tests/support/isas.h"
@@ -169,6 +172,34 @@ TEST_CASE("velocities: the linear system takes them out along each link") {
       const auto expected = solved_densely(untouched, lane, v, n, n, e);
       for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
         CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 2e-5);
+      }
+    }
+  }
+}
+
+TEST_CASE("one velocity or error that is no number is seen, whatever its lane and row") {
+  const float bad = std::numeric_limits<float>::quiet_NaN();
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    BlockOfYarns b;
+    b.start(table);
+    table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
+    const auto read = [&] {
+      return table.yarn_read(b.yarns(), b.block(), b.u.data(), b.scratch.data());
+    };
+    const auto product = [&] { return table.yarn_precondition(b.yarns(), b.block(), 0).product; };
+    REQUIRE(std::isfinite(read()));
+    REQUIRE(std::isfinite(product()));
+    for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+      for (std::uint32_t k = 0; k + 1 < BlockOfYarns::length(lane); ++k) {
+        const float kept = std::exchange(b.u[b.place_of(k, lane)], bad);
+        REQUIRE_FALSE(std::isfinite(read()));
+        b.u[b.place_of(k, lane)] = kept;
+        read();
+        b.system[k].residual[lane] = bad;
+        REQUIRE_FALSE(std::isfinite(product()));
+        read();
       }
     }
   }
