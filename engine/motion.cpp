@@ -34,20 +34,12 @@ simd::Motion simd_motion(State& s) {
   return m;
 }
 
-/// work(first, last) over all slots, shared out in stretches.
-template <class Work>
-void for_all_slots(const State& s, Team& team, Work&& work) {
-  const std::size_t slots = s.model->slots();
-  team.for_each((slots + kStretch - 1) / kStretch,
-                [&](std::size_t i) { work(i * kStretch, std::min(slots, (i + 1) * kStretch)); });
-}
-
 }  // namespace
 
 void predict(State& s, double h, Team& team) {
   if (s.reference) return reference::predict(reference_motion(s), h);
   const simd::Motion motion = simd_motion(s);
-  for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
+  team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
     s.kernels->predict(motion, h, first, last);
   });
 }
@@ -59,7 +51,7 @@ bool commit(State& s, double h, Team& team) {
   }
   const simd::Motion motion = simd_motion(s);
   std::atomic<bool> finite{true};
-  for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
+  team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
     if (!s.kernels->commit(motion, h, first, last)) finite.store(false, std::memory_order_relaxed);
   });
   return finite;
@@ -70,7 +62,7 @@ kernels::Kicks measure_kicks(State& s, double h, Team& team) {
     return reference::measure_kicks(reference_motion(s), h, s.next_velocity.view());
   }
   const simd::Motion motion = simd_motion(s);
-  for_all_slots(s, team, [&](std::size_t first, std::size_t last) {
+  team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
     s.kicks[first / kStretch] = s.kernels->measure_kicks(motion, h, first, last);
   });
   kernels::Kicks sum;

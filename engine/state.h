@@ -31,8 +31,6 @@
 
 namespace weft {
 
-inline constexpr std::size_t kStretch = 1024;  // slots that a thread takes at a time
-
 struct State {
   std::shared_ptr<const Model> model;
   Settings settings;  // isa, solver, substeps and velocity_correction resolved

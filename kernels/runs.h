@@ -2,10 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 namespace weft::kernels {
 
 inline constexpr std::uint32_t kLanes = 16;  // of the widest vector, whatever the machine has
+
+/// The least multiple that is not less.
+template <class Int>
+constexpr Int round_up(Int value, std::type_identity_t<Int> multiple) {
+  return (value + multiple - 1) / multiple * multiple;
+}
 
 /// Constraint slot constraint + k joins the particle slots a + k and b + k, k < length. No slot
 /// occurs twice.

@@ -12,8 +12,6 @@ constexpr std::uint32_t kLargestGap = kLanes;
 /// its lanes than that a run does not pay.
 constexpr std::size_t kLeastLinksPerVector = 6;
 
-std::size_t lanes_up(std::size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
-
 bool is_padding(const Joint& joint) { return joint.link == kNoIndex; }
 
 bool by_offset(const Joint& x, const Joint& y) {
@@ -82,7 +80,7 @@ bool Batcher::fill_gap(const Joint& from, const Joint& to) {
 
 /// Padding behind the run, or before it, or else what does not fill the lanes is cut off.
 void Batcher::fill_lanes() {
-  const std::size_t wanted = lanes_up(run_.size());
+  const std::size_t wanted = kernels::round_up(run_.size(), kLanes);
   while (run_.size() < wanted && claim(run_.back().a + 1, run_.back().b + 1)) {
     run_.push_back({run_.back().a + 1, run_.back().b + 1, kNoIndex});
   }

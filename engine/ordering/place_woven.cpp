@@ -24,10 +24,6 @@ namespace {
 
 constexpr double kLargestWaste = 1.2;  // slots of a band of rows over its particles
 
-std::uint32_t round_up(std::uint32_t value, std::uint32_t multiple) {
-  return (value + multiple - 1) / multiple * multiple;
-}
-
 // --------------------------------------------------------------------------------------- rows
 
 struct Row {
@@ -53,7 +49,7 @@ std::vector<std::uint32_t> strip_widths(std::span<const Cell> cells, std::uint32
   }
   for (std::uint32_t& w : width) {
     const std::uint32_t strips = (w + widest - 1) / widest;
-    w = round_up((w + strips - 1) / strips, period);
+    w = kernels::round_up((w + strips - 1) / strips, period);
   }
   return width;
 }
@@ -110,7 +106,7 @@ struct Lay {
 };
 
 std::uint32_t padded_width(std::uint32_t width, std::uint32_t period) {
-  return width < period ? width : round_up(width, period);
+  return width < period ? width : kernels::round_up(width, period);
 }
 
 std::vector<Lay> lay_rows(std::span<const Row> rows, std::uint32_t period) {
@@ -186,7 +182,7 @@ class TileLayout {
       for (std::uint32_t& group : row) {
         const std::uint32_t size = group;
         group = slots;
-        if (size > 0) slots += round_up(size, kLanes) + kLanes;
+        if (size > 0) slots += kernels::round_up(size, kLanes) + kLanes;
       }
     }
     constexpr std::uint32_t kSlotsOfCacheWay = 256;  // 4 KB of quads

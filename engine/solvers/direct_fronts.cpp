@@ -11,8 +11,6 @@
 namespace weft {
 namespace {
 
-std::size_t padded(std::size_t n, std::size_t to) { return (n + to - 1) / to * to; }
-
 /// A front before it has a place.
 struct Draft {
   std::uint32_t first, count;
@@ -24,8 +22,8 @@ struct Draft {
 constexpr double kFrontTime = 300, kValueTime = 0.6, kProductTime = 0.12;
 
 double estimated_time(std::size_t count, std::size_t rows_below) {
-  const auto width = static_cast<double>(padded(count, 4));
-  const auto below = static_cast<double>(padded(rows_below, simd::kFrontRows));
+  const auto width = static_cast<double>(kernels::round_up(count, 4));
+  const auto below = static_cast<double>(kernels::round_up(rows_below, simd::kFrontRows));
   const auto passed = static_cast<double>(rows_below);
   const double panel = width * (0.5 * width + below);
   const double products = width * (width * width / 6 + 0.5 * width * below + 0.5 * below * below);
@@ -77,14 +75,15 @@ void store_fronts(const std::vector<Draft>& drafts, DirectFronts& f) {
     DirectFront front;
     front.first = draft.first;
     front.count = draft.count;
-    front.width = static_cast<std::uint32_t>(padded(draft.count, 4));
-    front.triangle = static_cast<std::uint32_t>(padded(draft.count, simd::kFrontRows));
-    front.below = static_cast<std::uint32_t>(padded(draft.below.size(), simd::kFrontRows));
+    front.width = static_cast<std::uint32_t>(kernels::round_up(draft.count, 4));
+    front.triangle = static_cast<std::uint32_t>(kernels::round_up(draft.count, simd::kFrontRows));
+    front.below =
+        static_cast<std::uint32_t>(kernels::round_up(draft.below.size(), simd::kFrontRows));
     front.panel = f.values;
     front.column = f.columns;
     const std::size_t values = front.width * front.stride();
     f.values += values;
-    f.columns += padded(front.width, simd::kFrontRows);
+    f.columns += kernels::round_up(front.width, simd::kFrontRows);
     f.most_values = std::max(f.most_values, values);
     f.most_rows = std::max(f.most_rows, front.stride());
     f.fronts.push_back(front);

@@ -147,8 +147,7 @@ SimdLayout make_simd_layout(const Model& model) {
   layout.hub_first = batched;
   layout.hub_ropes = batched + static_cast<std::uint32_t>(store.hub_distances.size());
   layout.hub_last = batched + hubs;
-  layout.constraint_slots =
-      batched + (hubs + kernels::kLanes - 1) / kernels::kLanes * kernels::kLanes;
+  layout.constraint_slots = batched + kernels::round_up(hubs, kernels::kLanes);
   layout.a = ordering.a;
   layout.b = ordering.b;
   layout.a.resize(layout.constraint_slots);

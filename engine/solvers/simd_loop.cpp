@@ -4,13 +4,6 @@
 #include <atomic>
 
 namespace weft {
-namespace {
-
-/// Slots are shared out in stretches of this many.
-constexpr std::size_t kStretch = 1024;
-
-}  // namespace
-
 SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
     : s_(solver),
       layout_(solver.layout_),
@@ -33,9 +26,8 @@ SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
 
 void SimdLoop::apply_displacements() {
   const kernels::VectorsView target = unknowns_.velocity ? unknowns_.v : unknowns_.x;
-  team_.for_each((layout_.slots + kStretch - 1) / kStretch, [&](std::size_t i) {
-    table_.apply_displacements(target, r_.u, i * kStretch,
-                               std::min(layout_.slots, (i + 1) * kStretch));
+  team_.for_each_part(layout_.slots, kStretch, [&](std::size_t first, std::size_t last) {
+    table_.apply_displacements(target, r_.u, first, last);
   });
 }
 

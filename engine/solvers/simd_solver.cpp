@@ -16,10 +16,6 @@ constexpr int kOldestDirections = 1024;
 /// Of constraint blocks; more are fetched from memory in every pass. About two cores' own caches.
 constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
 
-std::size_t whole_lanes(std::size_t n) {
-  return (n + kernels::kLanes - 1) / kernels::kLanes * kernels::kLanes;
-}
-
 }  // namespace
 
 void ContactLanes::resize(std::size_t size) {
@@ -94,7 +90,8 @@ void SimdSolver::fill_gains(bool velocity) {
 void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep_impulses) {
   contact_impulse_.resize(store.count());
   if (!keep_impulses) std::ranges::fill(contact_impulse_, 0.f);
-  contacts_.resize(whole_lanes(store.count()) + kernels::kLanes * model_.spheres.size());
+  contacts_.resize(kernels::round_up(store.count(), kernels::kLanes) +
+                   kernels::kLanes * model_.spheres.size());
   contacts_.spheres.clear();
   std::uint32_t next = 0;
   const auto put = [&](std::uint32_t s, std::uint32_t p, std::uint32_t contact) {

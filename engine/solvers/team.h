@@ -25,6 +25,7 @@
 /// results must not depend on it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -33,6 +34,8 @@
 #include <type_traits>
 
 namespace weft {
+
+inline constexpr std::size_t kStretch = 1024;  // slots that a thread takes at a time
 
 class Team {
  public:
@@ -64,6 +67,12 @@ class Team {
     for_each_share(count, [&work](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) work(i);
     });
+  }
+  /// work(first, last) over [0, count), `part` at a time.
+  template <class Work>
+  void for_each_part(std::size_t count, std::size_t part, Work&& work) {
+    for_each((count + part - 1) / part,
+             [&](std::size_t i) { work(i * part, std::min(count, (i + 1) * part)); });
   }
   /// work(first, last) of each share.
   template <class Work>

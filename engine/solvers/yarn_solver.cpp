@@ -52,14 +52,7 @@ constexpr Patience kRattlePatience{0.9, 4};
 constexpr double kExact = 0.01;
 constexpr Patience kVelocityPatience{0.7, 3};
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
-constexpr std::size_t kSlots = 1024, kNumbers = 4096;  // at a time
-
-/// work(first, last), of slots or of floats
-template <class Work>
-void for_all(std::size_t count, std::size_t stretch, Team& team, Work&& work) {
-  team.for_each((count + stretch - 1) / stretch,
-                [&](std::size_t i) { work(i * stretch, std::min(count, (i + 1) * stretch)); });
-}
+constexpr std::size_t kNumbers = 4096;  // floats that a thread takes at a time
 
 /// Shares that the blocks of a family are dealt out in at most, each with a scratch of its own.
 constexpr std::size_t kMostShares = 16;
@@ -128,7 +121,7 @@ void YarnSolver::for_each_family(Team& team, Work&& work) {
 
 void YarnSolver::split(kernels::VectorsView x, double cell, Team& team) {
   layout_.places.clear(u_.data());
-  for_all(model_.slots(), kSlots, team, [&](std::size_t first, std::size_t last) {
+  team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places.split(table_, x, cell, first, last, base_.data(), u_.data());
   });
   cell_ = cell;
@@ -146,8 +139,8 @@ void YarnSolver::keep_start(kernels::VectorsView start, Team& team) {
 }
 
 void YarnSolver::join(kernels::VectorsView x, Team& team) {
-  for_all(model_.slots(), kSlots, team,
-          [&](std::size_t first, std::size_t last) { join(x, first, last); });
+  team.for_each_part(model_.slots(), kStretch,
+                     [&](std::size_t first, std::size_t last) { join(x, first, last); });
 }
 
 void YarnSolver::join(kernels::VectorsView x, std::size_t first, std::size_t last) {
@@ -241,7 +234,7 @@ YarnSolver::Products YarnSolver::precondition(double alpha, double goal, Team& t
 }
 
 void YarnSolver::clear_push(Team& team) {
-  for_all(t_.size(), kNumbers, team, [&](std::size_t first, std::size_t last) {
+  team.for_each_part(t_.size(), kNumbers, [&](std::size_t first, std::size_t last) {
     std::fill(t_.data() + first, t_.data() + last, 0.f);
   });
 }
@@ -305,7 +298,7 @@ void YarnSolver::finish(Team& team) {
   }
   others_.finish(t_.data());
   eliminate(true, team);
-  for_all(t_.size(), kNumbers, team, [&](std::size_t first, std::size_t last) {
+  team.for_each_part(t_.size(), kNumbers, [&](std::size_t first, std::size_t last) {
     table_.yarn_add(u_.data(), t_.data(), first, last);
   });
 }
