@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "tools/exit_code.h"
 #include "tools/hard/results.h"
 #include "tools/hard/suite.h"
 #include "tools/output_folder.h"
@@ -19,9 +20,6 @@
 
 namespace weft::tools {
 namespace {
-
-constexpr int kExitFailed = 1;
-constexpr int kExitRefused = 2;
 
 struct HardOptions {
   std::string json;
@@ -70,7 +68,7 @@ Result<int> run_hard(const HardOptions& options) {
       hard::to_text(results), hard::to_json(results),
       [&](const std::filesystem::path& folder) { return write_folder(folder, results); });
   if (!done) return Error{done.error()};
-  return hard::failed(results) > 0 ? kExitFailed : 0;
+  return hard::failed(results) > 0 ? kCaseFailed : kDone;
 }
 
 }  // namespace
@@ -85,8 +83,7 @@ void add_hard_command(CLI::App& app, int& exit_code) {
   verb->add_flag("--quick", options->quick, "fewer steps: under a minute");
   verb->callback([options, &exit_code] {
     const auto result = run_hard(*options);
-    exit_code = result ? result.value() : kExitRefused;
-    if (!result) fmt::print(stderr, "weft: {}\n", result.error());
+    exit_code = result ? result.value() : refuse(result.error());
   });
 }
 

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstddef>
 
+#include "tools/exit_code.h"
 #include "tools/pending_file.h"
 
 namespace weft::tools {
@@ -30,7 +31,7 @@ extern "C" void handle_interrupt(int signal) {
   }
   remove_pending_files();
   say("weft: interrupted\n");
-  _exit(128 + signal);
+  _exit(interrupted_by(signal));
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
-/// The `weft` program. Exit codes: 0 done, 1 a hard case failed, 2 something given was refused, 3 a
-/// run did not reach its tolerance, 130 interrupted.
-#include <fmt/format.h>
-
+/// The `weft` program. Its exit codes: exit_code.h.
 #include <CLI/CLI.hpp>
 #include <new>
 
+#include "tools/exit_code.h"
 #include "tools/hard_command.h"
 #include "tools/interrupt.h"
 #include "tools/paper_command.h"
@@ -12,22 +10,12 @@
 #include "tools/run_command.h"
 #include "tools/scene_command.h"
 
-namespace {
-
-constexpr int kRefused = 2;
-
-int refuse(const char* message) {
-  fmt::print(stderr, "weft: {}\n", message);
-  return kRefused;
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
+  using weft::tools::refuse;
   weft::tools::install_interrupt_handler();
   CLI::App app("weft: a cloth kernel that reports its error beside its time");
   app.require_subcommand(0, 1);  // none is refused below, in words that name the cure
-  int exit_code = 0;
+  int exit_code = weft::tools::kDone;
   weft::tools::add_run_command(app, exit_code);
   weft::tools::add_scene_command(app, exit_code);
   weft::tools::add_paper_command(app, exit_code);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/scenes.h"
+#include "tools/exit_code.h"
 #include "tools/json_output.h"
 #include "tools/output_folder.h"
 #include "tools/paper_results.h"
@@ -20,9 +21,6 @@
 
 namespace weft::tools {
 namespace {
-
-constexpr int kExitBadInput = 2;
-constexpr int kExitNotConverged = 3;
 
 struct PaperOptions {
   std::string json;
@@ -74,21 +72,16 @@ Result<void> write_folder(const std::filesystem::path& folder, const paper::Stud
   return {};
 }
 
-int fail(const std::string& message) {
-  fmt::print(stderr, "weft: {}\n", message);
-  return kExitBadInput;
-}
-
 int run_paper(const PaperOptions& options) {
   auto outputs = StudyOutputs::open(options.json, options.out);
-  if (!outputs) return fail(outputs.error());
+  if (!outputs) return refuse(outputs.error());
   const auto study = carry_out(options);
-  if (!study) return fail(study.error());
+  if (!study) return refuse(study.error());
   const auto done = outputs.value().write(
       paper::to_text(study.value()), paper::to_json(study.value()),
       [&](const std::filesystem::path& folder) { return write_folder(folder, study.value()); });
-  if (!done) return fail(done.error());
-  return paper::all_reached_tolerance(study.value()) ? 0 : kExitNotConverged;
+  if (!done) return refuse(done.error());
+  return paper::all_reached_tolerance(study.value()) ? kDone : kMissedTolerance;
 }
 
 }  // namespace

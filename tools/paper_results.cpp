@@ -6,10 +6,10 @@
 #include <iterator>
 #include <set>
 
+#include "tools/wording.h"
+
 namespace weft::tools::paper {
 namespace {
-
-std::string percent(double fraction) { return fmt::format("{:g} %", 100 * fraction); }
 
 Gain measured_gain(std::string_view label, const std::vector<Row>& rows) {
   Gain gain{label};
@@ -124,7 +124,7 @@ void write_rows(Text out, const std::vector<Row>& rows, std::string_view title) 
                    cell.scene, fmt::format("{0} x {0}", cell.size), percent(cell.strain),
                    cell.velocity_correction ? "corrected" : "-", row.variant.label(), row.seconds,
                    row.times_faster, row.summary.iterations_per_step(), row.summary.corrections,
-                   fmt::format("{:.3g} %", 100 * row.summary.max_strain), name(row.summary.status));
+                   measured_percent(row.summary.max_strain), name(row.summary.status));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/exit_code.h"
 #include "tools/json_output.h"
 #include "tools/output_folder.h"
 #include "tools/plotting.h"
@@ -24,8 +25,6 @@ namespace weft::tools {
 namespace {
 
 using namespace precision;
-
-constexpr int kExitBadInput = 2;
 
 struct PrecisionOptions {
   std::optional<std::string> scene;
@@ -138,22 +137,17 @@ Result<void> write_folder(const std::filesystem::path& folder, const Study& stud
   return {};
 }
 
-int fail(const std::string& message) {
-  fmt::print(stderr, "weft: {}\n", message);
-  return kExitBadInput;
-}
-
 int run_precision(const PrecisionOptions& options) {
   const auto tasks = tasks_of(options);
-  if (!tasks) return fail(tasks.error());
+  if (!tasks) return refuse(tasks.error());
   auto outputs = StudyOutputs::open(options.json, options.out);
-  if (!outputs) return fail(outputs.error());
+  if (!outputs) return refuse(outputs.error());
   const auto study = carry_out(tasks.value(), options);
-  if (!study) return fail(study.error());
+  if (!study) return refuse(study.error());
   const auto done = outputs.value().write(
       to_text(study.value()), to_json(study.value()),
       [&](const std::filesystem::path& folder) { return write_folder(folder, study.value()); });
-  return done ? 0 : fail(done.error());
+  return done ? kDone : refuse(done.error());
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "tools/wording.h"
+
 namespace weft::tools {
 namespace {
 
@@ -24,8 +26,8 @@ void Progress::show(int frame, double strain) {
   if (!is_terminal_ || Clock::now() < next_) return;
   next_ = Clock::now() + kPause;
   const auto done = static_cast<int>(static_cast<std::int64_t>(frame) * kWidth / frames_);
-  fmt::print(stderr, "{}[{:#<{}}{:.<{}}] frame {}/{}, strain {:.3g} %", kClearLine, "", done, "",
-             kWidth - done, frame, frames_, 100 * strain);
+  fmt::print(stderr, "{}[{:#<{}}{:.<{}}] frame {}/{}, strain {}", kClearLine, "", done, "",
+             kWidth - done, frame, frames_, measured_percent(strain));
   std::fflush(stderr);
 }
 

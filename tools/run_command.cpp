@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "tools/exit_code.h"
 #include "tools/interrupt.h"
 #include "tools/json_output.h"
 #include "tools/outputs.h"
@@ -19,9 +20,6 @@
 
 namespace weft::tools {
 namespace {
-
-constexpr int kRefused = 2;
-constexpr int kNotReached = 3;
 
 struct RunOptions {
   SceneOptions scene;
@@ -89,7 +87,7 @@ Result<RunSummary> run_and_record(const Prepared& prepared, RunPlan plan, Output
 int interrupted(const RunSummary& summary, const RunPlan& plan) {
   fmt::print(stderr, "weft: interrupted; frame {} of {} is the last one in all that was written\n",
              summary.frames, plan.steps);
-  return 128 + OrderlyInterrupt::signal();
+  return interrupted_by(OrderlyInterrupt::signal());
 }
 
 Result<int> run_verb(const RunOptions& options) {
@@ -111,7 +109,7 @@ Result<int> run_verb(const RunOptions& options) {
     if (auto printed = print_text(to_table(report)); !printed) return Error{printed.error()};
   }
   if (summary.value().stopped) return interrupted(summary.value(), options.plan);
-  return summary.value().reached_tolerance() ? 0 : kNotReached;
+  return summary.value().reached_tolerance() ? kDone : kMissedTolerance;
 }
 
 }  // namespace
@@ -133,8 +131,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   verb->add_option("--json", options->json, "write the report to a file, or - for stdout");
   verb->callback([options, &exit_code] {
     const auto result = run_verb(*options);
-    exit_code = result ? result.value() : kRefused;
-    if (!result) fmt::print(stderr, "weft: {}\n", result.error());
+    exit_code = result ? result.value() : refuse(result.error());
   });
 }
 

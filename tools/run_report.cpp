@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "tools/wording.h"
+
 namespace weft::tools {
 namespace {
 
@@ -49,8 +51,6 @@ Json stages_json(const RunSummary& summary) {
   return stages;
 }
 
-std::string percent(double strain) { return fmt::format("{:.3g} %", 100 * strain); }
-
 std::string stages_text(const RunSummary& summary) {
   std::string text;
   for (std::size_t i = 0; i < kStageCount; ++i) {
@@ -61,8 +61,9 @@ std::string stages_text(const RunSummary& summary) {
 }
 
 std::string goal_text(const Settings& settings) {
-  return settings.iterations > 0 ? fmt::format("{} iterations per step", settings.iterations)
-                                 : fmt::format("tolerance {}", percent(settings.tolerance));
+  return settings.iterations > 0
+             ? fmt::format("{} per step", counted(settings.iterations, "iteration"))
+             : fmt::format("tolerance {}", percent(settings.tolerance));
 }
 
 }  // namespace
@@ -124,13 +125,14 @@ std::string to_table(const RunReport& report) {
     text += fmt::format("{:<10}{}\n", label, value);
   };
   row("scene",
-      fmt::format("{}: {} particles, {} constraints, {} spheres", report.scene,
-                  summary.model.particles, summary.model.constraints, summary.model.spheres));
+      fmt::format("{}: {}, {}, {}", report.scene, counted(summary.model.particles, "particle"),
+                  counted(summary.model.constraints, "constraint"),
+                  counted(summary.model.spheres, "sphere")));
   row("solver", fmt::format("{}, scheme {}, backend {}, {}", name(settings.solver),
                             name(settings.scheme), name(settings.backend), goal_text(settings)));
   if (settings.scheme == Scheme::rattle) {
-    row("scheme", fmt::format("{} of {} substeps left to scheme paper", summary.scheme_fallbacks,
-                              summary.substeps));
+    row("scheme", fmt::format("{} of {} left to scheme paper", summary.scheme_fallbacks,
+                              counted(summary.substeps, "substep")));
   }
   const auto in_substeps =
       settings.substeps != 1
@@ -140,20 +142,20 @@ std::string to_table(const RunReport& report) {
                             name(summary.status)));
   row("time", fmt::format("{:.4g} ms per frame, {:.3g} times real time, at max strain {}",
                           1e3 * summary.seconds_per_frame(), real_time_factor(report),
-                          percent(summary.max_strain)));
-  row("stages",
-      fmt::format("{} ms at max strain {}", stages_text(summary), percent(summary.max_strain)));
+                          measured_percent(summary.max_strain)));
+  row("stages", fmt::format("{} ms at max strain {}", stages_text(summary),
+                            measured_percent(summary.max_strain)));
   row("strain",
-      fmt::format("max {}, mean of the frames' max {}, rms {}", percent(summary.max_strain),
-                  percent(summary.mean_max_strain), percent(summary.rms_strain)));
+      fmt::format("max {}, mean of the frames' max {}, rms {}",
+                  measured_percent(summary.max_strain), measured_percent(summary.mean_max_strain),
+                  measured_percent(summary.rms_strain)));
   if (summary.model.spheres > 0) {
     row("contacts", fmt::format("{:.3g} m deepest penetration", summary.max_penetration));
   }
   row("work",
-      fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {} visits, "
-                  "{} corrections",
+      fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {}, {}",
                   summary.iterations_per_step(), mean(summary.direction_updates, summary.frames),
-                  summary.visits, summary.corrections));
+                  counted(summary.visits, "visit"), counted(summary.corrections, "correction")));
   row("energy", fmt::format("{:.6g} J to {:.6g} J, largest gain {:.3g} J", summary.energy_start,
                             summary.energy_end, summary.energy_gain));
   row("state", fmt::format("{:016x}, lowest y {:.6g} m", summary.state_hash, summary.lowest_y));

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "tools/exit_code.h"
 #include "tools/pending_file.h"
 #include "tools/scene_file.h"
 #include "tools/scene_source.h"
@@ -38,10 +39,8 @@ void add_scene_command(CLI::App& app, int& exit_code) {
   add_scene_options(*verb, options->scene);
   verb->add_option("--out", options->out, "the .json file to write")->required();
   verb->callback([options, &exit_code] {
-    if (const auto written = write_scene(*options); !written) {
-      fmt::print(stderr, "weft: {}\n", written.error());
-      exit_code = 2;
-    }
+    const auto written = write_scene(*options);
+    exit_code = written ? kDone : refuse(written.error());
   });
 }
 

@@ -239,6 +239,15 @@ TEST_CASE("precision: JSON alone on stdout, points and orders of the contract") 
   CHECK(json["order"].contains("rattle"));
 }
 
+TEST_CASE("one of a kind is counted in the singular") {
+  const TemporaryFolder folder;
+  const std::string scene =
+      folder.write("one.json", R"({"positions": [[0,0,0]], "masses": [1], "radii": [1],
+                                   "spheres": [0]})");
+  const Outcome outcome = run_program(folder, "run " + scene + " --steps 1");
+  CHECK(outcome.out.find(": 1 particle, 0 constraints, 1 sphere\n") != std::string::npos);
+}
+
 TEST_CASE("a mesh is pinned, run and saved with its numbering") {
   const TemporaryFolder folder;
   const std::string mesh =

@@ -2,16 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "tools/enumerators.h"
+
 namespace weft::tools::hard {
 namespace {
-
-/// Every enumerator that has a name.
-template <class Enum>
-std::vector<Enum> every() {
-  std::vector<Enum> all;
-  for (int i = 0; name(static_cast<Enum>(i)) != "unknown"; ++i) all.push_back(static_cast<Enum>(i));
-  return all;
-}
 
 /// Not every solver goes with every scheme.
 bool is_offered(const Method& method) {
@@ -39,8 +33,8 @@ Outcome outcome_of(const Observed& observed, double energy_allowed) {
 
 std::vector<Method> all_methods() {
   std::vector<Method> methods;
-  for (const Scheme scheme : every<Scheme>()) {
-    for (const Solver solver : every<Solver>()) {
+  for (const Scheme scheme : enumerators<Scheme>()) {
+    for (const Solver solver : enumerators<Solver>()) {
       if (is_offered({solver, scheme})) methods.push_back({solver, scheme});
     }
   }

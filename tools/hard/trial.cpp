@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/cpu_time.h"
+#include "tools/wording.h"
 
 namespace weft::tools::hard {
 namespace {
@@ -73,15 +74,15 @@ Observed observe(const Trial& trial) {
 
 std::string text(const Observed& o) {
   if (!o.refusal.empty()) return "refused: " + o.refusal;
-  std::string text = fmt::format("{} steps of {:.3g} ms, max strain {:.3g} %", o.steps,
-                                 o.ms_per_step(), 100 * o.max_strain);
+  std::string text = fmt::format("{} of {:.3g} ms, max strain {}", counted(o.steps, "step"),
+                                 o.ms_per_step(), measured_percent(o.max_strain));
   if (o.max_penetration > 0) text += fmt::format(", {:.2g} m deep", o.max_penetration);
   text += fmt::format(", energy gain {:.2g} J", o.energy_gain);
   if (o.missed > 0) {
-    text += fmt::format(", {} steps not converged ({} in step {})", o.missed, name(o.worst),
-                        o.worst_step);
+    text += fmt::format(", {} not converged ({} in step {})", counted(o.missed, "step"),
+                        name(o.worst), o.worst_step);
   }
-  if (o.false_claims > 0) text += fmt::format(", {} false claims", o.false_claims);
+  if (o.false_claims > 0) text += fmt::format(", {}", counted(o.false_claims, "false claim"));
   if (!o.finite) text += ", not finite";
   return text;
 }

@@ -11,6 +11,7 @@
 
 #include "tools/cpu_time.h"
 #include "tools/precision/meter.h"
+#include "tools/wording.h"
 
 namespace weft::tools::precision {
 namespace {
@@ -146,7 +147,8 @@ std::vector<Point> sweep_bullet(const Task& task, const Effort& effort, bool qui
   for (const int parts : substeps) {
     for (double iterations = 1; iterations < kMostIterations; iterations *= quick ? 4 : 1.5) {
       const Knobs knobs{parts, {}, static_cast<int>(std::lround(iterations))};
-      watch(fmt::format("{} substeps, {} iterations", parts, knobs.iterations));
+      watch(
+          fmt::format("{}, {}", counted(parts, "substep"), counted(knobs.iterations, "iteration")));
       const Outcome outcome = best_of(task, knobs, effort);
       if (outcome.max_strain > kLoosest && outcome.status == "fixed_iterations") continue;
       points.push_back({"bullet", "", "", knobs, outcome});

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tools/enumerators.h"
 #include "tools/precision/sweep.h"
 
 namespace weft::tools::precision {
@@ -21,7 +22,7 @@ std::optional<double> fitted_exponent(std::span<const double> x, std::span<const
 
 std::vector<Order> measure_orders(const Task& task) {
   std::vector<Order> orders;
-  for (const Scheme scheme : all_schemes()) {
+  for (const Scheme scheme : enumerators<Scheme>()) {
     Order& order = orders.emplace_back(Order{std::string(name(scheme)), {}, {}});
     std::vector<double> steps, errors;
     bool all_ran = true;

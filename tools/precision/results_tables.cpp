@@ -5,18 +5,18 @@
 #include <iterator>
 #include <map>
 
+#include "tools/wording.h"
+
 namespace weft::tools::precision {
 namespace {
-
-std::string percent(double fraction) { return fmt::format("{:g} %", 100 * fraction); }
 
 using Text = std::back_insert_iterator<std::string>;
 
 std::string knobs_text(const Knobs& knobs) {
   const std::string goal =
-      knobs.tolerance ? percent(*knobs.tolerance) : fmt::format("{} iterations", knobs.iterations);
+      knobs.tolerance ? percent(*knobs.tolerance) : counted(knobs.iterations, "iteration");
   if (knobs.substeps == 0) return goal + ", automatic substeps";
-  return fmt::format("{}, {} substep{}", goal, knobs.substeps, knobs.substeps == 1 ? "" : "s");
+  return fmt::format("{}, {}", goal, counted(knobs.substeps, "substep"));
 }
 
 std::string error_text(const std::optional<double>& error) {
@@ -45,7 +45,7 @@ void write_cheapest(Text out, const Chart& chart) {
       const double ms = point->outcome.ms_per_frame;
       fmt::format_to(out, "{:>9}  {:14}{:13.4g}{:>10}{:>13}{:>13}  {}{}\n", percent(bound), name,
                      ms, plain ? fmt::format("{:.1f}", ms / plain->outcome.ms_per_frame) : "-",
-                     fmt::format("{:.3g} %", 100 * point->outcome.max_strain),
+                     measured_percent(point->outcome.max_strain),
                      error_text(point->outcome.trajectory_error),
                      point->scheme.empty() ? "" : point->scheme + ", ", knobs_text(point->knobs));
     }
@@ -130,7 +130,7 @@ void write_sizes(Text out, const SizeStudy& study) {
       fmt::format_to(out, "{:>14}{:14}{:13.4g}{:11}{:>13}\n",
                      fmt::format("{0} x {0}  ", point.size), curve.solver,
                      point.outcome.ms_per_frame, point.substeps,
-                     fmt::format("{:.3g} %", 100 * point.outcome.max_strain));
+                     measured_percent(point.outcome.max_strain));
     }
     if (curve.exponent) {
       fmt::format_to(out, "{:>14}{:14}time ~ particles^{:.2f}\n", "", curve.solver,

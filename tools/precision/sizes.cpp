@@ -5,8 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "tools/enumerators.h"
 #include "tools/precision/order.h"
 #include "tools/precision/sweep.h"
+#include "tools/wording.h"
 
 namespace weft::tools::precision {
 namespace {
@@ -55,7 +57,7 @@ Result<std::optional<SizePoint>> cheapest(const SizeStudy& study, const Task& ta
   for (const int factor : {1, 2, 4}) {
     const int substeps = first * factor;
     if (factor > 1 && substeps == kAutomaticSubsteps) break;
-    watch(fmt::format("{}, {} substeps", name(solver), substeps));
+    watch(fmt::format("{}, {}", name(solver), counted(substeps, "substep")));
     const auto point = measure(task, settings_of(study, solver, substeps), effort);
     if (!point) return Error{point.error()};
     const Outcome& outcome = point.value().outcome;
@@ -77,7 +79,7 @@ SizeStudy size_study(bool quick) {
 }
 
 Result<void> measure(SizeStudy& study, const SizeWatch& watch) {
-  for (const Solver solver : all_solvers()) {
+  for (const Solver solver : enumerators<Solver>()) {
     study.curves.push_back({std::string(name(solver)), {}, {}, {}});
   }
   for (const int size : study.sizes) {
@@ -93,15 +95,15 @@ Result<void> measure(SizeStudy& study, const SizeWatch& watch) {
             fmt::format("{0} x {0} would take more than {1:g} s", size, study.seconds_limit);
         continue;
       }
-      const Solver solver = all_solvers()[k];
+      const Solver solver = enumerators<Solver>()[k];
       const auto point =
           cheapest(study, task.value(), solver, first_substeps(solver, curve), watch);
       if (!point) return Error{point.error()};
       if (point.value()) {
         curve.points.push_back(*point.value());
       } else {
-        curve.end = fmt::format("{0} x {0} did not reach {1:g} % in {2:g} s", size,
-                                100 * study.tolerance, study.seconds_limit);
+        curve.end = fmt::format("{0} x {0} did not reach {1} in {2:g} s", size,
+                                percent(study.tolerance), study.seconds_limit);
       }
     }
   }

@@ -3,25 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <span>
 #include <utility>
 
+#include "tools/enumerators.h"
 #include "tools/precision/reference_solution.h"
 #include "tools/runner.h"
+#include "tools/wording.h"
 
 namespace weft::tools::precision {
 namespace {
-
-/// The enums of weft.h end where they have no more names.
-template <class Choice>
-std::vector<Choice> all() {
-  std::vector<Choice> values;
-  for (std::uint8_t i = 0; name(static_cast<Choice>(i)) != "unknown"; ++i) {
-    values.push_back(static_cast<Choice>(i));
-  }
-  return values;
-}
 
 struct KnobSet {
   std::vector<double> tolerances;
@@ -109,14 +100,11 @@ std::vector<Vec3> positions_of(const Cloth& cloth) {
 
 }  // namespace
 
-std::vector<Solver> all_solvers() { return all<Solver>(); }
-std::vector<Scheme> all_schemes() { return all<Scheme>(); }
-
 std::vector<Curve> weft_curves(const Task& task, bool quick) {
   std::vector<Curve> curves{original(task, knob_set(quick))};
-  for (const Solver solver : all_solvers()) {
+  for (const Solver solver : enumerators<Solver>()) {
     const KnobSet knobs = solver == Solver::automatic ? plain_knob_set(quick) : knob_set(quick);
-    for (const Scheme scheme : all_schemes()) {
+    for (const Scheme scheme : enumerators<Scheme>()) {
       Settings settings;
       settings.solver = solver;
       settings.scheme = scheme;
@@ -164,9 +152,9 @@ Result<std::vector<Point>> sweep(const Task& task, const Curve& curve, const Eff
   std::vector<Point> points;
   for (const Row& row : curve.rows) {
     for (const Settings& settings : row) {
-      watch(fmt::format("{} substeps, {}", settings.substeps,
-                        settings.iterations > 0 ? fmt::format("{} iterations", settings.iterations)
-                                                : fmt::format("{:g} %", 100 * settings.tolerance)));
+      watch(fmt::format("{}, {}", counted(settings.substeps, "substep"),
+                        settings.iterations > 0 ? counted(settings.iterations, "iteration")
+                                                : percent(settings.tolerance)));
       auto point = measure(task, settings, effort);
       if (!point) break;  // refused
       points.push_back(std::move(point.value()));

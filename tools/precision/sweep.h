@@ -11,9 +11,6 @@
 
 namespace weft::tools::precision {
 
-std::vector<Solver> all_solvers();
-std::vector<Scheme> all_schemes();
-
 /// Settings in the order of rising cost. A row ends at the first run that is out of time.
 using Row = std::vector<Settings>;
 

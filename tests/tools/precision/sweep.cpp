@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tools/enumerators.h"
 #include "tools/precision/bullet.h"
 #include "tools/precision/order.h"
 #include "tools/precision/sizes.h"
@@ -21,10 +22,10 @@ Task small_task(int frames = 50) {
 const Effort kOnce{.repeat = 1};
 
 TEST_CASE("solvers and schemes are all that weft.h names") {
-  CHECK(std::ranges::count(all_solvers(), Solver::gauss_seidel) == 1);
-  CHECK(std::ranges::count(all_solvers(), Solver::direct) == 1);
-  CHECK(std::ranges::count(all_schemes(), Scheme::paper) == 1);
-  for (const Solver solver : all_solvers()) CHECK(name(solver) != "unknown");
+  CHECK(std::ranges::count(enumerators<Solver>(), Solver::gauss_seidel) == 1);
+  CHECK(std::ranges::count(enumerators<Solver>(), Solver::direct) == 1);
+  CHECK(std::ranges::count(enumerators<Scheme>(), Scheme::paper) == 1);
+  for (const Solver solver : enumerators<Solver>()) CHECK(name(solver) != "unknown");
 }
 
 TEST_CASE("the curves: the original first, rows of rising cost") {
@@ -104,7 +105,7 @@ TEST_CASE("the paper's scheme is of first order") {
   task.value().frames = kReferenceFrame;
   REQUIRE(add_reference(task.value(), 16));
   const auto orders = measure_orders(task.value());
-  REQUIRE(orders.size() == all_schemes().size());
+  REQUIRE(orders.size() == enumerators<Scheme>().size());
   CHECK(orders.front().scheme == "paper");
   REQUIRE(orders.front().order);
   CHECK(*orders.front().order == doctest::Approx(0.9).epsilon(0.15));
@@ -115,7 +116,7 @@ TEST_CASE("cost against size: a curve for each solver, which ends where time run
   study.sizes = {4, 6, 8};
   study.frames = 20;
   REQUIRE(measure(study, [](const std::string&) {}));
-  REQUIRE(study.curves.size() == all_solvers().size());
+  REQUIRE(study.curves.size() == enumerators<Solver>().size());
   const SizeCurve& curve = study.curves.front();
   REQUIRE(curve.points.size() == 3);
   CHECK(curve.end.empty());

@@ -1,0 +1,19 @@
+/// How the program ends.
+#pragma once
+
+#include <string_view>
+
+namespace weft::tools {
+
+inline constexpr int kDone = 0;
+inline constexpr int kCaseFailed = 1;       ///< a hard case
+inline constexpr int kRefused = 2;          ///< something given was refused
+inline constexpr int kMissedTolerance = 3;  ///< some step did not reach its tolerance
+
+/// As shells have it: 130 for SIGINT (Ctrl-C).
+constexpr int interrupted_by(int signal) { return 128 + signal; }
+
+/// One line on stderr. Returns kRefused.
+int refuse(std::string_view message);
+
+}  // namespace weft::tools

@@ -1,0 +1,25 @@
+/// Numbers as all tables and messages word them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+namespace weft::tools {
+
+/// What was asked for, as it was asked: 0.001 %.
+inline std::string percent(double fraction) { return fmt::format("{:g} %", 100 * fraction); }
+
+/// What was measured, to three digits: 0.0886 %.
+inline std::string measured_percent(double fraction) {
+  return fmt::format("{:.3g} %", 100 * fraction);
+}
+
+/// "1 sphere", "0 spheres"; for nouns whose plural has no more than an s.
+template <class Number>
+std::string counted(Number count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+}  // namespace weft::tools
