@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
+#include "tools/file_ending.h"
 #include "tools/obj_mesh.h"
 #include "tools/scene_file.h"
 
@@ -20,7 +19,7 @@ Result<Outputs> Outputs::open(const std::vector<std::string>& paths, const Scene
 }
 
 Result<void> Outputs::add(const std::string& path) {
-  const auto ending = std::filesystem::path(path).extension();
+  const auto ending = file_ending(path);
   if (ending == ".pc2") {
     auto motion = Pc2Writer::open(path);
     if (!motion) return Error{motion.error()};

@@ -1,4 +1,4 @@
-/// The files of --out. What is written follows from the ending:
+/// The files of --out. What is written follows from the ending, in any case of letters:
 ///   .obj   the last frame as a mesh (obj_mesh.h)
 ///   .pc2   the motion: the start and all frames (pc2_writer.h)
 ///   .json  the last state, as a scene to go on from (scene_file.h)

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "tools/exit_code.h"
+#include "tools/file_ending.h"
 #include "tools/pending_file.h"
 #include "tools/scene_file.h"
 #include "tools/scene_source.h"
@@ -19,7 +19,7 @@ struct WriteOptions {
 };
 
 Result<void> write_scene(const WriteOptions& options) {
-  if (std::filesystem::path(options.out).extension() != ".json") {
+  if (file_ending(options.out) != ".json") {
     return Error{fmt::format("--out: '{}' does not end in .json", options.out)};
   }
   const auto source = load_scene(options.scene);

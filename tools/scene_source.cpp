@@ -4,9 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 
 #include "engine/scenes.h"
+#include "tools/file_ending.h"
 #include "tools/obj_mesh.h"
 #include "tools/scene_file.h"
 
@@ -118,7 +118,7 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
 
 Result<SceneSource> load_scene(const SceneOptions& options) {
   if (is_built_in(options.scene)) return load_built_in(options);
-  const auto ending = std::filesystem::path(options.scene).extension();
+  const auto ending = file_ending(options.scene);
   if (ending == ".json") return load_scene_file(options);
   if (ending == ".obj") return load_obj(options);
   return Error{fmt::format("SCENE: '{}' is not one of {}, nor a .json or .obj file", options.scene,

@@ -239,6 +239,18 @@ TEST_CASE("precision: JSON alone on stdout, points and orders of the contract") 
   CHECK(json["order"].contains("rattle"));
 }
 
+TEST_CASE("endings of files may be in capital letters") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("SCENE.JSON");
+  CHECK(run_program(folder, "scene hang --size 3 --out " + scene).exit_code == 0);
+  const std::string outputs = " --out " + folder.file("LAST.OBJ") + " --out " +
+                              folder.file("MOTION.Pc2") + " --out " + folder.file("LAST.Json");
+  CHECK(run_program(folder, "run " + scene + " --steps 2" + outputs).exit_code == 0);
+  CHECK(folder.read("MOTION.Pc2").starts_with("POINTCACHE2"));
+  CHECK(folder.read("LAST.Json").starts_with("{"));
+  CHECK(run_program(folder, "run " + folder.file("LAST.OBJ") + " --steps 2").exit_code == 0);
+}
+
 TEST_CASE("one of a kind is counted in the singular") {
   const TemporaryFolder folder;
   const std::string scene =
