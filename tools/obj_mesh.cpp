@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <span>
 #include <sstream>
 #include <tuple>
 #include <unordered_set>
@@ -38,24 +40,96 @@ bool is_vertex(std::span<const std::string_view> words) {
          parse_number(words[3]);
 }
 
-/// What the loader would accept in silence: it reads a broken number as 0, and counts the corners
-/// of a face in a byte.
-Result<void> check_lines(const std::string& text) {
-  constexpr std::size_t kMostCorners = 255;
-  std::istringstream lines(text);
-  std::string line;
-  for (int number = 1; std::getline(lines, line); ++number) {
+/// Takes the first line off the text. A line ends as the loader has it: with \n, \r\n or \r.
+std::string_view take_line(std::string_view& text) {
+  const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+  text.remove_prefix(line.size());
+  text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, text.size()));
+  return line;
+}
+
+/// Comments of these lines are cut off, since the loader takes them for vertices of a face.
+std::string_view without_comment(std::string_view line) {
+  const auto words = words_of(line);
+  const bool is_element = !words.empty() && words[0].size() == 1;  // v, f, l, p
+  return is_element ? line.substr(0, line.find('#')) : line;
+}
+
+/// From 1 up, or below 0 and counted back from the last vertex; 0: it is no number of a vertex.
+/// Textures and normals after it are left to the loader.
+long long vertex_number(std::string_view word, long long vertices_before) {
+  const std::string_view digits = word.substr(0, word.find('/'));
+  const bool counts_back = digits.starts_with('-');
+  const long long number = parse_count(digits.substr(counts_back ? 1 : 0)).value_or(0);
+  if (!counts_back) return number;
+  return number <= vertices_before ? -number : 0;
+}
+
+/// Reads along with the loader, for what that would accept in silence: it reads a broken number as
+/// 0, 3.5 as 3 and 4294967299 as 3 too, and counts the corners of a face in a byte.
+class LineCheck {
+ public:
+  Result<void> add(std::string_view line) {
+    ++line_;
     const auto words = words_of(line);
-    if (words.empty()) continue;
-    if (words[0] == "v" && !is_vertex(words)) {
-      return Error{fmt::format("line {}: '{}': a vertex needs three finite numbers", number, line)};
+    if (words.empty()) return {};
+    if (words[0] == "v") {
+      ++vertices_;
+      return is_vertex(words) ? Result<void>{}
+                              : refused(line, "a vertex needs three finite numbers");
     }
     if (words[0] == "f" && words.size() - 1 > kMostCorners) {
-      return Error{fmt::format("line {}: a face of {} vertices; at most {} can be read", number,
+      return Error{fmt::format("line {}: a face of {} vertices; at most {} can be read", line_,
                                words.size() - 1, kMostCorners)};
     }
+    if (words[0] == "f" || words[0] == "l") return add_corners(std::span(words).subspan(1));
+    return {};
   }
-  return {};
+
+  /// Vertices may follow the faces that use them: only now is known how many there are.
+  Result<void> finish() const {
+    if (largest_ <= vertices_) return {};
+    return Error{fmt::format("line {}: there is no vertex {}, the last one is {}", largest_line_,
+                             largest_, vertices_)};
+  }
+
+ private:
+  static constexpr std::size_t kMostCorners = 255;
+
+  Result<void> refused(std::string_view text, std::string_view why) const {
+    return Error{fmt::format("line {}: '{}': {}", line_, text, why)};
+  }
+
+  Result<void> add_corners(std::span<const std::string_view> words) {
+    for (const std::string_view word : words) {
+      const long long number = vertex_number(word, vertices_);
+      if (number == 0) return refused(word, "not the number of a vertex");
+      if (number <= largest_) continue;
+      largest_ = number;
+      largest_line_ = line_;
+    }
+    return {};
+  }
+
+  int line_ = 0;
+  long long vertices_ = 0;
+  long long largest_ = 0;  ///< number of a vertex
+  int largest_line_ = 0;
+};
+
+/// The text as the loader is to have it.
+Result<std::string> checked_text(std::string_view text) {
+  std::string checked;
+  checked.reserve(text.size() + 1);
+  LineCheck check;
+  while (!text.empty()) {
+    const std::string_view line = without_comment(take_line(text));
+    if (auto added = check.add(line); !added) return Error{added.error()};
+    checked += line;
+    checked += '\n';
+  }
+  if (auto finished = check.finish(); !finished) return Error{finished.error()};
+  return checked;
 }
 
 /// Cuts a flat list of corners into its faces or lines.
@@ -80,13 +154,14 @@ Result<void> add_parts(const std::vector<tinyobj::index_t>& corners,
 }
 
 Result<Mesh> load_mesh(const std::string& text) {
-  if (auto checked = check_lines(text); !checked) return Error{checked.error()};
+  const auto checked = checked_text(text);
+  if (!checked) return Error{checked.error()};
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;
   std::vector<tinyobj::material_t> materials;
   std::string warning;
   std::string error;
-  std::istringstream stream(text);
+  std::istringstream stream(checked.value());
   constexpr bool kTriangulate = false;
   if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, nullptr,
                         kTriangulate)) {
