@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "tools/text_file.h"
 
@@ -139,6 +140,18 @@ SceneDescription read_scene(const Json& json) {
   return scene;
 }
 
+/// Of two values for one key the parser would drop one in silence. Only the keys of the scene
+/// itself are looked at: objects within it are refused anyway.
+Json parse_once_each(std::string_view text) {
+  std::set<std::string> seen;
+  return Json::parse(text, [&seen](int depth, Json::parse_event_t event, const Json& parsed) {
+    if (event != Json::parse_event_t::key || depth != 1) return true;
+    const auto key = parsed.get<std::string>();
+    if (!seen.insert(key).second) throw Refused{fmt::format("the key '{}' is given twice", key)};
+    return true;
+  });
+}
+
 /// "[json.exception.parse_error.101] parse error at line 2, ..." without the brackets.
 std::string plain_message(const Json::exception& exception) {
   const std::string_view text = exception.what();
@@ -176,7 +189,7 @@ void add_numbers(std::string& text, std::string_view key, const std::vector<Numb
 
 Result<SceneDescription> parse_scene(std::string_view text) {
   try {
-    return read_scene(Json::parse(text));
+    return read_scene(parse_once_each(text));
   } catch (const Refused& refused) {
     return Error{refused.message};
   } catch (const Json::exception& exception) {

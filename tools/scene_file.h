@@ -14,8 +14,9 @@
 ///     "radii":       [0, 0, ..., 0.15]            // with spheres: one per particle
 ///   }
 ///
-/// (Comments are not allowed in a real file.) Unknown keys are refused. An error names the place in
-/// the file, like "constraints[3][2]". Numbers survive writing and reading again to the last bit.
+/// (Comments are not allowed in a real file.) Unknown keys are refused, and keys that are given
+/// twice. An error names the place in the file, like "constraints[3][2]". Numbers survive writing
+/// and reading again to the last bit.
 #pragma once
 
 #include <weft/weft.h>

@@ -121,6 +121,9 @@ TEST_CASE("errors name the place in the file") {
 TEST_CASE("unknown, missing and contradicting keys are refused") {
   CHECK(error_with(R"("colour": 1)") == "unknown key 'colour'");
   CHECK(error_with(R"("masses": [1,1])") == "expected one of the keys 'masses' and 'total_mass'");
+  CHECK(error_with(R"("fixed": [0], "gravity": [0,0,0], "fixed": [1])") ==
+        "the key 'fixed' is given twice");
+  CHECK(error_with(R"("positions": [])") == "the key 'positions' is given twice");
   CHECK(error_of("{}") == "the key 'positions' is missing");
   CHECK(error_of("[]") == "expected an object with the key 'positions'");
   CHECK(error_of(R"({"positions": [], "total_mass": 0})") ==
