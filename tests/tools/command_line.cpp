@@ -93,8 +93,11 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
     std::string arguments;
     std::string named;
   } kRefused[] = {
-      {"", "verb"},
-      {"weave", "weave"},
+      {"", "a verb is missing: run, scene, paper, hard or precision"},
+      {"''", "a verb is missing: run, scene, paper, hard or precision"},
+      {"weave", "'weave' is not a verb: run, scene, paper, hard or precision"},
+      {"weave --size 3", "'weave' is not a verb"},
+      {"--colour red", "--colour"},
       {"run", "SCENE"},
       {"run curtain", "'curtain'"},
       {"run none.obj", "'none.obj'"},
@@ -135,6 +138,13 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
     CHECK(outcome.err.find(refused.named) != std::string::npos);
     CHECK(std::ranges::count(outcome.err, '\n') == 1);
   }
+}
+
+TEST_CASE("the version is that of the project") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, "--version");
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.out == "weft " WEFT_VERSION "\n");
 }
 
 TEST_CASE("every solver and scheme can be asked for, and the report names it") {
