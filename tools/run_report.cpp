@@ -62,7 +62,7 @@ std::string stages_text(const RunSummary& summary) {
 
 std::string goal_text(const Settings& settings) {
   return settings.iterations > 0
-             ? fmt::format("{} per step", counted(settings.iterations, "iteration"))
+             ? fmt::format("{} per substep", counted(settings.iterations, "iteration"))
              : fmt::format("tolerance {}", percent(settings.tolerance));
 }
 

@@ -77,6 +77,38 @@ Result<void> choose_substeps(const std::optional<std::string>& text, int& field)
   return {};
 }
 
+/// Two options, as they are named, and why the second has no effect beside the first.
+struct Contradiction {
+  bool is_given;
+  std::string_view first, second, reason;
+};
+
+Result<void> check_contradictions(const SolverOptions& options, const Settings& settings) {
+  const bool fixed = settings.iterations > 0;
+  const bool rattle = settings.scheme == Scheme::rattle;
+  const bool reference = settings.backend == Backend::reference;
+  const bool exact = settings.solver == Solver::yarn || settings.solver == Solver::direct;
+  const std::string solver = fmt::format("--solver {}", name(settings.solver));
+  constexpr std::string_view kFixed = "a fixed count is done whatever the error";
+  constexpr std::string_view kMethods = "only gauss_seidel has this choice";
+  const Contradiction all[] = {
+      {fixed && options.tolerance, "--iterations", "--tolerance", kFixed},
+      {fixed && options.max_iterations, "--iterations", "--max-iterations", kFixed},
+      {rattle && options.velocity_correction && !settings.velocity_correction, "--scheme rattle",
+       "--velocity-correction off", "rattle corrects velocities always"},
+      {reference && settings.isa != Isa::automatic, "--backend reference", "--isa",
+       "the reference backend is scalar"},
+      {exact && options.anticipate, solver, "--anticipate", kMethods},
+      {exact && options.skip, solver, "--skip", kMethods},
+      {exact && options.directions, solver, "--directions", kMethods},
+  };
+  for (const Contradiction& c : all) {
+    if (!c.is_given) continue;
+    return Error{fmt::format("{} leaves no room for {}: {}", c.first, c.second, c.reason)};
+  }
+  return {};
+}
+
 }  // namespace
 
 void add_solver_options(CLI::App& verb, SolverOptions& options) {
@@ -84,15 +116,16 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
   verb.add_option("--tolerance", options.tolerance,
                   "strain that every step must reach, 1% or 0.01 (default 1%)");
   verb.add_option("--iterations", settings.iterations,
-                  "exactly this many iterations per step, instead of a tolerance");
-  verb.add_option("--max-iterations", settings.max_iterations,
-                  "most iterations of one step (default 1000000)");
+                  "exactly this many iterations of one substep, instead of a tolerance");
+  verb.add_option("--max-iterations", options.max_iterations,
+                  "most iterations of one substep (default 1000000)");
   verb.add_option("--contact-tolerance", settings.contact_tolerance,
                   "m of penetration left (default 1e-4)");
   verb.add_option("--velocity-tolerance", settings.velocity_tolerance,
                   "m/s left along a constraint (default 0.01)");
-  verb.add_option("--impulse-limit", settings.impulse_limit,
-                  "N s, largest impulse of one correction (default 0: no limit)");
+  verb.add_option(
+      "--impulse-limit", settings.impulse_limit,
+      "--backend reference: N s, largest impulse of one correction (default 0: no limit)");
   verb.add_option("--solver", options.solver,
                   "auto (default), gauss_seidel, yarn or direct; gauss_seidel where "
                   "--anticipate, --skip or --directions choose among its methods");
@@ -106,15 +139,17 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
   verb.add_option("--directions", options.directions,
                   "frozen (default) until all errors along them are within tolerance, or each: "
                   "renewed before each iteration");
-  verb.add_option("--velocity-correction", options.velocity_correction,
-                  "on or off (default): a second loop, on velocities");
+  verb.add_option(
+      "--velocity-correction", options.velocity_correction,
+      "on or off (default): a second loop, on velocities; --scheme rattle has it always");
   verb.add_option(
       "--renew-after", settings.renew_after,
       "frozen directions serve for at most so many iterations (default 32; 0: until all "
       "errors along them are within tolerance)");
   verb.add_option("--backend", options.backend, "simd (default) or reference");
-  verb.add_option("--isa", options.isa,
-                  "sse2, avx2, avx512 or auto (default: WEFT_ISA, else the best there is)");
+  verb.add_option(
+      "--isa", options.isa,
+      "--backend simd: sse2, avx2, avx512 or auto (default: WEFT_ISA, else the best there is)");
   verb.add_option("--threads", settings.threads,
                   "most threads of a step (default 0: one for each processor)");
   verb.add_option(
@@ -140,6 +175,10 @@ Result<Settings> settings_of(const SolverOptions& options) {
   };
   for (const Result<void>& check : checks) {
     if (!check) return Error{check.error()};
+  }
+  settings.max_iterations = options.max_iterations.value_or(settings.max_iterations);
+  if (auto checked = check_contradictions(options, settings); !checked) {
+    return Error{checked.error()};
   }
   const bool methods = options.anticipate || options.skip || options.directions;
   if (methods && !options.solver) settings.solver = Solver::gauss_seidel;
