@@ -84,9 +84,20 @@ Result<RunSummary> run_and_record(const Prepared& prepared, RunPlan plan, Output
   return run(prepared.source.description, prepared.settings, plan, on_frame);
 }
 
+/// Files are those of the first run, the report is that of the fastest.
+std::string interruption(const RunSummary& summary, const RunPlan& plan) {
+  if (summary.finished_runs == 0) {
+    return fmt::format("in frame {} of {}, the last one in all that was written", summary.frames,
+                       plan.steps);
+  }
+  const int finished_repeats = summary.finished_runs - 1;
+  return fmt::format("in repeat {} of {}; the report is that of {}", summary.finished_runs,
+                     plan.repeat,
+                     finished_repeats == 0 ? "the run to warm up" : "the fastest before it");
+}
+
 int interrupted(const RunSummary& summary, const RunPlan& plan) {
-  fmt::print(stderr, "weft: interrupted; frame {} of {} is the last one in all that was written\n",
-             summary.frames, plan.steps);
+  fmt::print(stderr, "weft: interrupted {}\n", interruption(summary, plan));
   return interrupted_by(OrderlyInterrupt::signal());
 }
 

@@ -98,6 +98,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     summary.stopped = plan.stop && plan.stop();
     if (on_frame) on_frame(summary.frames, cloth, report.value());
   }
+  summary.finished_runs = summary.stopped ? 0 : 1;
   finish(summary, errors, cloth);
   return summary;
 }
@@ -107,10 +108,16 @@ Result<RunSummary> run_repeatedly(const std::shared_ptr<const Model>& model,
                                   const FrameCallback& on_frame) {
   auto best = run_once(model, settings, plan, on_frame);
   if (!best || plan.repeat <= 1 || best.value().stopped) return best;
-  for (int i = 0; i < plan.repeat; ++i) {
+  for (int finished = 1; finished <= plan.repeat; ++finished) {
     auto next = run_once(model, settings, plan, {});
-    if (!next || next.value().stopped) return next;
-    if (i == 0 || next.value().step_seconds < best.value().step_seconds) best = std::move(next);
+    if (!next) return next;
+    if (next.value().stopped) {  // a whole run is worth more than a part of one
+      best.value().stopped = true;
+      break;
+    }
+    const bool is_first = finished == 1;  // the run before it was to warm up
+    if (is_first || next.value().step_seconds < best.value().step_seconds) best = std::move(next);
+    best.value().finished_runs = finished + 1;
   }
   return best;
 }

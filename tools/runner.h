@@ -35,7 +35,10 @@ struct RunSummary {
   Isa isa = Isa::automatic;  ///< what the kernels ran on
   int threads = 1;           ///< that the steps could use
   int frames = 0;  ///< computed; below RunPlan::steps if stopped, not committed or out of time
-  bool stopped = false;               ///< RunPlan::stop said so
+  bool stopped = false;  ///< RunPlan::stop said so, to this run or to a later repeat
+  /// Runs that came to their end, the one to warm up included. Where a later one was stopped the
+  /// figures are those of the best before it; 0: of the one that was stopped.
+  int finished_runs = 0;
   Status status = Status::converged;  ///< the worst of all frames
 
   double step_seconds = 0;    ///< wall time in step()

@@ -353,14 +353,32 @@ TEST_CASE("an interrupted run ends with its frame: whole files, a line, 130") {
   CHECK(folder.read("stderr").find("weft: stops after this frame") == 0);
   REQUIRE_FALSE(outputs.read("report.json").empty());
   const auto frames = nlohmann::json::parse(outputs.read("report.json"))["steps"].get<int>();
-  CHECK(folder.read("stderr").find("weft: interrupted; frame " + std::to_string(frames) +
-                                   " of 100000000") != std::string::npos);
+  CHECK(folder.read("stderr").find("weft: interrupted in frame " + std::to_string(frames) +
+                                   " of 100000000,") != std::string::npos);
   CHECK(outputs.read("motion.pc2").size() ==
         32 + (static_cast<std::size_t>(frames) + 1) * 12 * 400);
 
   // The last state is that of a run of so many frames.
   const Outcome same = run_program(
       folder, "run hang --steps " + std::to_string(frames) + " --out " + folder.file("same.json"));
+  CHECK(same.exit_code == 0);
+  CHECK(folder.read("same.json") == outputs.read("last.json"));
+}
+
+TEST_CASE("an interrupted repeat leaves the report of a whole run") {
+  const TemporaryFolder folder;
+  const TemporaryFolder outputs;
+  const std::string scene = outputs.file("last.json"), report = outputs.file("report.json");
+  const Running running(folder, {"run", "hang", "--size", "5", "--steps", "50", "--repeat",
+                                 "100000000", "--out", scene, "--json", report});
+  wait_for([&] { return !outputs.is_empty(); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  running.interrupt();
+  CHECK(running.exit_code() == 130);
+  CHECK(folder.read("stderr").find("weft: interrupted in repeat ") != std::string::npos);
+  CHECK(nlohmann::json::parse(outputs.read("report.json"))["steps"] == 50);
+  const Outcome same =
+      run_program(folder, "run hang --size 5 --steps 50 --out " + folder.file("same.json"));
   CHECK(same.exit_code == 0);
   CHECK(folder.read("same.json") == outputs.read("last.json"));
 }

@@ -63,6 +63,26 @@ TEST_CASE("repeats differ in nothing but their time, and only the first is shown
   CHECK(best.value().visits == once.value().visits);
 }
 
+TEST_CASE("where a repeat is stopped the best run before it is reported, whole") {
+  const SceneDescription scene = hang(5);
+  constexpr int kSteps = 10;
+  const auto whole = run(scene, {}, {.steps = kSteps});
+  REQUIRE(whole);
+  for (const int finished : {0, 1, 3}) {
+    CAPTURE(finished);
+    int asked = 0;
+    const auto stop = [&] { return ++asked >= finished * kSteps + 4; };
+    const auto stopped = run(scene, {}, {.steps = kSteps, .repeat = 5, .stop = stop});
+    REQUIRE(stopped);
+    CHECK(stopped.value().stopped);
+    CHECK(stopped.value().finished_runs == finished);
+    CHECK(stopped.value().frames == (finished == 0 ? 4 : kSteps));
+    CHECK((stopped.value().state_hash == whole.value().state_hash) == (finished > 0));
+  }
+  CHECK_FALSE(whole.value().stopped);
+  CHECK(whole.value().finished_runs == 1);
+}
+
 TEST_CASE("the worst status of all frames is told") {
   const SceneDescription scene = hang(8);
   const auto limited = run(scene, {.tolerance = 1e-9, .max_iterations = 2}, {.steps = 5});
