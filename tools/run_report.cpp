@@ -60,6 +60,13 @@ std::string stages_text(const RunSummary& summary) {
   return text;
 }
 
+/// "direct", "auto (yarn)".
+std::string solver_text(const RunReport& report) {
+  const std::string asked(name(report.settings.solver));
+  if (report.settings.solver != Solver::automatic) return asked;
+  return fmt::format("{} ({})", asked, name(report.summary.solver));
+}
+
 std::string goal_text(const Settings& settings) {
   return settings.iterations > 0
              ? fmt::format("{} per substep", counted(settings.iterations, "iteration"))
@@ -82,6 +89,7 @@ Json to_json(const RunReport& report) {
       {"particles", summary.model.particles},
       {"constraints", summary.model.constraints},
       {"solver", name(settings.solver)},
+      {"solver_used", name(summary.solver)},
       {"scheme", name(settings.scheme)},
       {"scheme_fallbacks", summary.scheme_fallbacks},
       {"backend", name(settings.backend)},
@@ -128,7 +136,7 @@ std::string to_table(const RunReport& report) {
       fmt::format("{}: {}, {}, {}", report.scene, counted(summary.model.particles, "particle"),
                   counted(summary.model.constraints, "constraint"),
                   counted(summary.model.spheres, "sphere")));
-  row("solver", fmt::format("{}, scheme {}, backend {}, {}", name(settings.solver),
+  row("solver", fmt::format("{}, scheme {}, backend {}, {}", solver_text(report),
                             name(settings.scheme), name(settings.backend), goal_text(settings)));
   if (settings.scheme == Scheme::rattle) {
     row("scheme", fmt::format("{} of {} left to scheme paper", summary.scheme_fallbacks,

@@ -61,6 +61,7 @@ void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
   const double frames = std::max(summary.frames, 1);
   summary.mean_max_strain = errors.strain_sum / frames;
   summary.rms_strain = std::sqrt(errors.square_strain_sum / frames);
+  summary.solver = cloth.settings().solver;
   summary.isa = cloth.settings().isa;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     if (static_cast<Stage>(stage) != Stage::report) {

@@ -32,8 +32,9 @@ using FrameCallback = std::function<void(int frame, const Cloth&, const StepRepo
 /// All figures of a run. Counts and seconds are sums over its frames; strains are fractions,
 /// recomputed from the positions after every frame.
 struct RunSummary {
-  Isa isa = Isa::automatic;  ///< what the kernels ran on
-  int threads = 1;           ///< that the steps could use
+  Solver solver = Solver::automatic;  ///< that was chosen
+  Isa isa = Isa::automatic;           ///< what the kernels ran on
+  int threads = 1;                    ///< that the steps could use
   int frames = 0;  ///< computed; below RunPlan::steps if stopped, not committed or out of time
   bool stopped = false;  ///< RunPlan::stop said so, to this run or to a later repeat
   /// Runs that came to their end, the one to warm up included. Where a later one was stopped the

@@ -170,6 +170,26 @@ TEST_CASE("every solver and scheme can be asked for, and the report names it") {
     const auto json = nlohmann::json::parse(outcome.out);
     const std::string solver = json["solver"];
     CHECK((arguments.find(solver) != std::string::npos || solver == "auto"));
+    if (solver != "auto") CHECK(json["solver_used"] == solver);
+  }
+}
+
+TEST_CASE("the report tells which solver auto came to") {
+  const TemporaryFolder folder;
+  const struct {
+    std::string arguments;
+    std::string used;
+  } kChoices[] = {{"hang --size 4", "yarn"},
+                  {"hang --size 4 --iterations 3", "gauss_seidel"},
+                  {"chain --end-mass 1e5", "direct"}};
+  for (const auto& choice : kChoices) {
+    CAPTURE(choice.arguments);
+    const std::string arguments = "run " + choice.arguments + " --steps 2";
+    const auto json = nlohmann::json::parse(run_program(folder, arguments + " --json -").out);
+    CHECK(json["solver"] == "auto");
+    CHECK(json["solver_used"] == choice.used);
+    const std::string table = run_program(folder, arguments).out;
+    CHECK(table.find("solver    auto (" + choice.used + "), scheme") != std::string::npos);
   }
 }
 
