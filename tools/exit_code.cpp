@@ -11,4 +11,9 @@ int refuse(std::string_view message) {
   return kRefused;
 }
 
+int missed_tolerance(std::string_view where) {
+  fmt::print(stderr, "weft: the tolerance was missed, first in {}\n", where);
+  return kMissedTolerance;
+}
+
 }  // namespace weft::tools

@@ -16,4 +16,7 @@ constexpr int interrupted_by(int signal) { return 128 + signal; }
 /// One line on stderr. Returns kRefused.
 int refuse(std::string_view message);
 
+/// One line on stderr, with where and how that was first. Returns kMissedTolerance.
+int missed_tolerance(std::string_view where);
+
 }  // namespace weft::tools

@@ -81,7 +81,10 @@ int run_paper(const PaperOptions& options) {
       paper::to_text(study.value()), paper::to_json(study.value()),
       [&](const std::filesystem::path& folder) { return write_folder(folder, study.value()); });
   if (!done) return refuse(done.error());
-  return paper::all_reached_tolerance(study.value()) ? kDone : kMissedTolerance;
+  const paper::Row* missed = paper::first_missed(study.value());
+  if (!missed) return kDone;
+  return missed_tolerance(fmt::format("{}, {}, {}", describe(missed->cell), missed->variant.label(),
+                                      text(*missed->summary.first_miss)));
 }
 
 }  // namespace

@@ -147,10 +147,13 @@ std::vector<Gain> measured_gains(const std::vector<Row>& rows) {
   return gains;
 }
 
-bool all_reached_tolerance(const Study& study) {
-  const auto reached = [](const Row& row) { return row.summary.reached_tolerance(); };
-  return std::all_of(study.rows.begin(), study.rows.end(), reached) &&
-         std::all_of(study.figure_4.begin(), study.figure_4.end(), reached);
+const Row* first_missed(const Study& study) {
+  for (const auto* rows : {&study.rows, &study.figure_4}) {
+    for (const Row& row : *rows) {
+      if (!row.summary.reached_tolerance()) return &row;
+    }
+  }
+  return nullptr;
 }
 
 Json to_json(const Study& study) {

@@ -32,7 +32,8 @@ std::vector<Gain> published_gains();
 /// As measured, in the same order.
 std::vector<Gain> measured_gains(const std::vector<Row>& rows);
 
-bool all_reached_tolerance(const Study& study);
+/// The first run that missed its tolerance in some frame; none: nullptr.
+const Row* first_missed(const Study& study);
 
 Json to_json(const Study& study);
 std::string rows_csv(const std::vector<Row>& rows);

@@ -120,7 +120,8 @@ Result<int> run_verb(const RunOptions& options) {
     if (auto printed = print_text(to_table(report)); !printed) return Error{printed.error()};
   }
   if (summary.value().stopped) return interrupted(summary.value(), options.plan);
-  return summary.value().reached_tolerance() ? kDone : kMissedTolerance;
+  if (summary.value().reached_tolerance()) return kDone;
+  return missed_tolerance(text(*summary.value().first_miss));
 }
 
 }  // namespace

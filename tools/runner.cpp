@@ -1,5 +1,7 @@
 #include "tools/runner.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +12,7 @@
 
 #include "tools/cpu_time.h"
 #include "tools/warm_up.h"
+#include "tools/wording.h"
 
 namespace weft::tools {
 namespace {
@@ -22,6 +25,22 @@ double lowest_y(const Cloth& cloth) {
     lowest = std::min(lowest, cloth.position(i).y);
   }
   return lowest;
+}
+
+/// Also of a frame that had no tolerance, but a number of iterations to do.
+bool is_reached(Status status) {
+  return status == Status::converged || status == Status::fixed_iterations;
+}
+
+void look_for_miss(RunSummary& summary, const StepReport& report) {
+  if (summary.first_miss || is_reached(report.status)) return;
+  summary.first_miss = {.frame = summary.frames,
+                        .status = report.status,
+                        .max_strain = report.max_strain,
+                        .max_penetration = report.max_penetration,
+                        .constraint = report.worst_constraint,
+                        .failed_particle = report.failed_particle,
+                        .passed_particle = report.passed_particle};
 }
 
 void add_work(RunSummary& summary, const StepReport& report) {
@@ -94,6 +113,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     if (!report) return Error{report.error()};
     ++summary.frames;
     summary.step_seconds += elapsed.count();
+    look_for_miss(summary, report.value());
     add_work(summary, report.value());
     add_errors(summary, errors, cloth);
     summary.stopped = plan.stop && plan.stop();
@@ -124,6 +144,23 @@ Result<RunSummary> run_repeatedly(const std::shared_ptr<const Model>& model,
 }
 
 }  // namespace
+
+std::string text(const Miss& miss) {
+  const std::string end = fmt::format("frame {}: {}", miss.frame, name(miss.status));
+  if (miss.failed_particle != kNoIndex) {
+    return fmt::format("{} at particle {}", end, miss.failed_particle);
+  }
+  if (miss.passed_particle != kNoIndex) {
+    return fmt::format("{}; particle {} went through a sphere", end, miss.passed_particle);
+  }
+  const std::string contacts =
+      miss.max_penetration > 0
+          ? fmt::format("; contacts are up to {:.3g} m deep", miss.max_penetration)
+          : "";
+  if (miss.constraint == kNoIndex) return end + contacts;
+  return fmt::format("{}; constraint {} has the largest strain, {}{}", end, miss.constraint,
+                     measured_percent(miss.max_strain), contacts);
+}
 
 Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& settings,
                        const RunPlan& plan, const FrameCallback& on_frame) {

@@ -10,6 +10,8 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <string>
 
 namespace weft::tools {
 
@@ -29,6 +31,20 @@ struct RunPlan {
 /// With repeats it is called in the first (warm-up) run only.
 using FrameCallback = std::function<void(int frame, const Cloth&, const StepReport&)>;
 
+/// A frame that was not brought within its tolerances, and what its report names.
+struct Miss {
+  int frame = 0;  ///< from 1
+  Status status = Status::converged;
+  double max_strain = 0;
+  double max_penetration = 0;                ///< m
+  std::uint32_t constraint = kNoIndex;       ///< with max_strain
+  std::uint32_t failed_particle = kNoIndex;  ///< where the numbers ended
+  std::uint32_t passed_particle = kNoIndex;  ///< that went through a sphere
+};
+
+/// "frame 3: iteration_limit; constraint 7 has the largest strain, 2.1 %".
+std::string text(const Miss& miss);
+
 /// All figures of a run. Counts and seconds are sums over its frames; strains are fractions,
 /// recomputed from the positions after every frame.
 struct RunSummary {
@@ -41,6 +57,7 @@ struct RunSummary {
   /// figures are those of the best before it; 0: of the one that was stopped.
   int finished_runs = 0;
   Status status = Status::converged;  ///< the worst of all frames
+  std::optional<Miss> first_miss;
 
   double step_seconds = 0;    ///< wall time in step()
   double cpu_seconds = 0;     ///< processor time in step(), all threads together
@@ -71,9 +88,7 @@ struct RunSummary {
   std::size_t bytes = 0;         ///< of the cloth and its model
   ModelInfo model;
 
-  bool reached_tolerance() const {
-    return status == Status::converged || status == Status::fixed_iterations;
-  }
+  bool reached_tolerance() const { return !first_miss; }
   double seconds_per_frame() const { return frames > 0 ? step_seconds / frames : 0; }
   double iterations_per_step() const {
     return frames > 0 ? static_cast<double>(iterations) / frames : 0;

@@ -224,6 +224,9 @@ TEST_CASE("a missed tolerance exits with 3, and the report and the files are wri
                   "gauss_seidel --out " +
                       folder.file("last.obj") + " --json " + folder.file("report.json"));
   CHECK(outcome.exit_code == 3);
+  CHECK(outcome.err.starts_with("weft: the tolerance was missed, first in frame 2: "));
+  CHECK(outcome.err.find(": iteration_limit; constraint ") != std::string::npos);
+  CHECK(std::ranges::count(outcome.err, '\n') == 1);
   CHECK(nlohmann::json::parse(folder.read("report.json"))["status"] == "iteration_limit");
   CHECK(folder.read("last.obj").starts_with("o cloth\n"));
 }

@@ -82,9 +82,12 @@ TEST_CASE("a measured cell reaches its strain with every variant") {
 TEST_CASE("a row that missed its tolerance is seen") {
   Study study;
   study.rows = made_up_rows();
-  CHECK(all_reached_tolerance(study));
-  study.rows.back().summary.status = Status::iteration_limit;
-  CHECK_FALSE(all_reached_tolerance(study));
+  CHECK(first_missed(study) == nullptr);
+  study.figure_4 = made_up_rows();
+  study.figure_4.back().summary.first_miss = {.frame = 2};
+  CHECK(first_missed(study) == &study.figure_4.back());
+  study.rows.back().summary.first_miss = {.frame = 3};
+  CHECK(first_missed(study) == &study.rows.back());
 }
 
 TEST_CASE("the JSON has the rows and the six summaries of Table 1") {

@@ -89,6 +89,10 @@ TEST_CASE("the worst status of all frames is told") {
   REQUIRE(limited);
   CHECK(limited.value().status == Status::iteration_limit);
   CHECK_FALSE(limited.value().reached_tolerance());
+  REQUIRE(limited.value().first_miss);
+  CHECK(limited.value().first_miss->frame == 1);
+  CHECK(limited.value().first_miss->status == Status::iteration_limit);
+  CHECK(limited.value().first_miss->constraint < scene.constraints.size());
   const auto fixed = run(scene, {.iterations = 2}, {.steps = 5});
   REQUIRE(fixed);
   CHECK(fixed.value().status == Status::fixed_iterations);
@@ -102,6 +106,18 @@ TEST_CASE("a run ends with the frame that would not be finite") {
   CHECK(summary.value().status == Status::non_finite_input);
   CHECK(summary.value().frames == 1);
   CHECK_FALSE(summary.value().reached_tolerance());
+  CHECK(text(*summary.value().first_miss).starts_with("frame 1: non_finite_input at particle "));
+}
+
+TEST_CASE("a miss names what its report names") {
+  const Miss limit{
+      .frame = 3, .status = Status::iteration_limit, .max_strain = 0.021, .constraint = 7};
+  CHECK(text(limit) == "frame 3: iteration_limit; constraint 7 has the largest strain, 2.1 %");
+  const Miss deep{.frame = 3, .status = Status::infeasible, .max_penetration = 0.02};
+  CHECK(text(deep) == "frame 3: infeasible; contacts are up to 0.02 m deep");
+  const Miss passed{
+      .frame = 9, .status = Status::passed_through, .constraint = 7, .passed_particle = 4};
+  CHECK(text(passed) == "frame 9: passed_through; particle 4 went through a sphere");
 }
 
 TEST_CASE("what the library refuses is passed on") {
