@@ -139,7 +139,7 @@ std::string bullet_version() {
 
 std::vector<Point> sweep_bullet(const Task& task, const Effort& effort, bool quick,
                                 const std::function<void(const std::string&)>& watch) {
-  constexpr double kLoosest = 0.1, kTightest = 1e-3;
+  constexpr double kLoosest = 0.1;
   constexpr int kMostIterations = 2000;
   const std::vector<int> substeps =
       quick ? std::vector{5, 20} : std::vector{5, 10, 20, 50, 100, 200};
@@ -152,7 +152,7 @@ std::vector<Point> sweep_bullet(const Task& task, const Effort& effort, bool qui
       const Outcome outcome = best_of(task, knobs, effort);
       if (outcome.max_strain > kLoosest && outcome.status == "fixed_iterations") continue;
       points.push_back({"bullet", "", "", knobs, outcome});
-      if (outcome.status != "fixed_iterations" || outcome.max_strain < kTightest) break;
+      if (outcome.status != "fixed_iterations" || outcome.max_strain < kBulletTightest) break;
     }
   }
   return points;

@@ -16,8 +16,11 @@ namespace weft::tools::precision {
 /// Version and number format; empty: not built in.
 std::string bullet_version();
 
-/// Its substeps and iterations, from those that keep a strain of 10 % to those that reach 0.1 % or
-/// the limit of time. Empty if not built in.
+/// Where its search ends: as tight as weft's own tolerances.
+inline constexpr double kBulletTightest = 1e-5;
+
+/// Its substeps and iterations, from those that keep a strain of 10 % to those that reach
+/// kBulletTightest, the limit of time or 2000 iterations. Empty if not built in.
 std::vector<Point> sweep_bullet(const Task& task, const Effort& effort, bool quick,
                                 const std::function<void(const std::string&)>& watch);
 
