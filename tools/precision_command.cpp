@@ -63,27 +63,33 @@ Result<std::vector<Task>> tasks_of(const PrecisionOptions& options) {
 /// The reference's step is a frame / 128 (quick: / 64).
 int reference_parts(bool quick) { return quick ? 32 : 64; }
 
+std::string size_text(const Task& task) {
+  return task.is_line() ? fmt::format("of {}", task.size) : fmt::format("{0}x{0}", task.size);
+}
+
 Result<Chart> measure_chart(Task task, const PrecisionOptions& options, TaskLine& line) {
   Effort effort;
   if (options.quick) effort = {.repeat = 2, .seconds_limit = 0.5, .enough_seconds = 0.05};
   const auto watch = [&](const std::string& detail) { line.show(detail); };
-  const std::string scene = fmt::format("{0} {1}x{1}", task.scene, task.size);
+  const std::string scene = fmt::format("{} {}", task.scene, size_text(task));
 
   line.next(scene + " reference solution");
   if (const auto done = add_reference(task, reference_parts(options.quick)); !done) {
     return Error{scene + ": " + done.error()};
   }
-  Chart chart{std::move(task), {}};
+  Chart chart{std::move(task), {}, effort.seconds_limit, {}};
   line.next(scene + " weft");
   for (const Curve& curve : weft_curves(chart.task, options.quick)) {
     auto points = sweep(chart.task, curve, effort,
                         [&](const std::string& detail) { watch(curve.label + ", " + detail); });
     if (!points) return Error{points.error()};
     for (Point& point : points.value()) chart.points.push_back(std::move(point));
+    note_aims(chart, curve);
   }
   line.next(scene + " Bullet");
   for (Point& point : sweep_bullet(chart.task, effort, options.quick, watch)) {
     chart.points.push_back(std::move(point));
+    chart.tightest["bullet"] = kBulletTightest;
   }
   return chart;
 }

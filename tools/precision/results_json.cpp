@@ -35,8 +35,6 @@ Json point_json(const Task& task, const Point& point) {
   return json;
 }
 
-bool is_peer(const Point& point) { return point.backend.empty(); }
-
 Json points_json(const Study& study, bool peers) {
   Json json = Json::array();
   for (const Chart& chart : study.charts) {
@@ -52,7 +50,9 @@ Json scenes_json(const Study& study) {
   for (const Chart& chart : study.charts) {
     json.push_back({{"scene", chart.task.scene},
                     {"size", chart.task.size},
+                    {"particles", chart.task.description.positions.size()},
                     {"frames", chart.task.frames},
+                    {"seconds_limit", chart.seconds_limit},
                     {"threads", chart.task.threads},
                     {"reference_error", chart.task.reference_error}});
   }

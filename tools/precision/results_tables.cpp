@@ -23,14 +23,43 @@ std::string error_text(const std::optional<double>& error) {
   return error ? fmt::format("{:.3g} mm", 1000 * *error) : "-";
 }
 
+std::string no_energy() {
+  return fmt::format("never more than {:g} J above its start", kEnergyBound);
+}
+
+std::string limit(const Chart& chart) { return fmt::format("{:.3g} ms", chart.ms_limit()); }
+
+std::string gap_text(const Chart& chart, const std::string& name, double bound) {
+  switch (gap(chart, name, bound)) {
+    case Gap::not_aimed_at:
+      return "-";
+    case Gap::out_of_time:
+      return "over " + limit(chart);
+    case Gap::failed:
+      break;
+  }
+  return "never";
+}
+
+/// What stands where there is no setting. All charts of a study have the same limits.
+std::string legend(const Chart& chart) {
+  const std::string threads = chart.task.threads == 1 ? "" : ", all threads together";
+  return fmt::format(
+      "A run is cut at {:g} s of processor time{}: {} a frame over {}.\n"
+      "'over {}': no setting kept the bound, and some were cut. '-': no setting of this sweep\n"
+      "aims at the bound. 'never': all that aim at it failed.\n",
+      chart.seconds_limit, threads, limit(chart), counted(chart.task.frames, "frame"),
+      limit(chart));
+}
+
 void write_cheapest(Text out, const Chart& chart) {
   const Task& task = chart.task;
   fmt::format_to(out,
-                 "{0}, size {1}, {2} frames of {3} s, {4} thread{5}: the cheapest setting that "
-                 "keeps every strain within the bound\nand gains no energy. Trajectory errors at "
-                 "{6} s; the reference's own is about {7:.2g} mm.\n",
-                 task.scene, task.size, task.frames, kFrame, task.threads,
-                 task.threads == 1 ? "" : "s", kFrame * kReferenceFrame,
+                 "{}, size {}, {} of {} s, {}: the cheapest setting that keeps every strain within "
+                 "the bound\nand gains no energy ({}). Trajectory errors at {} s; the reference's "
+                 "own is about {:.2g} mm.\n",
+                 task.scene, task.size, counted(task.frames, "frame"), kFrame,
+                 counted(task.threads, "thread"), no_energy(), kFrame * kReferenceFrame,
                  1000 * task.reference_error);
   fmt::format_to(out, "{:>9}  {:14}{:>13}{:>10}{:>13}{:>13}  {}\n", "bound", "", "ms per frame",
                  "x auto", "max strain", "trajectory", "setting");
@@ -39,7 +68,8 @@ void write_cheapest(Text out, const Chart& chart) {
     for (const std::string& name : contenders(chart)) {
       const Point* point = cheapest(chart, name, bound);
       if (!point) {
-        fmt::format_to(out, "{:>9}  {:14}{:>13}\n", percent(bound), name, "not reached");
+        fmt::format_to(out, "{:>9}  {:14}{:>13}\n", percent(bound), name,
+                       gap_text(chart, name, bound));
         continue;
       }
       const double ms = point->outcome.ms_per_frame;
@@ -53,6 +83,18 @@ void write_cheapest(Text out, const Chart& chart) {
   fmt::format_to(out, "\n");
 }
 
+/// "0.023 (43 mm)": ms per frame, and how far from the true motion.
+std::string markdown_cell(const Chart& chart, const std::string& name, double bound) {
+  const Point* point = cheapest(chart, name, bound);
+  if (!point) return gap_text(chart, name, bound);
+  const auto& error = point->outcome.trajectory_error;
+  const std::string cost = fmt::format("{:.3g}", point->outcome.ms_per_frame);
+  if (!error) return cost;
+  const double mm = 1000 * *error;
+  return mm < 10 ? fmt::format("{} ({:.2g} mm)", cost, mm)
+                 : fmt::format("{} ({:.0f} mm)", cost, mm);
+}
+
 void write_markdown_row(Text out, const Chart& chart, double bound) {
   const auto ms = [&](const std::string& name) -> std::optional<double> {
     const Point* point = cheapest(chart, name, bound);
@@ -60,8 +102,7 @@ void write_markdown_row(Text out, const Chart& chart, double bound) {
   };
   fmt::format_to(out, "| {} |", percent(bound));
   for (const std::string& name : contenders(chart)) {
-    const auto cost = ms(name);
-    fmt::format_to(out, " {} |", cost ? fmt::format("{:.3g}", *cost) : "never");
+    fmt::format_to(out, " {} |", markdown_cell(chart, name, bound));
   }
   const auto plain = ms("auto");
   for (const char* other : {"gauss_seidel", "bullet"}) {
@@ -72,7 +113,9 @@ void write_markdown_row(Text out, const Chart& chart, double bound) {
 }
 
 void write_markdown(Text out, const Chart& chart) {
-  fmt::format_to(out, "| {} {}², ms per frame |", chart.task.scene, chart.task.size);
+  fmt::format_to(out, "| {} {}, ms per frame |", chart.task.scene,
+                 chart.task.is_line() ? fmt::format("of {}", chart.task.size)
+                                      : fmt::format("{}²", chart.task.size));
   std::string rule = "|---|---|---|";
   for (const std::string& name : contenders(chart)) {
     fmt::format_to(out, " {} |", name);
@@ -181,6 +224,13 @@ std::string to_markdown(const Study& study) {
   std::string text;
   const Text out = std::back_inserter(text);
   for (const Chart& chart : study.charts) write_markdown(out, chart);
+  if (study.charts.empty()) return text;
+  fmt::format_to(
+      out,
+      "ms per frame of the cheapest setting that keeps every strain within the bound and gains no\n"
+      "energy ({}), in brackets how far a particle is from\n"
+      "the true motion after {:g} s at most.\n{}",
+      no_energy(), kFrame * kReferenceFrame, legend(study.charts.front()));
   return text;
 }
 
@@ -190,6 +240,7 @@ std::string to_text(const Study& study) {
   if (study.quick) fmt::format_to(out, "QUICK: few settings, small scenes.\n");
   fmt::format_to(out, "Bullet: {}\n\n",
                  study.bullet.empty() ? "not built in (tools/setup libbullet-dev)" : study.bullet);
+  if (!study.charts.empty()) fmt::format_to(out, "{}\n", legend(study.charts.front()));
   for (const Chart& chart : study.charts) {
     write_cheapest(out, chart);
     write_failures(out, chart);

@@ -24,6 +24,8 @@ struct Task {
   std::shared_ptr<const Model> model;
   std::vector<Vec3> reference;  ///< positions at kReferenceFrame; empty: not compared
   double reference_error = 0;   ///< m, how far off they are themselves, estimated
+
+  bool is_line() const { return scene == "chain"; }
 };
 
 /// Without the reference.

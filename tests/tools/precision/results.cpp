@@ -1,4 +1,5 @@
 #include "tools/precision/results.h"
+#include "tools/precision/bullet.h"
 #include "tools/precision/results_json.h"
 #include "tools/precision/results_tables.h"
 
@@ -28,6 +29,7 @@ Study made_up_study() {
   chart.points = {made_up("direct", 0.4, 1e-5), made_up("gauss_seidel", 0.1, 0.01),
                   made_up("gauss_seidel", 0.05, 0.009, 0.5), made_up("gauss_seidel", 0.01, 0.1)};
   chart.points.push_back({"bullet", "", "", {5, {}, 16}, chart.points.front().outcome});
+  chart.tightest = {{"direct", 1e-5}, {"gauss_seidel", 1e-4}, {"bullet", 1e-5}};
   study.orders = {{"paper", {{0.01, 0.04}, {0.005, 0.02}}, 1.0}};
   return study;
 }
@@ -78,11 +80,71 @@ TEST_CASE("markdown: a row for each bound, a column for each contender") {
   CHECK(text.find("| 0.1 % | 0.4 | never | 0.4 |") != std::string::npos);
 }
 
+TEST_CASE("markdown: the trajectory error is in brackets") {
+  Study study = made_up_study();
+  std::vector<Point>& points = study.charts.front().points;
+  points[0].outcome.trajectory_error = 0.0000934;
+  points[1].outcome.trajectory_error = 0.0434;
+  const std::string text = to_markdown(study);
+  CHECK(text.find("| 1 % | 0.4 (0.093 mm) | 0.1 (43 mm) | 0.4 |") != std::string::npos);
+  CHECK(text.find("after 0.4 s") != std::string::npos);
+  CHECK(text.find("never more than 0.001 J above its start") != std::string::npos);
+}
+
+TEST_CASE("a bound that is not kept: all failed, some were cut, or none aims at it") {
+  Study study = made_up_study();
+  Chart& chart = study.charts.front();
+  CHECK(gap(chart, "gauss_seidel", 1e-4) == Gap::failed);
+  CHECK(gap(chart, "gauss_seidel", 1e-5) == Gap::not_aimed_at);
+  CHECK(gap(chart, "yarn", 0.1) == Gap::not_aimed_at);
+
+  Point cut = made_up("gauss_seidel", 30, 0.002);
+  cut.outcome.status = "out_of_time";
+  Point fixed = cut;
+  fixed.knobs = {1, {}, 64};
+  chart.points.push_back(fixed);
+  CHECK(gap(chart, "gauss_seidel", 1e-4) == Gap::failed);
+  chart.points.push_back(cut);
+  CHECK(gap(chart, "gauss_seidel", 1e-4) == Gap::out_of_time);
+  CHECK(gap(chart, "gauss_seidel", 1e-5) == Gap::not_aimed_at);
+
+  const std::string text = to_markdown(study);
+  CHECK(text.find("| 0.1 % | 0.4 | over 20 ms | 0.4 |") != std::string::npos);
+  CHECK(text.find("| 0.001 % | 0.4 | - | 0.4 |") != std::string::npos);
+  CHECK(text.find("4 s of processor time: 20 ms a frame over 200 frames") != std::string::npos);
+  chart.task.frames = 100;
+  chart.task.threads = 2;
+  chart.seconds_limit = 0.5;
+  CHECK(to_markdown(study).find("over 2.5 ms |") != std::string::npos);
+}
+
+TEST_CASE("what a curve aims at is the tightest of its tolerances") {
+  Chart chart;
+  note_aims(chart, {"auto, paper", {{{.tolerance = 0.1}, {.tolerance = 0.01}}}});
+  CHECK(chart.tightest == std::map<std::string, double>{{"auto", 0.01}});
+  note_aims(chart, {"auto, rattle", {{{.tolerance = 1e-3}}}});
+  CHECK(chart.tightest == std::map<std::string, double>{{"auto", 1e-3}});
+  note_aims(chart, {"direct", {{{.iterations = 4, .solver = Solver::direct}}}});
+  note_aims(chart, {"original", {{{.tolerance = 0.1, .backend = Backend::reference}}}});
+  CHECK(chart.tightest == std::map<std::string, double>{{"auto", 1e-3}, {"original", 0.1}});
+}
+
+TEST_CASE("a line of particles is no square") {
+  Study study = made_up_study();
+  study.charts.front().task.scene = "chain";
+  CHECK(to_markdown(study).starts_with("| chain of 20, ms per frame |"));
+}
+
+TEST_CASE("Bullet is searched as far as the tables ask") {
+  CHECK(kBulletTightest <= kBounds.back());
+}
+
 TEST_CASE("the text tells what does not count") {
   const std::string text = to_text(made_up_study());
   CHECK(text.find("Bullet: not built in") != std::string::npos);
   CHECK(text.find("1 gained energy") != std::string::npos);
-  CHECK(text.find("not reached") != std::string::npos);
+  CHECK(text.find("never more than 0.001 J above its start") != std::string::npos);
+  CHECK(text.find("gauss_seidel          never\n") != std::string::npos);
 }
 
 }  // namespace
