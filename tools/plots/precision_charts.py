@@ -154,7 +154,9 @@ def draw_scene(panels, study, scene):
     points = [p for p in study["points"] + study["peers"]
               if (p["scene"], p["size"]) == (scene["scene"], scene["size"])]
     curves = curves_of(points)
-    name = f"{scene['scene']}, {scene['size']} x {scene['size']} particles"
+    size = scene["size"]
+    is_square = scene["particles"] == size ** 2
+    name = f"{scene['scene']}, {f'{size} x {size}' if is_square else size} particles"
 
     strain, trajectory = panels
     lines = draw_panel(strain, curves, "max_strain", (SMALLEST_STRAIN, LARGEST_STRAIN))
@@ -189,7 +191,7 @@ def precision_figure(study):
     figure.suptitle("What an error costs", x=0.075, y=1 - 0.14 / height, ha="left",
                     fontweight="bold", fontsize=12.5)
     notes = [f"lower left is better; {threads} thread{'s' if threads > 1 else ''}, "
-             f"{scenes[0]['frames']} frames, processor time; every solver at its best of substeps, tolerances and "
+             f"{scenes[0]['frames']} frames, {'wall' if threads > 1 else 'processor'} time; every solver at its best of substeps, tolerances and "
              "iterations"]
     if study["bullet"] == "not built in":
         notes.append("Bullet: not built in")
@@ -239,7 +241,8 @@ def sizes_figure(sizes, quick):
     axes.set_xticks([], minor=True)
     axes.set_xlabel("particles")
     axes.set_ylabel("ms per frame of 10 ms")
-    threads = "all threads" if sizes["threads"] == 0 else f"{sizes['threads']} threads"
+    threads = "all threads" if sizes["threads"] == 0 else \
+        f"{sizes['threads']} thread{'s' if sizes['threads'] > 1 else ''}"
     figure.suptitle("What a particle costs", x=0.09, ha="left", fontweight="bold", fontsize=12.5)
     figure.text(0.09, 0.915, f"{sizes['scene']}, {100 * sizes['tolerance']:g} % in every one of "
                 f"{sizes['frames']} frames, {threads}; n: particles"
