@@ -15,10 +15,10 @@
 /// float lanes.
 ///
 /// Some never settle: a skirt whose hem is pulled too far wanders about for ever, its error rising
-/// and falling by a hundredth. They stand still too: errors that rise at every fourth look or more, of which
-/// the least in kWindow looks is not a hundredth below the least in as many before. (The best of
-/// all times is no measure: a heavy sphere on a sheet begins with a good one by chance, and comes
-/// back to it after thirty looks.)
+/// and falling by a hundredth. They stand still too: errors that rise at every fourth look or more,
+/// of which the least in kWindow looks is not a hundredth below that in as many before. (The best
+/// of all times is no measure: a heavy sphere on a sheet begins with a good one by chance, and
+/// comes back to it after thirty looks.)
 ///
 /// What stood still a step ago is in doubt from the beginning, and believed to stand still after
 /// two looks at which it is out by as much.

@@ -77,38 +77,6 @@ Result<void> choose_substeps(const std::optional<std::string>& text, int& field)
   return {};
 }
 
-/// Two options, as they are named, and why the second has no effect beside the first.
-struct Contradiction {
-  bool is_given;
-  std::string_view first, second, reason;
-};
-
-Result<void> check_contradictions(const SolverOptions& options, const Settings& settings) {
-  const bool fixed = settings.iterations > 0;
-  const bool rattle = settings.scheme == Scheme::rattle;
-  const bool reference = settings.backend == Backend::reference;
-  const bool exact = settings.solver == Solver::yarn || settings.solver == Solver::direct;
-  const std::string solver = fmt::format("--solver {}", name(settings.solver));
-  constexpr std::string_view kFixed = "a fixed count is done whatever the error";
-  constexpr std::string_view kMethods = "only gauss_seidel has this choice";
-  const Contradiction all[] = {
-      {fixed && options.tolerance, "--iterations", "--tolerance", kFixed},
-      {fixed && options.max_iterations, "--iterations", "--max-iterations", kFixed},
-      {rattle && options.velocity_correction && !settings.velocity_correction, "--scheme rattle",
-       "--velocity-correction off", "rattle corrects velocities always"},
-      {reference && settings.isa != Isa::automatic, "--backend reference", "--isa",
-       "the reference backend is scalar"},
-      {exact && options.anticipate, solver, "--anticipate", kMethods},
-      {exact && options.skip, solver, "--skip", kMethods},
-      {exact && options.directions, solver, "--directions", kMethods},
-  };
-  for (const Contradiction& c : all) {
-    if (!c.is_given) continue;
-    return Error{fmt::format("{} leaves no room for {}: {}", c.first, c.second, c.reason)};
-  }
-  return {};
-}
-
 }  // namespace
 
 void add_solver_options(CLI::App& verb, SolverOptions& options) {
@@ -117,7 +85,7 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
                   "strain that every step must reach, 1% or 0.01 (default 1%)");
   verb.add_option("--iterations", settings.iterations,
                   "exactly this many iterations of one substep, instead of a tolerance");
-  verb.add_option("--max-iterations", options.max_iterations,
+  verb.add_option("--max-iterations", settings.max_iterations,
                   "most iterations of one substep (default 1000000)");
   verb.add_option("--contact-tolerance", settings.contact_tolerance,
                   "m of penetration left (default 1e-4)");
@@ -175,10 +143,6 @@ Result<Settings> settings_of(const SolverOptions& options) {
   };
   for (const Result<void>& check : checks) {
     if (!check) return Error{check.error()};
-  }
-  settings.max_iterations = options.max_iterations.value_or(settings.max_iterations);
-  if (auto checked = check_contradictions(options, settings); !checked) {
-    return Error{checked.error()};
   }
   const bool methods = options.anticipate || options.skip || options.directions;
   if (methods && !options.solver) settings.solver = Solver::gauss_seidel;

@@ -16,7 +16,6 @@ namespace weft::tools {
 struct SolverOptions {
   Settings settings;  ///< numbers are read into it directly
   std::optional<std::string> tolerance;
-  std::optional<int> max_iterations;
   std::optional<std::string> solver;
   std::optional<std::string> scheme;
   std::optional<std::string> anticipate;
@@ -30,8 +29,7 @@ struct SolverOptions {
 
 void add_solver_options(CLI::App& verb, SolverOptions& options);
 
-/// Settings with everything that was given. Of two options one of which would have no effect beside
-/// the other an error names both. Ranges of numbers are Cloth::create()'s to check.
+/// Settings with everything that was given. Ranges of numbers are Cloth::create()'s to check.
 Result<Settings> settings_of(const SolverOptions& options);
 
 }  // namespace weft::tools
