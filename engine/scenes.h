@@ -7,11 +7,11 @@
 ///
 /// hang         (i, j) at (i L, 0, j L); the column i = 0 is fixed.
 /// hang_sphere  The same, and a fixed sphere at (0.5, -0.6, 0.5), radius 0.25.
-/// sphere_drop  The rows j = 0 and j = N-1 are fixed, 1 - slack apart along z; between them the sheet
-///              sags as a circular arc of chords of length L. A free sphere of radius 0.15, its
-///              lowest point 0.3 above the middle of the sheet.
-/// corners      N odd; (i, j) at (i L, -sqrt(1 - 0.81) min(j L, 1 - j L), 0.9 j L): folded along its
-///              middle row. (0, 0) and (0, N-1) are fixed.
+/// sphere_drop  The rows j = 0 and j = N-1 are fixed, 1 - slack apart along z; between them the
+///              sheet sags as a circular arc of chords of length L. A free sphere of radius 0.15,
+///              its lowest point 0.3 above the middle of the sheet.
+/// corners      N odd; (i, j) at (i L, -sqrt(1 - 0.81) min(j L, 1 - j L), 0.9 j L): folded along
+///              its middle row. (0, 0) and (0, N-1) are fixed.
 /// chain        Particles of 1 kg in a line along x, 0.01 apart; the first is fixed, the last has
 ///              end_mass.
 #pragma once
