@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <new>
 #include <thread>
 #include <utility>
 
@@ -90,11 +91,20 @@ Team::Team(int threads, std::shared_ptr<Meeting> meeting)
   m.leaders_processor.store(sched_getcpu(), std::memory_order_relaxed);
   m.announce({++m.round, 1, 1});
   m.door.store(0);
-  while (m.asked.load() < helpers_) {
-    m.asked.fetch_add(1);
-    tasks_enqueued.fetch_add(1, std::memory_order_relaxed);
+  while (m.asked.load() < helpers_ && ask_one()) continue;
+}
+
+/// Returns whether there was memory for it; who cannot be asked does not come.
+bool Team::ask_one() {
+  meeting_->asked.fetch_add(1);
+  tasks_enqueued.fetch_add(1, std::memory_order_relaxed);
+  try {
     tbb::this_task_arena::enqueue([shared = meeting_] { shared->attend(); });
+  } catch (const std::bad_alloc&) {
+    meeting_->asked.fetch_sub(1);
+    return false;
   }
+  return true;
 }
 
 /// Closes the door and waits for those who had come in.

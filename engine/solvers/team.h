@@ -101,6 +101,7 @@ class Team {
   };
 
   void run(const Job& job, int rounds);
+  bool ask_one();
   void run_alone(const Job& job, int rounds);
   std::uint32_t members();
 

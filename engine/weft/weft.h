@@ -319,6 +319,8 @@ class Cloth {
 
   /// Advances by dt seconds (finite, > 0), all substeps of it or none: also where memory runs out
   /// and std::bad_alloc is thrown, the state stays as it was. An error means that dt was refused.
+  /// Meant for frames, from 10 us to 0.1 s: of shorter ones the rounding of positions makes speeds,
+  /// longer ones take as many substeps, and those as long, as they want.
   Result<StepReport> step(double dt);
 
   std::size_t particle_count() const;
