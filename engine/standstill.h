@@ -21,7 +21,7 @@
 /// comes back to it after thirty looks.)
 ///
 /// What stood still a step ago is in doubt from the beginning, and believed to stand still after
-/// two looks at which it is out by as much.
+/// two looks at which it is out by as much and does not fall.
 #pragma once
 
 #include <weft/weft.h>
@@ -72,7 +72,8 @@ class Standstill {
   bool stands_as_before(double error) {
     constexpr double kLess = 0.98;
     constexpr int kLooks = 2;
-    as_before_ = stood_at_ > 0 && error >= kLess * stood_at_ ? as_before_ + 1 : 0;
+    const bool falls = error < kLess * error_;
+    as_before_ = stood_at_ > 0 && error >= kLess * stood_at_ && !falls ? as_before_ + 1 : 0;
     return as_before_ >= kLooks;
   }
   bool wanders(double error) {

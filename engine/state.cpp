@@ -28,8 +28,21 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   if (settings.solver == Solver::yarn) yarn.emplace(*model, settings, *kernels);
 }
 
-/// What needs memory first: all of it is copied or, where memory runs out, nothing.
+namespace {
+
+/// Whether what steps by one came to says how those by the other will go.
+bool alike(const Settings& a, const Settings& b) {
+  return a.solver == b.solver && a.scheme == b.scheme && a.backend == b.backend &&
+         a.iterations == b.iterations && a.tolerance == b.tolerance &&
+         a.contact_tolerance == b.contact_tolerance;
+}
+
+}  // namespace
+
+/// What needs memory first: all of it is copied or, where memory runs out, nothing. Under other
+/// settings positions are given ones, and nothing is known of trouble.
 void State::copy(const State& from) {
+  const bool same = alike(settings, from.settings);
   kernels::Vectors its_force = from.force;
   Pins its_pins = from.pins;
   position = from.position;
@@ -37,8 +50,8 @@ void State::copy(const State& from) {
   force = std::move(its_force);
   gravity = from.gravity;
   pins = std::move(its_pins);
-  trouble = from.trouble;
-  placed = from.placed;
+  trouble = same ? from.trouble : Trouble{};
+  placed = !same || from.placed;
 }
 
 std::size_t State::bytes() const {

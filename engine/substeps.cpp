@@ -141,6 +141,7 @@ class Substeps {
   /// shorter the parts: parts of such a substep gain no energy.
   Outcome advance(double h, int halvings, bool last) {
     const Status before = report_.status;
+    const double stood_at = s_.stood_at;
     const bool may_halve = halving_helps_ && halvings < kMostHalvings && left_ > 0;
     const bool may_leave = may_halve || ((halving_helps_ || only_sweeps_) && parts_ == 0);
     const int iterations = report_.iterations;
@@ -159,6 +160,7 @@ class Substeps {
     const bool answered = has_answer(ended);
     if (may_leave && !answered) {
       report_.status = before;
+      s_.stood_at = stood_at;
       gave_up_ = true;
       if (parts_ == 0 && !(may_halve && begins_well(h))) return Outcome::hopeless;
       ++report_.halvings;

@@ -46,7 +46,9 @@ template <class Between>
   alignas(64) double largest[kDoubles], columns[kernels::kLanes];
   most.store_aligned(largest);
   for (std::size_t i = 0; i < kVectors; ++i) squares[i].store_aligned(columns + i * kDoubles);
-  return {*std::ranges::max_element(largest), std::accumulate(columns, std::end(columns), 0.)};
+  const auto larger = [](double x, double y) { return std::max(x, y); };
+  return {std::accumulate(largest, std::end(largest), 0., larger),
+          std::accumulate(columns, std::end(columns), 0.)};
 }
 
 StrainSums strain_run(const Geometry& g, const Run& run, bool rope) {
