@@ -313,8 +313,9 @@ class Cloth {
   /// Another cloth of the same model and settings, which goes on bit for bit as this one does.
   Cloth clone() const;
   /// Goes on as `from` would, a cloth of the same Model: state, forces, gravity, pins under way,
-  /// and what it remembers of its last steps. The settings stay, and may be others: to step back
-  /// to a clone, or to change the tolerance of a cloth under way.
+  /// and what it remembers of its last steps. To step back to a clone; or, since the settings stay
+  /// and may be others, to change the tolerance of a cloth under way: positions are then as if
+  /// they had been written, and nothing is remembered.
   Result<void> copy_state(const Cloth& from);
 
   /// Advances by dt seconds (finite, > 0), all substeps of it or none: also where memory runs out
