@@ -141,7 +141,6 @@ class Substeps {
   /// shorter the parts: parts of such a substep gain no energy.
   Outcome advance(double h, int halvings, bool last) {
     const Status before = report_.status;
-    const double stood_at = s_.stood_at;
     const bool may_halve = halving_helps_ && halvings < kMostHalvings && left_ > 0;
     const bool may_leave = may_halve || ((halving_helps_ || only_sweeps_) && parts_ == 0);
     const int iterations = report_.iterations;
@@ -160,7 +159,6 @@ class Substeps {
     const bool answered = has_answer(ended);
     if (may_leave && !answered) {
       report_.status = before;
-      s_.stood_at = stood_at;
       gave_up_ = true;
       if (parts_ == 0 && !(may_halve && begins_well(h))) return Outcome::hopeless;
       ++report_.halvings;
@@ -210,7 +208,7 @@ class Substeps {
             .only_sweeps = began_with_sweeps,
             .swept_in_vain = began_with_sweeps && !only_sweeps_,
             .may_be_swept = sweeps_converge && !s_.model->has_contacts(),
-            .stood_at = s_.stood_at,
+            .stood_at = report_.status == Status::infeasible ? s_.stood_at : 0,
             .passes = static_cast<double>(report_.visits - projected_) / constraints};
   }
 
