@@ -8,8 +8,9 @@
 namespace weft {
 namespace {
 
-/// Between joined particles; the float lanes of the yarns lose sight of light ones beyond (a chain
-/// under 10^4 times its particles' mass converges, under 10^5 it does not).
+/// Between free particles with constraints, joined or not; beyond it the float lanes of the yarns
+/// lose sight of light ones (a chain under 10^4 times its particles' mass converges, under 10^5 it
+/// does not).
 constexpr double kMostUneven = 1e4;
 
 bool has_uneven_masses(const Model& model) {

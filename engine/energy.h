@@ -1,4 +1,4 @@
-/// What is left where solvers fail becomes heat, never motion.
+/// Takes out the energy that what is left where a solver failed would add as motion.
 #pragma once
 
 #include "engine/state.h"

@@ -1,8 +1,7 @@
 /// Scheme rattle and its guard.
 ///
-///     x' = x + h v + h^2/2 a + D,   D along the constraints' directions at x,   |x'_a - x'_b| =
-///     rest v' = v + h a + D / h + K,     K along those at x',                  n' . (v'_a - v'_b)
-///     = 0
+///     x' = x + h v + h^2/2 a + D,  D along the directions at x:    |x'_a - x'_b| = rest
+///     v' = v + h a + D / h + K,    K along the directions at x':   n' . (v'_a - v'_b) = 0
 ///
 /// The equations for x' are solved as everywhere, along directions that stay: errors are true ones,
 /// and each renewal shrinks an error to 1 - cos of what its constraint turned by, times more the
@@ -12,15 +11,15 @@
 /// O(h^2), and what they do to the energy cancels as far. Where h resolves the motion, gains and
 /// losses alternate and stay small beside the kicks. Where it does not, because a tension T swings
 /// a constraint faster than that (h^2 T / (m rest) of about 1), the solve diverges, or energy rises
-/// by much of what a kick is worth. So a substep is refused that gains more than kMostGain of the
-/// second kick. Two measures of the gain each count one thing too much, and the smaller one holds:
+/// by much of what a kick is worth. So a substep that gains more than kMostGain of the second kick
+/// is refused. Two measures of the gain each count one thing too much, and the smaller one holds:
 ///
 ///     1/2 sum m |v'|^2 - m |v|^2 - 2 m a . (x' - x)    counts the work of moved pins
 ///     1/2 sum m |D/h|^2 - m |K|^2                      counts what an impact took, or velocities
 ///                                                      out of tolerance, as if it were gained
 ///
-/// Nor may K be left out because velocities are within tolerance, as they are where h is small:
-/// solvers take what they were out by away all the same (hang, 40 x 40, 16 substeps, 1 %, by the
+/// K must be applied even where velocities are within tolerance already, as they are where h is
+/// small: solvers remove what is left of their errors too (hang, 40 x 40, 16 substeps, 1 %, by the
 /// direct solver: 0 of 800 substeps fall back instead of 641).
 ///
 /// Of what falls freely kicks are rounding, and gain is as often above as below 0. Lengths in

@@ -8,9 +8,9 @@
 
 namespace weft {
 
-/// What is done where the chosen solver gives up. halve: the substep is left to be done in halves,
-/// also where the solver came within tolerance and no nearer. leave: the substep is left unless the
-/// solver came within tolerance. sweep: Gauss-Seidel sweeps do it.
+/// What is done where the chosen solver gives up. halve: nothing, and the caller does the substep
+/// in halves, even if the result is within tolerance, but short of the solver's goal. leave:
+/// nothing, unless the result is within tolerance. sweep: Gauss-Seidel sweeps take over.
 enum class OnFailure : std::uint8_t { halve, leave, sweep };
 
 /// One way to try a substep.
@@ -25,8 +25,8 @@ struct Attempt {
   kernels::VectorsView start{};  // with scheme rattle: where the directions are
 };
 
-/// made_do: the solver failed, and sweeps, or what it had reached by then, had to do. gave_up: and
-/// that was not wanted; there is no answer. lost: the answer is not finite.
+/// made_do: the solver failed; the result is that of sweeps, or what it had reached by then.
+/// gave_up: it failed, and there is no result. lost: the result is not finite.
 enum class Ended : std::uint8_t { solved, made_do, gave_up, lost };
 inline bool has_answer(Ended ended) { return ended <= Ended::made_do; }
 

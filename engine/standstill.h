@@ -1,4 +1,4 @@
-/// Whether a loop that does not end still gets anywhere.
+/// Stall detection: whether a loop that does not converge still makes progress.
 ///
 /// Where constraints contradict each other no impulses solve them. Along frozen directions the loop
 /// then wanders about for ever: a taut chain at the least kink is thrown far to its side, for there
@@ -20,8 +20,8 @@
 /// of all times is no measure: a heavy sphere on a sheet begins with a good one by chance, and
 /// comes back to it after thirty looks.)
 ///
-/// What stood still a step ago is in doubt from the beginning, and believed to stand still after
-/// two looks at which it is out by as much and does not fall.
+/// A loop that stood still in the last step is in doubt from the beginning, and taken to stand
+/// still after two looks at which its error is as large and does not fall.
 #pragma once
 
 #include <weft/weft.h>

@@ -1,24 +1,24 @@
-/// What a state remembers of steps in which its solver gave up, or for which it took long.
+/// What a state remembers of steps in which its solver gave up, or that were expensive.
 ///
-/// care: after halves that helped, substeps are shorter and yarns solved more closely for a while,
-/// the more so if they are wanted again soon. What is left of a tolerance is noise that larger
+/// care: after halving helped, substeps are shorter and yarns are solved more closely for a while,
+/// the more so if halving is needed again soon. What is left of a tolerance is noise that larger
 /// sheets carry farther: without this corners, 101 x 101, at 1 % takes 300 ms a frame, most of it
 /// in sweeps, and 11 with it. (All of it at once: a sheet that needed halves once takes 1.3 times
 /// as long for a second, and large ones are no faster.)
 ///
-/// pause: where halves were no answer either, as at loose tolerances in a sheet of triangles, which
-/// can hardly bend without stretching, they are not even tried for 1, 2, 4, ... steps.
+/// pause: where halving failed too, as at loose tolerances in a sheet of triangles, which can
+/// hardly bend without stretching, it is not even tried for 1, 2, 4, ... steps.
 ///
-/// only sweeps: where steps by yarns take more than kDear passes in the mean, the next 8, 16, ...
-/// are done by Gauss-Seidel sweeps alone, which spread what cannot be solved over all of the cloth,
-/// up to the tolerance; then yarns are tried again, once, without halves. Where a step takes more
-/// of them than of yarns in the mean, the next steps are as usual, whatever they take. Not where
+/// only sweeps: where steps by yarns average more than kExpensive passes, the next 8, 16, ... use
+/// Gauss-Seidel sweeps alone, which spread what cannot be solved over all of the cloth, up to the
+/// tolerance; then yarns are tried again, once, without halves. Where a step takes more sweeps than
+/// yarns take passes on average, the next steps are as usual, whatever they take. Not where
 /// there are spheres: a heavy one that yarns hold, late and not within tolerance, breaks through a
 /// sheet that is only swept (sphere_drop_10_kg_taut of weft hard). (A sheet of 40 x 40 triangles
 /// hangs by a row of particles that is not straight, and so is no hinge: at 1 %, 100 frames, 178 ms
 /// a frame without, 36 with it, Gauss-Seidel alone 41; at 5 % 273, 5 and 4, and without it the
-/// sheet falls a third as far. kDear 1000: sheets that hang by a corner are swept as well, and lose
-/// half as much energy again.)
+/// sheet falls a third as far. kExpensive 1000: sheets that hang by a corner are swept as well, and
+/// lose half as much energy again.)
 #pragma once
 
 #include <algorithm>
@@ -55,7 +55,7 @@ class Trouble {
     yarns_left_ = std::max(0, yarns_left_ - 1);
     if (!step.only_sweeps) {
       mean_passes_ += (step.passes - mean_passes_) / kMeanSteps;
-      dearness_ += (std::min(step.passes, kMostDear) - dearness_) / kMeanSteps;
+      expense_ += (std::min(step.passes, kMostExpensive) - expense_) / kMeanSteps;
     }
     if (step.swept_in_vain || (step.only_sweeps && step.passes > mean_passes_)) {
       end_pause();
@@ -64,7 +64,7 @@ class Trouble {
       --pause_left_;
       const bool again = sweeping_ && step.made_do && step.may_be_swept;
       if (again && pause_left_ == 0) begin_pause(kShortestSweeping);
-    } else if (dearness_ > kDear && step.may_be_swept && yarns_left_ == 0) {
+    } else if (expense_ > kExpensive && step.may_be_swept && yarns_left_ == 0) {
       if (!sweeping_) end_pause();
       sweeping_ = true;
       begin_pause(kShortestSweeping);
@@ -91,8 +91,8 @@ class Trouble {
   static constexpr double kLeastCare = 0.25;
   static constexpr double kRecovery = 1.01;  // per step
   static constexpr int kShortestSweeping = 8, kLongestPause = 64;
-  static constexpr double kDear = 3000;
-  static constexpr double kMostDear = 3 * kDear;  // of a step: one alone is not enough
+  static constexpr double kExpensive = 3000;
+  static constexpr double kMostExpensive = 3 * kExpensive;  // of a step: one alone is not enough
   static constexpr double kMeanSteps = 4;
 
   double care_ = 1;
@@ -100,7 +100,7 @@ class Trouble {
   int pause_ = 0, pause_left_ = 0;  // steps
   bool sweeping_ = false;           // in this pause
   double mean_passes_ = 0;          // of steps by yarns, lately
-  double dearness_ = 0;             // the same, of no step more than kMostDear
+  double expense_ = 0;              // the same, of no step more than kMostExpensive
   int yarns_left_ = 0;              // steps that are not swept, whatever they take
 };
 

@@ -1,5 +1,5 @@
-/// The report of one run: as JSON with the keys of the command line contract, and as a table. No
-/// time is told without the strain that it bought.
+/// The report of one run, as JSON and as a table. Every time is printed with the strain that was
+/// reached.
 #pragma once
 
 #include <weft/weft.h>

@@ -1,5 +1,5 @@
-/// How a scene is solved, as given on the command line. What weft cannot do yet is known by name
-/// and refused: the tables in solver_options.cpp are where it becomes available.
+/// How a scene is solved, as given on the command line. The tables in solver_options.cpp have the
+/// names that each option takes.
 #pragma once
 
 #include <weft/weft.h>

@@ -1,6 +1,6 @@
-/// Bodies (spheres and hubs, engine/solvers/direct_layout.h) are unknowns beside the matrix, by
-/// their motions y. With the bodies' motion the errors are e + B y, so lambda = A^-1 (e + B y), and
-/// the balance of impulses of the bodies gives
+/// Bodies (spheres, and particles of many constraints: engine/solvers/direct_layout.h) are unknowns
+/// beside the matrix, by their motions y. With the bodies' motion the errors are e + B y, so lambda
+/// = A^-1 (e + B y), and the balance of impulses of the bodies gives
 ///
 ///     (W^-1 + B^T A^-1 B + contacts) y = -B^T A^-1 e - contacts,
 ///

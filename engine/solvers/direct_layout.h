@@ -3,17 +3,18 @@
 ///
 ///   rows     the constraints of the matrix, in the order of elimination (minimum degree, subtrees
 ///            in one stretch)
-///   entries  every pair of constraints k > j that share a particle p: A(k, j) = sigma_k sigma_j
-///   w_p
-///            n_k . n_j. Two constraints share at most one particle, or they would join the same
-///            two; so an entry is one product.
+///   entries  every pair of constraints k > j that share a particle p:
+///                A(k, j) = sigma_k sigma_j w_p n_k . n_j
+///            Two constraints share at most one particle, or they would join the same two; so an
+///            entry is one product.
 ///   fronts   A = L D L^T by dense parts (engine/solvers/direct_fronts.h); entries stand in the
 ///            order of the fronts that take them.
 ///
 /// Not in the matrix are the bodies: free particles that couple too many constraints with each
-/// other (spheres and hubs of more than kBodyDegree). They would make a dense block of the matrix;
-/// instead their motions stay unknowns beside it (engine/solvers/direct_solver.h). A constraint
-/// that has nothing but bodies and fixed particles for its ends is a link between bodies.
+/// other (spheres, and particles of more than kBodyDegree constraints). They would make a dense
+/// block of the matrix; instead their motions stay unknowns beside it
+/// (engine/solvers/direct_solver.h). A constraint that has nothing but bodies and fixed particles
+/// for its ends is a link between bodies.
 #pragma once
 
 #include <weft/weft.h>

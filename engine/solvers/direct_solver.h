@@ -15,7 +15,7 @@
 ///   direct_measure   directions, errors, the active set of ropes and contacts
 ///   direct_impulses  errors become impulses become motion
 ///   direct_balance   whether impulses explain a motion
-///   direct_bodies    spheres and hubs, unknowns beside the matrix
+///   direct_bodies    spheres and particles of many constraints, unknowns beside the matrix
 ///   direct_stiff     an attempt for masses that differ by thousands
 ///
 /// Newton's method fails where a step bends edges by much of their length, where masses differ by

@@ -10,19 +10,19 @@
 /// A meeting costs what it takes a cache line to cross between processors, twice; so everything
 /// that a call says is in one line, and nobody touches the lines of another without need.
 ///
-/// A task that has done its part stays at the door for as long as that took, 0.2 ms at most: the
-/// next step may follow at once, and a processor that fell asleep takes tens of microseconds to
+/// A task that has done its part keeps waiting for as long as that took, 0.2 ms at most: the next
+/// step may follow at once, and a processor that fell asleep takes tens of microseconds to
 /// wake. It goes when tasks are enqueued for another team. One that finds itself on the leader's
 /// processor is sent to another.
 ///
 /// Rounds of one loop are announced at once where a share needs no more than its neighbours: it
 /// then meets these alone, when it comes to what they share.
 ///
-/// Nobody is waited for who has not come: a task that the scheduler never starts, or starts late,
-/// is simply no member yet, and the leader does itself what a member has not begun after a while.
-/// If a share that was begun keeps it waiting for long, beside the time of its own, its thread has
-/// lost its processor: the leader goes on alone for a while. Who does a share is left to chance;
-/// results must not depend on it.
+/// The leader never waits for a task that has not started: one that the scheduler never starts, or
+/// starts late, is no member yet, and after a while the leader does itself the shares that a member
+/// has not begun. If one that was begun takes long, compared with the leader's own, its thread has
+/// lost its processor: the leader works alone for a while. Which thread does a share is left to
+/// chance; results must not depend on it.
 #pragma once
 
 #include <algorithm>

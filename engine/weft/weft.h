@@ -1,4 +1,4 @@
-/// weft: a cloth kernel. The whole public interface is this header.
+/// weft: a cloth simulation library. The whole public interface is this header.
 ///
 ///   describe -> validate -> create -> step -> read
 ///
@@ -15,9 +15,9 @@
 ///     velocity loop.
 ///  3. A Model is immutable and may be shared by any number of Cloths and threads. A Cloth is not
 ///     synchronised: one thread at a time.
-///  4. weft owns no threads, and no globals that a result depends on. Parallel work runs in the
-///     caller's oneTBB arena; a worker that helped with a step waits for the next one for as long
-///     as that took, 0.2 ms at most, and may be moved off the processor of the thread that steps.
+///  4. weft owns no threads, and no globals that affect results. Parallel work runs in the caller's
+///     oneTBB arena. A worker that helped waits for the next step as long as its part took, at most
+///     0.2 ms, and may be moved off the calling thread's core.
 ///  5. A step allocates nothing once warm (contact lists grow to their largest size and stay).
 ///  6. Errors are values. Bad input yields one line that names the field, the index and the value,
 ///     and nothing is built or changed. weft throws only what the standard allocator throws.
@@ -43,7 +43,8 @@ struct Error {
   std::string message;
 };
 
-/// A value or an Error. Test it before use; value() of a failed result is undefined.
+/// A value or an Error. Test it before use: value() of a failed result is undefined, and so is
+/// error() of a successful one.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -98,9 +99,9 @@ struct SceneDescription {
   std::vector<Constraint> constraints;
   Vec3 gravity{0, -10, 0};
 
-  /// Contacts exist only where `spheres` names particles. Each of those collides with every other
-  /// particle that no constraint joins it to, at the distance radii[i] + radii[j]; particles
-  /// outside the list do not collide among themselves. radii: empty without spheres, else one per
+  /// Contacts exist only for the particles listed in `spheres`. Each collides with every other
+  /// particle that no constraint joins it to, at the distance radii[i] + radii[j]; unlisted
+  /// particles do not collide with each other. radii: empty without spheres, else one per
   /// particle, >= 0.
   std::vector<std::uint32_t> spheres;
   std::vector<double> radii;
@@ -121,45 +122,48 @@ struct ModelInfo {
   std::size_t ropes = 0;
   std::size_t spheres = 0;
   std::size_t colours = 0;
-  std::size_t tiles = 0;  ///< parts that threads may work on side by side
-  double run_share = 0;   ///< constraints in contiguous runs / constraints
+  std::size_t tiles = 0;  ///< groups of particles that threads may work on in parallel
+  double run_share = 0;   ///< share of constraints in contiguous runs
   std::size_t bytes = 0;
 };
 ModelInfo describe(const Model& model);
 
 // ----------------------------------------------------------------------------------------- create
 
-/// gauss_seidel: the impulse loop of the paper (section 3.2), one constraint after the other.
-/// direct: all impulses at once, from the factors of their matrix, repeated until the true errors
-///   are within tolerance: two or three solves, at any tolerance. The choice for masses that differ
-///   by many thousands.
-/// yarn: chains of constraints that run straight on through the cloth, as the yarns of a woven one
-///   do, each solved exactly and many side by side in lanes; conjugate gradients over all of them
-///   where such sweeps are slow. Ropes, hubs and contacts are relaxed one by one after each sweep,
-///   and take part in the linear system. On the simd backend.
-/// automatic: yarn; direct where the masses of joined particles differ by more than 10^4, and with
-///   both scheme rattle and spheres; gauss_seidel on the reference backend, for fixed iterations.
-/// Where yarn or direct give up, the substep is done in halves, and where that is no answer either,
-/// Gauss-Seidel goes on; StepReport::iterations counts all of it. Such a substep gains no energy:
-/// velocities are scaled down, all by one factor, if it would. For some steps after it automatic
-/// substeps are shorter and yarns stop at a smaller error; where steps took yarns thousands of
-/// passes, the tolerance is above 0.3 %, and there are no spheres, the next ones are done by
-/// Gauss-Seidel alone. So the next step depends a little on how the state came about, until
-/// positions are written.
+/// gauss_seidel: the paper's impulse loop (section 3.2), one constraint after the other.
+/// direct: all impulses at once by sparse factorisation, repeated until the true errors are within
+///   tolerance: two or three solves, at any tolerance. For mass ratios of many thousands. At most
+///   16 free spheres may touch at a time; beyond that its substeps fall back as below.
+/// yarn: splits the cloth into chains of constraints that run straight on through it, as the yarns
+///   of a woven one do. Each is solved exactly, many side by side in SIMD lanes; where sweeps over
+///   them converge slowly, conjugate gradients solve all of them as one system. Ropes, hubs and
+///   contacts are relaxed one by one after each sweep, and take part in that system. simd only.
+/// automatic: gauss_seidel on the reference backend or with Settings::iterations; else direct where
+///   the masses of free particles with constraints span more than a factor of 10^4, or with scheme
+///   rattle and spheres; else yarn.
+/// Where yarn or direct gives up, the substep is redone as two halves; where that fails too,
+/// Gauss-Seidel takes over. StepReport::iterations counts every attempt. Such a substep gains no
+/// energy: if it would, all velocities are scaled down by one factor. For some steps afterwards
+/// automatic substeps are shorter and yarns are solved more tightly. Where yarns took thousands of
+/// passes, with scheme paper, a tolerance above 0.3 % and no spheres, the next steps use
+/// Gauss-Seidel alone. So a step depends slightly on the ones before, until positions are written.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
-/// paper: impulses along the directions of the previewed state; first order, and dissipative.
-/// rattle: along those at the start of the substep, and the velocity correction always: second
-///   order. Ropes likewise, also those that become taut within the substep; contacts come about in
-///   it and act along their directions at its end, in both schemes. A substep too large for it is
-///   done again by the paper's scheme with velocity correction, from the same state: where rattle
-///   does not converge, or its impulses would bring in energy (engine/rattle.h).
-///   StepReport::scheme_fallbacks counts these. With Settings::iterations nothing is done again.
+/// paper: impulses along the directions at the predicted positions; first order, and dissipative.
+/// rattle: along the directions at the start of the substep, always with velocity correction;
+/// second
+///   order. This includes ropes that become taut within the substep. Contacts arise within it and,
+///   in both schemes, act along their directions at its end. Where rattle does not converge, or its
+///   impulses would add energy (engine/rattle.h), the substep is redone from the same state by the
+///   paper's scheme with velocity correction; StepReport::scheme_fallbacks counts these. With
+///   Settings::iterations nothing is redone.
 enum class Scheme : std::uint8_t { paper, rattle };
 /// each: directions renewed before every iteration (sections 3.2, 4.1).
-/// frozen: only once all errors along them are within tolerance (section 4.4).
+/// frozen: only once all errors along them are within tolerance (section 4.4), or after renew_after
+///   iterations.
 enum class Directions : std::uint8_t { each, frozen };
 /// reference: scalar, double, the oracle for everything else.
-/// simd: float lanes inside the loop, refined from double; the same tolerance is reached.
+/// simd: single precision in lanes inside the loop, refined from positions in double; reaches the
+///   same tolerance.
 enum class Backend : std::uint8_t { reference, simd };
 /// What the simd backend runs on. automatic: what WEFT_ISA in the environment names, else the best
 /// that the machine has. avx2 and avx512 give the same bits.
@@ -172,22 +176,23 @@ inline constexpr int kAutomaticSubsteps = 0;
 /// paper_settings() are the paper's.
 struct Settings {
   double tolerance = 0.01;  ///< strain, | |a-b| - rest | / rest, that every step must reach; > 0
-  /// A step of dt is done as so many steps of dt / substeps, each to the tolerances; 0
-  /// (kAutomaticSubsteps): as many as the motion wants, of scheme rattle up to 2.5 times as
-  /// many. A substep whose solver gives up before max_iterations is done again in halves, up to 16
-  /// parts of it (StepReport::halvings). Fine meshes want small steps. Iterations, and their
-  /// bounds, are those of one substep.
+  /// Each step is done as this many substeps, each solved to the tolerances. 0
+  /// (kAutomaticSubsteps): chosen from the motion (rattle: up to 2.5 times as many as paper); 1 on
+  /// the reference backend or with `iterations`. A substep whose solver gives up before
+  /// max_iterations is redone in halves, up to 16 parts (StepReport::halvings). Fine meshes need
+  /// small substeps. Iteration counts and bounds are per substep.
   int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per substep whatever the error,
-  /// nothing skipped, frozen directions renewed once per substep.
+  /// nothing skipped; gauss_seidel renews frozen directions once per substep, direct and yarn in
+  /// every iteration.
   int iterations = 0;
-  /// frozen: the same directions serve for at most so many iterations; 0: until all errors along
-  /// them are within tolerance, as the paper has it (section 4.4). Exact solutions along directions
-  /// that will change are wasted: 32 saves a fifth of the iterations and more.
-  /// (simd: 0 is 1024, since floats see an error fall by seven digits at most between renewals.)
+  /// frozen: most iterations along the same directions; 0: until all errors along them are within
+  /// tolerance, as in the paper (section 4.4; simd: 1024, since between renewals errors in floats
+  /// fall by seven digits at most). Solving exactly along directions that will change is wasted
+  /// work: 32 saves a fifth of the iterations and more.
   int renew_after = 32;
-  int max_iterations = 1'000'000;    ///< bound on the work of one substep, in iterations; > 0; half
-                                     ///< as many besides for a start that is projected
+  int max_iterations = 1'000'000;    ///< per substep; > 0. Projecting a start that violates
+                                     ///< constraints may take half as many more
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
   double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit;
@@ -196,14 +201,13 @@ struct Settings {
   Scheme scheme = Scheme::paper;
   Backend backend = Backend::simd;
   Isa isa = Isa::automatic;
-  /// Most threads of the caller's arena that a step may use; 0: as many as it offers, up to
-  /// kMaxThreads; yarns are shared out among 16 at most, and small cloths use one. The result does
-  /// not depend on it.
+  /// Maximum threads of the caller's arena per step; 0: all that it offers, up to kMaxThreads.
+  /// Yarns use at most 16, small cloths one. Does not affect the result.
   int threads = 0;
   Directions directions = Directions::frozen;
-  /// Section 4.2: errors are updated, not recomputed. simd forms them from displacements either
-  /// way, which is quicker in lanes (perf/README.md); there this chooses by what `skip` remembers:
-  /// flags of chunks of constraints, or, off, the paper's 64-bit masks.
+  /// Section 4.2: update errors instead of recomputing them. simd forms them from displacements
+  /// either way, which is faster in lanes (perf/README.md); there this selects how `skip` tracks
+  /// satisfied constraints: true, by flags of chunks; false, by the paper's 64-bit masks.
   bool anticipate = true;
   bool skip = true;                  ///< section 4.3: satisfied constraints are passed over
   bool velocity_correction = false;  ///< sections 3.2, 3.3: a second loop, on velocities; rattle
@@ -222,13 +226,13 @@ inline Settings paper_settings() {
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
 /// iteration_limit: max_iterations were done and some constraint is still out of tolerance. The
 ///   state is committed.
-/// infeasible: some constraint is out of tolerance and thousands of iterations no longer change
-///   that: the constraints contradict each other (a chain whose ends are too far apart), or masses
-///   differ by more than 10^7. The state is committed, with the error shared out among them.
-/// passed_through: a particle went through a sphere within the step, faster than contacts are
-///   looked for. The state is committed; smaller steps would have seen it.
-/// non_finite_input: positions, velocities, forces and dt were such that even without a constraint
-///   a particle would have left the range of numbers. The state is unchanged.
+/// infeasible: some constraint is out of tolerance and thousands of iterations no longer reduce the
+///   error: constraints contradict each other (a chain whose ends are too far apart), or masses
+///   differ by more than 10^7. The state is committed, with the error spread over the constraints.
+/// passed_through: a particle crossed a sphere within a substep without a contact (tunnelling). The
+///   state is committed; shorter steps would have found the contact.
+/// non_finite_input: even without constraints, the positions, velocities, forces and dt lead to
+///   numbers that are not finite. The state is unchanged.
 /// non_finite: a position or velocity would have become NaN or infinite. The state is unchanged.
 enum class Status : std::uint8_t {
   converged,
@@ -240,12 +244,12 @@ enum class Status : std::uint8_t {
   non_finite
 };
 
-/// Whether a step that ended so changed the state.
+/// Whether a step with this status changed the state.
 constexpr bool committed(Status status) { return status < Status::non_finite_input; }
 
 /// The stages of a step, in order.
 enum class Stage : std::uint8_t {
-  predict,  ///< and, with automatic substeps, how many of them the motion wants
+  predict,  ///< also chooses the number of automatic substeps
   find_contacts,
   solve_positions,
   commit,
@@ -264,25 +268,25 @@ std::string_view name(Stage);
 
 inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
-/// What one step did and what it reached. Counts and seconds are sums over its substeps, the status
-/// is the worst of them, the errors are those at the end.
+/// What one step did and what it reached. Counts and seconds are summed over the substeps; status
+/// is the worst of them; errors are those at the end.
 struct StepReport {
   Status status = Status::converged;
-  int substeps = 0;              ///< that the step was done in
-  int halvings = 0;              ///< substeps that were done again in halves
-  int iterations = 0;            ///< passes over the position constraints, in which a yarn may be
-                                 ///< solved several times; direct: solves
+  int substeps = 0;              ///< done
+  int halvings = 0;              ///< substeps that were redone as two halves
+  int iterations = 0;            ///< passes over the position constraints; yarn: sweeps and
+                                 ///< conjugate gradient iterations; direct: solves
   int direction_updates = 0;     ///< renewals of the constraint directions
   int velocity_iterations = 0;   ///< passes of the velocity loop; direct: solves
   std::int64_t visits = 0;       ///< constraints whose error was looked at, both loops
   std::int64_t corrections = 0;  ///< impulses applied, both loops
   int scheme_fallbacks = 0;      ///< substeps that scheme rattle left to the paper's
-  int contacts = 0;              ///< pairs near enough to be watched
+  int contacts = 0;              ///< candidate pairs, near enough to be watched
   double max_strain = 0;         ///< over all constraints, recomputed from the positions
   double rms_strain = 0;
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
   double max_penetration = 0;                 ///< m, 0 without contacts
-  std::uint32_t failed_particle = kNoIndex;   ///< non_finite, non_finite_input: the first such
+  std::uint32_t failed_particle = kNoIndex;   ///< non_finite, non_finite_input: one of those
   std::uint32_t passed_particle = kNoIndex;   ///< passed_through: one that did
   std::array<double, kStageCount> stage_seconds{};
 };
@@ -310,18 +314,18 @@ class Cloth {
   Cloth& operator=(Cloth&&) noexcept;
   ~Cloth();
 
-  /// Another cloth of the same model and settings, which goes on bit for bit as this one does.
+  /// A second cloth of the same model and settings, which continues bit for bit as this one does.
   Cloth clone() const;
-  /// Goes on as `from` would, a cloth of the same Model: state, forces, gravity, pins under way,
-  /// and what it remembers of its last steps. To step back to a clone; or, since the settings stay
-  /// and may be others, to change the tolerance of a cloth under way: positions are then as if
-  /// they had been written, and nothing is remembered.
+  /// Takes over from `from`, a cloth of the same Model: state, forces, gravity, pending pin moves,
+  /// and the solver's memory of its last steps. This cloth keeps its own settings. If solver,
+  /// scheme, backend, iterations, tolerance or contact_tolerance differ, that memory is dropped,
+  /// and positions out of tolerance are projected as if newly written.
   Result<void> copy_state(const Cloth& from);
 
-  /// Advances by dt seconds (finite, > 0), all substeps of it or none: also where memory runs out
-  /// and std::bad_alloc is thrown, the state stays as it was. An error means that dt was refused.
-  /// Meant for frames, from 10 us to 0.1 s: of shorter ones the rounding of positions makes speeds,
-  /// longer ones take as many substeps, and those as long, as they want.
+  /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
+  /// is thrown and the state is unchanged. An error means that dt was refused. Meant for frames of
+  /// 10 us to 0.1 s: in shorter ones the rounding of positions shows up as velocity; the cost of
+  /// longer ones is limited by 256 automatic substeps of max_iterations each and nothing else.
   Result<StepReport> step(double dt);
 
   std::size_t particle_count() const;
@@ -329,9 +333,9 @@ class Cloth {
   const Settings& settings() const;  ///< isa, solver, substeps, velocity_correction: what is used
 
   Vec3 position(std::uint32_t particle) const;
-  /// m/s; 0 of fixed particles, whatever was written, also while move_fixed() moves them. By scheme
-  /// paper without velocity correction what hangs still has half a step of gravity, g dt / 2, which
-  /// the next step takes away again.
+  /// m/s; always 0 for fixed particles, even while move_fixed() moves them. With scheme paper and
+  /// no velocity correction, a particle that hangs at rest reports g h / 2 (h: the substep), which
+  /// the next substep cancels.
   Vec3 velocity(std::uint32_t particle) const;
   /// Copies one Vec3 per particle; out.size() must be particle_count() (else nothing is copied).
   Result<void> read_positions(std::span<Vec3> out) const;
@@ -339,21 +343,21 @@ class Cloth {
   /// Packed x y z floats for a vertex buffer; out.size() must be 3 * particle_count().
   Result<void> read_positions(std::span<float> out) const;
 
-  /// Replace the state; finite values, one per particle. Positions that were given, here or in the
-  /// description, and violate constraints by more than the tolerance are put right as the next step
-  /// begins, without a change of velocity (but not with Settings::iterations).
+  /// Replace the state; finite values, one per particle. Initial or written positions that are out
+  /// of tolerance are projected onto the constraints as the next step begins, velocities unchanged
+  /// (not with Settings::iterations).
   Result<void> write_positions(std::span<const Vec3> in);
   Result<void> write_velocities(std::span<const Vec3> in);
   /// External forces in N besides gravity, kept until replaced. Empty: none.
   Result<void> write_forces(std::span<const Vec3> in);
   /// m/s^2, from the next step on.
   Result<void> set_gravity(Vec3 gravity);
-  /// Sends a fixed particle elsewhere, where position() finds it from now on. It travels there in a
-  /// straight line during the next step, and the cloth takes on its speed. But a move that takes
-  /// more than 200 m/s^2, from the one in the last step to this one, is a jump: the particle is put
-  /// down as the step begins, and the cloth follows without a change of velocity. The last move
-  /// before a step counts, and write_positions ends all of them. (To teleport a whole cloth write
-  /// all its positions: what moves as a whole need not be solved.)
+  /// Moves a fixed particle; position() returns the new place at once. It travels there in a
+  /// straight line during the next step, and the cloth takes on its speed. If its velocity would
+  /// change by more than 200 m/s^2 * dt from that of its last step, it jumps instead: it is placed
+  /// before the step, and the cloth is projected after it, velocities unchanged. The last move
+  /// before a step counts; write_positions cancels all. (To teleport a whole cloth, write all its
+  /// positions: then nothing needs solving.)
   Result<void> move_fixed(std::uint32_t particle, Vec3 position);
 
   Strain strain() const;           ///< recomputed from the positions

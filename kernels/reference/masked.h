@@ -12,7 +12,7 @@
 ///
 /// When directions are renewed, the particles that moved since the last renewal get all bits set,
 /// and only constraints with a bit set are renewed: the others have the direction they would get.
-/// Hence the positions are bit for bit those of DirectLoop.
+/// Hence the positions are bit for bit those of OriginalLoop.
 #pragma once
 
 #include <algorithm>

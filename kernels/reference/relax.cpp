@@ -1,8 +1,8 @@
 #include "kernels/reference/relax.h"
 
 #include "kernels/reference/anticipated.h"
-#include "kernels/reference/direct.h"
 #include "kernels/reference/masked.h"
+#include "kernels/reference/original.h"
 
 namespace weft::reference {
 namespace {
@@ -28,7 +28,7 @@ LoopResult relax(const Relaxation& r, const Topology& t, const ContactLists& c, 
   if (method.anticipate && skip) return anticipate<true, kDirections>(r, t, c, w, method);
   if (method.anticipate) return anticipate<false, kDirections>(r, t, c, w, method);
   if (skip) return run<kDirections>(MaskedLoop<kDirections>(r, t, w), method);
-  return run<kDirections>(DirectLoop<kDirections>(r), method);
+  return run<kDirections>(OriginalLoop<kDirections>(r), method);
 }
 
 }  // namespace

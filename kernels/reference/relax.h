@@ -1,6 +1,6 @@
 /// The impulse loops of the paper, in double, one constraint after the other: the oracle for every
 /// faster kernel. The loop around the methods is
-/// kernels/loop.h; the methods are direct.h (original), masked.h (4.3) and anticipated.h (4.2).
+/// kernels/loop.h; the methods are original.h, masked.h (4.3) and anticipated.h (4.2).
 #pragma once
 
 #include <cstddef>

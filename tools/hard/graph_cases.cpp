@@ -77,7 +77,7 @@ std::vector<Case> graph_cases() {
                        return run_scene(setup, scene, 200, 50);
                      }});
   }
-  cases.push_back({"random_graphs", "reports that are not true", 0, run_random});
+  cases.push_back({"random_graphs", "false reports", 0, run_random});
   return cases;
 }
 

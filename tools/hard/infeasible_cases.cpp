@@ -75,7 +75,7 @@ std::vector<Case> infeasible_cases() {
   cases.push_back({"chain_pulled", "m/s, where it should be at rest", 1e-6, run_pulled});
   cases.push_back({"chain_returns", "J, largest kinetic energy", 0.1, run_return});
   for (const std::string name : {"corners", "hang_sphere", "sphere_drop"}) {
-    cases.push_back({"diagonals_" + name, "reports that are not true", 0,
+    cases.push_back({"diagonals_" + name, "false reports", 0,
                      [name](const Setup& setup) { return run_diagonals(setup, name); }});
   }
   return cases;

@@ -90,7 +90,7 @@ Case drop_case(double mass, double slack) {
       return strain_outcome(drop(setup, mass, slack), kAnyEnergy);
     };
   } else {
-    drop_case.measures = "reports that are not true";
+    drop_case.measures = "false reports";
     drop_case.run = [=](const Setup& setup) { return run_heaviest(setup, mass, slack); };
   }
   return drop_case;

@@ -152,7 +152,7 @@ std::vector<Case> motion_cases() {
       {"twist_ten_turns", "strain in the end", kStrain, run_twist},
       {"pins_teleport", "max strain", kStrain, run_teleports},
       {"pin_released", "max strain", kStrain, run_release},
-      {"sphere_crosses", "crossings without a word", 0, run_crossing},
+      {"sphere_crosses", "unreported crossings", 0, run_crossing},
       {"free_flight", "momentum lost, relative", 1e-9,
        [](const Setup& setup) { return run_momentum(setup, Backend::reference); }, runs_in_doubles},
       {"free_flight_in_lanes", "momentum lost, relative, in float lanes", 1e-7,

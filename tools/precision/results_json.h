@@ -1,5 +1,4 @@
-/// The JSON of `weft precision`, by the command line contract and with more keys: peers apart, the
-/// cheapest settings, cost against size.
+/// The JSON of `weft precision`: all runs, peers apart, the cheapest settings, cost against size.
 #pragma once
 
 #include "tools/json_output.h"

@@ -7,9 +7,9 @@
 namespace weft::reference {
 
 template <Directions kDirections>
-class DirectLoop {
+class OriginalLoop {
  public:
-  explicit DirectLoop(const Relaxation& r) : r_(r) {}
+  explicit OriginalLoop(const Relaxation& r) : r_(r) {}
 
   void renew() {
     if constexpr (kDirections == Directions::constant) return;
