@@ -101,7 +101,7 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
     if (result.converged || result.iterations >= max_iterations) return result;
     copy(x, start_.view(), start_.size());
     restart(x, contacts);
-    wanted = std::min(wanted, max_iterations) * kMoreSweeps;
+    wanted = wanted < max_iterations / kMoreSweeps ? wanted * kMoreSweeps : max_iterations;
   }
 }
 

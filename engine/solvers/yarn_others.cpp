@@ -72,6 +72,7 @@ void YarnOthers::add(std::uint32_t a, std::uint32_t b, double distance, int side
 }
 
 void YarnOthers::start(const ContactStore& contacts, bool first_round) {
+  from_start_ = false;
   if (first_round) {
     pairs_.resize(constraints_);
     for (Pair& pair : pairs_) pair.sum = 0;

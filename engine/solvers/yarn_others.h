@@ -17,12 +17,12 @@ class YarnOthers {
  public:
   YarnOthers(const Model& model, const Settings& settings);
 
-  /// first_round: accumulated impulses start at 0; else contacts may have been added.
+  /// first_round: accumulated impulses start at 0; else contacts may have been added. Impulses act
+  /// along the present directions.
   void start(const ContactStore& contacts, bool first_round);
   std::size_t count() const { return pairs_.size(); }
-  /// From here on impulses of constraints act along their present directions, or, with scheme
-  /// rattle, along those at base + u. Contacts come about within a step: theirs are present ones.
-  void use_present() { from_start_ = false; }
+  /// With scheme rattle: from here on impulses of constraints act along the directions at base + u.
+  /// Contacts come about within a step: theirs are present ones.
   void keep_start(const float* base, const float* u);
   /// One pass, at the positions base + u. One-sided ones keep the sum of their impulses on their
   /// side: a rope that has pulled too much gives back what it had.

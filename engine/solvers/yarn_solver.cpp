@@ -52,6 +52,25 @@ constexpr Patience kRattlePatience{0.9, 4};
 constexpr double kExact = 0.01;
 constexpr Patience kVelocityPatience{0.7, 3};
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
+
+/// Whether the error still comes down.
+class Progress {
+ public:
+  explicit Progress(const Patience& patience) : patience_(patience) {}
+
+  /// After a look, which found the error `worst`.
+  bool goes_on(double worst) {
+    stale_ = worst < patience_.fall * best_ ? 0 : stale_ + 1;
+    best_ = std::min(best_, worst);
+    return std::isfinite(worst) && stale_ <= patience_.passes;
+  }
+
+ private:
+  const Patience& patience_;
+  double best_ = kNoBound;
+  int stale_ = 0;
+};
+
 constexpr std::size_t kNumbers = 4096;  // floats that a thread takes at a time
 
 /// Shares that the blocks of a family are dealt out in at most, each with a scratch of its own.
@@ -344,28 +363,25 @@ kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kerne
                                                    const ContactStore& contacts, bool exact,
                                                    Team& team) {
   kernels::LoopResult result;
-  make_system();
   from_start_ = false;
   velocities_ = true;
+  make_system();
   others_.start(contacts, true);
-  others_.use_present();
   split(x, team);
   linearise_velocities(team);
   split(v, 0, team);
   const double tolerated = kWithin * settings_.velocity_tolerance;
-  double goal = tolerated, best = kNoBound;
-  for (int stale = 0; stale <= kVelocityPatience.passes;) {
+  double goal = tolerated;
+  Progress progress(kVelocityPatience);
+  for (bool solved = false;; solved = true) {
     const double worst = read_velocities(team);
-    if (exact && best == kNoBound) goal = std::min(goal, kExact * worst);
+    if (exact && !solved) goal = std::min(goal, kExact * worst);
     result.converged = worst <= tolerated;
     const int left = settings_.max_iterations - result.iterations;
-    const bool enough = worst <= goal || (result.converged && best < kNoBound);
-    if (enough || left <= 0) break;
-    stale = worst < kVelocityPatience.fall * best ? 0 : stale + 1;
-    best = std::min(best, worst);
+    const bool enough = worst <= goal || (result.converged && solved);
+    if (enough || left <= 0 || !progress.goes_on(worst)) break;
     solve(goal, 0, std::min(kMostIterations, left), team, result);
   }
-  velocities_ = false;
   result.converged = result.converged && loses_energy(v);
   if (result.converged) join(v, team);
   return result;
@@ -396,9 +412,9 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
                                                 int max_iterations, double care,
                                                 SimdSolver& measure, Team& team) {
   kernels::LoopResult result;
-  others_.start(contacts, first_round);
-  others_.use_present();
   from_start_ = false;
+  velocities_ = false;
+  others_.start(contacts, first_round);
   if (start.x != nullptr) keep_start(start, team);
   std::ranges::fill(stubborn_, std::uint8_t{0});
   split(x, team);
@@ -410,10 +426,9 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
   const bool rattle = settings_.scheme == Scheme::rattle;
   const double wanted = care * std::min(settings_.tolerance, kGoal);
   const double goal = rattle ? std::min(wanted, kRattleGoal) : wanted;
-  const Patience patience = from_start_ ? kRattlePatience : kPatience;
   const double enough = rattle || kLeft * goal < kSeen ? kNoBound : kLeft * goal;
-  double before = kNoBound, best = kNoBound;
-  int stale = 0;
+  Progress progress(from_start_ ? kRattlePatience : kPatience);
+  double before = kNoBound;
   int swept = 1;  // sweeps since the last look
   sweep(enough, team, result);
   for (;;) {
@@ -425,9 +440,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
     if (strain <= goal && just) return result;
     const double worst = std::max(strain / goal, violation);
     if (result.iterations >= max_iterations) return result;
-    stale = worst < patience.fall * best ? 0 : stale + 1;
-    best = std::min(best, worst);
-    if (!std::isfinite(worst) || stale > patience.passes) {
+    if (!progress.goes_on(worst)) {
       result.failed = !(from_start_ ? result.converged : strain <= wanted && just);
       return result;
     }
