@@ -57,6 +57,11 @@ Result<Cloth> Cloth::create(std::shared_ptr<const Model> model, const Settings& 
   if (auto valid = validate(settings); !valid) return Error{valid.error()};
   auto isa = resolve(settings.isa);
   if (!isa) return Error{isa.error()};
+  if (settings.backend == Backend::simd) {
+    if (auto valid = validate_for_lanes(settings, model->constraints); !valid) {
+      return Error{valid.error()};
+    }
+  }
   Settings resolved = settings;
   resolved.isa = isa.value();
   resolved.velocity_correction |= settings.scheme == Scheme::rattle;

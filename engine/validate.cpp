@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "engine/model.h"
+
 namespace weft {
 namespace {
 
@@ -44,6 +46,14 @@ Result<void> validate_square(std::string_view field, double value) {
   const double square = value * value;
   if (std::isnormal(square) && std::isnormal(1 / square)) return {};
   return refuse(field, "is too small or too large to be squared", number(value));
+}
+
+/// The same of floats, with a margin: the simd backend measures errors in tolerances.
+bool fits_float(double value) { return value >= 1e-18 && value <= 1e18; }
+
+Result<void> validate_float(std::string_view field, double value) {
+  if (fits_float(value)) return {};
+  return refuse(field, "must be from 1e-18 to 1e18 on the simd backend", number(value));
 }
 
 Result<void> validate_particle(const std::string& field, std::uint32_t particle,
@@ -232,6 +242,19 @@ Result<void> validate(const Settings& s) {
                   std::to_string(s.threads));
   }
   return validate_choice("directions", s.directions, Directions::frozen);
+}
+
+Result<void> validate_for_lanes(const Settings& s, const ConstraintStore& constraints) {
+  if (auto r = validate_float("contact_tolerance", s.contact_tolerance); !r) return r;
+  if (auto r = validate_float("velocity_tolerance", s.velocity_tolerance); !r) return r;
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    const double rest = constraints.rest_length[c];
+    if (fits_float(rest) && fits_float(s.tolerance * rest)) continue;
+    const std::string field = element("constraints", constraints.described[c]) + ".rest_length";
+    if (auto r = validate_float(field, rest); !r) return r;
+    return validate_float("tolerance * " + field, s.tolerance * rest);
+  }
+  return {};
 }
 
 }  // namespace weft

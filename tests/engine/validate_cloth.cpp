@@ -48,6 +48,23 @@ TEST_CASE("tolerances must be finite and positive") {
   }
 }
 
+// In floats an error of 1e-40 m over 1e-40 m is not a number, and nothing would be out of
+// tolerance.
+TEST_CASE("the simd backend refuses what floats cannot square") {
+  const char* range = "from 1e-18 to 1e18";
+  check_setting([](auto& s) { s.tolerance = 1e-40; }, {"tolerance * constraints[", range});
+  check_setting([](auto& s) { s.contact_tolerance = 1e-20; },
+                {"contact_tolerance", range, "1e-20"});
+  check_setting([](auto& s) { s.velocity_tolerance = 1e20; },
+                {"velocity_tolerance", range, "1e+20"});
+  SceneDescription scene = scene_of("hang", 4);
+  scene.constraints[5].rest_length = 1e-30;
+  const auto cloth = Cloth::create(model_of(scene), {});
+  REQUIRE_FALSE(cloth);
+  check_message(cloth.error(), {"constraints[5].rest_length", range, "1e-30"});
+  CHECK(Cloth::create(model_of(scene), on(Backend::reference, Settings{})));
+}
+
 TEST_CASE("iterations, their bound and the impulse limit must be in range") {
   check_setting([](auto& s) { s.iterations = -3; }, {"iterations", "-3"});
   check_setting([](auto& s) { s.max_iterations = 0; }, {"max_iterations", "0"});
