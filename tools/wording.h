@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <weft/weft.h>
 
 #include <string>
 #include <string_view>
@@ -20,6 +21,10 @@ inline std::string measured_percent(double fraction) {
 template <class Number>
 std::string counted(Number count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+inline std::string substeps_text(int substeps) {
+  return substeps == kAutomaticSubsteps ? "automatic substeps" : counted(substeps, "substep");
 }
 
 }  // namespace weft::tools

@@ -15,8 +15,7 @@ using Text = std::back_insert_iterator<std::string>;
 std::string knobs_text(const Knobs& knobs) {
   const std::string goal =
       knobs.tolerance ? percent(*knobs.tolerance) : counted(knobs.iterations, "iteration");
-  if (knobs.substeps == 0) return goal + ", automatic substeps";
-  return fmt::format("{}, {}", goal, counted(knobs.substeps, "substep"));
+  return fmt::format("{}, {}", goal, substeps_text(knobs.substeps));
 }
 
 std::string error_text(const std::optional<double>& error) {
@@ -170,9 +169,9 @@ void write_sizes(Text out, const SizeStudy& study) {
                  "size  ", "solver", "ms per frame", "substeps", "max strain");
   for (const SizeCurve& curve : study.curves) {
     for (const SizePoint& point : curve.points) {
-      fmt::format_to(out, "{:>14}{:14}{:13.4g}{:11}{:>13}\n",
+      fmt::format_to(out, "{:>14}{:14}{:13.4g}{:11.3g}{:>13}\n",
                      fmt::format("{0} x {0}  ", point.size), curve.solver,
-                     point.outcome.ms_per_frame, point.substeps,
+                     point.outcome.ms_per_frame, point.outcome.substeps,
                      measured_percent(point.outcome.max_strain));
     }
     if (curve.exponent) {

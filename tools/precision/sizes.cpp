@@ -57,7 +57,7 @@ Result<std::optional<SizePoint>> cheapest(const SizeStudy& study, const Task& ta
   for (const int factor : {1, 2, 4}) {
     const int substeps = first * factor;
     if (factor > 1 && substeps == kAutomaticSubsteps) break;
-    watch(fmt::format("{}, {}", name(solver), counted(substeps, "substep")));
+    watch(fmt::format("{}, {}", name(solver), substeps_text(substeps)));
     const auto point = measure(task, settings_of(study, solver, substeps), effort);
     if (!point) return Error{point.error()};
     const Outcome& outcome = point.value().outcome;

@@ -152,7 +152,7 @@ Result<std::vector<Point>> sweep(const Task& task, const Curve& curve, const Eff
   std::vector<Point> points;
   for (const Row& row : curve.rows) {
     for (const Settings& settings : row) {
-      watch(fmt::format("{}, {}", counted(settings.substeps, "substep"),
+      watch(fmt::format("{}, {}", substeps_text(settings.substeps),
                         settings.iterations > 0 ? counted(settings.iterations, "iteration")
                                                 : percent(settings.tolerance)));
       auto point = measure(task, settings, effort);
