@@ -70,8 +70,10 @@ struct Part {
 /// caches.
 [[gnu::always_inline]] inline void fetch_ahead(const ConstraintBlock& block) {
   constexpr std::size_t kBlocksAhead = 16, kCacheLine = 64;
-  const char* ahead = reinterpret_cast<const char*>(&block + kBlocksAhead);
-  for (std::size_t at = 0; at < sizeof block; at += kCacheLine) __builtin_prefetch(ahead + at);
+  const auto ahead = reinterpret_cast<std::uintptr_t>(&block) + kBlocksAhead * sizeof block;
+  for (std::size_t at = 0; at < sizeof block; at += kCacheLine) {
+    __builtin_prefetch(reinterpret_cast<const void*>(ahead + at));
+  }
 }
 
 /// Vectors in which nothing is out of tolerance are left without a store.
