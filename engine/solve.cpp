@@ -37,10 +37,10 @@ void count(kernels::LoopResult& sum, const kernels::LoopResult& part) {
   sum.converged = part.converged;
 }
 
-void add(StepReport& report, const kernels::LoopResult& result) {
+Status add(StepReport& report, const kernels::LoopResult& result) {
   report.visits += result.visits;
   report.corrections += result.corrections;
-  if (!result.converged) worsen(report, Status::iteration_limit);
+  return result.converged ? Status::converged : Status::iteration_limit;
 }
 
 /// With a start: along the directions there (scheme rattle).
@@ -131,8 +131,9 @@ kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, bool first, in
   return result;
 }
 
-kernels::LoopResult solve_positions(State& s, const Attempt& attempt, bool first, int left,
-                                    Standstill& standstill, Team& team) {
+kernels::LoopResult solve_round(State& s, const Attempt& attempt, bool first, int left,
+                                Standstill& standstill, Team& team) {
+  if (attempt.by_rattle()) return solve_from_start(s, attempt.h, attempt.start, first, left, team);
   if (s.yarn) return solve_yarns(s, attempt, first, left, standstill, team);
   if (!s.direct) return sweep_on(s, attempt.h, first, left, standstill, team);
   if (attempt.on_failure != OnFailure::sweep) {
@@ -157,7 +158,7 @@ kernels::LoopResult correct_by_yarns(State& s, bool exact, Team& team) {
   return result;
 }
 
-kernels::LoopResult correct_velocities(State& s, bool exact, Team& team) {
+kernels::LoopResult solve_velocities(State& s, bool exact, Team& team) {
   if (s.yarn && s.settings.iterations == 0) return correct_by_yarns(s, exact, team);
   if (!s.direct) return sweep_velocities(s, team);
   const auto answer = std::tie(s, team);
@@ -175,18 +176,16 @@ Ended end_of(const kernels::LoopResult& result, OnFailure on_failure) {
 
 }  // namespace
 
-Ended solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+Trial solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+  Trial trial;
   int left = attempt.most_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
     Standstill standstill(s.settings, attempt.stood_at);
-    const bool first = round == 0;
-    const auto result = attempt.start.x != nullptr
-                            ? solve_from_start(s, attempt.h, attempt.start, first, left, team)
-                            : solve_positions(s, attempt, first, left, standstill, team);
-    add(report, result);
+    const auto result = solve_round(s, attempt, round == 0, left, standstill, team);
+    trial.worsen(add(report, result));
     if (!result.converged && standstill.reached()) {
-      worsen(report, Status::infeasible);
-      s.stood_at = standstill.error();
+      trial.worsen(Status::infeasible);
+      trial.stood_at = std::max(trial.stood_at, standstill.error());
     }
     report.iterations += result.iterations;
     left -= result.iterations;
@@ -194,16 +193,18 @@ Ended solve_positions(State& s, const Attempt& attempt, StepReport& report, Team
     const bool again = s.model->has_contacts() && result.converged &&
                        add_missed_contacts(*s.model, *s.kernels, s.solved.view(),
                                            s.settings.contact_tolerance, s.contacts) > 0;
-    if (!again) return end_of(result, attempt.on_failure);
+    trial.ended = end_of(result, attempt.on_failure);
+    if (!again) return trial;
   }
-  worsen(report, Status::iteration_limit);
-  return Ended::made_do;
+  trial.worsen(Status::iteration_limit);
+  trial.ended = Ended::made_do;
+  return trial;
 }
 
-void correct_velocities(State& s, const Attempt& attempt, StepReport& report, Team& team) {
-  const auto result = correct_velocities(s, attempt.start.x != nullptr, team);
-  add(report, result);
+Status correct_velocities(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+  const auto result = solve_velocities(s, attempt.by_rattle(), team);
   report.velocity_iterations += result.iterations;
+  return add(report, result);
 }
 
 }  // namespace weft

@@ -1,6 +1,7 @@
 /// Position and velocity constraints, by the solver that the settings name.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "engine/measure.h"
@@ -23,17 +24,29 @@ struct Attempt {
   double stood_at = 0;           // sweeps, the last time (standstill.h)
   bool predicted = false;        // solved is where the substep would lead without constraints
   kernels::VectorsView start{};  // with scheme rattle: where the directions are
+  bool by_rattle() const { return start.x != nullptr; }
 };
 
 /// made_do: the solver failed; the result is that of sweeps, or what it had reached by then.
 /// gave_up: it failed, and there is no result. lost: the result is not finite.
 enum class Ended : std::uint8_t { solved, made_do, gave_up, lost };
-inline bool has_answer(Ended ended) { return ended <= Ended::made_do; }
+
+/// What an attempt came to. Work and times go into the report at once; this does so when the
+/// attempt is accepted.
+struct Trial {
+  Ended ended = Ended::solved;
+  Status status = Status::converged;
+  double stood_at = 0;                       // what sweeps could not solve; 0: nothing
+  std::uint32_t passed_particle = kNoIndex;  // the description's number
+
+  bool has_result() const { return ended <= Ended::made_do; }
+  void worsen(Status by) { status = std::max(status, by); }
+};
 
 /// Moves solved until every constraint is within tolerance.
-Ended solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team);
+Trial solve_positions(State& s, const Attempt& attempt, StepReport& report, Team& team);
 /// The velocity loop: changes next_velocity.
-void correct_velocities(State& s, const Attempt& attempt, StepReport& report, Team& team);
+Status correct_velocities(State& s, const Attempt& attempt, StepReport& report, Team& team);
 
 /// True errors at x.
 Strain strain_at(State& s, kernels::Vectors& x, Team& team);

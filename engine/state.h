@@ -44,8 +44,7 @@ struct State {
   ContactStore contacts;
   Pins pins;
   Trouble trouble;
-  bool placed = true;   // positions were given, not stepped to: they may violate constraints
-  double stood_at = 0;  // of the step under way: what its sweeps could not solve (standstill.h)
+  bool placed = true;  // positions were given, not stepped to: they may violate constraints
 
   std::vector<kernels::Kicks> kicks;  // per stretch of slots; scheme rattle only
 

@@ -60,7 +60,6 @@ StepReport step(State& s, double dt) {
     Travel travel(s, dt);
     if (run_substeps(s, dt, travel.jumped(), report, team)) travel.arrive();
   }
-  if (report.status != Status::passed_through) report.passed_particle = kNoIndex;
   timed(report, Stage::report, [&] { report_errors(s, report, team); });
   return report;
 }

@@ -1,7 +1,5 @@
 #include "engine/substep.h"
 
-#include <utility>
-
 #include "engine/contacts.h"
 #include "engine/crossings.h"
 #include "engine/motion.h"
@@ -18,62 +16,63 @@ void find_contacts(State& s, StepReport& report) {
 
 namespace {
 
-void watch_crossings(State& s, StepReport& report) {
+void watch_crossings(State& s, Trial& trial) {
   const std::uint32_t passed =
       find_crossing(*s.model, *s.kernels, s.position.view(), s.solved.view(), s.contacts.found);
   if (passed == kNoIndex) return;
-  report.passed_particle = s.model->ordering.particle_at[passed];
-  worsen(report, Status::passed_through);
+  trial.passed_particle = s.model->ordering.particle_at[passed];
+  trial.worsen(Status::passed_through);
 }
 
 /// An attempt by scheme rattle whose positions miss their tolerance is not worth its velocities: as
 /// a rule it is far beyond any numbers that a velocity loop could end with.
-bool blown_up(const State& s, const Attempt& attempt, const StepReport& report) {
-  return attempt.start.x != nullptr && s.settings.iterations == 0 &&
-         report.status != Status::converged;
+bool blown_up(const State& s, const Attempt& attempt, const Trial& trial) {
+  return attempt.by_rattle() && s.settings.iterations == 0 && trial.status != Status::converged;
 }
 
-Ended run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+Trial run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   const double h = attempt.h;
   if (!attempt.predicted) timed(report, Stage::predict, [&] { predict(s, h, team); });
   find_contacts(s, report);
-  Ended ended = Ended::solved;
-  timed(report, Stage::solve_positions, [&] { ended = solve_positions(s, attempt, report, team); });
-  if (ended == Ended::gave_up || blown_up(s, attempt, report)) return ended;
+  Trial trial;
+  timed(report, Stage::solve_positions, [&] { trial = solve_positions(s, attempt, report, team); });
+  if (trial.ended == Ended::gave_up || blown_up(s, attempt, trial)) return trial;
   bool finite = true;
   timed(report, Stage::commit, [&] { finite = commit(s, h, team); });
-  if (!finite) return Ended::lost;
-  if (s.settings.velocity_correction) {
-    timed(report, Stage::correct_velocities, [&] { correct_velocities(s, attempt, report, team); });
-    if (!all_finite(s.next_velocity)) return Ended::lost;
+  if (finite && s.settings.velocity_correction) {
+    timed(report, Stage::correct_velocities,
+          [&] { trial.worsen(correct_velocities(s, attempt, report, team)); });
+    finite = all_finite(s.next_velocity);
   }
-  if (s.settings.iterations > 0 && report.status <= Status::iteration_limit) {
-    report.status = Status::fixed_iterations;
+  if (!finite) {
+    trial.ended = Ended::lost;
+    return trial;
+  }
+  if (s.settings.iterations > 0 && trial.status <= Status::iteration_limit) {
+    trial.status = Status::fixed_iterations;
   }
   if (s.model->has_contacts()) {
-    timed(report, Stage::find_contacts, [&] { watch_crossings(s, report); });
+    timed(report, Stage::find_contacts, [&] { watch_crossings(s, trial); });
   }
-  return ended;
+  return trial;
+}
+
+/// Whether what scheme rattle came to is kept. With a fixed number of iterations it always is.
+bool is_good(State& s, const Trial& trial, double h, Team& team) {
+  if (s.settings.iterations > 0) return true;
+  const bool solved = trial.status == Status::converged || trial.status == Status::passed_through;
+  return solved && trial.has_result() && keeps_energy(measure_kicks(s, h, team));
 }
 
 }  // namespace
 
-/// Until it is accepted a substep leaves position and velocity alone: it can be done again. With a
-/// fixed number of iterations it is not.
-Ended substep(State& s, const Attempt& attempt, StepReport& report, Team& team) {
+/// Until it is accepted a substep leaves position and velocity alone: it can be done again.
+Trial substep(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   if (s.settings.scheme == Scheme::paper) return run_stages(s, attempt, report, team);
-  const Status before = std::exchange(report.status, Status::converged);
   Attempt by_rattle = attempt;
   by_rattle.start = s.position.view();
-  const Ended ended = run_stages(s, by_rattle, report, team);
-  const bool solved = report.status == Status::converged || report.status == Status::passed_through;
-  const bool good = s.settings.iterations > 0 || (solved && has_answer(ended) &&
-                                                  keeps_energy(measure_kicks(s, attempt.h, team)));
-  if (good) {
-    worsen(report, before);
-    return ended;
-  }
-  report.status = before;
+  const Trial trial = run_stages(s, by_rattle, report, team);
+  if (is_good(s, trial, attempt.h, team)) return trial;
   ++report.scheme_fallbacks;
   Attempt by_paper = attempt;
   by_paper.predicted = false;

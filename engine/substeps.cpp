@@ -24,18 +24,18 @@ bool violates_constraints(State& s, Team& team) {
 
 /// Moves the positions onto the constraints and leaves the velocities: the error of a start would
 /// become a velocity of error / h. What cannot be put right with half of the iterations that a
-/// substep may take is left to the step, and to its status.
-void project(State& s, double h, StepReport& report, Team& team) {
-  const Status before = report.status;
+/// substep may take is left to the step, and to its status. Returns what sweeps could not solve.
+double project(State& s, double h, StepReport& report, Team& team) {
   s.solved = s.position;
   find_contacts(s, report);
   const Attempt attempt{h, std::max(1, s.settings.max_iterations / 2), OnFailure::sweep};
-  timed(report, Stage::solve_positions, [&] { solve_positions(s, attempt, report, team); });
+  Trial trial;
+  timed(report, Stage::solve_positions, [&] { trial = solve_positions(s, attempt, report, team); });
   if (all_finite(s.solved)) s.position = s.solved;
-  report.status = before;
+  return trial.stood_at;
 }
 
-/// Of a substep that was not accepted: who left the range of numbers, and whether that would have
+/// Of a step that is not committed: who left the range of numbers, and whether that would have
 /// happened without any constraint.
 void explain(State& s, double h, StepReport& report, Team& team) {
   const std::size_t solved =
@@ -44,6 +44,7 @@ void explain(State& s, double h, StepReport& report, Team& team) {
   const std::size_t predicted = first_not_finite(s.solved);
   const bool input = predicted < s.model->slots();
   report.failed_particle = s.model->ordering.particle_at[input ? predicted : solved];
+  report.passed_particle = kNoIndex;
   worsen(report, input ? Status::non_finite_input : Status::non_finite);
 }
 
@@ -87,16 +88,15 @@ class Substeps {
  public:
   Substeps(State& s, StepReport& report, Team& team)
       : s_(s), report_(report), team_(team), transaction_(s) {
-    halving_helps_ = s.settings.iterations == 0 && s.settings.solver != Solver::gauss_seidel &&
-                     s.trouble.may_halve();
+    may_halve_ = s.settings.iterations == 0 && s.settings.solver != Solver::gauss_seidel &&
+                 s.trouble.may_halve();
   }
 
   /// Returns whether all of dt was done.
   bool run(double dt, bool jumped) {
-    s_.stood_at = 0;
     if ((s_.placed || jumped) && violates_constraints(s_, team_)) {
       transaction_.begin();
-      project(s_, dt, report_, team_);
+      stood_at_ = project(s_, dt, report_, team_);
     }
     projected_ = report_.visits;
     only_sweeps_ = s_.trouble.only_sweeps();
@@ -105,16 +105,8 @@ class Substeps {
       left_ = s_.settings.max_iterations;
       parts_ = 0;
       gave_up_ = only_sweeps_;
-      Outcome outcome = advance(dt / substeps, 0, k == substeps);
-      if (outcome == Outcome::hopeless && only_sweeps_) {
-        only_sweeps_ = false;
-        halving_helps_ = true;
-        outcome = advance(dt / substeps, 0, k == substeps);
-      }
-      if (outcome == Outcome::hopeless) {
-        halves_helped_ = halving_helps_ = false;
-        outcome = advance(dt / substeps, 0, k == substeps);
-      }
+      Outcome outcome;
+      while ((outcome = advance(dt / substeps, 0, k == substeps)) == Outcome::hopeless) be_safer();
       if (outcome == Outcome::refused) return false;
     }
     s_.placed = false;
@@ -135,49 +127,67 @@ class Substeps {
   /// which nothing has been done.
   enum class Outcome : std::uint8_t { done, refused, hopeless };
 
+  /// After a substep was hopeless. Where nothing may be halved or left none is.
+  void be_safer() {
+    if (only_sweeps_) {
+      only_sweeps_ = false;
+      may_halve_ = true;
+    } else {
+      halves_helped_ = may_halve_ = false;
+    }
+  }
+
   /// Advances by h, in halves where the solver gives up. Where even the first of the shortest parts
   /// does not converge there is no hope in halving, and Gauss-Seidel sweeps go on for the rest of
   /// the step. What a state violates, and what sweeps leave, would come back as speed, the more the
   /// shorter the parts: parts of such a substep gain no energy.
   Outcome advance(double h, int halvings, bool last) {
-    const Status before = report_.status;
-    const bool may_halve = halving_helps_ && halvings < kMostHalvings && left_ > 0;
-    const bool may_leave = may_halve || ((halving_helps_ || only_sweeps_) && parts_ == 0);
-    const int iterations = report_.iterations;
-    const int most = only_sweeps_ ? std::min(left_ / 2, s_.trouble.most_sweeps()) : left_;
+    const bool halve = may_halve_ && halvings < kMostHalvings && left_ > 0;
+    const bool leave = halve || ((may_halve_ || only_sweeps_) && parts_ == 0);
     const Attempt attempt{.h = h,
-                          .most_iterations = std::max(most, 1),
-                          .on_failure = may_halve   ? OnFailure::halve
-                                        : may_leave ? OnFailure::leave
-                                                    : OnFailure::sweep,
+                          .most_iterations = iterations_left(),
+                          .on_failure = halve   ? OnFailure::halve
+                                        : leave ? OnFailure::leave
+                                                : OnFailure::sweep,
                           .only_sweeps = only_sweeps_,
                           .care = std::sqrt(s_.trouble.care()),
-                          .stood_at = std::max(s_.stood_at, s_.trouble.stood_at()),
+                          .stood_at = std::max(stood_at_, s_.trouble.stood_at()),
                           .predicted = std::exchange(predicted_, false)};
-    const Ended ended = substep(s_, attempt, report_, team_);
-    left_ -= report_.iterations - iterations;
-    const bool answered = has_answer(ended);
-    if (may_leave && !answered) {
-      report_.status = before;
+    const std::int64_t before = report_.iterations;
+    const Trial trial = substep(s_, attempt, report_, team_);
+    left_ -= static_cast<int>(report_.iterations - before);
+    stood_at_ = std::max(stood_at_, trial.stood_at);
+    if (leave && !trial.has_result()) {
       gave_up_ = true;
-      if (parts_ == 0 && !(may_halve && begins_well(h))) return Outcome::hopeless;
+      if (parts_ == 0 && !(halve && begins_well(h))) return Outcome::hopeless;
       ++report_.halvings;
       const Outcome first = advance(h / 2, halvings + 1, false);
       return first == Outcome::done ? advance(h / 2, halvings + 1, last) : first;
     }
-    if (!answered) {
+    if (!trial.has_result()) {
       explain(s_, h, report_, team_);
       return Outcome::refused;
     }
-    if (ended == Ended::made_do) {
+    accept(trial, last);
+    return Outcome::done;
+  }
+
+  int iterations_left() const {
+    const int most = only_sweeps_ ? std::min(left_ / 2, s_.trouble.most_sweeps()) : left_;
+    return std::max(most, 1);
+  }
+
+  void accept(const Trial& trial, bool last) {
+    if (trial.ended == Ended::made_do) {
       gave_up_ = made_do_ = true;
-      if (halving_helps_) halves_helped_ = false;
+      if (may_halve_) halves_helped_ = false;
     }
     if (gave_up_) take_gained_energy(s_);
     transaction_.accept(last);
+    worsen(report_, trial.status);
+    if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
     ++report_.substeps;
     ++parts_;
-    return Outcome::done;
   }
 
   /// What a state already violates becomes a velocity, error / h: the shorter, the worse. For
@@ -208,7 +218,7 @@ class Substeps {
             .only_sweeps = began_with_sweeps,
             .swept_in_vain = began_with_sweeps && !only_sweeps_,
             .may_be_swept = sweeps_converge && !s_.model->has_contacts(),
-            .stood_at = report_.status == Status::infeasible ? s_.stood_at : 0,
+            .stood_at = report_.status == Status::infeasible ? stood_at_ : 0,
             .passes = static_cast<double>(report_.visits - projected_) / constraints};
   }
 
@@ -216,7 +226,8 @@ class Substeps {
   StepReport& report_;
   Team& team_;
   Transaction transaction_;
-  bool halving_helps_ = false, halves_helped_ = true;
+  bool may_halve_ = false, halves_helped_ = true;
+  double stood_at_ = 0;         // what sweeps could not solve in this step
   std::int64_t projected_ = 0;  // visits of the projection
   bool only_sweeps_ = false;    // until they fail
   bool made_do_ = false;

@@ -88,7 +88,7 @@ void run_steps(Cloth& cloth, double dt, Totals& totals) {
   for (int i = 0; i < kSteps; ++i) {
     auto result = cloth.step(dt);
     const StepReport& report = checked(result);
-    totals.iterations += report.iterations;
+    totals.iterations += static_cast<double>(report.iterations);
     totals.visits += static_cast<double>(report.visits);
     totals.corrections += static_cast<double>(report.corrections);
     totals.max_strain = std::max(totals.max_strain, report.max_strain);

@@ -272,17 +272,17 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 /// is the worst of them; errors are those at the end.
 struct StepReport {
   Status status = Status::converged;
-  int substeps = 0;              ///< done
-  int halvings = 0;              ///< substeps that were redone as two halves
-  int iterations = 0;            ///< passes over the position constraints; yarn: sweeps and
-                                 ///< conjugate gradient iterations; direct: solves
-  int direction_updates = 0;     ///< renewals of the constraint directions
-  int velocity_iterations = 0;   ///< passes of the velocity loop; direct: solves
-  std::int64_t visits = 0;       ///< constraints whose error was looked at, both loops
-  std::int64_t corrections = 0;  ///< impulses applied, both loops
-  int scheme_fallbacks = 0;      ///< substeps that scheme rattle left to the paper's
-  int contacts = 0;              ///< candidate pairs, near enough to be watched
-  double max_strain = 0;         ///< over all constraints, recomputed from the positions
+  int substeps = 0;                      ///< done
+  int halvings = 0;                      ///< substeps that were redone as two halves
+  std::int64_t iterations = 0;           ///< passes over the position constraints; yarn: sweeps and
+                                         ///< conjugate gradient iterations; direct: solves
+  std::int64_t direction_updates = 0;    ///< renewals of the constraint directions
+  std::int64_t velocity_iterations = 0;  ///< passes of the velocity loop; direct: solves
+  std::int64_t visits = 0;               ///< constraints whose error was looked at, both loops
+  std::int64_t corrections = 0;          ///< impulses applied, both loops
+  int scheme_fallbacks = 0;              ///< substeps that scheme rattle left to the paper's
+  int contacts = 0;                      ///< candidate pairs, near enough to be watched
+  double max_strain = 0;                 ///< over all constraints, recomputed from the positions
   double rms_strain = 0;
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
   double max_penetration = 0;                 ///< m, 0 without contacts

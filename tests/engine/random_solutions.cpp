@@ -87,8 +87,9 @@ double shortest(const SceneDescription& scene) {
 }
 
 /// (1), and what doubles round.
-double newtons_distance(const RandomCase& c, const Solution& s, int renewals) {
-  const double left = 2 * s.motion_per_error * c.settings.tolerance * longest(c.scene) * renewals;
+double newtons_distance(const RandomCase& c, const Solution& s, std::int64_t renewals) {
+  const double left = 2 * s.motion_per_error * c.settings.tolerance * longest(c.scene) *
+                      static_cast<double>(renewals);
   double farthest = 0;
   for (const Vec3 p : s.positions) farthest = std::max(farthest, length(p));
   return left + 1e-13 * farthest * (1 + s.motion_per_error);

@@ -89,7 +89,7 @@ TEST_CASE("without contacts no step of yarns does, however late it first wants a
     CAPTURE(name(scheme));
     Cloth cloth = cloth_of(scene_of("corners", 21), {.scheme = scheme});
     const std::size_t before = allocations();
-    int iterations = 0;
+    std::int64_t iterations = 0;
     for (int k = 0; k < 60; ++k)
       iterations = std::max(iterations, cloth.step(0.01).value().iterations);
     const std::size_t after = allocations();

@@ -65,7 +65,7 @@ void check_steps(const Case& c, const Settings& settings) {
     REQUIRE(max_strain(scene, positions(lanes)) <= c.tolerance * (1 + 1e-9));
     const double apart = largest_distance(after, positions(lanes));
     // Only the lanes' velocity loop looks at its result once more in double.
-    const int again = found.velocity_iterations - expected.velocity_iterations;
+    const std::int64_t again = found.velocity_iterations - expected.velocity_iterations;
     const bool alike = found.iterations == expected.iterations && (again == 0 || again == 1) &&
                        found.corrections == expected.corrections;
     const double moved = largest_displacement(scene, before, velocity, after);

@@ -204,7 +204,7 @@ TEST_CASE("frozen directions live for as many iterations as the settings say") {
   }
   settings.renew_after = 0;
   Cloth paper = cloth_of(scene, settings);
-  int longest = 0;
+  std::int64_t longest = 0;
   for (int k = 0; k < 40; ++k) {
     const StepReport report = step(paper, kStep);
     longest = std::max(longest, report.iterations / report.direction_updates);

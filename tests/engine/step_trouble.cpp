@@ -14,7 +14,8 @@ namespace weft::test {
 namespace {
 
 struct Run {
-  int halvings = 0, iterations = 0;  // largest of a step
+  int halvings = 0;
+  std::int64_t iterations = 0;  // largest of a step
   double energy_gain = 0;
 };
 

@@ -157,7 +157,7 @@ TEST_CASE("any tolerance is reached in a few solves") {
       Settings settings = direct(on(backend, tight(1e-9)));
       settings.substeps = 4;
       Cloth cloth = cloth_of(scene, settings);
-      int most = 0;
+      std::int64_t most = 0;
       for (int k = 0; k < 100; ++k) {
         const StepReport report = step(cloth, 0.01);
         REQUIRE(report.status == Status::converged);
@@ -194,7 +194,8 @@ TEST_CASE("positions agree with Gauss-Seidel as far as the tolerance allows") {
     const double sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(free).singularValues().tail<1>()[0];
     const double residual = std::sqrt(static_cast<double>(scene.constraints.size())) * kTolerance *
                             scene.constraints[0].rest_length;
-    const int solves = std::max(report.direction_updates, swept.direction_updates);
+    const auto solves =
+        static_cast<double>(std::max(report.direction_updates, swept.direction_updates));
     REQUIRE(sigma > 1e-4);
     CHECK(largest_distance(positions(one), positions(other)) <= 2 * solves * residual / sigma);
   }
@@ -252,7 +253,7 @@ TEST_CASE("momentum is kept to rounding, whatever the attempt") {
   scene.gravity = {0, 0, 0};
   Cloth cloth = cloth_of(scene, direct(tight(1e-3)));
   const Vec3 before = momentum(scene.masses, scene.velocities);
-  int solves = 0;
+  std::int64_t solves = 0;
   for (int k = 0; k < 30; ++k) {
     const StepReport report = step(cloth, 0.02);
     REQUIRE(report.status == Status::converged);

@@ -212,7 +212,7 @@ TEST_CASE("two spheres squeeze what is between them") {
       const Vec3 before = momentum(scene.masses, scene.velocities);
       const double start = cloth.energy().total();
       double energy = start;
-      int most = 0;
+      std::int64_t most = 0;
       for (int k = 0; k < 60; ++k) {
         const StepReport report = step(cloth, 0.005);
         REQUIRE(report.status == Status::converged);

@@ -303,7 +303,7 @@ TEST_CASE("yarns that bend are straight again after a sweep or two, of several s
   const SceneDescription scene = scene_of("hang", 40);
   const auto constraints = static_cast<std::int64_t>(describe(*model_of(scene)).constraints);
   Cloth cloth = cloth_of(scene, yarn(0.001));
-  int iterations = 0;
+  std::int64_t iterations = 0;
   std::int64_t visits = 0;
   for (int i = 0; i < 40; ++i) {
     const StepReport report = step(cloth, 0.01);

@@ -81,7 +81,7 @@ TEST_CASE("passes do not grow with the tightness of the tolerance as those of sw
     Settings settings = corrected(solver, tolerance);
     settings.substeps = 4;
     Cloth cloth = cloth_of(scene_of("hang", 30), settings);
-    int sum = 0;
+    std::int64_t sum = 0;
     for (int k = 0; k < 20; ++k) sum += step(cloth, 0.01).velocity_iterations;
     return sum;
   };
