@@ -2,22 +2,12 @@
 
 #include <algorithm>
 
+#include "engine/bytes_of.h"
+
 namespace weft {
 namespace {
 
 constexpr double kMargin = 0.05;  // of the sphere's radius
-
-bool joined(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
-  const ConstraintStore& s = m.constraints;
-  const auto joins = [&](std::uint32_t c) {
-    return (s.a[c] == sphere && s.b[c] == particle) || (s.a[c] == particle && s.b[c] == sphere);
-  };
-  return std::ranges::any_of(s.hub_distances, joins) || std::ranges::any_of(s.hub_ropes, joins);
-}
-
-bool is_sphere(const Model& m, std::uint32_t slot) {
-  return m.hub[slot] && std::ranges::find(m.spheres, slot) != m.spheres.end();
-}
 
 /// Calls visit(sphere, particle, r1 + r2) for every pair nearer than reach(r1) + r2, where r1 is
 /// the sphere's radius.
@@ -64,7 +54,12 @@ void append(ContactStore& contacts, std::uint32_t s, std::uint32_t p, double dis
 bool may_touch(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
   if (particle == sphere || !m.is_particle(particle)) return false;
   if (m.inverse_mass[sphere] + m.inverse_mass[particle] == 0) return false;
-  return !(particle < sphere && is_sphere(m, particle)) && !joined(m, sphere, particle);
+  return !(particle < sphere && m.is_sphere[particle]) && !m.joined_to_sphere(sphere, particle);
+}
+
+std::size_t ContactStore::bytes() const {
+  return bytes_of(sphere) + bytes_of(particle) + bytes_of(distance) + bytes_of(first) +
+         bytes_of(next) + bytes_of(found);
 }
 
 ContactStore make_contact_store(const Model& model) {

@@ -21,6 +21,7 @@ struct ContactStore {
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(sphere.size()); }
   std::size_t capacity() const { return sphere.capacity(); }  // of the list that grows last
+  std::size_t bytes() const;
 };
 
 /// An empty store with room for the search; without spheres nothing is allocated.

@@ -10,9 +10,7 @@ Strain measure_strain(const Model& m, const kernels::Vectors& x) {
   Strain strain;
   double sum = 0;
   for (std::size_t c = 0; c < s.size(); ++c) {
-    const double l = length(x[s.a[c]] - x[s.b[c]]);
-    const double stretch = (l - s.rest_length[c]) / s.rest_length[c];
-    const double error = c < s.bilateral ? std::abs(stretch) : std::max(0.0, stretch);
+    const double error = strain_of(m, x, c);
     sum += error * error;
     if (error > strain.max || strain.worst_constraint == kNoIndex) {
       strain.max = error;

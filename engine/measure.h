@@ -3,11 +3,23 @@
 
 #include <weft/weft.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/model.h"
 
 namespace weft {
 
-/// | |a-b| - rest | / rest over all active constraints; a slack rope has none.
+/// | |a-b| - rest | / rest of a constraint; a slack rope has none.
+template <class Vectors>
+double strain_of(const Model& model, const Vectors& position, std::size_t constraint) {
+  const ConstraintStore& s = model.constraints;
+  const double l = length(position[s.a[constraint]] - position[s.b[constraint]]);
+  const double stretch = (l - s.rest_length[constraint]) / s.rest_length[constraint];
+  return constraint < s.bilateral ? std::abs(stretch) : std::max(0.0, stretch);
+}
+
+/// Over all active constraints.
 Strain measure_strain(const Model& model, const kernels::Vectors& position);
 Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
                       const kernels::Vectors& velocity);

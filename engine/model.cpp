@@ -13,46 +13,56 @@ std::size_t bytes_if_made(const OnDemand<Layout>& layout) {
   return layout.if_made() != nullptr ? layout.if_made()->bytes() : 0;
 }
 
+std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
+
 }  // namespace
 
-Model::Model(const SceneDescription& description) : particles(description.positions.size()) {
-  find_hubs(description);
-  order_particles(description);
-  store_particles(description);
-  store_constraints(description);
-}
+/// What is known of the description, by its numbers, while the model is built.
+struct Model::Draft {
+  const SceneDescription& description;
+  std::vector<std::uint8_t> fixed, hub;         // per particle
+  std::vector<std::uint32_t> described_link{};  // link -> constraint
 
-void Model::find_hubs(const SceneDescription& d) {
-  fixed_particle_.resize(particles);
-  for (const std::uint32_t i : d.fixed) fixed_particle_[i] = 1;
-  std::vector<std::uint32_t> degree(particles);
-  for (const Constraint& c : d.constraints) {
-    ++degree[c.a];
-    ++degree[c.b];
+  explicit Draft(const SceneDescription& d)
+      : description(d), fixed(d.positions.size()), hub(d.positions.size()) {
+    for (const std::uint32_t i : d.fixed) fixed[i] = 1;
+    std::vector<std::uint32_t> degree(hub.size());
+    for (const Constraint& c : d.constraints) {
+      ++degree[c.a];
+      ++degree[c.b];
+    }
+    for (std::size_t i = 0; i < hub.size(); ++i) hub[i] = degree[i] > reference::kHubDegree;
+    for (const std::uint32_t s : d.spheres) hub[s] = 1;
   }
-  hub_particle_.resize(particles);
-  for (std::size_t i = 0; i < particles; ++i) {
-    hub_particle_[i] = degree[i] > reference::kHubDegree;
-  }
-  for (const std::uint32_t s : d.spheres) hub_particle_[s] = 1;
+  bool is_inert(const Constraint& c) const { return fixed[c.a] && fixed[c.b]; }
+  bool is_at_hub(const Constraint& c) const { return hub[c.a] || hub[c.b]; }
+};
+
+Model::Model(const SceneDescription& description) : particles(description.positions.size()) {
+  Draft draft(description);
+  order_particles(draft);
+  store_particles(draft);
+  store_constraints(draft);
+  find_joined();
 }
 
 /// Constraints at hubs take no part: they are solved one after the other anyway.
-void Model::order_particles(const SceneDescription& d) {
+void Model::order_particles(Draft& draft) {
+  const SceneDescription& d = draft.description;
   std::vector<Link> links;
   for (std::uint32_t i = 0; i < d.constraints.size(); ++i) {
     const Constraint& c = d.constraints[i];
-    if (fixed_particle_[c.a] && fixed_particle_[c.b]) continue;
-    if (hub_particle_[c.a] || hub_particle_[c.b]) continue;
+    if (draft.is_inert(c) || draft.is_at_hub(c)) continue;
     links.push_back({c.a, c.b, c.kind});
-    described_link_.push_back(i);
+    draft.described_link.push_back(i);
   }
   ordering = order(d.positions, links);
   spare_slots = static_cast<std::uint32_t>(ordering.slots());
   ordering.particle_at.resize(ordering.slots() + kLanes, kNoIndex);
 }
 
-void Model::store_particles(const SceneDescription& d) {
+void Model::store_particles(const Draft& draft) {
+  const SceneDescription& d = draft.description;
   initial_position.resize(slots());
   initial_velocity.resize(slots());
   mass.resize(slots());
@@ -63,52 +73,71 @@ void Model::store_particles(const SceneDescription& d) {
     const std::uint32_t i = ordering.particle_at[slot];
     if (i == kNoIndex) continue;
     initial_position.set(slot, {d.positions[i].x, d.positions[i].y, d.positions[i].z});
-    if (!d.velocities.empty() && !fixed_particle_[i]) {
+    if (!d.velocities.empty() && !draft.fixed[i]) {
       initial_velocity.set(slot, {d.velocities[i].x, d.velocities[i].y, d.velocities[i].z});
     }
     mass[slot] = d.masses[i];
-    inverse_mass[slot] = fixed_particle_[i] ? 0 : 1 / d.masses[i];
+    inverse_mass[slot] = draft.fixed[i] ? 0 : 1 / d.masses[i];
     if (!radius.empty()) radius[slot] = d.radii[i];
-    hub[slot] = hub_particle_[i];
+    hub[slot] = draft.hub[i];
     if (hub[slot]) hubs.push_back(slot);
   }
   for (const std::uint32_t s : d.spheres) spheres.push_back(ordering.slot_of[s]);
+  if (!spheres.empty()) is_sphere.resize(slots());
+  for (const std::uint32_t s : spheres) is_sphere[s] = 1;
   gravity = {d.gravity.x, d.gravity.y, d.gravity.z};
 }
 
-void Model::store_constraints(const SceneDescription& d) {
-  store_batches(d, ConstraintKind::distance);
+void Model::store_constraints(const Draft& draft) {
+  store_batches(draft, ConstraintKind::distance);
   constraints.plain = constraints.size();
-  store_hubs(d, ConstraintKind::distance);
+  store_hubs(draft, ConstraintKind::distance);
   constraints.bilateral = constraints.size();
-  store_batches(d, ConstraintKind::rope);
-  store_hubs(d, ConstraintKind::rope);
-  inert_constraints = d.constraints.size() - constraints.size();
+  store_batches(draft, ConstraintKind::rope);
+  store_hubs(draft, ConstraintKind::rope);
+  inert_constraints = draft.description.constraints.size() - constraints.size();
 }
 
-void Model::store_batches(const SceneDescription& d, ConstraintKind kind) {
+void Model::store_batches(const Draft& draft, ConstraintKind kind) {
   for (const Batch& batch : ordering.batches) {
     if (batch.kind != kind) continue;
     for (std::uint32_t slot = batch.first; slot < batch.last; ++slot) {
       const std::uint32_t link = ordering.link_at[slot];
       if (link == kNoIndex) continue;
-      const std::uint32_t described = described_link_[link];
-      append(d.constraints[described], described, ordering.a[slot], ordering.b[slot]);
+      const std::uint32_t described = draft.described_link[link];
+      append(draft.description.constraints[described], described, ordering.a[slot],
+             ordering.b[slot]);
       constraints.colour.back() = batch.colour;
       constraints.slot.back() = slot;
     }
   }
 }
 
-void Model::store_hubs(const SceneDescription& d, ConstraintKind kind) {
+void Model::store_hubs(const Draft& draft, ConstraintKind kind) {
+  const SceneDescription& d = draft.description;
   auto& list = kind == ConstraintKind::distance ? constraints.hub_distances : constraints.hub_ropes;
   for (std::uint32_t i = 0; i < d.constraints.size(); ++i) {
     const Constraint& c = d.constraints[i];
-    if (c.kind != kind || (fixed_particle_[c.a] && fixed_particle_[c.b])) continue;
-    if (!hub_particle_[c.a] && !hub_particle_[c.b]) continue;
+    if (c.kind != kind || draft.is_inert(c) || !draft.is_at_hub(c)) continue;
     list.push_back(static_cast<std::uint32_t>(constraints.size()));
     append(c, i, ordering.slot_of[c.a], ordering.slot_of[c.b]);
   }
+}
+
+/// Spheres are hubs.
+void Model::find_joined() {
+  const ConstraintStore& s = constraints;
+  for (const auto* list : {&s.hub_distances, &s.hub_ropes}) {
+    for (const std::uint32_t c : *list) {
+      if (has_contacts() && is_sphere[s.a[c]]) joined_.push_back(pair_of(s.a[c], s.b[c]));
+      if (has_contacts() && is_sphere[s.b[c]]) joined_.push_back(pair_of(s.b[c], s.a[c]));
+    }
+  }
+  std::ranges::sort(joined_);
+}
+
+bool Model::joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const {
+  return std::ranges::binary_search(joined_, pair_of(sphere, slot));
 }
 
 void Model::append(const Constraint& c, std::uint32_t described, std::uint32_t a, std::uint32_t b) {
@@ -138,17 +167,17 @@ const YarnLayout& Model::yarns() const {
   return yarns_.get([this] { return make_yarn_layout(*this); });
 }
 
+std::size_t ConstraintStore::bytes() const {
+  return bytes_of(a) + bytes_of(b) + bytes_of(rest_length) + bytes_of(effective_mass) +
+         bytes_of(colour) + bytes_of(described) + bytes_of(slot) + bytes_of(hub_distances) +
+         bytes_of(hub_ropes);
+}
+
 std::size_t Model::bytes() const {
-  const ConstraintStore& s = constraints;
-  const Ordering& o = ordering;
   return initial_position.bytes() + initial_velocity.bytes() + bytes_of(mass) +
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
-         bytes_of(spheres) + bytes_of(o.slot_of) + bytes_of(o.particle_at) + bytes_of(o.link_at) +
-         bytes_of(o.a) + bytes_of(o.b) + bytes_of(o.runs) + bytes_of(o.batches) +
-         bytes_of(o.tiles) + bytes_of(s.a) + bytes_of(s.b) + bytes_of(s.rest_length) +
-         bytes_of(s.effective_mass) + bytes_of(s.colour) + bytes_of(s.described) +
-         bytes_of(s.slot) + bytes_of(fixed_particle_) + bytes_of(hub_particle_) +
-         bytes_of(described_link_) + bytes_if_made(reference_) + bytes_if_made(simd_) +
+         bytes_of(spheres) + bytes_of(is_sphere) + bytes_of(joined_) + ordering.bytes() +
+         constraints.bytes() + bytes_if_made(reference_) + bytes_if_made(simd_) +
          bytes_if_made(direct_) + bytes_if_made(yarns_);
 }
 

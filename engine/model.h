@@ -36,6 +36,7 @@ struct ConstraintStore {
   std::vector<std::uint32_t> slot;                // constraint slot; kNoIndex: at a hub
   std::vector<std::uint32_t> hub_distances, hub_ropes;
   std::size_t size() const { return a.size(); }
+  std::size_t bytes() const;
 };
 
 class Model {
@@ -54,12 +55,15 @@ class Model {
   std::vector<std::uint8_t> hub;
   std::vector<std::uint32_t> hubs;
   std::vector<std::uint32_t> spheres;
+  std::vector<std::uint8_t> is_sphere;  // empty without spheres
 
   kernels::Vector gravity{};
   ConstraintStore constraints;
   std::size_t inert_constraints = 0;
 
   bool has_contacts() const { return !spheres.empty(); }
+  /// Whether a constraint joins the two; slots.
+  bool joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const;
   bool is_particle(std::size_t slot) const { return ordering.particle_at[slot] != kNoIndex; }
   std::size_t bytes() const;
 
@@ -70,17 +74,17 @@ class Model {
   const YarnLayout& yarns() const;
 
  private:
-  void find_hubs(const SceneDescription& description);
-  void order_particles(const SceneDescription& description);
-  void store_particles(const SceneDescription& description);
-  void store_constraints(const SceneDescription& description);
-  void store_batches(const SceneDescription& description, ConstraintKind kind);
-  void store_hubs(const SceneDescription& description, ConstraintKind kind);
+  struct Draft;
+  void order_particles(Draft& draft);
+  void store_particles(const Draft& draft);
+  void store_constraints(const Draft& draft);
+  void store_batches(const Draft& draft, ConstraintKind kind);
+  void store_hubs(const Draft& draft, ConstraintKind kind);
+  void find_joined();
   void append(const Constraint& constraint, std::uint32_t described, std::uint32_t a,
               std::uint32_t b);
 
-  std::vector<std::uint8_t> fixed_particle_, hub_particle_;  // by the description's numbers
-  std::vector<std::uint32_t> described_link_;                // link -> description
+  std::vector<std::uint64_t> joined_;  // a sphere, and who is joined to it, in order
   OnDemand<ReferenceLayout> reference_;
   OnDemand<SimdLayout> simd_;
   OnDemand<DirectLayout> direct_;

@@ -11,11 +11,11 @@
 namespace weft {
 
 Strain strain_at(State& s, kernels::Vectors& x, Team& team) {
-  return s.simd ? s.simd->measure_strain(x.view(), team) : measure_strain(*s.model, x);
+  return s.measure ? s.measure->strain(x.view(), team) : measure_strain(*s.model, x);
 }
 
 double max_strain_at(State& s, kernels::Vectors& x, Team& team) {
-  return s.simd ? s.simd->max_strain(x.view(), team) : measure_strain(*s.model, x).max;
+  return s.measure ? s.measure->max_strain(x.view(), team) : measure_strain(*s.model, x).max;
 }
 
 double penetration_at(State& s, kernels::Vectors& x) {
@@ -28,14 +28,6 @@ namespace {
 /// Solves that ran into contacts from beyond the margin are repeated; each round adds at least one
 /// contact, in practice one round is rare and two were not seen.
 constexpr int kMaxContactRounds = 16;
-
-void count(kernels::LoopResult& sum, const kernels::LoopResult& part) {
-  sum.iterations += part.iterations;
-  sum.direction_updates += part.direction_updates;
-  sum.visits += part.visits;
-  sum.corrections += part.corrections;
-  sum.converged = part.converged;
-}
 
 Status add(StepReport& report, const kernels::LoopResult& result) {
   report.visits += result.visits;
@@ -105,7 +97,7 @@ struct Answer {
 kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView start, bool first,
                                      int left, Team& team) {
   if (s.yarn) {
-    return s.yarn->solve_positions(s.solved.view(), start, s.contacts, first, left, 1, *s.simd,
+    return s.yarn->solve_positions(s.solved.view(), start, s.contacts, first, left, 1, *s.measure,
                                    team);
   }
   if (!s.direct) return sweep_from_start(s, h, start, first, left, team);
@@ -124,7 +116,7 @@ kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, bool first, in
   const bool may_sweep = attempt.on_failure == OnFailure::sweep;
   if (may_sweep) s.next_velocity = s.solved;
   auto result = s.yarn->solve_positions(s.solved.view(), {}, s.contacts, first, left, attempt.care,
-                                        *s.simd, team);
+                                        *s.measure, team);
   if (!result.failed || result.converged || !may_sweep) return result;
   s.solved = s.next_velocity;
   count(result, sweep_on(s, attempt.h, true, left - result.iterations, standstill, team));

@@ -22,7 +22,8 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     predicted.resize(model->slots());
     reference.emplace(*model, settings);
   } else {
-    simd.emplace(*model, settings, to_kernel(settings.isa));
+    simd.emplace(*model, settings, *kernels);
+    measure.emplace(*model, *kernels);
   }
   if (settings.solver == Solver::direct) direct.emplace(*model, settings, *kernels);
   if (settings.solver == Solver::yarn) yarn.emplace(*model, settings, *kernels);
@@ -60,11 +61,9 @@ std::size_t State::bytes() const {
                                     &start_position, &start_velocity, &predicted}) {
     sum += v->bytes();
   }
-  sum += bytes_of(contacts.sphere) + bytes_of(contacts.particle) + bytes_of(contacts.distance) +
-         bytes_of(contacts.first) + bytes_of(contacts.next) + bytes_of(contacts.found);
-  sum += bytes_of(kicks) + pins.bytes();
+  sum += contacts.bytes() + bytes_of(kicks) + pins.bytes() + sizeof(Team::Meeting);
   if (reference) sum += reference->bytes();
-  if (simd) sum += simd->bytes();
+  if (simd) sum += simd->bytes() + measure->bytes();
   if (direct) sum += direct->bytes();
   if (yarn) sum += yarn->bytes();
   return sum;

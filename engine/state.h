@@ -22,6 +22,7 @@
 #include "engine/pins.h"
 #include "engine/solvers/direct_solver.h"
 #include "engine/solvers/reference_solver.h"
+#include "engine/solvers/simd_measure.h"
 #include "engine/solvers/simd_solver.h"
 #include "engine/solvers/team.h"
 #include "engine/solvers/yarn_solver.h"
@@ -52,6 +53,7 @@ struct State {
   std::optional<ReferenceSolver> reference;
   kernels::Vectors predicted;  // reference only
   std::optional<SimdSolver> simd;
+  std::optional<SimdMeasure> measure;  // simd only
   std::optional<DirectSolver> direct;  // with Solver::direct; those above then are its answer
   std::optional<YarnSolver> yarn;      // with Solver::yarn
   const simd::Table* kernels = nullptr;

@@ -45,6 +45,15 @@ inline void count(LoopResult& result, const Sweep& sweep, int passes = 1) {
   result.corrections += sweep.corrections;
 }
 
+/// The part goes on where the sum has ended.
+inline void count(LoopResult& sum, const LoopResult& part) {
+  sum.iterations += part.iterations;
+  sum.direction_updates += part.direction_updates;
+  sum.visits += part.visits;
+  sum.corrections += part.corrections;
+  sum.converged = part.converged;
+}
+
 struct LoopLimits {
   int fixed_iterations = 0;  // > 0: exactly so many, to whatever error
   int max_iterations = 1;

@@ -38,6 +38,10 @@ inline Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z 
 inline Vector operator*(double s, Vector a) { return {s * a.x, s * a.y, s * a.z}; }
 inline double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline double length(Vector a) { return std::sqrt(dot(a, a)); }
+/// d over its length. Particles that coincide have no direction; any unit vector separates them.
+inline Vector direction(Vector d, double length) {
+  return length > 0 ? (1 / length) * d : Vector{0, 1, 0};
+}
 
 /// n vectors as three arrays. A view: owns nothing.
 struct VectorsView {

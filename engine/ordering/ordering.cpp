@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/bytes_of.h"
 #include "engine/ordering/batching.h"
 #include "engine/ordering/incidence.h"
 #include "engine/ordering/lattice.h"
@@ -121,6 +122,11 @@ bool may_be_woven(const Placement& placement, double least_run_share) {
 }
 
 }  // namespace
+
+std::size_t Ordering::bytes() const {
+  return bytes_of(slot_of) + bytes_of(particle_at) + bytes_of(link_at) + bytes_of(a) + bytes_of(b) +
+         bytes_of(runs) + bytes_of(batches) + bytes_of(tiles);
+}
 
 Ordering order(std::span<const Vec3> positions, std::span<const Link> links,
                const OrderingOptions& options) {

@@ -65,6 +65,7 @@ struct Ordering {
 
   std::size_t slots() const { return particle_at.size(); }
   std::size_t constraint_slots() const { return link_at.size(); }
+  std::size_t bytes() const;
 };
 
 struct OrderingOptions {

@@ -113,9 +113,7 @@ std::vector<std::uint32_t> elimination_order(const Model& model, const DirectLay
 
 void store_rows(const Model& model, DirectLayout& layout) {
   const ConstraintStore& s = model.constraints;
-  layout.row_of.assign(s.size(), kNoIndex);
   for (const std::uint32_t c : layout.row_constraint) {
-    layout.row_of[c] = static_cast<std::uint32_t>(layout.a.size());
     layout.a.push_back(s.a[c]);
     layout.b.push_back(s.b[c]);
     layout.diagonal.push_back(weight(model, layout, s.a[c]) + weight(model, layout, s.b[c]));
@@ -125,12 +123,14 @@ void store_rows(const Model& model, DirectLayout& layout) {
 /// By columns, for those of a front are one stretch.
 void store_entries(const Model& model, const Lists& at, DirectLayout& layout) {
   const ConstraintStore& s = model.constraints;
+  std::vector<std::uint32_t> row_of(s.size(), kNoIndex);  // links between bodies have none
+  for (std::uint32_t row = 0; row < layout.rows(); ++row) row_of[layout.row_constraint[row]] = row;
   for (const DirectFront& front : layout.fronts.fronts) {
     layout.entry_begin.push_back(layout.entry_row.size());
     for (std::uint32_t j = front.first; j < front.first + front.count; ++j) {
       const std::uint32_t c = layout.row_constraint[j];
       for_each_neighbour(model, layout, at, c, [&](std::uint32_t p, std::uint32_t other) {
-        const std::uint32_t k = layout.row_of[other];
+        const std::uint32_t k = row_of[other];
         if (k < j) return;
         const double w = model.inverse_mass[p];
         layout.entry_row.push_back(k);
@@ -172,8 +172,8 @@ DirectLayout make_direct_layout(const Model& model) {
 std::size_t DirectLayout::bytes() const {
   return bytes_of(row_constraint) + bytes_of(a) + bytes_of(b) + bytes_of(diagonal) +
          bytes_of(entry_begin) + bytes_of(entry_row) + bytes_of(entry_with) + bytes_of(entry_slot) +
-         bytes_of(entry_weight) + bytes_of(entry_place) + fronts.bytes() + bytes_of(row_of) +
-         rows_at.bytes() + bytes_of(links) + bytes_of(bodies) + bytes_of(body_of);
+         bytes_of(entry_weight) + bytes_of(entry_place) + fronts.bytes() + rows_at.bytes() +
+         bytes_of(links) + bytes_of(bodies) + bytes_of(body_of);
 }
 
 }  // namespace weft

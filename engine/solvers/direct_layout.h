@@ -45,7 +45,6 @@ struct DirectLayout {
 
   DirectFronts fronts;
 
-  std::vector<std::uint32_t> row_of;   // per constraint; kNoIndex: a link between bodies
   Lists rows_at;                       // rows at each slot, those of a body included
   std::vector<std::uint32_t> links;    // constraints between bodies
   std::vector<std::uint32_t> bodies;   // slots

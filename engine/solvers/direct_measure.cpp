@@ -18,10 +18,6 @@ struct Reading {
   bool near = true;  // one-sided: may act at all
 };
 
-Vector direction(Vector d, double length) {
-  return length > 0 ? (1 / length) * d : Vector{0, 1, 0};  // coinciding: any part them
-}
-
 /// Decides who takes part, and keeps count.
 struct Judge {
   DirectSystem& system;

@@ -31,13 +31,6 @@ void copy(VectorsView from, VectorsView to, std::size_t n) {
   std::copy_n(from.z, n, to.z);
 }
 
-void count(LoopResult& sum, const LoopResult& part) {
-  sum.iterations += part.iterations;
-  sum.direction_updates += part.direction_updates;
-  sum.visits += part.visits;
-  sum.corrections += part.corrections;
-}
-
 /// Sees the errors fall, or not.
 class Progress {
  public:
@@ -97,7 +90,6 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
     if (left <= 0) return result;
     const LoopResult swept = sweeps(attempt == 0, std::min(wanted, left));
     count(result, swept);
-    result.converged = swept.converged;
     if (result.converged || result.iterations >= max_iterations) return result;
     copy(x, start_.view(), start_.size());
     restart(x, contacts);
@@ -179,7 +171,6 @@ LoopResult DirectSolver::correct_velocities(VectorsView x, VectorsView v,
   if (outcome == DirectOutcome::exhausted || left <= 0) return result;
   const LoopResult swept = sweeps(true, left);
   count(result, swept);
-  result.converged = swept.converged;
   return result;
 }
 

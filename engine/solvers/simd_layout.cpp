@@ -21,7 +21,6 @@ void cut(const Ordering& ordering, const Batch& batch, const kernels::Run& run, 
     Chunk chunk;
     chunk.run = {run.a + k, run.b + k, run.constraint + k, std::min(kChunk, run.length - k)};
     chunk.real = count_real(ordering, chunk.run.constraint, chunk.run.length);
-    chunk.colour = batch.colour;
     chunk.singles = singles;
     chunk.rope = batch.kind == ConstraintKind::rope;
     chunks.push_back(chunk);

@@ -20,12 +20,12 @@ namespace weft {
 
 class Model;
 
-inline constexpr std::uint32_t kChunk = 128;
+inline constexpr std::uint32_t kChunk = 128;  // constraints at most
+inline constexpr std::size_t kPiece = 16;     // chunks that one thread takes at a time
 
 struct Chunk {
   kernels::Run run;        // singles: only constraint and length are meant
   std::uint32_t real = 0;  // constraints that are not padding
-  std::uint32_t colour = 0;
   bool singles = false;
   bool rope = false;
 };

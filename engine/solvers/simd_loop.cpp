@@ -35,10 +35,8 @@ void SimdLoop::apply_displacements() {
 /// errors would come out the same.
 void SimdLoop::renew() {
   apply_displacements();
-  const std::size_t chunks = layout_.chunks.size();
-  team_.for_each((chunks + kPiece - 1) / kPiece, [&](std::size_t piece) {
-    const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
-    for (std::size_t i = piece * kPiece; i < last; ++i) {
+  team_.for_each_part(layout_.chunks.size(), kPiece, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
       if (marks() && !s_.stale_[i]) continue;
       renew_chunk(i);
       if (!marks()) continue;

@@ -5,8 +5,6 @@
 
 namespace weft {
 
-inline constexpr std::size_t kPiece = 16;  // chunks that one thread takes at a time
-
 class SimdLoop {
  public:
   struct Unknowns {

@@ -33,8 +33,8 @@ std::size_t ContactLanes::bytes() const {
          bytes_of(impulse) + bytes_of(distance) + bytes_of(scale);
 }
 
-SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa isa)
-    : model_(model), layout_(model.simd()), settings_(settings), table_(simd::table(isa)) {
+SimdSolver::SimdSolver(const Model& model, const Settings& settings, const simd::Table& table)
+    : model_(model), layout_(model.simd()), settings_(settings), table_(table) {
   const std::size_t size = layout_.constraint_slots;
   allocate_displacements();
   fill_gains(false);
@@ -48,8 +48,6 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, simd::Isa i
   sweeps_.resize(std::max(
       {model.ordering.tiles.size(), layout_.seams.size(), layout_.chunks.size() / kPiece + 1}));
   open_seam_.assign(layout_.seams.size(), 1);
-  strains_.resize(layout_.chunks.size() + 1);
-  stretches_.resize(model.ordering.tiles.size() + layout_.chunks.size() / kPiece + 1);
   corrections_.resize(layout_.chunks.size());
 }
 
@@ -207,127 +205,11 @@ simd::Geometry SimdSolver::geometry(kernels::VectorsView x, bool velocity) {
           layout_.b.data()};
 }
 
-/// work(chunk, its number), side by side.
-template <class Work>
-void SimdSolver::for_each_chunk(Team& team, Work&& work) {
-  const std::size_t chunks = layout_.chunks.size();
-  team.for_each((chunks + kPiece - 1) / kPiece, [&](std::size_t piece) {
-    const std::size_t last = std::min(chunks, (piece + 1) * kPiece);
-    for (std::size_t i = piece * kPiece; i < last; ++i) work(layout_.chunks[i], i);
-  });
-}
-
-/// Of consecutive chunks.
-simd::StretchRange SimdSolver::stretch(const simd::Geometry& g, std::size_t first,
-                                       std::size_t last) const {
-  simd::StretchRange range;
-  for (std::size_t end; first < last; first = end) {
-    const Chunk& chunk = layout_.chunks[first];
-    const auto alike = [&](const Chunk& other) {
-      return !chunk.singles && !other.singles && other.rope == chunk.rope;
-    };
-    for (end = first + 1; end < last && alike(layout_.chunks[end]);) ++end;
-    const std::uint32_t c = chunk.run.constraint;
-    const simd::StretchRange part =
-        chunk.singles ? table_.stretch_singles(g, c, c + chunk.run.length, chunk.rope)
-                      : table_.stretch_runs(g, &layout_.runs[first], end - first, chunk.rope);
-    range = {std::min(range.least, part.least), std::max(range.most, part.most)};
-  }
-  return range;
-}
-
-/// Rounded up by more than measure_strain() may say for the same positions.
-double SimdSolver::max_strain(kernels::VectorsView x, Team& team, const BeforeTile& before_tile) {
-  constexpr double kRounding = 1e-15;
-  const simd::Geometry g = geometry(x, false);
-  const std::vector<Tile>& tiles = model_.ordering.tiles;
-  team.for_each(tiles.size(), [&](std::size_t i) {
-    if (before_tile) before_tile(tiles[i].first_slot, tiles[i].last_slot);
-    stretches_[i] = stretch(g, layout_.batch_chunks[tiles[i].first_batch],
-                            layout_.batch_chunks[tiles[i].last_batch]);
-  });
-  const std::size_t tiled = tiles.empty() ? 0 : tiles.back().last_slot;
-  if (before_tile && tiled < layout_.slots) before_tile(tiled, layout_.slots);
-  const std::size_t between = layout_.batch_chunks[model_.ordering.between_tiles];
-  const std::size_t pieces = (layout_.chunks.size() - between + kPiece - 1) / kPiece;
-  team.for_each(pieces, [&](std::size_t i) {
-    const std::size_t first = between + i * kPiece;
-    stretches_[tiles.size() + i] =
-        stretch(g, first, std::min(first + kPiece, layout_.chunks.size()));
-  });
-  simd::StretchRange range;
-  for (std::size_t i = 0; i < tiles.size() + pieces; ++i) {
-    range.least = std::min(range.least, stretches_[i].least);
-    range.most = std::max(range.most, stretches_[i].most);
-  }
-  double most = std::max(std::sqrt(range.most) - 1, 1 - std::sqrt(range.least));
-  if (most > 0) most += kRounding;
-  for (std::uint32_t c = layout_.hub_first; c < layout_.hub_last; ++c) {
-    most = std::max(most, strain_of(x, c));
-  }
-  return most;
-}
-
-Strain SimdSolver::measure_strain(kernels::VectorsView x, Team& team) {
-  const simd::Geometry g = geometry(x, false);
-  for_each_chunk(team, [&](const Chunk& chunk, std::size_t i) {
-    const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
-    strains_[i] = chunk.singles ? table_.strain_singles(g, first, last, chunk.rope)
-                                : table_.strain_run(g, chunk.run, chunk.rope);
-  });
-  const std::size_t chunks = layout_.chunks.size();
-  Strain strain;
-  double squares = 0;
-  std::size_t worst = chunks;
-  for (std::size_t i = 0; i < chunks; ++i) {
-    squares += strains_[i].squares;
-    if (worst == chunks || strains_[i].largest > strain.max) {
-      strain.max = strains_[i].largest;
-      worst = i;
-    }
-  }
-  finish_strain(x, worst, squares, strain);
-  return strain;
-}
-
-/// Of the constraint in a slot of the layout.
-double SimdSolver::strain_of(kernels::VectorsView x, std::uint32_t slot) const {
-  const double rest = layout_.rest_length[slot];
-  const double stretch = (length(x[layout_.a[slot]] - x[layout_.b[slot]]) - rest) / rest;
-  return layout_.constraint_at[slot] < model_.constraints.bilateral ? std::abs(stretch)
-                                                                    : std::max(0.0, stretch);
-}
-
-/// Adds the constraints at hubs, and finds the constraint that the largest strain belongs to.
-void SimdSolver::finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
-                               Strain& strain) const {
-  const ConstraintStore& store = model_.constraints;
-  double nearest = -1;
-  const auto consider = [&](std::uint32_t slot, double s) {
-    if (s <= nearest) return;
-    nearest = s;
-    strain.worst_constraint = store.described[layout_.constraint_at[slot]];
-  };
-  if (worst_chunk < layout_.chunks.size()) {
-    const kernels::Run& run = layout_.chunks[worst_chunk].run;
-    for (std::uint32_t c = run.constraint; c < run.constraint + run.length; ++c) {
-      if (layout_.constraint_at[c] != kNoIndex) consider(c, strain_of(x, c));
-    }
-  }
-  for (std::uint32_t c = layout_.hub_first; c < layout_.hub_last; ++c) {
-    const double s = strain_of(x, c);
-    squares += s * s;
-    strain.max = std::max(strain.max, s);
-    consider(c, s);
-  }
-  if (store.size() > 0) strain.rms = std::sqrt(squares / static_cast<double>(store.size()));
-}
-
 std::size_t SimdSolver::bytes() const {
   return bytes_of(u_) + bytes_of(impulse_) + bytes_of(blocks_) + bytes_of(velocity_blocks_) +
          bytes_of(scale_) + bytes_of(velocity_scale_) + bytes_of(mask_) + bytes_of(changed_) +
          bytes_of(stale_) + bytes_of(corrections_) + bytes_of(sweeps_) + bytes_of(open_seam_) +
-         bytes_of(strains_) + bytes_of(stretches_) + contacts_.bytes() + bytes_of(contact_impulse_);
+         contacts_.bytes() + bytes_of(contact_impulse_);
 }
 
 }  // namespace weft

@@ -14,7 +14,6 @@
 #include <weft/weft.h>
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "engine/contacts.h"
@@ -49,7 +48,7 @@ struct alignas(64) SharedSweep : kernels::Sweep {};
 
 class SimdSolver {
  public:
-  SimdSolver(const Model& model, const Settings& settings, simd::Isa isa);
+  SimdSolver(const Model& model, const Settings& settings, const simd::Table& table);
 
   /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
   /// were found anew, accumulated impulses start at 0. Scheme rattle takes directions at `start`,
@@ -60,13 +59,6 @@ class SimdSolver {
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts, Team& team);
-  Strain measure_strain(kernels::VectorsView x, Team& team);
-  /// Slots of a tile, before its strains are looked at; in the end those of no tile.
-  using BeforeTile = std::function<void(std::size_t first, std::size_t last)>;
-  /// The largest strain, and nothing besides.
-  double max_strain(kernels::VectorsView x, Team& team, const BeforeTile& before_tile = {});
-
-  const simd::Table& kernels() const { return table_; }
   std::size_t bytes() const;
 
  private:
@@ -77,12 +69,6 @@ class SimdSolver {
   void fill_gains(bool velocity);
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
   void choose_active(kernels::VectorsView x);
-  template <class Work>
-  void for_each_chunk(Team& team, Work&& work);
-  simd::StretchRange stretch(const simd::Geometry& g, std::size_t first, std::size_t last) const;
-  double strain_of(kernels::VectorsView x, std::uint32_t slot) const;
-  void finish_strain(kernels::VectorsView x, std::size_t worst_chunk, double squares,
-                     Strain& strain) const;
   simd::Relaxation relaxation(bool velocity);
   simd::Geometry geometry(kernels::VectorsView x, bool velocity);
 
@@ -103,8 +89,6 @@ class SimdSolver {
   std::vector<std::uint32_t> corrections_;      // per chunk, of the present pass
   kernels::AlignedVector<SharedSweep> sweeps_;  // per share, or piece, of parallel work
   std::vector<std::uint8_t> open_seam_;         // no share of the present pass had all its tiles
-  std::vector<simd::StrainSums> strains_;       // per chunk
-  std::vector<simd::StretchRange> stretches_;   // per tile, then per piece between tiles
   ContactLanes contacts_;
   std::vector<float> contact_impulse_;  // per contact of the ContactStore
 };

@@ -39,10 +39,6 @@ void move_together(const Pair& pair, Vector impulse, float* u, std::size_t strid
   if (pair.wb > 0) move(u + pair.b, pair.wb * impulse, stride);
 }
 
-Vector direction(Vector d, double length) {
-  return length > 0 ? (1 / length) * d : Vector{0, 1, 0};  // coinciding: any parts them
-}
-
 /// The part of an impulse that keeps the sum on its side of 0.
 double clamped(int side, double& sum, double impulse) {
   if (side != 0) impulse = side * std::max(side * impulse, -side * sum);

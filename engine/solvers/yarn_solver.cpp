@@ -410,7 +410,7 @@ bool YarnSolver::loses_energy(kernels::VectorsView v) const {
 kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                                 const ContactStore& contacts, bool first_round,
                                                 int max_iterations, double care,
-                                                SimdSolver& measure, Team& team) {
+                                                SimdMeasure& measure, Team& team) {
   kernels::LoopResult result;
   from_start_ = false;
   velocities_ = false;

@@ -25,7 +25,7 @@
 
 #include "engine/contacts.h"
 #include "engine/model.h"
-#include "engine/solvers/simd_solver.h"
+#include "engine/solvers/simd_measure.h"
 #include "engine/solvers/team.h"
 #include "engine/solvers/yarn_others.h"
 #include "kernels/loop.h"
@@ -44,7 +44,7 @@ class YarnSolver {
   /// gradients, at least one in each Newton step; visits, every solve of a constraint.
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                       const ContactStore& contacts, bool first_round,
-                                      int max_iterations, double care, SimdSolver& measure,
+                                      int max_iterations, double care, SimdMeasure& measure,
                                       Team& team);
   /// Brings the velocities at the positions x within half of the tolerance, or as far as it gets;
   /// with `exact` to a small part of what they were out by, however little that is.

@@ -108,11 +108,6 @@ inline void apply(const Relaxation& r, std::size_t c, double impulse) {
   r.x.add(b, r.inverse_mass[b] * j);
 }
 
-/// Particles that coincide have no direction; any unit vector separates them.
-inline Vector direction(Vector d, double length) {
-  return length > 0 ? (1 / length) * d : Vector{0, 1, 0};
-}
-
 inline double renew_direction_at_start(const Relaxation& r, std::size_t c) {
   const Vector d = r.x[r.a[c]] - r.x[r.b[c]], from = r.start[r.a[c]] - r.start[r.b[c]];
   const Vector n = direction(from, length(from));

@@ -23,7 +23,7 @@ struct Passed {
 Passed pass(const Model& model, int passes, bool in_trips, int threads) {
   Settings settings;
   settings.iterations = passes;
-  SimdSolver solver(model, settings, supported_isas().back());
+  SimdSolver solver(model, settings, simd::table(supported_isas().back()));
   Passed passed{model.initial_position, {}};
   for (std::size_t i = 0; i < passed.x.size(); i += 7) passed.x.z[i] += 0.01;
   tbb::task_arena arena(threads);
