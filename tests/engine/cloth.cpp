@@ -24,6 +24,26 @@ TEST_CASE("a cloth starts as described") {
   CHECK(describe(cloth.model()).particles == 16);
 }
 
+TEST_CASE("the solver that automatic stands for: directly where yarns have no chance") {
+  const auto chosen = [](const SceneDescription& scene, const Settings& settings) {
+    return cloth_of(scene, settings).settings().solver;
+  };
+  const SceneDescription hang = scene_of("hang", 4), sphere = scene_of("hang_sphere", 4);
+  const Settings rattle{.scheme = Scheme::rattle};
+  CHECK(chosen(hang, {}) == Solver::yarn);
+  CHECK(chosen(hang, rattle) == Solver::yarn);
+  CHECK(chosen(sphere, {}) == Solver::yarn);
+  CHECK(chosen(sphere, rattle) == Solver::direct);
+  CHECK(chosen(hang, {.iterations = 3}) == Solver::gauss_seidel);
+  CHECK(chosen(hang, {.backend = Backend::reference}) == Solver::gauss_seidel);
+  CHECK(cloth_of(hang, {.backend = Backend::reference}).settings().substeps == 1);
+  SceneDescription heavy = scene_of("chain", 4);
+  for (const double ratio : {9e3, 2e4}) {
+    heavy.masses.back() = ratio * heavy.masses[1];
+    CHECK(chosen(heavy, {}) == (ratio < 1e4 ? Solver::yarn : Solver::direct));
+  }
+}
+
 TEST_CASE("packed floats are the positions, x y z") {
   const Backend backend = each_backend();
   Cloth cloth = cloth_of(scene_of("corners", 5), on(backend));

@@ -174,6 +174,32 @@ TEST_CASE("contacts take back over-pushes of thousands of iterations, each its o
   }
 }
 
+TEST_CASE("an over-push is taken back whole, however many iterations that takes") {
+  constexpr std::uint32_t kLinks = 100;
+  SceneDescription scene;  // as early_push, but only the far end of a long chain stops it
+  scene.gravity = {0, 0, 0};
+  scene.positions = {{0, 0, 0}};
+  scene.velocities = {{0, 0, 0}};
+  for (std::uint32_t i = 0; i <= kLinks; ++i) {
+    scene.positions.push_back({0.2001 + 0.01 * i, 0, 0});
+    scene.velocities.push_back({i < kLinks ? -1. : 0., 0, 0});
+    if (i > 0) scene.constraints.push_back({i, i + 1, 0.01});
+  }
+  scene.masses.assign(kLinks + 2, 1);
+  scene.radii.assign(kLinks + 2, 0);
+  scene.radii[0] = 0.2;
+  scene.spheres = {0};
+  scene.fixed = {kLinks + 1};
+  for (const Backend backend : kBackends) {
+    CAPTURE(name(backend));
+    Cloth cloth = cloth_of(scene, on(backend, tight(1e-6)));
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::converged);
+    CHECK(report.iterations > 4096);  // more than one look at a standstill
+    CHECK(distance(cloth.position(0), {0, 0, 0}) < 1e-4);
+  }
+}
+
 TEST_CASE("a particle's own size keeps it off the smallest of spheres") {
   SceneDescription scene;  // a ball, and what flies past the sphere and drags it there
   scene.gravity = {0, 0, 0};
@@ -225,6 +251,46 @@ TEST_CASE("particles outside the list of spheres do not collide among themselves
   step(cloth, 0.01);
   CHECK(distance(cloth.position(2), {0.25, 0, 0}) < 1e-15);
   CHECK(distance(cloth.velocity(1), {0, 0, 0}) == 0);
+}
+
+TEST_CASE("yarns and the direct solver take an early over-push back as well") {
+  for (const Solver solver : {Solver::yarn, Solver::direct}) {
+    CAPTURE(name(solver));
+    Settings settings = tight(1e-5);
+    settings.solver = solver;
+    Cloth cloth = cloth_of(early_push(), settings);
+    CHECK(step(cloth, 0.01).status == Status::converged);
+    CHECK(distance(cloth.position(0), {0, 0, 0}) < 2e-5);
+    CHECK(distance(cloth.position(1), {0.3, 0, 0}) < 2e-5);
+  }
+}
+
+TEST_CASE("a light sphere under many heavy particles finds its place in few iterations") {
+  SceneDescription scene;
+  scene.gravity = {0, 0, 0};
+  scene.positions = {{0, 0, 0}};
+  for (int i = 0; i < 16; ++i) scene.positions.push_back({0.001 * (i % 4), 0.1, 0.001 * (i / 4)});
+  scene.velocities.assign(17, {0, -1, 0});
+  scene.velocities[0] = {0, 0, 0};
+  scene.masses.assign(17, 1);
+  scene.masses[0] = 1e-3;
+  scene.spheres = {0};
+  scene.radii.assign(17, 0);
+  scene.radii[0] = 0.1;
+  Cloth cloth = cloth_of(scene, paper_settings());
+  const StepReport report = step(cloth, 0.01);
+  CHECK(report.status == Status::converged);
+  CHECK(report.iterations < 50);
+}
+
+TEST_CASE("what a rope ties to a sphere does not collide with it") {
+  const Backend backend = each_backend();
+  SceneDescription scene = sphere_and_particle(0.15, {0, 0, 0});
+  scene.constraints = {{1, 0, 0.3, ConstraintKind::rope}};
+  Cloth cloth = cloth_of(scene, on(backend));
+  CHECK(cloth.max_penetration() == 0);
+  CHECK(step(cloth, 0.01).contacts == 0);
+  CHECK(length(cloth.velocity(1)) == 0);
 }
 
 TEST_CASE("two fixed spheres may overlap") {

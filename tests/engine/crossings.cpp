@@ -22,7 +22,7 @@ SceneDescription shot(double from, double speed, double aside) {
 
 TEST_CASE("a particle that crosses a sphere in one step is reported, and where it went") {
   const Backend backend = each_backend();
-  for (const double aside : {0.0, 0.05, 0.09}) {
+  for (const double aside : {0.0, 0.05, 0.09, 0.094}) {
     CAPTURE(aside);
     Cloth cloth = cloth_of(shot(-0.5, 100, aside), on(backend));
     const StepReport report = step(cloth, 0.01);
@@ -40,6 +40,29 @@ TEST_CASE("so is one that a contact pushes out on the far side") {
   CHECK(step(cloth, 0.01).status == Status::passed_through);
 }
 
+TEST_CASE("what is joined to a sphere may pass through it") {
+  SceneDescription scene = shot(-0.5, 100, 0);
+  scene.constraints = {{0, 1, 1, ConstraintKind::rope}};
+  Cloth cloth = cloth_of(scene, on(each_backend()));
+  CHECK(step(cloth, 0.01).status == Status::converged);
+  CHECK(cloth.position(1).x == doctest::Approx(0.5));
+}
+
+TEST_CASE("a step that is refused names who failed, and nobody who crossed before that") {
+  SceneDescription scene = shot(-0.5, 1, 0);
+  scene.positions.push_back({0, 1, 0});
+  scene.velocities.push_back({0, 9e149, 0});
+  scene.masses.push_back(1);
+  scene.radii.push_back(0);
+  Settings settings = on(each_backend());
+  settings.substeps = 2;
+  Cloth cloth = cloth_of(scene, settings);
+  const StepReport report = step(cloth, 2);
+  CHECK(report.status == Status::non_finite_input);
+  CHECK(report.failed_particle == 2);
+  CHECK(report.passed_particle == kNoIndex);
+}
+
 TEST_CASE("what passes by, grazes, is stopped, or goes slowly enough is not") {
   const Backend backend = each_backend();
   const auto status = [&](double from, double speed, double aside) {
@@ -51,6 +74,21 @@ TEST_CASE("what passes by, grazes, is stopped, or goes slowly enough is not") {
   CHECK(status(-0.5, 35, 0) == Status::converged);       // ends before it
   CHECK(status(-0.11, 6, 0) == Status::converged);       // in contact, pushed back
   CHECK(status(-0.5, -100, 0) == Status::converged);     // away from it
+}
+
+TEST_CASE("a way not longer than the sphere's radius may cross it, too") {
+  Cloth cloth = cloth_of(shot(-0.05, 10, 0.09), on(each_backend()));
+  CHECK(step(cloth, 0.01).status == Status::passed_through);
+}
+
+TEST_CASE("what leaves a sphere that it was in, or stays in it, does not cross it") {
+  Settings settings = on(each_backend());
+  settings.contact_tolerance = 0.06;
+  Cloth leaves = cloth_of(shot(-0.05, -100, 0), settings);
+  CHECK(step(leaves, 0.01).status == Status::converged);
+  Cloth stays = cloth_of(shot(-0.5, 45, 0), settings);
+  CHECK(step(stays, 0.01).status == Status::converged);
+  CHECK(stays.max_penetration() == doctest::Approx(0.05));
 }
 
 TEST_CASE("smaller steps see what a long one passes over") {
@@ -75,6 +113,9 @@ TEST_CASE("a fixed number of iterations hides no crossing") {
     CHECK(crossing.iterations == 3);
     CHECK(crossing.scheme_fallbacks == 0);
     CHECK(step(cloth, 0.01).status == Status::fixed_iterations);
+    settings.substeps = 2;
+    Cloth in_the_first = cloth_of(shot(-0.2, 100, 0), settings);
+    CHECK(step(in_the_first, 0.01).status == Status::passed_through);
   }
 }
 
@@ -85,6 +126,9 @@ TEST_CASE("a crossing is no reason to leave scheme rattle") {
   const StepReport report = step(cloth, 0.01);
   CHECK(report.status == Status::passed_through);
   CHECK(report.scheme_fallbacks == 0);
+  settings.substeps = 2;
+  Cloth in_the_first = cloth_of(shot(-0.2, 100, 0), settings);
+  CHECK(step(in_the_first, 0.01).status == Status::passed_through);
 }
 
 }  // namespace

@@ -45,6 +45,24 @@ TEST_CASE("what gravity gave stays; what came on top is taken") {
   CHECK(kinetic(s) == doctest::Approx(fallen).epsilon(1e-12));
 }
 
+TEST_CASE("what a force gave stays, and of a little on top nothing") {
+  State s = falling(0.1);
+  s.force = kernels::Vectors(s.model->slots());
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    const double w = s.model->inverse_mass[slot];
+    if (w == 0) continue;
+    s.force.y[slot] = -kGravity / w;
+    s.solved.y[slot] -= kGravity * 0.1 * 0.1 / 2;
+    s.next_velocity.y[slot] *= 2;
+  }
+  const double given = kinetic(s);
+  take_gained_energy(s);
+  CHECK(kinetic(s) == doctest::Approx(given).epsilon(1e-12));
+  for (double& v : s.next_velocity.y) v *= 1 + 1e-9;
+  take_gained_energy(s);
+  CHECK(kinetic(s) == doctest::Approx(given).epsilon(1e-12));
+}
+
 TEST_CASE("energy that was lost is not given back") {
   State s = falling(0.1);
   for (double& v : s.next_velocity.y) v *= 0.5;

@@ -92,6 +92,20 @@ TEST_CASE("an unconstrained particle that overflows changes nothing") {
   CHECK(cloth.state_hash() == before);
 }
 
+TEST_CASE("a velocity out of range changes nothing, though the position it leads to is in it") {
+  const Backend backend = each_backend();
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0, 0, 0}};
+  scene.velocities = {{0, 0, 0}, {0, 2e150, 0}};
+  scene.masses = {1, 1};
+  Cloth cloth = cloth_of(scene, on(backend));
+  const std::uint64_t before = cloth.state_hash();
+  const StepReport report = step(cloth, 0.01);
+  CHECK(report.status == Status::non_finite);
+  CHECK(report.failed_particle == 1);
+  CHECK(cloth.state_hash() == before);
+}
+
 TEST_CASE("an overflow in a fixed number of iterations is seen too") {
   const Backend backend = each_backend();
   SceneDescription scene = free_bar(1, 1);

@@ -29,6 +29,36 @@ TEST_CASE("a slack rope lets its ends fly free") {
   }
 }
 
+TEST_CASE("a slack rope lets its ends fly free, whatever solves it") {
+  SceneDescription scene = free_rope(0.2);
+  scene.velocities = {{0, 0, 0}, {0.5, 0.5, 0}};
+  for (const Solver solver : {Solver::gauss_seidel, Solver::yarn, Solver::direct}) {
+    for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+      CAPTURE(name(solver));
+      CAPTURE(name(scheme));
+      const Settings settings{.solver = solver, .scheme = scheme, .velocity_correction = true};
+      Cloth cloth = cloth_of(scene, settings);
+      run(cloth, 0.01, 100);
+      CHECK(distance(cloth.position(1), {0.7, 0.5, 0}) < 1e-6);
+      CHECK(distance(cloth.position(0), {0, 0, 0}) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("what a rope pulled positions by it owes no velocities") {
+  const Backend backend = each_backend();
+  SceneDescription scene = free_rope(1.009);
+  scene.velocities = {{0, 0, 0}, {0.2, 0, 0}};
+  Settings settings = on(backend);
+  settings.velocity_tolerance = 0.1;
+  settings.velocity_correction = true;
+  Cloth cloth = cloth_of(scene, settings);
+  const StepReport report = step(cloth, 0.01);
+  CHECK(report.corrections == 1);
+  const double approach = cloth.velocity(0).x - cloth.velocity(1).x;
+  CHECK(approach == doctest::Approx(0.9).epsilon(1e-4));
+}
+
 TEST_CASE("a rope runs taut and shares the momentum") {
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));

@@ -86,6 +86,39 @@ TEST_CASE("what flies goes on flying: projecting changes positions alone") {
   }
 }
 
+TEST_CASE("a start inside a sphere is pushed out and stays at rest") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0.05, 0, 0}};
+  scene.masses = {1, 1};
+  scene.gravity = {0, 0, 0};
+  scene.fixed = scene.spheres = {0};
+  scene.radii = {0.1, 0};
+  for (const Settings& settings : all_settings(1e-5)) {
+    CAPTURE(text(settings));
+    Cloth cloth = cloth_of(scene, settings);
+    CHECK(step(cloth, 0.01).status == Status::converged);
+    CHECK(cloth.max_penetration() <= settings.contact_tolerance);
+    CHECK(cloth.energy().kinetic < 1e-6);  // 0.05 m in 0.01 s would be 12 J
+  }
+}
+
+TEST_CASE("what a projection leaves undone is for the step to tell") {
+  SceneDescription scene = weightless("hang", 6);
+  for (Vec3& p : scene.positions) p.x *= 1.3;
+  Settings settings = on(each_backend());
+  int converged = 0;
+  for (settings.max_iterations = 10; settings.max_iterations <= 300;
+       settings.max_iterations += 10) {
+    Cloth cloth = cloth_of(scene, settings);
+    const StepReport report = step(cloth, 0.01);
+    CAPTURE(settings.max_iterations);
+    CHECK((report.status == Status::converged) == (report.max_strain <= settings.tolerance));
+    converged += report.status == Status::converged;
+  }
+  CHECK(converged > 0);
+  CHECK(converged < 30);
+}
+
 TEST_CASE("with a fixed number of iterations nothing is projected") {
   SceneDescription scene = free_bar(1, 1);
   scene.positions[1].x = 1.5;
@@ -137,6 +170,32 @@ TEST_CASE("a pin that moves step by step takes the cloth along at its speed") {
   }
 }
 
+TEST_CASE("pins that written positions put down travel no more") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.fixed = {0};
+  for (const Settings& settings : all_settings(1e-5)) {
+    CAPTURE(text(settings));
+    Cloth cloth = cloth_of(scene, settings);
+    REQUIRE(cloth.move_fixed(0, {-0.01, 0, 0}));
+    step(cloth, 0.01);
+    REQUIRE(cloth.write_positions(scene.positions));
+    REQUIRE(cloth.write_velocities(std::vector<Vec3>(2)));
+    step(cloth, 0.01);
+    CHECK(length(cloth.velocity(1)) < 1e-3);
+    for (const double speed : {1.9, 3.8}) {
+      const Vec3 at = cloth.position(0);
+      REQUIRE(cloth.move_fixed(0, {at.x - speed * 0.01, 0, 0}));
+      step(cloth, 0.01);
+    }
+    CHECK(length(cloth.velocity(1)) > 3);
+    REQUIRE(cloth.write_positions(scene.positions));
+    REQUIRE(cloth.write_velocities(std::vector<Vec3>(2)));
+    REQUIRE(cloth.move_fixed(0, {-0.038, 0, 0}));  // from rest: a jump
+    step(cloth, 0.01);
+    CHECK(length(cloth.velocity(1)) < 1e-3);
+  }
+}
+
 // The pin swings as A sin(w t), slowly beside the pendulum that hangs from it.
 TEST_CASE("rattle follows a moving pin to second order") {
   SceneDescription scene;
@@ -159,6 +218,40 @@ TEST_CASE("rattle follows a moving pin to second order") {
   const Vec3 converged = end(32);
   const double coarse = distance(end(1), converged), fine = distance(end(4), converged);
   CHECK(std::log2(coarse / fine) / 2 > 1.8);
+}
+
+TEST_CASE("a pin that paused starts from rest: what it did before explains no motion") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.fixed = {0};
+  for (const Settings& settings : all_settings(1e-5)) {
+    CAPTURE(text(settings));
+    Cloth cloth = cloth_of(scene, settings);
+    for (const double x : {-0.019, -0.057}) {
+      REQUIRE(cloth.move_fixed(0, {x, 0, 0}));
+      step(cloth, 0.01);
+    }
+    step(cloth, 0.01);
+    REQUIRE(cloth.write_velocities(std::vector<Vec3>(2)));
+    REQUIRE(cloth.move_fixed(0, {-0.095, 0, 0}));  // 380 m/s^2: a jump
+    step(cloth, 0.01);
+    CHECK(length(cloth.velocity(1)) < 1);
+  }
+}
+
+TEST_CASE("a pin whose step was refused travels in the next one") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.fixed = {0};
+  for (const Settings& settings : all_settings(1e-5)) {
+    CAPTURE(text(settings));
+    Cloth cloth = cloth_of(scene, settings);
+    step(cloth, 0.01);
+    REQUIRE(cloth.write_forces(std::vector<Vec3>{{0, 0, 0}, {1e300, 0, 0}}));
+    REQUIRE(cloth.move_fixed(0, {-0.01, 0, 0}));
+    REQUIRE(step(cloth, 0.01).status == Status::non_finite_input);
+    REQUIRE(cloth.write_forces({}));
+    step(cloth, 0.01);
+    CHECK(distance(cloth.velocity(1), {-1, 0, 0}) < 1e-3);
+  }
 }
 
 TEST_CASE("a step that is refused leaves moved pins and written positions as they were") {

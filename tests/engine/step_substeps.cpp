@@ -42,6 +42,11 @@ void check_equal(const StepReport& report, const StepReport& expected) {
   CHECK(report.max_penetration == expected.max_penetration);
 }
 
+TEST_CASE("automatic substeps end at 256 a step") {
+  Cloth cloth = cloth_of(scene_of("hang", 5), {});
+  CHECK(step(cloth, 100).substeps == 256);
+}
+
 TEST_CASE("a step in substeps is so many small steps, and reports their sum") {
   for (const Backend backend : kBackends) {
     for (const char* name : {"hang", "hang_sphere", "sphere_drop"}) {

@@ -140,6 +140,7 @@ TEST_CASE("time steps must be finite and positive") {
   check_refusal([](Cloth& c) { return try_step(c, -0.01); }, {"dt", "-0.01"});
   check_refusal([](Cloth& c) { return try_step(c, kNan); }, {"dt", "nan"});
   check_refusal([](Cloth& c) { return try_step(c, kInfinity); }, {"dt", "inf"});
+  check_refusal([](Cloth& c) { return try_step(c, 1e-310); }, {"dt", "inverted", "1e-310"});
 }
 
 using Write = Result<void> (Cloth::*)(std::span<const Vec3>);

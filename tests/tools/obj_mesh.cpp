@@ -110,6 +110,12 @@ TEST_CASE("pin rules choose particles by their vertices") {
   CHECK(pinned("1,5") == std::vector<std::uint32_t>{1});
 }
 
+TEST_CASE("top is the highest thousandth") {
+  const std::string uneven =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0.9995 0\nv 2 0.998 0\nf 1 2 3 4\nl 3 5\n";
+  CHECK(parse(uneven, {.pin = "top"}).description.fixed == std::vector<std::uint32_t>{2, 3});
+}
+
 TEST_CASE("pin rules are in the file's coordinates") {
   CHECK(parse(kTwoSquares, {.pin = "y>0.9", .scale = 0.1}).description.fixed.size() == 3);
 }
@@ -122,6 +128,7 @@ TEST_CASE("a pin rule that means nothing is refused") {
   }
   CHECK(error_of(kTwoSquares, {.pin = "y>5"}) == "--pin: 'y>5' matches no vertex");
   CHECK(error_of(kTwoSquares, {.pin = "0,4"}) == "--pin: '0,4': no face has a vertex 4");
+  CHECK(error_of(kTwoSquares, {.pin = "9"}) == "--pin: '9': no face has a vertex 9");
   CHECK(error_of(kTwoSquares, {.pin = "0-99"}) == "--pin: '0-99': no face has a vertex 4");
 }
 
@@ -136,8 +143,8 @@ TEST_CASE("broken files are refused in one line") {
   const std::string zero = error_of("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 0 1 2\n");
   CHECK(zero == "line 4: '0': not the number of a vertex");
   std::string many = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf";
-  for (int i = 0; i < 300; ++i) many += " 1";
-  CHECK(error_of(many) == "line 4: a face of 300 vertices; at most 255 can be read");
+  for (int i = 0; i < 256; ++i) many += " 1";
+  CHECK(error_of(many) == "line 4: a face of 256 vertices; at most 255 can be read");
 }
 
 TEST_CASE("what is not the number of a vertex is refused, with its line") {
@@ -203,6 +210,25 @@ TEST_CASE("spheres are written as objects of their own") {
   for (std::size_t vertex = 9; vertex < again.mesh.vertices.size(); ++vertex) {
     const Vec3 v = again.mesh.vertices[vertex];
     CHECK(std::hypot(v.x - 0.5, v.y + 0.6, v.z - 0.5) == doctest::Approx(0.25));
+  }
+}
+
+TEST_CASE("faces of a second sphere are its own") {
+  SceneDescription scene = scenes::make("hang_sphere", {.size = 3}).value();
+  scene.spheres.push_back(4);
+  scene.radii[4] = 0.01;
+  const auto model = build_model(scene);
+  REQUIRE(model);
+  const auto cloth = Cloth::create(model.value(), {});
+  REQUIRE(cloth);
+  const ObjScene again = parse(obj_text(grid_mesh(scene, 3), scene, cloth.value()));
+  const Vec3 centre = cloth.value().position(4);
+  const auto& faces = again.mesh.faces;  // four of the cloth, then as many of each sphere
+  for (std::size_t i = 4 + (faces.size() - 4) / 2; i < faces.size(); ++i) {
+    for (const std::uint32_t corner : faces[i]) {
+      const Vec3 v = again.mesh.vertices[corner];
+      CHECK(std::hypot(v.x - centre.x, v.y - centre.y, v.z - centre.z) == doctest::Approx(0.01));
+    }
   }
 }
 

@@ -46,7 +46,45 @@ TEST_CASE("a summary sums up what the steps reported and what the cloth measured
   CHECK(actual.energy_end == expected.energy_end);
   CHECK(actual.step_seconds > 0);
   CHECK(actual.solver_seconds <= actual.step_seconds);
+  double other_stages = 0;
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    if (static_cast<Stage>(i) != Stage::report) other_stages += actual.stage_seconds[i];
+  }
+  CHECK(actual.solver_seconds == other_stages);
   CHECK(actual.model.particles == 36);
+}
+
+TEST_CASE("a summary tells of halves, contacts and memory") {
+  const SceneDescription corners = scenes::make("corners", {.size = 21}).value();
+  const SceneDescription sphere = scenes::make("hang_sphere", {.size = 9}).value();
+  for (const SceneDescription* scene : {&corners, &sphere}) {
+    RunSummary expected;
+    const auto summary =
+        run(*scene, {.substeps = 1, .solver = Solver::yarn}, {.dt = 0.05, .steps = 12},
+            [&](int, const Cloth& cloth, const StepReport& report) {
+              expected.halvings += report.halvings;
+              expected.max_contacts = std::max(expected.max_contacts, report.contacts);
+              expected.bytes = cloth.bytes() + describe(cloth.model()).bytes;
+            });
+    REQUIRE(summary);
+    CHECK((scene == &corners ? expected.halvings : expected.max_contacts) > 0);
+    CHECK(summary.value().halvings == expected.halvings);
+    CHECK(summary.value().max_contacts == expected.max_contacts);
+    CHECK(summary.value().bytes == expected.bytes);
+  }
+}
+
+TEST_CASE("where energy was only lost the largest gain is the smallest loss") {
+  SceneDescription bar;
+  bar.positions = {{0, 0, 0}, {1, 0, 0}};
+  bar.velocities = {{-1, 0, 0}, {1, 0, 0}};
+  bar.masses = {1, 1};
+  bar.gravity = {0, 0, 0};
+  bar.constraints = {{0, 1, 1}};
+  const auto summary = run(bar, {}, {.steps = 3});
+  REQUIRE(summary);
+  CHECK(summary.value().energy_start == 1);
+  CHECK(summary.value().energy_gain < -0.9);
 }
 
 TEST_CASE("repeats differ in nothing but their time, and only the first is shown") {

@@ -108,14 +108,24 @@ TEST_CASE("errors name the place in the file") {
   CHECK(error_with(R"("gravity": [0,0])") == "gravity: expected [x, y, z], not [0,0]");
   CHECK(error_with(R"("fixed": 1)") == "fixed: expected an array, not 1");
   CHECK(error_with(R"("fixed": [0, -1])") == "fixed[1]: expected a particle number, not -1");
+  CHECK(error_with(R"("fixed": [4294967296])") ==
+        "fixed[0]: expected a particle number, not 4294967296");
   CHECK(error_with(R"("fixed": [0.5])") == "fixed[0]: expected a particle number, not 0.5");
   CHECK(error_with(R"("constraints": [[0,1],[1]])") ==
         "constraints[1]: expected [a, b, rest length, kind], not [1]");
+  CHECK(error_with(R"("constraints": [[0,1,1,"rope",0]])") ==
+        R"(constraints[0]: expected [a, b, rest length, kind], not [0,1,1,"rope",0])");
   CHECK(error_with(R"("constraints": [[0,1,-2]])") ==
         "constraints[0][2]: expected a length above 0, not -2");
   CHECK(error_with(R"("constraints": [[0,1,1,"spring"]])") ==
         R"(constraints[0][3]: expected "distance" or "rope", not "spring")");
   CHECK(error_with(R"("constraints": [[0,9]])") == "constraints[0]: there is no particle 9");
+}
+
+TEST_CASE("of what is long an error shows the beginning") {
+  const std::string digits(1000, '1');
+  CHECK(error_with("\"gravity\": \"" + digits + '"') ==
+        "gravity: expected [x, y, z], not \"" + digits.substr(0, 39) + "...");
 }
 
 TEST_CASE("unknown, missing and contradicting keys are refused") {

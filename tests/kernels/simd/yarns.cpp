@@ -353,28 +353,48 @@ TEST_CASE("rows remember the base, or it is fetched: the same bits") {
 TEST_CASE("links too long for rows to remember are solved all the same") {
   constexpr std::uint32_t kLane = 9;
   struct Case {
-    double cell, stretch;  // of one link
+    double cell;
+    kernels::Vector stretch;  // of one link
   };
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
-    for (const Case c : {Case{0x1p-10, 511 * 0x1p-10},
-                         {0x1p-10, 513 * 0x1p-10},
-                         {0x1p-10, 1e6},
-                         {0x1p-30, 0},
-                         {0, 0}}) {
+    for (const Case c : {Case{0x1p-10, {511 * 0x1p-10, 0, 0}},
+                         {0x1p-10, {513 * 0x1p-10, 0, 0}},
+                         {0x1p-10, {0, 513 * 0x1p-10, 0}},
+                         {0x1p-10, {0, 0, 513 * 0x1p-10}},
+                         {0x1p-10, {1e6, 0, 0}},
+                         {0x1p-30, {0, 0, 0}},
+                         {0, {0, 0, 0}}}) {
       CAPTURE(c.cell);
-      CAPTURE(c.stretch);
+      CAPTURE(c.stretch.x);
+      CAPTURE(c.stretch.y);
+      CAPTURE(c.stretch.z);
       BlockOfYarns kept, fetched;
       for (BlockOfYarns* b : {&kept, &fetched}) {
         b->cell = c.cell;
         const kernels::Vector end = b->x[b->slot_of(kLane - 2, kLane)];
-        if (c.stretch > 0)
-          b->x.set(b->slot_of(kLane - 1, kLane), end - kernels::Vector{c.stretch, 0, 0});
+        if (kernels::length(c.stretch) > 0) b->x.set(b->slot_of(kLane - 1, kLane), end - c.stretch);
       }
       sweep_twice(kept, simd::table(isa), true);
       sweep_twice(fetched, simd::table(isa), false);
       CHECK(kept.u == fetched.u);
     }
+  }
+}
+
+TEST_CASE("what in patches is nobody's stays 0, whatever the scratch held") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    BlockOfYarns b(Stand::patches);
+    b.start(table);
+    table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
+    for (simd::YarnScratch& row : b.scratch) {
+      for (float* axis : {row.u.x, row.u.y, row.u.z}) std::fill_n(axis, kLanes, 1e30f);
+    }
+    table.yarn_push_first(b.yarns(), b.block(), 0, b.t.data(), b.scratch.data());
+    b.for_each_component([&](std::size_t, std::size_t place) { b.t[place] = 0; });
+    CHECK(std::ranges::all_of(b.t, [](float t) { return t == 0; }));
   }
 }
 
