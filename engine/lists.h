@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -27,5 +28,19 @@ struct Lists {
     begin.push_back(static_cast<std::uint32_t>(items.size()));
   }
 };
+
+/// `count` lists of what visit_all(add) calls add(list, item) with, in that order; it is asked
+/// twice.
+template <class VisitAll>
+Lists make_lists(std::size_t count, VisitAll&& visit_all) {
+  Lists lists;
+  lists.begin.assign(count + 1, 0);
+  visit_all([&](std::uint32_t list, std::uint32_t) { ++lists.begin[list + 1]; });
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.items.resize(lists.begin.back());
+  std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
+  visit_all([&](std::uint32_t list, std::uint32_t item) { lists.items[next[list]++] = item; });
+  return lists;
+}
 
 }  // namespace weft

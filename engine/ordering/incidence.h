@@ -1,38 +1,23 @@
-/// Which links meet at which particle, as one compressed list.
+/// Which links meet at which particle.
 #pragma once
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "engine/lists.h"
 #include "engine/ordering/ordering.h"
 
 namespace weft {
 
-class Incidence {
- public:
-  Incidence(std::size_t particles, std::span<const Link> links)
-      : begin_(particles + 1), links_(2 * links.size()) {
-    for (const Link& link : links) {
-      ++begin_[link.a];
-      ++begin_[link.b];
+/// The links at each particle, ascending.
+inline Lists links_at(std::size_t particles, std::span<const Link> links) {
+  return make_lists(particles, [&](auto&& add) {
+    for (std::uint32_t i = 0; i < links.size(); ++i) {
+      add(links[i].a, i);
+      add(links[i].b, i);
     }
-    std::uint32_t end = 0;
-    for (std::uint32_t& begin : begin_) begin = end += begin;
-    for (std::size_t i = links.size(); i-- > 0;) {  // backwards: begin_ ends as the first of each
-      links_[--begin_[links[i].a]] = static_cast<std::uint32_t>(i);
-      links_[--begin_[links[i].b]] = static_cast<std::uint32_t>(i);
-    }
-  }
-  /// Ascending.
-  std::span<const std::uint32_t> operator[](std::size_t particle) const {
-    return {links_.data() + begin_[particle], links_.data() + begin_[particle + 1]};
-  }
-  std::size_t particles() const { return begin_.size() - 1; }
-
- private:
-  std::vector<std::uint32_t> begin_, links_;
-};
+  });
+}
 
 inline std::uint32_t other_end(const Link& link, std::uint32_t particle) {
   return link.a == particle ? link.b : link.a;

@@ -139,7 +139,7 @@ Ordering order(std::span<const Vec3> positions, std::span<const Link> links,
     Ordering woven = assemble(rows);
     if (woven.run_share >= options.least_run_share) return woven;
   }
-  const Incidence incidence(positions.size(), links);
+  const Lists incidence = links_at(positions.size(), links);
   return assemble(place_nearby(incidence, links, options.tile_particles));
 }
 

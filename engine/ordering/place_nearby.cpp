@@ -10,11 +10,11 @@ namespace {
 /// search that begins at a far end, until the pieces are as large as a tile.
 class Bisection {
  public:
-  Bisection(const Incidence& incidence, std::span<const Link> links)
+  Bisection(const Lists& incidence, std::span<const Link> links)
       : incidence_(incidence),
         links_(links),
-        order_(incidence.particles()),
-        piece_of_(incidence.particles()) {
+        order_(incidence.size()),
+        piece_of_(incidence.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
   }
 
@@ -70,7 +70,7 @@ class Bisection {
     found_.push_back(particle);
   }
 
-  const Incidence& incidence_;
+  const Lists& incidence_;
   std::span<const Link> links_;
   std::vector<std::uint32_t> order_, piece_of_, found_;
   std::uint32_t pieces_ = 0;
@@ -78,12 +78,12 @@ class Bisection {
 
 }  // namespace
 
-Placement place_nearby(const Incidence& incidence, std::span<const Link> links,
+Placement place_nearby(const Lists& incidence, std::span<const Link> links,
                        std::uint32_t tile_particles) {
   Placement placement;
   placement.colour_class.assign(links.size(), kNoIndex);
-  if (incidence.particles() == 0) return placement;
-  const std::uint32_t tiles = tile_count(incidence.particles(), tile_particles);
+  if (incidence.size() == 0) return placement;
+  const std::uint32_t tiles = tile_count(incidence.size(), tile_particles);
   placement.tiles = Bisection(incidence, links).cut(tiles);
   return placement;
 }

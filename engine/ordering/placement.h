@@ -26,7 +26,7 @@ Placement place_woven(std::span<const Cell> cells, std::span<const Link> links,
                       std::uint32_t tile_particles);
 
 /// Compact tiles of any mesh, neighbours near each other; no runs.
-Placement place_nearby(const Incidence& incidence, std::span<const Link> links,
+Placement place_nearby(const Lists& incidence, std::span<const Link> links,
                        std::uint32_t tile_particles);
 
 /// How many tiles to cut: two threads want two at least, and an even number.

@@ -45,9 +45,9 @@ struct Continuation {
 
 class Pairing {
  public:
-  Pairing(std::span<const Vec3> positions, std::span<const Link> links, const Incidence& incidence)
+  Pairing(std::span<const Vec3> positions, std::span<const Link> links, const Lists& incidence)
       : links_(links), courses_(courses_of(positions, links)), next_(links.size()) {
-    for (std::uint32_t p = 0; p < incidence.particles(); ++p) pair_up(p, incidence[p]);
+    for (std::uint32_t p = 0; p < incidence.size(); ++p) pair_up(p, incidence[p]);
   }
   std::uint32_t next(std::uint32_t link, std::uint32_t particle) const {
     return links_[link].a == particle ? next_[link].at_a : next_[link].at_b;
@@ -209,7 +209,7 @@ void choose_families(std::span<const Vec3> positions, std::span<const Link> link
 }  // namespace
 
 Yarns find_yarns(std::span<const Vec3> positions, std::span<const Link> links) {
-  const Incidence incidence(positions.size(), links);
+  const Lists incidence = links_at(positions.size(), links);
   const Pairing pairing(positions, links, incidence);
   Yarns yarns = Tracer(links, positions.size(), pairing).trace();
   choose_families(positions, links, yarns);

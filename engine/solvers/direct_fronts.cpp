@@ -106,16 +106,18 @@ std::uint32_t front_of(const DirectFronts& f, std::uint32_t column) {
 }
 
 void store_tree(DirectFronts& f) {
-  std::vector<std::vector<std::uint32_t>> children(f.fronts.size());
   std::vector<std::uint32_t> place;
   for (std::uint32_t i = 0; i < f.fronts.size(); ++i) {
     place.clear();
     f.fronts[i].parent = f.rows[i].empty() ? kNoIndex : front_of(f, f.rows[i][0]);
     for (const std::uint32_t row : f.rows[i]) place.push_back(row_in(f, f.fronts[i].parent, row));
-    if (!place.empty()) children[f.fronts[i].parent].push_back(i);
     f.place.push_back(place);
   }
-  for (const auto& list : children) f.children.push_back(list);
+  f.children = make_lists(f.fronts.size(), [&](auto&& add) {
+    for (std::uint32_t i = 0; i < f.fronts.size(); ++i) {
+      if (f.fronts[i].parent != kNoIndex) add(f.fronts[i].parent, i);
+    }
+  });
 }
 
 /// Updates wait on two stacks, of even and of odd levels, so that a front's is put on one while its

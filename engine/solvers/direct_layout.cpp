@@ -3,7 +3,6 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
-#include <numeric>
 
 #include "engine/bytes_of.h"
 #include "engine/model.h"
@@ -43,23 +42,6 @@ void for_each_neighbour(const Model& model, const DirectLayout& layout, const Li
       if (j != k) visit(p, j);
     }
   }
-}
-
-/// item(i) of each of two ends: a list of i for every slot.
-template <class Ends>
-Lists lists_at_ends(std::size_t slots, std::span<const std::uint32_t> items, Ends&& ends) {
-  Lists lists;
-  lists.begin.assign(slots + 1, 0);
-  for (const std::uint32_t i : items) {
-    for (const std::uint32_t p : ends(i)) ++lists.begin[p + 1];
-  }
-  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
-  lists.items.resize(lists.begin.back());
-  std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
-  for (const std::uint32_t i : items) {
-    for (const std::uint32_t p : ends(i)) lists.items[next[p]++] = i;
-  }
-  return lists;
 }
 
 /// The matrix's pattern: per member, by its number, those it has an entry with.
@@ -155,16 +137,21 @@ DirectLayout make_direct_layout(const Model& model) {
     const bool inside = weight(model, layout, s.a[c]) + weight(model, layout, s.b[c]) > 0;
     (inside ? members : layout.links).push_back(c);
   }
-  const auto ends = [&](std::uint32_t c) { return std::array{s.a[c], s.b[c]}; };
-  const Lists at = lists_at_ends(model.slots(), members, ends);
+  const Lists at = make_lists(model.slots(), [&](auto&& add) {
+    for (const std::uint32_t c : members) {
+      add(s.a[c], c);
+      add(s.b[c], c);
+    }
+  });
   layout.row_constraint = elimination_order(model, layout, at, members);
   store_rows(model, layout);
   layout.fronts = make_direct_fronts(neighbours_of(model, layout, at, layout.row_constraint));
   store_entries(model, at, layout);
-  std::vector<std::uint32_t> rows(layout.rows());
-  std::iota(rows.begin(), rows.end(), 0u);
-  layout.rows_at = lists_at_ends(model.slots(), rows, [&](std::uint32_t r) {
-    return std::array{layout.a[r], layout.b[r]};
+  layout.rows_at = make_lists(model.slots(), [&](auto&& add) {
+    for (std::uint32_t row = 0; row < layout.rows(); ++row) {
+      add(layout.a[row], row);
+      add(layout.b[row], row);
+    }
   });
   return layout;
 }

@@ -1,30 +1,12 @@
 #include "engine/solvers/reference_layout.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "engine/bytes_of.h"
 #include "engine/model.h"
 
 namespace weft {
 namespace {
-
-void list_adjacent(const Model& model, ReferenceLayout& layout) {
-  const ConstraintStore& s = model.constraints;
-  auto& [begin, items] = layout.adjacent;
-  begin.assign(model.slots() + 1, 0);
-  for (std::size_t c = 0; c < s.size(); ++c) {
-    ++begin[s.a[c] + 1];
-    ++begin[s.b[c] + 1];
-  }
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  items.resize(begin.back());
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for (std::uint32_t c = 0; c < s.size(); ++c) {
-    items[next[s.a[c]]++] = c;
-    items[next[s.b[c]]++] = c;
-  }
-}
 
 void build_rows(const Model& model, ReferenceLayout& layout) {
   const ConstraintStore& s = model.constraints;
@@ -87,7 +69,12 @@ void list_block_neighbours(const Model& model, ReferenceLayout& layout) {
 ReferenceLayout make_reference_layout(const Model& model) {
   ReferenceLayout layout;
   layout.hub = model.hub.data();
-  list_adjacent(model, layout);
+  layout.adjacent = make_lists(model.slots(), [&](auto&& add) {
+    for (std::uint32_t c = 0; c < model.constraints.size(); ++c) {
+      add(model.constraints.a[c], c);
+      add(model.constraints.b[c], c);
+    }
+  });
   build_rows(model, layout);
   build_blocks(model, layout);
   list_block_neighbours(model, layout);

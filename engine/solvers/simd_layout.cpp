@@ -100,11 +100,11 @@ void for_each_slot(const SimdLayout& layout, const Chunk& chunk, Visit&& visit) 
 }
 
 void list_neighbours(SimdLayout& layout) {
-  std::vector<std::vector<std::uint32_t>> at_slot(layout.slots);
-  for (std::uint32_t i = 0; i < layout.chunks.size(); ++i) {
-    for_each_slot(layout, layout.chunks[i], [&](std::uint32_t s) { at_slot[s].push_back(i); });
-  }
-  for (const auto& chunks : at_slot) layout.chunks_at.push_back(chunks);
+  layout.chunks_at = make_lists(layout.slots, [&](auto&& add) {
+    for (std::uint32_t i = 0; i < layout.chunks.size(); ++i) {
+      for_each_slot(layout, layout.chunks[i], [&](std::uint32_t s) { add(s, i); });
+    }
+  });
   std::vector<std::uint32_t> list;
   for (std::uint32_t i = 0; i < layout.chunks.size(); ++i) {
     list.assign(1, i);

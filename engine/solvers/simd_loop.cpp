@@ -5,13 +5,18 @@
 
 namespace weft {
 SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
+    : SimdLoop(solver, unknowns.velocities() ? solver.velocities_ : solver.positions_, unknowns,
+               team) {}
+
+SimdLoop::SimdLoop(SimdSolver& solver, ScaledConstraints& constraints, const Unknowns& unknowns,
+                   Team& team)
     : s_(solver),
       layout_(solver.layout_),
       table_(solver.table_),
       unknowns_(unknowns),
-      r_(solver.relaxation(unknowns.velocity)),
+      r_(solver.relaxation(constraints)),
       contacts_(r_),
-      g_(solver.geometry(unknowns.x, unknowns.velocity)),
+      g_(solver.geometry(unknowns.x, constraints)),
       contact_geometry_(g_),
       team_(team) {
   ContactLanes& c = s_.contacts_;
@@ -25,7 +30,7 @@ SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
 }
 
 void SimdLoop::apply_displacements() {
-  const kernels::VectorsView target = unknowns_.velocity ? unknowns_.v : unknowns_.x;
+  const kernels::VectorsView target = unknowns_.velocities() ? unknowns_.v : unknowns_.x;
   team_.for_each_part(layout_.slots, kStretch, [&](std::size_t first, std::size_t last) {
     table_.apply_displacements(target, r_.u, first, last);
   });
@@ -59,13 +64,14 @@ void SimdLoop::renew_chunk(std::size_t i) {
 }
 
 void SimdLoop::renew_run(const kernels::Run& run) {
-  if (unknowns_.velocity) return table_.renew_velocity_run(g_, unknowns_.v, r_, run);
+  if (unknowns_.velocities()) return table_.renew_velocity_run(g_, unknowns_.v, r_, run);
   if (unknowns_.start.x == nullptr) return table_.renew_run(g_, r_, run);
   table_.renew_from_start_run(g_, unknowns_.start, r_, run);
 }
 
 void SimdLoop::renew_singles(std::uint32_t first, std::uint32_t last) {
-  if (unknowns_.velocity) return table_.renew_velocity_singles(g_, unknowns_.v, r_, first, last);
+  if (unknowns_.velocities())
+    return table_.renew_velocity_singles(g_, unknowns_.v, r_, first, last);
   if (unknowns_.start.x == nullptr) return table_.renew_singles(g_, r_, first, last);
   table_.renew_from_start_singles(g_, unknowns_.start, r_, first, last);
 }
@@ -76,7 +82,7 @@ void SimdLoop::renew_rest() {
     renew_singles(layout_.hub_first, static_cast<std::uint32_t>(layout_.constraint_slots));
   }
   for (const auto& [first, last, real] : s_.contacts_.spheres) {
-    if (unknowns_.velocity) {
+    if (unknowns_.velocities()) {
       table_.renew_velocity_singles(contact_geometry_, unknowns_.v, contacts_, first, last);
     } else {
       table_.renew_singles(contact_geometry_, contacts_, first, last);

@@ -11,7 +11,7 @@ class SimdLoop {
     kernels::VectorsView x{};      // position loop: moved; velocity loop: where the directions are
     kernels::VectorsView start{};  // position loop, rattle: where the directions are
     kernels::VectorsView v{};      // velocity loop: changed
-    bool velocity = false;
+    bool velocities() const { return v.x != nullptr; }
   };
 
   SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team);
@@ -26,6 +26,8 @@ class SimdLoop {
   struct Share {
     std::size_t first = 0, last = 0;  // tiles
   };
+  SimdLoop(SimdSolver& solver, ScaledConstraints& constraints, const Unknowns& unknowns,
+           Team& team);
   bool skips() const { return !s_.changed_.empty(); }
   bool masks() const { return !s_.mask_.empty(); }
   void apply_displacements();

@@ -37,8 +37,14 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, const simd:
     : model_(model), layout_(model.simd()), settings_(settings), table_(table) {
   const std::size_t size = layout_.constraint_slots;
   allocate_displacements();
-  fill_gains(false);
-  if (settings.velocity_correction) fill_gains(true);
+  // With a fixed number of iterations errors are measured in rest lengths and nothing is tolerated.
+  const bool fixed_iterations = settings.iterations > 0;
+  positions_ =
+      scaled([&](double rest) { return fixed_iterations ? rest : settings.tolerance * rest; });
+  if (settings.velocity_correction) {
+    velocities_ =
+        scaled([&](double) { return fixed_iterations ? 1 : settings.velocity_tolerance; });
+  }
   if (layout_.has_ropes) impulse_.resize(size);
   if (settings.skip && settings.iterations == 0) {
     if (!settings.anticipate) mask_.resize(layout_.slots);
@@ -64,25 +70,25 @@ void SimdSolver::allocate_displacements() {
   }
 }
 
-/// Tolerances tau of the loop: tolerance * rest length, in m, or one speed for all, in m/s. With a
-/// fixed number of iterations errors are measured in rest lengths and nothing is tolerated.
-void SimdSolver::fill_gains(bool velocity) {
-  auto& blocks = velocity ? velocity_blocks_ : blocks_;
-  auto& scale = velocity ? velocity_scale_ : scale_;
+/// tau(rest length): in m of positions, in m/s of velocities.
+template <class Tolerance>
+ScaledConstraints SimdSolver::scaled(Tolerance&& tolerance) const {
   const std::size_t size = layout_.constraint_slots;
-  blocks.resize(size / kernels::kLanes);
-  scale.resize(size);
+  ScaledConstraints scaled;
+  scaled.blocks.resize(size / kernels::kLanes);
+  scaled.scale.resize(size);
   for (std::size_t c = 0; c < size; ++c) {
     if (layout_.constraint_at[c] == kNoIndex) continue;
-    const double rest = layout_.rest_length[c];
-    double tau = velocity ? settings_.velocity_tolerance : settings_.tolerance * rest;
-    if (settings_.iterations > 0) tau = velocity ? 1 : rest;
-    scale[c] = 1 / tau;
-    simd::ConstraintBlock& block = blocks[c / kernels::kLanes];
+    const double tau = tolerance(layout_.rest_length[c]);
+    scaled.scale[c] = 1 / tau;
+    simd::ConstraintBlock& block = scaled.blocks[c / kernels::kLanes];
     block.gain_a[c % kernels::kLanes] = static_cast<float>(-tau * tau * layout_.share_a[c]);
     block.gain_b[c % kernels::kLanes] = static_cast<float>(tau * tau * layout_.share_b[c]);
   }
+  return scaled;
 }
+
+std::size_t ScaledConstraints::bytes() const { return bytes_of(blocks) + bytes_of(scale); }
 
 /// Brings the contacts of each sphere side by side. They are few.
 void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep_impulses) {
@@ -158,7 +164,7 @@ void SimdSolver::choose_active(kernels::VectorsView x) {
     if (constraint == kNoIndex || constraint < model_.constraints.bilateral) continue;
     const double l = length(x[layout_.a[c]] - x[layout_.b[c]]);
     const bool taut = l >= (1 - slack) * layout_.rest_length[c];
-    velocity_scale_[c] = taut ? 1 / tau : 0;
+    velocities_.scale[c] = taut ? 1 / tau : 0;
   }
   for (const ContactLanes::Range& range : contacts_.spheres) {
     for (std::size_t k = range.first; k < range.last; ++k) {
@@ -179,37 +185,37 @@ kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kerne
     place_contacts(store, settings_.iterations > 0 ? 1 : settings_.velocity_tolerance, false);
   }
   choose_active(x);
-  SimdLoop loop(*this, {.x = x, .v = v, .velocity = true}, team);
+  SimdLoop loop(*this, {.x = x, .v = v}, team);
   return kernels::iterate(loop, kernels::Directions::frozen, limits(whole_budget(settings_)));
 }
 
-simd::Relaxation SimdSolver::relaxation(bool velocity) {
+simd::Relaxation SimdSolver::relaxation(ScaledConstraints& constraints) {
   simd::Relaxation r;
   r.u = {u_.data(), u_stride_, u_step_};
-  r.blocks = velocity ? velocity_blocks_.data() : blocks_.data();
+  r.blocks = constraints.blocks.data();
   r.impulse = impulse_.data();
   r.a = layout_.a.data();
   r.b = layout_.b.data();
   r.mask = mask_.data();
   r.threshold = settings_.iterations > 0 ? 0 : 1;
-  r.from_memory = bytes_of(blocks_) > kCachedBytes;
+  r.from_memory = bytes_of(constraints.blocks) > kCachedBytes;
   return r;
 }
 
-simd::Geometry SimdSolver::geometry(kernels::VectorsView x, bool velocity) {
+simd::Geometry SimdSolver::geometry(kernels::VectorsView x,
+                                    const ScaledConstraints& constraints) const {
   return {x,
           layout_.rest_length.data(),
           layout_.inverse_square.data(),
-          velocity ? velocity_scale_.data() : scale_.data(),
+          constraints.scale.data(),
           layout_.a.data(),
           layout_.b.data()};
 }
 
 std::size_t SimdSolver::bytes() const {
-  return bytes_of(u_) + bytes_of(impulse_) + bytes_of(blocks_) + bytes_of(velocity_blocks_) +
-         bytes_of(scale_) + bytes_of(velocity_scale_) + bytes_of(mask_) + bytes_of(changed_) +
-         bytes_of(stale_) + bytes_of(corrections_) + bytes_of(sweeps_) + bytes_of(open_seam_) +
-         contacts_.bytes() + bytes_of(contact_impulse_);
+  return bytes_of(u_) + bytes_of(impulse_) + positions_.bytes() + velocities_.bytes() +
+         bytes_of(mask_) + bytes_of(changed_) + bytes_of(stale_) + bytes_of(corrections_) +
+         bytes_of(sweeps_) + bytes_of(open_seam_) + contacts_.bytes() + bytes_of(contact_impulse_);
 }
 
 }  // namespace weft

@@ -43,6 +43,14 @@ struct ContactLanes {
   std::size_t bytes() const;
 };
 
+/// The constraints as one of the two loops sees them, errors and directions in its tolerances tau.
+struct ScaledConstraints {
+  kernels::AlignedVector<simd::ConstraintBlock> blocks;
+  kernels::AlignedVector<double> scale;  // 1 / tau
+
+  std::size_t bytes() const;
+};
+
 /// Threads write theirs side by side.
 struct alignas(64) SharedSweep : kernels::Sweep {};
 
@@ -66,11 +74,12 @@ class SimdSolver {
 
   void allocate_displacements();
   kernels::LoopLimits limits(const LoopBudget& budget) const;
-  void fill_gains(bool velocity);
+  template <class Tolerance>
+  ScaledConstraints scaled(Tolerance&& tau) const;
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
   void choose_active(kernels::VectorsView x);
-  simd::Relaxation relaxation(bool velocity);
-  simd::Geometry geometry(kernels::VectorsView x, bool velocity);
+  simd::Relaxation relaxation(ScaledConstraints& constraints);
+  simd::Geometry geometry(kernels::VectorsView x, const ScaledConstraints& constraints) const;
 
   const Model& model_;
   const SimdLayout& layout_;
@@ -78,10 +87,9 @@ class SimdSolver {
   const simd::Table& table_;
 
   kernels::AlignedVector<float> u_;
-  std::size_t u_stride_ = 0, u_step_ = 1;                                   // simd::Displacements
-  kernels::AlignedVector<float> impulse_;                                   // with ropes only
-  kernels::AlignedVector<simd::ConstraintBlock> blocks_, velocity_blocks_;  // the latter with
-  kernels::AlignedVector<double> scale_, velocity_scale_;                   // velocity correction
+  std::size_t u_stride_ = 0, u_step_ = 1;       // simd::Displacements
+  kernels::AlignedVector<float> impulse_;       // with ropes only
+  ScaledConstraints positions_, velocities_;    // the latter with velocity correction
   kernels::AlignedVector<std::uint64_t> mask_;  // skip without anticipation only
   // Per chunk, skip only: something in it, or in a chunk that shares a particle with it, was
   // corrected since it was last visited; since its directions were last renewed.
