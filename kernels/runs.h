@@ -1,12 +1,15 @@
 /// The unit of contiguous work that the vector kernels take.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
 namespace weft::kernels {
 
 inline constexpr std::uint32_t kLanes = 16;  // of the widest vector, whatever the machine has
+/// About two cores' own caches. Arrays that are larger come from memory in every pass.
+inline constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
 
 /// The least multiple that is not less.
 template <class Int>

@@ -13,9 +13,6 @@ namespace {
 /// refinement).
 constexpr int kOldestDirections = 1024;
 
-/// Of constraint blocks; more are fetched from memory in every pass. About two cores' own caches.
-constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
-
 }  // namespace
 
 void ContactLanes::resize(std::size_t size) {
@@ -198,7 +195,7 @@ simd::Relaxation SimdSolver::relaxation(ScaledConstraints& constraints) {
   r.b = layout_.b.data();
   r.mask = mask_.data();
   r.threshold = settings_.iterations > 0 ? 0 : 1;
-  r.from_memory = bytes_of(constraints.blocks) > kCachedBytes;
+  r.from_memory = bytes_of(constraints.blocks) > kernels::kCachedBytes;
   return r;
 }
 

@@ -38,7 +38,7 @@ struct YarnLayout {
   std::size_t longest = 0;  // rows of the longest block
 
   /// Whether displacements are too many for the caches.
-  bool from_memory() const { return places.floats * sizeof(float) > (std::size_t{4} << 20); }
+  bool from_memory() const { return places.floats * sizeof(float) > kernels::kCachedBytes; }
   std::size_t scratch_rows() const { return patches.empty() ? longest : 2 * (longest + 1); }
   std::size_t rows() const { return kind.size(); }
   std::size_t families() const { return family_begin.size() - 1; }
