@@ -5,9 +5,10 @@
 
 #include <fmt/format.h>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+
+#include "tools/enumerators.h"
 
 namespace weft::tools {
 
@@ -21,21 +22,13 @@ Result<double> parse_tolerance(std::string_view option, std::string_view text);
 /// "on" or "off".
 Result<bool> parse_switch(std::string_view option, std::string_view text);
 
-/// A name that an option accepts.
-template <class Value>
-struct Choice {
-  std::string_view name;
-  Value value;
-};
-
-/// The value of a name, looked up in the option's table.
-template <class Value>
-Result<Value> parse_choice(std::string_view option, std::string_view text,
-                           std::span<const Choice<Value>> table) {
+/// The enumerator of this name.
+template <class Enum>
+Result<Enum> parse_choice(std::string_view option, std::string_view text) {
   std::string names;
-  for (const Choice<Value>& choice : table) {
-    if (choice.name == text) return choice.value;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", choice.name);
+  for (const Enum choice : enumerators<Enum>()) {
+    if (name(choice) == text) return choice;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", name(choice));
   }
   return Error{fmt::format("{}: '{}' is not one of {}", option, text, names)};
 }

@@ -1,7 +1,6 @@
 #include "tools/solver_options.h"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <limits>
 
 #include "tools/parse.h"
@@ -9,71 +8,26 @@
 namespace weft::tools {
 namespace {
 
-constexpr std::array<Choice<Solver>, 4> kSolvers{{
-    {"gauss_seidel", Solver::gauss_seidel},
-    {"yarn", Solver::yarn},
-    {"direct", Solver::direct},
-    {"auto", Solver::automatic},
-}};
-constexpr std::array<Choice<Scheme>, 2> kSchemes{{
-    {"paper", Scheme::paper},
-    {"rattle", Scheme::rattle},
-}};
-constexpr std::array<Choice<Directions>, 2> kDirections{{
-    {"each", Directions::each},
-    {"frozen", Directions::frozen},
-}};
-constexpr std::array<Choice<Backend>, 2> kBackends{{
-    {"reference", Backend::reference},
-    {"simd", Backend::simd},
-}};
+Result<int> parse_substeps(std::string_view option, std::string_view text) {
+  if (text == "auto") return kAutomaticSubsteps;
+  const auto count = parse_count(text);
+  if (!count || *count < 1 || *count > std::numeric_limits<int>::max()) {
+    return Error{fmt::format("{}: '{}' is not a whole number above 0", option, text)};
+  }
+  return static_cast<int>(*count);
+}
 
-constexpr std::array<Choice<Isa>, 4> kIsas{{
-    {"auto", Isa::automatic},
-    {"sse2", Isa::sse2},
-    {"avx2", Isa::avx2},
-    {"avx512", Isa::avx512},
-}};
+template <class Value>
+using Parse = Result<Value> (*)(std::string_view option, std::string_view text);
 
 /// Sets the field from the text, if there is one.
-template <class Value, std::size_t kCount>
+template <class Value>
 Result<void> choose(std::string_view option, const std::optional<std::string>& text,
-                    const std::array<Choice<Value>, kCount>& table, Value& field) {
+                    Parse<Value> parse, Value& field) {
   if (!text) return {};
-  const auto value = parse_choice<Value>(option, *text, table);
+  const auto value = parse(option, *text);
   if (!value) return Error{value.error()};
   field = value.value();
-  return {};
-}
-
-Result<void> choose_switch(std::string_view option, const std::optional<std::string>& text,
-                           bool& field) {
-  if (!text) return {};
-  const auto value = parse_switch(option, *text);
-  if (!value) return Error{value.error()};
-  field = value.value();
-  return {};
-}
-
-Result<void> choose_tolerance(const std::optional<std::string>& text, double& field) {
-  if (!text) return {};
-  const auto value = parse_tolerance("--tolerance", *text);
-  if (!value) return Error{value.error()};
-  field = value.value();
-  return {};
-}
-
-Result<void> choose_substeps(const std::optional<std::string>& text, int& field) {
-  if (!text) return {};
-  if (text == "auto") {
-    field = kAutomaticSubsteps;
-    return {};
-  }
-  const auto count = parse_count(*text);
-  if (!count || *count < 1 || *count > std::numeric_limits<int>::max()) {
-    return Error{fmt::format("--substeps: '{}' is not a whole number above 0", *text)};
-  }
-  field = static_cast<int>(*count);
   return {};
 }
 
@@ -129,17 +83,17 @@ void add_solver_options(CLI::App& verb, SolverOptions& options) {
 Result<Settings> settings_of(const SolverOptions& options) {
   Settings settings = options.settings;
   const Result<void> checks[] = {
-      choose_tolerance(options.tolerance, settings.tolerance),
-      choose("--solver", options.solver, kSolvers, settings.solver),
-      choose("--scheme", options.scheme, kSchemes, settings.scheme),
-      choose_switch("--anticipate", options.anticipate, settings.anticipate),
-      choose_switch("--skip", options.skip, settings.skip),
-      choose("--directions", options.directions, kDirections, settings.directions),
-      choose_switch("--velocity-correction", options.velocity_correction,
-                    settings.velocity_correction),
-      choose("--backend", options.backend, kBackends, settings.backend),
-      choose("--isa", options.isa, kIsas, settings.isa),
-      choose_substeps(options.substeps, settings.substeps),
+      choose("--tolerance", options.tolerance, parse_tolerance, settings.tolerance),
+      choose("--solver", options.solver, parse_choice<Solver>, settings.solver),
+      choose("--scheme", options.scheme, parse_choice<Scheme>, settings.scheme),
+      choose("--anticipate", options.anticipate, parse_switch, settings.anticipate),
+      choose("--skip", options.skip, parse_switch, settings.skip),
+      choose("--directions", options.directions, parse_choice<Directions>, settings.directions),
+      choose("--velocity-correction", options.velocity_correction, parse_switch,
+             settings.velocity_correction),
+      choose("--backend", options.backend, parse_choice<Backend>, settings.backend),
+      choose("--isa", options.isa, parse_choice<Isa>, settings.isa),
+      choose("--substeps", options.substeps, parse_substeps, settings.substeps),
   };
   for (const Result<void>& check : checks) {
     if (!check) return Error{check.error()};

@@ -1,5 +1,4 @@
-/// How a scene is solved, as given on the command line. The tables in solver_options.cpp have the
-/// names that each option takes.
+/// How a scene is solved, as given on the command line.
 #pragma once
 
 #include <weft/weft.h>

@@ -2,8 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <array>
-
 namespace weft::tools {
 namespace {
 
@@ -39,11 +37,16 @@ TEST_CASE("counts are whole numbers from 0 up") {
   }
 }
 
-TEST_CASE("a choice is one of a table") {
-  constexpr std::array<Choice<int>, 2> kTable{{{"one", 1}, {"two", 2}}};
-  CHECK(parse_choice<int>("--number", "one", kTable).value() == 1);
-  CHECK(parse_choice<int>("--number", "ten", kTable).error() ==
-        "--number: 'ten' is not one of one, two");
+TEST_CASE("a choice is one of the names of an enum") {
+  CHECK(parse_choice<Scheme>("--scheme", "rattle").value() == Scheme::rattle);
+  CHECK(parse_choice<Solver>("--solver", "auto").value() == Solver::automatic);
+  CHECK(parse_choice<Isa>("--isa", "auto").value() == Isa::automatic);
+  for (const std::string text : {"", "ten", "unknown", "automatic", "Paper"}) {
+    CAPTURE(text);
+    CHECK(parse_choice<Scheme>("--scheme", text).error() ==
+          "--scheme: '" + text + "' is not one of paper, rattle");
+    CHECK_FALSE(parse_choice<Solver>("--solver", text));
+  }
 }
 
 }  // namespace
