@@ -14,18 +14,15 @@
 #include "tools/exit_code.h"
 #include "tools/hard/results.h"
 #include "tools/hard/suite.h"
-#include "tools/output_folder.h"
+#include "tools/pending_file.h"
 #include "tools/study_outputs.h"
 #include "tools/task_line.h"
 
 namespace weft::tools {
 namespace {
 
-struct HardOptions {
-  std::string json;
-  std::string out;
+struct HardOptions : StudyOptions {
   std::string name;
-  bool quick = false;
 };
 
 /// As many at a time as there are processors; results in the order of the cases. (Threads of our
@@ -61,7 +58,7 @@ Result<void> write_folder(const std::filesystem::path& folder,
 Result<int> run_hard(const HardOptions& options) {
   const auto selected = hard::select(options.name);
   if (selected.empty()) return Error{fmt::format("--case: no case is named '{}'", options.name)};
-  auto outputs = StudyOutputs::open(options.json, options.out);
+  auto outputs = StudyOutputs::open(options);
   if (!outputs) return Error{outputs.error()};
   const auto results = run_all(selected, options.quick);
   const auto done = outputs.value().write(
@@ -77,10 +74,9 @@ void add_hard_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<HardOptions>();
   CLI::App* verb = app.add_subcommand(
       "hard", "Run the cases that break cloth engines: each has a figure and a bound");
-  verb->add_option("--json", options->json, "write the results as JSON; - for standard output");
-  verb->add_option("--out", options->out, "write hard.csv and hard.md into a folder");
+  add_study_options(*verb, *options, "write hard.csv and hard.md into a folder",
+                    "fewer steps: under a minute");
   verb->add_option("--case", options->name, "only cases with this in their name");
-  verb->add_flag("--quick", options->quick, "fewer steps: under a minute");
   verb->callback([options, &exit_code] {
     const auto result = run_hard(*options);
     exit_code = result ? result.value() : refuse(result.error());

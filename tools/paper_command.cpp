@@ -12,9 +12,9 @@
 #include "engine/scenes.h"
 #include "tools/exit_code.h"
 #include "tools/json_output.h"
-#include "tools/output_folder.h"
 #include "tools/paper_results.h"
 #include "tools/paper_study.h"
+#include "tools/pending_file.h"
 #include "tools/plotting.h"
 #include "tools/study_outputs.h"
 #include "tools/task_line.h"
@@ -22,10 +22,7 @@
 namespace weft::tools {
 namespace {
 
-struct PaperOptions {
-  std::string json;
-  std::string out;
-  bool quick = false;
+struct PaperOptions : StudyOptions {
   std::optional<int> repeat;  // 5; 2 if quick
 };
 
@@ -73,7 +70,7 @@ Result<void> write_folder(const std::filesystem::path& folder, const paper::Stud
 }
 
 int run_paper(const PaperOptions& options) {
-  auto outputs = StudyOutputs::open(options.json, options.out);
+  auto outputs = StudyOutputs::open(options);
   if (!outputs) return refuse(outputs.error());
   const auto study = carry_out(options);
   if (!study) return refuse(study.error());
@@ -93,13 +90,11 @@ void add_paper_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<PaperOptions>();
   CLI::App* command = app.add_subcommand(
       "paper", "Measure every combination of the paper's section 5 and print its Table 1");
-  command->add_option("--json", options->json, "Write the results as JSON; - for standard output");
-  command->add_option("--out", options->out,
-                      "Write CSV, JSON and the figures 2, 3, 4 into a folder");
-  command->add_flag("--quick", options->quick, "Fewer steps: under a minute, less to be trusted");
+  add_study_options(*command, *options, "write CSV, JSON and the figures 2, 3, 4 into a folder",
+                    "fewer steps: under a minute, less to be trusted");
   command
       ->add_option("--repeat", options->repeat,
-                   "Most runs of one combination, fastest counts (default 5, quick 2)")
+                   "most runs of one combination, fastest counts (default 5, quick 2)")
       ->check(CLI::Range(1, 1000));
   command->callback([options, &exit_code] { exit_code = run_paper(*options); });
 }

@@ -91,6 +91,13 @@ Result<void> PendingFile::commit() {
   return {};
 }
 
+Result<void> write_file(const std::string& path, std::string_view content) {
+  auto file = PendingFile::open(path);
+  if (!file) return Error{file.error()};
+  file.value().write(content);
+  return file.value().commit();
+}
+
 void remove_pending_files() {
   for (auto& slot : pending_names) {
     if (const char* name = slot.load()) unlink(name);

@@ -33,6 +33,9 @@ class PendingFile {
   std::unique_ptr<State> state_;
 };
 
+/// Opens, writes and commits.
+Result<void> write_file(const std::string& path, std::string_view content);
+
 /// The temporary ones of all that live. For a signal handler that ends the program.
 void remove_pending_files();
 

@@ -11,7 +11,7 @@
 
 #include "tools/exit_code.h"
 #include "tools/json_output.h"
-#include "tools/output_folder.h"
+#include "tools/pending_file.h"
 #include "tools/plotting.h"
 #include "tools/precision/bullet.h"
 #include "tools/precision/results.h"
@@ -26,12 +26,9 @@ namespace {
 
 using namespace precision;
 
-struct PrecisionOptions {
+struct PrecisionOptions : StudyOptions {
   std::optional<std::string> scene;
   std::optional<int> size;
-  std::string json;
-  std::string out;
-  bool quick = false;
   std::optional<int> threads;  // charts: 1; cost against size: all
 
   bool names_scene() const { return scene || size; }
@@ -146,7 +143,7 @@ Result<void> write_folder(const std::filesystem::path& folder, const Study& stud
 int run_precision(const PrecisionOptions& options) {
   const auto tasks = tasks_of(options);
   if (!tasks) return refuse(tasks.error());
-  auto outputs = StudyOutputs::open(options.json, options.out);
+  auto outputs = StudyOutputs::open(options);
   if (!outputs) return refuse(outputs.error());
   const auto study = carry_out(tasks.value(), options);
   if (!study) return refuse(study.error());
@@ -163,17 +160,15 @@ void add_precision_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "precision", "Measure error against time per frame: every solver, scheme and knob");
   command->add_option("--scene", options->scene,
-                      "Only this built-in scene, without cost against size (default: hang, corners "
+                      "only this built-in scene, without cost against size (default: hang, corners "
                       "and cost against size)");
   command->add_option("--size", options->size,
                       "N of the scene (default 40, corners 41; quick 20, 21)");
-  command->add_option("--json", options->json, "Write the results as JSON; - for standard output");
-  command->add_option("--out", options->out,
-                      "Write CSV, JSON, tables and the charts into a folder");
-  command->add_flag("--quick", options->quick, "Few settings on small scenes: under a minute");
+  add_study_options(*command, *options, "write CSV, JSON, tables and the charts into a folder",
+                    "few settings on small scenes: under a minute");
   command
       ->add_option("--threads", options->threads,
-                   "Threads of every run (default 1; cost against size: all)")
+                   "threads of every run (default 1; cost against size: all)")
       ->check(CLI::Range(1, kMaxThreads));
   command->callback([options, &exit_code] { exit_code = run_precision(*options); });
 }

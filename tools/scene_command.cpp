@@ -25,10 +25,9 @@ Result<void> write_scene(const WriteOptions& options) {
   const auto source = load_scene(options.scene);
   if (!source) return Error{source.error()};
   if (auto model = build_model(source.value().description); !model) return Error{model.error()};
-  auto file = PendingFile::open(options.out);
-  if (!file) return Error{fmt::format("--out: {}", file.error())};
-  file.value().write(scene_text(source.value().description));
-  return file.value().commit();
+  const auto written = write_file(options.out, scene_text(source.value().description));
+  if (!written) return Error{fmt::format("--out: {}", written.error())};
+  return {};
 }
 
 }  // namespace

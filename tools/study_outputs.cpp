@@ -2,23 +2,43 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <system_error>
 #include <utility>
 
-#include "tools/output_folder.h"
+#include "tools/pending_file.h"
 #include "tools/text_file.h"
 
 namespace weft::tools {
+namespace {
 
-Result<StudyOutputs> StudyOutputs::open(const std::string& json, const std::string& folder) {
+Result<void> make_folder(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem) return Error{fmt::format("--out {}: {}", folder.string(), problem.message())};
+  const auto probe = PendingFile::open(folder / "probe");  // dropped
+  return probe ? Result<void>{} : Result<void>{Error{probe.error()}};
+}
+
+}  // namespace
+
+void add_study_options(CLI::App& verb, StudyOptions& options, const std::string& out,
+                       const std::string& quick) {
+  verb.add_option("--json", options.json, "write the results as JSON; - for standard output");
+  verb.add_option("--out", options.out, out);
+  verb.add_flag("--quick", options.quick, quick);
+}
+
+Result<StudyOutputs> StudyOutputs::open(const StudyOptions& options) {
   StudyOutputs outputs;
-  outputs.folder_ = folder;
-  if (!json.empty()) {
-    auto opened = JsonOutput::open(json);
+  outputs.folder_ = options.out;
+  if (!options.json.empty()) {
+    auto opened = JsonOutput::open(options.json);
     if (!opened) return Error{fmt::format("--json: {}", opened.error())};
     outputs.json_ = std::move(opened.value());
   }
-  if (folder.empty()) return outputs;
-  if (const auto made = make_output_folder(folder); !made) return Error{made.error()};
+  if (options.out.empty()) return outputs;
+  if (const auto made = make_folder(options.out); !made) return Error{made.error()};
   return outputs;
 }
 

@@ -1,4 +1,5 @@
-/// Where a verb that measures puts its results: --json FILE|-, --out FOLDER, standard output.
+/// What verbs that measure have in common: how much they do (--quick), and where they put their
+/// results: --json FILE|-, --out FOLDER, standard output.
 #pragma once
 
 #include <weft/weft.h>
@@ -10,13 +11,27 @@
 
 #include "tools/json_output.h"
 
+namespace CLI {
+class App;
+}
+
 namespace weft::tools {
+
+struct StudyOptions {
+  std::string json;  ///< empty: not asked for
+  std::string out;   ///< likewise
+  bool quick = false;
+};
+
+/// out, quick: what they do for this verb.
+void add_study_options(CLI::App& verb, StudyOptions& options, const std::string& out,
+                       const std::string& quick);
 
 class StudyOutputs {
  public:
-  /// Before minutes of work, not after: what cannot be written is refused at once. Empty: not asked
-  /// for.
-  static Result<StudyOutputs> open(const std::string& json, const std::string& folder);
+  /// Before minutes of work, not after: what cannot be written is refused at once. Makes the folder
+  /// if need be.
+  static Result<StudyOutputs> open(const StudyOptions& options);
 
   using WriteFolder = std::function<Result<void>(const std::filesystem::path& folder)>;
   /// The folder, the JSON, and the text, last, unless the JSON goes to standard output.
