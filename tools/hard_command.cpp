@@ -15,8 +15,8 @@
 #include "tools/hard/results.h"
 #include "tools/hard/suite.h"
 #include "tools/pending_file.h"
+#include "tools/progress.h"
 #include "tools/study_outputs.h"
-#include "tools/task_line.h"
 
 namespace weft::tools {
 namespace {

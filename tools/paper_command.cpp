@@ -16,8 +16,8 @@
 #include "tools/paper_study.h"
 #include "tools/pending_file.h"
 #include "tools/plotting.h"
+#include "tools/progress.h"
 #include "tools/study_outputs.h"
-#include "tools/task_line.h"
 
 namespace weft::tools {
 namespace {

@@ -18,8 +18,8 @@
 #include "tools/precision/results_json.h"
 #include "tools/precision/results_tables.h"
 #include "tools/precision/sweep.h"
+#include "tools/progress.h"
 #include "tools/study_outputs.h"
-#include "tools/task_line.h"
 
 namespace weft::tools {
 namespace {

@@ -5,30 +5,34 @@
 
 #include <cstdio>
 
-#include "tools/wording.h"
-
 namespace weft::tools {
-namespace {
 
-constexpr auto kPause = std::chrono::milliseconds(100);
-constexpr int kWidth = 30;
-constexpr auto kClearLine = "\r\033[K";
-
-}  // namespace
-
-Progress::Progress(int frames) : frames_(frames), is_terminal_(isatty(STDERR_FILENO) == 1) {}
-
-Progress::~Progress() {
-  if (is_terminal_) fmt::print(stderr, kClearLine);
+std::string bar(std::size_t done, std::size_t total, std::size_t width) {
+  const std::size_t full = width * done / total;
+  return fmt::format("[{:#<{}}{:.<{}}]", "", full, "", width - full);
 }
 
-void Progress::show(int frame, double strain) {
-  if (!is_terminal_ || Clock::now() < next_) return;
-  next_ = Clock::now() + kPause;
-  const auto done = static_cast<int>(static_cast<std::int64_t>(frame) * kWidth / frames_);
-  fmt::print(stderr, "{}[{:#<{}}{:.<{}}] frame {}/{}, strain {}", kClearLine, "", done, "",
-             kWidth - done, frame, frames_, measured_percent(strain));
+ProgressLine::ProgressLine() : redraws_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressLine::~ProgressLine() {
+  if (redraws_) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressLine::show(std::string_view text) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!redraws_ || now - drawn_ < std::chrono::milliseconds(100)) return;
+  drawn_ = now;
+  fmt::print(stderr, "\r{}\033[K", text);
   std::fflush(stderr);
 }
+
+void TaskLine::next(std::string_view task) {
+  const std::string filled = bar(started_, tasks_, 12);
+  ++started_;
+  task_ = fmt::format("{} {}/{} {}", filled, started_, tasks_, task);
+  if (!line_.redraws()) fmt::print(stderr, "{}\n", task_);
+}
+
+void TaskLine::show(std::string_view detail) { line_.show(fmt::format("{} {}", task_, detail)); }
 
 }  // namespace weft::tools

@@ -1,26 +1,48 @@
-/// A progress line on standard error while a run lasts, only if that is a terminal.
+/// What is at work, on standard error while it lasts.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <string>
+#include <string_view>
 
 namespace weft::tools {
 
-class Progress {
- public:
-  explicit Progress(int frames);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+/// "[####......]"
+std::string bar(std::size_t done, std::size_t total, std::size_t width);
 
-  /// strain: of this frame.
-  void show(int frame, double strain);
+/// One line that is redrawn in place, only on a terminal; cleared in the end.
+class ProgressLine {
+ public:
+  ProgressLine();
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  bool redraws() const { return redraws_; }
+  /// Not more often than can be read.
+  void show(std::string_view text);
 
  private:
-  using Clock = std::chrono::steady_clock;
+  bool redraws_;
+  std::chrono::steady_clock::time_point drawn_;
+};
 
-  int frames_;
-  bool is_terminal_;
-  Clock::time_point next_ = Clock::now();
+/// Which of many tasks is at work: a progress line; where that is not redrawn, one line for each
+/// task.
+class TaskLine {
+ public:
+  explicit TaskLine(std::size_t tasks) : tasks_(tasks) {}
+
+  void next(std::string_view task);
+  /// What the task is doing now.
+  void show(std::string_view detail);
+
+ private:
+  std::size_t tasks_;
+  std::size_t started_ = 0;
+  std::string task_;
+  ProgressLine line_;
 };
 
 }  // namespace weft::tools

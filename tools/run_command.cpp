@@ -17,6 +17,7 @@
 #include "tools/scene_source.h"
 #include "tools/solver_options.h"
 #include "tools/text_file.h"
+#include "tools/wording.h"
 
 namespace weft::tools {
 namespace {
@@ -73,13 +74,14 @@ Result<Prepared> prepare(const RunOptions& options) {
 }
 
 Result<RunSummary> run_and_record(const Prepared& prepared, RunPlan plan, Outputs& outputs) {
-  Progress progress(plan.steps);
+  ProgressLine progress;
   bool stopped = false;
   plan.stop = [&stopped] { return stopped = OrderlyInterrupt::signal() != 0; };
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
     const bool is_last = frame == plan.steps || !committed(report.status) || stopped;
     outputs.add_frame(cloth, is_last);
-    progress.show(frame, report.max_strain);
+    progress.show(fmt::format("{} frame {}/{}, strain {}", bar(frame, plan.steps, 30), frame,
+                              plan.steps, measured_percent(report.max_strain)));
   };
   return run(prepared.source.description, prepared.settings, plan, on_frame);
 }
