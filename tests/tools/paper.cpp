@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
-#include "tools/paper_results.h"
-#include "tools/paper_study.h"
+#include "tools/paper/results.h"
+#include "tools/paper/study.h"
 
 namespace weft::tools::paper {
 namespace {

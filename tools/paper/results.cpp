@@ -1,4 +1,4 @@
-#include "tools/paper_results.h"
+#include "tools/paper/results.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/paper_study.h"
+#include "tools/paper/study.h"
 
 #include <algorithm>
 #include <array>

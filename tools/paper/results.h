@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/json_output.h"
-#include "tools/paper_study.h"
+#include "tools/paper/study.h"
 
 namespace weft::tools::paper {
 
