@@ -18,19 +18,26 @@ ProgressLine::~ProgressLine() {
   if (redraws_) fmt::print(stderr, "\r\033[K");
 }
 
-void ProgressLine::show(std::string_view text) {
-  const auto now = std::chrono::steady_clock::now();
-  if (!redraws_ || now - drawn_ < std::chrono::milliseconds(100)) return;
-  drawn_ = now;
+void ProgressLine::draw(std::string_view text) {
+  if (!redraws_) return;
+  drawn_ = std::chrono::steady_clock::now();
   fmt::print(stderr, "\r{}\033[K", text);
   std::fflush(stderr);
+}
+
+void ProgressLine::show(std::string_view text) {
+  if (std::chrono::steady_clock::now() - drawn_ >= std::chrono::milliseconds(100)) draw(text);
 }
 
 void TaskLine::next(std::string_view task) {
   const std::string filled = bar(started_, tasks_, 12);
   ++started_;
   task_ = fmt::format("{} {}/{} {}", filled, started_, tasks_, task);
-  if (!line_.redraws()) fmt::print(stderr, "{}\n", task_);
+  if (line_.redraws()) {
+    line_.draw(task_);
+  } else {
+    fmt::print(stderr, "{}\n", task_);
+  }
 }
 
 void TaskLine::show(std::string_view detail) { line_.show(fmt::format("{} {}", task_, detail)); }

@@ -20,6 +20,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   bool redraws() const { return redraws_; }
+  void draw(std::string_view text);
   /// Not more often than can be read.
   void show(std::string_view text);
 
