@@ -46,6 +46,17 @@ TEST_CASE("trouble passes: it never comes to thousands of sweeps, and brings in 
   }
 }
 
+// What is left of the errors would be speed: 4.9 J at the end of such a substep, in 60 steps.
+TEST_CASE("where sweeps had to do, what they leave brings in no energy") {
+  Cloth cloth = cloth_of(scene_of("sphere_drop", 15),
+                         {.tolerance = 0.05, .substeps = 1, .solver = Solver::direct});
+  const double start = cloth.energy().total();
+  for (int k = 0; k < 60; ++k) {
+    step(cloth, 0.06);
+    CHECK(cloth.energy().total() <= start + 0.1);
+  }
+}
+
 TEST_CASE("a cloth that is given a state goes on like a new one, whatever its steps came to") {
   const SceneDescription scene = scene_of("corners", 21);
   const Settings settings{.substeps = 1, .solver = Solver::yarn};
