@@ -55,16 +55,6 @@ std::size_t find_moved(kernels::VectorsView before, kernels::VectorsView after,
   return found;
 }
 
-[[gnu::always_inline]] inline Corrected correct_contacts(const Relaxation& r, std::size_t c,
-                                                         Floats e, Floats threshold) {
-  const Floats sum = load(r.impulse + c);
-  const Floats change = xsimd::min(e, Floats(0.f) - sum);
-  const FloatMask lanes = (xsimd::abs(e) > threshold) & (change != Floats(0.f));
-  const Floats by = xsimd::select(lanes, change, Floats(0.f));
-  (sum + by).store_unaligned(r.impulse + c);
-  return {lanes, by};
-}
-
 /// Sum of kLanes numbers as a balanced tree.
 [[gnu::always_inline]] inline float tree_sum(float* lanes) {
   for (std::uint32_t half = kernels::kLanes / 2; half > 0; half /= 2) {
@@ -89,7 +79,8 @@ template <class Lanes>
       const Part p = part(r, c);
       const FloatVector n = p.n();
       FloatVector up = at_b.get(r.u, r.b + c);
-      const Corrected corrected = correct_contacts(r, c, errors(p, n, us - up), threshold);
+      const Corrected corrected =
+          correct_one_sided<Side::pushes>(r, c, errors(p, n, us - up), threshold);
       const std::uint32_t corrected_lanes = count(corrected.lanes);
       const Floats at_a = corrected.by * p.gain_a();
       (at_a * n.x).store_aligned(x + k);

@@ -48,10 +48,14 @@ struct Part {
   return {lanes, xsimd::select(lanes, e, Floats(0.f))};
 }
 
-[[gnu::always_inline]] inline Corrected correct_ropes(const Relaxation& r, std::size_t c, Floats e,
-                                                      Floats threshold) {
-  const Floats sum = load(r.impulse + c);
-  const Floats change = xsimd::max(e, Floats(0.f) - sum);
+/// Ropes pull, contacts push: the sum of their corrections stays at or above 0, at or below it.
+enum class Side : std::uint8_t { pulls, pushes };
+
+template <Side kSide>
+[[gnu::always_inline]] inline Corrected correct_one_sided(const Relaxation& r, std::size_t c,
+                                                          Floats e, Floats threshold) {
+  const Floats sum = load(r.impulse + c), back = Floats(0.f) - sum;
+  const Floats change = kSide == Side::pulls ? xsimd::max(e, back) : xsimd::min(e, back);
   const FloatMask lanes = (xsimd::abs(e) > threshold) & (change != Floats(0.f));
   const Floats by = xsimd::select(lanes, change, Floats(0.f));
   (sum + by).store_unaligned(r.impulse + c);
@@ -215,11 +219,11 @@ std::uint32_t relax_singles(const Relaxation& r, std::uint32_t first, std::uint3
   return relax_any_scattered(r, first, last, correct_distances);
 }
 std::uint32_t relax_rope_run(const Relaxation& r, const Run& run) {
-  if (r.from_memory) return relax_contiguous<true>(r, run, correct_ropes);
-  return relax_contiguous<false>(r, run, correct_ropes);
+  if (r.from_memory) return relax_contiguous<true>(r, run, correct_one_sided<Side::pulls>);
+  return relax_contiguous<false>(r, run, correct_one_sided<Side::pulls>);
 }
 std::uint32_t relax_rope_singles(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
-  return relax_any_scattered(r, first, last, correct_ropes);
+  return relax_any_scattered(r, first, last, correct_one_sided<Side::pulls>);
 }
 
 }  // namespace
