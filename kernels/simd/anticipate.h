@@ -102,8 +102,7 @@ template <class From>
       for (std::size_t pull = begin; pull < end; ++pull) {
         const std::size_t k = pull * kernels::kLanes + lane;
         const FloatVector other = directions_of(r, from, pull, lane);
-        const Floats dot = fused(n.x, other.x, fused(n.y, other.y, n.z * other.z));
-        (load(p.weight + k) * dot).store_unaligned(p.product + k);
+        (load(p.weight + k) * dot(n, other)).store_unaligned(p.product + k);
       }
       here.e0().store_unaligned(p.error + c);
       Floats(0.f).store_unaligned(p.change + c);
@@ -135,8 +134,8 @@ void apply_sums_run(const Anticipation& p, const Relaxation& r, const Run& run) 
     const FloatVector n = here.n();
     const Floats sum = load(p.sum + c);
     FloatVector ua = load(r.u, a), ub = load(r.u, b);
-    move(ua, n, sum * here.gain_a());
-    move(ub, n, sum * here.gain_b());
+    ua = fused(sum * here.gain_a(), n, ua);
+    ub = fused(sum * here.gain_b(), n, ub);
     store(r.u, a, ua);
     store(r.u, b, ub);
   }
@@ -149,8 +148,8 @@ void apply_sums_singles(const Anticipation& p, const Relaxation& r, std::uint32_
     const FloatVector n = here.n();
     const Floats sum = load(p.sum + c);
     FloatVector ua = at_a.get(r.u, r.a + c), ub = at_b.get(r.u, r.b + c);
-    move(ua, n, sum * here.gain_a());
-    move(ub, n, sum * here.gain_b());
+    ua = fused(sum * here.gain_a(), n, ua);
+    ub = fused(sum * here.gain_b(), n, ub);
     at_a.put(r.u, r.a + c, ua);
     at_b.put(r.u, r.b + c, ub);
   }

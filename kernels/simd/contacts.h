@@ -72,7 +72,7 @@ template <class Lanes>
   Lanes at_b;
   for (std::size_t block = first; block < last; block += kernels::kLanes) {
     const FloatVector us{Floats(r.u.x[sphere]), Floats(r.u.y()[sphere]), Floats(r.u.z()[sphere])};
-    alignas(64) float x[kernels::kLanes], y[kernels::kLanes], z[kernels::kLanes];
+    LaneVectors pushes;
     std::uint32_t corrected_here = 0;
     for (std::uint32_t k = 0; k < kernels::kLanes; k += kFloats) {
       const std::size_t c = block + k;
@@ -82,20 +82,17 @@ template <class Lanes>
       const Corrected corrected =
           correct_one_sided<Side::pushes>(r, c, errors(p, n, us - up), threshold);
       const std::uint32_t corrected_lanes = count(corrected.lanes);
-      const Floats at_a = corrected.by * p.gain_a();
-      (at_a * n.x).store_aligned(x + k);
-      (at_a * n.y).store_aligned(y + k);
-      (at_a * n.z).store_aligned(z + k);
+      store(pushes, k, corrected.by * p.gain_a() * n);
       if (corrected_lanes == 0) continue;
       corrected_here += corrected_lanes;
-      move(up, n, corrected.by * p.gain_b());
+      up = fused(corrected.by * p.gain_b(), n, up);
       at_b.put(r.u, r.b + c, up);
     }
     corrections += corrected_here;
     if (corrected_here == 0) continue;
-    r.u.x[sphere] += tree_sum(x);
-    r.u.y()[sphere] += tree_sum(y);
-    r.u.z()[sphere] += tree_sum(z);
+    r.u.x[sphere] += tree_sum(pushes.x);
+    r.u.y()[sphere] += tree_sum(pushes.y);
+    r.u.z()[sphere] += tree_sum(pushes.z);
   }
   return corrections;
 }

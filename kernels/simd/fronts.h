@@ -66,14 +66,6 @@ struct Tile {
   }
 };
 
-[[gnu::always_inline]] inline double fused(double x, double y, double z) {
-#if defined(__AVX2__)
-  return __builtin_fma(x, y, z);
-#else
-  return x * y + z;
-#endif
-}
-
 /// Pivots of four columns, and what each takes from the later ones.
 struct Corner {
   double reciprocal[4];

@@ -15,8 +15,7 @@ namespace {
   const auto free = w > zero;
   DoubleVector a{Doubles(m.gravity.x), Doubles(m.gravity.y), Doubles(m.gravity.z)};
   if (m.force.x != nullptr) {
-    const DoubleVector f = load(m.force, i);
-    a = {fused(w, f.x, a.x), fused(w, f.y, a.y), fused(w, f.z, a.z)};
+    a = fused(w, load(m.force, i), a);
   }
   return {xsimd::select(free, a.x, zero), xsimd::select(free, a.y, zero),
           xsimd::select(free, a.z, zero)};
@@ -25,8 +24,7 @@ namespace {
 [[gnu::always_inline]] inline DoubleVector predicted(const DoubleVector& p, const DoubleVector& v,
                                                      const DoubleVector& a, double h) {
   const Doubles step(h), half(0.5 * h * h);
-  return {fused(half, a.x, fused(step, v.x, p.x)), fused(half, a.y, fused(step, v.y, p.y)),
-          fused(half, a.z, fused(step, v.z, p.z))};
+  return fused(half, a, fused(step, v, p));
 }
 
 void predict(const Motion& m, double h, std::size_t first, std::size_t last) {
@@ -47,9 +45,7 @@ bool commit(const Motion& m, double h, std::size_t first, std::size_t last) {
     const DoubleVector v = load(m.velocity, i), a = acceleration(m, i);
     const DoubleVector x = load(m.solved, i);
     const DoubleVector d = x - predicted(load(m.position, i), v, a, h);
-    const DoubleVector next{fused(rate, d.x, fused(step, a.x, v.x)),
-                            fused(rate, d.y, fused(step, a.y, v.y)),
-                            fused(rate, d.z, fused(step, a.z, v.z))};
+    const DoubleVector next = fused(rate, d, fused(step, a, v));
     store(m.next_velocity, i, next);
     good = good && within_range(x) && within_range(next);
   }
@@ -82,10 +78,7 @@ kernels::Kicks measure_kicks(const Motion& m, double h, std::size_t first, std::
     const DoubleVector p = load(m.position, i), v = load(m.velocity, i), a = acceleration(m, i);
     const DoubleVector x = load(m.solved, i), next = load(m.next_velocity, i);
     const DoubleVector d = x - predicted(p, v, a, h);
-    const DoubleVector committed{fused(rate, d.x, fused(step, a.x, v.x)),
-                                 fused(rate, d.y, fused(step, a.y, v.y)),
-                                 fused(rate, d.z, fused(step, a.z, v.z))};
-    const DoubleVector kick = next - committed;
+    const DoubleVector kick = next - fused(rate, d, fused(step, a, v));
     const Doubles w = load(m.inverse_mass + i);
     const auto free = w > zero;
     const Doubles mass = xsimd::select(free, one / xsimd::select(free, w, one), zero);
@@ -112,13 +105,11 @@ void apply_displacements(kernels::VectorsView x, Displacements u, std::size_t fi
                          std::size_t last) {
   if (u.in_quads()) return apply_quads(x, u.x, first, last);
   for (std::size_t i = first; i < last; i += kDoubles) {
-    const DoubleVector p = load(x, i);
-    store(x, i,
-          {p.x + load_as_double(u.x + i), p.y + load_as_double(u.y() + i),
-           p.z + load_as_double(u.z() + i)});
+    const DoubleVector by{load_as_double(u.x + i), load_as_double(u.y() + i),
+                          load_as_double(u.z() + i)};
+    store(x, i, load(x, i) + by);
   }
-  const Floats zero(0.f);
-  for (std::size_t i = first; i < last; i += kFloats) store(u, i, {zero, zero, zero});
+  for (std::size_t i = first; i < last; i += kFloats) store(u, i, no_vector());
 }
 
 }  // namespace

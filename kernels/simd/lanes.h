@@ -76,6 +76,13 @@ static_assert(kernels::kLanes % kFloats == 0);
   return x * y + z;
 #endif
 }
+[[gnu::always_inline]] inline double fused(double x, double y, double z) {
+#if defined(__AVX2__)
+  return __builtin_fma(x, y, z);
+#else
+  return x * y + z;
+#endif
+}
 
 /// One bit per lane.
 [[gnu::always_inline]] inline std::uint32_t bits(FloatMask mask) {
@@ -97,12 +104,12 @@ static_assert(kernels::kLanes % kFloats == 0);
 }
 
 /// Three batches: a vector per lane.
-struct FloatVector {
-  Floats x, y, z;
+template <class Batch>
+struct VectorOf {
+  Batch x, y, z;
 };
-struct DoubleVector {
-  Doubles x, y, z;
-};
+using FloatVector = VectorOf<Floats>;
+using DoubleVector = VectorOf<Doubles>;
 
 [[gnu::always_inline]] inline Floats load(const float* p) { return Floats::load_unaligned(p); }
 [[gnu::always_inline]] inline Doubles load(const double* p) { return Doubles::load_unaligned(p); }
@@ -113,6 +120,9 @@ struct DoubleVector {
 }
 [[gnu::always_inline]] inline DoubleVector load(const kernels::VectorsView& v, std::size_t i) {
   return {load(v.x + i), load(v.y + i), load(v.z + i)};
+}
+[[gnu::always_inline]] inline FloatVector load(const LaneVectors& v, std::uint32_t lane) {
+  return {load(v.x + lane), load(v.y + lane), load(v.z + lane)};
 }
 [[gnu::always_inline]] inline void store(const Displacements& u, std::size_t i,
                                          const FloatVector& f) {
@@ -128,14 +138,38 @@ struct DoubleVector {
   d.z.store_unaligned(v.z + i);
 }
 
-[[gnu::always_inline]] inline DoubleVector operator-(const DoubleVector& a, const DoubleVector& b) {
+[[gnu::always_inline]] inline void store(LaneVectors& v, std::uint32_t lane, const FloatVector& f) {
+  f.x.store_unaligned(v.x + lane);
+  f.y.store_unaligned(v.y + lane);
+  f.z.store_unaligned(v.z + lane);
+}
+
+template <class Batch>
+[[gnu::always_inline]] inline VectorOf<Batch> operator+(const VectorOf<Batch>& a,
+                                                        const VectorOf<Batch>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class Batch>
+[[gnu::always_inline]] inline VectorOf<Batch> operator-(const VectorOf<Batch>& a,
+                                                        const VectorOf<Batch>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-[[gnu::always_inline]] inline FloatVector operator-(const FloatVector& a, const FloatVector& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
+template <class Batch>
+[[gnu::always_inline]] inline VectorOf<Batch> operator*(Batch s, const VectorOf<Batch>& a) {
+  return {s * a.x, s * a.y, s * a.z};
 }
-[[gnu::always_inline]] inline Doubles dot(const DoubleVector& a, const DoubleVector& b) {
+/// s b + a
+template <class Batch>
+[[gnu::always_inline]] inline VectorOf<Batch> fused(Batch s, const VectorOf<Batch>& b,
+                                                    const VectorOf<Batch>& a) {
+  return {fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.z, a.z)};
+}
+template <class Batch>
+[[gnu::always_inline]] inline Batch dot(const VectorOf<Batch>& a, const VectorOf<Batch>& b) {
   return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
+}
+[[gnu::always_inline]] inline FloatVector no_vector() {
+  return {Floats(0.f), Floats(0.f), Floats(0.f)};
 }
 
 /// Rounds kDoubles doubles to float.

@@ -67,8 +67,8 @@ std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_
     std::uint32_t left = 0;
     if (lanes != 0) {
       corrections += count(corrected.lanes);
-      move(ua, n, corrected.by * p.gain_a());
-      move(ub, n, corrected.by * p.gain_b());
+      ua = fused(corrected.by * p.gain_a(), n, ua);
+      ub = fused(corrected.by * p.gain_b(), n, ub);
       store(r.u, a, ua);
       store(r.u, b, ub);
       left = bits(xsimd::abs(errors(p, n, ua - ub)) > threshold);

@@ -31,15 +31,6 @@ namespace {
 
 using kernels::kLanes;
 
-[[gnu::always_inline]] inline FloatVector load(const LaneVectors& v, std::uint32_t lane) {
-  return {load(v.x + lane), load(v.y + lane), load(v.z + lane)};
-}
-[[gnu::always_inline]] inline void store(LaneVectors& v, std::uint32_t lane, const FloatVector& f) {
-  f.x.store_unaligned(v.x + lane);
-  f.y.store_unaligned(v.y + lane);
-  f.z.store_unaligned(v.z + lane);
-}
-
 /// What will be wanted from memory: in place, the rows behind each of `rows` rows; or the patches
 /// of the next block.
 struct Ahead {
@@ -234,8 +225,7 @@ inline void fetch(const Yarns& y, const YarnBlock& block, float* u, const Rows& 
 /// What is nobody's is put back as 0.
 inline void put_back(const Yarns& y, const YarnBlock& block, float* u, const Rows& rows) {
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
-    const Floats none(0.f);
-    rows.put(rows_of(block), lane, {none, none, none});
+    rows.put(rows_of(block), lane, no_vector());
   }
   for (std::uint32_t i = block.first_patch; i < block.last_patch; ++i) {
     const YarnPatch& patch = y.patch[i];

@@ -25,24 +25,6 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-[[gnu::always_inline]] inline Floats dot(const FloatVector& a, const FloatVector& b) {
-  return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
-}
-[[gnu::always_inline]] inline FloatVector operator+(const FloatVector& a, const FloatVector& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-[[gnu::always_inline]] inline FloatVector operator*(Floats s, const FloatVector& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-/// s b + a
-[[gnu::always_inline]] inline FloatVector fused(Floats s, const FloatVector& b,
-                                                const FloatVector& a) {
-  return {fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.z, a.z)};
-}
-[[gnu::always_inline]] inline FloatVector no_vector() {
-  return {Floats(0.f), Floats(0.f), Floats(0.f)};
-}
-
 [[gnu::always_inline]] inline Floats rest(const Yarns& y, std::size_t row, std::uint32_t lane) {
   return load(y.kinds[y.kind[row]].rest + lane);
 }
@@ -80,7 +62,7 @@ struct Unpacking {
       : power(xsimd::bitwise_cast<Ints>(Floats(0x1p11f * cell)) ^ Ints(0x200 << 12)),
         taken(0x1.4p11f * cell) {}
   [[gnu::always_inline]] FloatVector plus(const FloatVector& u, Ints v) const {
-    return {number(v >> 10) + u.x, number(v) + u.y, number(v << 10) + u.z};
+    return FloatVector{number(v >> 10), number(v), number(v << 10)} + u;
   }
 
  private:
