@@ -33,19 +33,24 @@ void predict(const Motion& m, double h, std::size_t first, std::size_t last) {
   }
 }
 
+/// The velocity of what solving has moved by d.
+[[gnu::always_inline]] inline DoubleVector committed(const DoubleVector& v, const DoubleVector& a,
+                                                     const DoubleVector& d, double h) {
+  return fused(Doubles(1 / h), d, fused(Doubles(h), a, v));
+}
+
 [[gnu::always_inline]] inline DoubleMask within_range(const DoubleVector& d) {
   const Doubles most(kernels::kMost);
   return xsimd::abs(d.x) <= most && xsimd::abs(d.y) <= most && xsimd::abs(d.z) <= most;
 }
 
 bool commit(const Motion& m, double h, std::size_t first, std::size_t last) {
-  const Doubles step(h), rate(1 / h);
   DoubleMask good(true);
   for (std::size_t i = first; i < last; i += kDoubles) {
     const DoubleVector v = load(m.velocity, i), a = acceleration(m, i);
     const DoubleVector x = load(m.solved, i);
     const DoubleVector d = x - predicted(load(m.position, i), v, a, h);
-    const DoubleVector next = fused(rate, d, fused(step, a, v));
+    const DoubleVector next = committed(v, a, d, h);
     store(m.next_velocity, i, next);
     good = good && within_range(x) && within_range(next);
   }
@@ -73,12 +78,12 @@ struct KickColumns {
 
 kernels::Kicks measure_kicks(const Motion& m, double h, std::size_t first, std::size_t last) {
   KickColumns columns;
-  const Doubles step(h), rate(1 / h), two(2.), one(1.), zero(0.);
+  const Doubles rate(1 / h), two(2.), one(1.), zero(0.);
   for (std::size_t i = first; i < last; i += kDoubles) {
     const DoubleVector p = load(m.position, i), v = load(m.velocity, i), a = acceleration(m, i);
     const DoubleVector x = load(m.solved, i), next = load(m.next_velocity, i);
     const DoubleVector d = x - predicted(p, v, a, h);
-    const DoubleVector kick = next - fused(rate, d, fused(step, a, v));
+    const DoubleVector kick = next - committed(v, a, d, h);
     const Doubles w = load(m.inverse_mass + i);
     const auto free = w > zero;
     const Doubles mass = xsimd::select(free, one / xsimd::select(free, w, one), zero);
