@@ -97,6 +97,14 @@ template <bool kFromMemory, class Correct>
   return corrections;
 }
 
+template <class Correct>
+[[gnu::always_inline]] inline std::uint32_t relax_any_contiguous(const Relaxation& r,
+                                                                 const Run& run,
+                                                                 Correct&& correct) {
+  return r.from_memory ? relax_contiguous<true>(r, run, correct)
+                       : relax_contiguous<false>(r, run, correct);
+}
+
 /// Displacements of scattered slots, planar, brought side by side. The machine's own gather and
 /// scatter instructions are slower still (2.8 with gather, 3.3 with both, against 2.5 ns).
 struct PlanarLanes {
@@ -196,8 +204,7 @@ std::uint32_t relax_rope_serial(const Relaxation& r, std::uint32_t first, std::u
 }
 
 std::uint32_t relax_run(const Relaxation& r, const Run& run) {
-  if (r.from_memory) return relax_contiguous<true>(r, run, correct_distances);
-  return relax_contiguous<false>(r, run, correct_distances);
+  return relax_any_contiguous(r, run, correct_distances);
 }
 void relax_runs(const Relaxation& r, const Run* runs, std::size_t count, const std::uint8_t* wanted,
                 std::uint32_t* corrections) {
@@ -205,16 +212,14 @@ void relax_runs(const Relaxation& r, const Run* runs, std::size_t count, const s
   for (std::size_t i = 0; i < count; ++i) {
     corrections[i] = 0;
     if (wanted != nullptr && wanted[i] == 0) continue;
-    corrections[i] = local.from_memory ? relax_contiguous<true>(local, runs[i], correct_distances)
-                                       : relax_contiguous<false>(local, runs[i], correct_distances);
+    corrections[i] = relax_any_contiguous(local, runs[i], correct_distances);
   }
 }
 std::uint32_t relax_singles(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
   return relax_any_scattered(r, first, last, correct_distances);
 }
 std::uint32_t relax_rope_run(const Relaxation& r, const Run& run) {
-  if (r.from_memory) return relax_contiguous<true>(r, run, correct_one_sided<Side::pulls>);
-  return relax_contiguous<false>(r, run, correct_one_sided<Side::pulls>);
+  return relax_any_contiguous(r, run, correct_one_sided<Side::pulls>);
 }
 std::uint32_t relax_rope_singles(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
   return relax_any_scattered(r, first, last, correct_one_sided<Side::pulls>);
