@@ -47,70 +47,75 @@ struct Direction {
   return {load(x), load(y), load(z)};
 }
 
-[[gnu::always_inline]] inline void renew(const Geometry& g, const Relaxation& r, std::size_t c,
-                                         const DoubleVector& d) {
-  const Direction to = direction(d);
-  store_scaled(r, c, to.n, to.length - load(g.rest_length + c), load(g.scale + c));
-}
+/// Constraints of a run, whose ends lie side by side.
+struct InRun {
+  std::size_t first, last;
+  std::size_t a, b;  // slots of the ends of constraint c, less c
 
-[[gnu::always_inline]] inline void renew_from_start(const Geometry& g, const Relaxation& r,
-                                                    std::size_t c, const DoubleVector& d,
-                                                    const DoubleVector& start) {
-  const Doubles length = xsimd::sqrt(dot(d, d));
-  store_scaled(r, c, direction(start).n, length - load(g.rest_length + c), load(g.scale + c));
-}
+  [[gnu::always_inline]] explicit InRun(const Run& run)
+      : first(run.constraint), last(first + run.length), a(run.a - first), b(run.b - first) {}
+  [[gnu::always_inline]] DoubleVector between(const kernels::VectorsView& v, std::size_t c) const {
+    return load(v, a + c) - load(v, b + c);
+  }
+};
+/// Constraints whose ends lie anywhere.
+struct Singles {
+  const Geometry& g;
+  std::size_t first, last;
 
-[[gnu::always_inline]] inline void renew_velocity(const Geometry& g, const Relaxation& r,
-                                                  std::size_t c, const DoubleVector& d,
-                                                  const DoubleVector& dv) {
-  const Direction to = direction(d);
-  store_scaled(r, c, to.n, dot(to.n, dv), load(g.scale + c));
-}
+  [[gnu::always_inline]] DoubleVector between(const kernels::VectorsView& v, std::size_t c) const {
+    return gather(v, g.a + c) - gather(v, g.b + c);
+  }
+};
 
-void renew_run(const Geometry& g, const Relaxation& r, const Run& run) {
-  for (std::size_t k = 0; k < run.length; k += kDoubles) {
-    renew(g, r, run.constraint + k, load(g.x, run.a + k) - load(g.x, run.b + k));
+template <class Range>
+[[gnu::always_inline]] inline void renew(const Geometry& g, const Relaxation& r,
+                                         const Range& range) {
+  for (std::size_t c = range.first; c < range.last; c += kDoubles) {
+    const Direction to = direction(range.between(g.x, c));
+    store_scaled(r, c, to.n, to.length - load(g.rest_length + c), load(g.scale + c));
   }
 }
 
+template <class Range>
+[[gnu::always_inline]] inline void renew_from_start(const Geometry& g, kernels::VectorsView start,
+                                                    const Relaxation& r, const Range& range) {
+  for (std::size_t c = range.first; c < range.last; c += kDoubles) {
+    const Doubles length = direction(range.between(g.x, c)).length;
+    const DoubleVector n = direction(range.between(start, c)).n;
+    store_scaled(r, c, n, length - load(g.rest_length + c), load(g.scale + c));
+  }
+}
+
+template <class Range>
+[[gnu::always_inline]] inline void renew_velocity(const Geometry& g, kernels::VectorsView v,
+                                                  const Relaxation& r, const Range& range) {
+  for (std::size_t c = range.first; c < range.last; c += kDoubles) {
+    const DoubleVector n = direction(range.between(g.x, c)).n;
+    store_scaled(r, c, n, dot(n, range.between(v, c)), load(g.scale + c));
+  }
+}
+
+void renew_run(const Geometry& g, const Relaxation& r, const Run& run) { renew(g, r, InRun(run)); }
 void renew_singles(const Geometry& g, const Relaxation& r, std::uint32_t first,
                    std::uint32_t last) {
-  for (std::size_t c = first; c < last; c += kDoubles) {
-    renew(g, r, c, gather(g.x, g.a + c) - gather(g.x, g.b + c));
-  }
+  renew(g, r, Singles{g, first, last});
 }
-
 void renew_from_start_run(const Geometry& g, kernels::VectorsView start, const Relaxation& r,
                           const Run& run) {
-  for (std::size_t k = 0; k < run.length; k += kDoubles) {
-    const std::size_t a = run.a + k, b = run.b + k;
-    renew_from_start(g, r, run.constraint + k, load(g.x, a) - load(g.x, b),
-                     load(start, a) - load(start, b));
-  }
+  renew_from_start(g, start, r, InRun(run));
 }
-
 void renew_from_start_singles(const Geometry& g, kernels::VectorsView start, const Relaxation& r,
                               std::uint32_t first, std::uint32_t last) {
-  for (std::size_t c = first; c < last; c += kDoubles) {
-    renew_from_start(g, r, c, gather(g.x, g.a + c) - gather(g.x, g.b + c),
-                     gather(start, g.a + c) - gather(start, g.b + c));
-  }
+  renew_from_start(g, start, r, Singles{g, first, last});
 }
-
 void renew_velocity_run(const Geometry& g, kernels::VectorsView v, const Relaxation& r,
                         const Run& run) {
-  for (std::size_t k = 0; k < run.length; k += kDoubles) {
-    const std::size_t a = run.a + k, b = run.b + k;
-    renew_velocity(g, r, run.constraint + k, load(g.x, a) - load(g.x, b), load(v, a) - load(v, b));
-  }
+  renew_velocity(g, v, r, InRun(run));
 }
-
 void renew_velocity_singles(const Geometry& g, kernels::VectorsView v, const Relaxation& r,
                             std::uint32_t first, std::uint32_t last) {
-  for (std::size_t c = first; c < last; c += kDoubles) {
-    renew_velocity(g, r, c, gather(g.x, g.a + c) - gather(g.x, g.b + c),
-                   gather(v, g.a + c) - gather(v, g.b + c));
-  }
+  renew_velocity(g, v, r, Singles{g, first, last});
 }
 
 }  // namespace

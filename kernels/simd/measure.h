@@ -25,20 +25,18 @@ namespace {
   return xsimd::select(inverse > zero, error, zero);
 }
 
-/// Of constraints first ... last, whole blocks of kLanes; between(c) is what lies between the ends
-/// of kDoubles of them. The columns stay in registers.
-template <class Between>
-[[gnu::always_inline]] inline StrainSums sum_strains(const Geometry& g, std::size_t first,
-                                                     std::size_t last, bool rope,
-                                                     Between&& between) {
+/// Of whole blocks of kLanes. The columns stay in registers.
+template <class Range>
+[[gnu::always_inline]] inline StrainSums sum_strains(const Geometry& g, const Range& range,
+                                                     bool rope) {
   constexpr std::size_t kVectors = kernels::kLanes / kDoubles;
   Doubles most(0.), squares[kVectors];
   std::ranges::fill(squares, Doubles(0.));
-  for (std::size_t block = first; block < last; block += kernels::kLanes) {
+  for (std::size_t block = range.first; block < range.last; block += kernels::kLanes) {
 #pragma GCC unroll 8
     for (std::size_t i = 0; i < kVectors; ++i) {
       const std::size_t c = block + i * kDoubles;
-      const Doubles error = strain(g, c, between(c), rope);
+      const Doubles error = strain(g, c, range.between(g.x, c), rope);
       most = xsimd::max(most, error);
       squares[i] = fused(error, error, squares[i]);
     }
@@ -52,18 +50,12 @@ template <class Between>
 }
 
 StrainSums strain_run(const Geometry& g, const Run& run, bool rope) {
-  const std::size_t a = run.a - std::size_t{run.constraint},
-                    b = run.b - std::size_t{run.constraint};
-  const auto between = [&](std::size_t c) { return load(g.x, a + c) - load(g.x, b + c); };
-  const std::size_t first = run.constraint, last = first + run.length;
-  return rope ? sum_strains(g, first, last, true, between)
-              : sum_strains(g, first, last, false, between);
+  return rope ? sum_strains(g, InRun(run), true) : sum_strains(g, InRun(run), false);
 }
 
 StrainSums strain_singles(const Geometry& g, std::uint32_t first, std::uint32_t last, bool rope) {
-  const auto between = [&](std::size_t c) { return gather(g.x, g.a + c) - gather(g.x, g.b + c); };
-  return rope ? sum_strains(g, first, last, true, between)
-              : sum_strains(g, first, last, false, between);
+  const Singles singles{g, first, last};
+  return rope ? sum_strains(g, singles, true) : sum_strains(g, singles, false);
 }
 
 /// Largest and smallest of what was taken; their order does not matter. What is not finite is
@@ -72,13 +64,16 @@ struct StretchLanes {
   Doubles least = Doubles(1.), most = Doubles(1.);
   Doubles poison = Doubles(0.);  // 0, or not a number
 
-  [[gnu::always_inline]] void take(const Geometry& g, std::size_t c, const DoubleVector& d,
-                                   bool rope) {
-    const Doubles inverse = load(g.inverse_square + c), one(1.);
-    const Doubles ratio = xsimd::select(inverse > Doubles(0.), inverse * dot(d, d), one);
-    poison = fused(ratio, Doubles(0.), poison);
-    most = xsimd::select(ratio > most, ratio, most);
-    if (!rope) least = xsimd::select(ratio < least, ratio, least);
+  template <class Range>
+  [[gnu::always_inline]] void take(const Geometry& g, const Range& range, bool rope) {
+    for (std::size_t c = range.first; c < range.last; c += kDoubles) {
+      const DoubleVector d = range.between(g.x, c);
+      const Doubles inverse = load(g.inverse_square + c), one(1.);
+      const Doubles ratio = xsimd::select(inverse > Doubles(0.), inverse * dot(d, d), one);
+      poison = fused(ratio, Doubles(0.), poison);
+      most = xsimd::select(ratio > most, ratio, most);
+      if (!rope) least = xsimd::select(ratio < least, ratio, least);
+    }
   }
   StretchRange range() const {
     alignas(64) double low[kDoubles], high[kDoubles];
@@ -94,20 +89,14 @@ struct StretchLanes {
 
 StretchRange stretch_runs(const Geometry& g, const Run* runs, std::size_t count, bool rope) {
   StretchLanes lanes;
-  for (const Run* run = runs; run != runs + count; ++run) {
-    for (std::size_t k = 0; k < run->length; k += kDoubles) {
-      lanes.take(g, run->constraint + k, load(g.x, run->a + k) - load(g.x, run->b + k), rope);
-    }
-  }
+  for (const Run* run = runs; run != runs + count; ++run) lanes.take(g, InRun(*run), rope);
   return lanes.range();
 }
 
 StretchRange stretch_singles(const Geometry& g, std::uint32_t first, std::uint32_t last,
                              bool rope) {
   StretchLanes lanes;
-  for (std::size_t c = first; c < last; c += kDoubles) {
-    lanes.take(g, c, gather(g.x, g.a + c) - gather(g.x, g.b + c), rope);
-  }
+  lanes.take(g, Singles{g, first, last}, rope);
   return lanes.range();
 }
 
