@@ -16,7 +16,7 @@ void for_each_pair(const Model& m, const simd::Table& kernels, kernels::VectorsV
                    std::vector<std::uint32_t>& found, Reach&& reach, Visit&& visit) {
   for (const std::uint32_t s : m.spheres) {
     const std::size_t near =
-        kernels.find_near(x, m.radius.data(), x[s], reach(m.radius[s]), 0, m.slots(), found.data());
+        kernels.find_near(x, m.radius.data(), x[s], reach(m.radius[s]), m.slots(), found.data());
     for (std::size_t i = 0; i < near; ++i) {
       if (may_touch(m, s, found[i])) visit(s, found[i], m.radius[s] + m.radius[found[i]]);
     }

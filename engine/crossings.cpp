@@ -26,7 +26,7 @@ std::uint32_t find_crossing(const Model& m, const simd::Table& kernels, kernels:
   for (const std::uint32_t s : m.spheres) {
     const kernels::Vector start = before[s], along = after[s] - start;
     const std::size_t far = kernels.find_moved(before, after, along, m.radius.data(), m.radius[s],
-                                               kShortest, 0, m.slots(), moved.data());
+                                               kShortest, m.slots(), moved.data());
     for (std::size_t i = 0; i < far; ++i) {
       const std::uint32_t p = moved[i];
       const kernels::Vector from = before[p] - start, to = from + (after[p] - before[p] - along);

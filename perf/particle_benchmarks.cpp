@@ -33,13 +33,13 @@ constexpr Kernel kKernels[] = {
     {"find_near", 32, 32,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
        const kernels::Vector centre{0.5, 0, 0.5};
-       benchmark::DoNotOptimize(t.find_near(w.position.view(), w.reach.data(), centre, 0.1, 0,
-                                            w.slots(), w.near.data()));
+       benchmark::DoNotOptimize(
+           t.find_near(w.position.view(), w.reach.data(), centre, 0.1, w.slots(), w.near.data()));
      }},
     {"find_moved", 56, 56,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
        benchmark::DoNotOptimize(t.find_moved(w.position.view(), w.solved.view(), {}, w.reach.data(),
-                                             1, 1, 0, w.slots(), w.near.data()));
+                                             1, 1, w.slots(), w.near.data()));
      }},
     {"split_quads", 56, 56,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {

@@ -31,10 +31,10 @@ namespace {
 }
 
 std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vector centre,
-                      double extra, std::size_t first, std::size_t last, std::uint32_t* out) {
+                      double extra, std::size_t slots, std::uint32_t* out) {
   const DoubleVector c{Doubles(centre.x), Doubles(centre.y), Doubles(centre.z)};
   std::size_t found = 0;
-  for (std::size_t i = first; i < last; i += kDoubles) {
+  for (std::size_t i = 0; i < slots; i += kDoubles) {
     const DoubleVector d = load(x, i) - c;
     const Doubles limit = load(reach + i) + Doubles(extra);
     found += list(dot(d, d) < limit * limit, i, out + found);
@@ -44,10 +44,10 @@ std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vect
 
 std::size_t find_moved(kernels::VectorsView before, kernels::VectorsView after,
                        kernels::Vector along, const double* reach, double extra, double part,
-                       std::size_t first, std::size_t last, std::uint32_t* out) {
+                       std::size_t slots, std::uint32_t* out) {
   const DoubleVector with{Doubles(along.x), Doubles(along.y), Doubles(along.z)};
   std::size_t found = 0;
-  for (std::size_t i = first; i < last; i += kDoubles) {
+  for (std::size_t i = 0; i < slots; i += kDoubles) {
     const DoubleVector way = load(after, i) - load(before, i) - with;
     const Doubles limit = Doubles(part) * (load(reach + i) + Doubles(extra));
     found += list(dot(way, way) > limit * limit, i, out + found);

@@ -327,14 +327,14 @@ struct Table {
   void (*solve_front_forward)(const Front&, double* z);
   void (*solve_front_backward)(const Front&, double* z);
 
-  /// Slots in [first, last) nearer to the centre than reach[slot] + extra; writes their indices,
-  /// returns how many.
+  /// Which of so many slots are nearer to the centre than reach[slot] + extra; writes their
+  /// indices, returns how many.
   std::size_t (*find_near)(kernels::VectorsView x, const double* reach, kernels::Vector centre,
-                           double extra, std::size_t first, std::size_t last, std::uint32_t* out);
+                           double extra, std::size_t slots, std::uint32_t* out);
   /// Likewise those that have moved, beside `along`, by more than part (reach[slot] + extra).
   std::size_t (*find_moved)(kernels::VectorsView before, kernels::VectorsView after,
                             kernels::Vector along, const double* reach, double extra, double part,
-                            std::size_t first, std::size_t last, std::uint32_t* out);
+                            std::size_t slots, std::uint32_t* out);
 };
 
 /// The isa must be supported.

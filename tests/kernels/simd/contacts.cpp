@@ -81,7 +81,7 @@ TEST_CASE("contacts push, sixteen at a time, and the sphere takes the sum") {
   }
 }
 
-TEST_CASE("find_near lists what is nearer than its reach, in order, within the range") {
+TEST_CASE("find_near lists what is nearer than its reach, in order, among the first slots") {
   for (const simd::Isa isa : supported_isas()) {
     for (const std::uint32_t length : kLengths) {
       for (const double extra : {0.0, 0.4, 5.0}) {
@@ -90,9 +90,9 @@ TEST_CASE("find_near lists what is nearer than its reach, in order, within the r
         CAPTURE(extra);
         KernelData data(length, length + 8);
         const kernels::Vector centre{0.1, -0.2, 0.3};
-        const std::size_t first = kLanes, last = data.slots - kLanes;
+        const std::size_t slots = data.slots - kLanes;
         std::vector<std::uint32_t> expected;
-        for (std::size_t i = first; i < last; ++i) {
+        for (std::size_t i = 0; i < slots; ++i) {
           const kernels::Vector d = data.position[i] - centre;
           const double limit = data.reach[i] + extra;
           if (Rounding(isa).dot(d, d) < limit * limit) {
@@ -101,16 +101,17 @@ TEST_CASE("find_near lists what is nearer than its reach, in order, within the r
         }
         std::vector<std::uint32_t> found(data.slots);
         found.resize(simd::table(isa).find_near(data.position.view(), data.reach.data(), centre,
-                                                extra, first, last, found.data()));
+                                                extra, slots, found.data()));
         CHECK(found == expected);
-        CHECK((extra != 5 || found.size() == last - first));
-        CHECK((extra == 5 || found.size() < last - first));
+        CHECK((extra != 5 || found.size() == slots));
+        CHECK((extra == 5 || found.size() < slots));
       }
     }
   }
 }
 
-TEST_CASE("find_moved lists what has moved farther than its reach, in order, within the range") {
+TEST_CASE(
+    "find_moved lists what has moved farther than its reach, in order, among the first slots") {
   for (const simd::Isa isa : supported_isas()) {
     for (const std::uint32_t length : kLengths) {
       for (const double part : {0.0, 0.4, 50.0}) {
@@ -119,9 +120,9 @@ TEST_CASE("find_moved lists what has moved farther than its reach, in order, wit
         CAPTURE(part);
         KernelData data(length, length + 9);
         const kernels::Vector along{0.1, -0.2, 0.3};
-        const std::size_t first = kLanes, last = data.slots - kLanes;
+        const std::size_t slots = data.slots - kLanes;
         std::vector<std::uint32_t> expected;
-        for (std::size_t i = first; i < last; ++i) {
+        for (std::size_t i = 0; i < slots; ++i) {
           const kernels::Vector way = data.position[i] - data.velocity[i] - along;
           const double limit = part * (data.reach[i] + 1.5);
           if (Rounding(isa).dot(way, way) > limit * limit) {
@@ -130,10 +131,10 @@ TEST_CASE("find_moved lists what has moved farther than its reach, in order, wit
         }
         std::vector<std::uint32_t> found(data.slots);
         found.resize(simd::table(isa).find_moved(data.velocity.view(), data.position.view(), along,
-                                                 data.reach.data(), 1.5, part, first, last,
+                                                 data.reach.data(), 1.5, part, slots,
                                                  found.data()));
         CHECK(found == expected);
-        CHECK((part != 0 || found.size() == last - first));
+        CHECK((part != 0 || found.size() == slots));
         CHECK((part != 50 || found.empty()));
       }
     }
