@@ -90,6 +90,7 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
     if (left <= 0) return result;
     const LoopResult swept = sweeps(attempt == 0, std::min(wanted, left));
     count(result, swept);
+    result.failed = true;  // for the answer is that of sweeps
     if (result.converged || result.iterations >= max_iterations) return result;
     copy(x, start_.view(), start_.size());
     restart(x, contacts);
