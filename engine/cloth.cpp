@@ -58,7 +58,7 @@ Result<Cloth> Cloth::create(std::shared_ptr<const Model> model, const Settings& 
   auto isa = resolve(settings.isa);
   if (!isa) return Error{isa.error()};
   if (settings.backend == Backend::simd) {
-    if (auto valid = validate_for_lanes(settings, model->constraints); !valid) {
+    if (auto valid = validate_for_lanes(settings, *model); !valid) {
       return Error{valid.error()};
     }
   }

@@ -31,8 +31,8 @@ struct Attempt {
 /// gave_up: it failed, and there is no result. lost: the result is not finite.
 enum class Ended : std::uint8_t { solved, made_do, gave_up, lost };
 
-/// What an attempt came to. Work and times go into the report at once; this does so when the
-/// attempt is accepted.
+/// What an attempt came to; it counts when the attempt is accepted. Work and times go into the
+/// report in any case.
 struct Trial {
   Ended ended = Ended::solved;
   Status status = Status::converged;

@@ -127,7 +127,8 @@ class Substeps {
   /// which nothing has been done.
   enum class Outcome : std::uint8_t { done, refused, hopeless };
 
-  /// After a substep was hopeless. Where nothing may be halved or left none is.
+  /// After a substep was hopeless. The second time nothing may be halved or left any more, and so
+  /// no substep is hopeless again.
   void be_safer() {
     if (only_sweeps_) {
       only_sweeps_ = false;
@@ -156,7 +157,6 @@ class Substeps {
     const std::int64_t before = report_.iterations;
     const Trial trial = substep(s_, attempt, report_, team_);
     left_ -= static_cast<int>(report_.iterations - before);
-    stood_at_ = std::max(stood_at_, trial.stood_at);
     if (leave && !trial.has_result()) {
       gave_up_ = true;
       if (parts_ == 0 && !(halve && begins_well(h))) return Outcome::hopeless;
@@ -184,6 +184,7 @@ class Substeps {
     }
     if (gave_up_) take_gained_energy(s_);
     transaction_.accept(last);
+    stood_at_ = std::max(stood_at_, trial.stood_at);
     worsen(report_, trial.status);
     if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
     ++report_.substeps;
@@ -218,7 +219,7 @@ class Substeps {
             .only_sweeps = began_with_sweeps,
             .swept_in_vain = began_with_sweeps && !only_sweeps_,
             .may_be_swept = sweeps_converge && !s_.model->has_contacts(),
-            .stood_at = report_.status == Status::infeasible ? stood_at_ : 0,
+            .stood_at = stood_at_,
             .passes = static_cast<double>(report_.visits - projected_) / constraints};
   }
 

@@ -244,15 +244,22 @@ Result<void> validate(const Settings& s) {
   return validate_choice("directions", s.directions, Directions::frozen);
 }
 
-Result<void> validate_for_lanes(const Settings& s, const ConstraintStore& constraints) {
-  if (auto r = validate_float("contact_tolerance", s.contact_tolerance); !r) return r;
-  if (auto r = validate_float("velocity_tolerance", s.velocity_tolerance); !r) return r;
+Result<void> validate_for_lanes(const Settings& s, const Model& model) {
+  const bool corrects_velocities = s.velocity_correction || s.scheme == Scheme::rattle;
+  if (s.iterations == 0 && model.has_contacts()) {
+    if (auto r = validate_float("contact_tolerance", s.contact_tolerance); !r) return r;
+  }
+  if (s.iterations == 0 && corrects_velocities) {
+    if (auto r = validate_float("velocity_tolerance", s.velocity_tolerance); !r) return r;
+  }
+  const double tolerance = s.iterations == 0 ? s.tolerance : 1;
+  const ConstraintStore& constraints = model.constraints;
   for (std::size_t c = 0; c < constraints.size(); ++c) {
     const double rest = constraints.rest_length[c];
-    if (fits_float(rest) && fits_float(s.tolerance * rest)) continue;
+    if (fits_float(rest) && fits_float(tolerance * rest)) continue;
     const std::string field = element("constraints", constraints.described[c]) + ".rest_length";
     if (auto r = validate_float(field, rest); !r) return r;
-    return validate_float("tolerance * " + field, s.tolerance * rest);
+    return validate_float("tolerance * " + field, tolerance * rest);
   }
   return {};
 }

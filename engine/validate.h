@@ -5,12 +5,12 @@
 
 namespace weft {
 
-struct ConstraintStore;
+class Model;
 
 Result<void> validate(const SceneDescription& description);
 Result<void> validate(const Settings& settings);
-/// What float lanes can square.
-Result<void> validate_for_lanes(const Settings& settings, const ConstraintStore& constraints);
+/// For the simd backend: whether floats can square lengths and the tolerances that are used.
+Result<void> validate_for_lanes(const Settings& settings, const Model& model);
 Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_time_step(double dt);
 /// One finite vector per particle.

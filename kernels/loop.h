@@ -45,7 +45,7 @@ inline void count(LoopResult& result, const Sweep& sweep, int passes = 1) {
   result.corrections += sweep.corrections;
 }
 
-/// The part goes on where the sum has ended.
+/// The part goes on where the sum has ended: whether it converged is what counts. failed stays.
 inline void count(LoopResult& sum, const LoopResult& part) {
   sum.iterations += part.iterations;
   sum.direction_updates += part.direction_updates;

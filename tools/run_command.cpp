@@ -80,6 +80,7 @@ Result<RunSummary> run_and_record(const Prepared& prepared, RunPlan plan, Output
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
     const bool is_last = frame == plan.steps || !committed(report.status) || stopped;
     outputs.add_frame(cloth, is_last);
+    if (!progress.redraws()) return;
     progress.show(fmt::format("{} frame {}/{}, strain {}", bar(frame, plan.steps, 30), frame,
                               plan.steps, measured_percent(report.max_strain)));
   };

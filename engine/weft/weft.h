@@ -132,8 +132,9 @@ ModelInfo describe(const Model& model);
 
 /// gauss_seidel: the paper's impulse loop (section 3.2), one constraint after the other.
 /// direct: all impulses at once by sparse factorisation, repeated until the true errors are within
-///   tolerance: two or three solves, at any tolerance. For mass ratios of many thousands. At most
-///   16 free spheres may touch at a time; beyond that its substeps fall back as below.
+///   tolerance: two or three solves, at any tolerance. For mass ratios of many thousands. It takes
+///   16 bodies together, free spheres that touch or are joined to something and free particles of
+///   more than 64 constraints; with more its substeps fall back as below.
 /// yarn: splits the cloth into chains of constraints that run straight on through it, as the yarns
 ///   of a woven one do. Each is solved exactly, many side by side in SIMD lanes; where sweeps over
 ///   them converge slowly, conjugate gradients solve all of them as one system. Ropes, hubs and
@@ -142,20 +143,20 @@ ModelInfo describe(const Model& model);
 ///   the masses of free particles with constraints span more than a factor of 10^4, or with scheme
 ///   rattle and spheres; else yarn.
 /// Where yarn or direct gives up, the substep is redone as two halves; where that fails too,
-/// Gauss-Seidel takes over. StepReport::iterations counts every attempt. Such a substep gains no
-/// energy: if it would, all velocities are scaled down by one factor. For some steps afterwards
-/// automatic substeps are shorter and yarns are solved more tightly. Where yarns took thousands of
-/// passes, with scheme paper, a tolerance above 0.3 % and no spheres, the next steps use
-/// Gauss-Seidel alone. So a step depends slightly on the ones before, until positions are written.
+/// Gauss-Seidel takes over. StepReport::iterations counts every attempt. If such a substep would
+/// gain energy all velocities are scaled down by one factor, to rest at most. For some steps
+/// afterwards automatic substeps are shorter and yarns are solved more tightly. Where yarns took
+/// thousands of passes, with scheme paper, a tolerance above 0.3 % and no spheres, the next steps
+/// use Gauss-Seidel alone. So a step depends slightly on the ones before, until positions are
+/// written.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
 /// paper: impulses along the directions at the predicted positions; first order, and dissipative.
 /// rattle: along the directions at the start of the substep, always with velocity correction;
-/// second
-///   order. This includes ropes that become taut within the substep. Contacts arise within it and,
-///   in both schemes, act along their directions at its end. Where rattle does not converge, or its
-///   impulses would add energy (engine/rattle.h), the substep is redone from the same state by the
-///   paper's scheme with velocity correction; StepReport::scheme_fallbacks counts these. With
-///   Settings::iterations nothing is redone.
+///   second order. This includes ropes that become taut within the substep. Contacts arise within
+///   it and, in both schemes, act along their directions at its end. Where rattle does not
+///   converge, or its impulses would add energy (engine/rattle.h), the substep is redone from the
+///   same state by the paper's scheme with velocity correction; StepReport::scheme_fallbacks counts
+///   these. With Settings::iterations nothing is redone.
 enum class Scheme : std::uint8_t { paper, rattle };
 /// each: directions renewed before every iteration (sections 3.2, 4.1).
 /// frozen: only once all errors along them are within tolerance (section 4.4), or after renew_after
@@ -175,7 +176,10 @@ inline constexpr int kAutomaticSubsteps = 0;
 /// How a cloth is solved. The defaults converge to 1 % the fastest way that is known here;
 /// paper_settings() are the paper's.
 struct Settings {
-  double tolerance = 0.01;  ///< strain, | |a-b| - rest | / rest, that every step must reach; > 0
+  /// Strain, | |a-b| - rest | / rest, that every step must reach; > 0. The simd backend works in
+  /// floats: it takes rest lengths, tolerance * rest length, and the tolerances below that are
+  /// used, from 1e-18 to 1e18, and Cloth::create refuses others.
+  double tolerance = 0.01;
   /// Each step is done as this many substeps, each solved to the tolerances. 0
   /// (kAutomaticSubsteps): chosen from the motion (rattle: up to 2.5 times as many as paper); 1 on
   /// the reference backend or with `iterations`. A substep whose solver gives up before
@@ -191,8 +195,9 @@ struct Settings {
   /// fall by seven digits at most). Solving exactly along directions that will change is wasted
   /// work: 32 saves a fifth of the iterations and more.
   int renew_after = 32;
-  int max_iterations = 1'000'000;    ///< per substep; > 0. Projecting a start that violates
-                                     ///< constraints may take half as many more
+  /// Per substep; > 0. Besides, as many for velocities, as many again where rattle is left to
+  /// scheme paper, and half as many where a start that violates constraints is projected.
+  int max_iterations = 1'000'000;
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
   double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit;
@@ -229,8 +234,9 @@ inline Settings paper_settings() {
 /// infeasible: some constraint is out of tolerance and thousands of iterations no longer reduce the
 ///   error: constraints contradict each other (a chain whose ends are too far apart), or masses
 ///   differ by more than 10^7. The state is committed, with the error spread over the constraints.
-/// passed_through: a particle crossed a sphere within a substep without a contact (tunnelling). The
-///   state is committed; shorter steps would have found the contact.
+/// passed_through: a particle went through a sphere within a substep (tunnelling): no contact was
+///   found in time, or one pushed it out on the far side. The state is committed; shorter steps
+///   would have held it.
 /// non_finite_input: even without constraints, the positions, velocities, forces and dt lead to
 ///   numbers that are not finite. The state is unchanged.
 /// non_finite: a position or velocity would have become NaN or infinite. The state is unchanged.
@@ -325,7 +331,7 @@ class Cloth {
   /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
   /// is thrown and the state is unchanged. An error means that dt was refused. Meant for frames of
   /// 10 us to 0.1 s: in shorter ones the rounding of positions shows up as velocity; the cost of
-  /// longer ones is limited by 256 automatic substeps of max_iterations each and nothing else.
+  /// longer ones is limited by 256 automatic substeps and max_iterations for each.
   Result<StepReport> step(double dt);
 
   std::size_t particle_count() const;

@@ -106,11 +106,18 @@ TEST_CASE("random energy: ropes gain no more than their tolerance explains") {
   CHECK(checked >= static_cast<int>(seeds(1000).count / 2));
 }
 
-// Among 20,000 cases those in which a direct solution that its impulses do not explain, or ropes
-// that have pulled and end slack, would bring in energy.
+// Of 20,000 cases: first steps in which a direct solution that its impulses do not explain, or
+// ropes that have pulled and end slack, would bring in energy. Most are done in halves instead.
 TEST_CASE("what impulses do not explain, and ropes that end slack after a pull, gain none") {
-  for (const std::uint32_t seed : {1449u, 7461u, 7903u, 11086u, 11938u})
-    check_gains(roped_case(seed));
+  for (const std::uint32_t seed : {1449u, 7461u, 7903u, 11086u, 11938u}) {
+    const RandomCase c = roped_case(seed);
+    INFO(text(c));
+    Cloth cloth = cloth_of(c.scene, c.settings);
+    const State before = state_of(cloth, c);
+    step(cloth, c.dt);
+    const Gain g = gain(c, before, state_of(cloth, c));
+    CHECK(g.energy <= g.explained);
+  }
 }
 
 }  // namespace

@@ -53,16 +53,27 @@ TEST_CASE("tolerances must be finite and positive") {
 TEST_CASE("the simd backend refuses what floats cannot square") {
   const char* range = "from 1e-18 to 1e18";
   check_setting([](auto& s) { s.tolerance = 1e-40; }, {"tolerance * constraints[", range});
-  check_setting([](auto& s) { s.contact_tolerance = 1e-20; },
-                {"contact_tolerance", range, "1e-20"});
-  check_setting([](auto& s) { s.velocity_tolerance = 1e20; },
-                {"velocity_tolerance", range, "1e+20"});
+  const auto velocities = [](auto& s) {
+    s.velocity_correction = true;
+    s.velocity_tolerance = 1e20;
+  };
+  check_setting(velocities, {"velocity_tolerance", range, "1e+20"});
+  const Settings contacts{.contact_tolerance = 1e-20};
+  const auto touching = Cloth::create(model_of(scene_of("hang_sphere", 4)), contacts);
+  REQUIRE_FALSE(touching);
+  check_message(touching.error(), {"contact_tolerance", range, "1e-20"});
   SceneDescription scene = scene_of("hang", 4);
   scene.constraints[5].rest_length = 1e-30;
   const auto cloth = Cloth::create(model_of(scene), {});
   REQUIRE_FALSE(cloth);
   check_message(cloth.error(), {"constraints[5].rest_length", range, "1e-30"});
   CHECK(Cloth::create(model_of(scene), on(Backend::reference, Settings{})));
+}
+
+TEST_CASE("tolerances that nothing uses may be anything") {
+  const auto hang = model_of(scene_of("hang", 4));
+  CHECK(Cloth::create(hang, {.contact_tolerance = 1e-20, .velocity_tolerance = 1e20}));
+  CHECK(Cloth::create(hang, {.tolerance = 1e-40, .iterations = 3}));
 }
 
 TEST_CASE("iterations, their bound and the impulse limit must be in range") {
