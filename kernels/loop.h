@@ -36,7 +36,7 @@ struct LoopResult {
   std::int64_t visits = 0;
   std::int64_t corrections = 0;
   bool converged = false;
-  bool failed = false;  // gave up before its limits: from here it leads nowhere
+  bool failed = false;  // the solver gave up; what converged then is not its own solution
 };
 
 inline void count(LoopResult& result, const Sweep& sweep, int passes = 1) {

@@ -42,7 +42,7 @@ TEST_CASE("without sweeps failure is told after a few solves") {
   CHECK(result.iterations <= 10);
 }
 
-TEST_CASE("sweeps start where the step did, and their success is success") {
+TEST_CASE("sweeps start where the step did, and what they reach is an answer, not a solution") {
   Trial trial(compressed_line());
   int calls = 0;
   const auto result = trial.solve([&](bool first, int most) {
@@ -60,7 +60,7 @@ TEST_CASE("sweeps start where the step did, and their success is success") {
   });
   CHECK(calls == 2);
   CHECK(result.converged);
-  CHECK_FALSE(result.failed);
+  CHECK(result.failed);
   CHECK(result.iterations > 14);
 }
 
