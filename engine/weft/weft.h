@@ -132,8 +132,8 @@ ModelInfo describe(const Model& model);
 
 /// gauss_seidel: the paper's impulse loop (section 3.2), one constraint after the other.
 /// direct: all impulses at once by sparse factorisation, repeated until the true errors are within
-///   tolerance: two or three solves, at any tolerance. For mass ratios of many thousands. It takes
-///   16 bodies together, free spheres that touch or are joined to something and free particles of
+///   tolerance: two or three solves, at any tolerance. For mass ratios of many thousands. At most
+///   16 bodies may take part, free spheres that touch or are joined to something and particles of
 ///   more than 64 constraints; with more its substeps fall back as below.
 /// yarn: splits the cloth into chains of constraints that run straight on through it, as the yarns
 ///   of a woven one do. Each is solved exactly, many side by side in SIMD lanes; where sweeps over
