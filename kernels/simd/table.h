@@ -19,6 +19,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "kernels/kicks.h"
 #include "kernels/runs.h"
@@ -130,7 +131,11 @@ struct alignas(64) LaneVectors {
 struct alignas(64) YarnRow {
   float rest[kernels::kLanes];
   float inverse_mass[kernels::kLanes];
+  float joined[kernels::kLanes];  // inverse masses of both; 0: nothing joins them
+  float scale[kernels::kLanes];   // rest^2; where nothing joins them, more than any error
 };
+/// joined and scale of a block's rows, of which the others are known.
+void complete(std::span<YarnRow> rows);
 
 /// The same row of the linear system (yarn_system.h).
 struct alignas(64) YarnSystemRow {

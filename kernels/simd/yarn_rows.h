@@ -32,6 +32,12 @@ namespace {
                                                   std::uint32_t lane) {
   return load(y.kinds[y.kind[row]].inverse_mass + lane);
 }
+[[gnu::always_inline]] inline Floats joined(const Yarns& y, std::size_t row, std::uint32_t lane) {
+  return load(y.kinds[y.kind[row]].joined + lane);
+}
+[[gnu::always_inline]] inline Floats scale(const Yarns& y, std::size_t row, std::uint32_t lane) {
+  return load(y.kinds[y.kind[row]].scale + lane);
+}
 
 /// A whole number n of -512 ... 511 as n + 512, in bits; what is beyond is negative
 /// or 1024 and more, infinities and what is no number too.
@@ -123,6 +129,7 @@ struct BaseDown {
   /// base + u, from particle k + 1 to particle k. Without a constraint it is anything.
   [[gnu::always_inline]] FloatVector step(std::uint32_t k, const FloatVector& u, Floats rest) {
     if constexpr (kBase == Base::remembered) {
+      if (y.from_memory && lane == 0) fetch_ahead(k);
       return unpacking.plus(u, Ints::load_unaligned(words(k)));
     }
     const FloatVector next = at.get(k + 1, lane);
@@ -142,6 +149,13 @@ struct BaseDown {
   }
 
  private:
+  /// What is read once in a sweep is not to push displacements out of the caches.
+  [[gnu::always_inline]] void fetch_ahead(std::uint32_t row) const {
+    constexpr std::uintptr_t kAhead = 32 * kLanes * sizeof(std::int32_t);
+    constexpr int kToRead = 0, kNotAgain = 0;
+    const auto here = reinterpret_cast<std::uintptr_t>(words(row));
+    __builtin_prefetch(reinterpret_cast<const void*>(here + kAhead), kToRead, kNotAgain);
+  }
   [[gnu::always_inline]] std::int32_t* words(std::uint32_t row) const {
     return y.base_step + std::size_t{first + row} * kLanes + lane;
   }

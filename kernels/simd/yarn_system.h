@@ -61,7 +61,7 @@ template <Along kAlong, Base kBase, class At>
               YarnSystemRow& row = y.system[block.first + k];
               store(row.n, lane, link.n);
               f.down.store_unaligned(row.m + lane);
-              f.reciprocal.store_unaligned(row.reciprocal + lane);
+              f.reciprocal().store_unaligned(row.reciprocal + lane);
               link.error.store_unaligned(row.residual + lane);
               zero.store_unaligned(row.lambda + lane);
               zero.store_unaligned(row.p + lane);

@@ -11,9 +11,10 @@
 ///     lambda_k = r_k b_k + m_{k+1} lambda_{k+1}
 ///     x_k += w_k (lambda_{k-1} n_{k-1} - lambda_k n_k)
 ///
-/// Where a yarn has ended, or a lane has none, rows have rest length 0: their pivots, e and lambda
-/// are 0. A pivot that all but vanishes belongs to a constraint that those before it imply (a
-/// straight yarn between two fixed ends): its impulse is taken as 0.
+/// A pivot that all but vanishes belongs to a constraint that those before it imply (a straight
+/// yarn between two fixed ends): its impulse is taken as 0. Where a yarn has ended, or a lane has
+/// none, rows have rest length 0, and `joined`, which stands for w_k + w_{k+1}, is 0: they have no
+/// pivot.
 ///
 /// Scheme rattle has impulses along s, the directions at the start of the substep, while errors
 /// change along n: A = J(x) M^-1 J(q)^T is not symmetric, but tridiagonal all the same,
@@ -61,7 +62,7 @@ struct YarnLink {
   Floats error;
   Floats size;        // of A(k, k) over w_k + w_{k+1}: n . n; n's length if along is another
   FloatVector along;  // what its impulse acts along
-  Floats rest;
+  Floats off;         // length - rest
 };
 
 /// v where there is a constraint, else 0. On AVX-512 by the sign of -rest: comparisons into masks
@@ -84,16 +85,18 @@ struct YarnLink {
   const FloatVector n{where_present(rest, inverse * d.x),
                       where_present(rest, xsimd::select(distinct, inverse * d.y, one)),
                       where_present(rest, inverse * d.z)};
-  return {n, where_present(rest, length - rest), one, n, rest};
+  const Floats off = where_present(rest, length - rest);
+  return {n, off, one, n, off};
 }
 
 /// The same row of the system times the constraint's length, n = d, and its impulse over it: a
-/// division less. Without a constraint d is anything, but size, and so the pivot, is 0.
+/// division less. Without a constraint they are anything.
 template <Along kAlong>
 [[gnu::always_inline]] inline YarnLink scaled_link(const FloatVector& d, Floats rest) {
-  const Floats square = where_present(rest, dot(d, d));
+  const Floats square = dot(d, d);
   const Floats length = xsimd::sqrt(square);
-  return {d, length * (length - rest), kAlong == Along::present ? square : length, d, rest};
+  const Floats off = length - rest;
+  return {d, length * off, kAlong == Along::present ? square : length, d, off};
 }
 
 template <Along kAlong>
@@ -111,7 +114,15 @@ template <Along kAlong>
 /// Of a row: the factors of what it passes on.
 struct Factors {
   Floats down, up;
-  Floats reciprocal;  // r
+  FloatMask regular;
+  Floats quotient;  // r, where that is so
+
+  [[gnu::always_inline]] Floats reciprocal() const {
+    return xsimd::select(regular, quotient, Floats(0.f));
+  }
+  [[gnu::always_inline]] Floats over_pivot(Floats v) const {
+    return xsimd::select(regular, quotient * v, Floats(0.f));
+  }
 };
 
 /// The factorisation, row by row.
@@ -121,23 +132,22 @@ struct Elimination {
   Floats quotient = Floats(0.f);                     // r, but where the pivot was not regular
   FloatMask regular = FloatMask(false);
 
-  /// Takes the next row.
-  [[gnu::always_inline]] Factors step(const YarnLink& next, Floats wa, Floats wb) {
+  /// Takes the next row; w: of its particle; joined: 0 where it has no constraint, and so no pivot.
+  [[gnu::always_inline]] Factors step(const YarnLink& next, Floats w, Floats joined) {
     constexpr bool kSymmetric = kAlong != Along::start;
-    const Floats sum = wa + wb;
-    const Floats c = wa * dot(n, next.along);
-    const Floats l = kSymmetric ? c : wa * dot(along, next.n);
+    const Floats c = w * dot(n, next.along);
+    const Floats l = kSymmetric ? c : w * dot(along, next.n);
     // Selected here, not from the quotient, which would have to wait for the comparison.
     const Floats none(0.f);
     const Floats down = xsimd::select(regular, l * quotient, none);
     const Floats up = kSymmetric ? down : xsimd::select(regular, c * quotient, none);
-    const Floats size = sum * next.size;
-    const Floats pivot = fused_from(down, c, kSymmetric ? size : sum * dot(next.n, next.along));
+    const Floats size = joined * next.size;
+    const Floats pivot = fused_from(down, c, kSymmetric ? size : joined * dot(next.n, next.along));
     regular = pivot > fused(Floats(kLeastPivot), size, Floats(kLeastNormal));
     quotient = Floats(1.f) / pivot;
     n = next.n;
     along = next.along;
-    return {down, up, xsimd::select(regular, quotient, none)};
+    return {down, up, regular, quotient};
   }
 };
 
@@ -177,29 +187,28 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
 [[gnu::always_inline]] inline void go_down(const Yarns& yarns, const YarnBlock& block, At at,
                                            At base, std::uint32_t lane, MakeLink&& make_link,
                                            Take&& take) {
-  const Yarns y = yarns;  // stores of vectors could be to what a reference leads to: read again
-  const std::uint32_t last = rows_of(block) - 1;
+  // Stores of vectors could be to what references lead to, which would be read again.
+  const Yarns y = yarns;
+  const std::uint32_t first = block.first, last = rows_of(block) - 1;
   Elimination<kAlong> elimination;
   FloatVector here = at.get(0, lane);
-  BaseDown<kBase, At> base_down(y, base, block.first, lane);
-  Floats w = inverse_mass(y, block.first, lane);
+  BaseDown<kBase, At> base_down(y, base, first, lane);
   for (std::uint32_t k = 0; k < last; ++k) {
     at.fetch_ahead(k, last, lane);
     if constexpr (kBase == Base::fetched) base.fetch_ahead(k, last, lane);
-    const std::uint32_t row = block.first + k;
+    const std::uint32_t row = first + k;
     const FloatVector next = at.get(k + 1, lane);
-    const Floats w_next = inverse_mass(y, row + 1, lane);
     const Floats length = rest(y, row, lane);
     const FloatVector d = apart(y, base_down.step(k, here - next, length));
     YarnLink link = make_link(d, length);
     direct<kAlong>(link, y.start, row, lane);
-    take(k, here, link, elimination.step(link, w, w_next));
+    take(k, here, link, elimination.step(link, inverse_mass(y, row, lane), joined(y, row, lane)));
     here = next;
-    w = w_next;
   }
   base_down.end(last);
   const Floats none(0.f);
-  take(last, here, YarnLink{no_vector(), none, none, no_vector(), none}, Factors{none, none, none});
+  take(last, here, YarnLink{no_vector(), none, none, no_vector(), none},
+       Factors{none, none, FloatMask(false), none});
 }
 
 /// Up again: move(row of the block, its inverse mass, its impulse). factors: has n and m of the
@@ -208,17 +217,18 @@ template <class Row, class Move>
 [[gnu::always_inline]] inline void go_up(const Yarns& yarns, const YarnBlock& block,
                                          std::uint32_t lane, const YarnScratch* scratch,
                                          const Row* factors, Move&& move) {
-  const Yarns y = yarns;            // as in go_down
+  const Yarns y = yarns;  // as in go_down
+  const std::uint32_t first = block.first;
   FloatVector below = no_vector();  // impulse of the row's own constraint
   Floats lambda(0.f), m(0.f);
   for (std::uint32_t k = rows_of(block) - 1; k > 0; --k) {
     lambda = fused(m, lambda, load(scratch[k - 1].y + lane));
     m = load(factors[k - 1].m + lane);
     const FloatVector above = lambda * load(factors[k - 1].n, lane);
-    move(k, inverse_mass(y, block.first + k, lane), above - below);
+    move(k, inverse_mass(y, first + k, lane), above - below);
     below = above;
   }
-  move(0, inverse_mass(y, block.first, lane), no_vector() - below);
+  move(0, inverse_mass(y, first, lane), no_vector() - below);
 }
 
 /// The right side, eliminated on the way down.
@@ -229,7 +239,7 @@ struct Substitution {
                                    const Factors& f) {
     b = fused(f.down, b, error);
     f.up.store_unaligned(row.m + lane);
-    (f.reciprocal * b).store_unaligned(row.y + lane);
+    f.over_pivot(b).store_unaligned(row.y + lane);
   }
 };
 
@@ -254,16 +264,13 @@ template <Along kAlong, Base kBase, class At>
   }
 }
 
-/// What lengths are out by before a solve.
+/// What lengths are out by before a solve: rest | length - rest |.
 struct Before {
   Floats enough;
-  Floats beyond = Floats(0.f);  // the most by which one is out beyond that, in terms of squares
+  Floats beyond = Floats(0.f);  // the most by which one is out beyond that
 
-  [[gnu::always_inline]] void take(const YarnLink& link) {
-    const Floats square = link.rest * link.rest, half(0.5f);
-    // of a link that has all but collapsed, l | l - rest | is small too
-    const Floats out = xsimd::max(xsimd::abs(link.error), half * xsimd::abs(link.size - square));
-    beyond = xsimd::max(beyond, out - enough * square);
+  [[gnu::always_inline]] void take(const YarnLink& link, Floats rest, Floats scale) {
+    beyond = xsimd::max(beyond, fused_from(enough, scale, rest * xsimd::abs(link.off)));
   }
 };
 
@@ -279,7 +286,8 @@ template <Base kBase, class At>
         y, block, at, base, lane, scaled_link<Along::present>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
-              before.take(link);
+              const std::uint32_t row = block.first + k;
+              before.take(link, rest(y, row, lane), scale(y, row, lane));
               at.keep(k, lane, here);
               store(scratch[k].n, lane, link.along);
               substitution.take(scratch[k], lane, link.error, f);
@@ -295,14 +303,12 @@ template <Base kBase, class At>
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     Substitution substitution;
     Elimination<Along::present> elimination;
-    Floats w = inverse_mass(y, block.first, lane);
     for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
       const std::uint32_t row = block.first + k;
-      const Floats w_next = inverse_mass(y, row + 1, lane);
       const YarnLink link =
           scaled_link<Along::present>(load(scratch[k].n, lane), rest(y, row, lane));
-      substitution.take(scratch[k], lane, link.error, elimination.step(link, w, w_next));
-      w = w_next;
+      substitution.take(scratch[k], lane, link.error,
+                        elimination.step(link, inverse_mass(y, row, lane), joined(y, row, lane)));
     }
   }
 }
@@ -314,12 +320,12 @@ struct After {
   FloatVector below = no_vector();  // what the next particle was moved by
 
   /// d before it, and what the row's own particle is moved by. Returns d after it.
-  [[gnu::always_inline]] FloatVector take(const FloatVector& d, const FloatVector& by,
-                                          Floats rest) {
+  [[gnu::always_inline]] FloatVector take(const FloatVector& d, const FloatVector& by, Floats rest,
+                                          Floats scale) {
     const FloatVector now = d + (by - below);
-    const Floats square = rest * rest;
-    const Floats out = xsimd::abs(dot(now, now) - square) - allowed * square;
-    beyond = xsimd::select(rest > Floats(0.f), xsimd::max(beyond, out), beyond);
+    const Floats out =
+        fused_from(now.x, now.x, fused_from(now.y, now.y, fused_from(now.z, now.z, rest * rest)));
+    beyond = xsimd::max(beyond, fused_from(allowed, scale, xsimd::abs(out)));
     below = by;
     return now;
   }
@@ -337,9 +343,12 @@ template <class At, class Keep>
     go_up(
         y, block, lane, scratch, scratch,
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
-          const FloatVector u = fused(w, impulse, at.kept(k, lane));
-          const Floats length = rest(y, block.first + k, lane);
-          keep(k, lane, after.take(load(scratch[k].n, lane), w * impulse, length), u);
+          const FloatVector before = at.kept(k, lane), u = fused(w, impulse, before);
+          const std::uint32_t row = block.first + k;
+          keep(k, lane,
+               after.take(load(scratch[k].n, lane), w * impulse, rest(y, row, lane),
+                          scale(y, row, lane)),
+               u);
         });
     out = out || xsimd::any(after.beyond > Floats(0.f));
   }

@@ -125,6 +125,7 @@ struct BlockOfYarns {
     }
   }
   simd::Yarns yarns() {
+    simd::complete(rows);
     return {kind.data(),
             rows.data(),
             system.data(),
