@@ -182,14 +182,15 @@ Trial solve_positions(State& s, const Attempt& attempt, StepReport& report, Team
     report.iterations += result.iterations;
     left -= result.iterations;
     report.direction_updates += result.direction_updates;
+    trial.ended = std::max(trial.ended, end_of(result, attempt.on_failure));
+    if (trial.ended == Ended::gave_up) return trial;
     const bool again = s.model->has_contacts() && result.converged &&
                        add_missed_contacts(*s.model, *s.kernels, s.solved.view(),
                                            s.settings.contact_tolerance, s.contacts) > 0;
-    trial.ended = end_of(result, attempt.on_failure);
     if (!again) return trial;
   }
   trial.worsen(Status::iteration_limit);
-  trial.ended = Ended::made_do;
+  trial.ended = std::max(trial.ended, Ended::made_do);
   return trial;
 }
 
