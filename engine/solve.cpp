@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "engine/reporting.h"
@@ -85,15 +84,6 @@ kernels::LoopResult sweep_velocities(State& s, Team& team) {
                      : s.simd->correct_velocities(x, v, s.contacts, team);
 }
 
-/// What a lambda for the direct solver sees, as one reference: std::function then allocates
-/// nothing.
-struct Answer {
-  State& state;
-  double h;
-  Standstill& standstill;
-  Team& team;
-};
-
 kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView start, bool first,
                                      int left, Team& team) {
   if (s.yarn) {
@@ -123,23 +113,39 @@ kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, bool first, in
   return result;
 }
 
+/// The direct solver. Where it fails sweeps begin where it did, and take the short waves out; it
+/// tries again from there, and after each failure they go on, four times as many. Smaller steps are
+/// the better answer where they help: sweeps stop at the tolerance, and the error that they leave
+/// is removed by the next step's solve at once, as a blow (a sphere that drops on 20 x 20
+/// particles, 4 substeps, 1 %: 10.6 J gained with sweeps, 5e-5 J with halved steps).
+kernels::LoopResult solve_directly(State& s, const Attempt& attempt, bool first, int left,
+                                   Standstill& standstill, Team& team) {
+  constexpr int kFirstSweeps = 32, kMoreSweeps = 4;
+  using From = DirectSolver::From;
+  const bool may_sweep = attempt.on_failure == OnFailure::sweep;
+  const auto solve = [&](From from, int most) {
+    return s.direct->solve_positions(s.solved.view(), s.contacts, from, most, may_sweep);
+  };
+  auto result = solve(first ? From::prediction : From::last_round, left);
+  int sweeps = kFirstSweeps;
+  for (bool begin = true; result.failed && may_sweep && result.iterations < left; begin = false) {
+    const int most = std::min(sweeps, left - result.iterations);
+    count(result, sweep_on(s, attempt.h, begin, most, standstill, team));
+    if (result.converged || standstill.reached() || result.iterations >= left) break;
+    count(result, solve(From::sweeps, left - result.iterations));
+    result.failed = !result.converged;
+    sweeps = sweeps < left / kMoreSweeps ? kMoreSweeps * sweeps : left;
+  }
+  result.converged &= !standstill.reached();
+  return result;
+}
+
 kernels::LoopResult solve_round(State& s, const Attempt& attempt, bool first, int left,
                                 Standstill& standstill, Team& team) {
   if (attempt.by_rattle()) return solve_from_start(s, attempt.h, attempt.start, first, left, team);
   if (s.yarn) return solve_yarns(s, attempt, first, left, standstill, team);
-  if (!s.direct) return sweep_on(s, attempt.h, first, left, standstill, team);
-  if (attempt.on_failure != OnFailure::sweep) {
-    return s.direct->solve_positions(s.solved.view(), s.contacts, first, left, {});
-  }
-  const Answer answer{s, attempt.h, standstill, team};
-  const auto sweeps = [&answer](bool begin, int most) {
-    auto result = sweep_on(answer.state, answer.h, begin, most, answer.standstill, answer.team);
-    result.converged |= answer.standstill.reached();  // nobody will find a better answer
-    return result;
-  };
-  auto result = s.direct->solve_positions(s.solved.view(), s.contacts, first, left, sweeps);
-  result.converged &= !standstill.reached();
-  return result;
+  if (s.direct) return solve_directly(s, attempt, first, left, standstill, team);
+  return sweep_on(s, attempt.h, first, left, standstill, team);
 }
 
 /// The sweeps that follow judge in double; as a rule the first finds nothing to do.
@@ -153,10 +159,10 @@ kernels::LoopResult correct_by_yarns(State& s, bool exact, Team& team) {
 kernels::LoopResult solve_velocities(State& s, bool exact, Team& team) {
   if (s.yarn && s.settings.iterations == 0) return correct_by_yarns(s, exact, team);
   if (!s.direct) return sweep_velocities(s, team);
-  const auto answer = std::tie(s, team);
-  return s.direct->correct_velocities(
-      s.solved.view(), s.next_velocity.view(), s.contacts, exact,
-      [&answer](bool, int) { return std::apply(sweep_velocities, answer); });
+  auto result =
+      s.direct->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts, exact);
+  if (result.failed) count(result, sweep_velocities(s, team));
+  return result;
 }
 
 Ended end_of(const kernels::LoopResult& result, OnFailure on_failure) {

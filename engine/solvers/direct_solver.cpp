@@ -20,10 +20,8 @@ constexpr double kNegligible = 1e-6;
 /// 1 % far below that, and the next steps have no noise to fight (corners, 41 x 41, 4 substeps, 1
 /// %: 30 ms a frame and 0.45 J gained without it).
 constexpr double kGoal = 1e-5;
-constexpr int kMostSolves = 60;   // of one attempt; two or three are usual
-constexpr int kPatience = 4;      // solves that need not halve the error
-constexpr int kFirstSweeps = 32;  // of the answer to the first failure
-constexpr int kMoreSweeps = 4;    // times as many for each further one
+constexpr int kMostSolves = 60;  // of one attempt; two or three are usual
+constexpr int kPatience = 4;     // solves that need not halve the error
 
 void copy(VectorsView from, VectorsView to, std::size_t n) {
   std::copy_n(from.x, n, to.x);
@@ -61,41 +59,27 @@ DirectSolver::DirectSolver(const Model& model, const Settings& settings, const s
       stiff_(model),
       start_(model.slots()) {}
 
-LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& contacts,
-                                         bool first_round, int max_iterations,
-                                         const Sweeps& sweeps) {
+LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& contacts, From from,
+                                         int max_iterations, bool noise_will_do) {
   LoopResult result;
-  system_.start(contacts, first_round);
+  const bool anew = from != From::last_round;
+  system_.start(contacts, anew);
   if (settings_.iterations > 0) {
     iterate_fixed(x, {}, contacts, result);
     return result;
   }
-  if (first_round) balance_.start(x);
+  if (anew) balance_.start(x);
   copy(x, start_.view(), start_.size());
-  int wanted = kFirstSweeps;
-  for (int attempt = 0;; ++attempt) {
-    DirectOutcome outcome = iterate(x, {}, contacts, max_iterations, sweeps != nullptr, result);
-    if (outcome == DirectOutcome::exhausted) return result;
-    if (outcome == DirectOutcome::converged && !balance_.is_explained(system_, x)) {
-      outcome = DirectOutcome::failed;
-    }
-    if (outcome == DirectOutcome::failed && attempt == 0 && stiff_.wanted()) {
-      outcome = iterate_stiff(x, contacts, max_iterations, result);
-    }
-    result.converged = outcome == DirectOutcome::converged;
-    result.failed = !result.converged && !sweeps;
-    if (result.converged || result.failed) return result;
-    copy(start_.view(), x, start_.size());
-    const int left = max_iterations - result.iterations;
-    if (left <= 0) return result;
-    const LoopResult swept = sweeps(attempt == 0, std::min(wanted, left));
-    count(result, swept);
-    result.failed = true;  // for the answer is that of sweeps
-    if (result.converged || result.iterations >= max_iterations) return result;
-    copy(x, start_.view(), start_.size());
-    restart(x, contacts);
-    wanted = wanted < max_iterations / kMoreSweeps ? wanted * kMoreSweeps : max_iterations;
+  DirectOutcome outcome = iterate(x, {}, contacts, max_iterations, noise_will_do, result);
+  if (outcome == DirectOutcome::exhausted) return result;
+  bool solved = outcome == DirectOutcome::converged && balance_.is_explained(system_, x);
+  if (!solved && from != From::sweeps && stiff_.wanted()) {
+    solved = iterate_stiff(x, contacts, max_iterations, result) == DirectOutcome::converged;
   }
+  result.converged = solved;
+  result.failed = !solved;
+  if (!solved) copy(start_.view(), x, start_.size());
+  return result;
 }
 
 LoopResult DirectSolver::solve_from_start(VectorsView x, VectorsView start,
@@ -110,8 +94,7 @@ LoopResult DirectSolver::solve_from_start(VectorsView x, VectorsView start,
   return result;
 }
 
-/// Newton's method from x; with a start the simplified one. noise_will_do: an error within
-/// tolerance is success even if it does not fall to what solves aim at.
+/// Newton's method from x; with a start the simplified one.
 DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const ContactStore& contacts,
                                     int max_iterations, bool noise_will_do, LoopResult& result) {
   Progress progress;
@@ -134,16 +117,11 @@ DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const Cont
   }
 }
 
-/// No impulses yet, from x on.
-void DirectSolver::restart(VectorsView x, const ContactStore& contacts) {
-  system_.start(contacts, true);
-  balance_.start(x);
-}
-
 DirectOutcome DirectSolver::iterate_stiff(VectorsView x, const ContactStore& contacts,
                                           int max_iterations, LoopResult& result) {
   copy(start_.view(), x, start_.size());
-  restart(x, contacts);
+  system_.start(contacts, true);
+  balance_.start(x);
   return stiff_.iterate(system_, factor_, balance_, x, contacts, max_iterations, result);
 }
 
@@ -159,8 +137,7 @@ DirectOutcome DirectSolver::iterate_fixed(VectorsView x, VectorsView start,
 }
 
 LoopResult DirectSolver::correct_velocities(VectorsView x, VectorsView v,
-                                            const ContactStore& contacts, bool exact,
-                                            const Sweeps& sweeps) {
+                                            const ContactStore& contacts, bool exact) {
   LoopResult result;
   system_.start(contacts, true);
   copy(v, start_.view(), start_.size());
@@ -168,10 +145,7 @@ LoopResult DirectSolver::correct_velocities(VectorsView x, VectorsView v,
   result.converged = outcome == DirectOutcome::converged;
   if (result.converged || settings_.iterations > 0) return result;
   copy(start_.view(), v, start_.size());
-  const int left = settings_.max_iterations - result.iterations;
-  if (outcome == DirectOutcome::exhausted || left <= 0) return result;
-  const LoopResult swept = sweeps(true, left);
-  count(result, swept);
+  result.failed = outcome == DirectOutcome::failed && result.iterations < settings_.max_iterations;
   return result;
 }
 

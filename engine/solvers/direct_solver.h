@@ -21,16 +21,10 @@
 /// Newton's method fails where a step bends edges by much of their length, where masses differ by
 /// thousands, and where A is singular and the errors inconsistent (compressed straight chains).
 /// That is seen by errors that no longer fall, or by a motion that its impulses do not explain
-/// (direct_balance.h). A caller who can take a smaller step gives no sweeps
-/// and is told (LoopResult::failed). The other answer is to start again from the predicted state
-/// with sweeps of Gauss-Seidel, which take the short waves out, and to try again from there, with
-/// four times as many sweeps after each failure; Settings::max_iterations bounds the sum. Smaller
-/// steps are the better answer where they help: sweeps stop at the tolerance, and the error that
-/// they leave is removed by the next step's solve at once, as a blow (a sphere that drops on 20 x
-/// 20 particles, 4 substeps, 1 %: 10.6 J gained with sweeps, 5e-5 J with halved steps).
+/// (direct_balance.h). The caller is told (LoopResult::failed), and answers (engine/solve.cpp).
 #pragma once
 
-#include <functional>
+#include <cstdint>
 
 #include "engine/solvers/direct_balance.h"
 #include "engine/solvers/direct_bodies.h"
@@ -41,35 +35,34 @@
 
 namespace weft {
 
-/// Gauss-Seidel on the same positions: at most so many iterations; first: nothing came before.
-using Sweeps = std::function<kernels::LoopResult(bool first, int max_iterations)>;
-
 class DirectSolver {
  public:
   DirectSolver(const Model& model, const Settings& settings, const simd::Table& kernels);
 
-  /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
-  /// were found anew, accumulated impulses start at 0. sweeps: may be empty; x is worth nothing
-  /// then after a failure. LoopResult::iterations counts solves, and sweeps where they were needed.
+  /// Where a solve begins. last_round: where the last one ended, with contacts that were found
+  /// since; impulses are kept. sweeps: where those ended that answered its failure.
+  enum class From : std::uint8_t { prediction, last_round, sweeps };
+
+  /// Moves x until every constraint and listed contact is within tolerance; where it fails x stays.
+  /// noise_will_do: an error within tolerance is success even if it does not fall to what solves
+  /// aim at. LoopResult::iterations counts solves.
   kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
-                                      bool first_round, int max_iterations, const Sweeps& sweeps);
+                                      From from, int max_iterations, bool noise_will_do);
   /// The same for scheme rattle, along the directions at `start`, which do not turn: one
   /// factorisation, and each solve takes off an error about 1 - cos of what the constraint turned
   /// by. Where that does not converge the answer is a step of the other scheme.
   kernels::LoopResult solve_from_start(kernels::VectorsView x, kernels::VectorsView start,
                                        const ContactStore& contacts, bool first_round,
                                        int max_iterations);
-  /// Corrects v at the positions x; with `exact` also what is within tolerance, once.
+  /// Corrects v at the positions x, or leaves it; with `exact` also what is within tolerance, once.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts, bool exact,
-                                         const Sweeps& sweeps);
+                                         const ContactStore& contacts, bool exact);
   std::size_t bytes() const;
 
  private:
   DirectOutcome iterate(kernels::VectorsView x, kernels::VectorsView start,
                         const ContactStore& contacts, int max_iterations, bool noise_will_do,
                         kernels::LoopResult& result);
-  void restart(kernels::VectorsView x, const ContactStore& contacts);
   DirectOutcome iterate_stiff(kernels::VectorsView x, const ContactStore& contacts,
                               int max_iterations, kernels::LoopResult& result);
   DirectOutcome iterate_fixed(kernels::VectorsView x, kernels::VectorsView start,
