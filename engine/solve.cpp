@@ -36,10 +36,10 @@ Status add(StepReport& report, const kernels::LoopResult& result) {
 
 /// With a start: along the directions there (scheme rattle).
 kernels::LoopResult sweep_positions(State& s, double h, kernels::VectorsView start, bool first,
-                                    const LoopBudget& budget, Team& team) {
+                                    const kernels::LoopLimits& limits, Team& team) {
   const auto x = s.solved.view();
-  return s.reference ? s.reference->solve_positions(x, start, h, s.contacts, first, budget)
-                     : s.simd->solve_positions(x, start, s.contacts, first, budget, team);
+  return s.reference ? s.reference->solve_positions(x, start, h, s.contacts, first, limits)
+                     : s.simd->solve_positions(x, start, s.contacts, first, limits, team);
 }
 
 /// Sweeps until nothing is out of tolerance, `most` iterations are done, or none of them brings
@@ -47,12 +47,13 @@ kernels::LoopResult sweep_positions(State& s, double h, kernels::VectorsView sta
 kernels::LoopResult sweep_on(State& s, double h, bool first, int most, Standstill& standstill,
                              Team& team) {
   if (s.settings.iterations > 0)
-    return sweep_positions(s, h, {}, first, whole_budget(s.settings), team);
+    return sweep_positions(s, h, {}, first, limits_of(s.settings), team);
   kernels::LoopResult sum;
   while (sum.iterations < most && !standstill.reached()) {
     const int part = std::min(most - sum.iterations, kPassesBetweenLooks);
-    const LoopBudget budget{part, standstill.in_doubt() ? 1 : s.settings.renew_after};
-    count(sum, sweep_positions(s, h, {}, first && sum.iterations == 0, budget, team));
+    const kernels::LoopLimits limits{
+        .max_iterations = part, .renew_after = standstill.in_doubt() ? 1 : s.settings.renew_after};
+    count(sum, sweep_positions(s, h, {}, first && sum.iterations == 0, limits, team));
     if (sum.converged || part < kPassesBetweenLooks) break;
     standstill.look(strain_at(s, s.solved, team), penetration_at(s, s.solved));
   }
@@ -65,13 +66,14 @@ kernels::LoopResult sweep_from_start(State& s, double h, kernels::VectorsView st
                                      int most, Team& team) {
   constexpr int kPasses = 256;
   if (s.settings.iterations > 0) {
-    return sweep_positions(s, h, start, first, whole_budget(s.settings), team);
+    return sweep_positions(s, h, start, first, limits_of(s.settings), team);
   }
   kernels::LoopResult sum;
   double strain = std::numeric_limits<double>::infinity();
   for (;;) {
-    const LoopBudget budget{std::min(most - sum.iterations, kPasses), s.settings.renew_after};
-    count(sum, sweep_positions(s, h, start, first && sum.iterations == 0, budget, team));
+    const kernels::LoopLimits limits{.max_iterations = std::min(most - sum.iterations, kPasses),
+                                     .renew_after = s.settings.renew_after};
+    count(sum, sweep_positions(s, h, start, first && sum.iterations == 0, limits, team));
     if (sum.converged || sum.iterations >= most) return sum;
     const double before = std::exchange(strain, max_strain_at(s, s.solved, team));
     if (!(strain < before)) return sum;

@@ -99,19 +99,17 @@ reference::Workspace ReferenceSolver::workspace() {
   return w;
 }
 
-reference::Method ReferenceSolver::method(const LoopBudget& budget) const {
+reference::Method ReferenceSolver::method(const kernels::LoopLimits& limits) const {
   return {.anticipate = settings_.anticipate,
           .skip = settings_.skip,
           .frozen_directions = settings_.directions == Directions::frozen,
-          .limits = {.fixed_iterations = settings_.iterations,
-                     .max_iterations = budget.iterations,
-                     .renew_after = budget.renew_after}};
+          .limits = limits};
 }
 
 kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x,
                                                      kernels::VectorsView start, double h,
                                                      const ContactStore& contacts, bool first_round,
-                                                     const LoopBudget& budget) {
+                                                     const kernels::LoopLimits& limits) {
   place_contacts(contacts);
   if (first_round) std::ranges::fill(impulse_, 0.0);
   reference::Relaxation r = problem(x, contacts.count());
@@ -120,7 +118,7 @@ kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x,
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   return reference::relax_positions(r, layout_.topology(),
                                     model_.has_contacts() ? lists : reference::ContactLists{},
-                                    workspace(), method(budget));
+                                    workspace(), method(limits));
 }
 
 void ReferenceSolver::take_directions_at(kernels::VectorsView start, reference::Relaxation& r) {
@@ -159,7 +157,7 @@ kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   return reference::relax_velocities(r, layout_.topology(),
                                      model_.has_contacts() ? lists : reference::ContactLists{},
-                                     workspace(), method(whole_budget(settings_)));
+                                     workspace(), method(limits_of(settings_)));
 }
 
 std::size_t ReferenceSolver::bytes() const {

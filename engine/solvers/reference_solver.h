@@ -8,7 +8,7 @@
 
 #include "engine/contacts.h"
 #include "engine/model.h"
-#include "engine/solvers/loop_budget.h"
+#include "engine/solvers/loop_limits.h"
 #include "kernels/reference/relax.h"
 
 namespace weft {
@@ -22,7 +22,7 @@ class ReferenceSolver {
   /// if given, instead of x. h is the time step, for the impulse limit.
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start, double h,
                                       const ContactStore& contacts, bool first_round,
-                                      const LoopBudget& budget);
+                                      const kernels::LoopLimits& limits);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts);
@@ -35,7 +35,7 @@ class ReferenceSolver {
   void choose_velocity_tolerances(const reference::Relaxation& r, kernels::VectorsView x);
   reference::Relaxation problem(kernels::VectorsView x, std::size_t contacts);
   reference::Workspace workspace();
-  reference::Method method(const LoopBudget& budget) const;
+  reference::Method method(const kernels::LoopLimits& limits) const;
 
   const Model& model_;
   const ReferenceLayout& layout_;

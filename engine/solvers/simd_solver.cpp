@@ -13,6 +13,11 @@ namespace {
 /// refinement).
 constexpr int kOldestDirections = 1024;
 
+kernels::LoopLimits not_too_old(kernels::LoopLimits limits) {
+  if (limits.renew_after == 0) limits.renew_after = kOldestDirections;
+  return limits;
+}
+
 }  // namespace
 
 void ContactLanes::resize(std::size_t size) {
@@ -126,7 +131,7 @@ void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep
 
 kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                                 const ContactStore& store, bool first_round,
-                                                const LoopBudget& budget, Team& team) {
+                                                const kernels::LoopLimits& limits, Team& team) {
   if (first_round) std::ranges::fill(impulse_, 0.f);
   if (model_.has_contacts()) {
     const double tau = settings_.iterations > 0 ? 1 : settings_.contact_tolerance;
@@ -135,19 +140,13 @@ kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, kernels:
   const auto directions = settings_.directions == Directions::frozen ? kernels::Directions::frozen
                                                                      : kernels::Directions::each;
   SimdLoop loop(*this, {.x = x, .start = start}, team);
-  const auto result = kernels::iterate(loop, directions, limits(budget));
+  const auto result = kernels::iterate(loop, directions, not_too_old(limits));
   for (const ContactLanes::Range& range : contacts_.spheres) {
     for (std::size_t k = range.first; k < range.first + range.real; ++k) {
       contact_impulse_[contacts_.contact[k]] = contacts_.impulse[k];
     }
   }
   return result;
-}
-
-kernels::LoopLimits SimdSolver::limits(const LoopBudget& budget) const {
-  return {.fixed_iterations = settings_.iterations,
-          .max_iterations = budget.iterations,
-          .renew_after = budget.renew_after > 0 ? budget.renew_after : kOldestDirections};
 }
 
 /// Ropes and contacts take part in the velocity loop where they are taut or touch.
@@ -183,7 +182,7 @@ kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kerne
   }
   choose_active(x);
   SimdLoop loop(*this, {.x = x, .v = v}, team);
-  return kernels::iterate(loop, kernels::Directions::frozen, limits(whole_budget(settings_)));
+  return kernels::iterate(loop, kernels::Directions::frozen, not_too_old(limits_of(settings_)));
 }
 
 simd::Relaxation SimdSolver::relaxation(ScaledConstraints& constraints) {

@@ -18,7 +18,7 @@
 
 #include "engine/contacts.h"
 #include "engine/model.h"
-#include "engine/solvers/loop_budget.h"
+#include "engine/solvers/loop_limits.h"
 #include "engine/solvers/simd_layout.h"
 #include "engine/solvers/team.h"
 #include "kernels/loop.h"
@@ -63,7 +63,7 @@ class SimdSolver {
   /// if given, instead of x.
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                       const ContactStore& contacts, bool first_round,
-                                      const LoopBudget& budget, Team& team);
+                                      const kernels::LoopLimits& limits, Team& team);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts, Team& team);
@@ -73,7 +73,6 @@ class SimdSolver {
   friend class SimdLoop;
 
   void allocate_displacements();
-  kernels::LoopLimits limits(const LoopBudget& budget) const;
   template <class Tolerance>
   ScaledConstraints scaled(Tolerance&& tau) const;
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
