@@ -24,6 +24,8 @@ double penetration_at(State& s, kernels::Vectors& x) {
 
 namespace {
 
+using From = DirectSolver::From;
+
 /// Solves that ran into contacts from beyond the margin are repeated; each round adds at least one
 /// contact, in practice one round is rare and two were not seen.
 constexpr int kMaxContactRounds = 16;
@@ -98,17 +100,17 @@ kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView st
 
 /// Yarns; if need be, from the same positions, sweeps. Until the commit nobody needs next_velocity:
 /// it remembers the positions.
-kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, bool first, int left,
+kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, From from, int left,
                                 Standstill& standstill, Team& team) {
   if (attempt.only_sweeps) {
-    auto result = sweep_on(s, attempt.h, first, left, standstill, team);
+    auto result = sweep_on(s, attempt.h, from == From::prediction, left, standstill, team);
     result.failed = !result.converged;
     return result;
   }
   const bool may_sweep = attempt.on_failure == OnFailure::sweep;
   if (may_sweep) s.next_velocity = s.solved;
-  auto result = s.yarn->solve_positions(s.solved.view(), {}, s.contacts, first, left, attempt.care,
-                                        *s.measure, team);
+  auto result = s.yarn->solve_positions(s.solved.view(), {}, s.contacts, from != From::last_round,
+                                        left, attempt.care, *s.measure, team);
   if (!result.failed || result.converged || !may_sweep) return result;
   s.solved = s.next_velocity;
   count(result, sweep_on(s, attempt.h, true, left - result.iterations, standstill, team));
@@ -120,33 +122,33 @@ kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, bool first, in
 /// the better answer where they help: sweeps stop at the tolerance, and the error that they leave
 /// is removed by the next step's solve at once, as a blow (a sphere that drops on 20 x 20
 /// particles, 4 substeps, 1 %: 10.6 J gained with sweeps, 5e-5 J with halved steps).
-kernels::LoopResult solve_directly(State& s, const Attempt& attempt, bool first, int left,
+kernels::LoopResult solve_directly(State& s, const Attempt& attempt, From from, int left,
                                    Standstill& standstill, Team& team) {
   constexpr int kFirstSweeps = 32, kMoreSweeps = 4;
-  using From = DirectSolver::From;
   const bool may_sweep = attempt.on_failure == OnFailure::sweep;
-  const auto solve = [&](From from, int most) {
-    return s.direct->solve_positions(s.solved.view(), s.contacts, from, most, may_sweep);
+  const bool noise_will_do = may_sweep;  // nobody is going to try a shorter step
+  const auto solve = [&](From begin, int most) {
+    return s.direct->solve_positions(s.solved.view(), s.contacts, begin, most, noise_will_do);
   };
-  auto result = solve(first ? From::prediction : From::last_round, left);
+  auto result = solve(from, left);
   int sweeps = kFirstSweeps;
-  for (bool begin = true; result.failed && may_sweep && result.iterations < left; begin = false) {
+  for (bool first = true; result.failed && may_sweep && result.iterations < left; first = false) {
     const int most = std::min(sweeps, left - result.iterations);
-    count(result, sweep_on(s, attempt.h, begin, most, standstill, team));
+    count(result, sweep_on(s, attempt.h, first, most, standstill, team));
     if (result.converged || standstill.reached() || result.iterations >= left) break;
     count(result, solve(From::sweeps, left - result.iterations));
     result.failed = !result.converged;
     sweeps = sweeps < left / kMoreSweeps ? kMoreSweeps * sweeps : left;
   }
-  result.converged &= !standstill.reached();
   return result;
 }
 
-kernels::LoopResult solve_round(State& s, const Attempt& attempt, bool first, int left,
+kernels::LoopResult solve_round(State& s, const Attempt& attempt, From from, int left,
                                 Standstill& standstill, Team& team) {
+  const bool first = from == From::prediction;
   if (attempt.by_rattle()) return solve_from_start(s, attempt.h, attempt.start, first, left, team);
-  if (s.yarn) return solve_yarns(s, attempt, first, left, standstill, team);
-  if (s.direct) return solve_directly(s, attempt, first, left, standstill, team);
+  if (s.yarn) return solve_yarns(s, attempt, from, left, standstill, team);
+  if (s.direct) return solve_directly(s, attempt, from, left, standstill, team);
   return sweep_on(s, attempt.h, first, left, standstill, team);
 }
 
@@ -181,7 +183,10 @@ Trial solve_positions(State& s, const Attempt& attempt, StepReport& report, Team
   int left = attempt.most_iterations;
   for (int round = 0; round < kMaxContactRounds; ++round) {
     Standstill standstill(s.settings, attempt.stood_at);
-    const auto result = solve_round(s, attempt, round == 0, left, standstill, team);
+    const From from = round == 0                      ? From::prediction
+                      : trial.ended == Ended::made_do ? From::sweeps
+                                                      : From::last_round;
+    const auto result = solve_round(s, attempt, from, left, standstill, team);
     trial.worsen(add(report, result));
     if (!result.converged && standstill.reached()) {
       trial.worsen(Status::infeasible);
@@ -190,7 +195,7 @@ Trial solve_positions(State& s, const Attempt& attempt, StepReport& report, Team
     report.iterations += result.iterations;
     left -= result.iterations;
     report.direction_updates += result.direction_updates;
-    trial.ended = std::max(trial.ended, end_of(result, attempt.on_failure));
+    trial.worsen(end_of(result, attempt.on_failure));
     if (trial.ended == Ended::gave_up) return trial;
     const bool again = s.model->has_contacts() && result.converged &&
                        add_missed_contacts(*s.model, *s.kernels, s.solved.view(),
@@ -198,7 +203,7 @@ Trial solve_positions(State& s, const Attempt& attempt, StepReport& report, Team
     if (!again) return trial;
   }
   trial.worsen(Status::iteration_limit);
-  trial.ended = std::max(trial.ended, Ended::made_do);
+  trial.worsen(Ended::made_do);
   return trial;
 }
 

@@ -27,8 +27,9 @@ struct Attempt {
   bool by_rattle() const { return start.x != nullptr; }
 };
 
-/// made_do: the solver failed; the result is that of sweeps, or what it had reached by then.
-/// gave_up: it failed, and there is no result. lost: the result is not finite.
+/// In order of severity. made_do: the solver failed, in one round of contacts at least; the result
+/// is that of sweeps or, where no iterations were left for them, what there was by then. gave_up:
+/// it failed, and there is no result. lost: the result is not finite.
 enum class Ended : std::uint8_t { solved, made_do, gave_up, lost };
 
 /// What an attempt came to; it counts when the attempt is accepted. Work and times go into the
@@ -41,6 +42,7 @@ struct Trial {
 
   bool has_result() const { return ended <= Ended::made_do; }
   void worsen(Status by) { status = std::max(status, by); }
+  void worsen(Ended by) { ended = std::max(ended, by); }
 };
 
 /// Moves solved until every constraint is within tolerance.

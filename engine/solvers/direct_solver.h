@@ -50,7 +50,8 @@ class DirectSolver {
                                       From from, int max_iterations, bool noise_will_do);
   /// The same for scheme rattle, along the directions at `start`, which do not turn: one
   /// factorisation, and each solve takes off an error about 1 - cos of what the constraint turned
-  /// by. Where that does not converge the answer is a step of the other scheme.
+  /// by. Where that does not converge x is worth nothing, and the answer is a step of the other
+  /// scheme; failed is not set.
   kernels::LoopResult solve_from_start(kernels::VectorsView x, kernels::VectorsView start,
                                        const ContactStore& contacts, bool first_round,
                                        int max_iterations);

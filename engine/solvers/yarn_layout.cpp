@@ -145,7 +145,7 @@ class Builder {
       fill(chains[i], first, i);
       layout_.links.back() += static_cast<std::uint32_t>(chains[i].links.size());
     }
-    simd::complete(block_);
+    simd::derive_joints(block_);
     for (const simd::YarnRow& row : block_) layout_.kind.push_back(kind_of(row));
   }
 

@@ -4,14 +4,14 @@
 
 namespace weft::simd {
 
-void complete(std::span<YarnRow> rows) {
+void derive_joints(std::span<YarnRow> rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     YarnRow& row = rows[k];
-    const YarnRow& next = rows[k + 1 < rows.size() ? k + 1 : k];
     for (std::size_t lane = 0; lane < kernels::kLanes; ++lane) {
       const float rest = row.rest[lane];
-      row.joined[lane] = rest > 0 ? row.inverse_mass[lane] + next.inverse_mass[lane] : 0;
-      row.scale[lane] = rest > 0 ? rest * rest : std::numeric_limits<float>::max();
+      const bool joins = rest > 0 && k + 1 < rows.size();
+      row.joined[lane] = joins ? row.inverse_mass[lane] + rows[k + 1].inverse_mass[lane] : 0;
+      row.square[lane] = joins ? rest * rest : std::numeric_limits<float>::max();
     }
   }
 }

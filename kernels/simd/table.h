@@ -131,11 +131,11 @@ struct alignas(64) LaneVectors {
 struct alignas(64) YarnRow {
   float rest[kernels::kLanes];
   float inverse_mass[kernels::kLanes];
-  float joined[kernels::kLanes];  // inverse masses of both; 0: nothing joins them
-  float scale[kernels::kLanes];   // rest^2; where nothing joins them, more than any error
+  float joined[kernels::kLanes];  // the sum of both inverse masses; 0 without a constraint
+  float square[kernels::kLanes];  // rest^2; without a constraint so large that no error counts
 };
-/// joined and scale of a block's rows, of which the others are known.
-void complete(std::span<YarnRow> rows);
+/// The last two of a block's rows, from the others.
+void derive_joints(std::span<YarnRow> rows);
 
 /// The same row of the linear system (yarn_system.h).
 struct alignas(64) YarnSystemRow {

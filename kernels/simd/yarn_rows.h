@@ -25,18 +25,9 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-[[gnu::always_inline]] inline Floats rest(const Yarns& y, std::size_t row, std::uint32_t lane) {
-  return load(y.kinds[y.kind[row]].rest + lane);
-}
-[[gnu::always_inline]] inline Floats inverse_mass(const Yarns& y, std::size_t row,
-                                                  std::uint32_t lane) {
-  return load(y.kinds[y.kind[row]].inverse_mass + lane);
-}
-[[gnu::always_inline]] inline Floats joined(const Yarns& y, std::size_t row, std::uint32_t lane) {
-  return load(y.kinds[y.kind[row]].joined + lane);
-}
-[[gnu::always_inline]] inline Floats scale(const Yarns& y, std::size_t row, std::uint32_t lane) {
-  return load(y.kinds[y.kind[row]].scale + lane);
+/// What a row is like.
+[[gnu::always_inline]] inline const YarnRow& kind_of(const Yarns& y, std::size_t row) {
+  return y.kinds[y.kind[row]];
 }
 
 /// A whole number n of -512 ... 511 as n + 512, in bits; what is beyond is negative
@@ -126,10 +117,10 @@ struct BaseDown {
       : y(yarns), at(base), first(first_row), lane(first_lane), unpacking(yarns.cell) {
     if constexpr (kBase == Base::fetched) here = at.get(0, lane);
   }
-  /// base + u, from particle k + 1 to particle k. Without a constraint it is anything.
+  /// base + u, from particle k + 1 to particle k. Without a constraint u, or nearly.
   [[gnu::always_inline]] FloatVector step(std::uint32_t k, const FloatVector& u, Floats rest) {
     if constexpr (kBase == Base::remembered) {
-      if (y.from_memory && lane == 0) fetch_ahead(k);
+      if (kFloats == kLanes && y.from_memory) fetch_ahead(k);
       return unpacking.plus(u, Ints::load_unaligned(words(k)));
     }
     const FloatVector next = at.get(k + 1, lane);
@@ -140,7 +131,11 @@ struct BaseDown {
     packed(dx, dy, dz).store_unaligned(words(k));
     all = all | dx | dy | dz;
     here = next;
-    return difference + u;
+    const auto joins = rest > none;
+    return FloatVector{xsimd::select(joins, difference.x, none),
+                       xsimd::select(joins, difference.y, none),
+                       xsimd::select(joins, difference.z, none)} +
+           u;
   }
   /// After all but the last row.
   [[gnu::always_inline]] void end(std::uint32_t last) {
@@ -149,7 +144,7 @@ struct BaseDown {
   }
 
  private:
-  /// What is read once in a sweep is not to push displacements out of the caches.
+  /// What a way down reads once is not to push displacements out of the caches.
   [[gnu::always_inline]] void fetch_ahead(std::uint32_t row) const {
     constexpr std::uintptr_t kAhead = 32 * kLanes * sizeof(std::int32_t);
     constexpr int kToRead = 0, kNotAgain = 0;

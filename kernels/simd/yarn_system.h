@@ -137,7 +137,7 @@ YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alp
       fused(step, load(row.p + lane), load(row.lambda + lane)).store_unaligned(row.lambda + lane);
       const Floats residual = load(row.residual + lane) - step * load(row.q + lane);
       residual.store_unaligned(row.residual + lane);
-      const Floats unit = y.velocities ? Floats(1.f) : rest(y, k, lane);
+      const Floats unit = y.velocities ? Floats(1.f) : load(kind_of(y, k).rest + lane);
       worst = larger(worst, residual / xsimd::select(unit > Floats(0.f), unit, Floats(1.f)));
       b = fused(load(row.m + lane), b, residual);
       (b * load(row.reciprocal + lane)).store_unaligned(row.z + lane);
@@ -168,7 +168,7 @@ template <class Push>
     const Floats p = fused(factor, load(row.p + lane), load(row.z + lane));
     p.store_unaligned(row.p + lane);
     const FloatVector below = p * load(row.n, lane);
-    const Floats w = inverse_mass(y, block.first + k, lane);
+    const Floats w = load(kind_of(y, block.first + k).inverse_mass + lane);
     push(k, w * (below - above));
     above = below;
   }
@@ -235,7 +235,7 @@ void yarn_finish(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* 
       for (std::uint32_t k = 0; k < rows_of(block); ++k) {
         const YarnSystemRow& row = y.system[block.first + k];
         const FloatVector below = load(row.lambda + lane) * load(row.n, lane);
-        const Floats w = inverse_mass(y, block.first + k, lane);
+        const Floats w = load(kind_of(y, block.first + k).inverse_mass + lane);
         at.put(k, lane, fused(w, above - below, at.get(k, lane)));
         above = below;
       }

@@ -90,7 +90,7 @@ struct YarnLink {
 }
 
 /// The same row of the system times the constraint's length, n = d, and its impulse over it: a
-/// division less. Without a constraint they are anything.
+/// division less. Without a constraint they are anything finite.
 template <Along kAlong>
 [[gnu::always_inline]] inline YarnLink scaled_link(const FloatVector& d, Floats rest) {
   const Floats square = dot(d, d);
@@ -115,7 +115,7 @@ template <Along kAlong>
 struct Factors {
   Floats down, up;
   FloatMask regular;
-  Floats quotient;  // r, where that is so
+  Floats quotient;  // r, where regular
 
   [[gnu::always_inline]] Floats reciprocal() const {
     return xsimd::select(regular, quotient, Floats(0.f));
@@ -169,7 +169,7 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScrat
         const FloatVector next = at.get(k + 1, lane), base_next = base.get(k + 1, lane);
         const FloatVector d = apart(y, (base_here - base_next) + (here - next));
         const std::uint32_t row = block.first + k;
-        store(y.start[row], lane, unit_link(d, rest(y, row, lane)).n);
+        store(y.start[row], lane, unit_link(d, load(kind_of(y, row).rest + lane)).n);
         base_here = base_next;
         here = next;
       }
@@ -196,13 +196,14 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
   for (std::uint32_t k = 0; k < last; ++k) {
     at.fetch_ahead(k, last, lane);
     if constexpr (kBase == Base::fetched) base.fetch_ahead(k, last, lane);
-    const std::uint32_t row = first + k;
+    const YarnRow& kind = kind_of(y, first + k);
     const FloatVector next = at.get(k + 1, lane);
-    const Floats length = rest(y, row, lane);
-    const FloatVector d = apart(y, base_down.step(k, here - next, length));
-    YarnLink link = make_link(d, length);
-    direct<kAlong>(link, y.start, row, lane);
-    take(k, here, link, elimination.step(link, inverse_mass(y, row, lane), joined(y, row, lane)));
+    const Floats rest = load(kind.rest + lane);
+    const FloatVector d = apart(y, base_down.step(k, here - next, rest));
+    YarnLink link = make_link(d, rest);
+    direct<kAlong>(link, y.start, first + k, lane);
+    take(k, here, link,
+         elimination.step(link, load(kind.inverse_mass + lane), load(kind.joined + lane)));
     here = next;
   }
   base_down.end(last);
@@ -225,10 +226,10 @@ template <class Row, class Move>
     lambda = fused(m, lambda, load(scratch[k - 1].y + lane));
     m = load(factors[k - 1].m + lane);
     const FloatVector above = lambda * load(factors[k - 1].n, lane);
-    move(k, inverse_mass(y, first + k, lane), above - below);
+    move(k, load(kind_of(y, first + k).inverse_mass + lane), above - below);
     below = above;
   }
-  move(0, inverse_mass(y, first, lane), no_vector() - below);
+  move(0, load(kind_of(y, first).inverse_mass + lane), no_vector() - below);
 }
 
 /// The right side, eliminated on the way down.
@@ -269,8 +270,8 @@ struct Before {
   Floats enough;
   Floats beyond = Floats(0.f);  // the most by which one is out beyond that
 
-  [[gnu::always_inline]] void take(const YarnLink& link, Floats rest, Floats scale) {
-    beyond = xsimd::max(beyond, fused_from(enough, scale, rest * xsimd::abs(link.off)));
+  [[gnu::always_inline]] void take(const YarnLink& link, Floats rest, Floats square) {
+    beyond = xsimd::max(beyond, fused_from(enough, square, rest * xsimd::abs(link.off)));
   }
 };
 
@@ -286,8 +287,8 @@ template <Base kBase, class At>
         y, block, at, base, lane, scaled_link<Along::present>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
-              const std::uint32_t row = block.first + k;
-              before.take(link, rest(y, row, lane), scale(y, row, lane));
+              const YarnRow& kind = kind_of(y, block.first + k);
+              before.take(link, load(kind.rest + lane), load(kind.square + lane));
               at.keep(k, lane, here);
               store(scratch[k].n, lane, link.along);
               substitution.take(scratch[k], lane, link.error, f);
@@ -304,11 +305,12 @@ template <Base kBase, class At>
     Substitution substitution;
     Elimination<Along::present> elimination;
     for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
-      const std::uint32_t row = block.first + k;
+      const YarnRow& kind = kind_of(y, block.first + k);
       const YarnLink link =
-          scaled_link<Along::present>(load(scratch[k].n, lane), rest(y, row, lane));
-      substitution.take(scratch[k], lane, link.error,
-                        elimination.step(link, inverse_mass(y, row, lane), joined(y, row, lane)));
+          scaled_link<Along::present>(load(scratch[k].n, lane), load(kind.rest + lane));
+      substitution.take(
+          scratch[k], lane, link.error,
+          elimination.step(link, load(kind.inverse_mass + lane), load(kind.joined + lane)));
     }
   }
 }
@@ -321,11 +323,11 @@ struct After {
 
   /// d before it, and what the row's own particle is moved by. Returns d after it.
   [[gnu::always_inline]] FloatVector take(const FloatVector& d, const FloatVector& by, Floats rest,
-                                          Floats scale) {
+                                          Floats square) {
     const FloatVector now = d + (by - below);
     const Floats out =
         fused_from(now.x, now.x, fused_from(now.y, now.y, fused_from(now.z, now.z, rest * rest)));
-    beyond = xsimd::max(beyond, fused_from(allowed, scale, xsimd::abs(out)));
+    beyond = xsimd::max(beyond, fused_from(allowed, square, xsimd::abs(out)));
     below = by;
     return now;
   }
@@ -343,11 +345,11 @@ template <class At, class Keep>
     go_up(
         y, block, lane, scratch, scratch,
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
-          const FloatVector before = at.kept(k, lane), u = fused(w, impulse, before);
-          const std::uint32_t row = block.first + k;
+          const FloatVector u = fused(w, impulse, at.kept(k, lane));
+          const YarnRow& kind = kind_of(y, block.first + k);
           keep(k, lane,
-               after.take(load(scratch[k].n, lane), w * impulse, rest(y, row, lane),
-                          scale(y, row, lane)),
+               after.take(load(scratch[k].n, lane), w * impulse, load(kind.rest + lane),
+                          load(kind.square + lane)),
                u);
         });
     out = out || xsimd::any(after.beyond > Floats(0.f));

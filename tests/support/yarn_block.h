@@ -125,7 +125,7 @@ struct BlockOfYarns {
     }
   }
   simd::Yarns yarns() {
-    simd::complete(rows);
+    simd::derive_joints(rows);
     return {kind.data(),
             rows.data(),
             system.data(),

@@ -36,22 +36,19 @@ struct Trial {
 };
 
 TEST_CASE("failure is told after a few solves, and leaves positions where they were") {
-  using From = DirectSolver::From;
-  for (const From from : {From::prediction, From::last_round, From::sweeps}) {
-    for (const bool noise_will_do : {false, true}) {
-      Trial trial(compressed_line());
-      const auto result = trial.solve(from, noise_will_do);
-      CHECK(result.failed);
-      CHECK_FALSE(result.converged);
-      CHECK(result.iterations <= 10);
-      for (std::size_t p = 0; p < trial.x.size(); ++p) {
-        CHECK(trial.x[p].x == trial.model->initial_position[p].x);
-      }
+  for (const bool noise_will_do : {false, true}) {
+    Trial trial(compressed_line());
+    const auto result = trial.solve(DirectSolver::From::prediction, noise_will_do);
+    CHECK(result.failed);
+    CHECK_FALSE(result.converged);
+    CHECK(result.iterations <= 10);
+    for (std::size_t p = 0; p < trial.x.size(); ++p) {
+      CHECK(kernels::length(trial.x[p] - trial.model->initial_position[p]) == 0);
     }
   }
 }
 
-TEST_CASE("what converges has not failed, and needs no sweeps") {
+TEST_CASE("what converges has not failed") {
   Trial trial(scene_of("hang", 9));
   for (std::size_t p = 0; p < trial.x.size(); ++p) {
     if (trial.model->inverse_mass[p] > 0) trial.x.view().add(p, {0, -5e-4, 0});

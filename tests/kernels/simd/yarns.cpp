@@ -147,6 +147,36 @@ TEST_CASE("a link that has all but collapsed is not left alone") {
   }
 }
 
+TEST_CASE("far away, what is not there does not hide what is out of tolerance") {
+  constexpr double kLarge = 0x1p60, kFar = 30 * kLarge;  // kFar^2 is no float
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    for (const Stand stand : kStands) {
+      CAPTURE(static_cast<int>(stand));
+      BlockOfYarns b(stand);
+      bend(b);
+      b.cell *= kLarge;
+      for (simd::YarnRow& row : b.rows) {
+        for (float& rest : row.rest) rest *= static_cast<float>(kLarge);
+      }
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
+          const std::size_t slot = b.slot_of(k, lane);
+          b.x.set(slot, kLarge * b.x[slot] + kernels::Vector{kFar, kFar, kFar});
+        }
+      }
+      b.start(table);
+      const auto sweep = [&](float enough) {
+        return table.yarn_sweep_watched(b.yarns(), b.block(), b.u.data(), b.scratch.data(), enough,
+                                        1);
+      };
+      CHECK(sweep(1e-3f).solves == 1);
+      CHECK(sweep(0.5f).within);
+    }
+  }
+}
+
 /// What all kernels make of a block, one after the other.
 std::vector<float> worked_on(BlockOfYarns& b, const simd::Table& table) {
   std::vector<float> result;
