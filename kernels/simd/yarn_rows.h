@@ -117,25 +117,24 @@ struct BaseDown {
       : y(yarns), at(base), first(first_row), lane(first_lane), unpacking(yarns.cell) {
     if constexpr (kBase == Base::fetched) here = at.get(0, lane);
   }
-  /// base + u, from particle k + 1 to particle k. Without a constraint u, or nearly.
+  /// base + u, from particle k + 1 to particle k; without a constraint base counts for 0.
   [[gnu::always_inline]] FloatVector step(std::uint32_t k, const FloatVector& u, Floats rest) {
     if constexpr (kBase == Base::remembered) {
       if (kFloats == kLanes && y.from_memory) fetch_ahead(k);
       return unpacking.plus(u, Ints::load_unaligned(words(k)));
     }
     const FloatVector next = at.get(k + 1, lane);
-    const FloatVector difference = here - next;
-    const Floats none(0.f), per_cell = xsimd::select(rest > none, Floats(1 / y.cell), none);
+    const Floats none(0.f), per_cell(1 / y.cell);
+    const auto joins = rest > none;
+    const FloatVector difference{xsimd::select(joins, here.x - next.x, none),
+                                 xsimd::select(joins, here.y - next.y, none),
+                                 xsimd::select(joins, here.z - next.z, none)};
     const Ints dx = ten_bits(difference.x, per_cell), dy = ten_bits(difference.y, per_cell);
     const Ints dz = ten_bits(difference.z, per_cell);
     packed(dx, dy, dz).store_unaligned(words(k));
     all = all | dx | dy | dz;
     here = next;
-    const auto joins = rest > none;
-    return FloatVector{xsimd::select(joins, difference.x, none),
-                       xsimd::select(joins, difference.y, none),
-                       xsimd::select(joins, difference.z, none)} +
-           u;
+    return difference + u;
   }
   /// After all but the last row.
   [[gnu::always_inline]] void end(std::uint32_t last) {
