@@ -18,6 +18,7 @@ struct Loom {
   kernels::Vectors x;
   kernels::AlignedVector<std::int32_t> base_step;
   kernels::AlignedVector<simd::YarnSystemRow> system;
+  kernels::AlignedVector<simd::LaneVectors> start;
   kernels::AlignedVector<simd::YarnScratch> scratch;
   kernels::AlignedVector<float> base, u, t;
 
@@ -27,13 +28,16 @@ struct Loom {
         x(model->initial_position),
         base_step(layout.rows() * kLanes),
         system(layout.rows()),
+        start(layout.rows()),
         scratch(layout.scratch_rows()),
         base(layout.places.floats),
         u(layout.places.floats),
         t(layout.places.floats) {
     split(table);
-    for (const simd::YarnBlock& block : layout.blocks)
+    for (const simd::YarnBlock& block : layout.blocks) {
       table.yarn_linearise(yarns_anew(), block, u.data(), scratch.data());
+      table.yarn_keep_start(yarns_along_start(), block, u.data(), scratch.data());
+    }
     for (const simd::YarnBlock& block : layout.blocks) table.yarn_precondition(yarns(), block, 0);
   }
   void split(const simd::Table& table) {
@@ -58,6 +62,12 @@ struct Loom {
     simd::Yarns changed = yarns();
     changed.moved = true;
     return changed;
+  }
+  /// Scheme rattle's.
+  simd::Yarns yarns_along_start() {
+    simd::Yarns along = yarns();
+    along.start = start.data();
+    return along;
   }
   std::size_t first_end() const { return layout.family_begin[1]; }
 };
@@ -135,6 +145,12 @@ constexpr Kernel kKernels[] = {
      [](const simd::Table& table, Loom& loom) {
        for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
          table.yarn_sweep(loom.yarns_anew(), block, loom.u.data(), loom.scratch.data());
+       });
+     }},
+    {"yarn_sweep_along_start", 40, 22,
+     [](const simd::Table& table, Loom& loom) {
+       for_each_block(loom, 0, loom.layout.blocks.size(), [&](const simd::YarnBlock& block) {
+         table.yarn_sweep(loom.yarns_along_start(), block, loom.u.data(), loom.scratch.data());
        });
      }},
     {"yarn_linearise", 64, 64,

@@ -63,7 +63,7 @@ template <class From>
         const Floats product = load(p.product + pull * kernels::kLanes + lane);
         e = fused(product, from.get(p.change, pull, lane), e);
       }
-      const Corrected corrected = correct_distances({}, c, e, threshold);
+      Corrected corrected = correct_distances({}, c, e, threshold);
       corrected.by.store_unaligned(p.change + c);
       (e - corrected.by).store_unaligned(p.error + c);
       (load(p.sum + c) + corrected.by).store_unaligned(p.sum + c);
@@ -98,10 +98,10 @@ template <class From>
     for (std::size_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
       const std::size_t c = block + lane;
       const Part here = part(r, c);
-      const FloatVector n = here.n();
+      FloatVector n = here.n();
       for (std::size_t pull = begin; pull < end; ++pull) {
         const std::size_t k = pull * kernels::kLanes + lane;
-        const FloatVector other = directions_of(r, from, pull, lane);
+        FloatVector other = directions_of(r, from, pull, lane);
         (load(p.weight + k) * dot(n, other)).store_unaligned(p.product + k);
       }
       here.e0().store_unaligned(p.error + c);
@@ -131,7 +131,7 @@ void apply_sums_run(const Anticipation& p, const Relaxation& r, const Run& run) 
   for (std::size_t k = 0; k < run.length; k += kFloats) {
     const std::size_t a = run.a + k, b = run.b + k, c = run.constraint + k;
     const Part here = part(r, c);
-    const FloatVector n = here.n();
+    FloatVector n = here.n();
     const Floats sum = load(p.sum + c);
     FloatVector ua = load(r.u, a), ub = load(r.u, b);
     ua = fused(sum * here.gain_a(), n, ua);
@@ -145,7 +145,7 @@ void apply_sums_singles(const Anticipation& p, const Relaxation& r, std::uint32_
   PlanarLanes at_a, at_b;
   for (std::size_t c = first; c < last; c += kFloats) {
     const Part here = part(r, c);
-    const FloatVector n = here.n();
+    FloatVector n = here.n();
     const Floats sum = load(p.sum + c);
     FloatVector ua = at_a.get(r.u, r.a + c), ub = at_b.get(r.u, r.b + c);
     ua = fused(sum * here.gain_a(), n, ua);

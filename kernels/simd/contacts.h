@@ -32,10 +32,10 @@ namespace {
 
 std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vector centre,
                       double extra, std::size_t slots, std::uint32_t* out) {
-  const DoubleVector c{Doubles(centre.x), Doubles(centre.y), Doubles(centre.z)};
+  DoubleVector c{Doubles(centre.x), Doubles(centre.y), Doubles(centre.z)};
   std::size_t found = 0;
   for (std::size_t i = 0; i < slots; i += kDoubles) {
-    const DoubleVector d = load(x, i) - c;
+    DoubleVector d = load(x, i) - c;
     const Doubles limit = load(reach + i) + Doubles(extra);
     found += list(dot(d, d) < limit * limit, i, out + found);
   }
@@ -45,10 +45,10 @@ std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vect
 std::size_t find_moved(kernels::VectorsView before, kernels::VectorsView after,
                        kernels::Vector along, const double* reach, double extra, double part,
                        std::size_t slots, std::uint32_t* out) {
-  const DoubleVector with{Doubles(along.x), Doubles(along.y), Doubles(along.z)};
+  DoubleVector with{Doubles(along.x), Doubles(along.y), Doubles(along.z)};
   std::size_t found = 0;
   for (std::size_t i = 0; i < slots; i += kDoubles) {
-    const DoubleVector way = load(after, i) - load(before, i) - with;
+    DoubleVector way = load(after, i) - load(before, i) - with;
     const Doubles limit = Doubles(part) * (load(reach + i) + Doubles(extra));
     found += list(dot(way, way) > limit * limit, i, out + found);
   }
@@ -71,16 +71,15 @@ template <class Lanes>
   std::uint32_t corrections = 0;
   Lanes at_b;
   for (std::size_t block = first; block < last; block += kernels::kLanes) {
-    const FloatVector us{Floats(r.u.x[sphere]), Floats(r.u.y()[sphere]), Floats(r.u.z()[sphere])};
+    FloatVector us{Floats(r.u.x[sphere]), Floats(r.u.y()[sphere]), Floats(r.u.z()[sphere])};
     LaneVectors pushes;
     std::uint32_t corrected_here = 0;
     for (std::uint32_t k = 0; k < kernels::kLanes; k += kFloats) {
       const std::size_t c = block + k;
       const Part p = part(r, c);
-      const FloatVector n = p.n();
+      FloatVector n = p.n();
       FloatVector up = at_b.get(r.u, r.b + c);
-      const Corrected corrected =
-          correct_one_sided<Side::pushes>(r, c, errors(p, n, us - up), threshold);
+      Corrected corrected = correct_one_sided<Side::pushes>(r, c, errors(p, n, us - up), threshold);
       const std::uint32_t corrected_lanes = count(corrected.lanes);
       store(pushes, k, corrected.by * p.gain_a() * n);
       if (corrected_lanes == 0) continue;

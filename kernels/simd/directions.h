@@ -18,7 +18,7 @@ struct Direction {
 };
 
 [[gnu::always_inline]] inline Direction direction(const DoubleVector& d) {
-  const Doubles length = xsimd::sqrt(dot(d, d));
+  Doubles length = xsimd::sqrt(dot(d, d));
   const auto apart = length > Doubles(0.);
   const Doubles inverse = Doubles(1.) / xsimd::select(apart, length, Doubles(1.));
   return {{d.x * inverse, xsimd::select(apart, d.y * inverse, Doubles(1.)), d.z * inverse}, length};
@@ -72,7 +72,7 @@ template <class Range>
 [[gnu::always_inline]] inline void renew(const Geometry& g, const Relaxation& r,
                                          const Range& range) {
   for (std::size_t c = range.first; c < range.last; c += kDoubles) {
-    const Direction to = direction(range.between(g.x, c));
+    Direction to = direction(range.between(g.x, c));
     store_scaled(r, c, to.n, to.length - load(g.rest_length + c), load(g.scale + c));
   }
 }
@@ -81,8 +81,8 @@ template <class Range>
 [[gnu::always_inline]] inline void renew_from_start(const Geometry& g, kernels::VectorsView start,
                                                     const Relaxation& r, const Range& range) {
   for (std::size_t c = range.first; c < range.last; c += kDoubles) {
-    const Doubles length = direction(range.between(g.x, c)).length;
-    const DoubleVector n = direction(range.between(start, c)).n;
+    Doubles length = direction(range.between(g.x, c)).length;
+    DoubleVector n = direction(range.between(start, c)).n;
     store_scaled(r, c, n, length - load(g.rest_length + c), load(g.scale + c));
   }
 }
@@ -91,7 +91,7 @@ template <class Range>
 [[gnu::always_inline]] inline void renew_velocity(const Geometry& g, kernels::VectorsView v,
                                                   const Relaxation& r, const Range& range) {
   for (std::size_t c = range.first; c < range.last; c += kDoubles) {
-    const DoubleVector n = direction(range.between(g.x, c)).n;
+    DoubleVector n = direction(range.between(g.x, c)).n;
     store_scaled(r, c, n, dot(n, range.between(v, c)), load(g.scale + c));
   }
 }

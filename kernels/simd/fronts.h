@@ -29,20 +29,25 @@ constexpr bool kManyRegisters = kDoubles == kFrontRows;   // AVX-512 has 32
 /// Columns of the update in a tile: with more registers more products are under way at once.
 constexpr std::size_t kUpdateColumns = kManyRegisters ? 8 : 4;
 
+/// Its loops are unrolled by force: entries that an index chooses live in memory.
 template <std::size_t kColumns, std::size_t kGroups>
 struct Tile {
   static constexpr std::size_t kBatches = kGroups * kPerGroup;
   Doubles c[kColumns][kBatches];
 
   [[gnu::always_inline]] void load_from(const double* p, std::size_t stride) {
+#pragma GCC unroll 8
     for (std::size_t j = 0; j < kColumns; ++j) {
+#pragma GCC unroll 8
       for (std::size_t i = 0; i < kBatches; ++i) {
         c[j][i] = Doubles::load_aligned(p + j * stride + i * kDoubles);
       }
     }
   }
   [[gnu::always_inline]] void store_to(double* p, std::size_t stride) const {
+#pragma GCC unroll 8
     for (std::size_t j = 0; j < kColumns; ++j) {
+#pragma GCC unroll 8
       for (std::size_t i = 0; i < kBatches; ++i) {
         c[j][i].store_aligned(p + j * stride + i * kDoubles);
       }
@@ -53,11 +58,14 @@ struct Tile {
                                    std::size_t columns) {
     for (std::size_t k = 0; k < columns; ++k, l += stride, y += stride) {
       Doubles rows[kBatches];
+#pragma GCC unroll 8
       for (std::size_t i = 0; i < kBatches; ++i) {
         rows[i] = Doubles::load_aligned(l + i * kDoubles);
       }
+#pragma GCC unroll 8
       for (std::size_t j = 0; j < kColumns; ++j) {
         const Doubles factor(y[j]);
+#pragma GCC unroll 8
         for (std::size_t i = 0; i < kBatches; ++i) {
           c[j][i] = fused(rows[i], factor, c[j][i]);
         }
@@ -97,10 +105,13 @@ struct Corner {
 template <std::size_t kGroups>
 [[gnu::always_inline]] inline void finish(Tile<4, kGroups>& tile, const Corner& s, double* l,
                                           double* y, std::size_t stride) {
+#pragma GCC unroll 8
   for (std::size_t i = 0; i < kGroups * kPerGroup; ++i) {
     Doubles done[4];
+#pragma GCC unroll 4
     for (std::size_t k = 0; k < 4; ++k) {
       Doubles c = tile.c[k][i];
+#pragma GCC unroll 4
       for (std::size_t m = 0; m < k; ++m) c = fused(done[m], Doubles(s.taken[k][m]), c);
       done[k] = c * Doubles(s.reciprocal[k]);
       (-c).store_aligned(y + k * stride + i * kDoubles);
@@ -134,7 +145,7 @@ inline void eliminate_four(const Front& f, std::size_t column) {
   head.load_from(l + first, f.stride);
   head.take(f.panel + first, f.scratch + column, f.stride, column);
   head.store_to(l + first, f.stride);
-  const Corner s = eliminate_corner(l + column, f.stride, f.least + column);
+  Corner s = eliminate_corner(l + column, f.stride, f.least + column);
   for (std::size_t k = 0; k < 4; ++k) f.reciprocal[column + k] = s.reciprocal[k];
   finish(head, s, l + first, f.scratch + column * f.stride + first, f.stride);
   clear_above(l, f.stride, first, column);

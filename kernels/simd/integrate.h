@@ -47,10 +47,10 @@ void predict(const Motion& m, double h, std::size_t first, std::size_t last) {
 bool commit(const Motion& m, double h, std::size_t first, std::size_t last) {
   DoubleMask good(true);
   for (std::size_t i = first; i < last; i += kDoubles) {
-    const DoubleVector v = load(m.velocity, i), a = acceleration(m, i);
-    const DoubleVector x = load(m.solved, i);
-    const DoubleVector d = x - predicted(load(m.position, i), v, a, h);
-    const DoubleVector next = committed(v, a, d, h);
+    DoubleVector v = load(m.velocity, i), a = acceleration(m, i);
+    DoubleVector x = load(m.solved, i);
+    DoubleVector d = x - predicted(load(m.position, i), v, a, h);
+    DoubleVector next = committed(v, a, d, h);
     store(m.next_velocity, i, next);
     good = good && within_range(x) && within_range(next);
   }
@@ -80,10 +80,10 @@ kernels::Kicks measure_kicks(const Motion& m, double h, std::size_t first, std::
   KickColumns columns;
   const Doubles rate(1 / h), two(2.), one(1.), zero(0.);
   for (std::size_t i = first; i < last; i += kDoubles) {
-    const DoubleVector p = load(m.position, i), v = load(m.velocity, i), a = acceleration(m, i);
-    const DoubleVector x = load(m.solved, i), next = load(m.next_velocity, i);
-    const DoubleVector d = x - predicted(p, v, a, h);
-    const DoubleVector kick = next - committed(v, a, d, h);
+    DoubleVector p = load(m.position, i), v = load(m.velocity, i), a = acceleration(m, i);
+    DoubleVector x = load(m.solved, i), next = load(m.next_velocity, i);
+    DoubleVector d = x - predicted(p, v, a, h);
+    DoubleVector kick = next - committed(v, a, d, h);
     const Doubles w = load(m.inverse_mass + i);
     const auto free = w > zero;
     const Doubles mass = xsimd::select(free, one / xsimd::select(free, w, one), zero);
@@ -110,8 +110,7 @@ void apply_displacements(kernels::VectorsView x, Displacements u, std::size_t fi
                          std::size_t last) {
   if (u.in_quads()) return apply_quads(x, u.x, first, last);
   for (std::size_t i = first; i < last; i += kDoubles) {
-    const DoubleVector by{load_as_double(u.x + i), load_as_double(u.y() + i),
-                          load_as_double(u.z() + i)};
+    DoubleVector by{load_as_double(u.x + i), load_as_double(u.y() + i), load_as_double(u.z() + i)};
     store(x, i, load(x, i) + by);
   }
   for (std::size_t i = first; i < last; i += kFloats) store(u, i, no_vector());

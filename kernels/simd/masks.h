@@ -60,9 +60,9 @@ std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_
     visits += kFloats;
     const Part p = part(r, c);
     if (r.from_memory && p.lane == 0) fetch_ahead(p.block);
-    const FloatVector n = p.n();
+    FloatVector n = p.n();
     FloatVector ua = load(r.u, a), ub = load(r.u, b);
-    const Corrected corrected = correct_distances(r, c, errors(p, n, ua - ub), threshold);
+    Corrected corrected = correct_distances(r, c, errors(p, n, ua - ub), threshold);
     const std::uint32_t lanes = bits(corrected.lanes);
     std::uint32_t left = 0;
     if (lanes != 0) {

@@ -67,7 +67,7 @@ struct StretchLanes {
   template <class Range>
   [[gnu::always_inline]] void take(const Geometry& g, const Range& range, bool rope) {
     for (std::size_t c = range.first; c < range.last; c += kDoubles) {
-      const DoubleVector d = range.between(g.x, c);
+      DoubleVector d = range.between(g.x, c);
       const Doubles inverse = load(g.inverse_square + c), one(1.);
       const Doubles ratio = xsimd::select(inverse > Doubles(0.), inverse * dot(d, d), one);
       poison = fused(ratio, Doubles(0.), poison);

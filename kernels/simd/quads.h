@@ -138,7 +138,7 @@ struct QuadLanes {
     put(u.x, slot, v);
   }
   [[gnu::always_inline]] void put(float* u, const std::uint32_t* slot, const FloatVector& v) const {
-    const Quads q = transposed(v);
+    Quads q = transposed(v);
     store_quads(u, slot, q.q0);
     store_quads(u, slot + 1, q.q1);
     store_quads(u, slot + 2, q.q2);
@@ -149,12 +149,12 @@ struct QuadLanes {
 /// Quads of kFloats slots in a row.
 struct QuadsInRow {
   [[gnu::always_inline]] FloatVector get(const float* u) const {
-    const FloatVector v =
+    FloatVector v =
         transposed(load(u), load(u + kFloats), load(u + 2 * kFloats), load(u + 3 * kFloats));
     return {in_order(v.x), in_order(v.y), in_order(v.z)};
   }
   [[gnu::always_inline]] void put(float* u, const FloatVector& v) const {
-    const Quads q = transposed({out_of_order(v.x), out_of_order(v.y), out_of_order(v.z)});
+    Quads q = transposed({out_of_order(v.x), out_of_order(v.y), out_of_order(v.z)});
     q.q0.store_unaligned(u);
     q.q1.store_unaligned(u + kFloats);
     q.q2.store_unaligned(u + 2 * kFloats);

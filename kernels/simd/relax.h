@@ -55,9 +55,9 @@ template <Side kSide>
 [[gnu::always_inline]] inline Corrected correct_one_sided(const Relaxation& r, std::size_t c,
                                                           Floats e, Floats threshold) {
   const Floats sum = load(r.impulse + c), back = Floats(0.f) - sum;
-  const Floats change = kSide == Side::pulls ? xsimd::max(e, back) : xsimd::min(e, back);
-  const FloatMask lanes = (xsimd::abs(e) > threshold) & (change != Floats(0.f));
-  const Floats by = xsimd::select(lanes, change, Floats(0.f));
+  Floats change = kSide == Side::pulls ? xsimd::max(e, back) : xsimd::min(e, back);
+  FloatMask lanes = (xsimd::abs(e) > threshold) & (change != Floats(0.f));
+  Floats by = xsimd::select(lanes, change, Floats(0.f));
   (sum + by).store_unaligned(r.impulse + c);
   return {lanes, by};
 }
@@ -84,9 +84,9 @@ template <bool kFromMemory, class Correct>
   for (std::size_t k = 0; k < run.length; k += kFloats) {
     const Part p = part(r, run.constraint + k);
     if (kFromMemory && p.lane == 0) fetch_ahead(p.block);
-    const FloatVector n = p.n();
+    FloatVector n = p.n();
     FloatVector ua = load(u, run.a + k), ub = load(u, run.b + k);
-    const Corrected corrected = correct(r, run.constraint + k, errors(p, n, ua - ub), threshold);
+    Corrected corrected = correct(r, run.constraint + k, errors(p, n, ua - ub), threshold);
     if (!xsimd::any(corrected.lanes)) continue;
     corrections += count(corrected.lanes);
     ua = fused(corrected.by * p.gain_a(), n, ua);
@@ -141,9 +141,9 @@ template <class Lanes, bool kFromMemory, class Correct>
   for (std::size_t c = first; c < last; c += kFloats) {
     const Part p = part(r, c);
     if (kFromMemory && p.lane == 0) fetch_ahead(p.block);
-    const FloatVector n = p.n();
+    FloatVector n = p.n();
     FloatVector ua = at_a.get(r.u, r.a + c), ub = at_b.get(r.u, r.b + c);
-    const Corrected corrected = correct(r, c, errors(p, n, ua - ub), threshold);
+    Corrected corrected = correct(r, c, errors(p, n, ua - ub), threshold);
     if (!xsimd::any(corrected.lanes)) continue;
     corrections += count(corrected.lanes);
     ua = fused(corrected.by * p.gain_a(), n, ua);

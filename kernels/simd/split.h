@@ -74,8 +74,8 @@ void join_quads(kernels::VectorsView x, std::size_t first, std::size_t last, con
                 const float* u) {
   QuadsInRow at;
   for (std::size_t i = first; i < last; i += kFloats) {
-    const FloatVector from = at.get(base + 4 * i);
-    const FloatVector by = at.get(u + 4 * i);
+    FloatVector from = at.get(base + 4 * i);
+    FloatVector by = at.get(u + 4 * i);
     move(x.x + i, from.x, by.x);
     move(x.y + i, from.y, by.y);
     move(x.z + i, from.z, by.z);

@@ -73,8 +73,8 @@ struct Unpacking {
 
   [[gnu::always_inline]] explicit Unpacking(float of) : cell(of) {}
   [[gnu::always_inline]] FloatVector plus(const FloatVector& u, Ints v) const {
-    const FloatVector numbers{xsimd::to_float(v >> 22), xsimd::to_float((v << 10) >> 22),
-                              xsimd::to_float((v << 20) >> 22)};
+    FloatVector numbers{xsimd::to_float(v >> 22), xsimd::to_float((v << 10) >> 22),
+                        xsimd::to_float((v << 20) >> 22)};
     return fused(cell, numbers, u);
   }
 };
@@ -123,13 +123,13 @@ struct BaseDown {
       if (kFloats == kLanes && y.from_memory) fetch_ahead(k);
       return unpacking.plus(u, Ints::load_unaligned(words(k)));
     }
-    const FloatVector next = at.get(k + 1, lane);
+    FloatVector next = at.get(k + 1, lane);
     const Floats none(0.f), per_cell(1 / y.cell);
-    const auto joins = rest > none;
-    const FloatVector difference{xsimd::select(joins, here.x - next.x, none),
-                                 xsimd::select(joins, here.y - next.y, none),
-                                 xsimd::select(joins, here.z - next.z, none)};
-    const Ints dx = ten_bits(difference.x, per_cell), dy = ten_bits(difference.y, per_cell);
+    auto joins = rest > none;
+    FloatVector difference{xsimd::select(joins, here.x - next.x, none),
+                           xsimd::select(joins, here.y - next.y, none),
+                           xsimd::select(joins, here.z - next.z, none)};
+    Ints dx = ten_bits(difference.x, per_cell), dy = ten_bits(difference.y, per_cell);
     const Ints dz = ten_bits(difference.z, per_cell);
     packed(dx, dy, dz).store_unaligned(words(k));
     all = all | dx | dy | dz;

@@ -97,7 +97,7 @@ template <class At>
     for (std::uint32_t k = 0; k <= last; ++k) {
       YarnSystemRow& row = y.system[block.first + k];
       const std::uint32_t next = std::min(k + 1, last);
-      const FloatVector base_next = base.get(next, lane), u_next = at.get(next, lane);
+      FloatVector base_next = base.get(next, lane), u_next = at.get(next, lane);
       const Floats change = dot(load(row.n, lane), (base_here - base_next) + (here - u_next));
       worst = larger(worst, change);
       poisoned = fused(change, zero, poisoned);
@@ -167,7 +167,7 @@ template <class Push>
     YarnSystemRow& row = y.system[block.first + k];
     const Floats p = fused(factor, load(row.p + lane), load(row.z + lane));
     p.store_unaligned(row.p + lane);
-    const FloatVector below = p * load(row.n, lane);
+    FloatVector below = p * load(row.n, lane);
     const Floats w = load(kind_of(y, block.first + k).inverse_mass + lane);
     push(k, w * (below - above));
     above = below;
@@ -206,7 +206,7 @@ template <class At>
   Floats product(0.f);
   for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
     YarnSystemRow& row = y.system[block.first + k];
-    const FloatVector next = at.get(k + 1, lane);
+    FloatVector next = at.get(k + 1, lane);
     const Floats q = dot(load(row.n, lane), here - next);
     q.store_unaligned(row.q + lane);
     product = fused(q, load(row.p + lane), product);
@@ -234,7 +234,7 @@ void yarn_finish(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* 
       FloatVector above = no_vector();
       for (std::uint32_t k = 0; k < rows_of(block); ++k) {
         const YarnSystemRow& row = y.system[block.first + k];
-        const FloatVector below = load(row.lambda + lane) * load(row.n, lane);
+        FloatVector below = load(row.lambda + lane) * load(row.n, lane);
         const Floats w = load(kind_of(y, block.first + k).inverse_mass + lane);
         at.put(k, lane, fused(w, above - below, at.get(k, lane)));
         above = below;
@@ -253,7 +253,7 @@ template <bool kErrors, class At>
     FloatVector here = at.get(0, lane);
     for (std::uint32_t k = 0; k < last; ++k) {
       const YarnSystemRow& system = y.system[block.first + k];
-      const FloatVector next = at.get(k + 1, lane);
+      FloatVector next = at.get(k + 1, lane);
       Floats error = dot(load(system.n, lane), here - next);
       if constexpr (kErrors) error = error + load(system.residual + lane);
       b = fused(load(system.m + lane), b, error);

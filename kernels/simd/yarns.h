@@ -82,9 +82,9 @@ struct YarnLink {
   const Floats one(1.f), length = xsimd::sqrt(dot(d, d));
   const auto distinct = length >= Floats(kLeastNormal);
   const Floats inverse = one / xsimd::select(distinct, length, one);
-  const FloatVector n{where_present(rest, inverse * d.x),
-                      where_present(rest, xsimd::select(distinct, inverse * d.y, one)),
-                      where_present(rest, inverse * d.z)};
+  FloatVector n{where_present(rest, inverse * d.x),
+                where_present(rest, xsimd::select(distinct, inverse * d.y, one)),
+                where_present(rest, inverse * d.z)};
   const Floats off = where_present(rest, length - rest);
   return {n, off, one, n, off};
 }
@@ -166,8 +166,8 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScrat
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
       FloatVector here = at.get(0, lane), base_here = base.get(0, lane);
       for (std::uint32_t k = 0; k < last; ++k) {
-        const FloatVector next = at.get(k + 1, lane), base_next = base.get(k + 1, lane);
-        const FloatVector d = apart(y, (base_here - base_next) + (here - next));
+        FloatVector next = at.get(k + 1, lane), base_next = base.get(k + 1, lane);
+        FloatVector d = apart(y, (base_here - base_next) + (here - next));
         const std::uint32_t row = block.first + k;
         store(y.start[row], lane, unit_link(d, load(kind_of(y, row).rest + lane)).n);
         base_here = base_next;
@@ -197,9 +197,9 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
     at.fetch_ahead(k, last, lane);
     if constexpr (kBase == Base::fetched) base.fetch_ahead(k, last, lane);
     const YarnRow& kind = kind_of(y, first + k);
-    const FloatVector next = at.get(k + 1, lane);
+    FloatVector next = at.get(k + 1, lane);
     const Floats rest = load(kind.rest + lane);
-    const FloatVector d = apart(y, base_down.step(k, here - next, rest));
+    FloatVector d = apart(y, base_down.step(k, here - next, rest));
     YarnLink link = make_link(d, rest);
     direct<kAlong>(link, y.start, first + k, lane);
     take(k, here, link,
@@ -225,7 +225,7 @@ template <class Row, class Move>
   for (std::uint32_t k = rows_of(block) - 1; k > 0; --k) {
     lambda = fused(m, lambda, load(scratch[k - 1].y + lane));
     m = load(factors[k - 1].m + lane);
-    const FloatVector above = lambda * load(factors[k - 1].n, lane);
+    FloatVector above = lambda * load(factors[k - 1].n, lane);
     move(k, load(kind_of(y, first + k).inverse_mass + lane), above - below);
     below = above;
   }
@@ -306,8 +306,7 @@ template <Base kBase, class At>
     Elimination<Along::present> elimination;
     for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
       const YarnRow& kind = kind_of(y, block.first + k);
-      const YarnLink link =
-          scaled_link<Along::present>(load(scratch[k].n, lane), load(kind.rest + lane));
+      YarnLink link = scaled_link<Along::present>(load(scratch[k].n, lane), load(kind.rest + lane));
       substitution.take(
           scratch[k], lane, link.error,
           elimination.step(link, load(kind.inverse_mass + lane), load(kind.joined + lane)));
@@ -324,7 +323,7 @@ struct After {
   /// d before it, and what the row's own particle is moved by. Returns d after it.
   [[gnu::always_inline]] FloatVector take(const FloatVector& d, const FloatVector& by, Floats rest,
                                           Floats square) {
-    const FloatVector now = d + (by - below);
+    FloatVector now = d + (by - below);
     const Floats out =
         fused_from(now.x, now.x, fused_from(now.y, now.y, fused_from(now.z, now.z, rest * rest)));
     beyond = xsimd::max(beyond, fused_from(allowed, square, xsimd::abs(out)));
@@ -345,7 +344,7 @@ template <class At, class Keep>
     go_up(
         y, block, lane, scratch, scratch,
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
-          const FloatVector u = fused(w, impulse, at.kept(k, lane));
+          FloatVector u = fused(w, impulse, at.kept(k, lane));
           const YarnRow& kind = kind_of(y, block.first + k);
           keep(k, lane,
                after.take(load(scratch[k].n, lane), w * impulse, load(kind.rest + lane),
