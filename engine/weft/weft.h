@@ -211,7 +211,7 @@ struct Settings {
   int threads = 0;
   Directions directions = Directions::frozen;
   /// Section 4.2: update errors instead of recomputing them. simd forms them from displacements
-  /// either way, which is faster in lanes (perf/README.md); there this selects how `skip` tracks
+  /// either way, which is faster in lanes (perf/tried.md); there this selects how `skip` tracks
   /// satisfied constraints: true, by flags of chunks; false, by the paper's 64-bit masks.
   bool anticipate = true;
   bool skip = true;                  ///< section 4.3: satisfied constraints are passed over
