@@ -28,10 +28,6 @@ constexpr double kFar = 2;
 constexpr double kLeft = 0.3;
 constexpr std::uint32_t kMostSolves = 20;
 constexpr double kSeen = 1e-6;
-/// Newton steps are solved to this share of what eliminating the first family leaves of the error,
-/// or of the tolerance. (0.1 and 0.3: as fast on corners 41 x 41 at 1 %; 0.3 takes a tenth more
-/// iterations at 0.001 %.)
-constexpr double kForcing = 0.2;
 constexpr double kWithin = 0.5;
 constexpr int kMostIterations = 300;  // of conjugate gradients, in one Newton step
 /// What is aimed at where the tolerance is larger: what is left is noise that the next steps would
@@ -70,8 +66,6 @@ class Progress {
   double best_ = kNoBound;
   int stale_ = 0;
 };
-
-constexpr std::size_t kNumbers = 4096;  // floats that a thread takes at a time
 
 /// Shares that the blocks of a family are dealt out in at most, each with a scratch of its own.
 constexpr std::size_t kMostShares = 16;
@@ -112,30 +106,6 @@ simd::Yarns YarnSolver::yarns() {
           static_cast<float>(cell_),
           moved_,
           layout_.from_memory()};
-}
-
-/// work(yarns, block's number, scratch); shares of blocks side by side.
-template <class Work>
-void YarnSolver::for_each_block(std::size_t first, std::size_t last, Team& team, Work&& work) {
-  if (first == last) return;
-  const simd::Yarns yarns = this->yarns();
-  const std::size_t shares =
-      std::min({scratch_.size() / layout_.scratch_rows(), last - first, team.size()});
-  team.for_each(shares, [&](std::size_t share) {
-    const std::size_t begin = first + (last - first) * share / shares;
-    const std::size_t end = first + (last - first) * (share + 1) / shares;
-    for (std::size_t i = begin; i < end; ++i) {
-      work(yarns, i, scratch_.data() + layout_.scratch_rows() * share);
-    }
-  });
-}
-
-/// One family after the other.
-template <class Work>
-void YarnSolver::for_each_family(Team& team, Work&& work) {
-  for (std::size_t f = 0; f < layout_.families(); ++f) {
-    for_each_block(layout_.family_begin[f], layout_.family_begin[f + 1], team, work);
-  }
 }
 
 void YarnSolver::split(kernels::VectorsView x, double cell, Team& team) {
@@ -204,159 +174,6 @@ void YarnSolver::count(int passes, std::int64_t visits, std::int64_t corrections
   result.corrections += corrections + others;
 }
 
-void YarnSolver::linearise(Team& team) {
-  linearise_yarns(team);
-  others_.linearise(base_.data(), u_.data());
-}
-
-void YarnSolver::linearise_velocities(Team& team) {
-  linearise_yarns(team);
-  others_.linearise_velocities(base_.data(), u_.data());
-}
-
-void YarnSolver::linearise_yarns(Team& team) {
-  for_each_block(0, layout_.blocks.size(), team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
-                   table_.yarn_linearise(yarns, layout_.blocks[i], u_.data(), scratch);
-                 });
-  moved_ = false;
-}
-
-double YarnSolver::read_velocities(Team& team) {
-  for_each_block(0, layout_.blocks.size(), team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
-                   products_[i].worst =
-                       table_.yarn_read(yarns, layout_.blocks[i], u_.data(), scratch);
-                 });
-  double worst = others_.read(base_.data(), u_.data());
-  if (!std::isfinite(worst)) return kNoBound;
-  for (const simd::YarnProducts& p : products_) {
-    if (!std::isfinite(p.worst)) return kNoBound;
-    worst = std::max(worst, static_cast<double>(p.worst));
-  }
-  return worst;
-}
-
-YarnSolver::Products YarnSolver::precondition(double alpha, double goal, Team& team) {
-  for_each_block(first_end_, layout_.blocks.size(), team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch*) {
-                   products_[i] = table_.yarn_precondition(yarns, layout_.blocks[i],
-                                                           static_cast<float>(alpha));
-                 });
-  const simd::YarnProducts others = others_.precondition(alpha, goal);
-  Products sum{static_cast<double>(others.product), static_cast<double>(others.worst)};
-  for (std::size_t i = first_end_; i < products_.size(); ++i) {
-    sum.product += static_cast<double>(products_[i].product);
-    sum.worst = std::max(sum.worst, static_cast<double>(products_[i].worst));
-  }
-  return sum;
-}
-
-void YarnSolver::clear_push(Team& team) {
-  team.for_each_part(t_.size(), kNumbers, [&](std::size_t first, std::size_t last) {
-    std::fill(t_.data() + first, t_.data() + last, 0.f);
-  });
-}
-
-/// The right side without the first family, and its first preconditioned residual.
-YarnSolver::Products YarnSolver::reduce(double goal, Team& team) {
-  clear_push(team);
-  eliminate(true, team);
-  pull(team);
-  return precondition(-1, goal, team);
-}
-
-/// t = M^-1 J^T p of all but the first family.
-void YarnSolver::push(double beta, Team& team) {
-  const auto factor = static_cast<float>(beta);
-  const std::vector<std::uint32_t>& begin = layout_.family_begin;
-  for (const std::size_t place : layout_.not_in_second) {
-    for (std::size_t axis = 0; axis < 3; ++axis) t_[place + axis * layout_.places.stride] = 0;
-  }
-  for (std::size_t f = 1; f < layout_.families(); ++f) {
-    const auto push = f == 1 ? table_.yarn_push_first : table_.yarn_push;
-    for_each_block(begin[f], begin[f + 1], team,
-                   [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
-                     push(yarns, layout_.blocks[i], factor, t_.data(), scratch);
-                   });
-  }
-  others_.push(beta, t_.data());
-}
-
-/// t -= M^-1 J^T T^-1 J t of the first family; with errors, T^-1 (e + J t).
-void YarnSolver::eliminate(bool errors, Team& team) {
-  for_each_block(0, first_end_, team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
-                   table_.yarn_eliminate(yarns, layout_.blocks[i], t_.data(), errors, scratch);
-                 });
-}
-
-/// q = J t of all but the first family; returns p . q.
-double YarnSolver::pull(Team& team) {
-  for_each_block(first_end_, layout_.blocks.size(), team,
-                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
-                   products_[i].product =
-                       table_.yarn_pull(yarns, layout_.blocks[i], t_.data(), scratch);
-                 });
-  double sum = others_.pull(t_.data());
-  for (std::size_t i = first_end_; i < products_.size(); ++i) {
-    sum += static_cast<double>(products_[i].product);
-  }
-  return sum;
-}
-
-/// u -= M^-1 J^T lambda, the first family's impulses from those of all others.
-void YarnSolver::finish(Team& team) {
-  const std::vector<std::uint32_t>& begin = layout_.family_begin;
-  clear_push(team);
-  for (std::size_t f = 1; f < layout_.families(); ++f) {
-    for_each_block(begin[f], begin[f + 1], team,
-                   [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
-                     table_.yarn_finish(yarns, layout_.blocks[i], t_.data(), scratch);
-                   });
-  }
-  others_.finish(t_.data());
-  eliminate(true, team);
-  team.for_each_part(t_.size(), kNumbers, [&](std::size_t first, std::size_t last) {
-    table_.yarn_add(u_.data(), t_.data(), first, last);
-  });
-}
-
-/// Preconditioned conjugate gradients on the reduced system, then u -= M^-1 J^T lambda.
-void YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
-                       kernels::LoopResult& result) {
-  Products now = reduce(goal, team);
-  const double enough = std::max(goal, part * now.worst);
-  double beta = 0;
-  int done = 0;
-  while (now.worst > enough && done < max_iterations) {
-    push(beta, team);
-    eliminate(false, team);
-    const double curvature = pull(team);
-    if (!(curvature > 0 && now.product > 0)) break;
-    const Products next = precondition(now.product / curvature, goal, team);
-    beta = next.product / now.product;
-    now = next;
-    ++done;
-  }
-  if (std::isfinite(now.product)) finish(team);
-  const int passes = std::max(1, done);
-  const std::int64_t visits = passes * static_cast<std::int64_t>(model_.constraints.plain);
-  count(passes, visits, visits, result);
-}
-
-void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result) {
-  linearise(team);
-  solve(goal, kForcing, max_iterations, team, result);
-}
-
-/// The linear system, from when it is first wanted; room for it was made, and is not touched
-/// before.
-void YarnSolver::make_system() {
-  system_.resize(layout_.rows());
-  t_.resize(u_.size());
-}
-
 /// More than one system only where one-sided constraints join in or let go, or where floats lost
 /// sight of the last digits.
 kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
@@ -407,55 +224,63 @@ bool YarnSolver::loses_energy(kernels::VectorsView v) const {
   return after <= (1 + kRounding) * before;
 }
 
-kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
-                                                const ContactStore& contacts, bool first_round,
-                                                int max_iterations, double care,
-                                                SimdMeasure& measure, Team& team) {
-  kernels::LoopResult result;
+void YarnSolver::begin(kernels::VectorsView x, kernels::VectorsView start,
+                       const ContactStore& contacts, bool first_round, Team& team) {
   from_start_ = false;
   velocities_ = false;
   others_.start(contacts, first_round);
   if (start.x != nullptr) keep_start(start, team);
   std::ranges::fill(stubborn_, std::uint8_t{0});
   split(x, team);
+}
+
+YarnSolver::Aim YarnSolver::aim(double care) const {
+  const bool rattle = settings_.scheme == Scheme::rattle;
+  const double wanted = care * std::min(settings_.tolerance, kGoal);
+  const double goal = rattle ? std::min(wanted, kRattleGoal) : wanted;
+  const double block = rattle || kLeft * goal < kSeen ? kNoBound : kLeft * goal;
+  return {wanted, goal, block};
+}
+
+kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
+                                                const ContactStore& contacts, bool first_round,
+                                                int max_iterations, double care,
+                                                SimdMeasure& measure, Team& team) {
+  kernels::LoopResult result;
+  begin(x, start, contacts, first_round, team);
   if (settings_.iterations > 0) {
     while (result.iterations < settings_.iterations) sweep(kNoBound, team, result);
     join(x, team);
     return result;
   }
-  const bool rattle = settings_.scheme == Scheme::rattle;
-  const double wanted = care * std::min(settings_.tolerance, kGoal);
-  const double goal = rattle ? std::min(wanted, kRattleGoal) : wanted;
-  const double enough = rattle || kLeft * goal < kSeen ? kNoBound : kLeft * goal;
+  const Aim aim = this->aim(care);
   Progress progress(from_start_ ? kRattlePatience : kPatience);
   double before = kNoBound;
-  int swept = 1;  // sweeps since the last look
-  sweep(enough, team, result);
+  int sweeps = 1;  // since the last look
+  sweep(aim.block, team, result);
   for (;;) {
     const double strain = measure.max_strain(
         x, team, [&](std::size_t first, std::size_t last) { join(x, first, last); });
     const double violation = others_.violation(base_.data(), u_.data());
     const bool just = violation <= 1;
     result.converged = strain <= settings_.tolerance && just;
-    if (strain <= goal && just) return result;
-    const double worst = std::max(strain / goal, violation);
+    if (strain <= aim.goal && just) return result;
     if (result.iterations >= max_iterations) return result;
-    if (!progress.goes_on(worst)) {
-      result.failed = !(from_start_ ? result.converged : strain <= wanted && just);
+    if (!progress.goes_on(std::max(strain / aim.goal, violation))) {
+      result.failed = !(from_start_ ? result.converged : strain <= aim.wanted && just);
       return result;
     }
-    const double fall = swept == 1 ? strain / before : std::sqrt(strain / before);
-    swept = 1;
-    const int besides = max_iterations - result.iterations - 1;  // a sweep that is to come
-    if (besides > 0 && strain < kSmall && fall > kSlow) {
+    const double fall = sweeps == 1 ? strain / before : std::sqrt(strain / before);
+    const int left = max_iterations - result.iterations - 1;  // but for a sweep that is to come
+    sweeps = 1;
+    if (left > 0 && strain < kSmall && fall > kSlow) {
       split(x, team);
-      make_system();
-      newton(kWithin * goal, std::min(kMostIterations, besides), team, result);
-    } else if (besides > 0 && fall < 1 && fall * strain > kFar * goal) {
-      sweep(enough, team, result);
-      swept = 2;
+      newton(kWithin * aim.goal, std::min(kMostIterations, left), team, result);
+    } else if (left > 0 && fall < 1 && fall * strain > kFar * aim.goal) {
+      sweep(aim.block, team, result);
+      sweeps = 2;
     }
-    sweep(enough, team, result);
+    sweep(aim.block, team, result);
     before = strain;
   }
 }

@@ -21,6 +21,7 @@
 
 #include <weft/weft.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "engine/contacts.h"
@@ -58,7 +59,16 @@ class YarnSolver {
     double product = 0;  // residual . z
     double worst = 0;    // largest strain left, or velocity
   };
+  /// Strains.
+  struct Aim {
+    double wanted;  // with more the solver has failed
+    double goal;    // with this it is done
+    double block;   // a block with less is not solved again at once
+  };
   simd::Yarns yarns();
+  Aim aim(double care) const;
+  void begin(kernels::VectorsView x, kernels::VectorsView start, const ContactStore& contacts,
+             bool first_round, Team& team);
   /// Starts at the positions x.
   void split(kernels::VectorsView x, Team& team) { split(x, layout_.cell, team); }
   void split(kernels::VectorsView x, double cell, Team& team);
@@ -69,7 +79,12 @@ class YarnSolver {
   void sweep(double enough, Team& team, kernels::LoopResult& result);
   std::uint32_t solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
                             simd::YarnScratch* scratch);
-  /// One linear system, to the strain `goal`.
+  bool loses_energy(kernels::VectorsView v) const;
+  void count(int passes, std::int64_t visits, std::int64_t corrections,
+             kernels::LoopResult& result) const;
+
+  // The linear system: yarn_system.cpp.
+  /// One of them, to the strain `goal`.
   void newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
   /// What was linearised, until no error is above `goal`, or the share `part` of what is left
   /// when the first family is eliminated.
@@ -79,7 +94,6 @@ class YarnSolver {
   void linearise_yarns(Team& team);
   void linearise_velocities(Team& team);
   double read_velocities(Team& team);  // the largest; infinite if one is not a number
-  bool loses_energy(kernels::VectorsView v) const;
   Products precondition(double alpha, double goal, Team& team);
   void clear_push(Team& team);
   Products reduce(double goal, Team& team);
@@ -87,8 +101,7 @@ class YarnSolver {
   void eliminate(bool errors, Team& team);
   double pull(Team& team);
   void finish(Team& team);
-  void count(int passes, std::int64_t visits, std::int64_t corrections,
-             kernels::LoopResult& result) const;
+
   template <class Work>
   void for_each_family(Team& team, Work&& work);
   template <class Work>
@@ -113,5 +126,29 @@ class YarnSolver {
   std::vector<std::uint8_t> stubborn_;                  // per block: kMostSolves were too few
   YarnOthers others_;
 };
+
+/// work(yarns, block's number, scratch); shares of blocks side by side.
+template <class Work>
+void YarnSolver::for_each_block(std::size_t first, std::size_t last, Team& team, Work&& work) {
+  if (first == last) return;
+  const simd::Yarns yarns = this->yarns();
+  const std::size_t shares =
+      std::min({scratch_.size() / layout_.scratch_rows(), last - first, team.size()});
+  team.for_each(shares, [&](std::size_t share) {
+    const std::size_t begin = first + (last - first) * share / shares;
+    const std::size_t end = first + (last - first) * (share + 1) / shares;
+    for (std::size_t i = begin; i < end; ++i) {
+      work(yarns, i, scratch_.data() + layout_.scratch_rows() * share);
+    }
+  });
+}
+
+/// One family after the other.
+template <class Work>
+void YarnSolver::for_each_family(Team& team, Work&& work) {
+  for (std::size_t f = 0; f < layout_.families(); ++f) {
+    for_each_block(layout_.family_begin[f], layout_.family_begin[f + 1], team, work);
+  }
+}
 
 }  // namespace weft
