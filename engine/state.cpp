@@ -53,6 +53,7 @@ void State::copy(const State& from) {
   pins = std::move(its_pins);
   trouble = same ? from.trouble : Trouble{};
   placed = !same || from.placed;
+  last_dt = same ? from.last_dt : 0;
 }
 
 std::size_t State::bytes() const {

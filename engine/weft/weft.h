@@ -214,9 +214,11 @@ struct Settings {
   /// either way, which is faster in lanes (perf/tried.md); there this selects how `skip` tracks
   /// satisfied constraints: true, by flags of chunks; false, by the paper's 64-bit masks.
   bool anticipate = true;
-  bool skip = true;                  ///< section 4.3: satisfied constraints are passed over
-  bool velocity_correction = false;  ///< sections 3.2, 3.3: a second loop, on velocities; rattle
-                                     ///< has it always
+  bool skip = true;  ///< section 4.3: satisfied constraints are passed over
+  /// Sections 3.2, 3.3: a second loop, on velocities; rattle has it always. Errors that
+  /// gauss_seidel leaves within a loose tolerance come back as speed, error / dt: in steps of some
+  /// milliseconds it gains energy without (tests/README.md).
+  bool velocity_correction = false;
 };
 
 /// The method of the paper, with all its optimisations: Gauss-Seidel, one substep.

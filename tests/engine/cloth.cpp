@@ -102,13 +102,14 @@ TEST_CASE("a clone, and a cloth that copies the state of another, go on bit for 
         Cloth cloth = on_its_way(scene, {.solver = solver, .scheme = scheme});
         Cloth clone = cloth.clone();
         Cloth back = cloth.clone();
-        run(back, 0.01, 7);
+        run(back, 0.0002, 7);
         REQUIRE(back.copy_state(cloth));
         for (int k = 0; k < 20; ++k) {
+          const double dt = k == 0 ? 0.0005 : 0.01;  // a short step depends on the one before
           for (Cloth* each : {&cloth, &clone, &back}) {
             const Vec3 at = each->position(scene.fixed[0]);
             REQUIRE(each->move_fixed(scene.fixed[0], {at.x, at.y, at.z + 0.02}));
-            run(*each, 0.01, 1);
+            run(*each, dt, 1);
           }
           REQUIRE(clone.state_hash() == cloth.state_hash());
           REQUIRE(back.state_hash() == cloth.state_hash());

@@ -75,6 +75,25 @@ TEST_CASE("hang at full size never holds more energy than it started with" *
   }
 }
 
+/// What a frame leaves within tolerance, divided by 10 us, would be metres per second.
+TEST_CASE("a step far shorter than the last one makes no speed of what that one left") {
+  constexpr double kFrame = 1. / 60, kRest = 1e-5;
+  for (const Solver solver : {Solver::automatic, Solver::direct}) {
+    for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+      CAPTURE(name(solver));
+      CAPTURE(name(scheme));
+      Cloth cloth = cloth_of(scene_of("hang", 20), {.solver = solver, .scheme = scheme});
+      const double start = cloth.energy().total();
+      for (int k = 0; k < 100; ++k) {
+        REQUIRE(step(cloth, kFrame).status == Status::converged);
+        CHECK(cloth.energy().total() < start + 1e-5);
+        REQUIRE(step(cloth, kRest).status == Status::converged);
+        CHECK(cloth.energy().total() < start + 1e-5);
+      }
+    }
+  }
+}
+
 TEST_CASE("energy() is kinetic plus potential of what is not fixed") {
   const Backend backend = each_backend();
   for (const int size : {5, 21}) {  // 21: slots without a particle stand between the others
