@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/solvers/direct_solver.h"
 #include "tests/support/clothes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/motion.h"
@@ -227,6 +228,31 @@ TEST_CASE("two spheres squeeze what is between them") {
       CHECK(distance(momentum(scene.masses, velocities(cloth)), before) <= 1e-9 * length(before));
     }
   }
+}
+
+// Solved for together with the bar, the contact would have to pull: it is let go, and the bar is
+// solved for without it.
+TEST_CASE("a matrix made with a contact does not serve when that has let go") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {1.3, 0.4, 0}};
+  scene.velocities = {{0, 0, 0}, {3, -1, 0}, {0, 0, 0}};
+  scene.masses = {1, 1, 1};
+  scene.fixed = {0, 2};
+  scene.constraints = {{0, 1, 1}};
+  scene.spheres = {2};
+  scene.radii = {0, 0, 0.5};
+  const auto model = model_of(scene);
+  const simd::Table& table = simd::table(simd::best_isa());
+  kernels::Vectors x = model->initial_position, v = model->initial_velocity;
+  ContactStore contacts = make_contact_store(*model);
+  find_contacts(*model, table, x.view(), contacts);
+  REQUIRE(contacts.count() == 1);
+  DirectSolver solver(*model, direct(tight(1e-9)), table);
+  const auto result = solver.correct_velocities(x.view(), v.view(), contacts, false);
+  CHECK(result.converged);
+  CHECK(result.iterations == 2);
+  const kernels::Vector left = v[model->ordering.slot_of[1]];
+  CHECK(kernels::length(left - kernels::Vector{0, -1, 0}) < 1e-9);
 }
 
 }  // namespace
