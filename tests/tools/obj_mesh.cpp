@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/scenes.h"
 
@@ -178,9 +179,99 @@ TEST_CASE("lines end as they may, and comments may follow") {
         "line 2: 'v 1 x 0': a vertex needs three finite numbers");
 }
 
+const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+
+TEST_CASE("lines are counted from 1, blank ones and comments too, however they end") {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    CAPTURE(end);
+    std::string text = "# one";
+    for (const char* line : {"", "v 0 0 0", "  ", "v 1 0 0 # five", "vt 0 0", "f 1 x 2"}) {
+      text += end + line;
+    }
+    CHECK(error_of(text) == "line 7: 'x': not the number of a vertex");
+    CHECK(error_of(text + end + end) == "line 7: 'x': not the number of a vertex");
+  }
+}
+
+TEST_CASE("the last line needs no end") {
+  for (const std::string text : {"f 1 2 3", "f 1 2 3\nl 1 3", "f -3 -2 -1", "f 1 2 3#c"}) {
+    CAPTURE(text);
+    CHECK(parse(kTriangle + text).description.constraints.size() == 3);
+  }
+  CHECK(error_of(kTriangle + "f 1 2 34") == "line 4: there is no vertex 34, the last one is 3");
+}
+
+TEST_CASE("a vertex that is missing is reported where it is used first") {
+  CHECK(error_of(kTriangle + "f 1 2 3\nf 1 2 5\nl 1 4\nf 1 5 2\n") ==
+        "line 5: there is no vertex 5, the last one is 3");
+  CHECK(error_of(kTriangle + "l 1 4\n") == "line 4: there is no vertex 4, the last one is 3");
+}
+
+TEST_CASE("negative numbers count back from the vertices above them") {
+  const ObjScene scene =
+      parse("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\nf -1 -4 -2\nl -1 2\n");
+  CHECK(scene.mesh.faces == std::vector<std::vector<std::uint32_t>>{{0, 1, 2}, {3, 0, 2}});
+  CHECK(scene.mesh.lines == std::vector<std::vector<std::uint32_t>>{{3, 1}});
+  CHECK(error_of("v 0 0 0\nv 1 0 0\nf -1 -2 -3\nv 1 1 0\n") ==
+        "line 3: '-3': not the number of a vertex");
+}
+
+TEST_CASE("words are apart by blanks or tabs, and a vertex may carry a weight or a colour") {
+  const ObjScene scene = parse("v 1 2 3 9\n\tv\t4 5\t6 0.1 0.2 0.3\nv 7 8 9\nf\t1 2\t3\n");
+  const auto& positions = scene.description.positions;
+  REQUIRE(positions.size() == 3);
+  CHECK((positions[0].x == 1 && positions[0].y == 2 && positions[0].z == 3));
+  CHECK((positions[1].x == 4 && positions[1].y == 5 && positions[1].z == 6));
+  CHECK(error_of(kTriangle + "\tf\t1\tx\t2\n") == "line 4: 'x': not the number of a vertex");
+}
+
+TEST_CASE("each of the three coordinates is a finite number") {
+  for (const std::string line : {"v x 0 0", "v 0 x 0", "v 0 0 x", "v 0 0 nan", "v inf 0 0",
+                                 "v 0 1e999 0", "v 0 0 1,5", "v 0 0"}) {
+    CAPTURE(line);
+    CHECK(error_of(kTriangle + line + " # c\n").starts_with("line 4: '" + line));
+  }
+}
+
+TEST_CASE("faces of up to 255 corners are read, lines of any number") {
+  std::string vertices, numbers;
+  for (int i = 1; i <= 255; ++i) {
+    const std::string number = std::to_string(i);
+    vertices += "v " + number + " 0 " + std::to_string(i * i) + '\n';
+    numbers += ' ' + number;
+  }
+  const ObjScene face = parse(vertices + "f" + numbers);
+  CHECK(face.description.constraints.size() == 255);
+  CHECK(parse(vertices + "v 0 0 0\nl" + numbers + " 256").description.constraints.size() == 255);
+}
+
+TEST_CASE("only four-sided faces have diagonals") {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\n";
+  for (const std::string face : {"f 1 2 3\n", "f 1 2 3 4 5\n"}) {
+    CAPTURE(face);
+    const ObjScene scene = parse(vertices + face, {.rope_diagonals = true});
+    CHECK(count(scene.description, ConstraintKind::rope) == 0);
+  }
+}
+
+TEST_CASE("lines that a backslash continues are refused") {
+  CHECK(error_of(kTriangle + "f 1 2 \\\n3\n") == "line 4: '\\': not the number of a vertex");
+  CHECK(error_of(kTriangle + "l 1 2\\\n3\n") == "line 4: '2\\': not the number of a vertex");
+  CHECK(error_of("v 0 0 \\\n0\n") == "line 1: 'v 0 0 \\': a vertex needs three finite numbers");
+}
+
+TEST_CASE("what the loader refuses is one line too, with the number of the file's") {
+  const std::string error = error_of("\r\n# two\r\n" + kTriangle + "f 1/x 2 3\n");
+  CHECK(error.find('\n') == std::string::npos);
+  CHECK(error.find("line 6") != std::string::npos);
+}
+
 TEST_CASE("masses and scales must be above 0") {
   CHECK(error_of(kTwoSquares, {.mass = 0}) == "--mass: 0 is not a number above 0");
   CHECK(error_of(kTwoSquares, {.scale = -1}) == "--scale: -1 is not a number above 0");
+  const double infinity = std::numeric_limits<double>::infinity();
+  CHECK(error_of(kTwoSquares, {.mass = infinity}) == "--mass: inf is not a number above 0");
+  CHECK(error_of(kTwoSquares, {.scale = 0 * infinity}).starts_with("--scale: "));
 }
 
 TEST_CASE("a mesh is written with the numbering and the faces of its file") {
