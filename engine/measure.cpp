@@ -57,11 +57,18 @@ bool all_finite(const kernels::Vectors& v) {
   return all_finite(v.x) && all_finite(v.y) && all_finite(v.z);
 }
 
-std::size_t first_not_finite(const kernels::Vectors& v) {
+std::size_t first_not_finite(const Model& m, const kernels::Vectors& x, const kernels::Vectors& v) {
   const auto within = [](double number) { return std::abs(number) <= kMost; };
-  std::size_t i = 0;
-  while (i < v.size() && within(v.x[i]) && within(v.y[i]) && within(v.z[i])) ++i;
-  return i;
+  const auto finite = [&](const kernels::Vectors& vectors, std::size_t i) {
+    return within(vectors.x[i]) && within(vectors.y[i]) && within(vectors.z[i]);
+  };
+  std::size_t any = m.slots();
+  for (std::size_t i = 0; i < m.slots(); ++i) {
+    if (finite(x, i) && finite(v, i)) continue;
+    if (m.inverse_mass[i] > 0) return i;
+    any = std::min(any, i);
+  }
+  return any;
 }
 
 }  // namespace weft

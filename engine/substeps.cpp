@@ -51,10 +51,9 @@ double care_after(double last_dt, double dt) {
 /// Of a step that is not committed: who left the range of numbers, and whether that would have
 /// happened without any constraint.
 void explain(State& s, double h, StepReport& report, Team& team) {
-  const std::size_t solved =
-      std::min(first_not_finite(s.solved), first_not_finite(s.next_velocity));
+  const std::size_t solved = first_not_finite(*s.model, s.solved, s.next_velocity);
   predict(s, h, team);
-  const std::size_t predicted = first_not_finite(s.solved);
+  const std::size_t predicted = first_not_finite(*s.model, s.solved, s.solved);
   const bool input = predicted < s.model->slots();
   report.failed_particle = s.model->ordering.particle_at[input ? predicted : solved];
   report.passed_particle = kNoIndex;

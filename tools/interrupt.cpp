@@ -42,6 +42,10 @@ void install_interrupt_handler() {
   action.sa_handler = handle_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction hangup {};  // ignored under nohup, and then left so
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+  signal(SIGXFSZ, SIG_IGN);  // writing fails then, and says so
 }
 
 OrderlyInterrupt::OrderlyInterrupt() {

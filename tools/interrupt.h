@@ -1,4 +1,5 @@
-/// SIGINT (Ctrl-C) and SIGTERM: nothing is left half-written, and nothing that was reached is lost.
+/// SIGINT (Ctrl-C), SIGTERM and SIGHUP: nothing is left half-written, and nothing that was reached
+/// is lost.
 #pragma once
 
 namespace weft::tools {

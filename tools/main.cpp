@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <iostream>
 #include <new>
 #include <string>
 #include <string_view>
@@ -55,7 +56,9 @@ int main(int argc, char** argv) {
     const bool is_verb = argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty();
     return refuse(is_verb ? missing_verb(app, argc, argv) : error.what());
   } catch (const CLI::ParseError& error) {
-    return error.get_exit_code() == 0 ? app.exit(error) : refuse(error.what());
+    if (error.get_exit_code() != 0) return refuse(error.what());
+    app.exit(error);  // help, or the version
+    return std::cout.flush() ? weft::tools::kDone : refuse("cannot write to stdout");
   } catch (const std::bad_alloc&) {
     return refuse("not enough memory for this scene");
   } catch (const std::exception& error) {

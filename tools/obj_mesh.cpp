@@ -66,7 +66,7 @@ long long vertex_number(std::string_view word, long long vertices_before) {
 }
 
 /// Reads along with the loader, for what that would accept in silence: it reads a broken number as
-/// 0, 3.5 as 3 and 4294967299 as 3 too, and counts the corners of a face in a byte.
+/// 0, 3.5 as 3 and 4294967299 as 3 too, drops faces of two corners, and counts corners in a byte.
 class LineCheck {
  public:
   Result<void> add(std::string_view line) {
@@ -82,6 +82,9 @@ class LineCheck {
       return Error{fmt::format("line {}: a face of {} vertices; at most {} can be read", line_,
                                words.size() - 1, kMostCorners)};
     }
+    if (words[0] == "f" && words.size() < 4)
+      return refused(line, "a face has three corners at least");
+    if (words[0] == "l" && words.size() < 3) return refused(line, "a line has two ends at least");
     if (words[0] == "f" || words[0] == "l") return add_corners(std::span(words).subspan(1));
     return {};
   }
@@ -122,6 +125,8 @@ Result<std::string> checked_text(std::string_view text) {
   std::string checked;
   checked.reserve(text.size() + 1);
   LineCheck check;
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   while (!text.empty()) {
     const std::string_view line = without_comment(take_line(text));
     if (auto added = check.add(line); !added) return Error{added.error()};

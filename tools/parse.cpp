@@ -18,6 +18,7 @@ std::optional<Number> parse_whole(std::string_view text) {
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto number = parse_whole<double>(text);
   return number && std::isfinite(*number) ? number : std::nullopt;
 }

@@ -1,5 +1,7 @@
 #include "tools/pc2_writer.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstring>
 #include <vector>
@@ -11,6 +13,12 @@ static_assert(std::endian::native == std::endian::little, "the format is little-
 Result<Pc2Writer> Pc2Writer::open(const std::string& path) {
   auto file = PendingFile::open(path);
   if (!file) return Error{file.error()};
+  if (std::ftell(file.value().stream()) < 0) {
+    return Error{
+        fmt::format("cannot write '{}': the number of frames stands at the beginning, and "
+                    "in a pipe there is no way back",
+                    path)};
+  }
   Pc2Writer writer(std::move(file.value()));
   writer.write_header();
   return writer;

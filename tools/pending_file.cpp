@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace weft::tools {
 namespace {
@@ -31,6 +33,17 @@ void forget(const char* name) {
   }
 }
 
+/// Through symbolic links: they stay, and what they lead to is written.
+std::string followed(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  std::filesystem::path place = path;
+  std::error_code failure;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(place, failure); ++i) {
+    place = place.parent_path() / std::filesystem::read_symlink(place, failure);
+  }
+  return place.string();
+}
+
 }  // namespace
 
 struct PendingFile::State {
@@ -52,7 +65,8 @@ PendingFile::PendingFile(PendingFile&&) noexcept = default;
 PendingFile& PendingFile::operator=(PendingFile&&) noexcept = default;
 PendingFile::~PendingFile() = default;
 
-Result<PendingFile> PendingFile::open(const std::string& path) {
+Result<PendingFile> PendingFile::open(const std::string& named) {
+  const std::string path = followed(named);
   const auto refused = [&] {
     return Error{fmt::format("cannot write '{}': {}", path, std::strerror(errno))};
   };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -17,10 +18,28 @@ struct Refused {
   std::string message;
 };
 
-[[noreturn]] void refuse(const std::string& place, std::string_view expected, const Json& found) {
+/// Begins as the file has it; without what nests in it, which may be as deep as the file is long.
+std::string brief(const Json& found) {
+  constexpr std::size_t kMost = 40;
+  if (std::ranges::any_of(found, [](const Json& part) { return part.is_structured(); })) {
+    return fmt::format("{} of {}", found.is_array() ? "an array" : "an object", found.size());
+  }
   std::string text = found.dump();
-  if (text.size() > 40) text = text.substr(0, 40) + "...";
-  throw Refused{fmt::format("{}: expected {}, not {}", place, expected, text)};
+  if (text.size() <= kMost) return text;
+  const auto within_character = [](char byte) { return (byte & 0xc0) == 0x80; };  // of UTF-8
+  std::size_t end = kMost;
+  while (within_character(text[end])) --end;
+  return text.substr(0, end) + "...";
+}
+
+/// In one line, whatever it has in it.
+std::string in_quotes(const Json& key) {
+  const std::string text = key.dump();
+  return '\'' + text.substr(1, text.size() - 2) + '\'';
+}
+
+[[noreturn]] void refuse(const std::string& place, std::string_view expected, const Json& found) {
+  throw Refused{fmt::format("{}: expected {}, not {}", place, expected, brief(found))};
 }
 
 double read_number(const Json& json, const std::string& place) {
@@ -121,7 +140,7 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
   } else if (key == "radii") {
     scene.radii = read_array(json, key, read_number);
   } else if (key != "total_mass") {
-    throw Refused{fmt::format("unknown key '{}'", key)};
+    throw Refused{fmt::format("unknown key {}", in_quotes(key))};
   }
 }
 
@@ -147,7 +166,8 @@ Json parse_once_each(std::string_view text) {
   return Json::parse(text, [&seen](int depth, Json::parse_event_t event, const Json& parsed) {
     if (event != Json::parse_event_t::key || depth != 1) return true;
     const auto key = parsed.get<std::string>();
-    if (!seen.insert(key).second) throw Refused{fmt::format("the key '{}' is given twice", key)};
+    if (!seen.insert(key).second)
+      throw Refused{fmt::format("the key {} is given twice", in_quotes(key))};
     return true;
   });
 }

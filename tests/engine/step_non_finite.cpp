@@ -1,6 +1,7 @@
 /// Steps that overflow: the state stays as it was, and the report says so.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -104,6 +105,19 @@ TEST_CASE("a velocity out of range changes nothing, though the position it leads
   CHECK(report.status == Status::non_finite);
   CHECK(report.failed_particle == 1);
   CHECK(cloth.state_hash() == before);
+}
+
+TEST_CASE("the particle that failed is one that can move") {
+  const SceneDescription scene = scene_of("hang", 20);
+  const auto check = [&](const Settings& settings, double dt) {
+    CAPTURE(dt);
+    Cloth cloth = cloth_of(scene, settings);
+    const StepReport report = step(cloth, dt);
+    REQUIRE(report.failed_particle != kNoIndex);
+    CHECK(std::ranges::count(scene.fixed, report.failed_particle) == 0);
+  };
+  for (const Backend backend : kBackends) check(on(backend), 1e308);
+  check({}, 1e20);
 }
 
 TEST_CASE("an overflow in a fixed number of iterations is seen too") {

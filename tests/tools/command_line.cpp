@@ -337,7 +337,8 @@ class Running {
     posix_spawn_file_actions_destroy(&actions);
     REQUIRE(failure == 0);
   }
-  void interrupt() const { kill(process_, SIGINT); }
+  void interrupt() const { send(SIGINT); }
+  void send(int signal) const { kill(process_, signal); }
   int exit_code() const {
     int status = 0;
     waitpid(process_, &status, 0);
@@ -351,6 +352,20 @@ class Running {
 
 void wait_for(const std::function<bool()>& sight) {
   while (!sight()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+TEST_CASE("a run whose terminal is closed ends with its frame too") {
+  const TemporaryFolder folder;
+  const TemporaryFolder outputs;
+  const Running running(
+      folder, {"run", "hang", "--steps", "100000000", "--out", outputs.file("motion.pc2")});
+  wait_for([&] { return !outputs.is_empty(); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  running.send(SIGHUP);
+  CHECK(running.exit_code() == 128 + SIGHUP);
+  for (const auto& file : std::filesystem::directory_iterator(outputs.file(""))) {
+    CHECK(file.path().filename() == "motion.pc2");
+  }
 }
 
 TEST_CASE("an interrupted run ends with its frame: whole files, a line, 130") {

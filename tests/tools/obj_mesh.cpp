@@ -136,6 +136,10 @@ TEST_CASE("a pin rule that means nothing is refused") {
 TEST_CASE("broken files are refused in one line") {
   CHECK(error_of("v 0 0 0\nv 1 x 0\nf 1 2 1\n") ==
         "line 2: 'v 1 x 0': a vertex needs three finite numbers");
+  CHECK(error_of("v 0 0 0\nv 1 0 0\nf 1 2\n") ==
+        "line 3: 'f 1 2': a face has three corners at least");
+  CHECK(error_of("v 0 0 0\nf\n") == "line 2: 'f': a face has three corners at least");
+  CHECK(error_of("v 0 0 0\nl 1\n") == "line 2: 'l 1': a line has two ends at least");
   CHECK(error_of("v 0 0\n") == "line 1: 'v 0 0': a vertex needs three finite numbers");
   CHECK(error_of("v 0 0 0\nv 1 0 0\nf 1 2 3\n") ==
         "line 3: there is no vertex 3, the last one is 2");
@@ -214,6 +218,12 @@ TEST_CASE("negative numbers count back from the vertices above them") {
   CHECK(scene.mesh.lines == std::vector<std::vector<std::uint32_t>>{{3, 1}});
   CHECK(error_of("v 0 0 0\nv 1 0 0\nf -1 -2 -3\nv 1 1 0\n") ==
         "line 3: '-3': not the number of a vertex");
+}
+
+TEST_CASE("a byte order mark and a plus are read over") {
+  const ObjScene scene = parse("\xef\xbb\xbfv +0 0 0\nv 1 +0.5 0\nv 0 1 0\nf 1 2 3\n");
+  CHECK(scene.description.positions.size() == 3);
+  CHECK(scene.description.positions[1].y == 0.5);
 }
 
 TEST_CASE("words are apart by blanks or tabs, and a vertex may carry a weight or a colour") {

@@ -28,6 +28,15 @@ TEST_CASE("a switch is on or off") {
   CHECK(parse_switch("--skip", "yes").error() == "--skip: 'yes' is not one of on, off");
 }
 
+TEST_CASE("a number may have a sign, but one only") {
+  CHECK(parse_number("+1.5") == 1.5);
+  CHECK(parse_number("-1.5") == -1.5);
+  for (const char* text : {"+-1", "++1", "-+1", "+", "", "+ 1"}) {
+    CAPTURE(text);
+    CHECK_FALSE(parse_number(text));
+  }
+}
+
 TEST_CASE("counts are whole numbers from 0 up") {
   CHECK(parse_count("12") == 12);
   CHECK(parse_count("0") == 0);

@@ -1,6 +1,9 @@
 #include "tools/pc2_writer.h"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstring>
@@ -39,6 +42,18 @@ TEST_CASE("the layout is that of Point Cache 2") {
     CHECK(number_at<float>(bytes, 32 + 4 * i) == static_cast<float>(i + 1));
   }
   CHECK(number_at<float>(bytes, bytes.size() - 4) == -0.5f);
+}
+
+TEST_CASE("a pipe, which cannot be rewound, is refused") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("pipe.pc2");
+  REQUIRE(mkfifo(path.c_str(), 0600) == 0);
+  const int both_ends = open(path.c_str(), O_RDWR);  // nobody waits for the other one
+  REQUIRE(both_ends >= 0);
+  const auto writer = Pc2Writer::open(path);
+  close(both_ends);
+  REQUIRE_FALSE(writer);
+  CHECK(writer.error().starts_with("cannot write '" + path + "': "));
 }
 
 TEST_CASE("a motion that is not finished leaves nothing") {

@@ -28,6 +28,20 @@ TEST_CASE("a file that is not committed leaves nothing") {
   CHECK(folder.is_empty());
 }
 
+TEST_CASE("a symbolic link stays, and what it leads to is written") {
+  const TemporaryFolder folder;
+  folder.write("old.txt", "old");
+  std::filesystem::create_directory(folder.file("links"));
+  for (const std::string target : {"old.txt", "new.txt"}) {
+    CAPTURE(target);
+    const std::string link = folder.file("links/" + target);
+    std::filesystem::create_symlink("../" + target, link);
+    CHECK(write_file(link, "written"));
+    CHECK(std::filesystem::is_symlink(link));
+    CHECK(folder.read(target) == "written");
+  }
+}
+
 TEST_CASE("a place that cannot be written is refused at once") {
   const TemporaryFolder folder;
   const auto file = PendingFile::open(folder.file("missing/a.txt"));

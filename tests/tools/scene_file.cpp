@@ -128,8 +128,22 @@ TEST_CASE("of what is long an error shows the beginning") {
         "gravity: expected [x, y, z], not \"" + digits.substr(0, 39) + "...");
 }
 
+TEST_CASE("of what nests an error shows how much there is, however deep it is") {
+  CHECK(error_with(R"("gravity": [[0], {}])") == "gravity: expected [x, y, z], not an array of 2");
+  CHECK(error_with(R"("fixed": {"a": {}})") == "fixed: expected an array, not an object of 1");
+  const std::size_t depth = 200'000;
+  CHECK(error_with("\"fixed\": [" + std::string(depth, '[') + std::string(depth, ']') + ']') ==
+        "fixed[0]: expected a particle number, not an array of 1");
+}
+
+TEST_CASE("what is long is not cut within a character") {
+  CHECK(error_with("\"fixed\": \"" + std::string(38, 'a') + "\u00e9\u00e9\"") ==
+        "fixed: expected an array, not \"" + std::string(38, 'a') + "...");
+}
+
 TEST_CASE("unknown, missing and contradicting keys are refused") {
   CHECK(error_with(R"("colour": 1)") == "unknown key 'colour'");
+  CHECK(error_with(R"("two\nlines": 1)") == R"(unknown key 'two\nlines')");
   CHECK(error_with(R"("masses": [1,1])") == "expected one of the keys 'masses' and 'total_mass'");
   CHECK(error_with(R"("fixed": [0], "gravity": [0,0,0], "fixed": [1])") ==
         "the key 'fixed' is given twice");
