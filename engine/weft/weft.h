@@ -363,9 +363,9 @@ class Cloth {
   /// Moves a fixed particle; position() returns the new place at once. It travels there in a
   /// straight line during the next step, and the cloth takes on its speed. If its velocity would
   /// change by more than 200 m/s^2 * dt from that of its last step, it jumps instead: it is placed
-  /// before the step, and the cloth is projected after it, velocities unchanged. The last move
-  /// before a step counts; write_positions cancels all. (To teleport a whole cloth, write all its
-  /// positions: then nothing needs solving.)
+  /// before the step, and the cloth is projected after it, velocities unchanged; what a sphere
+  /// jumped over is not passed_through. The last move before a step counts; write_positions cancels
+  /// all. (To teleport a whole cloth, write all its positions: then nothing needs solving.)
   Result<void> move_fixed(std::uint32_t particle, Vec3 position);
 
   Strain strain() const;           ///< recomputed from the positions
