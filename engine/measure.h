@@ -25,8 +25,8 @@ Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels
                       const kernels::Vectors& velocity);
 /// Whether all components, and the squared distances between any two vectors, are finite.
 bool all_finite(const kernels::Vectors& vectors);
-/// The first slot of which that is not true, in x or v, one of a free particle if there is any:
-/// what is fixed fails with others only. The number of slots if there is none.
+/// The first slot of which that is not true, in x or v; a fixed one only if no free one is among
+/// them. The number of slots if there is none.
 std::size_t first_not_finite(const Model& model, const kernels::Vectors& x,
                              const kernels::Vectors& v);
 

@@ -46,7 +46,7 @@ struct State {
   Pins pins;
   Trouble trouble;
   bool placed = true;  // positions were given, not stepped to: they may violate constraints
-  double last_dt = 0;  // of the last step; 0: none yet
+  double last_dt = 0;  // of the last step; 0: none yet, or it did not converge
 
   std::vector<kernels::Kicks> kicks;  // per stretch of slots; scheme rattle only
 

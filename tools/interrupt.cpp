@@ -29,6 +29,8 @@ extern "C" void handle_interrupt(int signal) {
     say("weft: stops after this frame; once more to stop at once\n");
     return;
   }
+  // A terminal that closes sends one, and its shell another.
+  if (signal == SIGHUP && received == SIGHUP) return;
   remove_pending_files();
   say("weft: interrupted\n");
   _exit(interrupted_by(signal));

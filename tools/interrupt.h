@@ -5,7 +5,8 @@
 namespace weft::tools {
 
 /// A signal ends the program at once with 128 + its number: pending files are removed, and one line
-/// says so. Call it once, before anything else.
+/// says so. A file that grows beyond a limit is no signal, but fails to be written. Call it once,
+/// before anything else.
 void install_interrupt_handler();
 
 /// While it lives, the first signal only asks for an end: whoever works frame by frame looks at

@@ -78,15 +78,17 @@ class LineCheck {
       return is_vertex(words) ? Result<void>{}
                               : refused(line, "a vertex needs three finite numbers");
     }
-    if (words[0] == "f" && words.size() - 1 > kMostCorners) {
-      return Error{fmt::format("line {}: a face of {} vertices; at most {} can be read", line_,
-                               words.size() - 1, kMostCorners)};
-    }
-    if (words[0] == "f" && words.size() < 4)
+    if (words[0] != "f" && words[0] != "l") return {};
+    const auto corners = std::span(words).subspan(1);
+    if (words[0] == "l" && corners.size() < 2) return refused(line, "a line has two ends at least");
+    if (words[0] == "f" && corners.size() < 3) {
       return refused(line, "a face has three corners at least");
-    if (words[0] == "l" && words.size() < 3) return refused(line, "a line has two ends at least");
-    if (words[0] == "f" || words[0] == "l") return add_corners(std::span(words).subspan(1));
-    return {};
+    }
+    if (words[0] == "f" && corners.size() > kMostCorners) {
+      return Error{fmt::format("line {}: a face of {} vertices; at most {} can be read", line_,
+                               corners.size(), kMostCorners)};
+    }
+    return add_corners(corners);
   }
 
   /// Vertices may follow the faces that use them: only now is known how many there are.

@@ -12,7 +12,7 @@
 
 namespace weft::tools {
 
-/// The whole text as a finite number; nothing if it is anything else.
+/// The whole text as a finite number, with a sign or without; nothing if it is anything else.
 std::optional<double> parse_number(std::string_view text);
 /// The whole text as a whole number from 0 up; nothing if it is anything else.
 std::optional<long long> parse_count(std::string_view text);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cstdio>
 #include <cstring>
 #include <vector>
 
@@ -15,9 +16,7 @@ Result<Pc2Writer> Pc2Writer::open(const std::string& path) {
   if (!file) return Error{file.error()};
   if (std::ftell(file.value().stream()) < 0) {
     return Error{
-        fmt::format("cannot write '{}': the number of frames stands at the beginning, and "
-                    "in a pipe there is no way back",
-                    path)};
+        fmt::format("cannot write '{}': a .pc2 file must be one that can be rewound", path)};
   }
   Pc2Writer writer(std::move(file.value()));
   writer.write_header();

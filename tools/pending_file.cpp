@@ -47,7 +47,8 @@ std::string followed(const std::string& path) {
 }  // namespace
 
 struct PendingFile::State {
-  std::string path;
+  std::string named;      ///< as the caller has it
+  std::string path;       ///< what that leads to
   std::string temporary;  ///< empty for a device or pipe, which is written in place
   std::FILE* stream = nullptr;
   int failure = 0;  ///< errno of the first failed write
@@ -65,17 +66,18 @@ PendingFile::PendingFile(PendingFile&&) noexcept = default;
 PendingFile& PendingFile::operator=(PendingFile&&) noexcept = default;
 PendingFile::~PendingFile() = default;
 
-Result<PendingFile> PendingFile::open(const std::string& named) {
-  const std::string path = followed(named);
+Result<PendingFile> PendingFile::open(const std::string& path) {
   const auto refused = [&] {
     return Error{fmt::format("cannot write '{}': {}", path, std::strerror(errno))};
   };
   struct stat place {};
   const bool exists = stat(path.c_str(), &place) == 0;
+  if (!exists && errno == ELOOP) return refused();
   auto state = std::make_unique<State>();
-  state->path = path;
+  state->named = state->path = path;
   if (!exists || S_ISREG(place.st_mode)) {
-    state->temporary = fmt::format("{}.{}.part", path, getpid());
+    state->path = followed(path);
+    state->temporary = fmt::format("{}.{}.part", state->path, getpid());
     remember(state->temporary.c_str());
   }
   const std::string& name = state->temporary.empty() ? path : state->temporary;
@@ -94,7 +96,7 @@ void PendingFile::write(std::string_view bytes) const {
 Result<void> PendingFile::commit() {
   State& state = *state_;
   const auto refused = [&](int failure) {
-    return Error{fmt::format("cannot write '{}': {}", state.path, std::strerror(failure))};
+    return Error{fmt::format("cannot write '{}': {}", state.named, std::strerror(failure))};
   };
   if (state.failure != 0) return refused(state.failure);
   if (std::fflush(state.stream) != 0) return refused(errno);

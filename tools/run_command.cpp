@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 
@@ -120,7 +121,9 @@ Result<int> run_verb(const RunOptions& options) {
     if (auto written = json->write(to_json(report)); !written) return Error{written.error()};
   }
   if (!json || !json->is_stdout()) {
-    if (auto printed = print_text(to_table(report)); !printed) return Error{printed.error()};
+    const auto printed = print_text(to_table(report));
+    const bool hung_up = OrderlyInterrupt::signal() == SIGHUP;  // and nobody reads any more
+    if (!printed && !hung_up) return Error{printed.error()};
   }
   if (summary.value().stopped) return interrupted(summary.value(), options.plan);
   if (summary.value().reached_tolerance()) return kDone;

@@ -18,13 +18,8 @@ struct Refused {
   std::string message;
 };
 
-/// Begins as the file has it; without what nests in it, which may be as deep as the file is long.
-std::string brief(const Json& found) {
+std::string shortened(std::string text) {
   constexpr std::size_t kMost = 40;
-  if (std::ranges::any_of(found, [](const Json& part) { return part.is_structured(); })) {
-    return fmt::format("{} of {}", found.is_array() ? "an array" : "an object", found.size());
-  }
-  std::string text = found.dump();
   if (text.size() <= kMost) return text;
   const auto within_character = [](char byte) { return (byte & 0xc0) == 0x80; };  // of UTF-8
   std::size_t end = kMost;
@@ -32,10 +27,18 @@ std::string brief(const Json& found) {
   return text.substr(0, end) + "...";
 }
 
+/// Without what nests in it, which may be as deep as the file is long.
+std::string brief(const Json& found) {
+  if (std::ranges::none_of(found, [](const Json& part) { return part.is_structured(); })) {
+    return shortened(found.dump());
+  }
+  return found.is_array() ? "a nested array" : "a nested object";
+}
+
 /// In one line, whatever it has in it.
 std::string in_quotes(const Json& key) {
   const std::string text = key.dump();
-  return '\'' + text.substr(1, text.size() - 2) + '\'';
+  return '\'' + shortened(text.substr(1, text.size() - 2)) + '\'';
 }
 
 [[noreturn]] void refuse(const std::string& place, std::string_view expected, const Json& found) {

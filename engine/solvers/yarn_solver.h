@@ -59,7 +59,7 @@ class YarnSolver {
     double product = 0;  // residual . z
     double worst = 0;    // largest strain left, or velocity
   };
-  /// Strains.
+  /// Of a solve, as strains.
   struct Aim {
     double wanted;  // with more the solver has failed
     double goal;    // with this it is done

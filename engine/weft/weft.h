@@ -196,7 +196,7 @@ struct Settings {
   /// work: 32 saves a fifth of the iterations and more.
   int renew_after = 32;
   /// Per substep; > 0. Besides, as many for velocities, as many again where rattle is left to
-  /// scheme paper, and half as many where a start that violates constraints is projected.
+  /// scheme paper, and half as many where positions are projected before a step.
   int max_iterations = 1'000'000;
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
@@ -215,9 +215,9 @@ struct Settings {
   /// satisfied constraints: true, by flags of chunks; false, by the paper's 64-bit masks.
   bool anticipate = true;
   bool skip = true;  ///< section 4.3: satisfied constraints are passed over
-  /// Sections 3.2, 3.3: a second loop, on velocities; rattle has it always. Errors that
-  /// gauss_seidel leaves within a loose tolerance come back as speed, error / dt: in steps of some
-  /// milliseconds it gains energy without (tests/README.md).
+  /// Sections 3.2, 3.3: a second loop, on velocities; rattle has it always. Without it gauss_seidel
+  /// gains energy in steps of a few milliseconds: errors left within a loose tolerance come back as
+  /// speed, error / dt (tests/README.md).
   bool velocity_correction = false;
 };
 
@@ -333,7 +333,9 @@ class Cloth {
   /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
   /// is thrown and the state is unchanged. An error means that dt was refused. Meant for frames of
   /// 10 us to 0.1 s: in shorter ones the rounding of positions shows up as velocity; the cost of
-  /// longer ones is limited by 256 automatic substeps and max_iterations for each.
+  /// longer ones is limited by 256 automatic substeps and max_iterations for each. Before a step of
+  /// less than an eighth of the last one, positions are projected onto the constraints, velocities
+  /// unchanged (yarn, direct): what the last one left within tolerance would become speed.
   Result<StepReport> step(double dt);
 
   std::size_t particle_count() const;

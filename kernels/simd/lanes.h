@@ -105,10 +105,10 @@ static_assert(kernels::kLanes % kFloats == 0);
 
 /// Three batches: a vector per lane.
 ///
-/// Locals of several batches are not const in these headers, nor some of one. GCC 12 keeps what is
-/// const in memory where an inlined function fills it ("a store to a read-only decl" is what its
-/// scalar replacement of aggregates gives up at), and each row or constraint then writes it there
-/// without anybody reading it. Sweeps along the directions at the start took twice as long on AVX2.
+/// Locals of several batches are not const in these headers, and of one where that was measured to
+/// matter. GCC 12 does not split a const aggregate that an inlined function fills ("a store to a
+/// read-only decl"): it stays in memory, and is written for every row or constraint though nobody
+/// reads it. Sweeps along the directions at the start took twice as long on AVX2.
 template <class Batch>
 struct VectorOf {
   Batch x, y, z;

@@ -35,7 +35,7 @@ using kernels::Run;
 ///     planar, for runs:              | x x x ... | y y y ... | z z z ... |     step 1
 ///     quads, where all are singles:  | x y z - | x y z - | x y z - | ...       step 4, stride 1
 ///
-/// Quads take 1.0 ns per constraint where planar singles take 2.5; runs take 0.3 (perf/README.md).
+/// Quads take 1.0 ns per constraint where planar singles take 2.5; runs take 0.3 (perf/tried.md).
 /// Quads are 16-byte aligned.
 struct Displacements {
   float* x = nullptr;

@@ -1,6 +1,10 @@
 #include "tools/pending_file.h"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
 
 #include "temporary_folder.h"
 
@@ -40,6 +44,27 @@ TEST_CASE("a symbolic link stays, and what it leads to is written") {
     CHECK(std::filesystem::is_symlink(link));
     CHECK(folder.read(target) == "written");
   }
+}
+
+TEST_CASE("a link to itself is refused, and stays") {
+  const TemporaryFolder folder;
+  const std::string link = folder.file("link.txt");
+  std::filesystem::create_symlink("link.txt", link);
+  const auto file = PendingFile::open(link);
+  REQUIRE_FALSE(file);
+  CHECK(file.error().starts_with("cannot write '" + link + "': "));
+  CHECK(std::filesystem::is_symlink(link));
+}
+
+TEST_CASE("a pipe behind a link is written in place") {
+  int ends[2];
+  REQUIRE(pipe(ends) == 0);
+  CHECK(write_file("/dev/fd/" + std::to_string(ends[1]), "text"));
+  char text[5] = {};
+  CHECK(read(ends[0], text, 4) == 4);
+  CHECK(std::string(text) == "text");
+  close(ends[0]);
+  close(ends[1]);
 }
 
 TEST_CASE("a place that cannot be written is refused at once") {

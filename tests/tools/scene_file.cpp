@@ -128,12 +128,12 @@ TEST_CASE("of what is long an error shows the beginning") {
         "gravity: expected [x, y, z], not \"" + digits.substr(0, 39) + "...");
 }
 
-TEST_CASE("of what nests an error shows how much there is, however deep it is") {
-  CHECK(error_with(R"("gravity": [[0], {}])") == "gravity: expected [x, y, z], not an array of 2");
-  CHECK(error_with(R"("fixed": {"a": {}})") == "fixed: expected an array, not an object of 1");
+TEST_CASE("of what nests an error says no more, however deep it is") {
+  CHECK(error_with(R"("gravity": [[0], {}])") == "gravity: expected [x, y, z], not a nested array");
+  CHECK(error_with(R"("fixed": {"a": {}})") == "fixed: expected an array, not a nested object");
   const std::size_t depth = 200'000;
   CHECK(error_with("\"fixed\": [" + std::string(depth, '[') + std::string(depth, ']') + ']') ==
-        "fixed[0]: expected a particle number, not an array of 1");
+        "fixed[0]: expected a particle number, not a nested array");
 }
 
 TEST_CASE("what is long is not cut within a character") {
