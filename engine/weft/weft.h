@@ -216,8 +216,8 @@ struct Settings {
   bool anticipate = true;
   bool skip = true;  ///< section 4.3: satisfied constraints are passed over
   /// Sections 3.2, 3.3: a second loop, on velocities; rattle has it always. Without it gauss_seidel
-  /// gains energy in steps of a few milliseconds: errors left within a loose tolerance come back as
-  /// speed, error / dt (tests/README.md).
+  /// gains energy in steps of a millisecond and less: errors left within a loose tolerance come
+  /// back as speed, error / dt (tests/README.md).
   bool velocity_correction = false;
 };
 
