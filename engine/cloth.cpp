@@ -90,7 +90,7 @@ Result<StepReport> Cloth::step(double dt) {
 }
 
 std::size_t Cloth::particle_count() const { return impl_->model->particles; }
-const Model& Cloth::model() const { return *impl_->model; }
+const std::shared_ptr<const Model>& Cloth::model() const { return impl_->model; }
 const Settings& Cloth::settings() const { return impl_->settings; }
 
 Vec3 Cloth::position(std::uint32_t particle) const {

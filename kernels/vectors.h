@@ -11,6 +11,7 @@ namespace weft::kernels {
 inline constexpr std::size_t kAlignment = 64;  // a cache line, and the widest vector register
 /// Components beyond are as good as infinite: 12 kMost^2, the largest squared distance, is not.
 inline constexpr double kMost = 1e150;
+static_assert(__FINITE_MATH_ONLY__ == 0, "what is not finite must be recognised");
 
 template <class T>
 struct AlignedAllocator {

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstddef>
 
@@ -26,7 +27,9 @@ void say(const char (&line)[kSize]) {
 extern "C" void handle_interrupt(int signal) {
   if (orderly != 0 && received == 0) {
     received = signal;
+    const int kept = errno;  // of what was interrupted
     say("weft: stops after this frame; once more to stop at once\n");
+    errno = kept;
     return;
   }
   // A terminal that closes sends one, and its shell another.
@@ -42,6 +45,7 @@ void install_interrupt_handler() {
   stderr_is_terminal = isatty(STDERR_FILENO) == 1;
   struct sigaction action {};
   action.sa_handler = handle_interrupt;
+  action.sa_flags = SA_RESTART;  // output is to be complete: writing goes on
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   struct sigaction hangup {};  // ignored under nohup, and then left so

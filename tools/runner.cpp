@@ -89,7 +89,7 @@ void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
   }
   summary.energy_end = cloth.energy().total();
   summary.state_hash = cloth.state_hash();
-  summary.model = describe(cloth.model());
+  summary.model = describe(*cloth.model());
   summary.bytes = cloth.bytes() + summary.model.bytes;
 }
 

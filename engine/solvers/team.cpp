@@ -2,6 +2,7 @@
 
 #include <sched.h>
 #include <tbb/task_arena.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 #include <new>
@@ -60,6 +61,18 @@ void leave_processor(int processor) {
   sched_setaffinity(0, sizeof allowed, &allowed);
 }
 
+/// How this thread rounds, and what it does with denormal numbers; as before in the end.
+class Rounding {
+ public:
+  explicit Rounding(std::uint32_t of_leader) { _mm_setcsr(of_leader); }
+  ~Rounding() { _mm_setcsr(before_); }
+  Rounding(const Rounding&) = delete;
+  Rounding& operator=(const Rounding&) = delete;
+
+ private:
+  std::uint32_t before_ = _mm_getcsr();
+};
+
 }  // namespace
 
 Team::Meeting::Call Team::Meeting::Call::from(std::uint64_t word) {
@@ -89,6 +102,7 @@ Team::Team(int threads, std::shared_ptr<Meeting> meeting)
   m.left.store(0, std::memory_order_relaxed);
   m.seats.store(helpers, std::memory_order_relaxed);
   m.leaders_processor.store(sched_getcpu(), std::memory_order_relaxed);
+  m.rounding = _mm_getcsr();
   m.announce({++m.round, 1, 1});
   m.door.store(0);
   while (m.asked.load() < helpers_ && ask_one()) continue;
@@ -190,6 +204,7 @@ std::uint32_t Team::Meeting::enter() {
 /// A call is one word so that a thread cannot mistake one for the next. A share that is begun keeps
 /// the leader in the call; a thread that has begun none must not touch the job.
 void Team::Meeting::take_part(std::uint32_t me) {
+  const Rounding as_the_leader(rounding);
   std::uint64_t heard = 0;  // no call
   for (;;) {
     const std::uint64_t before = heard;

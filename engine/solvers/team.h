@@ -77,7 +77,8 @@ class Team {
   /// work(first, last) of each share.
   template <class Work>
   void for_each_share(std::size_t count, Work&& work) {
-    const auto share = [](void* context, const Part&, std::size_t first, std::size_t last) {
+    const auto share = [](void* context, const Part&, std::size_t first,
+                          std::size_t last) noexcept {
       (*static_cast<std::remove_reference_t<Work>*>(context))(first, last);
     };
     run({share, &work, count}, 1);
@@ -86,7 +87,8 @@ class Team {
   /// are the same in all of them, and none is empty.
   template <class Work>
   void for_each_share_in_rounds(std::size_t count, int rounds, Work&& work) {
-    const auto share = [](void* context, const Part& part, std::size_t first, std::size_t last) {
+    const auto share = [](void* context, const Part& part, std::size_t first,
+                          std::size_t last) noexcept {
       (*static_cast<std::remove_reference_t<Work>*>(context))(part, first, last);
     };
     run({share, &work, count, true}, rounds);
@@ -94,7 +96,9 @@ class Team {
 
  private:
   struct Job {
-    void (*work)(void* context, const Part& part, std::size_t first, std::size_t last) = nullptr;
+    /// Who throws would leave others at work with what is gone.
+    void (*work)(void* context, const Part& part, std::size_t first,
+                 std::size_t last) noexcept = nullptr;
     void* context = nullptr;
     std::size_t count = 0;
     bool staged = false;  // or all of it as rest
@@ -141,6 +145,7 @@ struct Team::Meeting {
   std::atomic<int> leaders_processor{-1};
   std::atomic<std::uint32_t> left{0};  // of those who came in
   std::atomic<int> asked{0};           // tasks not started, or at the door
+  std::uint32_t rounding = 0;          // of the leader (MXCSR); written while the door is closed
   std::array<Share, kMostMembers> shares;
   std::uint64_t round = 0;   // the last that was announced
   std::uint64_t waited = 0;  // by the leader, in this call; ticks

@@ -1,6 +1,6 @@
 /// weft: a cloth simulation library. The whole public interface is this header.
 ///
-///   describe -> validate -> create -> step -> read
+///   describe -> build -> create -> step -> read
 ///
 ///   weft::SceneDescription scene = ...;                   // plain vectors, SI units
 ///   auto model = weft::build_model(scene);                // validates; immutable, shareable
@@ -14,13 +14,22 @@
 ///  2. Only what the scene needs runs: no spheres, no contact code; no velocity correction, no
 ///     velocity loop.
 ///  3. A Model is immutable and may be shared by any number of Cloths and threads. A Cloth is not
-///     synchronised: one thread at a time.
-///  4. weft owns no threads, and no globals that affect results. Parallel work runs in the caller's
-///     oneTBB arena. A worker that helped waits for the next step as long as its part took, at most
-///     0.2 ms, and may be moved off the calling thread's core.
+///     synchronised: one thread at a time, for functions that are const too.
+///  4. weft owns no threads, and no globals that affect results but one: WEFT_ISA in the
+///  environment
+///     (Isa). Parallel work runs in the caller's oneTBB arena, rounded as the calling thread
+///     rounds. A worker that helped waits for the next step as long as its part took, at most 0.2
+///     ms, and may be moved off the calling thread's core. So a plugin that holds weft must not be
+///     unloaded while workers may still be on their way out: link it with -z nodelete.
 ///  5. A step allocates nothing once warm (contact lists grow to their largest size and stay).
 ///  6. Errors are values. Bad input yields one line that names the field, the index and the value,
 ///     and nothing is built or changed. weft throws only what the standard allocator throws.
+///
+/// Numbers of sections (3.2, 4.4) are those of Bayer, Diziol and Bender, "Optimized Impulse-Based
+/// Dynamic Simulation" (2009), "the paper" here. Files that are named are in weft's sources.
+///
+/// Versions are major.minor.patch. While major is 0 a new minor version may change this interface
+/// and the bits of results; a new patch changes neither, but for mistakes.
 #pragma once
 
 #include <array>
@@ -33,6 +42,13 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#define WEFT_VERSION_MAJOR 0
+#define WEFT_VERSION_MINOR 1
+#define WEFT_VERSION_PATCH 0
+
+/// What a shared library shows.
+#define WEFT_API [[gnu::visibility("default")]]
 
 namespace weft {
 
@@ -51,8 +67,9 @@ class [[nodiscard]] Result {
   Result(T value) : value_(std::move(value)) {}
   Result(Error error) : error_(std::move(error)) {}
   explicit operator bool() const { return value_.has_value(); }
-  T& value() { return *value_; }
-  const T& value() const { return *value_; }
+  T& value() & { return *value_; }
+  const T& value() const& { return *value_; }
+  T&& value() && { return *std::move(value_); }
   const std::string& error() const { return error_.message; }
 
  private:
@@ -113,7 +130,7 @@ struct SceneDescription {
 class Model;
 
 /// Checks the description and prepares it. On error nothing is built.
-Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description);
+WEFT_API Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description);
 
 struct ModelInfo {
   std::size_t particles = 0;
@@ -126,7 +143,7 @@ struct ModelInfo {
   double run_share = 0;   ///< share of constraints in contiguous runs
   std::size_t bytes = 0;
 };
-ModelInfo describe(const Model& model);
+WEFT_API ModelInfo describe(const Model& model);
 
 // ----------------------------------------------------------------------------------------- create
 
@@ -266,13 +283,13 @@ enum class Stage : std::uint8_t {
 };
 inline constexpr std::size_t kStageCount = 6;
 
-std::string_view name(Solver);
-std::string_view name(Scheme);
-std::string_view name(Directions);
-std::string_view name(Backend);
-std::string_view name(Isa);
-std::string_view name(Status);
-std::string_view name(Stage);
+WEFT_API std::string_view name(Solver);
+WEFT_API std::string_view name(Scheme);
+WEFT_API std::string_view name(Directions);
+WEFT_API std::string_view name(Backend);
+WEFT_API std::string_view name(Isa);
+WEFT_API std::string_view name(Status);
+WEFT_API std::string_view name(Stage);
 
 inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
@@ -314,7 +331,7 @@ struct Energy {
 /// One moving cloth: the state of a Model and the workspace of its solver. Particle numbers are
 /// those of the description; position() and velocity() demand particle < particle_count(). A cloth
 /// that was moved from can only be assigned to or destroyed.
-class Cloth {
+class WEFT_API Cloth {
  public:
   /// Checks the settings. The state starts as described.
   static Result<Cloth> create(std::shared_ptr<const Model> model, const Settings& settings);
@@ -339,7 +356,7 @@ class Cloth {
   Result<StepReport> step(double dt);
 
   std::size_t particle_count() const;
-  const Model& model() const;
+  const std::shared_ptr<const Model>& model() const;
   const Settings& settings() const;  ///< isa, solver, substeps, velocity_correction: what is used
 
   Vec3 position(std::uint32_t particle) const;
@@ -370,7 +387,9 @@ class Cloth {
   /// all. (To teleport a whole cloth, write all its positions: then nothing needs solving.)
   Result<void> move_fixed(std::uint32_t particle, Vec3 position);
 
-  Strain strain() const;           ///< recomputed from the positions
+  /// Recomputed from the positions by this thread alone. The last step's is in its report already,
+  /// and may differ in the last bits.
+  Strain strain() const;
   double max_penetration() const;  ///< m, over all sphere pairs; 0 without spheres
   Energy energy() const;           ///< of the particles that are not fixed
   /// FNV-1a over the bits of all positions and velocities, in the description's order.

@@ -1,2 +1,3 @@
 #include "kernels/simd/make_table.h"
-constinit const weft::simd::Table weft::simd::kAvx512Table = weft::simd::make_table();
+// By its namespace: flags for another instruction set do not compile.
+constinit const weft::simd::Table weft::simd::kAvx512Table = weft::simd::avx512::make_table();

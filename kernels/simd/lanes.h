@@ -43,6 +43,13 @@ constexpr std::uint32_t kFloats = Floats::size;
 constexpr std::uint32_t kDoubles = Doubles::size;
 static_assert(kernels::kLanes % kFloats == 0);
 
+/// The same bits, as other numbers. (xsimd::bitwise_cast takes a type of batch before xsimd 11, one
+/// of numbers since.)
+template <class To, class From>
+[[gnu::always_inline]] inline To same_bits(From v) {
+  return To(std::bit_cast<typename To::register_type>(v.data));
+}
+
 /// x y + z, rounded once where the machine can. xsimd 8.1 has no fma for avx512f.
 [[gnu::always_inline]] inline Floats fused(Floats x, Floats y, Floats z) {
 #if defined(__AVX512F__)

@@ -34,8 +34,8 @@ namespace {
 /// or 1024 and more, infinities and what is no number too.
 [[gnu::always_inline]] inline Ints ten_bits(Floats v, Floats factor) {
   const Floats far(0x1.8p23f + 512);  // the next float is 1 away: the last bits count
-  const Ints bits = xsimd::bitwise_cast<Ints>(fused(v, factor, far));
-  return bits ^ xsimd::bitwise_cast<Ints>(Floats(0x1.8p23f));
+  const Ints bits = same_bits<Ints>(fused(v, factor, far));
+  return bits ^ same_bits<Ints>(Floats(0x1.8p23f));
 }
 /// Three of them.
 [[gnu::always_inline]] inline Ints packed(Ints x, Ints y, Ints z) {
@@ -56,7 +56,7 @@ struct Unpacking {
   Floats taken;
 
   [[gnu::always_inline]] explicit Unpacking(float cell)
-      : power(xsimd::bitwise_cast<Ints>(Floats(0x1p11f * cell)) ^ Ints(0x200 << 12)),
+      : power(same_bits<Ints>(Floats(0x1p11f * cell)) ^ Ints(0x200 << 12)),
         taken(0x1.4p11f * cell) {}
   [[gnu::always_inline]] FloatVector plus(const FloatVector& u, Ints v) const {
     return FloatVector{number(v >> 10), number(v), number(v << 10)} + u;
@@ -64,7 +64,7 @@ struct Unpacking {
 
  private:
   [[gnu::always_inline]] Floats number(Ints v) const {
-    return xsimd::bitwise_cast<Floats>((v & middle) ^ power) - taken;
+    return same_bits<Floats>((v & middle) ^ power) - taken;
   }
 };
 #else

@@ -69,8 +69,8 @@ struct YarnLink {
 /// are work for the units that multiply.
 [[gnu::always_inline]] inline Floats where_present(Floats rest, Floats v) {
 #if defined(__AVX512F__)
-  const Ints none(0), sign = (none - xsimd::bitwise_cast<Ints>(rest)) >> 31;
-  return xsimd::bitwise_cast<Floats>(xsimd::bitwise_cast<Ints>(v) & sign);
+  const Ints none(0), sign = (none - same_bits<Ints>(rest)) >> 31;
+  return same_bits<Floats>(same_bits<Ints>(v) & sign);
 #else
   const Floats none(0.f);
   return xsimd::select(rest > none, v, none);

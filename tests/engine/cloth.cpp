@@ -21,7 +21,7 @@ TEST_CASE("a cloth starts as described") {
   CHECK(largest_distance(velocities(cloth), scene.velocities) == 0);
   CHECK(distance(cloth.velocity(9), {1, 2, 3}) == 0);
   CHECK(cloth.settings().tolerance == 0.01);
-  CHECK(describe(cloth.model()).particles == 16);
+  CHECK(describe(*cloth.model()).particles == 16);
 }
 
 TEST_CASE("the solver that automatic stands for: directly where yarns have no chance") {

@@ -64,7 +64,7 @@ TEST_CASE("a summary tells of halves, contacts and memory") {
             [&](int, const Cloth& cloth, const StepReport& report) {
               expected.halvings += report.halvings;
               expected.max_contacts = std::max(expected.max_contacts, report.contacts);
-              expected.bytes = cloth.bytes() + describe(cloth.model()).bytes;
+              expected.bytes = cloth.bytes() + describe(*cloth.model()).bytes;
             });
     REQUIRE(summary);
     CHECK((scene == &corners ? expected.halvings : expected.max_contacts) > 0);

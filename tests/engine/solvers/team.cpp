@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 #include <atomic>
@@ -45,6 +46,39 @@ std::size_t threads_seen(Team& team) {
     });
   }
   return other ? 2 : 1;
+}
+
+constexpr unsigned kNobody = 1;  // no way to round
+
+/// Loops as above; how the second thread rounds, or kNobody if none came.
+unsigned rounding_of_helper(Team& team) {
+  std::atomic<unsigned> rounding{kNobody};
+  const auto leader = std::this_thread::get_id();
+  const auto start = std::chrono::steady_clock::now();
+  while (rounding == kNobody &&
+         std::chrono::steady_clock::now() - start < std::chrono::seconds(30)) {
+    team.for_each(2, [&](std::size_t) {
+      if (std::this_thread::get_id() != leader) rounding = _MM_GET_ROUNDING_MODE();
+    });
+  }
+  return rounding;
+}
+
+TEST_CASE("who helps rounds as its leader does, from team to team") {
+  in_arena(2, [] {
+    for (const unsigned rounding : {_MM_ROUND_UP, _MM_ROUND_NEAREST, _MM_ROUND_DOWN}) {
+      const unsigned before = _MM_GET_ROUNDING_MODE();
+      _MM_SET_ROUNDING_MODE(rounding);
+      Team team(2);
+      const unsigned of_helper = rounding_of_helper(team);
+      _MM_SET_ROUNDING_MODE(before);
+      if (of_helper == kNobody) {
+        MESSAGE("no second thread came within 30 s: not tested");
+      } else {
+        CHECK(of_helper == rounding);
+      }
+    }
+  });
 }
 
 TEST_CASE("every index is done exactly once, few or many, by any team") {
@@ -162,7 +196,7 @@ TEST_CASE("a leader that helps the late does not wait for itself") {
   };
   const auto late = std::make_shared<Late>();  // outlives a thread that hangs
   late->meeting->announced.job = {
-      [](void* context, const Team::Part& part, std::size_t first, std::size_t) {
+      [](void* context, const Team::Part& part, std::size_t first, std::size_t) noexcept {
         static_cast<Late*>(context)->do_part(part, first);
       },
       late.get(), 4, true};
