@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <span>
 
 #include "engine/measure.h"
 #include "kernels/reference/integrate.h"
@@ -25,6 +26,7 @@ reference::Motion reference_motion(State& s) {
 simd::Motion simd_motion(State& s) {
   simd::Motion m;
   m.inverse_mass = s.model->inverse_mass.data();
+  m.mass = s.model->mass.data();
   m.gravity = s.gravity;
   if (s.force.size() > 0) m.force = s.force.view();
   m.position = s.position.view();
@@ -32,6 +34,12 @@ simd::Motion simd_motion(State& s) {
   m.solved = s.solved.view();
   m.next_velocity = s.next_velocity.view();
   return m;
+}
+
+kernels::Kicks sum(std::span<const kernels::Kicks> of_stretches) {
+  kernels::Kicks sum;
+  for (const kernels::Kicks& kicks : of_stretches) sum.add(kicks);
+  return sum;
 }
 
 }  // namespace
@@ -57,6 +65,22 @@ bool commit(State& s, double h, Team& team) {
   return finite;
 }
 
+bool commit(State& s, double h, kernels::Kicks& kicks, Team& team) {
+  if (s.reference) {
+    const bool finite = commit(s, h, team);
+    kicks = measure_kicks(s, h, team);
+    return finite;
+  }
+  const simd::Motion motion = simd_motion(s);
+  std::atomic<bool> finite{true};
+  team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    if (!s.kernels->commit_watched(motion, h, first, last, s.kicks[first / kStretch]))
+      finite.store(false, std::memory_order_relaxed);
+  });
+  kicks = sum(s.kicks);
+  return finite;
+}
+
 kernels::Kicks measure_kicks(State& s, double h, Team& team) {
   if (s.reference) {
     return reference::measure_kicks(reference_motion(s), h, s.next_velocity.view());
@@ -65,9 +89,7 @@ kernels::Kicks measure_kicks(State& s, double h, Team& team) {
   team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
     s.kicks[first / kStretch] = s.kernels->measure_kicks(motion, h, first, last);
   });
-  kernels::Kicks sum;
-  for (const kernels::Kicks& kicks : s.kicks) sum.add(kicks);
-  return sum;
+  return sum(s.kicks);
 }
 
 }  // namespace weft

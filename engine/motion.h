@@ -5,10 +5,16 @@
 
 namespace weft {
 
+/// Of a free particle, by gravity and forces.
+inline kernels::Vector acceleration(const State& s, std::size_t slot) {
+  return s.force.size() > 0 ? s.gravity + s.model->inverse_mass[slot] * s.force[slot] : s.gravity;
+}
 /// solved: where the particles would be after h without constraints.
 void predict(State& s, double h, Team& team);
 /// next_velocity: from solved. Returns whether both are finite.
 bool commit(State& s, double h, Team& team);
+/// And what the position loop's impulses did.
+bool commit(State& s, double h, kernels::Kicks& kicks, Team& team);
 /// What the impulses of a substep did (engine/rattle.h).
 kernels::Kicks measure_kicks(State& s, double h, Team& team);
 

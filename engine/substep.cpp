@@ -2,7 +2,9 @@
 
 #include "engine/contacts.h"
 #include "engine/crossings.h"
+#include "engine/energy.h"
 #include "engine/motion.h"
+#include "engine/pin_work.h"
 #include "engine/rattle.h"
 #include "engine/reporting.h"
 
@@ -30,6 +32,20 @@ bool blown_up(const State& s, const Attempt& attempt, const Trial& trial) {
   return attempt.by_rattle() && s.settings.iterations == 0 && trial.status != Status::converged;
 }
 
+/// Yarns and the direct solver may solve, by scheme paper, for what is not where the motion leads:
+/// see energy.h.
+bool may_gain_energy(const State& s, const Attempt& attempt) {
+  return (s.yarn || s.direct) && s.settings.iterations == 0 && !attempt.by_rattle();
+}
+
+/// Where nobody is going to try anything else it is kept, and its energy taken out.
+void watch_energy(const State& s, const Attempt& attempt, const kernels::Kicks& kicks,
+                  Trial& trial) {
+  if (trial.ended != Ended::solved || !gains_energy(s, kicks, attempt.h)) return;
+  trial.gained = true;
+  trial.worsen(attempt.on_failure == OnFailure::sweep ? Ended::made_do : Ended::gave_up);
+}
+
 Trial run_stages(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   const double h = attempt.h;
   if (!attempt.predicted) timed(report, Stage::predict, [&] { predict(s, h, team); });
@@ -38,16 +54,21 @@ Trial run_stages(State& s, const Attempt& attempt, StepReport& report, Team& tea
   timed(report, Stage::solve_positions, [&] { trial = solve_positions(s, attempt, report, team); });
   if (trial.ended == Ended::gave_up || blown_up(s, attempt, trial)) return trial;
   bool finite = true;
-  timed(report, Stage::commit, [&] { finite = commit(s, h, team); });
+  const bool watched = may_gain_energy(s, attempt);
+  kernels::Kicks kicks;
+  timed(report, Stage::commit,
+        [&] { finite = watched ? commit(s, h, kicks, team) : commit(s, h, team); });
   if (finite && s.settings.velocity_correction) {
     timed(report, Stage::correct_velocities,
           [&] { trial.worsen(correct_velocities(s, attempt, report, team)); });
     finite = all_finite(s.next_velocity);
+    if (watched) kicks = measure_kicks(s, h, team);
   }
   if (!finite) {
     trial.ended = Ended::lost;
     return trial;
   }
+  if (watched) watch_energy(s, attempt, kicks, trial);
   if (s.settings.iterations > 0 && trial.status <= Status::iteration_limit) {
     trial.status = Status::fixed_iterations;
   }
@@ -57,11 +78,19 @@ Trial run_stages(State& s, const Attempt& attempt, StepReport& report, Team& tea
   return trial;
 }
 
+/// Of its first measure the work of moved pins is taken away, if need be.
+bool rattle_keeps_energy(State& s, double h, Team& team) {
+  kernels::Kicks kicks = measure_kicks(s, h, team);
+  if (keeps_energy(kicks)) return true;
+  kicks.gain -= 2 * work_of(motion_of_pins(s, h), s, h);
+  return keeps_energy(kicks);
+}
+
 /// Whether what scheme rattle came to is kept. With a fixed number of iterations it always is.
 bool is_good(State& s, const Trial& trial, double h, Team& team) {
   if (s.settings.iterations > 0) return true;
   const bool solved = trial.status == Status::converged || trial.status == Status::passed_through;
-  return solved && trial.has_result() && keeps_energy(measure_kicks(s, h, team));
+  return solved && trial.has_result() && rattle_keeps_energy(s, h, team);
 }
 
 }  // namespace

@@ -119,6 +119,7 @@ class Substeps {
     const int substeps = choose_substeps(dt);
     for (int k = 1; k <= substeps; ++k) {
       left_ = s_.settings.max_iterations;
+      to_do_ = dt / substeps;
       parts_ = 0;
       gave_up_ = only_sweeps_;
       Outcome outcome;
@@ -158,25 +159,21 @@ class Substeps {
   /// Advances by h, in halves where the solver gives up. Where even the first of the shortest parts
   /// does not converge there is no hope in halving, and Gauss-Seidel sweeps go on for the rest of
   /// the step. What a state violates, and what sweeps leave, would come back as speed, the more the
-  /// shorter the parts: parts of such a substep gain no energy.
+  /// shorter the parts: parts of such a substep gain no energy. Nor are halves an answer where it
+  /// is what the start violates that brought energy: it is taken out.
   Outcome advance(double h, int halvings, bool last) {
-    const bool halve = may_halve_ && halvings < kMostHalvings && left_ > 0;
-    const bool leave = halve || ((may_halve_ || only_sweeps_) && parts_ == 0);
-    const Attempt attempt{.h = h,
-                          .most_iterations = iterations_left(),
-                          .on_failure = halve   ? OnFailure::halve
-                                        : leave ? OnFailure::leave
-                                                : OnFailure::sweep,
-                          .only_sweeps = only_sweeps_,
-                          .care = std::sqrt(s_.trouble.care()),
-                          .stood_at = std::max(stood_at_, s_.trouble.stood_at()),
-                          .predicted = std::exchange(predicted_, false)};
-    const std::int64_t before = report_.iterations;
-    const Trial trial = substep(s_, attempt, report_, team_);
-    left_ -= static_cast<int>(report_.iterations - before);
+    const bool again = left_ > kept_for_sweeps();  // there may be another attempt
+    const bool halve = again && may_halve_ && halvings < kMostHalvings;
+    const bool leave = halve || (again && (may_halve_ || only_sweeps_) && parts_ == 0);
+    Trial trial = attempt(h, halve   ? OnFailure::halve
+                             : leave ? OnFailure::leave
+                                     : OnFailure::sweep);
+    if (trial.gained && !trial.has_result() && !begins_well(h, trial)) {
+      trial = attempt(h, OnFailure::sweep);
+    }
     if (leave && !trial.has_result()) {
       gave_up_ = true;
-      if (parts_ == 0 && !(halve && begins_well(h))) return Outcome::hopeless;
+      if (parts_ == 0 && !(halve && begins_well(h, trial))) return Outcome::hopeless;
       ++report_.halvings;
       const Outcome first = advance(h / 2, halvings + 1, false);
       return first == Outcome::done ? advance(h / 2, halvings + 1, last) : first;
@@ -185,40 +182,65 @@ class Substeps {
       explain(s_, h, report_, team_);
       return Outcome::refused;
     }
-    accept(trial, last);
+    accept(trial, h, last);
     return Outcome::done;
   }
 
-  int iterations_left() const {
-    const int most = only_sweeps_ ? std::min(left_ / 2, s_.trouble.most_sweeps()) : left_;
+  Trial attempt(double h, OnFailure on_failure) {
+    const Attempt attempt{.h = h,
+                          .most_iterations = most_iterations(h, on_failure),
+                          .on_failure = on_failure,
+                          .only_sweeps = only_sweeps_,
+                          .care = std::sqrt(s_.trouble.care()),
+                          .stood_at = std::max(stood_at_, s_.trouble.stood_at()),
+                          .predicted = std::exchange(predicted_, false)};
+    const std::int64_t before = report_.iterations;
+    const Trial trial = substep(s_, attempt, report_, team_);
+    left_ -= static_cast<int>(report_.iterations - before);
+    return trial;
+  }
+
+  /// Half of a substep's iterations are for what cannot be left to another attempt, and half of
+  /// what is left of them for the rest of the substep.
+  int kept_for_sweeps() const {
+    return s_.settings.max_iterations - s_.settings.max_iterations / 2;
+  }
+  int most_iterations(double h, OnFailure on_failure) const {
+    int most = h < to_do_ ? left_ / 2 : left_;
+    if (only_sweeps_)
+      most = std::min(left_ / 2, s_.trouble.most_sweeps());
+    else if (on_failure != OnFailure::sweep)
+      most = left_ - kept_for_sweeps();
     return std::max(most, 1);
   }
 
-  void accept(const Trial& trial, bool last) {
+  void accept(const Trial& trial, double h, bool last) {
     if (trial.ended == Ended::made_do) {
       gave_up_ = made_do_ = true;
       if (may_halve_) halves_helped_ = false;
     }
-    if (gave_up_) take_gained_energy(s_);
+    if (gave_up_) take_gained_energy(s_, h);
     transaction_.accept(last);
     stood_at_ = std::max(stood_at_, trial.stood_at);
     worsen(report_, trial.status);
     if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
     ++report_.substeps;
     ++parts_;
+    to_do_ -= h;
   }
 
   /// What a state already violates becomes a velocity, error / h: the shorter, the worse. For
-  /// direct solutions, which remove all of it at once, it must be little, or little beside what the
-  /// motion of h would add. (As strict with yarns, steps of corners, 81 x 81, at 1 % end in sweeps:
-  /// 48 ms a frame instead of 5.)
-  bool begins_well(double h) {
+  /// direct solutions, which remove all of it at once, and where energy was gained it must be
+  /// little, or little beside what the motion of h would add. (As strict with yarns, steps of
+  /// corners, 81 x 81, at 1 % end in sweeps: 48 ms a frame instead of 5.)
+  bool begins_well(double h, const Trial& trial) {
     const double tolerance = s_.settings.tolerance;
     const double before = max_strain_at(s_, s_.position, team_);
-    if (s_.settings.solver == Solver::yarn) return before <= 2 * tolerance;
-    if (before <= 0.5 * tolerance) return true;
+    if (s_.settings.solver == Solver::yarn && !trial.gained) return before <= 2 * tolerance;
+    if (before <= 0.5 * tolerance && !trial.gained) return true;
     predict(s_, h, team_);
-    return before <= tolerance && before <= 0.5 * max_strain_at(s_, s_.solved, team_);
+    const double share = trial.gained ? 0.25 : 0.5;
+    return before <= tolerance && before <= share * max_strain_at(s_, s_.solved, team_);
   }
 
   /// Of the whole step. Where the tolerance is loose sweeps converge, and soon.
@@ -252,6 +274,7 @@ class Substeps {
   bool predicted_ = false;  // the first substep, before it is tried
   // Of the present substep:
   int left_ = 0;          // iterations, of all its parts together
+  double to_do_ = 0;      // s, of it
   int parts_ = 0;         // done
   bool gave_up_ = false;  // the solver, once at least
 };

@@ -38,6 +38,9 @@ inline Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z 
 inline Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Vector operator*(double s, Vector a) { return {s * a.x, s * a.y, s * a.z}; }
 inline double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vector cross(Vector a, Vector b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline double length(Vector a) { return std::sqrt(dot(a, a)); }
 /// d over its length. Particles that coincide have no direction; any unit vector separates them.
 inline Vector direction(Vector d, double length) {

@@ -22,6 +22,12 @@ constexpr Kernel kKernels[] = {
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
        t.commit(w.motion(), kStep, 0, w.slots());
      }},
+    {"commit_watched", 112, 112,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       kernels::Kicks kicks;
+       t.commit_watched(w.motion(), kStep, 0, w.slots(), kicks);
+       benchmark::DoNotOptimize(kicks);
+     }},
     {"apply_displacements", 72, 36,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation& r) {
        t.apply_displacements(w.solved.view(), r.u, 0, w.slots());

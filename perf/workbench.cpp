@@ -31,6 +31,7 @@ Workbench::Workbench(const SceneDescription& scene, const OrderingOptions& optio
 void Workbench::place_particles(const SceneDescription& scene) {
   for (kernels::Vectors* v : {&position, &velocity, &solved, &next_velocity}) v->resize(slots());
   inverse_mass.resize(slots());
+  mass.resize(slots());
   reach.resize(slots());
   near.resize(slots());
   base.resize(4 * slots());
@@ -43,6 +44,7 @@ void Workbench::place_particles(const SceneDescription& scene) {
     if (i == kNoIndex) continue;
     position.set(slot, {scene.positions[i].x, scene.positions[i].y, scene.positions[i].z});
     inverse_mass[slot] = 1 / scene.masses[i];
+    mass[slot] = scene.masses[i];
   }
   solved = position;
 }
@@ -120,6 +122,7 @@ simd::Geometry Workbench::geometry() {
 simd::Motion Workbench::motion() {
   simd::Motion m;
   m.inverse_mass = inverse_mass.data();
+  m.mass = mass.data();
   m.gravity = {0, -10, 0};
   m.position = position.view();
   m.velocity = velocity.view();

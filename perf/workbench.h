@@ -46,7 +46,7 @@ class Workbench {
   PullLayout& pulls();  // made when first asked for
 
   kernels::Vectors position, velocity, solved, next_velocity;
-  kernels::AlignedVector<double> inverse_mass, reach;
+  kernels::AlignedVector<double> inverse_mass, mass, reach;
   std::vector<std::uint32_t> near;             // room for find_near
   kernels::AlignedVector<float> base, change;  // quads
   kernels::AlignedVector<float> impulse;

@@ -1,6 +1,7 @@
 #include "engine/solvers/direct_balance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace weft {
@@ -43,7 +44,9 @@ double DirectBalance::find(const DirectSystem& system, VectorsView x) {
   }
   double worst = 0;
   for (std::size_t p = 0; p < model.slots(); ++p) {
-    worst = std::max(worst, model.inverse_mass[p] * length(g_[p]));
+    const double moved = model.inverse_mass[p] * length(g_[p]);
+    if (!std::isfinite(moved)) return std::numeric_limits<double>::infinity();
+    worst = std::max(worst, moved);
   }
   return worst / shortest;
 }

@@ -32,7 +32,8 @@ struct Judge {
       violated = r.near && (outwards > 0 || (acted && outwards < -r.tolerance));
     }
     system.active += active;
-    if (violated) worsen(std::abs(r.error) / r.tolerance);
+    // What is no number is neither outwards nor inwards, and must not pass for solved.
+    if (violated || !std::isfinite(r.error)) worsen(std::abs(r.error) / r.tolerance);
     return active;
   }
   void worsen(double size) {

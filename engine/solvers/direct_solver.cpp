@@ -71,7 +71,6 @@ LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& cont
   if (anew) balance_.start(x);
   copy(x, start_.view(), start_.size());
   const DirectOutcome outcome = iterate(x, {}, contacts, max_iterations, noise_will_do, result);
-  if (outcome == DirectOutcome::exhausted) return result;
   bool solved = outcome == DirectOutcome::converged && balance_.is_explained(system_, x);
   if (!solved && from != From::sweeps && stiff_.wanted()) {
     solved = iterate_stiff(x, contacts, max_iterations, result) == DirectOutcome::converged;

@@ -265,7 +265,10 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
     const bool just = violation <= 1;
     result.converged = strain <= settings_.tolerance && just;
     if (strain <= aim.goal && just) return result;
-    if (result.iterations >= max_iterations) return result;
+    if (result.iterations >= max_iterations) {
+      result.failed = !result.converged;
+      return result;
+    }
     if (!progress.goes_on(std::max(strain / aim.goal, violation))) {
       result.failed = !(from_start_ ? result.converged : strain <= aim.wanted && just);
       return result;

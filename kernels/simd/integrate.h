@@ -44,17 +44,25 @@ void predict(const Motion& m, double h, std::size_t first, std::size_t last) {
   return xsimd::abs(d.x) <= most && xsimd::abs(d.y) <= most && xsimd::abs(d.z) <= most;
 }
 
-bool commit(const Motion& m, double h, std::size_t first, std::size_t last) {
+/// watch(i, p, v, a, x, d, next) of each vector.
+template <class Watch>
+[[gnu::always_inline]] inline bool commit_and(const Motion& m, double h, std::size_t first,
+                                              std::size_t last, Watch&& watch) {
   DoubleMask good(true);
   for (std::size_t i = first; i < last; i += kDoubles) {
-    DoubleVector v = load(m.velocity, i), a = acceleration(m, i);
+    DoubleVector p = load(m.position, i), v = load(m.velocity, i), a = acceleration(m, i);
     DoubleVector x = load(m.solved, i);
-    DoubleVector d = x - predicted(load(m.position, i), v, a, h);
+    DoubleVector d = x - predicted(p, v, a, h);
     DoubleVector next = committed(v, a, d, h);
     store(m.next_velocity, i, next);
     good = good && within_range(x) && within_range(next);
+    watch(i, p, v, a, x, d, next);
   }
   return xsimd::all(good);
+}
+
+bool commit(const Motion& m, double h, std::size_t first, std::size_t last) {
+  return commit_and(m, h, first, last, [](auto&&...) {});
 }
 
 struct KickColumns {
@@ -95,6 +103,42 @@ kernels::Kicks measure_kicks(const Motion& m, double h, std::size_t first, std::
     add(columns.energy + column, mass, square);
   }
   return columns.sums();
+}
+
+/// commit, and the kicks of the range: while there is only one, that of positions.
+bool commit_watched(const Motion& m, double h, std::size_t first, std::size_t last,
+                    kernels::Kicks& kicks) {
+  constexpr std::size_t kVectors = kernels::kLanes / kDoubles;
+  const Doubles rate(1 / h), two(2.), zero(0.);
+  Doubles kick[kVectors], gain[kVectors], energy[kVectors];  // in registers, where there are enough
+  for (std::size_t k = 0; k < kVectors; ++k) kick[k] = gain[k] = energy[k] = zero;
+  bool good = true;
+  for (std::size_t block = first; block < last; block += kernels::kLanes) {
+#pragma GCC unroll 8
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      const std::size_t at = block + k * kDoubles;
+      good &= commit_and(
+          m, h, at, at + kDoubles,
+          [&](std::size_t i, const DoubleVector& p, const DoubleVector& v, const DoubleVector& a,
+              const DoubleVector& x, const DoubleVector& d, const DoubleVector& next)
+              __attribute__((always_inline)) {
+                const auto free = load(m.inverse_mass + i) > zero;
+                const Doubles mass = xsimd::select(free, load(m.mass + i), zero);
+                const Doubles square = dot(next, next);
+                kick[k] = fused(mass, rate * rate * dot(d, d), kick[k]);
+                gain[k] = fused(mass, square - dot(v, v) - two * dot(a, x - p), gain[k]);
+                energy[k] = fused(mass, square, energy[k]);
+              });
+    }
+  }
+  KickColumns columns;
+  for (std::size_t k = 0; k < kVectors; ++k) {
+    kick[k].store_aligned(columns.first + k * kDoubles);
+    gain[k].store_aligned(columns.gain + k * kDoubles);
+    energy[k].store_aligned(columns.energy + k * kDoubles);
+  }
+  kicks = columns.sums();
+  return good;
 }
 
 void apply_quads(const kernels::VectorsView& x, float* u, std::size_t first, std::size_t last) {

@@ -40,6 +40,7 @@ constexpr auto as_wide_as_block() {
 constexpr Table make_table() {
   return {.predict = predict,
           .commit = commit,
+          .commit_watched = commit_watched,
           .measure_kicks = measure_kicks,
           .apply_displacements = apply_displacements,
           .renew_run = renew_run,

@@ -98,6 +98,7 @@ struct Geometry {
 /// The particles of a step, per slot; padding slots have inverse mass 0.
 struct Motion {
   const double* inverse_mass = nullptr;
+  const double* mass = nullptr;
   kernels::Vector gravity{};
   kernels::VectorsView force{};  // x == nullptr: none besides gravity
   kernels::VectorsView position{}, velocity{};
@@ -230,7 +231,10 @@ struct Table {
   /// next_velocity = v + h a + (solved - predicted) / h, predicted formed as in predict. Returns
   /// whether solved and next_velocity are finite.
   bool (*commit)(const Motion&, double h, std::size_t first, std::size_t last);
-  /// Once velocities are corrected: of a range, in an order that depends on nothing but the range.
+  /// The same, and the kicks of the range while those of the velocity loop are still 0.
+  bool (*commit_watched)(const Motion&, double h, std::size_t first, std::size_t last,
+                         kernels::Kicks& kicks);
+  /// Once velocities are corrected. Both sum in an order that depends on nothing but the range.
   kernels::Kicks (*measure_kicks)(const Motion&, double h, std::size_t first, std::size_t last);
   /// x += u, u = 0.
   void (*apply_displacements)(kernels::VectorsView x, Displacements u, std::size_t first,

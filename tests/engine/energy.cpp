@@ -38,10 +38,10 @@ double kinetic(const State& s) {
 TEST_CASE("what gravity gave stays; what came on top is taken") {
   State s = falling(0.1);
   const double fallen = kinetic(s);
-  take_gained_energy(s);
+  take_gained_energy(s, 0.1);
   CHECK(kinetic(s) == doctest::Approx(fallen).epsilon(1e-12));
   for (double& v : s.next_velocity.y) v *= 3;
-  take_gained_energy(s);
+  take_gained_energy(s, 0.1);
   CHECK(kinetic(s) == doctest::Approx(fallen).epsilon(1e-12));
 }
 
@@ -56,10 +56,10 @@ TEST_CASE("what a force gave stays, and of a little on top nothing") {
     s.next_velocity.y[slot] *= 2;
   }
   const double given = kinetic(s);
-  take_gained_energy(s);
+  take_gained_energy(s, 0.1);
   CHECK(kinetic(s) == doctest::Approx(given).epsilon(1e-12));
   for (double& v : s.next_velocity.y) v *= 1 + 1e-9;
-  take_gained_energy(s);
+  take_gained_energy(s, 0.1);
   CHECK(kinetic(s) == doctest::Approx(given).epsilon(1e-12));
 }
 
@@ -67,14 +67,14 @@ TEST_CASE("energy that was lost is not given back") {
   State s = falling(0.1);
   for (double& v : s.next_velocity.y) v *= 0.5;
   const double before = kinetic(s);
-  take_gained_energy(s);
+  take_gained_energy(s, 0.1);
   CHECK(kinetic(s) == before);
 }
 
 TEST_CASE("what was lifted without work comes to rest, and no further") {
   State s = falling(0.1);
   for (double& y : s.solved.y) y += 1;
-  take_gained_energy(s);
+  take_gained_energy(s, 0.1);
   CHECK(kinetic(s) == 0);
 }
 

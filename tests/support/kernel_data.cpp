@@ -45,6 +45,7 @@ KernelData::KernelData(std::uint32_t length, std::uint32_t seed)
   next_velocity = kernels::Vectors(slots);
   for (std::size_t i = 0; i < slots; ++i) {
     inverse_mass.push_back(random.below(5) == 0 ? 0 : random.between(0.1, 10));
+    mass.push_back(inverse_mass.back() == 0 ? 3 : 1 / inverse_mass.back());
     reach.push_back(random.between(0, 0.5));
     mask.push_back(0);
   }
@@ -107,6 +108,7 @@ simd::Geometry KernelData::geometry() {
 simd::Motion KernelData::motion(bool forces) {
   simd::Motion m;
   m.inverse_mass = inverse_mass.data();
+  m.mass = mass.data();
   m.gravity = {0.5, -10, 0.25};
   if (forces) m.force = force.view();
   m.position = position.view();

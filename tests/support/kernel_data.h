@@ -43,7 +43,7 @@ struct KernelData {
   Run run;
   std::size_t slots;
   kernels::Vectors position, velocity, force, solved, next_velocity;
-  kernels::AlignedVector<double> inverse_mass, rest_length, inverse_square, scale, reach;
+  kernels::AlignedVector<double> inverse_mass, mass, rest_length, inverse_square, scale, reach;
   kernels::AlignedVector<float> u, impulse;  // u: planar
   kernels::AlignedVector<simd::ConstraintBlock> blocks;
   std::vector<std::uint32_t> a, b;  // of the singles

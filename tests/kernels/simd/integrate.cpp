@@ -133,6 +133,33 @@ TEST_CASE("kicks: sums over the free of a range, equal where instructions fuse")
   CHECK(wide.energy == narrow.energy);
 }
 
+TEST_CASE("commit_watched: the same velocities, and the kicks that measure_kicks finds") {
+  for_every_range([](const simd::Table& table, const Rounding&, KernelData found, bool forces,
+                     std::size_t first, std::size_t last) {
+    KernelData expected = found;
+    const double h = 0.01;
+    const bool finite = table.commit(expected.motion(forces), h, first, last);
+    kernels::Kicks kicks;
+    CHECK(table.commit_watched(found.motion(forces), h, first, last, kicks) == finite);
+    CHECK(same(found, expected));
+    const kernels::Kicks after = table.measure_kicks(expected.motion(forces), h, first, last);
+    CHECK(kicks.first == doctest::Approx(after.first).epsilon(1e-12));
+    CHECK(kicks.second == 0);
+    CHECK(kicks.energy == doctest::Approx(after.energy).epsilon(1e-12));
+    CHECK(std::abs(kicks.gain - after.gain) <= 1e-12 * (after.first + after.energy));
+    found.solved.x[first] = std::nan("");
+    CHECK_FALSE(table.commit_watched(found.motion(forces), h, first, last, kicks));
+  });
+  if (!simd::supported(simd::Isa::avx512)) return;
+  KernelData data(272, 5);
+  kernels::Kicks wide, narrow;
+  simd::table(simd::Isa::avx512).commit_watched(data.motion(true), 0.01, 0, data.slots, wide);
+  simd::table(simd::Isa::avx2).commit_watched(data.motion(true), 0.01, 0, data.slots, narrow);
+  CHECK(wide.first == narrow.first);
+  CHECK(wide.gain == narrow.gain);
+  CHECK(wide.energy == narrow.energy);
+}
+
 TEST_CASE("what was not corrected keeps its velocity to the last bit but the fall's") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
