@@ -157,8 +157,8 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   them converge slowly, conjugate gradients solve all of them as one system. Ropes, hubs and
 ///   contacts are relaxed one by one after each sweep, and take part in that system. simd only.
 /// automatic: gauss_seidel on the reference backend or with Settings::iterations; else direct where
-///   the masses of free particles with constraints span more than a factor of 10^4, or with scheme
-///   rattle and spheres; else yarn.
+///   the masses of free particles with constraints span more than a factor of 10^4; else
+///   gauss_seidel where there are more than nine ropes to each distance constraint; else yarn.
 /// Where yarn or direct gives up, the substep is redone as two halves; where that fails too,
 /// Gauss-Seidel takes over. StepReport::iterations counts every attempt. If such a substep would
 /// gain energy all velocities are scaled down by one factor, to rest at most. For some steps
