@@ -14,7 +14,8 @@
 /// by much of what a kick is worth. So a substep that gains more than kMostGain of the second kick
 /// is refused. Two measures of the gain each count one thing too much, and the smaller one holds:
 ///
-///     1/2 sum m |v'|^2 - m |v|^2 - 2 m a . (x' - x)    counts the work of moved pins
+///     1/2 sum m |v'|^2 - m |v|^2 - 2 m a . (x' - x)    counts the work of moved pins, but for what
+///                                                      is known of it (pin_work.h)
 ///     1/2 sum m |D/h|^2 - m |K|^2                      counts what an impact took, or velocities
 ///                                                      out of tolerance, as if it were gained
 ///

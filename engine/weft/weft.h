@@ -159,13 +159,14 @@ WEFT_API ModelInfo describe(const Model& model);
 /// automatic: gauss_seidel on the reference backend or with Settings::iterations; else direct where
 ///   the masses of free particles with constraints span more than a factor of 10^4; else
 ///   gauss_seidel where there are more than nine ropes to each distance constraint; else yarn.
-/// Where yarn or direct gives up, the substep is redone as two halves; where that fails too,
-/// Gauss-Seidel takes over. StepReport::iterations counts every attempt. If such a substep would
-/// gain energy all velocities are scaled down by one factor, to rest at most. For some steps
-/// afterwards automatic substeps are shorter and yarns are solved more tightly. Where yarns took
-/// thousands of passes, with scheme paper, a tolerance above 0.3 % and no spheres, the next steps
-/// use Gauss-Seidel alone. So a step depends slightly on the ones before, until positions are
-/// written.
+/// Where yarn or direct gives up, or energy rises by more than gravity, forces and moved pins
+/// explain (engine/energy.h), the substep is redone as two halves, until a step has cost 1500
+/// iterations; where that fails too, Gauss-Seidel takes over. StepReport::iterations counts every
+/// attempt. If such a substep would gain energy all velocities are scaled down by one factor, to
+/// rest at most, or to the rigid motion nearest to that of the pins. For some steps afterwards
+/// automatic substeps are shorter and yarns are solved more tightly. Where yarns took thousands of
+/// passes, with scheme paper, a tolerance above 0.3 % and no spheres, the next steps use
+/// Gauss-Seidel alone. So a step depends slightly on the ones before, until positions are written.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
 /// paper: impulses along the directions at the predicted positions; first order, and dissipative.
 /// rattle: along the directions at the start of the substep, always with velocity correction;
@@ -212,8 +213,10 @@ struct Settings {
   /// fall by seven digits at most). Solving exactly along directions that will change is wasted
   /// work: 32 saves a fifth of the iterations and more.
   int renew_after = 32;
-  /// Per substep; > 0. Besides, as many for velocities, as many again where rattle is left to
-  /// scheme paper, and half as many where positions are projected before a step.
+  /// Per substep; > 0; the last half of them for sweeps where the solver gives up. To bound the
+  /// time of a step, choose it (100 to 1000) and `substeps`. Besides, as many for velocities, as
+  /// many again where rattle is left to scheme paper, and half as many where positions are
+  /// projected before a step.
   int max_iterations = 1'000'000;
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
