@@ -4,11 +4,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <vector>
 
 #include "tests/support/clothes.h"
 #include "tests/support/mesh_scenes.h"
+#include "tests/support/vectors.h"
 
 namespace weft::test {
 namespace {
@@ -146,6 +149,127 @@ TEST_CASE("sweeps that do not come within tolerance leave yarns half of the iter
   }
   CHECK(strain > settings.tolerance);  // it is too few
   CHECK(strain < 0.1);
+}
+
+/// A cape of 1 kg that hangs from all of its upper side, which is an arc; one diagonal in each
+/// cell, in turns.
+SceneDescription cape(std::uint32_t size) {
+  constexpr double kArc = 1.8, kLean = 0.15, kLength = 1.2;
+  Mesh mesh = grid(size, size);
+  for (std::uint32_t r = 0; r + 1 < size; ++r) {
+    for (std::uint32_t c = 0; c + 1 < size; ++c) {
+      const std::uint32_t corner = r * size + c, odd = (r + c) % 2;
+      mesh.links.push_back({corner + odd, corner + size + 1 - odd, ConstraintKind::distance});
+    }
+  }
+  SceneDescription scene;
+  for (const Vec3& p : mesh.positions) {
+    const double angle = kArc * (p.z / (size - 1) - 0.5), down = kLength * p.x / (size - 1);
+    scene.positions.push_back(
+        {std::sin(angle) / kArc, -down, -std::cos(angle) / kArc - kLean * down});
+  }
+  scene.masses.assign(mesh.positions.size(), 1.0 / (size * size));
+  for (const Link& link : mesh.links) {
+    const double rest = distance(scene.positions[link.a], scene.positions[link.b]);
+    scene.constraints.push_back({link.a, link.b, rest, link.kind});
+  }
+  scene.fixed.resize(size);
+  std::iota(scene.fixed.begin(), scene.fixed.end(), 0u);
+  return scene;
+}
+
+struct Motion {
+  std::vector<std::vector<Vec3>> frames;  // as seen from the pins
+  double iterations = 0;
+};
+
+/// A second of it, carried along by its pins at a speed that it has from the start.
+Motion carried_at(const SceneDescription& at_rest, Vec3 speed) {
+  SceneDescription scene = at_rest;
+  scene.velocities.assign(scene.positions.size(), speed);
+  for (const std::uint32_t pin : scene.fixed) scene.velocities[pin] = {};
+  Cloth cloth = cloth_of(scene, {});
+  Motion motion;
+  for (int k = 1; k <= 60; ++k) {
+    const Vec3 travelled = (k / 60.) * speed;
+    for (const std::uint32_t pin : scene.fixed) {
+      REQUIRE(cloth.move_fixed(pin, scene.positions[pin] + travelled));
+    }
+    motion.iterations += static_cast<double>(step(cloth, 1. / 60).iterations);
+    motion.frames.push_back(positions(cloth));
+    for (Vec3& p : motion.frames.back()) p = p - travelled;
+  }
+  return motion;
+}
+
+double mean_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += distance(a[i], b[i]);
+  return sum / static_cast<double>(a.size());
+}
+
+// The energy that their pins gave them used to be taken from them.
+TEST_CASE("capes that are carried along hang as those at rest do, at no higher price") {
+  const SceneDescription scene = cape(16);
+  const Motion at_rest = carried_at(scene, {0, 0, 0});
+  double apart = 0;
+  for (const double speed : {1.4, 3., 10.}) {
+    for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 0, 1}}) {
+      const Motion motion = carried_at(scene, speed * direction);
+      apart += mean_distance(motion.frames.back(), at_rest.frames.back()) / 6;
+      CHECK(motion.iterations < 5 * at_rest.iterations);  // 170 times
+    }
+  }
+  CHECK(apart < 0.1);  // 0.32 m; how it folds is chance
+}
+
+/// Two spheres that close in on a cape from both sides, and stop when they would nearly touch.
+struct Pinch {
+  SceneDescription scene = cape(16);
+  std::uint32_t before = 0, behind = 0;
+  double middle = -0.5;
+
+  Pinch() {
+    scene.radii.assign(scene.positions.size(), 0.005);
+    before = add_sphere(1);
+    behind = add_sphere(-1);
+  }
+  static double gap(double time) { return 0.205 + 1.2 * std::max(0.0, 1 - time / 1.5); }
+  std::uint32_t add_sphere(double side) {
+    const auto sphere = static_cast<std::uint32_t>(scene.positions.size());
+    scene.positions.push_back({0, -0.6, middle + side * gap(0)});
+    scene.masses.push_back(1);
+    scene.radii.push_back(0.2);
+    scene.spheres.push_back(sphere);
+    scene.fixed.push_back(sphere);
+    return sphere;
+  }
+  void move(Cloth& cloth, double time) const {
+    REQUIRE(cloth.move_fixed(before, {0, -0.6, middle + gap(time)}));
+    REQUIRE(cloth.move_fixed(behind, {0, -0.6, middle - gap(time)}));
+  }
+};
+
+// Yarns that ran out of iterations were left wherever they had come to: 2.4.
+TEST_CASE("where iterations run out nothing is torn apart, and few more are done") {
+  const Pinch pinch;
+  for (const int most : {100, 200}) {
+    for (const int substeps : {kAutomaticSubsteps, 1}) {
+      CAPTURE(most);
+      CAPTURE(substeps);
+      Cloth cloth = cloth_of(
+          pinch.scene, {.substeps = substeps, .max_iterations = most, .solver = Solver::yarn});
+      bool ran_out = false;
+      for (int k = 1; k <= 120; ++k) {
+        pinch.move(cloth, k / 60.);
+        const StepReport report = step(cloth, 1. / 60);
+        ran_out |= report.status == Status::iteration_limit;
+        CHECK(report.max_strain < 0.2);
+        CHECK(report.iterations <= (substeps == 1 ? most + 16 : most * report.substeps));
+      }
+      CHECK(ran_out);
+    }
+  }
 }
 
 }  // namespace
