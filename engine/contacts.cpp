@@ -13,10 +13,16 @@ constexpr double kMargin = 0.05;  // of the sphere's radius
 /// the sphere's radius.
 template <class Reach, class Visit>
 void for_each_pair(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
-                   std::vector<std::uint32_t>& found, Reach&& reach, Visit&& visit) {
+                   ContactStore& contacts, Reach&& reach, Visit&& visit) {
+  std::uint32_t* const found = contacts.found.data();
+  contacts.boxes.enclose(m, kernels, {x});
   for (const std::uint32_t s : m.spheres) {
-    const std::size_t near =
-        kernels.find_near(x, m.radius.data(), x[s], reach(m.radius[s]), m.slots(), found.data());
+    const double extra = reach(m.radius[s]);
+    std::size_t near = 0;
+    contacts.boxes.visit_near(
+        m, kernels, x[s], x[s], extra, [&](std::size_t first, std::size_t last) {
+          near += kernels.find_near(x, m.radius.data(), x[s], extra, first, last, found + near);
+        });
     for (std::size_t i = 0; i < near; ++i) {
       if (may_touch(m, s, found[i])) visit(s, found[i], m.radius[s] + m.radius[found[i]]);
     }
@@ -59,7 +65,7 @@ bool may_touch(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
 
 std::size_t ContactStore::bytes() const {
   return bytes_of(sphere) + bytes_of(particle) + bytes_of(distance) + bytes_of(first) +
-         bytes_of(next) + bytes_of(found);
+         bytes_of(next) + bytes_of(found) + boxes.bytes();
 }
 
 ContactStore make_contact_store(const Model& model) {
@@ -67,6 +73,7 @@ ContactStore make_contact_store(const Model& model) {
   if (!model.has_contacts()) return contacts;
   contacts.first.assign(model.slots(), kNoIndex);
   contacts.found.resize(model.slots());
+  contacts.boxes = ContactBoxes(model);
   return contacts;
 }
 
@@ -78,7 +85,7 @@ void find_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsV
   contacts.distance.clear();
   contacts.next.clear();
   for_each_pair(
-      m, kernels, x, contacts.found, [](double radius) { return (1 + kMargin) * radius; },
+      m, kernels, x, contacts, [](double radius) { return (1 + kMargin) * radius; },
       [&](std::uint32_t s, std::uint32_t p, double distance) { append(contacts, s, p, distance); });
 }
 
@@ -86,8 +93,7 @@ std::size_t add_missed_contacts(const Model& m, const simd::Table& kernels, kern
                                 double tolerance, ContactStore& contacts) {
   const std::uint32_t before = contacts.count();
   for_each_pair(
-      m, kernels, x, contacts.found,
-      [&](double radius) { return std::max(0.0, radius - tolerance); },
+      m, kernels, x, contacts, [&](double radius) { return std::max(0.0, radius - tolerance); },
       [&](std::uint32_t s, std::uint32_t p, double distance) {
         const bool deep = distance - length(x[s] - x[p]) > tolerance;
         if (deep && !listed(contacts, s, p)) append(contacts, s, p, distance);
@@ -99,7 +105,7 @@ double max_penetration(const Model& m, const simd::Table& kernels, kernels::Vect
                        ContactStore& contacts) {
   double deepest = 0;
   for_each_pair(
-      m, kernels, x, contacts.found, [](double radius) { return radius; },
+      m, kernels, x, contacts, [](double radius) { return radius; },
       [&](std::uint32_t s, std::uint32_t p, double distance) {
         deepest = std::max(deepest, distance - length(x[s] - x[p]));
       });

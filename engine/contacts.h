@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/contact_boxes.h"
 #include "engine/model.h"
 #include "kernels/simd/table.h"
 
@@ -18,6 +19,7 @@ struct ContactStore {
   std::vector<std::uint32_t> first;  // per slot, kNoIndex ends a list
   std::vector<std::uint32_t> next;   // per contact
   std::vector<std::uint32_t> found;  // scratch of the search, per slot
+  ContactBoxes boxes;                // likewise
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(sphere.size()); }
   std::size_t capacity() const { return sphere.capacity(); }  // of the list that grows last

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/contacts.h"
-
 namespace weft {
 namespace {
 
@@ -22,11 +20,18 @@ double least_distance(kernels::Vector from, kernels::Vector to) {
 }  // namespace
 
 std::uint32_t find_crossing(const Model& m, const simd::Table& kernels, kernels::VectorsView before,
-                            kernels::VectorsView after, std::vector<std::uint32_t>& moved) {
+                            kernels::VectorsView after, ContactStore& contacts) {
+  std::uint32_t* const moved = contacts.found.data();
+  contacts.boxes.enclose(m, kernels, {before, after});
   for (const std::uint32_t s : m.spheres) {
     const kernels::Vector start = before[s], along = after[s] - start;
-    const std::size_t far = kernels.find_moved(before, after, along, m.radius.data(), m.radius[s],
-                                               kShortest, m.slots(), moved.data());
+    const double radius = m.radius[s];
+    std::size_t far = 0;
+    contacts.boxes.visit_near(
+        m, kernels, start, after[s], radius, [&](std::size_t first, std::size_t last) {
+          far += kernels.find_moved(before, after, along, m.radius.data(), radius, kShortest, first,
+                                    last, moved + far);
+        });
     for (std::size_t i = 0; i < far; ++i) {
       const std::uint32_t p = moved[i];
       const kernels::Vector from = before[p] - start, to = from + (after[p] - before[p] - along);

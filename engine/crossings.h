@@ -1,8 +1,7 @@
 /// What went through a sphere within one step.
 #pragma once
 
-#include <vector>
-
+#include "engine/contacts.h"
 #include "engine/model.h"
 #include "kernels/simd/table.h"
 #include "kernels/vectors.h"
@@ -13,9 +12,9 @@ namespace weft {
 /// of a sphere before the step and behind it afterwards was in no contact, or in one that pushed it
 /// out on the far side. This looks at the way, which is straight within a step. Returns the slot of
 /// a particle that went through a sphere, deeper than a twentieth of the sum of their radii, or
-/// kNoIndex. `moved` has room for every slot.
+/// kNoIndex. Of the contacts only the scratch is written.
 std::uint32_t find_crossing(const Model& model, const simd::Table& kernels,
                             kernels::VectorsView before, kernels::VectorsView after,
-                            std::vector<std::uint32_t>& moved);
+                            ContactStore& contacts);
 
 }  // namespace weft

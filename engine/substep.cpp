@@ -20,7 +20,7 @@ namespace {
 
 void watch_crossings(State& s, Trial& trial) {
   const std::uint32_t passed =
-      find_crossing(*s.model, *s.kernels, s.position.view(), s.solved.view(), s.contacts.found);
+      find_crossing(*s.model, *s.kernels, s.position.view(), s.solved.view(), s.contacts);
   if (passed == kNoIndex) return;
   trial.passed_particle = s.model->ordering.particle_at[passed];
   trial.worsen(Status::passed_through);

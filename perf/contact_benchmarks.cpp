@@ -14,7 +14,7 @@ class Contacts {
     const kernels::Vector centre{0.5, 0, 0.5};
     slots_.resize(bench.slots());
     const std::size_t found = table.find_near(bench.position.view(), bench.reach.data(), centre,
-                                              0.2, bench.slots(), slots_.data());
+                                              0.2, 0, bench.slots(), slots_.data());
     slots_.resize(found / kLanes * kLanes);
     sphere_.assign(slots_.size(), bench.ordering.slot_of[0]);
     blocks_.resize(slots_.size() / kLanes);

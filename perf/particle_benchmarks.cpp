@@ -36,16 +36,25 @@ constexpr Kernel kKernels[] = {
      [](const simd::Table& t, Workbench& w, const simd::Relaxation& r) {
        t.apply_displacements(w.solved.view(), {r.u.x, 1, 4}, 0, w.slots());
      }},
+    {"bound", 32, 32,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       t.bound(w.position.view(), w.mass.data(), w.slots(), w.boxes());
+     }},
+    {"find_boxes", 56. / simd::kBoxed, 56. / simd::kBoxed,
+     [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
+       const kernels::Vector centre{0.5, 0, 0.5};
+       benchmark::DoNotOptimize(t.find_boxes(w.boxes(), centre, centre, 0.1, w.near.data()));
+     }},
     {"find_near", 32, 32,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
        const kernels::Vector centre{0.5, 0, 0.5};
-       benchmark::DoNotOptimize(
-           t.find_near(w.position.view(), w.reach.data(), centre, 0.1, w.slots(), w.near.data()));
+       benchmark::DoNotOptimize(t.find_near(w.position.view(), w.reach.data(), centre, 0.1, 0,
+                                            w.slots(), w.near.data()));
      }},
     {"find_moved", 56, 56,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
        benchmark::DoNotOptimize(t.find_moved(w.position.view(), w.solved.view(), {}, w.reach.data(),
-                                             1, 1, w.slots(), w.near.data()));
+                                             1, 1, 0, w.slots(), w.near.data()));
      }},
     {"split_quads", 56, 56,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {

@@ -34,6 +34,8 @@ void Workbench::place_particles(const SceneDescription& scene) {
   mass.resize(slots());
   reach.resize(slots());
   near.resize(slots());
+  const std::size_t boxes = kernels::round_up(slots(), simd::kBoxed) / simd::kBoxed;
+  for (kernels::Vectors* v : {&box_low, &box_high}) v->resize(kernels::round_up(boxes, kLanes));
   base.resize(4 * slots());
   change.resize(4 * slots());
   mask.assign(slots(), ~std::uint64_t{0});
@@ -117,6 +119,10 @@ simd::Relaxation Workbench::relaxation(bool in_quads) {
 simd::Geometry Workbench::geometry() {
   return {position.view(), rest_length_.data(), inverse_square_.data(),
           scale_.data(),   ordering.a.data(),   ordering.b.data()};
+}
+
+simd::Boxes Workbench::boxes() {
+  return {box_low.view(), box_high.view(), reach.data(), box_low.size()};
 }
 
 simd::Motion Workbench::motion() {

@@ -43,11 +43,13 @@ class Workbench {
   simd::Relaxation relaxation(bool in_quads = false);
   simd::Geometry geometry();
   simd::Motion motion();
+  simd::Boxes boxes();
   PullLayout& pulls();  // made when first asked for
 
   kernels::Vectors position, velocity, solved, next_velocity;
   kernels::AlignedVector<double> inverse_mass, mass, reach;
-  std::vector<std::uint32_t> near;             // room for find_near
+  std::vector<std::uint32_t> near;  // room for find_near
+  kernels::Vectors box_low, box_high;
   kernels::AlignedVector<float> base, change;  // quads
   kernels::AlignedVector<float> impulse;
   std::vector<std::uint64_t> mask;

@@ -1,5 +1,6 @@
 /// Contacts of one sphere s with particles p: which are near enough to be watched, which moved so
-/// far that they may have gone through, and one pass over them. They push only: the sum of their
+/// far that they may have gone through, boxes that spare most of them the question, and one pass
+/// over them. They push only: the sum of their
 /// corrections, in units of e, stays at or below 0.
 ///
 /// kLanes contacts are taken at once, whatever the width of a vector. They share the sphere, so
@@ -10,6 +11,8 @@
 ///
 /// and the sphere moves by the sum of what they do to it, added in one order.
 #pragma once
+
+#include <algorithm>
 
 #include "kernels/simd/relax.h"
 
@@ -30,11 +33,76 @@ namespace {
   return listed;
 }
 
-std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vector centre,
-                      double extra, std::size_t slots, std::uint32_t* out) {
-  DoubleVector c{Doubles(centre.x), Doubles(centre.y), Doubles(centre.z)};
+/// Grows by the places of the lanes in the mask; what is not a number is in no box.
+struct BoxLanes {
+  DoubleVector low, high;
+
+  [[gnu::always_inline]] void take(const DoubleVector& at, DoubleMask mask) {
+    take(at.x, mask, low.x, high.x);
+    take(at.y, mask, low.y, high.y);
+    take(at.z, mask, low.z, high.z);
+  }
+  [[gnu::always_inline]] static void take(Doubles at, DoubleMask mask, Doubles& low,
+                                          Doubles& high) {
+    low = xsimd::select(mask & (at < low), at, low);
+    high = xsimd::select(mask & (at > high), at, high);
+  }
+};
+
+[[gnu::always_inline]] inline double least(Doubles d) {
+  alignas(64) double lanes[kDoubles];
+  d.store_aligned(lanes);
+  return *std::ranges::min_element(lanes);
+}
+[[gnu::always_inline]] inline double greatest(Doubles d) {
+  alignas(64) double lanes[kDoubles];
+  d.store_aligned(lanes);
+  return *std::ranges::max_element(lanes);
+}
+[[gnu::always_inline]] inline DoubleVector in_all_lanes(kernels::Vector v) {
+  return {Doubles(v.x), Doubles(v.y), Doubles(v.z)};
+}
+
+void bound(kernels::VectorsView x, const double* mass, std::size_t slots, const Boxes& boxes) {
+  for (std::size_t box = 0; box * kBoxed < slots; ++box) {
+    BoxLanes lanes{in_all_lanes(boxes.low[box]), in_all_lanes(boxes.high[box])};
+    const std::size_t last = std::min(slots, (box + 1) * kBoxed);
+    for (std::size_t i = box * kBoxed; i < last; i += kDoubles) {
+      lanes.take(load(x, i), load(mass + i) > Doubles(0.));
+    }
+    boxes.low.set(box, {least(lanes.low.x), least(lanes.low.y), least(lanes.low.z)});
+    boxes.high.set(box, {greatest(lanes.high.x), greatest(lanes.high.y), greatest(lanes.high.z)});
+  }
+}
+
+/// A box is left out where on one axis the gap is wider than the reach. How far things in two boxes
+/// are from each other is computed from their places and ways, and off by a few roundings of the
+/// gap and of the extents: kRounding of all that is more. Where an extent is infinite or not a
+/// number no gap is wider.
+std::size_t find_boxes(const Boxes& boxes, kernels::Vector low, kernels::Vector high, double extra,
+                       std::uint32_t* out) {
+  constexpr double kRounding = 1e-12;
+  const double width = high.x - low.x + (high.y - low.y) + (high.z - low.z);
+  DoubleVector from = in_all_lanes(low), to = in_all_lanes(high);
   std::size_t found = 0;
-  for (std::size_t i = 0; i < slots; i += kDoubles) {
+  for (std::size_t i = 0; i < boxes.count; i += kDoubles) {
+    DoubleVector first = load(boxes.low, i), last = load(boxes.high, i);
+    DoubleVector before = first - to, behind = from - last, extent = last - first;
+    const Doubles gap =
+        xsimd::max(xsimd::max(xsimd::max(before.x, before.y), xsimd::max(before.z, behind.x)),
+                   xsimd::max(behind.y, behind.z));
+    const Doubles reach = load(boxes.reach + i) + Doubles(extra);
+    const Doubles all = extent.x + extent.y + extent.z + Doubles(width) + reach;
+    found += list(!(gap > fused(Doubles(kRounding), all, reach)), i, out + found);
+  }
+  return found;
+}
+
+std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vector centre,
+                      double extra, std::size_t first, std::size_t last, std::uint32_t* out) {
+  DoubleVector c = in_all_lanes(centre);
+  std::size_t found = 0;
+  for (std::size_t i = first; i < last; i += kDoubles) {
     DoubleVector d = load(x, i) - c;
     const Doubles limit = load(reach + i) + Doubles(extra);
     found += list(dot(d, d) < limit * limit, i, out + found);
@@ -44,10 +112,10 @@ std::size_t find_near(kernels::VectorsView x, const double* reach, kernels::Vect
 
 std::size_t find_moved(kernels::VectorsView before, kernels::VectorsView after,
                        kernels::Vector along, const double* reach, double extra, double part,
-                       std::size_t slots, std::uint32_t* out) {
-  DoubleVector with{Doubles(along.x), Doubles(along.y), Doubles(along.z)};
+                       std::size_t first, std::size_t last, std::uint32_t* out) {
+  DoubleVector with = in_all_lanes(along);
   std::size_t found = 0;
-  for (std::size_t i = 0; i < slots; i += kDoubles) {
+  for (std::size_t i = first; i < last; i += kDoubles) {
     DoubleVector way = load(after, i) - load(before, i) - with;
     const Doubles limit = Doubles(part) * (load(reach + i) + Doubles(extra));
     found += list(dot(way, way) > limit * limit, i, out + found);

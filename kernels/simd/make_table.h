@@ -87,6 +87,8 @@ constexpr Table make_table() {
           .eliminate_front = eliminate_front,
           .solve_front_forward = solve_front_forward,
           .solve_front_backward = solve_front_backward,
+          .bound = bound,
+          .find_boxes = find_boxes,
           .find_near = find_near,
           .find_moved = find_moved};
 }

@@ -223,6 +223,15 @@ struct StretchRange {
   double most = 1;
 };
 
+/// Boxes around groups of kBoxed slots, from low to high; one without a particle reaches from
+/// infinity to minus infinity. There are count, a multiple of kLanes.
+inline constexpr std::size_t kBoxed = 256;
+struct Boxes {
+  kernels::VectorsView low, high;
+  const double* reach = nullptr;  // largest of the group
+  std::size_t count = 0;
+};
+
 /// Ranges of slots are multiples of kLanes; runs and singles likewise. Kernels for runs take planar
 /// displacements.
 struct Table {
@@ -336,14 +345,20 @@ struct Table {
   void (*solve_front_forward)(const Front&, double* z);
   void (*solve_front_backward)(const Front&, double* z);
 
-  /// Which of so many slots are nearer to the centre than reach[slot] + extra; writes their
-  /// indices, returns how many.
+  /// Boxes grow to hold what has mass.
+  void (*bound)(kernels::VectorsView x, const double* mass, std::size_t slots, const Boxes&);
+  /// Which boxes may hold something nearer to the box from low to high than reach[box] + extra;
+  /// writes their indices, returns how many.
+  std::size_t (*find_boxes)(const Boxes&, kernels::Vector low, kernels::Vector high, double extra,
+                            std::uint32_t* out);
+  /// Likewise those of the slots first ... last - 1 that are nearer to the centre than reach[slot]
+  /// + extra.
   std::size_t (*find_near)(kernels::VectorsView x, const double* reach, kernels::Vector centre,
-                           double extra, std::size_t slots, std::uint32_t* out);
+                           double extra, std::size_t first, std::size_t last, std::uint32_t* out);
   /// Likewise those that have moved, beside `along`, by more than part (reach[slot] + extra).
   std::size_t (*find_moved)(kernels::VectorsView before, kernels::VectorsView after,
                             kernels::Vector along, const double* reach, double extra, double part,
-                            std::size_t slots, std::uint32_t* out);
+                            std::size_t first, std::size_t last, std::uint32_t* out);
 };
 
 /// The isa must be supported.

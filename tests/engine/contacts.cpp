@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/contacts.h"
 #include "tests/support/clothes.h"
+#include "tests/support/isas.h"
+#include "tests/support/mesh_scenes.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
@@ -380,6 +383,61 @@ TEST_CASE("contacts that the direct solver leaves to sweeps are theirs in veloci
   for (std::uint32_t i = 0; i < kSpheres; ++i) {
     const double approach = cloth.velocity(2 * i).y - cloth.velocity(2 * i + 1).y;
     CHECK(approach <= settings.velocity_tolerance * (1 + 1e-6));
+  }
+}
+
+struct Pairs {
+  std::vector<std::uint32_t> sphere, particle;
+  double deepest = 0;
+};
+
+/// Those nearer than (1 + margin) r1 + r2, one by one.
+Pairs pairs_of(const Model& m, const kernels::Vectors& x, double margin) {
+  Pairs pairs;
+  for (const std::uint32_t s : m.spheres) {
+    for (std::uint32_t p = 0; p < m.slots(); ++p) {
+      if (!may_touch(m, s, p)) continue;
+      const double apart = kernels::length(x[s] - x[p]), surface = m.radius[s] + m.radius[p];
+      pairs.deepest = std::max(pairs.deepest, surface - apart);
+      if (apart >= surface + margin * m.radius[s]) continue;
+      pairs.sphere.push_back(s);
+      pairs.particle.push_back(p);
+    }
+  }
+  return pairs;
+}
+
+TEST_CASE("among many spheres every pair within the margin is found, and in order") {
+  for (const simd::Isa isa : supported_isas()) {
+    const simd::Table& table = simd::table(isa);
+    std::size_t found = 0;
+    for (std::uint32_t seed = 0; seed < 10; ++seed) {
+      CAPTURE(seed);
+      const auto model = model_of(sheet_among_spheres(seed));
+      kernels::Vectors x = model->initial_position;
+      ContactStore contacts = make_contact_store(*model);
+      Random random(seed);
+      for (const double moved : {0.0, 0.01, 1.0, 100.0}) {
+        for (std::size_t slot = 0; slot < model->slots(); ++slot) {
+          const Vec3 by = random.in_box(moved);
+          if (model->is_particle(slot)) x.set(slot, x[slot] + kernels::Vector{by.x, by.y, by.z});
+        }
+        const Pairs expected = pairs_of(*model, x, 0.05);
+        find_contacts(*model, table, x.view(), contacts);
+        CHECK(contacts.sphere == expected.sphere);
+        CHECK(contacts.particle == expected.particle);
+        found += contacts.count();
+        CHECK(max_penetration(*model, table, x.view(), contacts) ==
+              doctest::Approx(expected.deepest).epsilon(1e-14));
+        CHECK(add_missed_contacts(*model, table, x.view(), 0, contacts) == 0);
+        ContactStore late = make_contact_store(*model);
+        add_missed_contacts(*model, table, x.view(), 0, late);
+        const Pairs touching = pairs_of(*model, x, 0);
+        CHECK(late.sphere == touching.sphere);
+        CHECK(late.particle == touching.particle);
+      }
+    }
+    CHECK(found > 1000);
   }
 }
 

@@ -1,7 +1,13 @@
 /// What goes through a sphere within one step is prevented or reported.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
+#include "engine/crossings.h"
 #include "tests/support/clothes.h"
+#include "tests/support/isas.h"
+#include "tests/support/mesh_scenes.h"
+#include "tests/support/random.h"
 
 namespace weft::test {
 namespace {
@@ -129,6 +135,57 @@ TEST_CASE("a crossing is no reason to leave scheme rattle") {
   settings.substeps = 2;
   Cloth in_the_first = cloth_of(shot(-0.2, 100, 0), settings);
   CHECK(step(in_the_first, 0.01).status == Status::passed_through);
+}
+
+/// Whether a way begins and ends outside of what it passes through, and is not too short for that.
+bool crosses(kernels::Vector from, kernels::Vector way, double distance) {
+  const double part = std::clamp(-dot(from, way) / dot(way, way), 0.0, 1.0);
+  const double surface = 0.95 * distance;
+  return length(way) > 0.62 * distance && length(from) >= surface &&
+         length(from + way) >= surface && length(from + part * way) < surface;
+}
+
+/// The first of them, one by one.
+std::uint32_t crossing_of(const Model& m, const kernels::Vectors& before,
+                          const kernels::Vectors& after) {
+  for (const std::uint32_t s : m.spheres) {
+    for (std::uint32_t p = 0; p < m.slots(); ++p) {
+      const kernels::Vector along = after[s] - before[s], way = after[p] - before[p] - along;
+      if (may_touch(m, s, p) && crosses(before[p] - before[s], way, m.radius[s] + m.radius[p])) {
+        return p;
+      }
+    }
+  }
+  return kNoIndex;
+}
+
+TEST_CASE("among many spheres the first crossing is found, however far all moved") {
+  for (const simd::Isa isa : supported_isas()) {
+    int crossed = 0, not_crossed = 0;
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+      CAPTURE(seed);
+      const auto model = model_of(sheet_among_spheres(seed));
+      ContactStore contacts = make_contact_store(*model);
+      kernels::Vectors before = model->initial_position, after = before;
+      Random random(seed);
+      for (const double moved : {1e-3, 3e-2, 0.3, 10.0, 1e3, 1e9}) {
+        const Vec3 together = random.in_box(moved);
+        const double apart = seed % 2 == 0 ? moved : 0.01 * moved;
+        for (std::size_t slot = 0; slot < model->slots(); ++slot) {
+          if (!model->is_particle(slot)) continue;
+          const Vec3 by = random.in_box(apart);
+          after.set(slot, before[slot] + kernels::Vector{together.x + by.x, together.y + by.y,
+                                                         together.z + by.z});
+        }
+        const std::uint32_t expected = crossing_of(*model, before, after);
+        (expected == kNoIndex ? not_crossed : crossed) += 1;
+        CHECK(find_crossing(*model, simd::table(isa), before.view(), after.view(), contacts) ==
+              expected);
+      }
+    }
+    CHECK(crossed > 30);
+    CHECK(not_crossed > 30);
+  }
 }
 
 }  // namespace

@@ -1,8 +1,11 @@
 #include "tests/support/mesh_scenes.h"
 
+#include <cmath>
+
 #include <algorithm>
 #include <numeric>
 
+#include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
 namespace weft::test {
@@ -59,6 +62,26 @@ SceneDescription hub_sheet(std::uint32_t size) {
     }
   }
   return scene_of(mesh);
+}
+
+SceneDescription sheet_among_spheres(std::uint32_t seed) {
+  SceneDescription scene = drifting_sheet(40, seed);
+  Random random(seed + 1);
+  scene.radii.clear();
+  Vec3 middle;
+  for (const Vec3& at : scene.positions) {
+    middle = middle + (1.0 / 1600) * at;
+    scene.radii.push_back(random.below(3) == 0 ? random.between(0, 0.05) : 0);
+  }
+  for (int i = 0; i < 40; ++i) {
+    scene.spheres.push_back(static_cast<std::uint32_t>(scene.positions.size()));
+    if (random.below(2) == 0) scene.fixed.push_back(scene.spheres.back());
+    scene.positions.push_back(middle + random.in_box(random.below(4) == 0 ? 30 : 2.5));
+    scene.velocities.push_back(random.in_box(1));
+    scene.masses.push_back(1);
+    scene.radii.push_back(std::pow(10, random.between(-2, 0)));
+  }
+  return scene;
 }
 
 }  // namespace weft::test

@@ -28,4 +28,7 @@ struct NamedScene {
   SceneDescription scene;
 };
 
+/// A sheet of 40 x 40 and, in it and around it, 40 spheres of radii from 0.01 to 1 m, some fixed.
+SceneDescription sheet_among_spheres(std::uint32_t seed);
+
 }  // namespace weft::test
