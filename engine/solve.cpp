@@ -124,9 +124,9 @@ kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, From from, int
 /// The direct solver. Where it fails sweeps begin where it did, and take the short waves out; it
 /// tries again from there, and after each failure they go on, four times as many. Half of the
 /// iterations are theirs. Smaller steps are the better answer where they help: sweeps stop at the
-/// tolerance, and the error that they leave
-/// is removed by the next step's solve at once, as a blow (a sphere that drops on 20 x 20
-/// particles, 4 substeps, 1 %: 10.6 J gained with sweeps, 5e-5 J with halved steps).
+/// tolerance, and the error that they leave is removed by the next step's solve at once, as a blow
+/// (a sphere that drops on 20 x 20 particles, 4 substeps, 1 %: 10.6 J gained with sweeps, 5e-5 J
+/// with halved steps).
 kernels::LoopResult solve_directly(State& s, const Attempt& attempt, From from, int left,
                                    Standstill& standstill, Team& team) {
   constexpr int kFirstSweeps = 32, kMoreSweeps = 4;

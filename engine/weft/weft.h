@@ -120,7 +120,8 @@ struct SceneDescription {
   /// particle that no constraint joins it to, at the distance radii[i] + radii[j]; unlisted
   /// particles do not collide with each other. radii: empty without spheres, else one per
   /// particle, >= 0. What they cost: three or four times a substep each sphere is held against one
-  /// box per 256 particles, and against the particles of those boxes that it comes near.
+  /// box per 256 particles, and against the particles of those boxes that it comes near (one or two
+  /// spheres: against all particles).
   std::vector<std::uint32_t> spheres;
   std::vector<double> radii;
 };

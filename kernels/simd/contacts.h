@@ -1,7 +1,6 @@
 /// Contacts of one sphere s with particles p: which are near enough to be watched, which moved so
 /// far that they may have gone through, boxes that spare most of them the question, and one pass
-/// over them. They push only: the sum of their
-/// corrections, in units of e, stays at or below 0.
+/// over them. They push only: the sum of their corrections, in units of e, stays at or below 0.
 ///
 /// kLanes contacts are taken at once, whatever the width of a vector. They share the sphere, so
 /// each is corrected as if the sphere's mass were divided among them (mass splitting: never too
