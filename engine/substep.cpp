@@ -33,9 +33,10 @@ bool blown_up(const State& s, const Attempt& attempt, const Trial& trial) {
 }
 
 /// Yarns and the direct solver may solve, by scheme paper, for what is not where the motion leads:
-/// see energy.h.
+/// see energy.h. (Where sweeps do all of a step its energy is taken out in any case.)
 bool may_gain_energy(const State& s, const Attempt& attempt) {
-  return (s.yarn || s.direct) && s.settings.iterations == 0 && !attempt.by_rattle();
+  const bool exact = (s.yarn || s.direct) && !attempt.only_sweeps;
+  return exact && s.settings.iterations == 0 && !attempt.by_rattle();
 }
 
 /// Where nobody is going to try anything else it is kept, and its energy taken out.

@@ -15,8 +15,7 @@
 ///     velocity loop.
 ///  3. A Model is immutable and may be shared by any number of Cloths and threads. A Cloth is not
 ///     synchronised: one thread at a time, for functions that are const too.
-///  4. weft owns no threads, and no globals that affect results but one: WEFT_ISA in the
-///  environment
+///  4. weft owns no threads, and no globals that affect results but WEFT_ISA in the environment
 ///     (Isa). Parallel work runs in the caller's oneTBB arena, rounded as the calling thread
 ///     rounds. A worker that helped waits for the next step as long as its part took, at most 0.2
 ///     ms, and may be moved off the calling thread's core. So a plugin that holds weft must not be
