@@ -43,6 +43,7 @@ Model::Model(const SceneDescription& description) : particles(description.positi
   order_particles(draft);
   store_particles(draft);
   store_constraints(draft);
+  uneven = find_unevenness(inverse_mass, constraints.a, constraints.b, constraints.rest_length);
   find_joined();
 }
 

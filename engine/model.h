@@ -15,6 +15,7 @@
 #include "engine/solvers/reference_layout.h"
 #include "engine/solvers/simd_layout.h"
 #include "engine/solvers/yarn_layout.h"
+#include "engine/unevenness.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -59,6 +60,7 @@ class Model {
 
   kernels::Vector gravity{};
   ConstraintStore constraints;
+  Unevenness uneven;
   std::size_t inert_constraints = 0;
 
   bool has_contacts() const { return !spheres.empty(); }

@@ -98,29 +98,6 @@ kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView st
   return s.direct->solve_from_start(s.solved.view(), start, s.contacts, first, left);
 }
 
-/// Yarns; if need be sweeps, for which they leave half of the iterations, from the same positions
-/// or, where only iterations ran out and that is nearer, from where yarns had come to. Until the
-/// commit nobody needs next_velocity: it remembers the positions.
-kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, From from, int left,
-                                Standstill& standstill, Team& team) {
-  if (attempt.only_sweeps) {
-    auto result = sweep_on(s, attempt.h, from == From::prediction, left, standstill, team);
-    result.failed = !result.converged;
-    return result;
-  }
-  const bool may_sweep = attempt.on_failure == OnFailure::sweep;
-  if (may_sweep) s.next_velocity = s.solved;
-  const int most = may_sweep ? std::max(1, left / 2) : left;
-  auto result = s.yarn->solve_positions(s.solved.view(), {}, s.contacts, from != From::last_round,
-                                        most, attempt.care, *s.measure, team);
-  if (!result.failed || result.converged || !may_sweep) return result;
-  const bool nearer = result.iterations >= most &&
-                      max_strain_at(s, s.solved, team) < max_strain_at(s, s.next_velocity, team);
-  if (!nearer) s.solved = s.next_velocity;
-  count(result, sweep_on(s, attempt.h, true, left - result.iterations, standstill, team));
-  return result;
-}
-
 /// The direct solver. Where it fails sweeps begin where it did, and take the short waves out; it
 /// tries again from there, and after each failure they go on, four times as many. Half of the
 /// iterations are theirs. Smaller steps are the better answer where they help: sweeps stop at the
@@ -148,6 +125,37 @@ kernels::LoopResult solve_directly(State& s, const Attempt& attempt, From from, 
   return result;
 }
 
+/// Yarns. If need be what answers for them, to which they leave half of the iterations: the direct
+/// solver, where masses differ so much that it stands by, from the same positions; else sweeps,
+/// from these or, where only iterations ran out and that is nearer, from where yarns had come to.
+/// Until the commit nobody needs next_velocity: it remembers the positions.
+kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, From from, int left,
+                                Standstill& standstill, Team& team) {
+  if (attempt.only_sweeps) {
+    auto result = sweep_on(s, attempt.h, from == From::prediction, left, standstill, team);
+    result.failed = !result.converged;
+    return result;
+  }
+  const bool may_be_answered = attempt.on_failure == OnFailure::sweep;
+  if (may_be_answered) s.next_velocity = s.solved;
+  const int most = may_be_answered ? std::max(1, left / 2) : left;
+  auto result = s.yarn->solve_positions(s.solved.view(), {}, s.contacts, from != From::last_round,
+                                        most, attempt.care, *s.measure, team);
+  if (!result.failed || result.converged || !may_be_answered) return result;
+  left -= result.iterations;
+  if (s.direct) {
+    s.solved = s.next_velocity;
+    const From begin = from == From::prediction ? from : From::sweeps;
+    count(result, solve_directly(s, attempt, begin, left, standstill, team));
+    return result;
+  }
+  const bool nearer = result.iterations >= most &&
+                      max_strain_at(s, s.solved, team) < max_strain_at(s, s.next_velocity, team);
+  if (!nearer) s.solved = s.next_velocity;
+  count(result, sweep_on(s, attempt.h, true, left, standstill, team));
+  return result;
+}
+
 kernels::LoopResult solve_round(State& s, const Attempt& attempt, From from, int left,
                                 Standstill& standstill, Team& team) {
   const bool first = from == From::prediction;
@@ -157,21 +165,24 @@ kernels::LoopResult solve_round(State& s, const Attempt& attempt, From from, int
   return sweep_on(s, attempt.h, first, left, standstill, team);
 }
 
-/// The sweeps that follow judge in double; as a rule the first finds nothing to do.
+kernels::LoopResult correct_directly(State& s, bool exact, Team& team) {
+  auto result =
+      s.direct->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts, exact);
+  if (result.failed) count(result, sweep_velocities(s, team));
+  return result;
+}
+
+/// What follows the yarns judges in double; as a rule it finds nothing to do.
 kernels::LoopResult correct_by_yarns(State& s, bool exact, Team& team) {
   auto result =
       s.yarn->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts, exact, team);
-  count(result, sweep_velocities(s, team));
+  count(result, s.direct ? correct_directly(s, false, team) : sweep_velocities(s, team));
   return result;
 }
 
 kernels::LoopResult solve_velocities(State& s, bool exact, Team& team) {
   if (s.yarn && s.settings.iterations == 0) return correct_by_yarns(s, exact, team);
-  if (!s.direct) return sweep_velocities(s, team);
-  auto result =
-      s.direct->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts, exact);
-  if (result.failed) count(result, sweep_velocities(s, team));
-  return result;
+  return s.direct ? correct_directly(s, exact, team) : sweep_velocities(s, team);
 }
 
 Ended end_of(const kernels::LoopResult& result, OnFailure on_failure) {

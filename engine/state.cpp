@@ -26,8 +26,9 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     simd.emplace(*model, settings, *kernels);
     measure.emplace(*model, *kernels);
   }
-  if (settings.solver == Solver::direct) direct.emplace(*model, settings, *kernels);
   if (settings.solver == Solver::yarn) yarn.emplace(*model, settings, *kernels);
+  if (settings.solver == Solver::direct || (yarn && model->uneven.ratio > kUneven))
+    direct.emplace(*model, settings, *kernels);
 }
 
 namespace {

@@ -55,8 +55,9 @@ struct State {
   kernels::Vectors predicted;  // reference only
   std::optional<SimdSolver> simd;
   std::optional<SimdMeasure> measure;  // simd only
-  std::optional<DirectSolver> direct;  // with Solver::direct; those above then are its answer
+  // What answers for a solver that gives up: simd or reference, or direct where yarn has it too.
   std::optional<YarnSolver> yarn;      // with Solver::yarn
+  std::optional<DirectSolver> direct;  // with Solver::direct, and behind yarns of uneven masses
   const simd::Table* kernels = nullptr;
   std::shared_ptr<Team::Meeting> meeting = Team::make_meeting();  // of the team of each step
 

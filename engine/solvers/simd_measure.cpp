@@ -71,18 +71,29 @@ double SimdMeasure::max_strain(kernels::VectorsView x, Team& team, const BeforeT
   }
   double most = std::max(std::sqrt(range.most) - 1, 1 - std::sqrt(range.least));
   if (most > 0) most += kRounding;
+  return std::max(most, max_hub_strain(x));
+}
+
+double SimdMeasure::max_hub_strain(kernels::VectorsView x) const {
+  double most = 0;
   for (std::uint32_t c = layout_.hub_first; c < layout_.hub_last; ++c) {
     most = std::max(most, strain_of(x, c));
   }
   return most;
 }
 
-Strain SimdMeasure::strain(kernels::VectorsView x, Team& team) {
+std::span<const simd::StrainSums> SimdMeasure::strains_of_chunks(kernels::VectorsView x,
+                                                                 Team& team) {
   const simd::Geometry g = geometry(x);
-  const std::size_t chunks = layout_.chunks.size();
-  team.for_each_part(chunks, kPiece, [&](std::size_t begin, std::size_t end) {
+  team.for_each_part(layout_.chunks.size(), kPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) strains_[i] = sums(g, layout_.chunks[i]);
   });
+  return strains_;
+}
+
+Strain SimdMeasure::strain(kernels::VectorsView x, Team& team) {
+  strains_of_chunks(x, team);
+  const std::size_t chunks = layout_.chunks.size();
   Strain strain;
   double squares = 0;
   std::size_t worst = chunks;

@@ -4,6 +4,7 @@
 #include <weft/weft.h>
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "engine/model.h"
@@ -20,6 +21,10 @@ class SimdMeasure {
   Strain strain(kernels::VectorsView x, Team& team);
   /// Slots of a tile, before its strains are looked at; in the end those of no tile.
   using BeforeTile = std::function<void(std::size_t first, std::size_t last)>;
+  /// Of each chunk; valid until the next call.
+  std::span<const simd::StrainSums> strains_of_chunks(kernels::VectorsView x, Team& team);
+  /// The largest strain of constraints at hubs, which are in no chunk.
+  double max_hub_strain(kernels::VectorsView x) const;
   /// The largest strain, and nothing besides.
   double max_strain(kernels::VectorsView x, Team& team, const BeforeTile& before_tile = {});
 

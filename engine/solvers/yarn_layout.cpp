@@ -202,6 +202,27 @@ std::vector<std::uint32_t> slots_not_in_second(const Model& model, const YarnLay
   return slots;
 }
 
+std::vector<std::uint32_t> find_longest_at(const Model& model, std::span<const Chain> chains) {
+  const auto rows = [](const Chain& chain) {
+    return static_cast<std::uint32_t>(chain.particles.size());
+  };
+  const auto another = [&](const Chain& chain) { return rows(chain) != rows(chains.front()); };
+  if (std::ranges::none_of(chains, another)) return {};
+  std::vector<std::uint32_t> rows_of_yarn(model.constraints.size());
+  for (const Chain& chain : chains) {
+    for (const std::uint32_t link : chain.links) rows_of_yarn[link] = rows(chain);
+  }
+  std::vector<std::uint32_t> longest_at;
+  for (const Chunk& chunk : model.simd().chunks) {
+    std::uint32_t& longest = longest_at.emplace_back(0);
+    for (std::uint32_t i = 0; i < chunk.run.length; ++i) {
+      const std::uint32_t c = model.simd().constraint_at[chunk.run.constraint + i];
+      if (c != kNoIndex) longest = std::max(longest, rows_of_yarn[c]);
+    }
+  }
+  return longest_at;
+}
+
 }  // namespace
 
 YarnLayout make_yarn_layout(const Model& model) {
@@ -210,6 +231,7 @@ YarnLayout make_yarn_layout(const Model& model) {
   const Yarns yarns = find_yarns(positions_of(model), links_of(model.constraints));
   std::vector<Chain> chains = open_chains(yarns, model.slots());
   sort(chains);
+  layout.longest_at = find_longest_at(model, chains);
   Builder builder(model, layout);
   for (std::span<Chain> left = chains; !left.empty();) {
     const std::size_t n = stretch(left, of_one_length);
@@ -236,7 +258,7 @@ YarnLayout make_yarn_layout(const Model& model) {
 std::size_t YarnLayout::bytes() const {
   return bytes_of(blocks) + bytes_of(links) + bytes_of(family_begin) + bytes_of(slot) +
          bytes_of(patches) + bytes_of(kind) + bytes_of(kinds) + bytes_of(not_in_second) +
-         places.bytes();
+         bytes_of(longest_at) + places.bytes();
 }
 
 }  // namespace weft

@@ -35,8 +35,10 @@ struct YarnLayout {
   std::vector<std::uint32_t> not_in_second;     // places that yarn_push_first does not write
   YarnPlaces places;
 
-  double cell = 0;          // that positions are split by (kernels/simd/yarn_rows.h)
-  std::size_t longest = 0;  // rows of the longest block
+  double cell = 0;                        // that positions are split by (kernels/simd/yarn_rows.h)
+  std::size_t longest = 0;                // rows of the longest block
+  std::vector<std::uint32_t> longest_at;  // per chunk of model.simd(): of those yarns with a
+                                          // constraint there; empty if all yarns are as long
 
   /// Whether displacements are too many for the caches.
   bool from_memory() const { return places.floats * sizeof(float) > kernels::kCachedBytes; }

@@ -52,6 +52,8 @@ class YarnSolver {
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts, bool exact, Team& team);
   std::size_t longest() const { return layout_.longest; }  // particles of the longest yarn
+  /// Per chunk of the measure: of the yarns that have a constraint there. Empty: all are as long.
+  std::span<const std::uint32_t> longest_at() const { return layout_.longest_at; }
   std::size_t bytes() const;
 
  private:

@@ -150,16 +150,19 @@ WEFT_API ModelInfo describe(const Model& model);
 
 /// gauss_seidel: the paper's impulse loop (section 3.2), one constraint after the other.
 /// direct: all impulses at once by sparse factorisation, repeated until the true errors are within
-///   tolerance: two or three solves, at any tolerance. For mass ratios of many thousands. At most
+///   tolerance: two or three solves, at any tolerance. For mass ratios of a million. At most
 ///   16 bodies may take part, free spheres that touch or are joined to something and particles of
 ///   more than 64 constraints; with more its substeps fall back as below.
 /// yarn: splits the cloth into chains of constraints that run straight on through it, as the yarns
 ///   of a woven one do. Each is solved exactly, many side by side in SIMD lanes; where sweeps over
 ///   them converge slowly, conjugate gradients solve all of them as one system. Ropes, hubs and
 ///   contacts are relaxed one by one after each sweep, and take part in that system. simd only.
-/// automatic: gauss_seidel on the reference backend or with Settings::iterations; else direct where
-///   the masses of free particles with constraints span more than a factor of 10^4; else
-///   gauss_seidel where there are more than nine ropes to each distance constraint; else yarn.
+/// automatic: gauss_seidel on the reference backend or with Settings::iterations. Else the ratio of
+///   masses decides, that of the heaviest to the lightest of free particles that constraints join.
+///   Up to 10^4: yarn, or gauss_seidel where there are more than nine ropes to each distance
+///   constraint. From 10^6 on, and from 10^4 on such nets or with `substeps` given: direct. Between
+///   them: yarn, with direct to answer where it gives up (so it is wherever yarn is chosen for
+///   ratios above 10^4).
 /// Where yarn or direct gives up, or energy rises by more than gravity, forces and moved pins
 /// explain (engine/energy.h), the substep is redone as two halves, until a step has cost 1500
 /// iterations; where that fails too, Gauss-Seidel takes over. StepReport::iterations counts every
@@ -200,10 +203,11 @@ struct Settings {
   /// used, from 1e-18 to 1e18, and Cloth::create refuses others.
   double tolerance = 0.01;
   /// Each step is done as this many substeps, each solved to the tolerances. 0
-  /// (kAutomaticSubsteps): chosen from the motion (rattle: up to 2.5 times as many as paper); 1 on
-  /// the reference backend or with `iterations`. A substep whose solver gives up before
-  /// max_iterations is redone in halves, up to 16 parts (StepReport::halvings). Fine meshes need
-  /// small substeps. Iteration counts and bounds are per substep.
+  /// (kAutomaticSubsteps): chosen from the motion (rattle: up to 2.5 times as many as paper) and,
+  /// with yarns, from the load that heavy particles are under gravity; 1 on the reference backend
+  /// or with `iterations`. A substep whose solver gives up before max_iterations is redone in
+  /// halves, up to 16 parts (StepReport::halvings). Fine meshes need small substeps. Iteration
+  /// counts and bounds are per substep.
   int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per substep whatever the error,
   /// nothing skipped; gauss_seidel renews frozen directions once per substep, direct and yarn in

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "tests/support/clothes.h"
@@ -45,6 +47,76 @@ void check_equal(const StepReport& report, const StepReport& expected) {
 TEST_CASE("automatic substeps end at 256 a step") {
   Cloth cloth = cloth_of(scene_of("hang", 5), {});
   CHECK(step(cloth, 100).substeps == 256);
+}
+
+/// Of a sheet of 1 kg that hangs by one side, with a load at a free corner, in its first step.
+int substeps_under(double load, const Settings& settings) {
+  constexpr int kSize = 12;
+  SceneDescription scene = scene_of("hang", kSize);
+  const bool first_is_fixed = scene.fixed[0] == 0;
+  scene.masses[first_is_fixed ? scene.masses.size() - 1 : 0] *= load;
+  Cloth cloth = cloth_of(scene, settings);
+  return step(cloth, 0.01).substeps;
+}
+
+TEST_CASE("automatic substeps of yarns follow a load, as its root") {
+  const double once = 0.7 * 0.01 * std::sqrt(10 * 11.0);  // links of 1 / 11 m
+  CHECK(substeps_under(90, {}) == 1);
+  for (const double load : {1e3, 1e4, 1e5}) {
+    CAPTURE(load);
+    CHECK(substeps_under(load, {}) == static_cast<int>(std::ceil(once * std::sqrt(load))));
+    CHECK(substeps_under(load, {.solver = Solver::direct}) == 1);
+  }
+}
+
+TEST_CASE("sheets and chains under loads converge, and soon") {
+  const struct {
+    const char* scene;
+    int size;
+    double load;
+    int most_iterations;                 // of a step
+  } kLoads[] = {{"hang", 12, 1e4, 100},  // 13,000 in substeps that the motion alone wants
+                {"hang", 12, 1e5, 1000},
+                {"chain", 20, 1e4, 100}};
+  for (const auto& [name, size, load, most_iterations] : kLoads) {
+    CAPTURE(std::string(name));
+    CAPTURE(load);
+    SceneDescription scene = scene_of(name, size);
+    scene.masses.back() *= load;
+    REQUIRE(scene.fixed[0] == 0);
+    Cloth cloth = cloth_of(scene, {});
+    REQUIRE(cloth.settings().solver == Solver::yarn);
+    const double start = cloth.energy().total();
+    for (int k = 0; k < 100; ++k) {
+      const StepReport report = step(cloth, 0.01);
+      REQUIRE(report.status == Status::converged);
+      REQUIRE(report.iterations < most_iterations);
+    }
+    CHECK(cloth.energy().total() < start);
+  }
+}
+
+/// Of a sheet that is far wider than high, level at first, over 30 steps.
+int most_substeps(bool hung_by_its_length) {
+  constexpr std::uint32_t kLong = 300, kHigh = 4;
+  SceneDescription scene;
+  for (std::uint32_t i = 0; i < kLong * kHigh; ++i) {
+    const std::uint32_t along = i / kHigh, across = i % kHigh;
+    scene.positions.push_back({0.01 * along, 0, 0.01 * across});
+    scene.masses.push_back(1e-4);
+    if (along > 0) scene.constraints.push_back({i - kHigh, i, 0.01});
+    if (across > 0) scene.constraints.push_back({i - 1, i, 0.01});
+    if ((hung_by_its_length ? across : along) == 0) scene.fixed.push_back(i);
+  }
+  Cloth cloth = cloth_of(scene, {});
+  int most = 0;
+  for (int k = 0; k < 30; ++k) most = std::max(most, step(cloth, 0.01).substeps);
+  return most;
+}
+
+TEST_CASE("what bends counts by the yarns that it is on: a curtain is no flag") {
+  CHECK(most_substeps(true) <= 2);  // 5 by its longest
+  CHECK(most_substeps(false) == 3);
 }
 
 TEST_CASE("a step in substeps is so many small steps, and reports their sum") {

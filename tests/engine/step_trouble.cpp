@@ -49,6 +49,24 @@ TEST_CASE("trouble passes: it never comes to thousands of sweeps, and brings in 
   }
 }
 
+// 20 millions of iterations a step by sweeps alone, and four steps of 56 not converged.
+TEST_CASE("where yarns cannot hold a load the direct solver does") {
+  SceneDescription scene = scene_of("chain", 20);
+  scene.masses.back() = 3e5;
+  for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+    Cloth cloth = cloth_of(scene, {.tolerance = 0.001, .solver = Solver::yarn, .scheme = scheme});
+    double most = cloth.energy().total();
+    const double fall = 3e5 * 10 * 19 * 0.01;
+    for (int k = 0; k < 60; ++k) {
+      const StepReport report = step(cloth, 1.0 / 60);
+      REQUIRE(report.status == Status::converged);
+      REQUIRE(report.iterations < 50'000);
+      CHECK(cloth.energy().total() < most + 1e-5 * fall);
+      most = std::max(most, cloth.energy().total());
+    }
+  }
+}
+
 /// The most that a step of a sphere that is too heavy for its sheet gains, by the direct solver.
 double most_gained(int size, double mass, int substeps, double dt) {
   SceneDescription scene = scene_of("sphere_drop", size);

@@ -35,12 +35,6 @@ Outcome run_chain(const Setup& setup, double end_mass) {
 
 /// More passes than one frame may cost, from here on.
 constexpr int kMostByRelaxation = 3;
-/// Float lanes lose sight of the light particles beyond; the automatic solver is another there.
-constexpr int kMostByYarns = 4;
-
-bool neither_by_relaxation_nor_yarns(const Method& method) {
-  return not_by_relaxation(method) && method.solver != Solver::yarn;
-}
 
 std::vector<Case> chain_cases() {
   std::vector<Case> cases;
@@ -51,7 +45,6 @@ std::vector<Case> chain_cases() {
     chain.bound = kChainStrain;
     chain.run = [power](const Setup& setup) { return run_chain(setup, std::pow(10, power)); };
     if (power > kMostByRelaxation) chain.claimed = not_by_relaxation;
-    if (power > kMostByYarns) chain.claimed = neither_by_relaxation_nor_yarns;
     cases.push_back(chain);
   }
   return cases;

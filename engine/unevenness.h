@@ -1,0 +1,24 @@
+/// How much masses differ among particles that constraints join.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace weft {
+
+/// Of parts: free particles that constraints between free ones join, by however many of them.
+struct Unevenness {
+  double ratio = 1;      // of the heaviest particle of a part to its lightest, the largest of all
+  double per_metre = 0;  // that ratio over the mean rest length of the part, the largest of all
+};
+
+/// Beyond it the direct solver answers for yarns, and is the better choice where nothing but
+/// substeps would help them.
+inline constexpr double kUneven = 1e4;
+
+/// inverse_mass: per particle, 0 where it is fixed. Constraint c joins a[c] to b[c].
+Unevenness find_unevenness(std::span<const double> inverse_mass, std::span<const std::uint32_t> a,
+                           std::span<const std::uint32_t> b, std::span<const double> rest_length);
+
+}  // namespace weft
