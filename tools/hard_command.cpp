@@ -70,17 +70,16 @@ Result<int> run_hard(const HardOptions& options) {
 
 }  // namespace
 
-void add_hard_command(CLI::App& app, int& exit_code) {
+void add_hard_command(CommandLine& line) {
   const auto options = std::make_shared<HardOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "hard", "Run the cases that break cloth engines: each has a figure and a bound");
-  add_study_options(*verb, *options, "write hard.csv and hard.md into a folder",
+  Verb verb = line.add_verb(
+      "hard", "Run the cases that break cloth engines: each has a figure and a bound", [options] {
+        const auto result = run_hard(*options);
+        return result ? result.value() : refuse(result.error());
+      });
+  add_study_options(verb, *options, "write hard.csv and hard.md into a folder",
                     "fewer steps: under a minute");
-  verb->add_option("--case", options->name, "only cases with this in their name");
-  verb->callback([options, &exit_code] {
-    const auto result = run_hard(*options);
-    exit_code = result ? result.value() : refuse(result.error());
-  });
+  verb.option("--case", options->name, "only cases with this in their name");
 }
 
 }  // namespace weft::tools

@@ -1,11 +1,11 @@
 /// `weft hard`: the cases that break cloth engines.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/command_line.h"
 
 namespace weft::tools {
 
-/// exit_code: 1 if a case fails, 2 if an output cannot be written or no case has the name given.
-void add_hard_command(CLI::App& app, int& exit_code);
+/// Exit code: 1 if a case fails, 2 if an output cannot be written or no case has the name given.
+void add_hard_command(CommandLine& line);
 
 }  // namespace weft::tools

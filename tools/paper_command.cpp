@@ -86,17 +86,15 @@ int run_paper(const PaperOptions& options) {
 
 }  // namespace
 
-void add_paper_command(CLI::App& app, int& exit_code) {
+void add_paper_command(CommandLine& line) {
   const auto options = std::make_shared<PaperOptions>();
-  CLI::App* command = app.add_subcommand(
-      "paper", "Measure every combination of the paper's section 5 and print its Table 1");
-  add_study_options(*command, *options, "write CSV, JSON and the figures 2, 3, 4 into a folder",
+  Verb verb = line.add_verb(
+      "paper", "Measure every combination of the paper's section 5 and print its Table 1",
+      [options] { return run_paper(*options); });
+  add_study_options(verb, *options, "write CSV, JSON and the figures 2, 3, 4 into a folder",
                     "fewer steps: under a minute, less to be trusted");
-  command
-      ->add_option("--repeat", options->repeat,
-                   "most runs of one combination, fastest counts (default 5, quick 2)")
-      ->check(CLI::Range(1, 1000));
-  command->callback([options, &exit_code] { exit_code = run_paper(*options); });
+  verb.within(1, 1000, "--repeat", options->repeat,
+              "most runs of one combination, fastest counts (default 5, quick 2)");
 }
 
 }  // namespace weft::tools

@@ -1,11 +1,11 @@
 /// `weft paper`: the measurements of the paper's section 5.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/command_line.h"
 
 namespace weft::tools {
 
-/// exit_code: 2 if an output cannot be written, 3 if a run did not reach its strain.
-void add_paper_command(CLI::App& app, int& exit_code);
+/// Exit code: 2 if an output cannot be written, 3 if a run did not reach its strain.
+void add_paper_command(CommandLine& line);
 
 }  // namespace weft::tools

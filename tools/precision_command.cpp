@@ -155,22 +155,19 @@ int run_precision(const PrecisionOptions& options) {
 
 }  // namespace
 
-void add_precision_command(CLI::App& app, int& exit_code) {
+void add_precision_command(CommandLine& line) {
   const auto options = std::make_shared<PrecisionOptions>();
-  CLI::App* command = app.add_subcommand(
-      "precision", "Measure error against time per frame: every solver, scheme and knob");
-  command->add_option("--scene", options->scene,
-                      "only this built-in scene, without cost against size (default: hang, corners "
-                      "and cost against size)");
-  command->add_option("--size", options->size,
-                      "N of the scene (default 40, corners 41; quick 20, 21)");
-  add_study_options(*command, *options, "write CSV, JSON, tables and the charts into a folder",
+  Verb verb = line.add_verb("precision",
+                            "Measure error against time per frame: every solver, scheme and knob",
+                            [options] { return run_precision(*options); });
+  verb.option("--scene", options->scene,
+              "only this built-in scene, without cost against size (default: hang, corners "
+              "and cost against size)");
+  verb.option("--size", options->size, "N of the scene (default 40, corners 41; quick 20, 21)");
+  add_study_options(verb, *options, "write CSV, JSON, tables and the charts into a folder",
                     "few settings on small scenes: under a minute");
-  command
-      ->add_option("--threads", options->threads,
-                   "threads of every run (default 1; cost against size: all)")
-      ->check(CLI::Range(1, kMaxThreads));
-  command->callback([options, &exit_code] { exit_code = run_precision(*options); });
+  verb.within(1, kMaxThreads, "--threads", options->threads,
+              "threads of every run (default 1; cost against size: all)");
 }
 
 }  // namespace weft::tools

@@ -1,12 +1,12 @@
 /// `weft precision`: error against time per frame.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/command_line.h"
 
 namespace weft::tools {
 
-/// exit_code: 2 if something given was refused or an output cannot be written. Settings that miss
+/// Exit code: 2 if something given was refused or an output cannot be written. Settings that miss
 /// their tolerance are part of the result, and no failure of the command.
-void add_precision_command(CLI::App& app, int& exit_code);
+void add_precision_command(CommandLine& line);
 
 }  // namespace weft::tools

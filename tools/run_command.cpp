@@ -132,25 +132,23 @@ Result<int> run_verb(const RunOptions& options) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("run", "Run a scene; report time beside error");
+void add_run_command(CommandLine& line) {
   auto options = std::make_shared<RunOptions>();
-  add_scene_options(*verb, options->scene);
-  verb->add_option("--dt", options->plan.dt, "s, one frame (default 0.01)");
-  verb->add_option("--steps", options->plan.steps, "frames to run (default 200)");
-  verb->add_option("--repeat", options->plan.repeat,
-                   "report the fastest of this many runs, after one to warm up (default 1: a "
-                   "single run)");
-  add_solver_options(*verb, options->solver);
-  verb->add_option("--out", options->out,
-                   "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
-                   "frames, .json the last state as a scene")
-      ->allow_extra_args(false);
-  verb->add_option("--json", options->json, "write the report to a file, or - for stdout");
-  verb->callback([options, &exit_code] {
+  Verb verb = line.add_verb("run", "Run a scene; report time beside error", [options] {
     const auto result = run_verb(*options);
-    exit_code = result ? result.value() : refuse(result.error());
+    return result ? result.value() : refuse(result.error());
   });
+  add_scene_options(verb, options->scene);
+  verb.option("--dt", options->plan.dt, "s, one frame (default 0.01)");
+  verb.option("--steps", options->plan.steps, "frames to run (default 200)");
+  verb.option("--repeat", options->plan.repeat,
+              "report the fastest of this many runs, after one to warm up (default 1: a "
+              "single run)");
+  add_solver_options(verb, options->solver);
+  verb.repeated("--out", options->out,
+                "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
+                "frames, .json the last state as a scene");
+  verb.option("--json", options->json, "write the report to a file, or - for stdout");
 }
 
 }  // namespace weft::tools

@@ -32,15 +32,14 @@ Result<void> write_scene(const WriteOptions& options) {
 
 }  // namespace
 
-void add_scene_command(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("scene", "Write a scene as a JSON file");
+void add_scene_command(CommandLine& line) {
   auto options = std::make_shared<WriteOptions>();
-  add_scene_options(*verb, options->scene);
-  verb->add_option("--out", options->out, "the .json file to write")->required();
-  verb->callback([options, &exit_code] {
+  Verb verb = line.add_verb("scene", "Write a scene as a JSON file", [options] {
     const auto written = write_scene(*options);
-    exit_code = written ? kDone : refuse(written.error());
+    return written ? kDone : refuse(written.error());
   });
+  add_scene_options(verb, options->scene);
+  verb.required("--out", options->out, "the .json file to write");
 }
 
 }  // namespace weft::tools

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "engine/scenes.h"
@@ -99,21 +98,20 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
 
 }  // namespace
 
-void add_scene_options(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("SCENE", options.scene,
-                  fmt::format("{}, a .json scene or an .obj mesh", built_in_names()))
-      ->required();
-  verb.add_option("--size", options.size,
-                  "particles along a side of a built-in scene (default 20; corners: 21)");
-  verb.add_option("--slack", options.slack, "sphere_drop: slack of the sheet (default 0.05)");
-  verb.add_option("--sphere-mass", options.sphere_mass, "sphere_drop: kg (default 1)");
-  verb.add_option("--end-mass", options.end_mass, "chain: kg of the last particle (default 1)");
-  verb.add_option("--pin", options.pin,
-                  ".obj: fixed vertices; none (default), top, a comparison of the file's "
-                  "coordinates like 'y>0.9' or 'x<=-1', or vertex numbers from 0 like 0,5,7-9");
-  verb.add_option("--mass", options.mass, ".obj: kg of the whole mesh (default 1)");
-  verb.add_option("--scale", options.scale, ".obj: multiplies all coordinates (default 1)");
-  verb.add_flag("--ropes", options.ropes, ".obj: both diagonals of four-sided faces become ropes");
+void add_scene_options(Verb verb, SceneOptions& options) {
+  verb.required("SCENE", options.scene,
+                fmt::format("{}, a .json scene or an .obj mesh", built_in_names()));
+  verb.option("--size", options.size,
+              "particles along a side of a built-in scene (default 20; corners: 21)");
+  verb.option("--slack", options.slack, "sphere_drop: slack of the sheet (default 0.05)");
+  verb.option("--sphere-mass", options.sphere_mass, "sphere_drop: kg (default 1)");
+  verb.option("--end-mass", options.end_mass, "chain: kg of the last particle (default 1)");
+  verb.option("--pin", options.pin,
+              ".obj: fixed vertices; none (default), top, a comparison of the file's "
+              "coordinates like 'y>0.9' or 'x<=-1', or vertex numbers from 0 like 0,5,7-9");
+  verb.option("--mass", options.mass, ".obj: kg of the whole mesh (default 1)");
+  verb.option("--scale", options.scale, ".obj: multiplies all coordinates (default 1)");
+  verb.flag("--ropes", options.ropes, ".obj: both diagonals of four-sided faces become ropes");
 }
 
 Result<SceneSource> load_scene(const SceneOptions& options) {

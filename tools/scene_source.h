@@ -6,11 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "tools/command_line.h"
 #include "tools/mesh.h"
-
-namespace CLI {
-class App;
-}
 
 namespace weft::tools {
 
@@ -27,7 +24,7 @@ struct SceneOptions {
   bool ropes = false;
 };
 
-void add_scene_options(CLI::App& verb, SceneOptions& options);
+void add_scene_options(Verb verb, SceneOptions& options);
 
 struct SceneSource {
   std::string name;  ///< the built-in name, or the file's path

@@ -1,6 +1,5 @@
 #include "tools/solver_options.h"
 
-#include <CLI/CLI.hpp>
 #include <limits>
 
 #include "tools/parse.h"
@@ -33,51 +32,47 @@ Result<void> choose(std::string_view option, const std::optional<std::string>& t
 
 }  // namespace
 
-void add_solver_options(CLI::App& verb, SolverOptions& options) {
+void add_solver_options(Verb verb, SolverOptions& options) {
   Settings& settings = options.settings;
-  verb.add_option("--tolerance", options.tolerance,
-                  "strain that every step must reach, 1% or 0.01 (default 1%)");
-  verb.add_option("--iterations", settings.iterations,
-                  "exactly this many iterations of one substep, instead of a tolerance");
-  verb.add_option("--max-iterations", settings.max_iterations,
-                  "most iterations of one substep (default 1000000)");
-  verb.add_option("--contact-tolerance", settings.contact_tolerance,
-                  "m of penetration left (default 1e-4)");
-  verb.add_option("--velocity-tolerance", settings.velocity_tolerance,
-                  "m/s left along a constraint (default 0.01)");
-  verb.add_option(
-      "--impulse-limit", settings.impulse_limit,
-      "--backend reference: N s, largest impulse of one correction (default 0: no limit)");
-  verb.add_option("--solver", options.solver,
-                  "auto (default), gauss_seidel, yarn or direct; gauss_seidel where "
-                  "--anticipate, --skip or --directions choose among its methods");
-  verb.add_option("--scheme", options.scheme,
-                  "paper (default), or rattle: second order; implies --velocity-correction on");
-  verb.add_option(
+  verb.option("--tolerance", options.tolerance,
+              "strain that every step must reach, 1% or 0.01 (default 1%)");
+  verb.option("--iterations", settings.iterations,
+              "exactly this many iterations of one substep, instead of a tolerance");
+  verb.option("--max-iterations", settings.max_iterations,
+              "most iterations of one substep (default 1000000)");
+  verb.option("--contact-tolerance", settings.contact_tolerance,
+              "m of penetration left (default 1e-4)");
+  verb.option("--velocity-tolerance", settings.velocity_tolerance,
+              "m/s left along a constraint (default 0.01)");
+  verb.option("--impulse-limit", settings.impulse_limit,
+              "--backend reference: N s, largest impulse of one correction (default 0: no limit)");
+  verb.option("--solver", options.solver,
+              "auto (default), gauss_seidel, yarn or direct; gauss_seidel where "
+              "--anticipate, --skip or --directions choose among its methods");
+  verb.option("--scheme", options.scheme,
+              "paper (default), or rattle: second order; implies --velocity-correction on");
+  verb.option(
       "--anticipate", options.anticipate,
       "on (default) or off: update errors instead of recomputing them; simd: skip by flags, or by "
       "masks (off)");
-  verb.add_option("--skip", options.skip, "on (default) or off: pass over satisfied constraints");
-  verb.add_option("--directions", options.directions,
-                  "frozen (default) until all errors along them are within tolerance, or each: "
-                  "renewed before each iteration");
-  verb.add_option(
-      "--velocity-correction", options.velocity_correction,
-      "on or off (default): a second loop, on velocities; --scheme rattle has it always");
-  verb.add_option(
-      "--renew-after", settings.renew_after,
-      "frozen directions serve for at most so many iterations (default 32; 0: until all "
-      "errors along them are within tolerance)");
-  verb.add_option("--backend", options.backend, "simd (default) or reference");
-  verb.add_option(
+  verb.option("--skip", options.skip, "on (default) or off: pass over satisfied constraints");
+  verb.option("--directions", options.directions,
+              "frozen (default) until all errors along them are within tolerance, or each: "
+              "renewed before each iteration");
+  verb.option("--velocity-correction", options.velocity_correction,
+              "on or off (default): a second loop, on velocities; --scheme rattle has it always");
+  verb.option("--renew-after", settings.renew_after,
+              "frozen directions serve for at most so many iterations (default 32; 0: until all "
+              "errors along them are within tolerance)");
+  verb.option("--backend", options.backend, "simd (default) or reference");
+  verb.option(
       "--isa", options.isa,
       "--backend simd: sse2, avx2, avx512 or auto (default: WEFT_ISA, else the best there is)");
-  verb.add_option("--threads", settings.threads,
-                  "most threads of a step (default 0: one for each processor)");
-  verb.add_option(
-      "--substeps", options.substeps,
-      "steps that a frame is done in, each to the tolerances; auto: as many as the motion "
-      "wants (default: auto with --solver auto, else 1)");
+  verb.option("--threads", settings.threads,
+              "most threads of a step (default 0: one for each processor)");
+  verb.option("--substeps", options.substeps,
+              "steps that a frame is done in, each to the tolerances; auto: as many as the motion "
+              "wants (default: auto with --solver auto, else 1)");
 }
 
 Result<Settings> settings_of(const SolverOptions& options) {

@@ -6,9 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace CLI {
-class App;
-}
+#include "tools/command_line.h"
 
 namespace weft::tools {
 
@@ -26,7 +24,7 @@ struct SolverOptions {
   std::optional<std::string> substeps;
 };
 
-void add_solver_options(CLI::App& verb, SolverOptions& options);
+void add_solver_options(Verb verb, SolverOptions& options);
 
 /// Settings with everything that was given. Ranges of numbers are Cloth::create()'s to check.
 Result<Settings> settings_of(const SolverOptions& options);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <system_error>
 #include <utility>
 
@@ -22,11 +21,11 @@ Result<void> make_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-void add_study_options(CLI::App& verb, StudyOptions& options, const std::string& out,
+void add_study_options(Verb verb, StudyOptions& options, const std::string& out,
                        const std::string& quick) {
-  verb.add_option("--json", options.json, "write the results as JSON; - for standard output");
-  verb.add_option("--out", options.out, out);
-  verb.add_flag("--quick", options.quick, quick);
+  verb.option("--json", options.json, "write the results as JSON; - for standard output");
+  verb.option("--out", options.out, out);
+  verb.flag("--quick", options.quick, quick);
 }
 
 Result<StudyOutputs> StudyOutputs::open(const StudyOptions& options) {

@@ -9,11 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "tools/command_line.h"
 #include "tools/json_output.h"
-
-namespace CLI {
-class App;
-}
 
 namespace weft::tools {
 
@@ -24,7 +21,7 @@ struct StudyOptions {
 };
 
 /// out, quick: what they do for this verb.
-void add_study_options(CLI::App& verb, StudyOptions& options, const std::string& out,
+void add_study_options(Verb verb, StudyOptions& options, const std::string& out,
                        const std::string& quick);
 
 class StudyOutputs {

@@ -1,0 +1,52 @@
+/// The command line: verbs, each with options. CLI11 is command_line.cpp's alone: whatever includes
+/// its header takes ten seconds more to compile.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace weft::tools {
+
+/// Options of one verb. What is not given keeps its value.
+class Verb {
+ public:
+  explicit Verb(CLI::App& verb) : verb_(verb) {}
+
+  /// Value: std::string, int, double, or an optional one of them.
+  template <class Value>
+  void option(const std::string& name, Value& value, const std::string& help);
+  void required(const std::string& name, std::string& value, const std::string& help);
+  void within(int least, int most, const std::string& name, std::optional<int>& value,
+              const std::string& help);
+  /// May be given several times.
+  void repeated(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  void flag(const std::string& name, bool& value, const std::string& help);
+
+ private:
+  CLI::App& verb_;
+};
+
+class CommandLine {
+ public:
+  CommandLine(const std::string& about, const std::string& version);
+  ~CommandLine();
+
+  /// run: returns the exit code.
+  Verb add_verb(const std::string& name, const std::string& about, std::function<int()> run);
+  /// Runs the verb that is named. Returns the exit code: kRefused if there is none, if something
+  /// given makes no sense, or if the verb threw.
+  int run(int argc, char** argv);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+  int exit_code_;
+};
+
+}  // namespace weft::tools
