@@ -1,5 +1,7 @@
 #include "tools/json_output.h"
 
+#include <nlohmann/json.hpp>
+
 #include "tools/text_file.h"
 
 namespace weft::tools {

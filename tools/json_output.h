@@ -3,7 +3,7 @@
 
 #include <weft/weft.h>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -11,7 +11,8 @@
 
 namespace weft::tools {
 
-/// Keeps its keys in the order in which they were added.
+/// Keeps its keys in the order in which they were added. (Whoever makes one or reads it includes
+/// nlohmann/json.hpp, two seconds of compiling.)
 using Json = nlohmann::ordered_json;
 
 /// Where a result goes. Open it before the work starts, so that a destination that cannot be

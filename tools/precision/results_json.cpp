@@ -1,5 +1,7 @@
 #include "tools/precision/results_json.h"
 
+#include <nlohmann/json.hpp>
+
 namespace weft::tools::precision {
 namespace {
 
