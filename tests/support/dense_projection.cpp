@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tests/support/dense.h"
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
@@ -10,15 +11,6 @@ namespace {
 
 constexpr int kMostSolves = 30;
 constexpr double kExact = 1e-14;  // strain; a length is known no better
-
-Eigen::VectorXd flat(const std::vector<Vec3>& vectors) {
-  Eigen::VectorXd result(3 * static_cast<Eigen::Index>(vectors.size()));
-  Eigen::Index i = 0;
-  for (const Vec3 v : vectors) {
-    for (const double value : {v.x, v.y, v.z}) result[i++] = value;
-  }
-  return result;
-}
 
 void subtract(std::vector<Vec3>& from, const Eigen::VectorXd& motion) {
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -53,7 +45,7 @@ void DenseProjection::form(const std::vector<Vec3>& x) {
     jacobian_.row(row).segment<3>(3 * static_cast<Eigen::Index>(bar.b)) = -n;
     error_[row] = length(d) - bar.rest_length;
   }
-  matrix_ = jacobian_ * inverse_.asDiagonal() * jacobian_.transpose();
+  matrix_ = impulse_matrix(jacobian_, inverse_);
 }
 
 bool DenseProjection::project_positions(std::vector<Vec3>& x) {
@@ -67,9 +59,9 @@ bool DenseProjection::project_positions(std::vector<Vec3>& x) {
     }
     reciprocal_condition_ = std::min(reciprocal_condition_, condition());
     if (worst <= kExact) break;
-    const Eigen::VectorXd more = matrix_.ldlt().solve(error_);
+    const Eigen::VectorXd more = solved(matrix_, error_);
     impulse += more;
-    subtract(x, inverse_.cwiseProduct(jacobian_.transpose() * more));
+    subtract(x, motion_by(more, jacobian_, inverse_));
   }
   std::vector<double> share(x.size());
   for (std::size_t row = 0; row < bars_.size(); ++row) {
@@ -83,22 +75,21 @@ bool DenseProjection::project_positions(std::vector<Vec3>& x) {
 
 void DenseProjection::project_velocities(const std::vector<Vec3>& x, std::vector<Vec3>& v) {
   form(x);
-  const Eigen::VectorXd impulse = matrix_.ldlt().solve(jacobian_ * flat(v));
-  subtract(v, inverse_.cwiseProduct(jacobian_.transpose() * impulse));
+  const Eigen::VectorXd impulse = solved(matrix_, product(jacobian_, flat(v)));
+  subtract(v, motion_by(impulse, jacobian_, inverse_));
 }
 
 double DenseProjection::condition() const {
   const Eigen::VectorXd scale = matrix_.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix_ * scale.asDiagonal();
-  const auto values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd values = eigenvalues(scaled);
   return values.minCoeff() / values.maxCoeff();
 }
 
 double DenseProjection::motion_per_error() const {
-  const Eigen::MatrixXd inverse =
-      matrix_.ldlt().solve(Eigen::MatrixXd::Identity(matrix_.rows(), matrix_.cols()));
-  const Eigen::MatrixXd motion = inverse_.asDiagonal() * jacobian_.transpose() * inverse;
+  const Eigen::MatrixXd response = inverse_.asDiagonal() * jacobian_.transpose();
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(matrix_.rows(), matrix_.cols());
+  const Eigen::MatrixXd motion = product(response, solved(matrix_, one));
   return motion.cwiseAbs().rowwise().sum().maxCoeff();
 }
 

@@ -8,7 +8,7 @@
 
 #include <weft/weft.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 namespace weft::test {

@@ -1,5 +1,7 @@
 #include "tests/support/yarn_block.h"
 
+#include <Eigen/LU>
+
 namespace weft::test {
 
 std::vector<kernels::Vector> directions(const BlockOfYarns& b, const kernels::Vectors& x,

@@ -1,7 +1,7 @@
 /// A block of yarns without a cloth around it, and what dense matrices in double make of it.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstdint>
 #include <iterator>

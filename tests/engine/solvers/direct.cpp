@@ -1,12 +1,13 @@
 /// The direct solver: its linear algebra against dense matrices, and what it promises of a step.
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <thread>
 
 #include "tests/support/clothes.h"
+#include "tests/support/dense.h"
 #include "tests/support/meshes.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
@@ -21,14 +22,6 @@ Settings direct(Settings settings = paper_settings()) {
 }
 
 // ------------------------------------------------------------------ the linear system, densely
-
-Eigen::VectorXd flat(const std::vector<Vec3>& v) {
-  Eigen::VectorXd out(static_cast<Eigen::Index>(3 * v.size()));
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    out.segment<3>(static_cast<Eigen::Index>(3 * i)) << v[i].x, v[i].y, v[i].z;
-  }
-  return out;
-}
 
 /// J, e and M^-1 of a scene's bars at some positions.
 struct Dense {
@@ -58,14 +51,14 @@ struct Dense {
   }
   /// M^-1 J^T A^-1 e.
   Eigen::VectorXd correction(const Eigen::VectorXd& e) const {
-    const Eigen::MatrixXd response = inverse_mass.asDiagonal() * jacobian.transpose();
-    return response * (jacobian * response).ldlt().solve(e);
+    const Eigen::VectorXd impulse = solved(impulse_matrix(jacobian, inverse_mass), e);
+    return motion_by(impulse, jacobian, inverse_mass);
   }
   /// How far a diagonal raised by `shift` of itself turns the correction, relatively, in the norm
   /// of M: by shift * max diag A / min eigenvalue of A; and what rounding adds.
   double deviation(double shift) const {
-    const Eigen::MatrixXd a = jacobian * inverse_mass.asDiagonal() * jacobian.transpose();
-    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a).eigenvalues();
+    const Eigen::MatrixXd a = impulse_matrix(jacobian, inverse_mass);
+    const Eigen::VectorXd values = eigenvalues(a);
     return (shift * a.diagonal().maxCoeff() + 1e-13 * values.maxCoeff()) / values.minCoeff();
   }
 };
@@ -127,7 +120,7 @@ void check_one_solve(const SceneDescription& scene, double shift) {
   CHECK((flat(reached) - expected).norm() <= bound * change.norm());
   const Dense at_end(scene, reached);
   const Eigen::VectorXd pushed = flat(v) - change / h;
-  const Eigen::VectorXd correction = at_end.correction(at_end.jacobian * pushed);
+  const Eigen::VectorXd correction = at_end.correction(product(at_end.jacobian, pushed));
   CHECK((flat(velocities(cloth)) - (pushed - correction)).norm() <=
         4 * at_end.deviation(shift) * correction.norm() + 2 * bound * change.norm() / h);
 }
@@ -189,9 +182,9 @@ TEST_CASE("positions agree with Gauss-Seidel as far as the tolerance allows") {
     REQUIRE(report.status == Status::converged);
     REQUIRE(swept.status == Status::converged);
     const Dense dense(scene, positions(one));
-    Eigen::MatrixXd free = dense.jacobian;
-    for (const std::uint32_t p : scene.fixed) free.middleCols<3>(3 * Eigen::Index{p}).setZero();
-    const double sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(free).singularValues().tail<1>()[0];
+    Eigen::VectorXd free = Eigen::VectorXd::Ones(dense.jacobian.cols());
+    for (const std::uint32_t p : scene.fixed) free.segment<3>(3 * Eigen::Index{p}).setZero();
+    const double sigma = std::sqrt(eigenvalues(impulse_matrix(dense.jacobian, free)).minCoeff());
     const double residual = std::sqrt(static_cast<double>(scene.constraints.size())) * kTolerance *
                             scene.constraints[0].rest_length;
     const auto solves =

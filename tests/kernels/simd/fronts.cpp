@@ -1,13 +1,14 @@
 /// Dense fronts against dense matrices.
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "kernels/simd/table.h"
 #include "kernels/vectors.h"
+#include "tests/support/dense.h"
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
@@ -39,7 +40,8 @@ struct RandomFront {
     Random random(seed);
     const Eigen::MatrixXd half =
         Eigen::MatrixXd::NullaryExpr(size, size, [&] { return random.between(-1, 1); });
-    matrix = half * half.transpose() + Eigen::MatrixXd::Identity(size, size);
+    const Eigen::MatrixXd transposed = half.transpose();
+    matrix = product(half, transposed) + Eigen::MatrixXd::Identity(size, size);
     for (std::size_t j = 0; j < count + rows_below; ++j) {
       for (std::size_t i = j; i < count + rows_below; ++i) at(i, j) = value(i, j);
     }
@@ -70,8 +72,8 @@ TEST_CASE("a front is eliminated as the dense matrix is") {
       simd::table(isa).eliminate_front(f.front());
       const auto n = static_cast<Eigen::Index>(count), m = static_cast<Eigen::Index>(below);
       const Eigen::MatrixXd a = f.matrix.topLeftCorner(n, n), b = f.matrix.bottomLeftCorner(m, n);
-      const Eigen::MatrixXd left =
-          f.matrix.bottomRightCorner(m, m) - b * a.ldlt().solve(b.transpose());
+      const Eigen::MatrixXd across = b.transpose();
+      const Eigen::MatrixXd left = f.matrix.bottomRightCorner(m, m) - product(b, solved(a, across));
       const double scale = f.matrix.norm();
       for (std::size_t j = 0; j < below; ++j) {
         for (std::size_t i = j; i < below; ++i) {
@@ -100,7 +102,7 @@ TEST_CASE("substitutions with a front solve its system") {
       std::fill(z.begin() + static_cast<std::ptrdiff_t>(f.triangle), z.end(), 0.0);
       table.solve_front_backward(f.front(), z.data());
       const auto n = static_cast<Eigen::Index>(count);
-      const Eigen::VectorXd expected = f.matrix.topLeftCorner(n, n).ldlt().solve(right);
+      const Eigen::VectorXd expected = solved(f.matrix.topLeftCorner(n, n), right);
       for (std::size_t i = 0; i < count; ++i) {
         CHECK(std::abs(z[i] - expected[static_cast<Eigen::Index>(i)]) <= 1e-12 * right.norm());
       }
