@@ -43,6 +43,9 @@ Model::Model(const SceneDescription& description) : particles(description.positi
   order_particles(draft);
   store_particles(draft);
   store_constraints(draft);
+  for (const std::uint32_t s : spheres) {
+    if (inverse_mass[s] > 0) heaviest_sphere = std::max(heaviest_sphere, 1 / inverse_mass[s]);
+  }
   uneven = find_unevenness(inverse_mass, constraints.a, constraints.b, constraints.rest_length);
   find_joined();
 }

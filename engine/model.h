@@ -61,6 +61,7 @@ class Model {
   kernels::Vector gravity{};
   ConstraintStore constraints;
   Unevenness uneven;
+  double heaviest_sphere = 0;  // kg, of the free ones
   std::size_t inert_constraints = 0;
 
   bool has_contacts() const { return !spheres.empty(); }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/choose_substeps.h"
 #include "engine/energy.h"
 #include "engine/measure.h"
 #include "engine/motion.h"
@@ -61,73 +62,6 @@ void explain(State& s, double h, StepReport& report, Team& team) {
   report.failed_particle = s.model->ordering.particle_at[input ? predicted : solved];
   report.passed_particle = kNoIndex;
   worsen(report, input ? Status::non_finite_input : Status::non_finite);
-}
-
-/// How the largest strain after a step without constraints decides about the substeps: a quarter of
-/// it for twice as many. What an edge turns by, all those behind it on its yarn are swung by: a
-/// yarn of many edges wants less, `longest` over their number.
-struct Bend {
-  double most;
-  double longest;
-};
-/// (0.04 and 1.5: hang, 300 x 300, 1 %, wants 5.8 substeps a frame instead of 4.4, and 1.1 times
-/// the time; hang_sphere, 40 x 40, 1.2 times. 0.08: corners, 35 to 47, in more halves.)
-constexpr Bend kYarnBend{0.06, 3};
-constexpr Bend kUsualBend{0.04, std::numeric_limits<double>::infinity()};
-/// Scheme rattle must resolve the motion: with half as many substeps half of them fall back (hang,
-/// 40 x 40: 45 % instead of 3 %), and are done twice.
-constexpr Bend kRattleBend{0.01, 1.5};
-constexpr int kMostSubsteps = 256;
-
-/// The largest strain at solved, as a share of what its yarn may have.
-double bend_after_motion(State& s, Team& team) {
-  const Bend& may = s.settings.scheme == Scheme::rattle ? kRattleBend
-                    : s.yarn                            ? kYarnBend
-                                                        : kUsualBend;
-  const auto share = [&](double strain, std::size_t particles_of_yarn) {
-    return std::max(strain / may.most,
-                    strain * static_cast<double>(particles_of_yarn) / may.longest);
-  };
-  const std::size_t longest = s.yarn ? s.yarn->longest() : 0;
-  const double most = share(max_strain_at(s, s.solved, team), longest);
-  if (!s.yarn || s.yarn->longest_at().empty() || most <= s.trouble.care()) return most;
-  const auto x = s.solved.view();
-  const auto strains = s.measure->strains_of_chunks(x, team);
-  double finer = share(s.measure->max_hub_strain(x), 0);
-  for (std::size_t i = 0; i < strains.size(); ++i) {
-    finer = std::max(finer, share(strains[i].largest, s.yarn->longest_at()[i]));
-  }
-  return finer;
-}
-
-/// A load that is `ratio` times as heavy as the lightest particles of what holds it pulls at these
-/// with `ratio` times their weight. Across the pull they swing with the frequency w,
-///
-///     w^2 = ratio g / l,    l: the length of their constraints
-///
-/// and what turns a constraint in a substep moves them (w h)^2 times as far: beyond a few neither
-/// Newton's method nor yarns find their way. So w h is to be 1 / kLoad at most.
-///
-/// (10 ms, 1 %, 100 frames, ms a frame: a sheet of 30 x 30 with 10^4 at a corner 0.45, 0.25 at
-/// 0.5, 78 without any of this, up to 3.4 s in one; with 10^5 2.3 and 1.7; a chain of 100 under
-/// 10^5 0.62 and, with 0.5, 29. At 1 all take 1.3 times as long as at 0.7.)
-constexpr double kLoad = 0.7;
-constexpr double kLeastLoad = 100;
-
-/// For yarns: the direct solver keeps to the motion's, whose errors come back as less speed.
-double substeps_for_load(const State& s, double dt) {
-  const Unevenness& uneven = s.model->uneven;
-  if (!s.yarn || uneven.ratio < kLeastLoad) return 1;
-  return kLoad * dt * std::sqrt(length(s.gravity) * uneven.per_metre);
-}
-
-/// As many as motion and load want: see Bend. Predicts all of dt for it.
-int substeps_wanted(State& s, double dt, Team& team) {
-  predict(s, dt, team);
-  const double bend = bend_after_motion(s, team);
-  const double wanted =
-      std::ceil(std::max(std::sqrt(bend / s.trouble.care()), substeps_for_load(s, dt)));
-  return wanted < kMostSubsteps ? std::max(1, static_cast<int>(wanted)) : kMostSubsteps;
 }
 
 /// How often a substep whose solver gives up may be cut in two, and iterations of a step beyond

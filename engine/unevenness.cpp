@@ -60,9 +60,11 @@ Unevenness find_unevenness(std::span<const double> inverse_mass, std::span<const
   Unevenness uneven;
   for (const Part& part : sums) {
     if (part.constraints == 0) continue;
-    const double ratio = part.most / part.least;
+    const double ratio = part.most / part.least, mean = part.length / part.constraints;
     uneven.ratio = std::max(uneven.ratio, ratio);
-    uneven.per_metre = std::max(uneven.per_metre, ratio * part.constraints / part.length);
+    uneven.per_metre = std::max(uneven.per_metre, ratio / mean);
+    uneven.lightness = std::max(uneven.lightness, part.most);
+    uneven.lightness_per_metre = std::max(uneven.lightness_per_metre, part.most / mean);
   }
   return uneven;
 }

@@ -11,6 +11,10 @@ namespace weft {
 struct Unevenness {
   double ratio = 1;      // of the heaviest particle of a part to its lightest, the largest of all
   double per_metre = 0;  // that ratio over the mean rest length of the part, the largest of all
+
+  // For loads that no constraint joins: of the lightest particle of a part, the largest of all.
+  double lightness = 0;            // 1/kg
+  double lightness_per_metre = 0;  // that over the mean rest length of the part
 };
 
 /// Beyond it the direct solver answers for yarns, and is the better choice where nothing but

@@ -204,7 +204,7 @@ struct Settings {
   double tolerance = 0.01;
   /// Each step is done as this many substeps, each solved to the tolerances. 0
   /// (kAutomaticSubsteps): chosen from the motion (rattle: up to 2.5 times as many as paper) and,
-  /// with yarns, from the load that heavy particles are under gravity; 1 on the reference backend
+  /// with yarns, from the load that heavy particles and spheres are; 1 on the reference backend
   /// or with `iterations`. A substep whose solver gives up before max_iterations is redone in
   /// halves, up to 16 parts (StepReport::halvings). Fine meshes need small substeps. Iteration
   /// counts and bounds are per substep.

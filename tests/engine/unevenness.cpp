@@ -36,6 +36,8 @@ TEST_CASE("the heaviest to the lightest of a part, over its mean length, however
   chain.join(1, 2, 2);
   CHECK(chain.uneven().ratio == 4000);
   CHECK(chain.uneven().per_metre == 4000);  // the mean is 1 m
+  CHECK(chain.uneven().lightness == 4);
+  CHECK(chain.uneven().lightness_per_metre == 4);
 }
 
 TEST_CASE("parts are judged one by one, and fixed particles join none") {
@@ -47,6 +49,8 @@ TEST_CASE("parts are judged one by one, and fixed particles join none") {
   parts.join(4, 5, 0.1);
   CHECK(parts.uneven().ratio == 3);
   CHECK(parts.uneven().per_metre == doctest::Approx(30));
+  CHECK(parts.uneven().lightness == 100);
+  CHECK(parts.uneven().lightness_per_metre == doctest::Approx(200));
 }
 
 TEST_CASE("what is not joined to anything does not count") {
