@@ -18,8 +18,8 @@ bool is_a_net_of_ropes(const ConstraintStore& constraints) {
 /// a taut sheet, 8.6 and 260.) Of nets of ropes sweeps are: 40 x 40, 1 %, 0.26 ms a frame, by
 /// yarns 2.9; 0.1 % 1.4 and 2.5; by rattle 0.4 and 19.
 ///
-/// Loads are for yarns, in automatic substeps (substeps.cpp): 10^4 at a corner of 20 x 20, 1 %,
-/// 0.1 ms a frame, by the direct solver 63; 10^5 0.9, and hundreds. From kMostUneven on, in
+/// Loads are for yarns, in automatic substeps (choose_substeps.cpp): 10^4 at a corner of 20 x 20, 1
+/// %, 0.1 ms a frame, by the direct solver 63; 10^5 0.9, and hundreds. From kMostUneven on, in
 /// substeps of a given number, and on nets of ropes the direct solver is quicker (a chain of 20,
 /// 0.1 %, under 10^6 16 ms a frame, yarns 30).
 Solver solver_for(const Model& model, const Settings& settings) {

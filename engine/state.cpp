@@ -27,8 +27,8 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     measure.emplace(*model, *kernels);
   }
   if (settings.solver == Solver::yarn) yarn.emplace(*model, settings, *kernels);
-  if (settings.solver == Solver::direct || (yarn && model->uneven.ratio > kUneven))
-    direct.emplace(*model, settings, *kernels);
+  const bool behind_yarns = yarn && settings.iterations == 0 && model->uneven.ratio > kUneven;
+  if (settings.solver == Solver::direct || behind_yarns) direct.emplace(*model, settings, *kernels);
 }
 
 namespace {

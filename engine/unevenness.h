@@ -17,8 +17,8 @@ struct Unevenness {
   double lightness_per_metre = 0;  // that over the mean rest length of the part
 };
 
-/// Beyond it the direct solver answers for yarns, and is the better choice where nothing but
-/// substeps would help them.
+/// A ratio beyond which the direct solver answers where yarns give up, and is chosen in their place
+/// where the number of substeps is given.
 inline constexpr double kUneven = 1e4;
 
 /// inverse_mass: per particle, 0 where it is fixed. Constraint c joins a[c] to b[c].

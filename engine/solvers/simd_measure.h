@@ -19,12 +19,12 @@ class SimdMeasure {
   SimdMeasure(const Model& model, const simd::Table& table);
 
   Strain strain(kernels::VectorsView x, Team& team);
-  /// Slots of a tile, before its strains are looked at; in the end those of no tile.
-  using BeforeTile = std::function<void(std::size_t first, std::size_t last)>;
   /// Of each chunk; valid until the next call.
   std::span<const simd::StrainSums> strains_of_chunks(kernels::VectorsView x, Team& team);
-  /// The largest strain of constraints at hubs, which are in no chunk.
+  /// The largest of constraints at hubs, which are in no chunk.
   double max_hub_strain(kernels::VectorsView x) const;
+  /// Slots of a tile, before its strains are looked at; in the end those of no tile.
+  using BeforeTile = std::function<void(std::size_t first, std::size_t last)>;
   /// The largest strain, and nothing besides.
   double max_strain(kernels::VectorsView x, Team& team, const BeforeTile& before_tile = {});
 
