@@ -35,7 +35,11 @@ Eigen::MatrixXd solved(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.ldlt().solve(b);
 }
 Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& a) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
+  // In two parts: whole, the solver can do eigenvectors as well, and that is compiled.
+  const Eigen::Tridiagonalization<Eigen::MatrixXd> same(a);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(same.diagonal(), same.subDiagonal(), Eigen::EigenvaluesOnly);
+  return solver.eigenvalues();
 }
 
 }  // namespace weft::test
