@@ -191,7 +191,7 @@ class Substeps {
   void accept(const Trial& trial, double h, bool last) {
     if (trial.ended == Ended::made_do) {
       gave_up_ = made_do_ = true;
-      if (may_halve_) halves_helped_ = false;
+      if (may_halve_ && !trial.gained) halves_helped_ = false;
     }
     if (gave_up_) take_gained_energy(s_, h);
     transaction_.accept(last);

@@ -85,6 +85,24 @@ double most_gained(int size, double mass, int substeps, double dt) {
 }
 
 // What is left of the errors would be speed: 4.9 J and 6.7 J.
+// The first substep of the step in which the sphere lands is 18 times shorter than the last one:
+// what that left brings in energy, and is taken out. Had it counted against halves, none would have
+// been tried in the next step: 1.3 million sweeps, and not converged.
+TEST_CASE("energy from what a start violates says nothing about halves") {
+  scenes::Options options;
+  options.size = 40;
+  options.sphere_mass = 10;
+  const auto scene = scenes::make("sphere_drop", options);
+  REQUIRE(scene);
+  Cloth cloth = cloth_of(scene.value(), {.tolerance = 0.01});
+  for (int k = 0; k < 28; ++k) {
+    const StepReport report = step(cloth, 0.01);
+    CAPTURE(k);
+    CHECK(report.status == Status::converged);
+    CHECK(report.iterations < 3000);
+  }
+}
+
 TEST_CASE("where sweeps had to do, what they leave brings in little energy") {
   CHECK(most_gained(15, 1, 1, 0.06) < 0.1);
   CHECK(most_gained(10, 30, 2, 0.04) < 1);
