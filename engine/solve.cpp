@@ -136,6 +136,11 @@ kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, From from, int
     result.failed = !result.converged;
     return result;
   }
+  if (!attempt.hold_taut) {
+    s.yarn->release_spans();
+  } else if (from == From::prediction) {
+    s.yarn->hold_taut_spans(s.position.view(), s.solved.view(), team);
+  }
   const bool may_be_answered = attempt.on_failure == OnFailure::sweep;
   if (may_be_answered) s.next_velocity = s.solved;
   const int most = may_be_answered ? std::max(1, left / 2) : left;

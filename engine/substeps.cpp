@@ -165,6 +165,7 @@ class Substeps {
                           .most_iterations = most_iterations(h, on_failure),
                           .on_failure = on_failure,
                           .only_sweeps = only_sweeps_,
+                          .hold_taut = s_.settings.iterations == 0,
                           .care = std::sqrt(s_.trouble.care()),
                           .stood_at = std::max(stood_at_, s_.trouble.stood_at()),
                           .predicted = std::exchange(predicted_, false)};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <set>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/model.h"
@@ -166,6 +167,28 @@ class Builder {
       if (k == chain.links.size()) continue;
       row.rest[lane] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
     }
+    add_spans(chain, first, lane);
+  }
+  void add_spans(const Chain& chain, std::size_t first, std::size_t lane) {
+    const auto fixed = [&](std::uint32_t slot) { return model_.inverse_mass[slot] == 0; };
+    auto before = chain.particles.end();  // the last that was fixed
+    for (auto i = chain.particles.begin(); i != chain.particles.end(); ++i) {
+      if (!fixed(*i)) continue;
+      const auto begin = std::exchange(before, i);
+      if (begin == chain.particles.end()) continue;
+      const auto from = static_cast<std::size_t>(begin - chain.particles.begin());
+      const auto links = static_cast<std::size_t>(i - begin);
+      if (links < 2) continue;  // nothing in it can move
+      YarnSpan& span = layout_.spans.emplace_back();
+      span.row = static_cast<std::uint32_t>(first + from);
+      span.last_row = static_cast<std::uint32_t>(first + from + links);
+      span.lane = static_cast<std::uint32_t>(lane);
+      span.particle = static_cast<std::uint32_t>(layout_.span_slots.size());
+      layout_.span_slots.insert(layout_.span_slots.end(), begin, i + 1);
+      for (std::size_t k = from; k < from + links; ++k) {
+        span.length += model_.constraints.rest_length[chain.links[k]];
+      }
+    }
   }
 
   const Model& model_;
@@ -247,6 +270,7 @@ YarnLayout make_yarn_layout(const Model& model) {
     left = left.subspan(n);
   }
   layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
+  leave_out_braced(model, layout);
   layout.not_in_second = slots_not_in_second(model, layout);
   layout.places.floats = 4 * quads_of(model, layout);
   layout.places.padding = 4 * model.slots();
@@ -258,7 +282,7 @@ YarnLayout make_yarn_layout(const Model& model) {
 std::size_t YarnLayout::bytes() const {
   return bytes_of(blocks) + bytes_of(links) + bytes_of(family_begin) + bytes_of(slot) +
          bytes_of(patches) + bytes_of(kind) + bytes_of(kinds) + bytes_of(not_in_second) +
-         bytes_of(longest_at) + places.bytes();
+         bytes_of(longest_at) + bytes_of(spans) + bytes_of(span_slots) + places.bytes();
 }
 
 }  // namespace weft

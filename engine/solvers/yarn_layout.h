@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "engine/solvers/yarn_places.h"
+#include "engine/solvers/yarn_spans.h"
 #include "kernels/simd/table.h"
 
 namespace weft {
@@ -33,6 +34,8 @@ struct YarnLayout {
   std::vector<std::uint32_t> kind;              // per row
   kernels::AlignedVector<simd::YarnRow> kinds;  // inverse masses over the model's largest
   std::vector<std::uint32_t> not_in_second;     // places that yarn_push_first does not write
+  std::vector<YarnSpan> spans;
+  std::vector<std::uint32_t> span_slots;  // of their particles, both ends included
   YarnPlaces places;
 
   double cell = 0;                        // that positions are split by (kernels/simd/yarn_rows.h)

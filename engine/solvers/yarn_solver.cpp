@@ -84,7 +84,8 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       products_(layout_.blocks.size()),
       solves_(layout_.blocks.size()),
       stubborn_(layout_.blocks.size()),
-      others_(model, settings) {
+      others_(model, settings),
+      spans_(layout_) {
   const std::size_t wanted =
       settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
@@ -94,8 +95,8 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
 }
 
 simd::Yarns YarnSolver::yarns() {
-  return {layout_.kind.data(),
-          layout_.kinds.data(),
+  return {spans_.holds() ? spans_.kind() : layout_.kind.data(),
+          spans_.holds() ? spans_.kinds() : layout_.kinds.data(),
           system_.data(),
           layout_.slot.data(),
           layout_.patches.data(),
@@ -229,17 +230,27 @@ void YarnSolver::begin(kernels::VectorsView x, kernels::VectorsView start,
   from_start_ = false;
   velocities_ = false;
   others_.start(contacts, first_round);
-  if (start.x != nullptr) keep_start(start, team);
+  if (start.x != nullptr) {
+    spans_.release();
+    keep_start(start, team);
+  }
   std::ranges::fill(stubborn_, std::uint8_t{0});
   split(x, team);
 }
 
 YarnSolver::Aim YarnSolver::aim(double care) const {
   const bool rattle = settings_.scheme == Scheme::rattle;
-  const double wanted = care * std::min(settings_.tolerance, kGoal);
-  const double goal = rattle ? std::min(wanted, kRattleGoal) : wanted;
-  const double block = rattle || kLeft * goal < kSeen ? kNoBound : kLeft * goal;
-  return {wanted, goal, block};
+  const double usual = std::min(settings_.tolerance, kGoal);
+  const double wanted = spans_.holds() ? spans_.may_leave() : care * usual;
+  const double goal = rattle && !spans_.holds() ? std::min(wanted, kRattleGoal) : wanted;
+  const double left = spans_.holds() ? spans_.solver_may_leave() : goal;
+  const double block = rattle || kLeft * left < kSeen ? kNoBound : kLeft * left;
+  return {wanted, goal, left, block};
+}
+
+void YarnSolver::hold_taut_spans(kernels::VectorsView start, kernels::VectorsView x, Team& team) {
+  const double usual = std::min(settings_.tolerance, kGoal);
+  spans_.hold(start, x, usual, settings_.tolerance, team);
 }
 
 kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
@@ -278,7 +289,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
     sweeps = 1;
     if (left > 0 && strain < kSmall && fall > kSlow) {
       split(x, team);
-      newton(kWithin * aim.goal, std::min(kMostIterations, left), team, result);
+      newton(kWithin * aim.left, std::min(kMostIterations, left), team, result);
     } else if (left > 0 && fall < 1 && fall * strain > kFar * aim.goal) {
       sweep(aim.block, team, result);
       sweeps = 2;
@@ -291,7 +302,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
 std::size_t YarnSolver::bytes() const {
   return bytes_of(base_step_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
          bytes_of(base_) + bytes_of(u_) + bytes_of(t_) + bytes_of(products_) + bytes_of(solves_) +
-         bytes_of(stubborn_) + others_.bytes();
+         bytes_of(stubborn_) + others_.bytes() + spans_.bytes();
 }
 
 }  // namespace weft

@@ -29,6 +29,7 @@
 #include "engine/solvers/simd_measure.h"
 #include "engine/solvers/team.h"
 #include "engine/solvers/yarn_others.h"
+#include "engine/solvers/yarn_spans.h"
 #include "kernels/loop.h"
 #include "kernels/simd/table.h"
 
@@ -47,6 +48,10 @@ class YarnSolver {
                                       const ContactStore& contacts, bool first_round,
                                       int max_iterations, double care, SimdMeasure& measure,
                                       Team& team);
+  /// For the next solves by scheme paper, of the substep from `start` to x: taut spans keep their
+  /// lengths, instead of what `care` says (yarn_spans.h). release: no more.
+  void hold_taut_spans(kernels::VectorsView start, kernels::VectorsView x, Team& team);
+  void release_spans() { spans_.release(); }
   /// Brings the velocities at the positions x within half of the tolerance, or as far as it gets;
   /// with `exact` to a small part of what they were out by, however little that is.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
@@ -65,6 +70,7 @@ class YarnSolver {
   struct Aim {
     double wanted;  // with more the solver has failed
     double goal;    // with this it is done
+    double left;    // a linear system leaves less
     double block;   // a block with less is not solved again at once
   };
   simd::Yarns yarns();
@@ -127,6 +133,7 @@ class YarnSolver {
   std::vector<std::uint32_t> solves_;                   // per block, in one sweep
   std::vector<std::uint8_t> stubborn_;                  // per block: kMostSolves were too few
   YarnOthers others_;
+  HeldSpans spans_;
 };
 
 /// work(yarns, block's number, scratch); shares of blocks side by side.
