@@ -171,6 +171,13 @@ const YarnLayout& Model::yarns() const {
   return yarns_.get([this] { return make_yarn_layout(*this); });
 }
 
+std::vector<Link> links_of(const ConstraintStore& store, std::size_t count) {
+  std::vector<Link> links;
+  links.reserve(count);
+  for (std::size_t c = 0; c < count; ++c) links.push_back({store.a[c], store.b[c]});
+  return links;
+}
+
 std::size_t ConstraintStore::bytes() const {
   return bytes_of(a) + bytes_of(b) + bytes_of(rest_length) + bytes_of(effective_mass) +
          bytes_of(colour) + bytes_of(described) + bytes_of(slot) + bytes_of(hub_distances) +

@@ -40,6 +40,9 @@ struct ConstraintStore {
   std::size_t bytes() const;
 };
 
+/// Of the first `count` constraints, between slots.
+std::vector<Link> links_of(const ConstraintStore& store, std::size_t count);
+
 class Model {
  public:
   explicit Model(const SceneDescription& description);  // must be valid

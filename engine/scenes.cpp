@@ -198,6 +198,19 @@ Result<SceneDescription> make_corners(const Options& options) {
   return scene;
 }
 
+// ------------------------------------------------------------------------------------ banner
+
+Result<SceneDescription> make_banner(const Options& options) {
+  if (const auto size = check_size("banner", options.size, 3); !size) return Error{size.error()};
+  const Grid grid{options.size};
+  SceneDescription scene = cloth(grid, [&](int i, int j) {
+    return Vec3{0, -grid.fraction(i), grid.fraction(j)};
+  });
+  scene.fixed = {grid.number(0, 0), grid.number(0, grid.size - 1)};
+  add_structural_edges(grid, scene);
+  return scene;
+}
+
 // ------------------------------------------------------------------------------------- chain
 
 Result<void> check_chain(const Options& options) {
@@ -228,11 +241,12 @@ struct Entry {
   Result<SceneDescription> (*make)(const Options&);
 };
 
-constexpr std::array<Entry, 5> kEntries{{
+constexpr std::array<Entry, 6> kEntries{{
     {{"hang", "a sheet with one fixed side swings down"}, make_hang},
     {{"hang_sphere", "the same, swinging into a fixed sphere"}, make_hang_sphere},
     {{"sphere_drop", "a heavy sphere drops into a sagging sheet"}, make_sphere_drop},
     {{"corners", "a folded sheet hangs from two corners"}, make_corners},
+    {{"banner", "a sheet hangs from two corners at its own width"}, make_banner},
     {{"chain", "a line of particles with a heavy end"}, make_chain},
 }};
 

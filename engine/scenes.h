@@ -1,4 +1,4 @@
-/// The built-in scenes: the paper's three and two hard ones. Exact definitions, SI units.
+/// The built-in scenes: the paper's three and three hard ones. Exact definitions, SI units.
 ///
 /// Cloth scenes are N x N particles over 1 m x 1 m, particle (i, j) has the number i * N + j,
 /// spacing L = 1/(N-1), total mass 1 kg, gravity (0, -10, 0); constraints join grid neighbours
@@ -12,6 +12,8 @@
 ///              its lowest point 0.3 above the middle of the sheet.
 /// corners      N odd; (i, j) at (i L, -sqrt(1 - 0.81) min(j L, 1 - j L), 0.9 j L): folded along
 ///              its middle row. (0, 0) and (0, N-1) are fixed.
+/// banner       (i, j) at (0, -i L, j L): upright. (0, 0) and (0, N-1) are fixed, as far apart as
+///              in it, so that its upper edge can only hang by the strain that is tolerated.
 /// chain        Particles of 1 kg in a line along x, 0.01 apart; the first is fixed, the last has
 ///              end_mass.
 #pragma once
@@ -35,7 +37,7 @@ struct BuiltIn {
   std::string_view summary;
 };
 
-/// hang, hang_sphere, sphere_drop, corners, chain.
+/// hang, hang_sphere, sphere_drop, corners, banner, chain.
 std::span<const BuiltIn> list();
 
 /// An unknown name or an option out of range is an error.

@@ -32,6 +32,7 @@ double project(State& s, double h, double care, StepReport& report, Team& team) 
   const Attempt attempt{.h = h,
                         .most_iterations = std::max(1, s.settings.max_iterations / 2),
                         .on_failure = OnFailure::sweep,
+                        .hold_taut = care < 1,
                         .care = care,
                         .stood_at = s.trouble.stood_at()};
   Trial trial;
@@ -43,9 +44,10 @@ double project(State& s, double h, double care, StepReport& report, Team& team) 
 /// What the last step left within tolerance, an error e, would come back as speed, e / dt, all the
 /// more in a step that is far shorter: positions are projected before it. Returns the share of what
 /// yarns usually leave that may stay; 1: nothing is projected. Whole steps are compared, whatever
-/// their substeps. Gauss-Seidel leaves errors of up to the tolerance in every step: it would not
-/// help. (Sheets of 20 x 20, 1 %, steps of 1/60 s and a part of that in turns: up to a 16th nothing
-/// is gained, 5 mJ with a 64th, 13 J with a 1667th; projected, nothing.)
+/// their substeps. What taut spans hang by stays. Gauss-Seidel leaves errors of up to the tolerance
+/// in every step: it would not help. (Sheets of 20 x 20, 1 %, steps of 1/60 s and a part of that in
+/// turns: up to a 16th nothing is gained, 5 mJ with a 64th, 13 J with a 1667th; projected,
+/// nothing.)
 double care_after_last_step(const State& s, double dt) {
   constexpr double kFarShorter = 0.125, kLeast = 0.01;
   const bool solves_exactly = s.settings.iterations == 0 && (s.yarn || s.direct);

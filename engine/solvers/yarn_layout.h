@@ -7,8 +7,7 @@
 ///     family 0: | block | block | ... | family 1: | block | ...
 ///     block:    | row 0 | row 1 | ... | row of the last particles |
 ///
-/// Rows of one spacing and one mass, before rows of one mass, are alike: what they are like is
-/// stored once.
+/// Rows with the same lengths and masses in all lanes share one YarnRow, kinds[kind[row]].
 ///
 /// A closed yarn is cut: its last link is a yarn of its own, in another family. What no yarn can
 /// hold (ropes, which only pull, and constraints at hubs) is left to YarnOthers.

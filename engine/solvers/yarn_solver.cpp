@@ -76,6 +76,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
     : model_(model),
       layout_(model.yarns()),
       settings_(settings),
+      usual_(std::min(settings.tolerance, kGoal)),
       table_(table),
       base_step_(layout_.rows() * kernels::kLanes),
       base_(layout_.places.floats),
@@ -85,7 +86,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       solves_(layout_.blocks.size()),
       stubborn_(layout_.blocks.size()),
       others_(model, settings),
-      spans_(layout_) {
+      spans_(layout_, usual_, settings.tolerance) {
   const std::size_t wanted =
       settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
@@ -240,17 +241,11 @@ void YarnSolver::begin(kernels::VectorsView x, kernels::VectorsView start,
 
 YarnSolver::Aim YarnSolver::aim(double care) const {
   const bool rattle = settings_.scheme == Scheme::rattle;
-  const double usual = std::min(settings_.tolerance, kGoal);
-  const double wanted = spans_.holds() ? spans_.may_leave() : care * usual;
+  const double wanted = spans_.holds() ? spans_.may_leave() : care * usual_;
   const double goal = rattle && !spans_.holds() ? std::min(wanted, kRattleGoal) : wanted;
   const double left = spans_.holds() ? spans_.solver_may_leave() : goal;
   const double block = rattle || kLeft * left < kSeen ? kNoBound : kLeft * left;
   return {wanted, goal, left, block};
-}
-
-void YarnSolver::hold_taut_spans(kernels::VectorsView start, kernels::VectorsView x, Team& team) {
-  const double usual = std::min(settings_.tolerance, kGoal);
-  spans_.hold(start, x, usual, settings_.tolerance, team);
 }
 
 kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,

@@ -26,10 +26,10 @@
 
 #include "engine/contacts.h"
 #include "engine/model.h"
+#include "engine/solvers/held_spans.h"
 #include "engine/solvers/simd_measure.h"
 #include "engine/solvers/team.h"
 #include "engine/solvers/yarn_others.h"
-#include "engine/solvers/yarn_spans.h"
 #include "kernels/loop.h"
 #include "kernels/simd/table.h"
 
@@ -48,9 +48,11 @@ class YarnSolver {
                                       const ContactStore& contacts, bool first_round,
                                       int max_iterations, double care, SimdMeasure& measure,
                                       Team& team);
-  /// For the next solves by scheme paper, of the substep from `start` to x: taut spans keep their
-  /// lengths, instead of what `care` says (yarn_spans.h). release: no more.
-  void hold_taut_spans(kernels::VectorsView start, kernels::VectorsView x, Team& team);
+  /// For the next solves by scheme paper, of the substep from `start` to x, the prediction: what
+  /// taut spans keep is left, instead of what `care` says (held_spans.h). release: no more.
+  void hold_taut_spans(kernels::VectorsView start, kernels::VectorsView x, Team& team) {
+    spans_.hold(start, x, team);
+  }
   void release_spans() { spans_.release(); }
   /// Brings the velocities at the positions x within half of the tolerance, or as far as it gets;
   /// with `exact` to a small part of what they were out by, however little that is.
@@ -118,6 +120,7 @@ class YarnSolver {
   const Model& model_;
   const YarnLayout& layout_;
   const Settings settings_;
+  const double usual_;  // strain that is aimed at
   const simd::Table& table_;
 
   double cell_ = 0;                                     // that base was split by

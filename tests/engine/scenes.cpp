@@ -37,7 +37,7 @@ TEST_CASE("the list names what make() makes") {
     CHECK(!scene.summary.empty());
     names += std::string(scene.name) + " ";
   }
-  CHECK(names == "hang hang_sphere sphere_drop corners chain ");
+  CHECK(names == "hang hang_sphere sphere_drop corners banner chain ");
 }
 
 TEST_CASE("every edge of every scene starts at its rest length, and every model builds") {
@@ -140,6 +140,15 @@ TEST_CASE("corners: folded along its middle row, hung from two corners") {
   CHECK(cloth_mass(scene, 5) == doctest::Approx(1).epsilon(1e-12));
 }
 
+TEST_CASE("banner: upright, hung from two corners at its own width") {
+  const SceneDescription scene = made("banner", {.size = 4});
+  CHECK(scene.fixed == std::vector<std::uint32_t>{0, 3});
+  CHECK(scene.constraints.size() == edges(4, 0));
+  CHECK(distance(scene.positions[3], {0, 0, 1}) < 1e-15);
+  CHECK(distance(scene.positions[13], {0, -1, 1.0 / 3}) < 1e-15);
+  CHECK(cloth_mass(scene, 4) == doctest::Approx(1).epsilon(1e-12));
+}
+
 TEST_CASE("chain: a level line with a heavy end") {
   const SceneDescription scene = made("chain", {.size = 20, .end_mass = 1e6});
   CHECK(scene.positions.size() == 20);
@@ -169,6 +178,7 @@ TEST_CASE("options out of range are refused by name and value") {
   check_refused("sphere_drop", {.size = 2}, "size", "2");
   check_refused("corners", {.size = 1}, "size", "1");
   check_refused("corners", {.size = 20}, "size", "20");
+  check_refused("banner", {.size = 2}, "size", "2");
   check_refused("chain", {.size = 1}, "size", "1");
   check_refused("chain", {.end_mass = 0}, "end_mass", "0");
   check_refused("chain", {.end_mass = kNan}, "end_mass", "nan");

@@ -87,7 +87,7 @@ TEST_CASE("without contacts even the first step allocates nothing") {
 TEST_CASE("without contacts no step of yarns does, however late it first wants a linear system") {
   for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
     CAPTURE(name(scheme));
-    Cloth cloth = cloth_of(scene_of("corners", 21), {.scheme = scheme});
+    Cloth cloth = cloth_of(scene_of("corners", 31), {.scheme = scheme});
     const std::size_t before = allocations();
     std::int64_t iterations = 0;
     for (int k = 0; k < 60; ++k)
