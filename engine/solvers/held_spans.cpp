@@ -18,8 +18,8 @@ double distance(kernels::VectorsView x, std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-HeldSpans::HeldSpans(const YarnLayout& layout, double usual, double tolerance)
-    : layout_(layout), usual_(usual), tolerance_(tolerance) {
+HeldSpans::HeldSpans(const YarnLayout& layout, double usual, double tolerance, bool may_stretch)
+    : layout_(layout), usual_(usual), tolerance_(tolerance), may_stretch_(may_stretch) {
   if (layout.spans.empty()) return;
   kind_ = layout.kind;
   kinds_ = layout.kinds;
@@ -42,10 +42,11 @@ HeldSpans::Span HeldSpans::judge(const YarnSpan& span, kernels::VectorsView star
   const std::uint32_t* slot = &layout_.span_slots[span.first_slot];
   const double apart = distance(x, slot[0], slot[span.last_row - span.row]) / span.length - 1;
   if (!(apart >= -usual_ && apart <= tolerance_)) return {};
-  const double wanted = std::max(apart + usual_, largest_strain(span, start));
-  const double may_leave = std::clamp(wanted, usual_, tolerance_);
+  const double least = std::max(apart + usual_, usual_), strain = largest_strain(span, start);
+  const double may_leave = std::min(std::max(least, strain), tolerance_);
+  const bool alike = strain <= least;
   const double to_sag = std::min(apart + kKept * usual_, tolerance_ - (1 - kKept) * usual_);
-  return {true, may_leave, std::max(kKept * may_leave, to_sag)};
+  return {true, alike, may_leave, std::max(kKept * may_leave, to_sag)};
 }
 
 double HeldSpans::largest_strain(const YarnSpan& span, kernels::VectorsView x) const {
@@ -101,14 +102,16 @@ void HeldSpans::hold(kernels::VectorsView start, kernels::VectorsView x, Team& t
   may_leave_ = std::ranges::max(spans_, {}, &Span::may_leave).may_leave;
   kept_ = std::ranges::max(spans_, {}, &Span::kept).kept;
   if (!holds()) return;
+  const auto as_usual = [](const Span& span) { return !span.is_taut || span.alike; };
+  const bool alike = may_stretch_ && std::ranges::all_of(spans_, as_usual);
   team.for_each_part(spans.size(), kSpans, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!spans_[i].is_taut)
         give_back(spans[i]);
-      else if (spans[i].has_chords)
-        keep_each(spans[i], start, spans_[i].kept);
-      else
+      else if (alike && !spans[i].has_chords)
         stretch_alike(spans[i], x, spans_[i].kept);
+      else
+        keep_each(spans[i], start, kept_);
     }
   });
 }

@@ -12,7 +12,10 @@
 /// stretched alike: a straight one that keeps what each has at the start of the substep hardly
 /// comes to sag (banner, 20 x 20: 210 iterations a frame instead of 22). But where chords join its
 /// particles (bending edges) each link keeps what it has at the start, or it would disagree with
-/// them (16 x 16: 1500 iterations a frame instead of 30).
+/// them (16 x 16: 1500 iterations a frame instead of 30). So it is where sweeps have left more
+/// strain than yarns would, here and there (10 kg on a taut sheet of 40 x 40: a step of 2.4 million
+/// iterations), and in scenes with spheres: what hangs by all that it may gives way less to what
+/// lands on it.
 ///
 /// Not where it is braced, most of its links sides of triangles: these carry it as well (a sheet of
 /// triangles that hangs by two corners, 40 x 40: 3.4 ms a frame, 10 if it kept lengths).
@@ -33,13 +36,14 @@ struct YarnLayout;
 /// What rows are like while taut spans are held.
 class HeldSpans {
  public:
-  /// usual: the strain that yarns leave, if nothing is held; tolerance: no less.
-  HeldSpans(const YarnLayout& layout, double usual, double tolerance);
+  /// usual: the strain that yarns leave, if nothing is held; tolerance: no less. may_stretch: spans
+  /// may be as long as predicted; else each of their links as long as at the start of a substep.
+  HeldSpans(const YarnLayout& layout, double usual, double tolerance, bool may_stretch);
 
   /// Holds the spans that are taut with their ends as in x, the prediction. Each may leave `usual`
   /// beyond what its ends are too far apart or, if a link is strained by more at the start of the
-  /// substep, that; no more than the tolerance. Up to most of it it is as long as in x (one with
-  /// chords: as at the start). Ends that are too far apart for the tolerance are no reason.
+  /// substep, that; no more than the tolerance. Up to most of it it is as long as in x. Ends that
+  /// are too far apart for the tolerance are no reason.
   void hold(kernels::VectorsView start, kernels::VectorsView x, Team& team);
   void release() { may_leave_ = 0; }
 
@@ -57,7 +61,7 @@ class HeldSpans {
 
   /// Strains of a span.
   struct Span {
-    bool is_taut = false;
+    bool is_taut = false, alike = false;
     double may_leave = 0, kept = 0;
   };
   Span judge(const YarnSpan& span, kernels::VectorsView start, kernels::VectorsView x) const;
@@ -71,6 +75,7 @@ class HeldSpans {
 
   const YarnLayout& layout_;
   const double usual_, tolerance_;
+  const bool may_stretch_;
   double may_leave_ = 0, kept_ = 0;  // by all of them
   std::vector<std::uint32_t> kind_;  // as the layout's; rows of spans have their own
   kernels::AlignedVector<simd::YarnRow> kinds_;

@@ -40,10 +40,12 @@ class YarnSolver {
   YarnSolver(const Model& model, const Settings& settings, const simd::Table& table);
 
   /// Moves x until every constraint and listed contact is well within tolerance, or as far as it
-  /// gets: failed where that is not as far as it wanted. Scheme rattle applies impulses along the
-  /// directions at `start`, if given. care: the share of what it usually leaves that may be left.
-  /// measure: of the true errors. LoopResult::iterations counts sweeps and iterations of conjugate
-  /// gradients, at least one in each Newton step; visits, every solve of a constraint.
+  /// gets: failed where it no longer came nearer and is short of what it wanted (scheme rattle: of
+  /// the tolerance), or where iterations ran out beyond the tolerance. Scheme rattle applies
+  /// impulses along the directions at `start`, if given. care: the share of what it usually leaves
+  /// that may be left. measure: of the true errors. LoopResult::iterations counts sweeps and
+  /// iterations of conjugate gradients, at least one in each Newton step; visits, every solve of a
+  /// constraint.
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                       const ContactStore& contacts, bool first_round,
                                       int max_iterations, double care, SimdMeasure& measure,
@@ -77,6 +79,7 @@ class YarnSolver {
   };
   simd::Yarns yarns();
   Aim aim(double care) const;
+  bool may_take_newton(const ContactStore& contacts) const;
   void begin(kernels::VectorsView x, kernels::VectorsView start, const ContactStore& contacts,
              bool first_round, Team& team);
   /// Starts at the positions x.

@@ -125,7 +125,7 @@ struct SceneDescription {
   std::vector<double> radii;
 };
 
-// --------------------------------------------------------------------------------------- validate
+// ------------------------------------------------------------------------------------------ build
 
 /// Topology, colours, rest lengths, masses: all that does not change while the cloth moves.
 class Model;
@@ -158,7 +158,8 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   them converge slowly, conjugate gradients solve all of them as one system. Ropes, hubs and
 ///   contacts are relaxed one by one after each sweep, and take part in that system. A yarn that is
 ///   taut between two fixed particles, and not braced by triangles, keeps most of the strain that
-///   yarns may leave, 0.3 % or the tolerance: with scheme paper it hangs by that. simd only.
+///   yarns may leave, 0.3 %, or the tolerance if that is less, beyond what its ends are too far
+///   apart by: with scheme paper it hangs by that. simd only.
 /// automatic: gauss_seidel on the reference backend or with Settings::iterations. Else the ratio of
 ///   masses decides, that of the heaviest to the lightest of free particles that constraints join.
 ///   Up to 10^4: yarn, or gauss_seidel where there are more than nine ropes to each distance

@@ -46,9 +46,10 @@ constexpr Golden kGolden[] = {
     {Way::automatic, "hang", 90, 30, false, 0x7370395af0d084b5},
     {Way::automatic, "hang_sphere", 21, 40, false, 0xbf61027ec9503ea8},
     {Way::automatic, "sphere_drop", 21, 40, false, 0x21e8b637d6e4e5b7},
-    {Way::automatic, "corners", 41, 20, false, 0x4624baefe407e407},
-    {Way::automatic, "ropes", 33, 10, true, 0x465f09c9b4014c03},
-    {Way::automatic, "random", 33, 10, false, 0x05d6bcfbc185c036},
+    {Way::automatic, "corners", 41, 20, false, 0x1287a0fb7e6335fc},
+    {Way::automatic, "banner", 21, 20, false, 0xa0eb7f2b5b9d5a74},
+    {Way::automatic, "ropes", 33, 10, true, 0x114a6faad8f62392},
+    {Way::automatic, "random", 33, 10, false, 0xcf1f46041ec96897},
     {Way::automatic, "hub", 17, 6, true, 0x439aea5723cae410},
 };
 

@@ -71,7 +71,7 @@ struct Line {
     const auto is_it = [](const YarnSpan& span) { return span.last_row - span.row == 3; };
     const auto span = std::ranges::find_if(layout.spans, is_it);
     REQUIRE(span != layout.spans.end());
-    HeldSpans spans(layout, usual, tolerance);
+    HeldSpans spans(layout, usual, tolerance, true);
     Team team(1);
     kernels::Vectors start = model->initial_position, x = start;
     for (const std::uint32_t i : {3u, 4u}) x.y[model->ordering.slot_of[i]] -= fall;
