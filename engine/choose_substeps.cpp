@@ -12,9 +12,13 @@
 namespace weft {
 namespace {
 
-/// How the largest strain after a step without constraints decides about the substeps: a quarter of
-/// it for twice as many. What an edge turns by, all those behind it on its yarn are swung by: a
-/// yarn of many edges wants less, `longest` over their number.
+/// The strain after a step without constraints that one substep is good for. It grows with the
+/// square of the step, so that there are
+///
+///     sqrt( strain / min(most, longest / n) )     n: particles of the constraint's yarn
+///
+/// the largest of all constraints, rounded up. What an edge turns by, all those behind it on its
+/// yarn are swung by: a yarn of many edges wants less.
 struct Bend {
   double most;
   double longest;

@@ -15,7 +15,7 @@ void predict(State& s, double h, Team& team);
 bool commit(State& s, double h, Team& team);
 /// And what the position loop's impulses did.
 bool commit(State& s, double h, kernels::Kicks& kicks, Team& team);
-/// What the impulses of a substep did (engine/rattle.h).
+/// What the impulses of a substep did (engine/rattle.h, engine/energy.h).
 kernels::Kicks measure_kicks(State& s, double h, Team& team);
 
 }  // namespace weft

@@ -1,10 +1,10 @@
 /// The mutable part of a cloth: the state, the contacts of the present step, the solver's memory.
 ///
 /// Which stage writes what:
-///   predict             solved
+///   predict             solved (and contacts, which choose_substeps looks for)
 ///   find_contacts       contacts
-///   solve_positions     solved (and contacts, by those that it ran into)
-///   commit              next_velocity
+///   solve_positions     solved (and contacts, by those that it ran into; next_velocity is room)
+///   commit              next_velocity, kicks
 ///   correct_velocities  next_velocity
 ///   report              nothing
 /// position and velocity change only when a substep is known to be finite (transaction.h), and are
@@ -55,7 +55,8 @@ struct State {
   kernels::Vectors predicted;  // reference only
   std::optional<SimdSolver> simd;
   std::optional<SimdMeasure> measure;  // simd only
-  // What answers for a solver that gives up: simd or reference, or direct where yarn has it too.
+  // The chosen solver, if it is not Gauss-Seidel. Where it gives up sweeps of the backend answer,
+  // or direct behind yarns.
   std::optional<YarnSolver> yarn;      // with Solver::yarn
   std::optional<DirectSolver> direct;  // with Solver::direct, and behind yarns of uneven masses
   const simd::Table* kernels = nullptr;

@@ -1,4 +1,12 @@
-/// One time step: its substeps, and what becomes of them. The list of stages is in substep.cpp.
+/// One time step: its substeps, and what becomes of them. From top to bottom:
+///
+///   Cloth::step              cloth.cpp      refuses a bad dt
+///     step                   step.cpp       threads, pins on their way, the report
+///       run_substeps         substeps.cpp   how many; projects a bad start; answers failure by
+///       halves
+///         substep            substep.cpp    one of them: the list of stages
+///           solve_positions  solve.cpp      which solver, what answers for it, rounds of contacts
+///             solvers/{reference,simd,yarn,direct}_solver
 #pragma once
 
 #include <weft/weft.h>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "engine/choose_substeps.h"
@@ -78,8 +77,11 @@ class Substeps {
  public:
   Substeps(State& s, StepReport& report, Team& team)
       : s_(s), report_(report), team_(team), transaction_(s) {
-    may_halve_ = s.settings.iterations == 0 && s.settings.solver != Solver::gauss_seidel &&
-                 s.trouble.may_halve();
+    const bool may_halve = s.settings.iterations == 0 &&
+                           s.settings.solver != Solver::gauss_seidel && s.trouble.may_halve();
+    answer_ = s.trouble.only_sweeps() ? Answer::only_sweeps
+              : may_halve             ? Answer::halves
+                                      : Answer::sweeps;
   }
 
   /// Returns whether all of dt was done.
@@ -87,20 +89,20 @@ class Substeps {
     const double care = care_after_last_step(s_, dt);
     if (care < 1 || ((s_.placed || jumped) && violates_constraints(s_, team_))) {
       transaction_.begin();
-      stood_at_ = project(s_, dt, care, report_, team_);
+      record_.stood_at = project(s_, dt, care, report_, team_);
     }
     projected_ = report_.visits;
-    only_sweeps_ = s_.trouble.only_sweeps();
     const int substeps = choose_substeps(dt);
+    if (substeps > 1) transaction_.begin();
     for (int k = 1; k <= substeps; ++k) {
-      left_ = s_.settings.max_iterations;
-      to_do_ = dt / substeps;
-      parts_ = 0;
-      gave_up_ = only_sweeps_;
+      present_ = {.left = s_.settings.max_iterations,
+                  .to_do = dt / substeps,
+                  .gave_up = answer_ == Answer::only_sweeps};
       Outcome outcome;
-      while ((outcome = advance(dt / substeps, 0, k == substeps)) == Outcome::hopeless) be_safer();
+      while ((outcome = advance(dt / substeps, 0)) == Outcome::hopeless) be_safer();
       if (outcome == Outcome::refused) return false;
     }
+    transaction_.complete();
     s_.placed = false;
     s_.last_dt = report_.status == Status::converged ? dt : 0;
     s_.trouble.remember(record());
@@ -120,15 +122,10 @@ class Substeps {
   /// which nothing has been done.
   enum class Outcome : std::uint8_t { done, refused, hopeless };
 
-  /// After a substep was hopeless. The second time nothing may be halved or left any more, and so
-  /// no substep is hopeless again.
+  /// After a substep was hopeless: the next answer. With the last no substep is hopeless.
   void be_safer() {
-    if (only_sweeps_) {
-      only_sweeps_ = false;
-      may_halve_ = true;
-    } else {
-      halves_helped_ = may_halve_ = false;
-    }
+    if (answer_ == Answer::halves) record_.helped = false;
+    answer_ = answer_ == Answer::only_sweeps ? Answer::halves : Answer::sweeps;
   }
 
   /// Advances by h, in halves where the solver gives up. Where even the first of the shortest parts
@@ -136,44 +133,52 @@ class Substeps {
   /// the step. What a state violates, and what sweeps leave, would come back as speed, the more the
   /// shorter the parts: parts of such a substep gain no energy. Nor are halves an answer where it
   /// is what the start violates that brought energy: it is taken out.
-  Outcome advance(double h, int halvings, bool last) {
-    const bool again = left_ > kept_for_sweeps();  // there may be another attempt
-    const bool halve =
-        again && may_halve_ && halvings < kMostHalvings && report_.iterations < kMostToHalve;
-    const bool leave = halve || (again && (may_halve_ || only_sweeps_) && parts_ == 0);
-    Trial trial = attempt(h, halve   ? OnFailure::halve
-                             : leave ? OnFailure::leave
-                                     : OnFailure::sweep);
+  Outcome advance(double h, int halvings) {
+    const OnFailure on_failure = on_failure_of(halvings);
+    Trial trial = attempt(h, on_failure);
     if (trial.gained && !trial.has_result() && !begins_well(h, trial)) {
       trial = attempt(h, OnFailure::sweep);
     }
-    if (leave && !trial.has_result()) {
-      gave_up_ = true;
-      if (parts_ == 0 && !(halve && begins_well(h, trial))) return Outcome::hopeless;
-      ++report_.halvings;
-      const Outcome first = advance(h / 2, halvings + 1, false);
-      return first == Outcome::done ? advance(h / 2, halvings + 1, last) : first;
+    if (trial.has_result()) {
+      accept(trial, h);
+      return Outcome::done;
     }
-    if (!trial.has_result()) {
+    if (on_failure == OnFailure::sweep) {
       explain(s_, h, report_, team_);
       return Outcome::refused;
     }
-    accept(trial, h, last);
-    return Outcome::done;
+    present_.gave_up = true;
+    const bool halve =
+        present_.parts > 0 || (on_failure == OnFailure::halve && begins_well(h, trial));
+    return halve ? advance_in_halves(h, halvings) : Outcome::hopeless;
+  }
+
+  Outcome advance_in_halves(double h, int halvings) {
+    transaction_.begin();
+    ++report_.halvings;
+    const Outcome first = advance(h / 2, halvings + 1);
+    return first == Outcome::done ? advance(h / 2, halvings + 1) : first;
+  }
+
+  OnFailure on_failure_of(int halvings) const {
+    if (present_.left <= kept_for_sweeps()) return OnFailure::sweep;  // there is no other attempt
+    const bool may_halve = halvings < kMostHalvings && report_.iterations < kMostToHalve;
+    if (answer_ == Answer::halves && may_halve) return OnFailure::halve;
+    return answer_ != Answer::sweeps && present_.parts == 0 ? OnFailure::leave : OnFailure::sweep;
   }
 
   Trial attempt(double h, OnFailure on_failure) {
     const Attempt attempt{.h = h,
                           .most_iterations = most_iterations(h, on_failure),
                           .on_failure = on_failure,
-                          .only_sweeps = only_sweeps_,
+                          .only_sweeps = answer_ == Answer::only_sweeps,
                           .hold_taut = s_.settings.iterations == 0,
                           .care = std::sqrt(s_.trouble.care()),
-                          .stood_at = std::max(stood_at_, s_.trouble.stood_at()),
+                          .stood_at = std::max(record_.stood_at, s_.trouble.stood_at()),
                           .predicted = std::exchange(predicted_, false)};
     const std::int64_t before = report_.iterations;
     const Trial trial = substep(s_, attempt, report_, team_);
-    left_ -= static_cast<int>(report_.iterations - before);
+    present_.left -= static_cast<int>(report_.iterations - before);
     return trial;
   }
 
@@ -183,33 +188,34 @@ class Substeps {
     return s_.settings.max_iterations - s_.settings.max_iterations / 2;
   }
   int most_iterations(double h, OnFailure on_failure) const {
-    int most = h < to_do_ ? left_ / 2 : left_;
-    if (only_sweeps_)
-      most = std::min(left_ / 2, s_.trouble.most_sweeps());
+    const int left = present_.left;
+    int most = h < present_.to_do ? left / 2 : left;
+    if (answer_ == Answer::only_sweeps)
+      most = std::min(left / 2, s_.trouble.most_sweeps());
     else if (on_failure != OnFailure::sweep)
-      most = left_ - kept_for_sweeps();
+      most = left - kept_for_sweeps();
     return std::max(most, 1);
   }
 
-  void accept(const Trial& trial, double h, bool last) {
+  void accept(const Trial& trial, double h) {
     if (trial.ended == Ended::made_do) {
-      gave_up_ = made_do_ = true;
-      if (may_halve_ && !trial.gained) halves_helped_ = false;
+      present_.gave_up = record_.made_do = true;
+      if (answer_ == Answer::halves && !trial.gained) record_.helped = false;
     }
-    if (gave_up_) take_gained_energy(s_, h);
-    transaction_.accept(last);
-    stood_at_ = std::max(stood_at_, trial.stood_at);
+    if (present_.gave_up) take_gained_energy(s_, h);
+    transaction_.accept();
+    record_.stood_at = std::max(record_.stood_at, trial.stood_at);
     worsen(report_, trial.status);
     if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
     ++report_.substeps;
-    ++parts_;
-    to_do_ -= h;
+    ++present_.parts;
+    present_.to_do -= h;
   }
 
   /// What a state already violates becomes a velocity, error / h: the shorter, the worse. For
   /// direct solutions, which remove all of it at once, and where energy was gained it must be
   /// little, or little beside what the motion of h would add. (As strict with yarns, steps of
-  /// corners, 81 x 81, at 1 % end in sweeps: 48 ms a frame instead of 5.)
+  /// corners, 81 x 81, at 1 % end in sweeps: 48 ms a frame instead of 5.) Writes over solved.
   bool begins_well(double h, const Trial& trial) {
     const double tolerance = s_.settings.tolerance;
     const double before = max_strain_at(s_, s_.position, team_);
@@ -229,31 +235,36 @@ class Substeps {
     const bool began_with_sweeps = s_.trouble.only_sweeps();
     const auto constraints =
         static_cast<double>(std::max<std::size_t>(1, s_.model->constraints.size()));
-    return {.halved = report_.halvings > 0,
-            .helped = halves_helped_ || !sweeps_converge,
-            .made_do = made_do_,
-            .only_sweeps = began_with_sweeps,
-            .swept_in_vain = began_with_sweeps && !only_sweeps_,
-            .may_be_swept = sweeps_converge && !s_.direct && !s_.model->has_contacts(),
-            .stood_at = stood_at_,
-            .passes = static_cast<double>(report_.visits - projected_) / constraints};
+    StepRecord record = record_;
+    record.halved = report_.halvings > 0;
+    record.helped |= !sweeps_converge;
+    record.only_sweeps = began_with_sweeps;
+    record.swept_in_vain = began_with_sweeps && answer_ != Answer::only_sweeps;
+    record.may_be_swept = sweeps_converge && !s_.direct && !s_.model->has_contacts();
+    record.passes = static_cast<double>(report_.visits - projected_) / constraints;
+    return record;
   }
+
+  /// What answers where the solver gives up, in the order in which a step tries them; the first is
+  /// that it is not asked at all.
+  enum class Answer : std::uint8_t { only_sweeps, halves, sweeps };
+  /// The substep that is being done.
+  struct Present {
+    int left = 0;          // iterations, of all its parts together
+    double to_do = 0;      // s, of it
+    int parts = 0;         // done
+    bool gave_up = false;  // the solver, once at least
+  };
 
   State& s_;
   StepReport& report_;
   Team& team_;
   Transaction transaction_;
-  bool may_halve_ = false, halves_helped_ = true;
-  double stood_at_ = 0;         // what sweeps could not solve in this step
+  Answer answer_ = Answer::sweeps;
+  StepRecord record_;
   std::int64_t projected_ = 0;  // visits of the projection
-  bool only_sweeps_ = false;    // until they fail
-  bool made_do_ = false;
-  bool predicted_ = false;  // the first substep, before it is tried
-  // Of the present substep:
-  int left_ = 0;          // iterations, of all its parts together
-  double to_do_ = 0;      // s, of it
-  int parts_ = 0;         // done
-  bool gave_up_ = false;  // the solver, once at least
+  bool predicted_ = false;      // the first substep, before it is tried
+  Present present_;
 };
 
 }  // namespace

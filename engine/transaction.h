@@ -28,13 +28,12 @@ class Transaction {
     begun_ = true;
   }
 
-  /// The substep becomes the state; the last one ends the step.
-  void accept(bool last) {
-    if (!last) begin();
+  /// The substep becomes the state.
+  void accept() {
     std::swap(s_.position, s_.solved);
     std::swap(s_.velocity, s_.next_velocity);
-    complete_ = last;
   }
+  void complete() { complete_ = true; }
 
  private:
   State& s_;

@@ -19,6 +19,10 @@
 /// a frame without, 36 with it, Gauss-Seidel alone 41; at 5 % 273, 5 and 4, and without it the
 /// sheet falls a third as far. kExpensive 1000: sheets that hang by a corner are swept as well, and
 /// lose half as much energy again.)
+///     usual   -- halves failed --> no halves in 1, 2, 4 ... 64 steps --> usual
+///     usual   -- expensive -----> only sweeps in 8, 16 ... 64 steps, the last by yarns, no halves
+///                                 --> twice as many, if that one made do; else usual
+///     sweeps  -- in vain -------> usual, and 64 steps that are not swept
 #pragma once
 
 #include <algorithm>
@@ -28,7 +32,7 @@ namespace weft {
 /// A step.
 struct StepRecord {
   bool halved = false;
-  bool helped = true;        // halves were an answer, or not asked
+  bool helped = true;        // halves were an answer, or not asked, or sweeps would be none
   bool made_do = false;      // with what else than the solver's solution
   bool only_sweeps = false;  // it began with those of Gauss-Seidel
   bool swept_in_vain = false;
@@ -39,7 +43,8 @@ struct StepRecord {
 
 class Trouble {
  public:
-  /// Of the usual bend; the square root of it of the error that yarns usually leave.
+  /// The share of the usual that may be left, 0.25 to 1: of the strain that decides about substeps
+  /// (choose_substeps.cpp); of what yarns leave, its square root.
   double care() const { return care_; }
   bool may_halve() const { return pause_left_ == 0; }
   /// All but the last step of a pause, which tries yarns again.

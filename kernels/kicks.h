@@ -1,4 +1,4 @@
-/// What the impulses of a rattle step did to the velocities: those of the position loop brought
+/// What the impulses of a substep did to the velocities: those of the position loop brought
 /// D / h (D: by how much they moved a particle), those of the velocity loop the rest.
 #pragma once
 

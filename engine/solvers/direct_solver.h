@@ -16,7 +16,7 @@
 ///   direct_impulses  errors become impulses become motion
 ///   direct_balance   whether impulses explain a motion
 ///   direct_bodies    spheres and particles of many constraints, unknowns beside the matrix
-///   direct_stiff     an attempt for masses that differ by thousands
+///   direct_stiff     an attempt for masses that differ by hundreds
 ///
 /// Newton's method fails where a step bends edges by much of their length, where masses differ by
 /// thousands, and where A is singular and the errors inconsistent (compressed straight chains).

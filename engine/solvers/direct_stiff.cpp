@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/direct_measure.h"
@@ -14,7 +13,7 @@ using kernels::LoopResult;
 using kernels::Vector;
 using kernels::VectorsView;
 
-constexpr double kUneven = 100;                 // ratio of masses
+constexpr double kLeastRatio = 100;             // of masses that are joined
 constexpr int kMostSolves = 20000;              // of a small scene
 constexpr std::size_t kMostWork = 100'000'000;  // values of all factors of a large one
 
@@ -31,17 +30,6 @@ Symmetric inverse(const Symmetric& s) {
           f * xz, f * (s.xy * s.xz - s.xx * s.yz)};
 }
 
-/// Whether free particles' masses differ by so much that tensions throw the light ones about.
-bool is_uneven(const Model& model) {
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-  for (const double w : model.inverse_mass) {
-    if (w == 0) continue;
-    least = std::min(least, w);
-    most = std::max(most, w);
-  }
-  return most >= kUneven * least;
-}
-
 /// Its imbalance first grows by orders of magnitude: patience is all there is to bound it by.
 int most_solves(const DirectLayout& layout) {
   const std::size_t most = kMostWork / (layout.fronts.values + 1);
@@ -51,7 +39,8 @@ int most_solves(const DirectLayout& layout) {
 }  // namespace
 
 DirectStiff::DirectStiff(const Model& model) {
-  if (!is_uneven(model) || !model.direct().bodies.empty() || model.has_contacts()) return;
+  if (model.uneven.ratio < kLeastRatio || !model.direct().bodies.empty() || model.has_contacts())
+    return;
   soft_.resize(model.slots());
 }
 

@@ -11,8 +11,8 @@
 ///
 /// It converges slowly but surely: a chain of 20 under 10^6 times its particles' mass needs it, on
 /// sheets of equal masses sweeps are faster. So it comes before them, but only where masses differ
-/// by more than kUneven, and in scenes of rows alone. At the end what is left of g is applied, so
-/// that momentum is kept to rounding.
+/// by a factor of 100 and more, and in scenes of rows alone. At the end what is left of g is
+/// applied, so that momentum is kept to rounding.
 #pragma once
 
 #include "engine/solvers/direct_balance.h"
