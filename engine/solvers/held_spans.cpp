@@ -44,9 +44,8 @@ HeldSpans::Span HeldSpans::judge(const YarnSpan& span, kernels::VectorsView star
   if (!(apart >= -usual_ && apart <= tolerance_)) return {};
   const double least = std::max(apart + usual_, usual_), strain = largest_strain(span, start);
   const double may_leave = std::min(std::max(least, strain), tolerance_);
-  const bool alike = strain <= least;
   const double to_sag = std::min(apart + kKept * usual_, tolerance_ - (1 - kKept) * usual_);
-  return {true, alike, may_leave, std::max(kKept * may_leave, to_sag)};
+  return {true, strain <= least, may_leave, std::max(kKept * may_leave, to_sag)};
 }
 
 double HeldSpans::largest_strain(const YarnSpan& span, kernels::VectorsView x) const {
@@ -102,8 +101,7 @@ void HeldSpans::hold(kernels::VectorsView start, kernels::VectorsView x, Team& t
   may_leave_ = std::ranges::max(spans_, {}, &Span::may_leave).may_leave;
   kept_ = std::ranges::max(spans_, {}, &Span::kept).kept;
   if (!holds()) return;
-  const auto as_usual = [](const Span& span) { return !span.is_taut || span.alike; };
-  const bool alike = may_stretch_ && std::ranges::all_of(spans_, as_usual);
+  const bool alike = may_stretch_ && std::ranges::all_of(spans_, &Span::is_quiet);
   team.for_each_part(spans.size(), kSpans, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!spans_[i].is_taut)

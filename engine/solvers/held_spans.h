@@ -59,9 +59,9 @@ class HeldSpans {
  private:
   static constexpr double kKept = 0.8;
 
-  /// Strains of a span.
   struct Span {
-    bool is_taut = false, alike = false;
+    bool is_taut = false;
+    bool is_quiet = true;  // if it is taut: no link is strained by more than is usual
     double may_leave = 0, kept = 0;
   };
   Span judge(const YarnSpan& span, kernels::VectorsView start, kernels::VectorsView x) const;

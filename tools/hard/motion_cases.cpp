@@ -66,6 +66,21 @@ Outcome run_release(const Setup& setup) {
   return strain_outcome(trial, 1e-3);
 }
 
+/// A plane sheet hangs from two corners, `wider` times as far apart as in it. (Others than yarns
+/// take tens of thousands of sweeps a step.)
+Outcome run_banner(const Setup& setup, double wider) {
+  Trial trial{sheet("banner", 20), setup.settings(kStrain)};
+  trial.scene.positions[trial.scene.fixed.back()].z *= wider;
+  trial.dt = 1.0 / 60;
+  trial.steps = setup.steps(300, 60);
+  return strain_outcome(trial, 1e-2);
+}
+
+bool keeps_taut_spans(const Method& method) {
+  const bool by_yarns = method.solver == Solver::yarn || method.solver == Solver::automatic;
+  return by_yarns && method.scheme == Scheme::paper;
+}
+
 /// A sphere falls onto a held sheet, so fast that one step takes it from above to below. The figure
 /// is the number of steps after which some of the sheet had changed sides without a word of it.
 Outcome run_crossing(const Setup& setup) {
@@ -152,6 +167,10 @@ std::vector<Case> motion_cases() {
       {"twist_ten_turns", "strain in the end", kStrain, run_twist},
       {"pins_teleport", "max strain", kStrain, run_teleports},
       {"pin_released", "max strain", kStrain, run_release},
+      {"banner", "max strain", kStrain, [](const Setup& setup) { return run_banner(setup, 1); },
+       keeps_taut_spans},
+      {"banner_too_narrow", "max strain", kStrain,
+       [](const Setup& setup) { return run_banner(setup, 1 + 0.7 * kStrain); }, keeps_taut_spans},
       {"sphere_crosses", "unreported crossings", 0, run_crossing},
       {"free_flight", "momentum lost, relative", 1e-9,
        [](const Setup& setup) { return run_momentum(setup, Backend::reference); }, runs_in_doubles},
