@@ -8,9 +8,9 @@
 ///
 /// So a taut span, one that the strain which yarns may leave could straighten, is as long as a
 /// substep predicts it to be, and only what is out by more than most of that strain is taken back.
-/// It hangs by what is tolerated, and its sag with it. (1.2 ms a frame.) All of its links are
+/// It hangs by what is tolerated, and its sag with it. (0.9 ms a frame.) All of its links are
 /// stretched alike: a straight one that keeps what each has at the start of the substep hardly
-/// comes to sag (banner, 20 x 20: 210 iterations a frame instead of 22). But where chords join its
+/// comes to sag (banner, 20 x 20: 210 iterations a frame instead of 13). But where chords join its
 /// particles (bending edges) each link keeps what it has at the start, or it would disagree with
 /// them (16 x 16: 1500 iterations a frame instead of 30). So it is where sweeps have left more
 /// strain than yarns would, here and there (10 kg on a taut sheet of 40 x 40: a step of 2.4 million

@@ -204,7 +204,7 @@ kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kerne
     const int left = settings_.max_iterations - result.iterations;
     const bool enough = worst <= goal || (result.converged && solved);
     if (enough || left <= 0 || !progress.goes_on(worst)) break;
-    solve(goal, 0, std::min(kMostIterations, left), team, result);
+    if (!solve(goal, 0, std::min(kMostIterations, left), team, result)) break;
   }
   result.converged = result.converged && loses_energy(v);
   if (result.converged) join(v, team);
@@ -307,7 +307,10 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
     sweeps = 1;
     if (left > 0 && strain < kSmall && fall > kSlow) {
       split(x, team);
-      newton(kWithin * aim.left, std::min(kMostIterations, left), team, result);
+      if (!newton(kWithin * aim.left, std::min(kMostIterations, left), team, result)) {
+        result.failed = !result.converged;
+        return result;
+      }
       if (may_take_newton(contacts)) {
         const Look after = look();
         there = after.strain <= aim.goal && after.violation <= 1;

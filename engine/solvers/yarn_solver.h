@@ -40,12 +40,12 @@ class YarnSolver {
   YarnSolver(const Model& model, const Settings& settings, const simd::Table& table);
 
   /// Moves x until every constraint and listed contact is well within tolerance, or as far as it
-  /// gets: failed where it no longer came nearer and is short of what it wanted (scheme rattle: of
-  /// the tolerance), or where iterations ran out beyond the tolerance. Scheme rattle applies
-  /// impulses along the directions at `start`, if given. care: the share of what it usually leaves
-  /// that may be left. measure: of the true errors. LoopResult::iterations counts sweeps and
-  /// iterations of conjugate gradients, at least one in each Newton step; visits, every solve of a
-  /// constraint.
+  /// gets: failed where it no longer came nearer and is short of what it wanted (scheme rattle, and
+  /// where errors contradict each other: of the tolerance), or where iterations ran out beyond the
+  /// tolerance. Scheme rattle applies impulses along the directions at `start`, if given. care: the
+  /// share of what it usually leaves that may be left. measure: of the true errors.
+  /// LoopResult::iterations counts sweeps and iterations of conjugate gradients, at least one in
+  /// each Newton step; visits, every solve of a constraint.
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                       const ContactStore& contacts, bool first_round,
                                       int max_iterations, double care, SimdMeasure& measure,
@@ -97,11 +97,11 @@ class YarnSolver {
              kernels::LoopResult& result) const;
 
   // The linear system: yarn_system.cpp.
-  /// One of them, to the strain `goal`.
-  void newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
+  /// One of them, to the strain `goal`. Returns whether it came nearer; if not, nothing was moved.
+  bool newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
   /// What was linearised, until no error is above `goal`, or the share `part` of what is left
-  /// when the first family is eliminated.
-  void solve(double goal, double part, int max_iterations, Team& team, kernels::LoopResult& result);
+  /// when the first family is eliminated. Returns as newton.
+  bool solve(double goal, double part, int max_iterations, Team& team, kernels::LoopResult& result);
   void make_system();
   void linearise(Team& team);
   void linearise_yarns(Team& team);

@@ -12,6 +12,15 @@ namespace {
 /// or of the tolerance. (0.1 and 0.3: as fast on corners 41 x 41 at 1 %; 0.3 takes a tenth more
 /// iterations at 0.001 %.)
 constexpr double kForcing = 0.2;
+/// Errors that contradict each other, as those of triangles that cannot follow a step, have no
+/// solution: the residual stays, and impulses grow along what the system cannot tell apart, until
+/// all is out by far more than before. So where it has not come down for kPatience iterations, and
+/// is not far below what it was at first, nothing is moved. (A walk in a cape of 20 x 20 triangles
+/// of random shape, 60 Hz, 1 %: 300 iterations from 0.3 to 4 %, 172 ms in the worst frame; 15 now.
+/// A patience of 30: what converges is given up as well. Sheets that hang by two corners do not
+/// come to it, up to 321 x 321 and 781 iterations a frame.)
+constexpr double kFall = 0.95, kFarBelow = 0.3;
+constexpr int kPatience = 60;
 constexpr std::size_t kNumbers = 4096;  // floats that a thread takes at a time
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -136,13 +145,14 @@ void YarnSolver::finish(Team& team) {
 }
 
 /// Preconditioned conjugate gradients on the reduced system, then u -= M^-1 J^T lambda.
-void YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
+bool YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
                        kernels::LoopResult& result) {
   Products now = reduce(goal, team);
   const double enough = std::max(goal, part * now.worst);
-  double beta = 0;
-  int done = 0;
-  while (now.worst > enough && done < max_iterations) {
+  const double first = now.product;
+  double beta = 0, lowest = first;
+  int done = 0, since = 0;  // since: the residual came down
+  while (now.worst > enough && done < max_iterations && since < kPatience) {
     push(beta, team);
     eliminate(false, team);
     const double curvature = pull(team);
@@ -151,17 +161,24 @@ void YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
     beta = next.product / now.product;
     now = next;
     ++done;
+    ++since;
+    if (now.product < kFall * lowest) {
+      lowest = now.product;
+      since = 0;
+    }
   }
-  if (std::isfinite(now.product)) finish(team);
+  const bool gained = now.worst <= enough || since < kPatience || lowest < kFarBelow * first;
+  if (gained && std::isfinite(now.product)) finish(team);
   const int passes = std::max(1, done);
   const std::int64_t visits = passes * static_cast<std::int64_t>(model_.constraints.plain);
   count(passes, visits, visits, result);
+  return gained;
 }
 
-void YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result) {
+bool YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result) {
   make_system();
   linearise(team);
-  solve(goal, kForcing, max_iterations, team, result);
+  return solve(goal, kForcing, max_iterations, team, result);
 }
 
 /// The linear system, from when it is first wanted; room for it was made, and is not touched

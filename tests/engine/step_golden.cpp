@@ -49,7 +49,7 @@ constexpr Golden kGolden[] = {
     {Way::automatic, "corners", 41, 20, false, 0x1287a0fb7e6335fc},
     {Way::automatic, "banner", 21, 20, false, 0xa0eb7f2b5b9d5a74},
     {Way::automatic, "ropes", 33, 10, true, 0x114a6faad8f62392},
-    {Way::automatic, "random", 33, 10, false, 0xcf1f46041ec96897},
+    {Way::automatic, "random", 33, 10, false, 0xc6766fc95781ffdf},
     {Way::automatic, "hub", 17, 6, true, 0x439aea5723cae410},
 };
 
