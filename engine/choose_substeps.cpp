@@ -43,7 +43,7 @@ double bend_after_motion(State& s, Team& team) {
   };
   const std::size_t longest = s.yarn ? s.yarn->longest() : 0;
   const double most = share(max_strain_at(s, s.solved, team), longest);
-  if (!s.yarn || s.yarn->longest_at().empty() || most <= s.trouble.care()) return most;
+  if (!s.yarn || s.yarn->longest_at().empty() || most <= s.trouble.allowance()) return most;
   const auto x = s.solved.view();
   const auto strains = s.measure->strains_of_chunks(x, team);
   double finer = share(s.measure->max_hub_strain(x), 0);
@@ -111,7 +111,7 @@ int substeps_wanted(State& s, double dt, Team& team) {
   predict(s, dt, team);
   const double bend = bend_after_motion(s, team);
   const double wanted =
-      std::ceil(std::max(std::sqrt(bend / s.trouble.care()), substeps_for_load(s, dt)));
+      std::ceil(std::max(std::sqrt(bend / s.trouble.allowance()), substeps_for_load(s, dt)));
   return wanted < kMostSubsteps ? std::max(1, static_cast<int>(wanted)) : kMostSubsteps;
 }
 

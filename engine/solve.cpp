@@ -145,7 +145,7 @@ kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, From from, int
   if (may_be_answered) s.next_velocity = s.solved;
   const int most = may_be_answered ? std::max(1, left / 2) : left;
   auto result = s.yarn->solve_positions(s.solved.view(), {}, s.contacts, from != From::last_round,
-                                        most, attempt.care, *s.measure, team);
+                                        most, attempt.allowance, *s.measure, team);
   if (!result.failed || result.converged || !may_be_answered) return result;
   left -= result.iterations;
   if (s.direct) {

@@ -21,7 +21,7 @@ struct Attempt {
   OnFailure on_failure = OnFailure::sweep;
   bool only_sweeps = false;      // of Gauss-Seidel: no yarns
   bool hold_taut = false;        // taut spans of yarns keep strain (held_spans.h)
-  double care = 1;               // yarns may leave this share of what they usually leave
+  double allowance = 1;          // yarns may leave this share of what they usually leave
   double stood_at = 0;           // sweeps, the last time (standstill.h)
   bool predicted = false;        // solved is where the substep would lead without constraints
   kernels::VectorsView start{};  // with scheme rattle: where the directions are

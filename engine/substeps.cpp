@@ -25,14 +25,14 @@ bool violates_constraints(State& s, Team& team) {
 /// Moves the positions onto the constraints and leaves the velocities: the error of a start would
 /// become a velocity of error / h. What cannot be put right with half of the iterations that a
 /// substep may take is left to the step, and to its status. Returns what sweeps could not solve.
-double project(State& s, double h, double care, StepReport& report, Team& team) {
+double project(State& s, double h, double allowance, StepReport& report, Team& team) {
   s.solved = s.position;
   find_contacts(s, report);
   const Attempt attempt{.h = h,
                         .most_iterations = std::max(1, s.settings.max_iterations / 2),
                         .on_failure = OnFailure::sweep,
-                        .hold_taut = care < 1,
-                        .care = care,
+                        .hold_taut = allowance < 1,
+                        .allowance = allowance,
                         .stood_at = s.trouble.stood_at()};
   Trial trial;
   timed(report, Stage::solve_positions, [&] { trial = solve_positions(s, attempt, report, team); });
@@ -47,7 +47,7 @@ double project(State& s, double h, double care, StepReport& report, Team& team) 
 /// in every step: it would not help. (Sheets of 20 x 20, 1 %, steps of 1/60 s and a part of that in
 /// turns: up to a 16th nothing is gained, 5 mJ with a 64th, 13 J with a 1667th; projected,
 /// nothing.)
-double care_after_last_step(const State& s, double dt) {
+double allowance_after_last_step(const State& s, double dt) {
   constexpr double kFarShorter = 0.125, kLeast = 0.01;
   const bool solves_exactly = s.settings.iterations == 0 && (s.yarn || s.direct);
   return solves_exactly && dt < kFarShorter * s.last_dt ? std::max(kLeast, dt / s.last_dt) : 1;
@@ -86,10 +86,10 @@ class Substeps {
 
   /// Returns whether all of dt was done.
   bool run(double dt, bool jumped) {
-    const double care = care_after_last_step(s_, dt);
-    if (care < 1 || ((s_.placed || jumped) && violates_constraints(s_, team_))) {
+    const double allowance = allowance_after_last_step(s_, dt);
+    if (allowance < 1 || ((s_.placed || jumped) && violates_constraints(s_, team_))) {
       transaction_.begin();
-      record_.stood_at = project(s_, dt, care, report_, team_);
+      record_.stood_at = project(s_, dt, allowance, report_, team_);
     }
     projected_ = report_.visits;
     const int substeps = choose_substeps(dt);
@@ -173,7 +173,7 @@ class Substeps {
                           .on_failure = on_failure,
                           .only_sweeps = answer_ == Answer::only_sweeps,
                           .hold_taut = s_.settings.iterations == 0,
-                          .care = std::sqrt(s_.trouble.care()),
+                          .allowance = std::sqrt(s_.trouble.allowance()),
                           .stood_at = std::max(record_.stood_at, s_.trouble.stood_at()),
                           .predicted = std::exchange(predicted_, false)};
     const std::int64_t before = report_.iterations;

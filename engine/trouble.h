@@ -1,10 +1,10 @@
 /// What a state remembers of steps in which its solver gave up, or that were expensive.
 ///
-/// care: after halving helped, substeps are shorter and yarns are solved more closely for a while,
-/// the more so if halving is needed again soon. What is left of a tolerance is noise that larger
-/// sheets carry farther: without this corners, 101 x 101, at 1 % takes 300 ms a frame, most of it
-/// in sweeps, and 11 with it. (All of it at once: a sheet that needed halves once takes 1.3 times
-/// as long for a second, and large ones are no faster.)
+/// allowance: after halving helped, substeps are shorter and yarns are solved more closely for a
+/// while, the more so if halving is needed again soon. What is left of a tolerance is noise that
+/// larger sheets carry farther: without this corners, 101 x 101, at 1 % takes 300 ms a frame, most
+/// of it in sweeps, and 11 with it. (All of it at once: a sheet that needed halves once takes 1.3
+/// times as long for a second, and large ones are no faster.)
 ///
 /// pause: where halving failed too, as at loose tolerances in a sheet of triangles, which can
 /// hardly bend without stretching, it is not even tried for 1, 2, 4, ... steps.
@@ -52,7 +52,7 @@ class Trouble {
  public:
   /// The share of the usual that may be left, 0.25 to 1: of the strain that decides about substeps
   /// (choose_substeps.cpp); of what yarns leave, its square root.
-  double care() const { return care_; }
+  double allowance() const { return allowance_; }
   bool may_halve() const { return pause_left_ == 0; }
   /// All but the last step of a pause, which tries yarns again.
   bool only_sweeps() const { return sweeping_ && pause_left_ > 1; }
@@ -85,7 +85,8 @@ class Trouble {
       begin_pause(1);
     } else {
       end_pause();
-      care_ = step.halved ? std::max(kLeastCare, care_ / 2) : std::min(1.0, kRecovery * care_);
+      allowance_ = step.halved ? std::max(kLeastAllowance, allowance_ / 2)
+                               : std::min(1.0, kRecovery * allowance_);
     }
   }
 
@@ -103,14 +104,14 @@ class Trouble {
   void begin_pause(int least) {
     pause_ = std::clamp(2 * pause_, least, kLongestPause);
     pause_left_ = pause_;
-    care_ = 1;
+    allowance_ = 1;
   }
   void end_pause() {
     pause_ = pause_left_ = 0;
     sweeping_ = false;
   }
 
-  static constexpr double kLeastCare = 0.25;
+  static constexpr double kLeastAllowance = 0.25;
   static constexpr double kRecovery = 1.01;  // per step
   static constexpr int kShortestSweeping = 8, kLongestPause = 64;
   static constexpr double kExpensive = 3000, kWorth = 2;
@@ -118,7 +119,7 @@ class Trouble {
   static constexpr int kMostInVain = 3;                     // steps
   static constexpr double kMeanSteps = 4;
 
-  double care_ = 1;
+  double allowance_ = 1;
   double stood_at_ = 0;
   int pause_ = 0, pause_left_ = 0;  // steps
   bool sweeping_ = false;           // in this pause

@@ -244,9 +244,9 @@ void YarnSolver::begin(kernels::VectorsView x, kernels::VectorsView start,
   split(x, team);
 }
 
-YarnSolver::Aim YarnSolver::aim(double care) const {
+YarnSolver::Aim YarnSolver::aim(double allowance) const {
   const bool rattle = settings_.scheme == Scheme::rattle;
-  const double wanted = spans_.holds() ? spans_.may_leave() : care * usual_;
+  const double wanted = spans_.holds() ? spans_.may_leave() : allowance * usual_;
   const double goal = rattle && !spans_.holds() ? std::min(wanted, kRattleGoal) : wanted;
   const double left = spans_.holds() ? spans_.solver_may_leave() : goal;
   const double block = rattle || kLeft * left < kSeen ? kNoBound : kLeft * left;
@@ -263,7 +263,7 @@ bool YarnSolver::may_take_newton(const ContactStore& contacts) const {
 
 kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                                 const ContactStore& contacts, bool first_round,
-                                                int max_iterations, double care,
+                                                int max_iterations, double allowance,
                                                 SimdMeasure& measure, Team& team) {
   kernels::LoopResult result;
   begin(x, start, contacts, first_round, team);
@@ -272,7 +272,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
     join(x, team);
     return result;
   }
-  const Aim aim = this->aim(care);
+  const Aim aim = this->aim(allowance);
   Progress progress(from_start_ ? kRattlePatience : kPatience);
   const auto look = [&] {
     const double strain = measure.max_strain(

@@ -42,16 +42,16 @@ class YarnSolver {
   /// Moves x until every constraint and listed contact is well within tolerance, or as far as it
   /// gets: failed where it no longer came nearer and is short of what it wanted (scheme rattle, and
   /// where errors contradict each other: of the tolerance), or where iterations ran out beyond the
-  /// tolerance. Scheme rattle applies impulses along the directions at `start`, if given. care: the
-  /// share of what it usually leaves that may be left. measure: of the true errors.
+  /// tolerance. Scheme rattle applies impulses along the directions at `start`, if given.
+  /// allowance: the share of what it usually leaves that may be left. measure: of the true errors.
   /// LoopResult::iterations counts sweeps and iterations of conjugate gradients, at least one in
   /// each Newton step; visits, every solve of a constraint.
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                       const ContactStore& contacts, bool first_round,
-                                      int max_iterations, double care, SimdMeasure& measure,
+                                      int max_iterations, double allowance, SimdMeasure& measure,
                                       Team& team);
   /// For the next solves by scheme paper, of the substep from `start` to x, the prediction: what
-  /// taut spans keep is left, instead of what `care` says (held_spans.h). release: no more.
+  /// taut spans keep is left, instead of what `allowance` says (held_spans.h). release: no more.
   void hold_taut_spans(kernels::VectorsView start, kernels::VectorsView x, Team& team) {
     spans_.hold(start, x, team);
   }
@@ -78,7 +78,7 @@ class YarnSolver {
     double block;   // a block with less is not solved again at once
   };
   simd::Yarns yarns();
-  Aim aim(double care) const;
+  Aim aim(double allowance) const;
   bool may_take_newton(const ContactStore& contacts) const;
   void begin(kernels::VectorsView x, kernels::VectorsView start, const ContactStore& contacts,
              bool first_round, Team& team);

@@ -28,18 +28,18 @@ int steps_of_sweeps(Trouble& trouble) {
   return steps;
 }
 
-TEST_CASE("after halves that helped there is more care, down to a quarter, for a while") {
+TEST_CASE("after halves that helped the allowance is less, down to a quarter, for a while") {
   Trouble trouble;
   const StepRecord halved{.halved = true};
-  for (const double care : {0.5, 0.25, 0.25}) {
+  for (const double allowance : {0.5, 0.25, 0.25}) {
     trouble.remember(halved);
-    CHECK(trouble.care() == care);
+    CHECK(trouble.allowance() == allowance);
     CHECK(trouble.may_halve());
   }
   trouble.remember({});
-  CHECK(trouble.care() == doctest::Approx(0.25 * 1.01));
+  CHECK(trouble.allowance() == doctest::Approx(0.25 * 1.01));
   for (int k = 0; k < 140; ++k) trouble.remember({});
-  CHECK(trouble.care() == 1);
+  CHECK(trouble.allowance() == 1);
 }
 
 TEST_CASE("where halves are no answer they are not tried for 1, 2, 4, ... 64 steps") {
@@ -47,7 +47,7 @@ TEST_CASE("where halves are no answer they are not tried for 1, 2, 4, ... 64 ste
   trouble.remember({.halved = true});
   for (const int pause : {1, 2, 4, 8, 16, 32, 64, 64}) {
     trouble.remember({.halved = true, .helped = false});
-    CHECK(trouble.care() == 1);
+    CHECK(trouble.allowance() == 1);
     int steps = 0;
     for (; !trouble.may_halve() && steps < 100; ++steps) trouble.remember({});
     CHECK(steps == pause);
@@ -142,7 +142,7 @@ TEST_CASE("a state that is copied brings its trouble along, but not to other set
   troubled.trouble.remember({.halved = true});
   troubled.placed = false;
   alike.copy(troubled);
-  CHECK(alike.trouble.care() == 0.5);
+  CHECK(alike.trouble.allowance() == 0.5);
   CHECK_FALSE(alike.placed);
   State placed(model, usual);
   alike.copy(placed);
@@ -159,7 +159,7 @@ TEST_CASE("a state that is copied brings its trouble along, but not to other set
     State other(model, settings);
     other.placed = false;
     other.copy(troubled);
-    CHECK(other.trouble.care() == 1);
+    CHECK(other.trouble.allowance() == 1);
     CHECK(other.placed);
   }
 }
@@ -181,7 +181,7 @@ AfterTrouble after_trouble(int size, int substeps) {
   return {step(usual, 0.02), step(careful, 0.02)};
 }
 
-TEST_CASE("care: more substeps, and yarns solved more closely") {
+TEST_CASE("less allowance: more substeps, and yarns solved more closely") {
   const AfterTrouble automatic = after_trouble(8, kAutomaticSubsteps);
   CHECK(automatic.usual.substeps == 1);
   CHECK(automatic.careful.substeps == 2);
