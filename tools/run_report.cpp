@@ -75,13 +75,13 @@ std::string goal_text(const Settings& settings) {
              : fmt::format("tolerance {}", percent(settings.tolerance));
 }
 
-}  // namespace
-
 /// Of a frame: as asked for, or the mean of those chosen.
 Json substeps(const RunReport& report) {
   if (report.settings.substeps != kAutomaticSubsteps) return report.settings.substeps;
   return mean(report.summary.substeps, report.summary.frames);
 }
+
+}  // namespace
 
 Json to_json(const RunReport& report) {
   const RunSummary& summary = report.summary;

@@ -58,6 +58,11 @@ Settings Setup::settings(double tolerance) const {
 
 bool not_by_relaxation(const Method& method) { return method.solver != Solver::gauss_seidel; }
 
+bool by_yarns(const Method& method) {
+  const bool yarns = method.solver == Solver::yarn || method.solver == Solver::automatic;
+  return yarns && method.scheme == Scheme::paper;
+}
+
 double energy_of_the_catch(int size, double tolerance, double dt) {
   const double spacing = 1.0 / (size - 1), fall = 10 * dt * dt / 2;
   const double error = tolerance * spacing + fall * fall / (2 * spacing);

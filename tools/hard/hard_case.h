@@ -48,6 +48,8 @@ struct Case {
 
 /// For methods that bring a tight tolerance in a bounded number of passes.
 bool not_by_relaxation(const Method& method);
+/// For yarns with scheme paper, and automatic, which chooses them.
+bool by_yarns(const Method& method);
 
 /// The largest strain is the figure; it fails where a step did not converge, or claimed what is not
 /// so, or where more energy appeared than `energy_allowed`.

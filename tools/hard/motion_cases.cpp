@@ -76,11 +76,6 @@ Outcome run_banner(const Setup& setup, double wider) {
   return strain_outcome(trial, 1e-2);
 }
 
-bool keeps_taut_spans(const Method& method) {
-  const bool by_yarns = method.solver == Solver::yarn || method.solver == Solver::automatic;
-  return by_yarns && method.scheme == Scheme::paper;
-}
-
 /// A sphere falls onto a held sheet, so fast that one step takes it from above to below. The figure
 /// is the number of steps after which some of the sheet had changed sides without a word of it.
 Outcome run_crossing(const Setup& setup) {
@@ -168,9 +163,9 @@ std::vector<Case> motion_cases() {
       {"pins_teleport", "max strain", kStrain, run_teleports},
       {"pin_released", "max strain", kStrain, run_release},
       {"banner", "max strain", kStrain, [](const Setup& setup) { return run_banner(setup, 1); },
-       keeps_taut_spans},
+       by_yarns},
       {"banner_too_narrow", "max strain", kStrain,
-       [](const Setup& setup) { return run_banner(setup, 1 + 0.7 * kStrain); }, keeps_taut_spans},
+       [](const Setup& setup) { return run_banner(setup, 1 + 0.7 * kStrain); }, by_yarns},
       {"sphere_crosses", "unreported crossings", 0, run_crossing},
       {"free_flight", "momentum lost, relative", 1e-9,
        [](const Setup& setup) { return run_momentum(setup, Backend::reference); }, runs_in_doubles},
