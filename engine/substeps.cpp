@@ -202,7 +202,6 @@ class Substeps {
       present_.gave_up = record_.made_do = true;
       if (answer_ == Answer::halves && !trial.gained) record_.helped = false;
     }
-    record_.solved |= trial.ended == Ended::solved;
     if (present_.gave_up) take_gained_energy(s_, h);
     transaction_.accept();
     record_.stood_at = std::max(record_.stood_at, trial.stood_at);
@@ -230,17 +229,18 @@ class Substeps {
   /// Of the whole step. Where the tolerance is loose sweeps converge, and soon.
   StepRecord record() const {
     constexpr double kLoose = 0.003;
-    const bool by_yarns = s_.yarn && s_.settings.scheme == Scheme::paper;
-    const bool converged = report_.status == Status::converged;
+    const bool sweeps_converge = s_.yarn && s_.settings.scheme == Scheme::paper &&
+                                 s_.settings.tolerance > kLoose &&
+                                 report_.status == Status::converged;
     const bool began_with_sweeps = s_.trouble.only_sweeps();
     const auto constraints =
         static_cast<double>(std::max<std::size_t>(1, s_.model->constraints.size()));
     StepRecord record = record_;
     record.halved = report_.halvings > 0;
-    record.helped |= !(by_yarns && converged && s_.settings.tolerance > kLoose);
+    record.helped |= !sweeps_converge;
     record.only_sweeps = began_with_sweeps;
     record.swept_in_vain = began_with_sweeps && answer_ != Answer::only_sweeps;
-    record.may_be_swept = by_yarns && converged && !s_.direct && s_.model->heaviest_sphere == 0;
+    record.may_be_swept = sweeps_converge && !s_.direct && !s_.model->has_contacts();
     record.passes = static_cast<double>(report_.visits - projected_) / constraints;
     return record;
   }

@@ -9,26 +9,20 @@
 /// pause: where halving failed too, as at loose tolerances in a sheet of triangles, which can
 /// hardly bend without stretching, it is not even tried for 1, 2, 4, ... steps.
 ///
-/// only sweeps: where kMostInVain steps in a row were solved by sweeps alone, yarns having given up
-/// in all of their substeps, or where steps by yarns average more than kExpensive passes, the next
-/// 8, 16, ... use Gauss-Seidel sweeps alone, which spread what cannot be solved over all of the
-/// cloth, up to the tolerance; then yarns are tried again, once, without halves. Where these steps
-/// average more than kWorth times as many sweeps as those by yarns took passes, each of which takes
-/// two to three times as long, the next are as usual, whatever they take. Not where there are free
-/// spheres: a heavy one that yarns hold, late and not within tolerance, breaks through a sheet that
-/// is only swept (sphere_drop_10_kg_taut of weft hard).
-///
-/// (A sheet of 40 x 40 triangles hangs by a row of particles that is not straight, and so is no
-/// hinge: at 1 %, 100 frames, 178 ms a frame without sweeps, 36 with them, Gauss-Seidel alone 41;
-/// at 5 % 273, 5 and 4, and without them the sheet falls a third as far. A flag of 20 x 20 with
-/// ropes as diagonals, whose yarns always give up: 3.3 ms, 1.4 and 1.0. Swept at 300 passes: a sail
-/// in the wind, which takes 700, gives all of its tolerance up to speed in one step, 0.2 and 5.5 J,
-/// and yarns find no way out of that for good, 17 ms a frame instead of 3; after three steps with
-/// one such substep among others: loaded ropes of 400 particles, 43 instead of 1.4.)
+/// only sweeps: where steps by yarns average more than kExpensive passes, the next 8, 16, ... use
+/// Gauss-Seidel sweeps alone, which spread what cannot be solved over all of the cloth, up to the
+/// tolerance; then yarns are tried again, once, without halves. Where a step takes more sweeps than
+/// yarns take passes on average, the next steps are as usual, whatever they take. Not where
+/// there are spheres: a heavy one that yarns hold, late and not within tolerance, breaks through a
+/// sheet that is only swept (sphere_drop_10_kg_taut of weft hard). (A sheet of 40 x 40 triangles
+/// hangs by a row of particles that is not straight, and so is no hinge: at 1 %, 100 frames, 178 ms
+/// a frame without, 36 with it, Gauss-Seidel alone 41; at 5 % 273, 5 and 4, and without it the
+/// sheet falls a third as far. kExpensive 1000: sheets that hang by a corner are swept as well, and
+/// lose half as much energy again.)
 ///     usual   -- halves failed --> no halves in 1, 2, 4 ... 64 steps --> usual
-///     usual   -- expensive, ----> only sweeps in 8, 16 ... 64 steps, the last by yarns, no halves
-///                or in vain       --> twice as many, if that one is, too; else usual
-///     sweeps  -- not worth it --> usual, and 64 steps that are not swept
+///     usual   -- expensive -----> only sweeps in 8, 16 ... 64 steps, the last by yarns, no halves
+///                                 --> twice as many, if that one made do; else usual
+///     sweeps  -- in vain -------> usual, and 64 steps that are not swept
 #pragma once
 
 #include <algorithm>
@@ -40,10 +34,9 @@ struct StepRecord {
   bool halved = false;
   bool helped = true;        // halves were an answer, or not asked, or sweeps would be none
   bool made_do = false;      // with what else than the solver's solution
-  bool solved = false;       // the solver, one substep at least
   bool only_sweeps = false;  // it began with those of Gauss-Seidel
   bool swept_in_vain = false;
-  bool may_be_swept = false;  // by them alone: it converged, and nothing presses
+  bool may_be_swept = false;  // by them alone: the tolerance is loose, and nothing presses
   double stood_at = 0;        // what its sweeps could not solve (standstill.h)
   double passes = 0;          // over all constraints
 };
@@ -58,25 +51,25 @@ class Trouble {
   bool only_sweeps() const { return sweeping_ && pause_left_ > 1; }
   /// What sweeps could not solve in the last step; 0: nothing.
   double stood_at() const { return stood_at_; }
-  /// In one substep, of steps that are only swept.
-  int most_sweeps() const { return static_cast<int>(std::min(2 * kWorth * mean_passes_, 1e6)); }
+  /// As many as yarns take.
+  int most_sweeps() const { return static_cast<int>(std::min(mean_passes_, 1e6)); }
 
   /// After a step.
   void remember(const StepRecord& step) {
     stood_at_ = step.stood_at;
     yarns_left_ = std::max(0, yarns_left_ - 1);
-    count_passes(step);
-    const bool to_be_swept =
-        (expense_ > kExpensive || in_vain_ >= kMostInVain) && step.may_be_swept && yarns_left_ == 0;
-    if (step.swept_in_vain || (step.only_sweeps && mean_sweeps_ > kWorth * mean_passes_)) {
+    if (!step.only_sweeps) {
+      mean_passes_ += (step.passes - mean_passes_) / kMeanSteps;
+      expense_ += (std::min(step.passes, kMostExpensive) - expense_) / kMeanSteps;
+    }
+    if (step.swept_in_vain || (step.only_sweeps && step.passes > mean_passes_)) {
       end_pause();
       yarns_left_ = kLongestPause;
-    } else if (pause_left_ > 0 && (sweeping_ || !to_be_swept)) {
+    } else if (pause_left_ > 0) {
       --pause_left_;
-      const bool in_vain = step.made_do || step.passes > kExpensive;
-      const bool again = sweeping_ && in_vain && step.may_be_swept;
+      const bool again = sweeping_ && step.made_do && step.may_be_swept;
       if (again && pause_left_ == 0) begin_pause(kShortestSweeping);
-    } else if (to_be_swept) {
+    } else if (expense_ > kExpensive && step.may_be_swept && yarns_left_ == 0) {
       if (!sweeping_) end_pause();
       sweeping_ = true;
       begin_pause(kShortestSweeping);
@@ -91,16 +84,6 @@ class Trouble {
   }
 
  private:
-  void count_passes(const StepRecord& step) {
-    if (step.only_sweeps) {
-      mean_sweeps_ += (step.passes - mean_sweeps_) / kMeanSteps;
-      return;
-    }
-    mean_passes_ += (step.passes - mean_passes_) / kMeanSteps;
-    mean_sweeps_ = mean_passes_;
-    expense_ += (std::min(step.passes, kMostExpensive) - expense_) / kMeanSteps;
-    in_vain_ = step.made_do && !step.solved ? in_vain_ + 1 : 0;
-  }
   void begin_pause(int least) {
     pause_ = std::clamp(2 * pause_, least, kLongestPause);
     pause_left_ = pause_;
@@ -114,9 +97,8 @@ class Trouble {
   static constexpr double kLeastAllowance = 0.25;
   static constexpr double kRecovery = 1.01;  // per step
   static constexpr int kShortestSweeping = 8, kLongestPause = 64;
-  static constexpr double kExpensive = 3000, kWorth = 2;
+  static constexpr double kExpensive = 3000;
   static constexpr double kMostExpensive = 3 * kExpensive;  // of a step: one alone is not enough
-  static constexpr int kMostInVain = 3;                     // steps
   static constexpr double kMeanSteps = 4;
 
   double allowance_ = 1;
@@ -124,9 +106,7 @@ class Trouble {
   int pause_ = 0, pause_left_ = 0;  // steps
   bool sweeping_ = false;           // in this pause
   double mean_passes_ = 0;          // of steps by yarns, lately
-  double mean_sweeps_ = 0;          // of steps that were only swept, if those were the last
   double expense_ = 0;              // the same, of no step more than kMostExpensive
-  int in_vain_ = 0;                 // steps in which yarns solved nothing, one after the other
   int yarns_left_ = 0;              // steps that are not swept, whatever they take
 };
 

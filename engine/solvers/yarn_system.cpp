@@ -16,7 +16,7 @@ constexpr double kForcing = 0.2;
 /// solution: the residual stays, and impulses grow along what the system cannot tell apart, until
 /// all is out by far more than before. So where it has not come down for kPatience iterations, and
 /// is not far below what it was at first, nothing is moved. (A walk in a cape of 20 x 20 triangles
-/// of random shape, 60 Hz, 1 %: 300 iterations from 0.3 to 4 %, 172 ms in the worst frame; 15 now.
+/// of random shape, 60 Hz, 1 %: 300 iterations from 0.3 to 4 %, 172 ms in the worst frame; 19 now.
 /// A patience of 30: what converges is given up as well. Sheets that hang by two corners do not
 /// come to it, up to 321 x 321 and 781 iterations a frame.)
 constexpr double kFall = 0.95, kFarBelow = 0.3;

@@ -171,10 +171,9 @@ WEFT_API ModelInfo describe(const Model& model);
 /// iterations; where that fails too, Gauss-Seidel takes over. StepReport::iterations counts every
 /// attempt. If such a substep would gain energy all velocities are scaled down by one factor, to
 /// rest at most, or to the rigid motion nearest to that of the pins. For some steps afterwards
-/// automatic substeps are shorter and yarns are solved more tightly. Where yarns gave up three
-/// steps in a row, or took thousands of passes, with scheme paper and no free spheres, the next
-/// steps use Gauss-Seidel alone. So a step depends slightly on the ones before, until positions are
-/// written.
+/// automatic substeps are shorter and yarns are solved more tightly. Where yarns took thousands of
+/// passes, with scheme paper, a tolerance above 0.3 % and no spheres, the next steps use
+/// Gauss-Seidel alone. So a step depends slightly on the ones before, until positions are written.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
 /// paper: impulses along the directions at the predicted positions; first order, and dissipative.
 /// rattle: along the directions at the start of the substep, always with velocity correction;

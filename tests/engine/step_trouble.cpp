@@ -211,12 +211,29 @@ double iterations_of_a_second(const SceneDescription& scene, Solver solver) {
   return iterations;
 }
 
-TEST_CASE("what yarns cannot solve they give up soon, and then leave to sweeps") {
+TEST_CASE("linear systems that have no solution are given up soon") {
   const SceneDescription quads = stretched_quads(8);
   const double sweeps = iterations_of_a_second(quads, Solver::gauss_seidel);
-  // 1.26; 1.5 if linear systems are given all the iterations that they may take, 2.0 if yarns are
-  // tried in each step, 3.2 with both.
-  CHECK(iterations_of_a_second(quads, Solver::automatic) < 1.4 * sweeps);
+  // 2.0; 3.2 if they are given all the iterations that they may take.
+  CHECK(iterations_of_a_second(quads, Solver::automatic) < 2.5 * sweeps);
+}
+
+/// Swept once too often, it is left with noise from which yarns do not find back: 4000.
+TEST_CASE("a sheet that was thrown about is soon as cheap as before") {
+  const SceneDescription scene = scene_of("corners", 41);
+  Cloth cloth = cloth_of(scene, {});
+  const auto throw_pins = [&](double by) {
+    for (const std::uint32_t pin : scene.fixed) {
+      REQUIRE(cloth.move_fixed(pin, scene.positions[pin] + Vec3{0.7 * by, by, 0}));
+    }
+  };
+  for (int k = 0; k < 30; ++k) step(cloth, 1.0 / 60);
+  for (const double by : {-0.2, 0.2, -0.2, 0.2, -0.2, 0.0}) {
+    throw_pins(by);
+    step(cloth, 1.0 / 60);
+  }
+  for (int k = 0; k < 9; ++k) step(cloth, 1.0 / 60);
+  for (int k = 0; k < 15; ++k) CHECK(step(cloth, 1.0 / 60).iterations < 200);
 }
 
 TEST_CASE("sweeps that do not come within tolerance leave yarns half of the iterations") {

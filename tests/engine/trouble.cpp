@@ -73,47 +73,18 @@ TEST_CASE(
   for (const int pause : {8, 16, 32, 64, 64}) {
     CHECK(steps_of_sweeps(trouble) == pause - 1);
     CHECK_FALSE(trouble.may_halve());
-    trouble.remember(
-        {.made_do = pause < 32, .may_be_swept = true, .passes = pause < 32 ? 0. : 1e6});
+    trouble.remember({.made_do = true, .may_be_swept = true});
   }
   steps_of_sweeps(trouble);
   trouble.remember({.may_be_swept = true});  // this time yarns have a solution
   CHECK_FALSE(trouble.only_sweeps());
 }
 
-TEST_CASE("steps of few passes in which yarns make do, three in a row, are followed by sweeps") {
-  constexpr StepRecord kMadeDo{.made_do = true, .may_be_swept = true, .passes = 50};
-  constexpr StepRecord kSolved{.may_be_swept = true, .passes = 50};
-  Trouble trouble;
-  for (const StepRecord& step : {kMadeDo, kMadeDo, kSolved, kMadeDo, kMadeDo}) {
-    trouble.remember(step);
-    CHECK_FALSE(trouble.only_sweeps());
-  }
-  SUBCASE("they are") {
-    trouble.remember(kMadeDo);
-    CHECK(steps_of_sweeps(trouble) == 7);
-  }
-  SUBCASE("in a pause of halves as well") {
-    for (int k = 0; k < 6; ++k) trouble.remember({.helped = false});  // for 1, 2, now 4 steps
-    for (int k = 0; k < 3; ++k) {
-      CHECK_FALSE(trouble.may_halve());
-      trouble.remember(kMadeDo);
-    }
-    CHECK(steps_of_sweeps(trouble) == 7);
-  }
-  SUBCASE("not where sweeps alone would not do") {
-    for (int k = 0; k < 10; ++k) {
-      trouble.remember({.made_do = true, .passes = 50});
-      CHECK_FALSE(trouble.only_sweeps());
-    }
-  }
-}
-
-TEST_CASE("sweeps in vain, or twice as many as yarns take, are not tried again for 64 steps") {
+TEST_CASE("sweeps in vain, or more of them than yarns take, are not tried again for 64 steps") {
   for (const bool in_vain : {false, true}) {
     CAPTURE(in_vain);
     Trouble trouble = after_expensive_steps();
-    const double passes = in_vain ? 0 : 1e7;
+    const double passes = in_vain ? 0 : 2e6;
     trouble.remember({.only_sweeps = true, .swept_in_vain = in_vain, .passes = passes});
     CHECK(trouble.may_halve());
     for (int k = 0; k < 63; ++k) {
