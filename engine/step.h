@@ -2,8 +2,7 @@
 ///
 ///   Cloth::step              cloth.cpp      refuses a bad dt
 ///     step                   step.cpp       threads, pins on their way, the report
-///       run_substeps         substeps.cpp   how many; projects a bad start; answers failure by
-///       halves
+///       run_substeps         substeps.cpp   how many; a bad start; halves where one fails
 ///         substep            substep.cpp    one of them: the list of stages
 ///           solve_positions  solve.cpp      which solver, what answers for it, rounds of contacts
 ///             solvers/{reference,simd,yarn,direct}_solver
