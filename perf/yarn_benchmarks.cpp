@@ -16,9 +16,9 @@ struct Loom {
   std::shared_ptr<const Model> model;
   const YarnLayout& layout;
   kernels::Vectors x;
-  kernels::AlignedVector<std::int32_t> base_step;
+  kernels::AlignedVector<simd::YarnBaseSteps> base_step;
   kernels::AlignedVector<simd::YarnSystemRow> system;
-  kernels::AlignedVector<simd::LaneVectors> start;
+  kernels::AlignedVector<simd::YarnDirections> start;
   kernels::AlignedVector<simd::YarnScratch> scratch;
   kernels::AlignedVector<float> base, u, t;
 
@@ -26,7 +26,7 @@ struct Loom {
       : model(std::move(of)),
         layout(model->yarns()),
         x(model->initial_position),
-        base_step(layout.rows() * kLanes),
+        base_step(layout.rows()),
         system(layout.rows()),
         start(layout.rows()),
         scratch(layout.scratch_rows()),

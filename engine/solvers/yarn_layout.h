@@ -44,7 +44,8 @@ struct YarnLayout {
 
   /// Whether displacements are too many for the caches.
   bool from_memory() const { return places.floats * sizeof(float) > kernels::kCachedBytes; }
-  std::size_t scratch_rows() const { return patches.empty() ? longest : 2 * (longest + 1); }
+  /// One behind those of a block (kernels/simd/yarn_arrays.h); for patches of the base as many.
+  std::size_t scratch_rows() const { return (patches.empty() ? 1 : 2) * (longest + 1); }
   std::size_t rows() const { return kind.size(); }
   std::size_t families() const { return family_begin.size() - 1; }
   std::size_t bytes() const;

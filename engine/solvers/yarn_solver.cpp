@@ -83,7 +83,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       settings_(settings),
       usual_(std::min(settings.tolerance, kGoal)),
       table_(table),
-      base_step_(layout_.rows() * kernels::kLanes),
+      base_step_(layout_.rows()),
       base_(layout_.places.floats),
       u_(layout_.places.floats),
       first_end_(layout_.families() > 0 ? layout_.family_begin[1] : 0),

@@ -126,18 +126,18 @@ class YarnSolver {
   const double usual_;  // strain that is aimed at
   const simd::Table& table_;
 
-  double cell_ = 0;                                     // that base was split by
-  bool from_start_ = false, velocities_ = false;        // what is being solved
-  bool moved_ = false;                                  // the rows do not remember the present base
-  kernels::AlignedVector<std::int32_t> base_step_;      // per row and lane
-  kernels::AlignedVector<simd::LaneVectors> start_;     // scheme rattle only
-  kernels::AlignedVector<simd::YarnSystemRow> system_;  // from the first Newton step on
-  kernels::AlignedVector<simd::YarnScratch> scratch_;   // for each thread
-  kernels::AlignedVector<float> base_, u_, t_;          // as YarnPlaces has it
-  const std::size_t first_end_;                         // blocks of the first family
-  std::vector<simd::YarnProducts> products_;            // per block
-  std::vector<std::uint32_t> solves_;                   // per block, in one sweep
-  std::vector<std::uint8_t> stubborn_;                  // per block: kMostSolves were too few
+  double cell_ = 0;                               // that base was split by
+  bool from_start_ = false, velocities_ = false;  // what is being solved
+  bool moved_ = false;                            // the rows do not remember the present base
+  kernels::AlignedVector<simd::YarnBaseSteps> base_step_;  // per row
+  kernels::AlignedVector<simd::YarnDirections> start_;     // scheme rattle only
+  kernels::AlignedVector<simd::YarnSystemRow> system_;     // from the first Newton step on
+  kernels::AlignedVector<simd::YarnScratch> scratch_;      // for each thread
+  kernels::AlignedVector<float> base_, u_, t_;             // as YarnPlaces has it
+  const std::size_t first_end_;                            // blocks of the first family
+  std::vector<simd::YarnProducts> products_;               // per block
+  std::vector<std::uint32_t> solves_;                      // per block, in one sweep
+  std::vector<std::uint8_t> stubborn_;                     // per block: kMostSolves were too few
   YarnOthers others_;
   HeldSpans spans_;
 };

@@ -259,7 +259,9 @@ class Weaver {
     for (std::uint32_t column = 0; column < kLanes; ++column) {
       const bool own = columns[column] != kNoIndex;
       patch.row[column] = own ? columns[column] : rows;
-      in_patches_ += own ? 1 : 0;
+      if (!own) continue;
+      patch.columns = column + 1;
+      ++in_patches_;
     }
     patches_.push_back(patch);
   }

@@ -138,19 +138,19 @@ struct alignas(64) YarnRow {
 /// The last two of a block's rows, from the others.
 void derive_joints(std::span<YarnRow> rows);
 
-/// The same row of the linear system (yarn_system.h).
+/// Room for what kernels have of a row besides (yarn_arrays.h): in the linear system, in the
+/// scratch of a sweep, of scheme rattle's directions, and of the base.
 struct alignas(64) YarnSystemRow {
-  LaneVectors n;
-  float m[kernels::kLanes], reciprocal[kernels::kLanes];  // factors
-  float lambda[kernels::kLanes], residual[kernels::kLanes];
-  float z[kernels::kLanes], p[kernels::kLanes], q[kernels::kLanes];
+  float floats[10 * kernels::kLanes];
 };
-
-/// What a sweep keeps of a row between the way down and the way up; y = r b. u: of rows that do not
-/// stand in memory as they are.
 struct alignas(64) YarnScratch {
-  LaneVectors u, n;
-  float m[kernels::kLanes], y[kernels::kLanes];
+  float floats[8 * kernels::kLanes];
+};
+struct alignas(64) YarnDirections {
+  float floats[3 * kernels::kLanes];
+};
+struct alignas(64) YarnBaseSteps {
+  std::int32_t words[kernels::kLanes];
 };
 
 inline constexpr std::size_t kRowFloats = 3 * kernels::kLanes;  // of the woven layout
@@ -160,6 +160,7 @@ inline constexpr std::size_t kRowFloats = 3 * kernels::kLanes;  // of the woven 
 struct YarnPatch {
   std::uint32_t place[kernels::kLanes];  // per lane: of its row of memory; single: of its particle
   std::uint32_t row[kernels::kLanes];    // per column: of the block; nobody's: behind the last
+  std::uint32_t columns = 0;             // behind these all are nobody's
   bool single = false;                   // row[0]
 };
 
@@ -191,13 +192,13 @@ struct Yarns {
   YarnSystemRow* system = nullptr;
   const std::uint32_t* slot = nullptr;  // quads: per row and lane; padding: slots of no particle
   const YarnPatch* patch = nullptr;
-  LaneVectors* start = nullptr;  // per row: scheme rattle's directions; null: present ones
-  bool velocities = false;       // that is what the system's errors are of
+  YarnDirections* start = nullptr;  // per row: scheme rattle's directions; null: present ones
+  bool velocities = false;          // that is what the system's errors are of
   float* base = nullptr;
-  std::int32_t* base_step = nullptr;  // per row and lane: what rows remember of it (yarn_rows.h)
-  float cell = 0;                     // that it was split by
-  bool moved = false;                 // what rows remember is not the present base
-  bool from_memory = false;           // positions do not fit the caches
+  YarnBaseSteps* base_step = nullptr;  // per row: what it remembers of that (yarn_rows.h)
+  float cell = 0;                      // that it was split by
+  bool moved = false;                  // what rows remember is not the present base
+  bool from_memory = false;            // positions do not fit the caches
 };
 
 /// What a watched sweep did to a block, and whether its lengths are good enough now.

@@ -22,45 +22,39 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "kernels/simd/quads.h"
 #include "kernels/simd/transpose.h"
+#include "kernels/simd/yarn_arrays.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-using kernels::kLanes;
-
-/// What will be wanted from memory: in place, the rows behind each of `rows` rows; or the patches
-/// of the next block.
-struct Ahead {
-  std::uint32_t rows = 0;  // of memory; 0: it is in the caches
-  const YarnPatch* patch = nullptr;
-  const float* memory = nullptr;
-};
-
 inline void prefetch_row(std::uintptr_t row) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
     __builtin_prefetch(reinterpret_cast<const float*>(row) + axis * kLanes, 1);
   }
 }
 
-/// Rows of a block that stand one behind the other: in place, or in the scratch.
+/// Rows that stand one behind the other: floats from one to the next, and from axis to axis. (Known
+/// only when it runs: yarn_linearise takes 1.1 times as long on AVX2.)
+template <std::size_t kRow, std::size_t kAxis>
 struct Rows {
   float* first;
-  std::size_t stride;  // floats
-  Ahead ahead = {};
+  std::size_t stride;  // floats from one lane to the next, of lanes that begin a vector
 
+  [[gnu::always_inline]] float* at(std::uint32_t row, std::uint32_t lane) const {
+    return first + row * kRow + lane * stride;
+  }
   [[gnu::always_inline]] FloatVector get(std::uint32_t row, std::uint32_t lane) const {
     const float* x = at(row, lane);
-    return {load(x), load(x + kLanes), load(x + 2 * kLanes)};
+    return {load(x), load(x + kAxis), load(x + 2 * kAxis)};
   }
   [[gnu::always_inline]] void put(std::uint32_t row, std::uint32_t lane,
                                   const FloatVector& v) const {
     float* x = at(row, lane);
     v.x.store_unaligned(x);
-    v.y.store_unaligned(x + kLanes);
-    v.z.store_unaligned(x + 2 * kLanes);
+    v.y.store_unaligned(x + kAxis);
+    v.z.store_unaligned(x + 2 * kAxis);
   }
   // Between a way down and a way up they stay where they are.
   [[gnu::always_inline]] void keep(std::uint32_t, std::uint32_t, const FloatVector&) const {}
@@ -72,25 +66,105 @@ struct Rows {
     put(row, lane, v);
   }
   [[gnu::always_inline]] void put_kept(std::uint32_t, std::uint32_t) const {}
-  /// What stands in place is fetched some rows ahead, into the next block; the patches of the next
-  /// block while there is this one to solve in the scratch.
+};
+
+/// Rows of memory.
+struct RowsInPlace : Rows<kRowFloats, kLanes> {
+  std::uint32_t ahead = 0;  // rows; 0: all of it is in the caches
+
+  void fetch(std::uint32_t) const {}
+  void put_back(std::uint32_t) const {}
+  /// Some rows ahead, into the next block.
   [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t,
                                           std::uint32_t lane) const {
     constexpr std::size_t kAhead = 32;
-    if (row >= ahead.rows || lane > 0) [[likely]]
+    if (row >= ahead || lane > 0) [[likely]]
       return;
-    if (ahead.patch == nullptr) {
-      prefetch_row(reinterpret_cast<std::uintptr_t>(first) +
-                   (row + kAhead) * stride * sizeof(float));
-    } else {
-      prefetch_row(reinterpret_cast<std::uintptr_t>(ahead.memory +
-                                                    ahead.patch[row / kLanes].place[row % kLanes]));
+    prefetch_row(reinterpret_cast<std::uintptr_t>(first) +
+                 (row + kAhead) * kRowFloats * sizeof(float));
+  }
+};
+
+/// Rows in the scratch, of what stands in patches of memory.
+struct FetchedRows : Rows<Scratch::kFloatsOfRow, kFloats> {
+  float* memory;
+  const YarnPatch* patches;
+  std::uint32_t count;   // of them
+  std::uint32_t nobody;  // row of the block, behind its last
+  bool from_memory;      // not in the caches
+  std::uint32_t ahead;   // rows of the next block's patches that will be wanted from there
+
+  /// Before the first row of a vector is wanted.
+  void fetch(std::uint32_t lane) const {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      prefetch_patch(i, lane);
+      fetch_patch(patches[i], lane);
     }
+  }
+  /// When its last row has been put. What is nobody's is put back as 0.
+  void put_back(std::uint32_t lane) const {
+    put(nobody, lane, no_vector());
+    for (std::uint32_t i = 0; i < count; ++i) put_patch(patches[i], lane);
+  }
+  /// Of the patches of the next block, while there is this one to solve.
+  [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t,
+                                          std::uint32_t lane) const {
+    if (row >= ahead || lane > 0) [[likely]]
+      return;
+    prefetch_memory(patches[count + row / kLanes], row % kLanes);
   }
 
  private:
-  [[gnu::always_inline]] float* at(std::uint32_t row, std::uint32_t lane) const {
-    return first + row * stride + lane;
+  /// Where a vector begins: of each lane from a column on, and of each column from a lane on.
+  [[gnu::always_inline]] auto in_memory(const YarnPatch& patch, std::uint32_t lane,
+                                        std::uint32_t column) const {
+    return [&patch, from = memory + column, lane ](std::uint32_t k) __attribute__((always_inline)) {
+      return from + patch.place[lane + k];
+    };
+  }
+  [[gnu::always_inline]] auto in_scratch(const YarnPatch& patch, std::uint32_t lane,
+                                         std::uint32_t column) const {
+    return [&patch, rows = *this, lane, column ](std::uint32_t i) __attribute__((always_inline)) {
+      return rows.at(patch.row[column + i], lane);
+    };
+  }
+  // Where a row begins is computed for each patch anew: arrays of pointers to all rows, filled
+  // first, took 1.8 times as long.
+  void fetch_patch(const YarnPatch& patch, std::uint32_t lane) const {
+    if (patch.single) {
+      return for_each_float(patch, lane, [](float& row, float& place) { row = place; });
+    }
+    for (std::uint32_t column = 0; column < patch.columns; column += kFloats) {
+      transpose(in_memory(patch, lane, column), kLanes, in_scratch(patch, lane, column), kFloats);
+    }
+  }
+  void put_patch(const YarnPatch& patch, std::uint32_t lane) const {
+    if (patch.single) {
+      return for_each_float(patch, lane, [](float& row, float& place) { place = row; });
+    }
+    for (std::uint32_t column = 0; column < patch.columns; column += kFloats) {
+      transpose(in_scratch(patch, lane, column), kFloats, in_memory(patch, lane, column), kLanes);
+    }
+  }
+  /// work(a float of a single row, and where it stands in memory)
+  template <class Work>
+  void for_each_float(const YarnPatch& patch, std::uint32_t lane, Work&& work) const {
+    float* row = at(patch.row[0], lane);
+    for (std::uint32_t k = 0; k < kFloats; ++k) {
+      float* place = memory + patch.place[lane + k];
+      for (std::size_t axis = 0; axis < kAxes; ++axis) {
+        work(row[axis * kFloats + k], place[axis * kLanes]);
+      }
+    }
+  }
+  /// A little ahead.
+  void prefetch_patch(std::uint32_t patch, std::uint32_t lane) const {
+    constexpr std::uint32_t kAhead = 2;
+    if (!from_memory || patch + kAhead >= count) return;
+    for (std::uint32_t k = 0; k < kFloats; ++k) prefetch_memory(patches[patch + kAhead], lane + k);
+  }
+  void prefetch_memory(const YarnPatch& patch, std::uint32_t lane) const {
+    prefetch_row(reinterpret_cast<std::uintptr_t>(memory + patch.place[lane]));
   }
 };
 
@@ -99,7 +173,7 @@ struct Rows {
 struct QuadRows {
   float* u;
   const std::uint32_t* slot;
-  YarnScratch* scratch;
+  Scratch scratch;
   bool from_memory;
 
   [[gnu::always_inline]] FloatVector get(std::uint32_t row, std::uint32_t lane) const {
@@ -111,10 +185,10 @@ struct QuadRows {
   }
   [[gnu::always_inline]] void keep(std::uint32_t row, std::uint32_t lane,
                                    const FloatVector& v) const {
-    store(scratch[row].u, lane, v);
+    store(scratch.of(lane)[row].u, v);
   }
   [[gnu::always_inline]] FloatVector kept(std::uint32_t row, std::uint32_t lane) const {
-    return load(scratch[row].u, lane);
+    return load(scratch.of(lane)[row].u);
   }
   [[gnu::always_inline]] void keep_moved(std::uint32_t row, std::uint32_t lane,
                                          const FloatVector& v) const {
@@ -125,6 +199,9 @@ struct QuadRows {
       for (std::uint32_t row = 0; row < rows; ++row) put(row, lane, kept(row, lane));
     }
   }
+  // They are gathered and scattered one by one.
+  void fetch(std::uint32_t) const {}
+  void put_back(std::uint32_t) const {}
   /// Of a yarn that runs across memory no prefetcher knows.
   [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t last,
                                           std::uint32_t lane) const {
@@ -142,120 +219,34 @@ struct QuadRows {
   }
 };
 
-inline std::uint32_t rows_of(const YarnBlock& block) { return block.last - block.first; }
-/// Those that a kernel works on. Where one vector has all of them their number, and so which lane
-/// is the first of a vector, is known to the compiler: otherwise loops take a tenth longer.
-inline std::uint32_t lanes_of(const YarnBlock& block) {
-  return kFloats == kLanes ? kLanes : block.lanes;
+/// Of u, or of what else has its layout.
+inline RowsInPlace rows_in_place(const Yarns& y, const YarnBlock& block, float* memory) {
+  return {{memory + block.place, 1}, y.from_memory ? rows_of(block) : 0};
+}
+inline FetchedRows fetched_rows(const Yarns& y, const YarnBlock& block, float* memory,
+                                const Scratch& scratch) {
+  return {{scratch.of(0)->u.x, scratch.stride()},
+          memory,
+          y.patch + block.first_patch,
+          block.last_patch - block.first_patch,
+          rows_of(block),
+          y.from_memory,
+          y.from_memory ? block.patches_ahead * kLanes : 0};
 }
 
-constexpr std::size_t kScratchFloats = sizeof(YarnScratch) / sizeof(float);
-
-/// As many as the block has, and one behind them: for what in patches is nobody's.
-[[gnu::always_inline]] inline Rows rows_in(YarnScratch* scratch) {
-  return {scratch->u.x, kScratchFloats};
-}
-
-/// to(i)[k] = from(k)[i], of each axis; from and to: where a row begins.
-template <class From, class To>
-[[gnu::always_inline]] inline void transpose_rows(std::uint32_t from_rows, const From& from,
-                                                  std::uint32_t to_rows, const To& to) {
-  for (std::size_t axis = 0; axis < kRowFloats; axis += kLanes) {
-    for (std::uint32_t i = 0; i < to_rows; i += kFloats) {
-      for (std::uint32_t k = 0; k < from_rows; k += kFloats) {
-        transpose(
-            [&](std::uint32_t row)
-                __attribute__((always_inline)) { return from(k + row) + (axis + i); },
-            [&](std::uint32_t row)
-                __attribute__((always_inline)) { return to(i + row) + (axis + k); });
-      }
-    }
-  }
-}
-
-/// Where a row begins is computed for each vector anew: from arrays of pointers, filled first,
-/// transposing took 1.8 times as long.
-inline void fetch_patch(const YarnPatch& patch, std::uint32_t lanes, const float* u, float* rows) {
-  transpose_rows(
-      lanes, [&](std::uint32_t k) __attribute__((always_inline)) { return u + patch.place[k]; },
-      kLanes,
-      [&](std::uint32_t i)
-          __attribute__((always_inline)) { return rows + patch.row[i] * kScratchFloats; });
-}
-inline void put_patch(const YarnPatch& patch, std::uint32_t lanes, float* u, const float* rows) {
-  transpose_rows(
-      kLanes,
-      [&](std::uint32_t i)
-          __attribute__((always_inline)) { return rows + patch.row[i] * kScratchFloats; },
-      lanes, [&](std::uint32_t k) __attribute__((always_inline)) { return u + patch.place[k]; });
-}
-
-/// work(a float of a single row, and where it stands in memory)
+/// work(rows of the block), which fetches a vector of them before it gets any, and puts back what
+/// it has changed.
 template <class Work>
-[[gnu::always_inline]] inline void for_each_float(const YarnPatch& patch, float* u,
-                                                  const Rows& rows, Work&& work) {
-  float* row = rows.first + patch.row[0] * kScratchFloats;
-  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-    for (std::size_t axis = 0; axis < kRowFloats; axis += kLanes) {
-      work(row[axis + lane], u[patch.place[lane] + axis]);
-    }
-  }
-}
-
-/// Memory of patches a little ahead.
-inline void prefetch(const Yarns& y, const YarnBlock& block, std::uint32_t patch, const float* u) {
-  constexpr std::uint32_t kAhead = 2;
-  if (!y.from_memory || patch + kAhead >= block.last_patch) return;
-  for (const std::uint32_t place : y.patch[patch + kAhead].place) {
-    prefetch_row(reinterpret_cast<std::uintptr_t>(u + place));
-  }
-}
-
-inline void fetch(const Yarns& y, const YarnBlock& block, float* u, const Rows& rows) {
-  for (std::uint32_t i = block.first_patch; i < block.last_patch; ++i) {
-    const YarnPatch& patch = y.patch[i];
-    prefetch(y, block, i, u);
-    if (patch.single) {
-      for_each_float(patch, u, rows, [](float& row, float& place) { row = place; });
-    } else {
-      fetch_patch(patch, lanes_of(block), u, rows.first);
-    }
-  }
-}
-/// What is nobody's is put back as 0.
-inline void put_back(const Yarns& y, const YarnBlock& block, float* u, const Rows& rows) {
-  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
-    rows.put(rows_of(block), lane, no_vector());
-  }
-  for (std::uint32_t i = block.first_patch; i < block.last_patch; ++i) {
-    const YarnPatch& patch = y.patch[i];
-    if (patch.single) {
-      for_each_float(patch, u, rows, [](float& row, float& place) { place = row; });
-    } else {
-      put_patch(patch, lanes_of(block), u, rows.first);
-    }
-  }
-}
-
-/// What rows hold is wanted, or written over.
-enum class Old : std::uint8_t { wanted, dropped };
-
-/// work(rows of the block), which returns whether it has changed any.
-template <Old kOld = Old::wanted, class Work>
 [[gnu::always_inline]] inline void with_rows(const Yarns& y, const YarnBlock& block, float* u,
                                              YarnScratch* scratch, Work&& work) {
+  const Scratch own(scratch, block);
   if (block.access == YarnAccess::quads) {
-    work(QuadRows{u, y.slot + std::size_t{block.first} * kLanes, scratch, y.from_memory});
-    return;
+    work(QuadRows{u, y.slot + std::size_t{block.first} * kLanes, own, y.from_memory});
+  } else if (block.access == YarnAccess::in_place) {
+    work(rows_in_place(y, block, u));
+  } else {
+    work(fetched_rows(y, block, u, own));
   }
-  if (block.access == YarnAccess::in_place) {
-    work(Rows{u + block.place, kRowFloats, {y.from_memory ? rows_of(block) : 0}});
-    return;
-  }
-  Rows rows = rows_in(scratch);
-  if (y.from_memory) rows.ahead = {block.patches_ahead * kLanes, y.patch + block.last_patch, u};
-  if (kOld == Old::wanted) fetch(y, block, u, rows);
-  if (work(rows)) put_back(y, block, u, rows);
 }
 
 }  // namespace

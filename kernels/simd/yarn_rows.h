@@ -84,44 +84,51 @@ struct Unpacking {
 /// remembered.
 enum class Base : std::uint8_t { remembered, fetched };
 
-/// Rows of the base where it is fetched, of the kind that those of u are.
-template <Base kBase>
-[[gnu::always_inline]] inline QuadRows rows_of_base(const Yarns& y, const YarnBlock&, QuadRows of_u,
-                                                    YarnScratch*) {
+/// Rows of the base, of the kind that those of u are. Where it is remembered nobody looks at them.
+inline QuadRows rows_of_base(const Yarns& y, const YarnBlock&, const QuadRows& of_u, YarnScratch*) {
   return {y.base, of_u.slot, of_u.scratch, of_u.from_memory};
 }
-template <Base kBase>
-[[gnu::always_inline]] inline Rows rows_of_base(const Yarns& y, const YarnBlock& block, Rows of_u,
-                                                YarnScratch* scratch) {
-  if (kBase == Base::remembered) return of_u;
-  if (block.access == YarnAccess::in_place) return {y.base + block.place, kRowFloats, of_u.ahead};
-  Rows behind = rows_in(scratch + rows_of(block) + 1);
-  behind.ahead = {of_u.ahead.rows, of_u.ahead.patch, y.base};
-  fetch(y, block, y.base, behind);
-  return behind;
+inline RowsInPlace rows_of_base(const Yarns& y, const YarnBlock& block, const RowsInPlace&,
+                                YarnScratch*) {
+  return rows_in_place(y, block, y.base);
+}
+inline FetchedRows rows_of_base(const Yarns& y, const YarnBlock& block, const FetchedRows&,
+                                YarnScratch* scratch) {
+  return fetched_rows(y, block, y.base, Scratch(scratch + rows_of(block) + 1, block));
+}
+
+/// Rows of both, before the first of a vector is wanted.
+template <Base kBase, class At>
+[[gnu::always_inline]] inline void fetch(const At& at, const At& base, std::uint32_t lane) {
+  at.fetch(lane);
+  if constexpr (kBase == Base::fetched) base.fetch(lane);
 }
 
 /// The base, from row to row.
 template <Base kBase, class At>
 struct BaseDown {
   const Yarns& y;
-  At at;                // base; not looked at where it is remembered
-  std::uint32_t first;  // row of the block
+  At at;  // base; not looked at where it is remembered
+  BaseStep* steps;
   std::uint32_t lane;
   FloatVector here = no_vector();
   Ints all = Ints(0);  // that has been remembered
   Unpacking unpacking;
 
-  [[gnu::always_inline]] BaseDown(const Yarns& yarns, At base, std::uint32_t first_row,
+  [[gnu::always_inline]] BaseDown(const Yarns& yarns, const YarnBlock& block, At base,
                                   std::uint32_t first_lane)
-      : y(yarns), at(base), first(first_row), lane(first_lane), unpacking(yarns.cell) {
+      : y(yarns),
+        at(base),
+        steps(base_steps_of(yarns, block, first_lane)),
+        lane(first_lane),
+        unpacking(yarns.cell) {
     if constexpr (kBase == Base::fetched) here = at.get(0, lane);
   }
   /// base + u, from particle k + 1 to particle k; without a constraint base counts for 0.
   [[gnu::always_inline]] FloatVector step(std::uint32_t k, const FloatVector& u, Floats rest) {
     if constexpr (kBase == Base::remembered) {
       if (kFloats == kLanes && y.from_memory) fetch_ahead(k);
-      return unpacking.plus(u, Ints::load_unaligned(words(k)));
+      return unpacking.plus(u, Ints::load_unaligned(steps[k].words));
     }
     FloatVector next = at.get(k + 1, lane);
     const Floats none(0.f), per_cell(1 / y.cell);
@@ -131,7 +138,7 @@ struct BaseDown {
                            xsimd::select(joins, here.z - next.z, none)};
     Ints dx = ten_bits(difference.x, per_cell), dy = ten_bits(difference.y, per_cell);
     const Ints dz = ten_bits(difference.z, per_cell);
-    packed(dx, dy, dz).store_unaligned(words(k));
+    packed(dx, dy, dz).store_unaligned(steps[k].words);
     all = all | dx | dy | dz;
     here = next;
     return difference + u;
@@ -139,27 +146,28 @@ struct BaseDown {
   /// After all but the last row.
   [[gnu::always_inline]] void end(std::uint32_t last) {
     if constexpr (kBase == Base::remembered) return;
-    all.store_unaligned(words(last));
+    all.store_unaligned(steps[last].words);
   }
 
  private:
   /// What a way down reads once is not to push displacements out of the caches.
   [[gnu::always_inline]] void fetch_ahead(std::uint32_t row) const {
-    constexpr std::uintptr_t kAhead = 32 * kLanes * sizeof(std::int32_t);
+    constexpr std::uintptr_t kAhead = 32 * sizeof(BaseStep);
     constexpr int kToRead = 0, kNotAgain = 0;
-    const auto here = reinterpret_cast<std::uintptr_t>(words(row));
+    const auto here = reinterpret_cast<std::uintptr_t>(steps + row);
     __builtin_prefetch(reinterpret_cast<const void*>(here + kAhead), kToRead, kNotAgain);
-  }
-  [[gnu::always_inline]] std::int32_t* words(std::uint32_t row) const {
-    return y.base_step + std::size_t{first + row} * kLanes + lane;
   }
 };
 
 /// Whether rows remember the present base.
 inline bool remembered(const Yarns& y, const YarnBlock& block) {
   if (y.moved) return false;
-  const std::int32_t* all = y.base_step + std::size_t{block.last - 1} * kLanes;
-  return std::all_of(all, all + kLanes, [](std::int32_t i) { return i >= 0 && i < 1024; });
+  Ints all(0);
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
+    const BaseStep& of_all = base_steps_of(y, block, lane)[rows_of(block) - 1];
+    all = all | Ints::load_unaligned(of_all.words);
+  }
+  return xsimd::all((all & Ints(~1023)) == Ints(0));
 }
 
 }  // namespace

@@ -53,19 +53,21 @@ template <Along kAlong, Base kBase, class At>
 [[gnu::always_inline]] inline void linearise_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                    At base) {
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+    fetch<kBase>(at, base, lane);
+    SystemRow* system = system_of(y, block, lane);
     const Floats zero(0.f);
     go_down<kAlong, kBase>(
         y, block, at, base, lane, unit_link,
         [&](std::uint32_t k, const FloatVector&, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
-              YarnSystemRow& row = y.system[block.first + k];
-              store(row.n, lane, link.n);
-              f.down.store_unaligned(row.m + lane);
-              f.reciprocal().store_unaligned(row.reciprocal + lane);
-              link.error.store_unaligned(row.residual + lane);
-              zero.store_unaligned(row.lambda + lane);
-              zero.store_unaligned(row.p + lane);
-              zero.store_unaligned(row.q + lane);
+              SystemRow& row = system[k];
+              store(row.n, link.n);
+              f.down.store_unaligned(row.m);
+              f.reciprocal().store_unaligned(row.reciprocal);
+              link.error.store_unaligned(row.residual);
+              zero.store_unaligned(row.lambda);
+              zero.store_unaligned(row.p);
+              zero.store_unaligned(row.q);
             });
   }
 }
@@ -74,13 +76,12 @@ template <Along kAlong, Base kBase, class At>
 void yarn_linearise(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
   with_rows(y, block, u, scratch, [&](auto at) {
     with_base(y, block, [&](auto where) {
-      const auto base = rows_of_base<where>(y, block, at, scratch);
+      const auto base = rows_of_base(y, block, at, scratch);
       if (y.start == nullptr)
         linearise_yarns<Along::present, where>(y, block, at, base);
       else
         linearise_yarns<Along::frozen, where>(y, block, at, base);
     });
-    return false;
   });
 }
 
@@ -91,20 +92,22 @@ template <class At>
   alignas(64) float poison[kLanes] = {};
   const std::uint32_t last = rows_of(block) - 1;
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+    fetch<Base::fetched>(at, base, lane);
+    SystemRow* system = system_of(y, block, lane);
     const Floats zero(0.f);
     Floats worst(0.f), poisoned(0.f);
     FloatVector base_here = base.get(0, lane), here = at.get(0, lane);
     for (std::uint32_t k = 0; k <= last; ++k) {
-      YarnSystemRow& row = y.system[block.first + k];
+      SystemRow& row = system[k];
       const std::uint32_t next = std::min(k + 1, last);
       FloatVector base_next = base.get(next, lane), u_next = at.get(next, lane);
-      const Floats change = dot(load(row.n, lane), (base_here - base_next) + (here - u_next));
+      const Floats change = dot(load(row.n), (base_here - base_next) + (here - u_next));
       worst = larger(worst, change);
       poisoned = fused(change, zero, poisoned);
-      change.store_unaligned(row.residual + lane);
-      zero.store_unaligned(row.lambda + lane);
-      zero.store_unaligned(row.p + lane);
-      zero.store_unaligned(row.q + lane);
+      change.store_unaligned(row.residual);
+      zero.store_unaligned(row.lambda);
+      zero.store_unaligned(row.p);
+      zero.store_unaligned(row.q);
       base_here = base_next;
       here = u_next;
     }
@@ -118,10 +121,8 @@ template <class At>
 /// one is not finite.
 float yarn_read(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
   float most = 0;
-  with_rows(y, block, u, scratch, [&](auto at) {
-    most = read_yarns(y, block, at, rows_of_base<Base::fetched>(y, block, at, scratch));
-    return false;
-  });
+  with_rows(y, block, u, scratch,
+            [&](auto at) { most = read_yarns(y, block, at, rows_of_base(y, block, at, scratch)); });
   return most;
 }
 
@@ -131,24 +132,26 @@ YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alp
   alignas(64) float products[kLanes] = {};
   const Floats step(alpha);
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+    SystemRow* system = system_of(y, block, lane);
     Floats b(0.f), worst(0.f);
-    for (std::uint32_t k = block.first; k < block.last; ++k) {
-      YarnSystemRow& row = y.system[k];
-      fused(step, load(row.p + lane), load(row.lambda + lane)).store_unaligned(row.lambda + lane);
-      const Floats residual = load(row.residual + lane) - step * load(row.q + lane);
-      residual.store_unaligned(row.residual + lane);
-      const Floats unit = y.velocities ? Floats(1.f) : load(kind_of(y, k).rest + lane);
+    for (std::uint32_t k = 0; k < rows_of(block); ++k) {
+      SystemRow& row = system[k];
+      fused(step, load(row.p), load(row.lambda)).store_unaligned(row.lambda);
+      const Floats residual = load(row.residual) - step * load(row.q);
+      residual.store_unaligned(row.residual);
+      const Floats unit =
+          y.velocities ? Floats(1.f) : load(kind_of(y, block.first + k).rest + lane);
       worst = larger(worst, residual / xsimd::select(unit > Floats(0.f), unit, Floats(1.f)));
-      b = fused(load(row.m + lane), b, residual);
-      (b * load(row.reciprocal + lane)).store_unaligned(row.z + lane);
+      b = fused(load(row.m), b, residual);
+      (b * load(row.reciprocal)).store_unaligned(row.z);
     }
     Floats z(0.f), m(0.f), product(0.f);
-    for (std::uint32_t k = block.last; k-- > block.first;) {
-      YarnSystemRow& row = y.system[k];
-      z = fused(m, z, load(row.z + lane));
-      m = load(row.m + lane);
-      z.store_unaligned(row.z + lane);
-      product = fused(z, load(row.residual + lane), product);
+    for (std::uint32_t k = rows_of(block); k-- > 0;) {
+      SystemRow& row = system[k];
+      z = fused(m, z, load(row.z));
+      m = load(row.m);
+      z.store_unaligned(row.z);
+      product = fused(z, load(row.residual), product);
     }
     product.store_unaligned(products + lane);
     result.worst = larger(result.worst, worst);
@@ -162,12 +165,13 @@ template <class Push>
 [[gnu::always_inline]] inline void push_down(const Yarns& y, const YarnBlock& block,
                                              std::uint32_t lane, float beta, Push&& push) {
   const Floats factor(beta);
+  SystemRow* system = system_of(y, block, lane);
   FloatVector above = no_vector();
   for (std::uint32_t k = 0; k < rows_of(block); ++k) {
-    YarnSystemRow& row = y.system[block.first + k];
-    const Floats p = fused(factor, load(row.p + lane), load(row.z + lane));
-    p.store_unaligned(row.p + lane);
-    FloatVector below = p * load(row.n, lane);
+    SystemRow& row = system[k];
+    const Floats p = fused(factor, load(row.p), load(row.z));
+    p.store_unaligned(row.p);
+    FloatVector below = p * load(row.n);
     const Floats w = load(kind_of(y, block.first + k).inverse_mass + lane);
     push(k, w * (below - above));
     above = below;
@@ -178,12 +182,12 @@ template <class Push>
 /// yarns, or the scratch would be put back as it is.
 void yarn_push_first(const Yarns& y, const YarnBlock& block, float beta, float* t,
                      YarnScratch* scratch) {
-  with_rows<Old::dropped>(y, block, t, scratch, [&](auto at) {
+  with_rows(y, block, t, scratch, [&](auto at) {
     for (std::uint32_t lane = 0; lane < kLanes; lane += kFloats) {
       push_down(y, block, lane, beta,
                 [&](std::uint32_t k, const FloatVector& own) { at.put(k, lane, own); });
+      at.put_back(lane);
     }
-    return true;
   });
 }
 
@@ -191,25 +195,27 @@ void yarn_push_first(const Yarns& y, const YarnBlock& block, float beta, float* 
 void yarn_push(const Yarns& y, const YarnBlock& block, float beta, float* t, YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+      at.fetch(lane);
       push_down(y, block, lane, beta, [&](std::uint32_t k, const FloatVector& own) {
         at.put(k, lane, at.get(k, lane) + own);
       });
+      at.put_back(lane);
     }
-    return true;
   });
 }
 
 template <class At>
 [[gnu::always_inline]] inline Floats pull_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                 std::uint32_t lane) {
+  SystemRow* system = system_of(y, block, lane);
   FloatVector here = at.get(0, lane);
   Floats product(0.f);
   for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
-    YarnSystemRow& row = y.system[block.first + k];
+    SystemRow& row = system[k];
     FloatVector next = at.get(k + 1, lane);
-    const Floats q = dot(load(row.n, lane), here - next);
-    q.store_unaligned(row.q + lane);
-    product = fused(q, load(row.p + lane), product);
+    const Floats q = dot(load(row.n), here - next);
+    q.store_unaligned(row.q);
+    product = fused(q, load(row.p), product);
     here = next;
   }
   return product;
@@ -220,9 +226,9 @@ float yarn_pull(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* s
   alignas(64) float products[kLanes] = {};
   with_rows(y, block, t, scratch, [&](auto at) {
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+      at.fetch(lane);
       pull_yarns(y, block, at, lane).store_unaligned(products + lane);
     }
-    return false;
   });
   return sum(products);
 }
@@ -231,42 +237,51 @@ float yarn_pull(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* s
 void yarn_finish(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+      at.fetch(lane);
+      const SystemRow* system = system_of(y, block, lane);
       FloatVector above = no_vector();
       for (std::uint32_t k = 0; k < rows_of(block); ++k) {
-        const YarnSystemRow& row = y.system[block.first + k];
-        FloatVector below = load(row.lambda + lane) * load(row.n, lane);
+        const SystemRow& row = system[k];
+        FloatVector below = load(row.lambda) * load(row.n);
         const Floats w = load(kind_of(y, block.first + k).inverse_mass + lane);
         at.put(k, lane, fused(w, above - below, at.get(k, lane)));
         above = below;
       }
+      at.put_back(lane);
     }
-    return true;
   });
 }
 
 template <bool kErrors, class At>
 [[gnu::always_inline]] inline void eliminate_yarns(const Yarns& y, const YarnBlock& block, At at,
-                                                   YarnScratch* scratch) {
+                                                   const Scratch& all) {
   const std::uint32_t last = rows_of(block) - 1;
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+    ScratchRow* scratch = all.of(lane);
+    const SystemRow* system = system_of(y, block, lane);
+    at.fetch(lane);
     Floats b(0.f);
     FloatVector here = at.get(0, lane);
     for (std::uint32_t k = 0; k < last; ++k) {
-      const YarnSystemRow& system = y.system[block.first + k];
+      const SystemRow& row = system[k];
       FloatVector next = at.get(k + 1, lane);
-      Floats error = dot(load(system.n, lane), here - next);
-      if constexpr (kErrors) error = error + load(system.residual + lane);
-      b = fused(load(system.m + lane), b, error);
+      Floats error = dot(load(row.n), here - next);
+      if constexpr (kErrors) error = error + load(row.residual);
+      b = fused(load(row.m), b, error);
       at.keep(k, lane, here);
-      (load(system.reciprocal + lane) * b).store_unaligned(scratch[k].y + lane);
+      (load(row.reciprocal) * b).store_unaligned(scratch[k].y);
       here = next;
     }
     at.keep(last, lane, here);
     go_up(
-        y, block, lane, scratch, y.system + block.first,
+        y, block, lane, scratch,
+        [&](std::uint32_t k) __attribute__((always_inline)) {
+          return RowFactors{load(system[k].n), load(system[k].m)};
+        },
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           at.put(k, lane, fused(w, impulse, at.kept(k, lane)));
         });
+    at.put_back(lane);
   }
 }
 
@@ -275,10 +290,9 @@ void yarn_eliminate(const Yarns& y, const YarnBlock& block, float* t, bool error
                     YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
     if (errors)
-      eliminate_yarns<true>(y, block, at, scratch);
+      eliminate_yarns<true>(y, block, at, Scratch(scratch, block));
     else
-      eliminate_yarns<false>(y, block, at, scratch);
-    return true;
+      eliminate_yarns<false>(y, block, at, Scratch(scratch, block));
   });
 }
 

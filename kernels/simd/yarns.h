@@ -28,7 +28,8 @@
 /// their particles: yarn_places.h.
 ///
 /// One chain per lane is bound by work, not by the latency of its recurrence: two vectors at a time
-/// took 1.4 times as long on AVX2 for want of registers.
+/// took 1.4 times as long on AVX2 for want of registers, and as long with what they carry from row
+/// to row left in memory.
 #pragma once
 
 #include <algorithm>
@@ -100,10 +101,10 @@ template <Along kAlong>
 }
 
 template <Along kAlong>
-[[gnu::always_inline]] inline void direct(YarnLink& link, const LaneVectors* start, std::uint32_t k,
-                                          std::uint32_t lane) {
+[[gnu::always_inline]] inline void direct(YarnLink& link, const RowVectors* start,
+                                          std::uint32_t k) {
   if constexpr (kAlong == Along::present) return;
-  link.along = load(start[k], lane);
+  link.along = load(start[k]);
   if constexpr (kAlong == Along::frozen) link.n = link.along;
 }
 
@@ -161,21 +162,21 @@ template <class Work>
 /// Directions for scheme rattle, at base + u.
 void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
   with_rows(y, block, u, scratch, [&](auto at) {
-    const auto base = rows_of_base<Base::fetched>(y, block, at, scratch);
+    const auto base = rows_of_base(y, block, at, scratch);
     const std::uint32_t last = rows_of(block) - 1;
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+      fetch<Base::fetched>(at, base, lane);
+      RowVectors* start = start_of(y, block, lane);
       FloatVector here = at.get(0, lane), base_here = base.get(0, lane);
       for (std::uint32_t k = 0; k < last; ++k) {
         FloatVector next = at.get(k + 1, lane), base_next = base.get(k + 1, lane);
         FloatVector d = apart(y, (base_here - base_next) + (here - next));
-        const std::uint32_t row = block.first + k;
-        store(y.start[row], lane, unit_link(d, load(kind_of(y, row).rest + lane)).n);
+        store(start[k], unit_link(d, load(kind_of(y, block.first + k).rest + lane)).n);
         base_here = base_next;
         here = next;
       }
-      store(y.start[block.first + last], lane, no_vector());
+      store(start[last], no_vector());
     }
-    return false;
   });
 }
 
@@ -192,7 +193,8 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
   const std::uint32_t first = block.first, last = rows_of(block) - 1;
   Elimination<kAlong> elimination;
   FloatVector here = at.get(0, lane);
-  BaseDown<kBase, At> base_down(y, base, first, lane);
+  const RowVectors* start = start_of(y, block, lane);
+  BaseDown<kBase, At> base_down(y, block, base, lane);
   for (std::uint32_t k = 0; k < last; ++k) {
     at.fetch_ahead(k, last, lane);
     if constexpr (kBase == Base::fetched) base.fetch_ahead(k, last, lane);
@@ -201,7 +203,7 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
     const Floats rest = load(kind.rest + lane);
     FloatVector d = apart(y, base_down.step(k, here - next, rest));
     YarnLink link = make_link(d, rest);
-    direct<kAlong>(link, y.start, first + k, lane);
+    direct<kAlong>(link, start, k);
     take(k, here, link,
          elimination.step(link, load(kind.inverse_mass + lane), load(kind.joined + lane)));
     here = next;
@@ -212,20 +214,31 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
        Factors{none, none, FloatMask(false), none});
 }
 
-/// Up again: move(row of the block, its inverse mass, its impulse). factors: has n and m of the
-/// rows.
-template <class Row, class Move>
+/// What a way up needs of those of a row.
+struct RowFactors {
+  FloatVector n;
+  Floats m;
+};
+[[gnu::always_inline]] inline auto factors_in(const ScratchRow* scratch) {
+  return [=](std::uint32_t k) __attribute__((always_inline)) {
+    return RowFactors{load(scratch[k].n), load(scratch[k].m)};
+  };
+}
+
+/// Up again: move(row of the block, its inverse mass, its impulse). factors(row): n and m.
+template <class GetFactors, class Move>
 [[gnu::always_inline]] inline void go_up(const Yarns& yarns, const YarnBlock& block,
-                                         std::uint32_t lane, const YarnScratch* scratch,
-                                         const Row* factors, Move&& move) {
+                                         std::uint32_t lane, const ScratchRow* scratch,
+                                         GetFactors&& factors, Move&& move) {
   const Yarns y = yarns;  // as in go_down
   const std::uint32_t first = block.first;
   FloatVector below = no_vector();  // impulse of the row's own constraint
   Floats lambda(0.f), m(0.f);
   for (std::uint32_t k = rows_of(block) - 1; k > 0; --k) {
-    lambda = fused(m, lambda, load(scratch[k - 1].y + lane));
-    m = load(factors[k - 1].m + lane);
-    FloatVector above = lambda * load(factors[k - 1].n, lane);
+    lambda = fused(m, lambda, load(scratch[k - 1].y));
+    RowFactors row = factors(k - 1);
+    m = row.m;
+    FloatVector above = lambda * row.n;
     move(k, load(kind_of(y, first + k).inverse_mass + lane), above - below);
     below = above;
   }
@@ -236,32 +249,34 @@ template <class Row, class Move>
 struct Substitution {
   Floats b = Floats(0.f);
 
-  [[gnu::always_inline]] void take(YarnScratch& row, std::uint32_t lane, Floats error,
-                                   const Factors& f) {
+  [[gnu::always_inline]] void take(ScratchRow& row, Floats error, const Factors& f) {
     b = fused(f.down, b, error);
-    f.up.store_unaligned(row.m + lane);
-    f.over_pivot(b).store_unaligned(row.y + lane);
+    f.up.store_unaligned(row.m);
+    f.over_pivot(b).store_unaligned(row.y);
   }
 };
 
 template <Along kAlong, Base kBase, class At>
 [[gnu::always_inline]] inline void sweep_yarns(const Yarns& y, const YarnBlock& block, At at,
-                                               At base, YarnScratch* scratch) {
+                                               At base, const Scratch& all) {
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+    ScratchRow* scratch = all.of(lane);
+    fetch<kBase>(at, base, lane);
     Substitution substitution;
     go_down<kAlong, kBase>(
         y, block, at, base, lane, scaled_link<kAlong>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
               at.keep(k, lane, here);
-              store(scratch[k].n, lane, link.along);
-              substitution.take(scratch[k], lane, link.error, f);
+              store(scratch[k].n, link.along);
+              substitution.take(scratch[k], link.error, f);
             });
     go_up(
-        y, block, lane, scratch, scratch,
+        y, block, lane, scratch, factors_in(scratch),
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           at.put(k, lane, fused(w, impulse, at.kept(k, lane)));
         });
+    at.put_back(lane);
   }
 }
 
@@ -275,12 +290,16 @@ struct Before {
   }
 };
 
+enum class Visit : std::uint8_t { first, again };  // of a block
+
 /// Down a block. Returns whether no length is out by more than the share `quiet`.
-template <Base kBase, class At>
+template <Base kBase, Visit kVisit, class At>
 [[gnu::always_inline]] inline bool find_impulses(const Yarns& y, const YarnBlock& block, At at,
-                                                 At base, YarnScratch* scratch, float quiet) {
+                                                 At base, const Scratch& all, float quiet) {
   bool is_quiet = true;
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+    ScratchRow* scratch = all.of(lane);
+    if constexpr (kVisit == Visit::first) fetch<kBase>(at, base, lane);
     Substitution substitution;
     Before before{Floats(quiet)};
     go_down<Along::present, kBase>(
@@ -290,8 +309,8 @@ template <Base kBase, class At>
               const YarnRow& kind = kind_of(y, block.first + k);
               before.take(link, load(kind.rest + lane), load(kind.square + lane));
               at.keep(k, lane, here);
-              store(scratch[k].n, lane, link.along);
-              substitution.take(scratch[k], lane, link.error, f);
+              store(scratch[k].n, link.along);
+              substitution.take(scratch[k], link.error, f);
             });
     is_quiet = is_quiet && xsimd::all(before.beyond <= Floats(0.f));
   }
@@ -300,15 +319,16 @@ template <Base kBase, class At>
 
 /// The same from what the last solve kept.
 [[gnu::always_inline]] inline void find_impulses_again(const Yarns& y, const YarnBlock& block,
-                                                       YarnScratch* scratch) {
+                                                       const Scratch& all) {
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+    ScratchRow* scratch = all.of(lane);
     Substitution substitution;
     Elimination<Along::present> elimination;
     for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
       const YarnRow& kind = kind_of(y, block.first + k);
-      YarnLink link = scaled_link<Along::present>(load(scratch[k].n, lane), load(kind.rest + lane));
+      YarnLink link = scaled_link<Along::present>(load(scratch[k].n), load(kind.rest + lane));
       substitution.take(
-          scratch[k], lane, link.error,
+          scratch[k], link.error,
           elimination.step(link, load(kind.inverse_mass + lane), load(kind.joined + lane)));
     }
   }
@@ -336,18 +356,18 @@ struct After {
 /// the share `enough`.
 template <class At, class Keep>
 [[gnu::always_inline]] inline bool apply_impulses(const Yarns& y, const YarnBlock& block, At at,
-                                                  const YarnScratch* scratch, float enough,
-                                                  Keep&& keep) {
+                                                  const Scratch& all, float enough, Keep&& keep) {
   bool out = false;
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
+    const ScratchRow* scratch = all.of(lane);
     After after{Floats(2 * enough)};
     go_up(
-        y, block, lane, scratch, scratch,
+        y, block, lane, scratch, factors_in(scratch),
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           FloatVector u = fused(w, impulse, at.kept(k, lane));
           const YarnRow& kind = kind_of(y, block.first + k);
           keep(k, lane,
-               after.take(load(scratch[k].n, lane), w * impulse, load(kind.rest + lane),
+               after.take(load(scratch[k].n), w * impulse, load(kind.rest + lane),
                           load(kind.square + lane)),
                u);
         });
@@ -364,7 +384,7 @@ template <class At, class Keep>
 /// together exactly is left to the next sweep.)
 template <Base kBase, class At>
 [[gnu::always_inline]] inline Swept sweep_watched(const Yarns& y, const YarnBlock& block, At at,
-                                                  At base, YarnScratch* scratch, float enough,
+                                                  At base, const Scratch& scratch, float enough,
                                                   std::uint32_t most) {
   constexpr float kQuiet = 0.01f;
   const auto put = [&](std::uint32_t k, std::uint32_t lane, const FloatVector&,
@@ -373,20 +393,28 @@ template <Base kBase, class At>
   };
   const auto keep = [&](std::uint32_t k, std::uint32_t lane, const FloatVector& d,
                         const FloatVector& moved) __attribute__((always_inline)) {
-    store(scratch[k].n, lane, d);
+    store(scratch.of(lane)[k].n, d);
     at.keep_moved(k, lane, moved);
   };
-  if (find_impulses<kBase>(y, block, at, base, scratch, kQuiet * enough)) return {0, true};
+  const auto put_back = [&] {
+    for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) at.put_back(lane);
+  };
+  if (find_impulses<kBase, Visit::first>(y, block, at, base, scratch, kQuiet * enough)) {
+    return {0, true};
+  }
   bool out = apply_impulses(y, block, at, scratch, enough, put);
-  if (!out || most == 1) return {1, !out};
+  if (!out || most == 1) {
+    put_back();
+    return {1, !out};
+  }
   if constexpr (kBase == Base::remembered) {
-    find_impulses<Base::remembered>(y, block, at, base, scratch, 0);
+    find_impulses<Base::remembered, Visit::again>(y, block, at, base, scratch, 0);
   } else {
     Yarns again = y;
     again.moved = false;
     with_base(
         again, block, [&](auto where) __attribute__((always_inline)) {
-          find_impulses<where>(again, block, at, base, scratch, 0);
+          find_impulses<where, Visit::again>(again, block, at, base, scratch, 0);
         });
   }
   out = apply_impulses(y, block, at, scratch, enough, keep);
@@ -396,19 +424,19 @@ template <Base kBase, class At>
     out = apply_impulses(y, block, at, scratch, enough, keep);
   }
   at.put_kept(rows_of(block), lanes_of(block));
+  put_back();
   return {solves, !out};
 }
 
 void yarn_sweep(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
   with_rows(y, block, u, scratch, [&](auto at) {
     with_base(y, block, [&](auto where) {
-      const auto base = rows_of_base<where>(y, block, at, scratch);
+      const auto base = rows_of_base(y, block, at, scratch);
       if (y.start == nullptr)
-        sweep_yarns<Along::present, where>(y, block, at, base, scratch);
+        sweep_yarns<Along::present, where>(y, block, at, base, Scratch(scratch, block));
       else
-        sweep_yarns<Along::start, where>(y, block, at, base, scratch);
+        sweep_yarns<Along::start, where>(y, block, at, base, Scratch(scratch, block));
     });
-    return true;
   });
 }
 
@@ -417,10 +445,9 @@ Swept yarn_sweep_watched(const Yarns& y, const YarnBlock& block, float* u, YarnS
   Swept swept;
   with_rows(y, block, u, scratch, [&](auto at) {
     with_base(y, block, [&](auto where) {
-      const auto base = rows_of_base<where>(y, block, at, scratch);
-      swept = sweep_watched<where>(y, block, at, base, scratch, enough, most);
+      const auto base = rows_of_base(y, block, at, scratch);
+      swept = sweep_watched<where>(y, block, at, base, Scratch(scratch, block), enough, most);
     });
-    return swept.solves > 0;
   });
   return swept;
 }

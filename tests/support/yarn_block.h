@@ -27,9 +27,9 @@ struct BlockOfYarns {
   std::vector<std::uint32_t> slot, kind;
   kernels::AlignedVector<simd::YarnRow> rows;
   kernels::AlignedVector<simd::YarnSystemRow> system;
-  kernels::AlignedVector<std::int32_t> base_step;
+  kernels::AlignedVector<simd::YarnBaseSteps> base_step;
   kernels::AlignedVector<simd::YarnScratch> scratch;
-  kernels::AlignedVector<simd::LaneVectors> directions;  // at the start of a rattle step
+  kernels::AlignedVector<simd::YarnDirections> directions;  // at the start of a rattle step
   kernels::AlignedVector<float> base, u, t;
   kernels::Vectors x;
   double cell = 0x1p-10;
@@ -42,7 +42,7 @@ struct BlockOfYarns {
       : stand(how),
         rows(kRows),
         system(kRows),
-        base_step(kRows * kLanes),
+        base_step(kRows),
         scratch(2 * (kRows + 1)),
         x(kRows * kLanes + kLanes) {
     for (kernels::AlignedVector<float>* array : {&base, &u, &t}) array->resize(floats());
@@ -89,6 +89,7 @@ struct BlockOfYarns {
     simd::YarnPatch patch{};
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) patch.place[lane] = place_of(first, lane);
     for (std::uint32_t i = 0; i < kLanes; ++i) patch.row[i] = i < kColumns ? first + i : kRows;
+    patch.columns = kColumns;
     patches.push_back(patch);
   }
   void add_single(std::uint32_t k) {
@@ -163,12 +164,12 @@ struct BlockOfYarns {
     const auto axis = [&](std::size_t i) { return static_cast<double>(at[i * stride()]); };
     return {axis(0), axis(1), axis(2)};
   }
-  std::vector<float> p() const {
-    std::vector<float> values;
+  std::vector<float> system_floats() const {
+    std::vector<float> floats;
     for (const simd::YarnSystemRow& row : system) {
-      values.insert(values.end(), std::begin(row.p), std::end(row.p));
+      floats.insert(floats.end(), std::begin(row.floats), std::end(row.floats));
     }
-    return values;
+    return floats;
   }
   /// base + u = v
   void split(const simd::Table& table, kernels::Vectors v, double in_cells) {

@@ -74,8 +74,8 @@ TEST_CASE("pushing first is pushing onto nothing") {
         CHECK(first.t[4 * slot + axis] == onto.t[4 * slot + axis]);
       }
     }
+    CHECK(first.system_floats() == onto.system_floats());
     CHECK(table.yarn_pull(onto.yarns(), onto.block(), onto.t.data(), onto.scratch.data()) > 0);
-    CHECK(first.p() == onto.p());
   }
 }
 
@@ -195,10 +195,8 @@ TEST_CASE("one velocity or error that is no number is seen, whatever its lane an
       for (std::uint32_t k = 0; k + 1 < BlockOfYarns::length(lane); ++k) {
         const float kept = std::exchange(b.u[b.place_of(k, lane)], bad);
         REQUIRE_FALSE(std::isfinite(read()));
-        b.u[b.place_of(k, lane)] = kept;
-        read();
-        b.system[k].residual[lane] = bad;
         REQUIRE_FALSE(std::isfinite(product()));
+        b.u[b.place_of(k, lane)] = kept;
         read();
       }
     }

@@ -420,7 +420,7 @@ TEST_CASE("what in patches is nobody's stays 0, whatever the scratch held") {
     b.start(table);
     table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
     for (simd::YarnScratch& row : b.scratch) {
-      for (float* axis : {row.u.x, row.u.y, row.u.z}) std::fill_n(axis, kLanes, 1e30f);
+      std::ranges::fill(row.floats, 1e30f);
     }
     table.yarn_push_first(b.yarns(), b.block(), 0, b.t.data(), b.scratch.data());
     b.for_each_component([&](std::size_t, std::size_t place) { b.t[place] = 0; });
