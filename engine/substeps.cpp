@@ -226,11 +226,11 @@ class Substeps {
     return before <= tolerance && before <= share * max_strain_at(s_, s_.solved, team_);
   }
 
-  /// Of the whole step. Where the tolerance is loose sweeps converge, and soon.
+  /// Of the whole step. Where the tolerance is looser than what yarns aim at sweeps converge, and
+  /// soon.
   StepRecord record() const {
-    constexpr double kLoose = 0.003;
     const bool sweeps_converge = s_.yarn && s_.settings.scheme == Scheme::paper &&
-                                 s_.settings.tolerance > kLoose &&
+                                 s_.settings.tolerance > YarnSolver::kGoal &&
                                  report_.status == Status::converged;
     const bool began_with_sweeps = s_.trouble.only_sweeps();
     const auto constraints =

@@ -156,7 +156,7 @@ class Builder {
  public:
   Builder(const Model& model, Braces& braces, YarnLayout& layout)
       : model_(model), braces_(braces), layout_(layout), known_(LessByBytes{layout.kinds}) {
-    lightest_ = 1 / std::ranges::max(model.inverse_mass);
+    layout.lightest = 1 / std::ranges::max(model.inverse_mass);
   }
 
   /// These chains make a block, a lane each; the first is the longest.
@@ -193,7 +193,7 @@ class Builder {
       const std::uint32_t slot = chain.particles[k];
       layout_.slot[(first + k) * kLanes + lane] = slot;
       simd::YarnRow& row = block_[k];
-      row.inverse_mass[lane] = static_cast<float>(model_.inverse_mass[slot] * lightest_);
+      row.inverse_mass[lane] = static_cast<float>(model_.inverse_mass[slot] * layout_.lightest);
       if (k == chain.links.size()) continue;
       row.rest[lane] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
     }
@@ -221,7 +221,6 @@ class Builder {
   YarnLayout& layout_;
   std::set<std::uint32_t, LessByBytes> known_;  // kinds
   std::vector<simd::YarnRow> block_;
-  double lightest_ = 1;  // mass of a particle
 };
 
 double cell_of(const ConstraintStore& store) {

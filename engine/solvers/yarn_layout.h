@@ -31,12 +31,13 @@ struct YarnLayout {
   std::vector<std::uint32_t> slot;              // per row and lane, where blocks are in quads
   std::vector<simd::YarnPatch> patches;         // where they are woven
   std::vector<std::uint32_t> kind;              // per row
-  kernels::AlignedVector<simd::YarnRow> kinds;  // inverse masses over the model's largest
+  kernels::AlignedVector<simd::YarnRow> kinds;  // masses in lightest
   std::vector<std::uint32_t> not_in_second;     // places that yarn_push_first does not write
   std::vector<YarnSpan> spans;
   std::vector<std::uint32_t> span_slots;  // of their particles, both ends included
   YarnPlaces places;
 
+  double lightest = 1;                    // mass of a particle
   double cell = 0;                        // that positions are split by (kernels/simd/yarn_rows.h)
   std::size_t longest = 0;                // rows of the longest block
   std::vector<std::uint32_t> longest_at;  // per chunk of model.simd(): of those yarns with a

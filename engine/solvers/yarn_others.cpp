@@ -52,8 +52,7 @@ YarnOthers::YarnOthers(const Model& model, const Settings& settings)
     : model_(model),
       stride_(model.yarns().places.stride),
       tolerance_(settings.tolerance),
-      contact_tolerance_(settings.contact_tolerance),
-      lightest_(1 / std::ranges::max(model.inverse_mass)) {
+      contact_tolerance_(settings.contact_tolerance) {
   const ConstraintStore& store = model.constraints;
   for (std::size_t c = store.plain; c < store.size(); ++c) {
     add(store.a[c], store.b[c], store.rest_length[c], c < store.bilateral ? 0 : 1);
@@ -62,9 +61,10 @@ YarnOthers::YarnOthers(const Model& model, const Settings& settings)
 }
 
 void YarnOthers::add(std::uint32_t a, std::uint32_t b, double distance, int side) {
-  const double wa = model_.inverse_mass[a] * lightest_, wb = model_.inverse_mass[b] * lightest_;
-  const YarnPlaces& places = model_.yarns().places;
-  pairs_.push_back({places.of(a), places.of(b), side, distance, wa, wb, 1 / (wa + wb)});
+  const YarnLayout& yarns = model_.yarns();
+  const double wa = model_.inverse_mass[a] * yarns.lightest;
+  const double wb = model_.inverse_mass[b] * yarns.lightest;
+  pairs_.push_back({yarns.places.of(a), yarns.places.of(b), side, distance, wa, wb, 1 / (wa + wb)});
 }
 
 void YarnOthers::start(const ContactStore& contacts, bool first_round) {

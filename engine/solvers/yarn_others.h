@@ -54,7 +54,7 @@ class YarnOthers {
     std::uint32_t a = 0, b = 0;  // places
     int side = 0;                // +1: pulls only, -1: pushes only
     double distance = 0;
-    double wa = 0, wb = 0;  // inverse masses over the model's largest
+    double wa = 0, wb = 0;  // 1 / mass, in YarnLayout::lightest
     double reciprocal = 0;  // of their sum
     double sum = 0;         // of its impulses
     kernels::Vector start{};
@@ -73,7 +73,6 @@ class YarnOthers {
   const Model& model_;
   const std::size_t stride_;  // YarnPlaces
   const double tolerance_, contact_tolerance_;
-  const double lightest_;        // mass of a particle
   std::size_t constraints_ = 0;  // the first of pairs_; contacts come behind
   bool from_start_ = false, velocities_ = false;
   std::vector<Pair> pairs_;

@@ -30,9 +30,6 @@ constexpr std::uint32_t kMostSolves = 20;
 constexpr double kSeen = 1e-6;
 constexpr double kWithin = 0.5;
 constexpr int kMostIterations = 300;  // of conjugate gradients, in one Newton step
-/// What is aimed at where the tolerance is larger: what is left is noise that the next steps would
-/// have to fight (corners, 81 x 81, 1 %: as many iterations a frame at a quarter of the error).
-constexpr double kGoal = 0.003;
 /// With scheme rattle, whose guard takes noise for a gain of energy: corners, 41 x 41, 8 substeps
 /// leaves a sixth of them to scheme paper, at 0.003 a third, at 1e-5 as few for twice the work.
 constexpr double kRattleGoal = 1e-4;

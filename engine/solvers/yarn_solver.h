@@ -37,6 +37,11 @@ namespace weft {
 
 class YarnSolver {
  public:
+  /// What is aimed at where the tolerance is larger: what is left is noise that the next steps
+  /// would have to fight (corners, 81 x 81, 1 %: as many iterations a frame at a quarter of the
+  /// error).
+  static constexpr double kGoal = 0.003;
+
   YarnSolver(const Model& model, const Settings& settings, const simd::Table& table);
 
   /// Moves x until every constraint and listed contact is well within tolerance, or as far as it
