@@ -12,7 +12,8 @@ using kernels::Vector;
 
 /// In double: what is judged by it may be nearly as small as what floats round off.
 template <class Pair>
-Vector difference(const float* u, const Pair& pair, std::size_t stride) {
+[[gnu::always_inline]] inline Vector difference(const float* u, const Pair& pair,
+                                                std::size_t stride) {
   const float *to = u + pair.a, *from = u + pair.b;
   const auto axis = [&](std::size_t k) {
     return static_cast<double>(to[k * stride]) - static_cast<double>(from[k * stride]);
@@ -21,7 +22,8 @@ Vector difference(const float* u, const Pair& pair, std::size_t stride) {
 }
 
 template <class Pair>
-Vector difference(const float* base, const float* u, const Pair& pair, std::size_t stride) {
+[[gnu::always_inline]] inline Vector difference(const float* base, const float* u, const Pair& pair,
+                                                std::size_t stride) {
   return difference(base, pair, stride) + difference(u, pair, stride);
 }
 
@@ -80,9 +82,10 @@ void YarnOthers::start(const ContactStore& contacts, bool first_round) {
 
 void YarnOthers::keep_start(const float* base, const float* u) {
   from_start_ = true;
+  starts_.resize(constraints_);
   for (std::size_t i = 0; i < constraints_; ++i) {
     const Vector d = difference(base, u, pairs_[i], stride_);
-    pairs_[i].start = direction(d, length(d));
+    starts_[i] = direction(d, length(d));
   }
 }
 
@@ -104,9 +107,9 @@ void YarnOthers::relax(const float* base, float* u) {
     Vector along = direction(d, l);
     double change = (l - pair.distance) * pair.reciprocal;
     if (from_start(i)) {
-      const double cosine = dot(along, pair.start);
+      const double cosine = dot(along, starts_[i]);
       if (cosine < kLeastCosine) continue;
-      along = pair.start;
+      along = starts_[i];
       change /= cosine;
     }
     const double impulse = clamped(pair.side, pair.sum, change);
@@ -157,7 +160,7 @@ void YarnOthers::linearise(const float* base, const float* u) {
     const Vector d = difference(base, u, pair, stride_);
     const double l = length(d);
     rows_[i].near = true;
-    rows_[i].n = from_start(i) ? pair.start : direction(d, l);
+    rows_[i].n = from_start(i) ? starts_[i] : direction(d, l);
     set_error(i, l - pair.distance);
   }
 }
@@ -235,7 +238,7 @@ void YarnOthers::finish(float* t) {
 }
 
 std::size_t YarnOthers::bytes() const {
-  return bytes_of(pairs_) + bytes_of(rows_) + bytes_of(active_);
+  return bytes_of(pairs_) + bytes_of(starts_) + bytes_of(rows_) + bytes_of(active_);
 }
 
 }  // namespace weft

@@ -50,6 +50,7 @@ class YarnOthers {
   std::size_t bytes() const;
 
  private:
+  /// As large as a cache line.
   struct Pair {
     std::uint32_t a = 0, b = 0;  // places
     int side = 0;                // +1: pulls only, -1: pushes only
@@ -57,7 +58,6 @@ class YarnOthers {
     double wa = 0, wb = 0;  // 1 / mass, in YarnLayout::lightest
     double reciprocal = 0;  // of their sum
     double sum = 0;         // of its impulses
-    kernels::Vector start{};
   };
   struct Row {
     kernels::Vector n{};
@@ -75,9 +75,10 @@ class YarnOthers {
   const double tolerance_, contact_tolerance_;
   std::size_t constraints_ = 0;  // the first of pairs_; contacts come behind
   bool from_start_ = false, velocities_ = false;
-  std::vector<Pair> pairs_;
-  std::vector<Row> rows_;              // of the linear system,
-  std::vector<std::uint32_t> active_;  // and those that take part in it
+  kernels::AlignedVector<Pair> pairs_;
+  std::vector<kernels::Vector> starts_;  // of constraints, for scheme rattle: directions there
+  std::vector<Row> rows_;                // of the linear system,
+  std::vector<std::uint32_t> active_;    // and those that take part in it
 };
 
 }  // namespace weft
