@@ -21,8 +21,7 @@ namespace {
 
 constexpr std::size_t kAxes = 3;
 
-/// The pointer in a register of its own: GCC 12 would rather add up its parts anew for each vector,
-/// which takes half as long again.
+/// The pointer in a register of its own: GCC 12 would rather add up its parts anew for each vector.
 template <class T>
 [[gnu::always_inline]] inline T* held(T* pointer) {
   asm("" : "+r"(pointer));
