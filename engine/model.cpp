@@ -87,6 +87,7 @@ void Model::store_particles(const Draft& draft) {
     if (hub[slot]) hubs.push_back(slot);
   }
   for (const std::uint32_t s : d.spheres) spheres.push_back(ordering.slot_of[s]);
+  std::ranges::sort(spheres);
   if (!spheres.empty()) is_sphere.resize(slots());
   for (const std::uint32_t s : spheres) is_sphere[s] = 1;
   gravity = {d.gravity.x, d.gravity.y, d.gravity.z};

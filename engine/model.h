@@ -58,7 +58,7 @@ class Model {
   kernels::AlignedVector<double> radius;              // empty without spheres
   std::vector<std::uint8_t> hub;
   std::vector<std::uint32_t> hubs;
-  std::vector<std::uint32_t> spheres;
+  std::vector<std::uint32_t> spheres;   // in ascending order
   std::vector<std::uint8_t> is_sphere;  // empty without spheres
 
   kernels::Vector gravity{};

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/simd_loop.h"
@@ -92,7 +94,16 @@ ScaledConstraints SimdSolver::scaled(Tolerance&& tolerance) const {
 
 std::size_t ScaledConstraints::bytes() const { return bytes_of(blocks) + bytes_of(scale); }
 
-/// Brings the contacts of each sphere side by side. They are few.
+/// The search lists them sphere by sphere; what it missed stands behind.
+void SimdSolver::order_contacts(const ContactStore& store) {
+  contact_order_.resize(store.count());
+  std::iota(contact_order_.begin(), contact_order_.end(), 0u);
+  if (std::ranges::is_sorted(store.sphere)) return;
+  std::ranges::sort(contact_order_, {},
+                    [&](std::uint32_t k) { return std::pair(store.sphere[k], k); });
+}
+
+/// Brings the contacts of each sphere side by side.
 void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep_impulses) {
   contact_impulse_.resize(store.count());
   if (!keep_impulses) std::ranges::fill(contact_impulse_, 0.f);
@@ -115,17 +126,16 @@ void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep
     contacts_.scale[next] = real ? 1 / tau : 0;
     ++next;
   };
-  for (const std::uint32_t s : model_.spheres) {
-    const std::uint32_t first = next;
-    for (std::uint32_t k = 0; k < store.count(); ++k) {
-      if (store.sphere[k] == s) put(s, store.particle[k], k);
-    }
+  order_contacts(store);
+  for (auto k = contact_order_.begin(); k != contact_order_.end();) {
+    const std::uint32_t s = store.sphere[*k], first = next;
+    for (; k != contact_order_.end() && store.sphere[*k] == s; ++k) put(s, store.particle[*k], *k);
     const std::uint32_t last_contact = next;
     // Padding stands on padding slots, each its own: lanes of a block must not share a particle.
     for (std::uint32_t spare = 0; next % kernels::kLanes != 0; ++spare) {
       put(s, model_.spare_slots + spare, kNoIndex);
     }
-    if (next > first) contacts_.spheres.push_back({first, next, last_contact - first});
+    contacts_.spheres.push_back({first, next, last_contact - first});
   }
 }
 
@@ -211,7 +221,8 @@ simd::Geometry SimdSolver::geometry(kernels::VectorsView x,
 std::size_t SimdSolver::bytes() const {
   return bytes_of(u_) + bytes_of(impulse_) + positions_.bytes() + velocities_.bytes() +
          bytes_of(mask_) + bytes_of(changed_) + bytes_of(stale_) + bytes_of(corrections_) +
-         bytes_of(sweeps_) + bytes_of(open_seam_) + contacts_.bytes() + bytes_of(contact_impulse_);
+         bytes_of(sweeps_) + bytes_of(open_seam_) + contacts_.bytes() + bytes_of(contact_impulse_) +
+         bytes_of(contact_order_);
 }
 
 }  // namespace weft

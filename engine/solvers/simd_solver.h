@@ -75,6 +75,7 @@ class SimdSolver {
   void allocate_displacements();
   template <class Tolerance>
   ScaledConstraints scaled(Tolerance&& tau) const;
+  void order_contacts(const ContactStore& contacts);
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
   void choose_active(kernels::VectorsView x);
   simd::Relaxation relaxation(ScaledConstraints& constraints);
@@ -97,7 +98,8 @@ class SimdSolver {
   kernels::AlignedVector<SharedSweep> sweeps_;  // per share, or piece, of parallel work
   std::vector<std::uint8_t> open_seam_;         // no share of the present pass had all its tiles
   ContactLanes contacts_;
-  std::vector<float> contact_impulse_;  // per contact of the ContactStore
+  std::vector<float> contact_impulse_;        // per contact of the ContactStore
+  std::vector<std::uint32_t> contact_order_;  // its contacts, sphere by sphere
 };
 
 }  // namespace weft
