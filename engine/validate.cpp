@@ -12,9 +12,11 @@ namespace {
 
 /// So that sums of radii have squares, with a margin.
 constexpr double kMostRadius = 1e150;
-/// So that places of particles and numbers of constraints, padding and all, have 32 bits.
+/// So that places of particles, padding and all, have 32 bits, and so have places in lists of who
+/// is whose neighbour: 31 bits of a sparse matrix, where the degree of a hub bounds a row to
+/// some 30.
 constexpr std::size_t kMostParticles = std::size_t{1} << 28;
-constexpr std::size_t kMostConstraints = std::size_t{1} << 29;
+constexpr std::size_t kMostConstraints = std::size_t{1} << 26;
 
 std::string number(double value) {
   char text[32];
@@ -41,7 +43,8 @@ Result<void> validate_positive(std::string_view field, double value) {
   return {};
 }
 
-/// Of a length: so that squares of it, and their inverses, are numbers with all digits.
+/// Of a length or a mass: so that squares of it, and their inverses, are numbers with all digits,
+/// and sums of inverses are numbers.
 Result<void> validate_square(std::string_view field, double value) {
   const double square = value * value;
   if (std::isnormal(square) && std::isnormal(1 / square)) return {};
@@ -203,9 +206,7 @@ Result<void> validate(const SceneDescription& d) {
   if (auto r = validate_size("masses", d.masses.size(), particles); !r) return r;
   for (std::size_t i = 0; i < particles; ++i) {
     if (auto r = validate_positive(element("masses", i), d.masses[i]); !r) return r;
-    if (!std::isfinite(1 / d.masses[i])) {
-      return refuse(element("masses", i), "is too small to be inverted", number(d.masses[i]));
-    }
+    if (auto r = validate_square(element("masses", i), d.masses[i]); !r) return r;
   }
   if (auto r = validate_gravity(d.gravity); !r) return r;
   if (auto r = validate_index_list("fixed", d.fixed, particles); !r) return r;

@@ -110,7 +110,7 @@ struct Constraint {
 struct SceneDescription {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;      ///< empty: at rest; else one per particle
-  std::vector<double> masses;        ///< one per particle, > 0, fixed particles included
+  std::vector<double> masses;        ///< one per particle, 1e-150 to 1e150, fixed ones too
   std::vector<std::uint32_t> fixed;  ///< particles of infinite inertia; move them with move_fixed()
   std::vector<Constraint> constraints;
   Vec3 gravity{0, -10, 0};

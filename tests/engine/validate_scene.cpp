@@ -72,8 +72,10 @@ TEST_CASE("masses must be finite and positive, one per particle") {
   check_refused([](auto& s) { s.masses.clear(); }, {"masses", "17", "0"});
 }
 
-TEST_CASE("a mass whose inverse overflows is refused") {
-  check_refused([](auto& s) { s.masses[7] = 1e-310; }, {"masses[7]", "1e-310"});
+TEST_CASE("masses whose inverses cannot be added or squared are refused") {
+  for (const double mass : {1e-310, 1e-308, 1e-160, 1e160, 1e308}) {
+    check_refused([&](auto& s) { s.masses[7] = mass; }, {"masses[7]", "squared"});
+  }
 }
 
 TEST_CASE("velocities are none or one per particle") {
