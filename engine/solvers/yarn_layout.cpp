@@ -152,11 +152,21 @@ struct LessByBytes {
   }
 };
 
+/// kg; 1 if none can move. What is joined to nothing may be far lighter than a float can tell.
+double lightest_joined(const Model& model) {
+  double most = 0;
+  for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+    most = std::max({most, model.inverse_mass[model.constraints.a[c]],
+                     model.inverse_mass[model.constraints.b[c]]});
+  }
+  return most > 0 ? 1 / most : 1;
+}
+
 class Builder {
  public:
   Builder(const Model& model, Braces& braces, YarnLayout& layout)
       : model_(model), braces_(braces), layout_(layout), known_(LessByBytes{layout.kinds}) {
-    layout.lightest = 1 / std::ranges::max(model.inverse_mass);
+    layout.lightest = lightest_joined(model);
   }
 
   /// These chains make a block, a lane each; the first is the longest.

@@ -37,7 +37,7 @@ struct YarnLayout {
   std::vector<std::uint32_t> span_slots;  // of their particles, both ends included
   YarnPlaces places;
 
-  double lightest = 1;                    // mass of a particle
+  double lightest = 1;                    // kg, of the particles that constraints join
   double cell = 0;                        // that positions are split by (kernels/simd/yarn_rows.h)
   std::size_t longest = 0;                // rows of the longest block
   std::vector<std::uint32_t> longest_at;  // per chunk of model.simd(): of those yarns with a

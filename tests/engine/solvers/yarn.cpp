@@ -152,6 +152,20 @@ void check_places(const Model& model) {
   }
 }
 
+TEST_CASE("a particle that nothing is joined to does not matter, however light") {
+  const auto iterations = [](const SceneDescription& scene) {
+    Cloth cloth = cloth_of(scene, yarn(0.01));
+    std::int64_t sum = 0;
+    for (int k = 0; k < 20; ++k) sum += step(cloth, 0.01).iterations;
+    return sum;
+  };
+  SceneDescription scene = scene_of("hang", 20);
+  const std::int64_t alone = iterations(scene);
+  scene.positions.push_back({0, 5, 0});
+  scene.masses.push_back(1e-45);
+  CHECK(iterations(scene) == alone);
+}
+
 TEST_CASE("every constraint is in one yarn, no particle twice in a family") {
   for (const SceneDescription& scene :
        {scene_of("hang", 20), scene_of("hang", 41), scene_of("corners", 21),
