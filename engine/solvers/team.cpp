@@ -21,7 +21,7 @@ constexpr int kPatience = 2000;
 /// Ticks of the processor's clock, about a millisecond. A share that takes so much longer than
 /// twice the leader's own is on a thread without a processor.
 constexpr std::uint64_t kLost = 3'000'000;
-/// Ticks that a task waits at the door at most: 0.2 ms.
+/// Ticks that a task waits at the door at most: 0.2 ms at 3 GHz.
 constexpr std::uint64_t kLinger = 600'000;
 /// The leader then goes on alone for so many times what it waited, so that lost processors cost no
 /// more than this part of the time. Many rounds are judged as one: a processor that is lost for

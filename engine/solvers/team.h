@@ -10,8 +10,8 @@
 /// A meeting costs what it takes a cache line to cross between processors, twice; so everything
 /// that a call says is in one line, and nobody touches the lines of another without need.
 ///
-/// A task that has done its part keeps waiting for as long as that took, 0.2 ms at most: the next
-/// step may follow at once, and a processor that fell asleep takes tens of microseconds to
+/// A task that has done its part keeps waiting for as long as that took, about 0.2 ms at most: the
+/// next step may follow at once, and a processor that fell asleep takes tens of microseconds to
 /// wake. It goes when tasks are enqueued for another team. One that finds itself on the leader's
 /// processor is sent to another.
 ///

@@ -7,12 +7,21 @@
 namespace weft::test {
 namespace {
 
-TEST_CASE("every choice bears its enumerator's name") {
+TEST_CASE("every choice has the name that the command line and reports call it by") {
   CHECK(name(Solver::gauss_seidel) == "gauss_seidel");
+  CHECK(name(Solver::yarn) == "yarn");
+  CHECK(name(Solver::direct) == "direct");
+  CHECK(name(Solver::automatic) == "auto");
   CHECK(name(Scheme::paper) == "paper");
+  CHECK(name(Scheme::rattle) == "rattle");
   CHECK(name(Directions::each) == "each");
   CHECK(name(Directions::frozen) == "frozen");
   CHECK(name(Backend::reference) == "reference");
+  CHECK(name(Backend::simd) == "simd");
+  CHECK(name(Isa::sse2) == "sse2");
+  CHECK(name(Isa::avx2) == "avx2");
+  CHECK(name(Isa::avx512) == "avx512");
+  CHECK(name(Isa::automatic) == "auto");
   CHECK(name(Status::converged) == "converged");
   CHECK(name(Status::fixed_iterations) == "fixed_iterations");
   CHECK(name(Status::iteration_limit) == "iteration_limit");
