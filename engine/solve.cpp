@@ -36,6 +36,12 @@ Status add(StepReport& report, const kernels::LoopResult& result) {
   return result.converged ? Status::converged : Status::iteration_limit;
 }
 
+kernels::LoopLimits limits_of(const Settings& settings, int most) {
+  return {.fixed_iterations = settings.iterations,
+          .max_iterations = most,
+          .renew_after = settings.renew_after};
+}
+
 /// With a start: along the directions there (scheme rattle).
 kernels::LoopResult sweep_positions(State& s, double h, kernels::VectorsView start, bool first,
                                     const kernels::LoopLimits& limits, Team& team) {
@@ -44,12 +50,17 @@ kernels::LoopResult sweep_positions(State& s, double h, kernels::VectorsView sta
                      : s.simd->solve_positions(x, start, s.contacts, first, limits, team);
 }
 
+bool within_tolerance(State& s, Team& team) {
+  return max_strain_at(s, s.solved, team) <= s.settings.tolerance &&
+         penetration_at(s, s.solved) <= s.settings.contact_tolerance;
+}
+
 /// Sweeps until nothing is out of tolerance, `most` iterations are done, or none of them brings
-/// anything any more.
+/// anything any more. The last of them may have put right what no other was left to find so.
 kernels::LoopResult sweep_on(State& s, double h, bool first, int most, Standstill& standstill,
                              Team& team) {
   if (s.settings.iterations > 0)
-    return sweep_positions(s, h, {}, first, limits_of(s.settings), team);
+    return sweep_positions(s, h, {}, first, limits_of(s.settings, most), team);
   kernels::LoopResult sum;
   while (sum.iterations < most && !standstill.reached()) {
     const int part = std::min(most - sum.iterations, kPassesBetweenLooks);
@@ -59,6 +70,7 @@ kernels::LoopResult sweep_on(State& s, double h, bool first, int most, Standstil
     if (sum.converged || part < kPassesBetweenLooks) break;
     standstill.look(strain_at(s, s.solved, team), penetration_at(s, s.solved));
   }
+  if (!sum.converged && sum.iterations >= most) sum.converged = within_tolerance(s, team);
   return sum;
 }
 
@@ -68,7 +80,7 @@ kernels::LoopResult sweep_from_start(State& s, double h, kernels::VectorsView st
                                      int most, Team& team) {
   constexpr int kPasses = 256;
   if (s.settings.iterations > 0) {
-    return sweep_positions(s, h, start, first, limits_of(s.settings), team);
+    return sweep_positions(s, h, start, first, limits_of(s.settings, most), team);
   }
   kernels::LoopResult sum;
   double strain = std::numeric_limits<double>::infinity();
@@ -82,10 +94,11 @@ kernels::LoopResult sweep_from_start(State& s, double h, kernels::VectorsView st
   }
 }
 
-kernels::LoopResult sweep_velocities(State& s, Team& team) {
+kernels::LoopResult sweep_velocities(State& s, int most, Team& team) {
   const auto x = s.solved.view(), v = s.next_velocity.view();
-  return s.reference ? s.reference->correct_velocities(x, v, s.contacts)
-                     : s.simd->correct_velocities(x, v, s.contacts, team);
+  const kernels::LoopLimits limits = limits_of(s.settings, most);
+  return s.reference ? s.reference->correct_velocities(x, v, s.contacts, limits)
+                     : s.simd->correct_velocities(x, v, s.contacts, limits, team);
 }
 
 kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView start, bool first,
@@ -170,24 +183,27 @@ kernels::LoopResult solve_round(State& s, const Attempt& attempt, From from, int
   return sweep_on(s, attempt.h, first, left, standstill, team);
 }
 
-kernels::LoopResult correct_directly(State& s, bool exact, Team& team) {
-  auto result =
-      s.direct->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts, exact);
-  if (result.failed) count(result, sweep_velocities(s, team));
+kernels::LoopResult correct_directly(State& s, bool exact, int most, Team& team) {
+  auto result = s.direct->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts,
+                                             exact, most);
+  if (result.failed) count(result, sweep_velocities(s, most - result.iterations, team));
   return result;
 }
 
-/// What follows the yarns judges in double; as a rule it finds nothing to do.
-kernels::LoopResult correct_by_yarns(State& s, bool exact, Team& team) {
-  auto result =
-      s.yarn->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts, exact, team);
-  count(result, s.direct ? correct_directly(s, false, team) : sweep_velocities(s, team));
+/// What follows the yarns judges in double; as a rule it finds nothing to do. Half of the
+/// iterations are its own.
+kernels::LoopResult correct_by_yarns(State& s, bool exact, int most, Team& team) {
+  auto result = s.yarn->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts,
+                                           exact, most / 2, team);
+  const int left = most - result.iterations;
+  count(result,
+        s.direct ? correct_directly(s, false, left, team) : sweep_velocities(s, left, team));
   return result;
 }
 
-kernels::LoopResult solve_velocities(State& s, bool exact, Team& team) {
-  if (s.yarn && s.settings.iterations == 0) return correct_by_yarns(s, exact, team);
-  return s.direct ? correct_directly(s, exact, team) : sweep_velocities(s, team);
+kernels::LoopResult solve_velocities(State& s, bool exact, int most, Team& team) {
+  if (s.yarn && s.settings.iterations == 0) return correct_by_yarns(s, exact, most, team);
+  return s.direct ? correct_directly(s, exact, most, team) : sweep_velocities(s, most, team);
 }
 
 Ended end_of(const kernels::LoopResult& result, OnFailure on_failure) {
@@ -229,7 +245,8 @@ Trial solve_positions(State& s, const Attempt& attempt, StepReport& report, Team
 }
 
 Status correct_velocities(State& s, const Attempt& attempt, StepReport& report, Team& team) {
-  const auto result = solve_velocities(s, attempt.by_rattle(), team);
+  const auto result =
+      solve_velocities(s, attempt.by_rattle(), attempt.most_velocity_iterations, team);
   report.velocity_iterations += result.iterations;
   return add(report, result);
 }

@@ -18,6 +18,7 @@ enum class OnFailure : std::uint8_t { halve, leave, sweep };
 struct Attempt {
   double h = 0;
   int most_iterations = 1;
+  int most_velocity_iterations = 1;
   OnFailure on_failure = OnFailure::sweep;
   bool only_sweeps = false;      // of Gauss-Seidel: no yarns
   bool hold_taut = false;        // taut spans of yarns keep strain (held_spans.h)

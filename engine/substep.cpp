@@ -1,5 +1,8 @@
 #include "engine/substep.h"
 
+#include <algorithm>
+#include <cstdint>
+
 #include "engine/contacts.h"
 #include "engine/crossings.h"
 #include "engine/energy.h"
@@ -94,18 +97,29 @@ bool is_good(State& s, const Trial& trial, double h, Team& team) {
   return solved && trial.has_result() && rattle_keeps_energy(s, h, team);
 }
 
+int half_of(int most) { return std::max(1, most / 2); }
+int left_of(int most, std::int64_t done) {
+  return static_cast<int>(std::max<std::int64_t>(1, most - done));
+}
+
 }  // namespace
 
 /// Until it is accepted a substep leaves position and velocity alone: it can be done again.
 Trial substep(State& s, const Attempt& attempt, StepReport& report, Team& team) {
   if (s.settings.scheme == Scheme::paper) return run_stages(s, attempt, report, team);
+  const std::int64_t done = report.iterations, of_velocities = report.velocity_iterations;
   Attempt by_rattle = attempt;
   by_rattle.start = s.position.view();
+  by_rattle.most_iterations = half_of(attempt.most_iterations);
+  by_rattle.most_velocity_iterations = half_of(attempt.most_velocity_iterations);
   const Trial trial = run_stages(s, by_rattle, report, team);
   if (is_good(s, trial, attempt.h, team)) return trial;
   ++report.scheme_fallbacks;
   Attempt by_paper = attempt;
   by_paper.predicted = false;
+  by_paper.most_iterations = left_of(attempt.most_iterations, report.iterations - done);
+  by_paper.most_velocity_iterations =
+      left_of(attempt.most_velocity_iterations, report.velocity_iterations - of_velocities);
   return run_stages(s, by_paper, report, team);
 }
 

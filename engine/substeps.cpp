@@ -94,8 +94,11 @@ class Substeps {
     projected_ = report_.visits;
     const int substeps = choose_substeps(dt);
     if (substeps > 1) transaction_.begin();
-    for (int k = 1; k <= substeps; ++k) {
-      present_ = {.left = s_.settings.max_iterations,
+    for (int left = substeps; left > 0; --left) {
+      const int share = share_of(report_.iterations, left);
+      present_ = {.share = share,
+                  .left = share,
+                  .velocities_left = share_of(report_.velocity_iterations, left),
                   .to_do = dt / substeps,
                   .gave_up = answer_ == Answer::only_sweeps};
       Outcome outcome;
@@ -116,6 +119,14 @@ class Substeps {
     timed(report_, Stage::predict, [&] { wanted = substeps_wanted(s_, dt, team_); });
     predicted_ = wanted == 1;
     return wanted;
+  }
+
+  /// Of the iterations that the step may still do after so many, for one of the substeps left: if
+  /// possible one for the solver, and one for what answers for it.
+  int share_of(std::int64_t done, int substeps_left) const {
+    const int most = s_.settings.max_iterations;
+    return static_cast<int>(
+        std::max<std::int64_t>(std::min(most, 2), (most - done) / substeps_left));
   }
 
   /// refused: the state could not be accepted. hopeless: halving is no answer to this substep, of
@@ -170,26 +181,29 @@ class Substeps {
   Trial attempt(double h, OnFailure on_failure) {
     const Attempt attempt{.h = h,
                           .most_iterations = most_iterations(h, on_failure),
+                          .most_velocity_iterations = part_of(present_.velocities_left, h),
                           .on_failure = on_failure,
                           .only_sweeps = answer_ == Answer::only_sweeps,
                           .hold_taut = s_.settings.iterations == 0,
                           .allowance = std::sqrt(s_.trouble.allowance()),
                           .stood_at = std::max(record_.stood_at, s_.trouble.stood_at()),
                           .predicted = std::exchange(predicted_, false)};
-    const std::int64_t before = report_.iterations;
+    const std::int64_t before = report_.iterations, of_velocities = report_.velocity_iterations;
     const Trial trial = substep(s_, attempt, report_, team_);
     present_.left -= static_cast<int>(report_.iterations - before);
+    present_.velocities_left -= static_cast<int>(report_.velocity_iterations - of_velocities);
     return trial;
   }
 
   /// Half of a substep's iterations are for what cannot be left to another attempt, and half of
   /// what is left of them for the rest of the substep.
-  int kept_for_sweeps() const {
-    return s_.settings.max_iterations - s_.settings.max_iterations / 2;
+  int kept_for_sweeps() const { return present_.share - present_.share / 2; }
+  int part_of(int left, double h) const {
+    return std::max(h < present_.to_do ? left / 2 : left, 1);
   }
   int most_iterations(double h, OnFailure on_failure) const {
     const int left = present_.left;
-    int most = h < present_.to_do ? left / 2 : left;
+    int most = part_of(left, h);
     if (answer_ == Answer::only_sweeps)
       most = std::min(left / 2, s_.trouble.most_sweeps());
     else if (on_failure != OnFailure::sweep)
@@ -250,10 +264,12 @@ class Substeps {
   enum class Answer : std::uint8_t { only_sweeps, halves, sweeps };
   /// The substep that is being done.
   struct Present {
-    int left = 0;          // iterations, of all its parts together
-    double to_do = 0;      // s, of it
-    int parts = 0;         // done
-    bool gave_up = false;  // the solver, once at least
+    int share = 0;            // of the step's iterations, for all its parts together
+    int left = 0;             // of its share
+    int velocities_left = 0;  // the same of velocity iterations
+    double to_do = 0;         // s, of it
+    int parts = 0;            // done
+    bool gave_up = false;     // the solver, once at least
   };
 
   State& s_;

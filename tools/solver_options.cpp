@@ -39,7 +39,7 @@ void add_solver_options(Verb verb, SolverOptions& options) {
   verb.option("--iterations", settings.iterations,
               "exactly this many iterations of one substep, instead of a tolerance");
   verb.option("--max-iterations", settings.max_iterations,
-              "most iterations of one substep (default 1000000)");
+              "most iterations of a step, shared by its substeps (default 1000000)");
   verb.option("--contact-tolerance", settings.contact_tolerance,
               "m of penetration left (default 1e-4)");
   verb.option("--velocity-tolerance", settings.velocity_tolerance,

@@ -136,22 +136,23 @@ DirectOutcome DirectSolver::iterate_fixed(VectorsView x, VectorsView start,
 }
 
 LoopResult DirectSolver::correct_velocities(VectorsView x, VectorsView v,
-                                            const ContactStore& contacts, bool exact) {
+                                            const ContactStore& contacts, bool exact,
+                                            int max_iterations) {
   LoopResult result;
   system_.start(contacts, true);
   copy(v, start_.view(), start_.size());
-  const DirectOutcome outcome = iterate_velocities(x, v, contacts, exact, result);
+  const DirectOutcome outcome = iterate_velocities(x, v, contacts, exact, max_iterations, result);
   result.converged = outcome == DirectOutcome::converged;
   if (result.converged || settings_.iterations > 0) return result;
   copy(start_.view(), v, start_.size());
-  result.failed = outcome == DirectOutcome::failed && result.iterations < settings_.max_iterations;
+  result.failed = outcome == DirectOutcome::failed && result.iterations < max_iterations;
   return result;
 }
 
 /// Linear: more than one solve only where the active set changes.
 DirectOutcome DirectSolver::iterate_velocities(VectorsView x, VectorsView v,
                                                const ContactStore& contacts, bool exact,
-                                               LoopResult& result) {
+                                               int max_iterations, LoopResult& result) {
   const bool fixed = settings_.iterations > 0;
   Progress progress;
   for (;;) {
@@ -161,7 +162,7 @@ DirectOutcome DirectSolver::iterate_velocities(VectorsView x, VectorsView v,
     if (!fixed && worst <= 1 && !wanted) return DirectOutcome::converged;
     if (fixed && result.iterations == settings_.iterations) return DirectOutcome::exhausted;
     if (!fixed && !progress.goes_on(worst)) return DirectOutcome::failed;
-    if (!fixed && result.iterations >= settings_.max_iterations) return DirectOutcome::exhausted;
+    if (!fixed && result.iterations >= max_iterations) return DirectOutcome::exhausted;
     if (!solve(v, result)) return DirectOutcome::failed;
   }
 }

@@ -57,7 +57,8 @@ class DirectSolver {
                                        int max_iterations);
   /// Corrects v at the positions x, or leaves it; with `exact` also what is within tolerance, once.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts, bool exact);
+                                         const ContactStore& contacts, bool exact,
+                                         int max_iterations);
   std::size_t bytes() const;
 
  private:
@@ -69,7 +70,7 @@ class DirectSolver {
   DirectOutcome iterate_fixed(kernels::VectorsView x, kernels::VectorsView start,
                               const ContactStore& contacts, kernels::LoopResult& result);
   DirectOutcome iterate_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                   const ContactStore& contacts, bool exact,
+                                   const ContactStore& contacts, bool exact, int max_iterations,
                                    kernels::LoopResult& result);
   bool solve(kernels::VectorsView u, kernels::LoopResult& result);
 

@@ -144,7 +144,8 @@ void ReferenceSolver::choose_velocity_tolerances(const reference::Relaxation& r,
 
 kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
                                                         kernels::VectorsView v,
-                                                        const ContactStore& contacts) {
+                                                        const ContactStore& contacts,
+                                                        const kernels::LoopLimits& limits) {
   place_contacts(contacts);  // positions may have been solved elsewhere
   reference::Relaxation r = problem(x, contacts.count());
   reference::renew_all_directions(r, x);
@@ -157,7 +158,7 @@ kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   return reference::relax_velocities(r, layout_.topology(),
                                      model_.has_contacts() ? lists : reference::ContactLists{},
-                                     workspace(), method(limits_of(settings_)));
+                                     workspace(), method(limits));
 }
 
 std::size_t ReferenceSolver::bytes() const {

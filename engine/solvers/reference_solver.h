@@ -8,7 +8,6 @@
 
 #include "engine/contacts.h"
 #include "engine/model.h"
-#include "engine/solvers/loop_limits.h"
 #include "kernels/reference/relax.h"
 
 namespace weft {
@@ -25,7 +24,8 @@ class ReferenceSolver {
                                       const kernels::LoopLimits& limits);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts);
+                                         const ContactStore& contacts,
+                                         const kernels::LoopLimits& limits);
   std::size_t bytes() const;
 
  private:

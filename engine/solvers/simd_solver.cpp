@@ -185,14 +185,15 @@ void SimdSolver::choose_active(kernels::VectorsView x) {
 /// The directions stay, but are "renewed" like frozen ones: it is the renewal that takes the errors
 /// anew from the velocities, in double. Without it no error could fall below 10^-7 of the first.
 kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                                   const ContactStore& store, Team& team) {
+                                                   const ContactStore& store,
+                                                   const kernels::LoopLimits& limits, Team& team) {
   std::ranges::fill(impulse_, 0.f);
   if (model_.has_contacts()) {
     place_contacts(store, settings_.iterations > 0 ? 1 : settings_.velocity_tolerance, false);
   }
   choose_active(x);
   SimdLoop loop(*this, {.x = x, .v = v}, team);
-  return kernels::iterate(loop, kernels::Directions::frozen, not_too_old(limits_of(settings_)));
+  return kernels::iterate(loop, kernels::Directions::frozen, not_too_old(limits));
 }
 
 simd::Relaxation SimdSolver::relaxation(ScaledConstraints& constraints) {

@@ -18,7 +18,6 @@
 
 #include "engine/contacts.h"
 #include "engine/model.h"
-#include "engine/solvers/loop_limits.h"
 #include "engine/solvers/simd_layout.h"
 #include "engine/solvers/team.h"
 #include "kernels/loop.h"
@@ -66,7 +65,8 @@ class SimdSolver {
                                       const kernels::LoopLimits& limits, Team& team);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts, Team& team);
+                                         const ContactStore& contacts,
+                                         const kernels::LoopLimits& limits, Team& team);
   std::size_t bytes() const;
 
  private:

@@ -182,7 +182,7 @@ void YarnSolver::count(int passes, std::int64_t visits, std::int64_t corrections
 /// sight of the last digits.
 kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                                    const ContactStore& contacts, bool exact,
-                                                   Team& team) {
+                                                   int max_iterations, Team& team) {
   kernels::LoopResult result;
   from_start_ = false;
   velocities_ = true;
@@ -198,7 +198,7 @@ kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kerne
     const double worst = read_velocities(team);
     if (exact && !solved) goal = std::min(goal, kExact * worst);
     result.converged = worst <= tolerated;
-    const int left = settings_.max_iterations - result.iterations;
+    const int left = max_iterations - result.iterations;
     const bool enough = worst <= goal || (result.converged && solved);
     if (enough || left <= 0 || !progress.goes_on(worst)) break;
     if (!solve(goal, 0, std::min(kMostIterations, left), team, result)) break;

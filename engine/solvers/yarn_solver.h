@@ -64,7 +64,8 @@ class YarnSolver {
   /// Brings the velocities at the positions x within half of the tolerance, or as far as it gets;
   /// with `exact` to a small part of what they were out by, however little that is.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts, bool exact, Team& team);
+                                         const ContactStore& contacts, bool exact,
+                                         int max_iterations, Team& team);
   std::size_t longest() const { return layout_.longest; }  // particles of the longest yarn
   /// Per chunk of the measure: of the yarns that have a constraint there. Empty: all are as long.
   std::span<const std::uint32_t> longest_at() const { return layout_.longest_at; }

@@ -209,8 +209,7 @@ struct Settings {
   /// (kAutomaticSubsteps): chosen from the motion (rattle: up to 2.5 times as many as paper) and,
   /// with yarns, from the load that heavy particles and spheres are; 1 on the reference backend
   /// or with `iterations`. A substep whose solver gives up before max_iterations is redone in
-  /// halves, up to 16 parts (StepReport::halvings). Fine meshes need small substeps. Iteration
-  /// counts and bounds are per substep.
+  /// halves, up to 16 parts (StepReport::halvings). Fine meshes need small substeps.
   int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per substep whatever the error,
   /// nothing skipped; gauss_seidel renews frozen directions once per substep, direct and yarn in
@@ -221,10 +220,10 @@ struct Settings {
   /// fall by seven digits at most). Solving exactly along directions that will change is wasted
   /// work: 32 saves a fifth of the iterations and more.
   int renew_after = 32;
-  /// Per substep; > 0; the last half of them for sweeps where the solver gives up. To bound the
-  /// time of a step, choose it (100 to 1000) and `substeps`. Besides, as many for velocities, as
-  /// many again where rattle is left to scheme paper, and half as many where positions are
-  /// projected before a step.
+  /// Of a whole step, whatever its substeps, halves and schemes; > 0. It bounds the time of a step:
+  /// a game sets it (1000). Each substep has an even share of what is left, and does one at least
+  /// of each of its parts; half of a share is for sweeps where the solver gives up, half for scheme
+  /// paper where rattle is left to it. The velocity loop may do as many of its own.
   int max_iterations = 1'000'000;
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0

@@ -85,10 +85,14 @@ double fastest(const State& now) {
 
 void check_status(const RandomCase& c, const StepReport& report, const State& now) {
   const Settings& s = c.settings;
-  constexpr int kParts = 16;  // of a substep, each of which does one at least
-  const int attempts = s.substeps + report.scheme_fallbacks;
-  const int most = s.iterations > 0 ? s.iterations : s.max_iterations + kParts;
-  CHECK(report.iterations <= attempts * most + s.max_iterations);  // with a projected start
+  if (s.iterations > 0) {
+    CHECK(report.iterations <= (s.substeps + report.scheme_fallbacks) * s.iterations);
+  } else {
+    constexpr int kParts = 16;  // of a substep, each of which does one at least, by each scheme
+    const int least = 2 * kParts * std::max(s.substeps, report.substeps);
+    CHECK(report.iterations <= s.max_iterations + least);
+    CHECK(report.velocity_iterations <= s.max_iterations + least);
+  }
   const bool passed = report.status == Status::passed_through;
   if (s.iterations > 0) CHECK((report.status == Status::fixed_iterations || passed));
   if (report.status != Status::converged) return;

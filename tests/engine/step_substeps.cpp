@@ -183,11 +183,37 @@ TEST_CASE("a step in substeps is so many small steps, and reports their sum") {
 
 TEST_CASE("the status is the worst of the substeps") {
   Settings settings = on(each_backend(), tight(1e-9));
-  settings.max_iterations = 2;
+  settings.max_iterations = 8;
   Cloth cloth = cloth_of(scene_of("hang", 7), in_substeps(settings, 4));
   const StepReport report = step(cloth, 0.01);
   CHECK(report.status == Status::iteration_limit);
   CHECK(report.iterations == 8);
+}
+
+// Each substep may do one for each of its parts (report.substeps), by each scheme.
+TEST_CASE("the bound on iterations is that of the step, whatever its substeps") {
+  constexpr int kMost = 2000;
+  Settings settings = on(each_backend(), tight(1e-12));
+  settings.max_iterations = kMost;
+  settings.velocity_correction = true;
+  for (const Solver solver : {Solver::gauss_seidel, Solver::yarn, Solver::direct}) {
+    for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+      for (const int substeps : {kAutomaticSubsteps, 1, 8, 60}) {
+        if (settings.backend == Backend::reference && solver == Solver::yarn) continue;
+        CAPTURE(std::string(name(solver)));
+        CAPTURE(std::string(name(scheme)));
+        CAPTURE(substeps);
+        settings.solver = solver;
+        settings.scheme = scheme;
+        Cloth cloth = cloth_of(scene_of("corners", 9), in_substeps(settings, substeps));
+        for (int k = 0; k < 5; ++k) {
+          const StepReport report = step(cloth, 0.02);
+          CHECK(report.iterations <= kMost + 2 * report.substeps);
+          CHECK(report.velocity_iterations <= kMost + 2 * report.substeps);
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("a fixed number of iterations is that of each substep") {

@@ -65,7 +65,7 @@ struct Trial {
     find_contacts(*model, table, x.view(), contacts);
   }
   Vec3 correct_velocities(bool exact) {
-    (void)solver.correct_velocities(x.view(), v.view(), contacts, exact, team);
+    (void)solver.correct_velocities(x.view(), v.view(), contacts, exact, 1000, team);
     return of_particle(v);
   }
   /// From where the particle is at the start to `to`, along the directions at the start.
