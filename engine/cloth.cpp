@@ -137,6 +137,7 @@ Result<void> Cloth::write_velocities(std::span<const Vec3> in) {
     const bool fixed = impl_->model->inverse_mass[slot] == 0;
     impl_->velocity.set(slot, fixed ? kernels::Vector{0, 0, 0} : to_internal(in[i]));
   }
+  impl_->pins.rest();
   return {};
 }
 

@@ -20,10 +20,11 @@ void Pins::watch(const Model& model, const Vectors& position) {
 }
 
 void Pins::put_down(const Vectors& position) {
-  for (Pin& pin : pins_) {
-    pin.from = position[pin.slot];
-    pin.last = {0, 0, 0};
-  }
+  for (Pin& pin : pins_) pin.from = position[pin.slot];
+}
+
+void Pins::rest() {
+  for (Pin& pin : pins_) pin.last = {0, 0, 0};
 }
 
 bool Pins::depart(double dt, Vectors& position, Vectors& velocity) {

@@ -21,8 +21,10 @@ class Pins {
 
   /// Before the first of some moves: remembers where the pins stand.
   void watch(const Model& model, const kernels::Vectors& position);
-  /// All positions were replaced: nobody travels.
+  /// All positions were replaced: nobody travels, but who moved may go on at the same speed.
   void put_down(const kernels::Vectors& position);
+  /// All velocities were replaced: the next move is from rest.
+  void rest();
 
   /// Those that travel start where they were, with their velocities. Whether some jumped.
   bool depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);

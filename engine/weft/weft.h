@@ -360,8 +360,8 @@ class WEFT_API Cloth {
   /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
   /// is thrown and the state is unchanged. An error means that dt was refused. Meant for frames of
   /// 10 us to 0.1 s: in shorter ones the rounding of positions shows up as velocity; the cost of
-  /// longer ones is limited by 256 automatic substeps and max_iterations for each. Before a step of
-  /// less than an eighth of the last one, positions are projected onto the constraints, velocities
+  /// longer ones is limited by 256 automatic substeps and max_iterations. Before a step of less
+  /// than an eighth of the last one, positions are projected onto the constraints, velocities
   /// unchanged (yarn, direct): what the last one left within tolerance would become speed.
   Result<StepReport> step(double dt);
 
@@ -382,7 +382,8 @@ class WEFT_API Cloth {
 
   /// Replace the state; finite values, one per particle. Initial or written positions that are out
   /// of tolerance are projected onto the constraints as the next step begins, velocities unchanged
-  /// (not with Settings::iterations).
+  /// (not with Settings::iterations). Fixed particles that moved in the last step are at rest after
+  /// write_velocities, not after write_positions.
   Result<void> write_positions(std::span<const Vec3> in);
   Result<void> write_velocities(std::span<const Vec3> in);
   /// External forces in N besides gravity, kept until replaced. Empty: none.
@@ -394,14 +395,18 @@ class WEFT_API Cloth {
   /// change by more than 200 m/s^2 * dt from that of its last step, it jumps instead: it is placed
   /// before the step, and the cloth is projected after it, velocities unchanged; what a sphere
   /// jumped over is not passed_through. The last move before a step counts; write_positions cancels
-  /// all. (To teleport a whole cloth, write all its positions: then nothing needs solving.)
+  /// all. (To teleport a whole cloth, or move the origin, write all its positions: then nothing
+  /// needs solving, and pins go on at their speed.) A fixed particle that is not moved before a
+  /// step stands still in it: where steps are shorter than the frames of an animation, interpolate.
   Result<void> move_fixed(std::uint32_t particle, Vec3 position);
 
   /// Recomputed from the positions by this thread alone. The last step's is in its report already,
   /// and may differ in the last bits.
   Strain strain() const;
-  double max_penetration() const;  ///< m, over all sphere pairs; 0 without spheres
-  Energy energy() const;           ///< of the particles that are not fixed
+  /// m, over all pairs of a sphere and a particle or sphere, but for two fixed ones; 0 without
+  /// spheres.
+  double max_penetration() const;
+  Energy energy() const;  ///< of the particles that are not fixed
   /// FNV-1a over the bits of all positions and velocities, in the description's order.
   std::uint64_t state_hash() const;
   std::size_t bytes() const;  ///< held by this cloth, the shared model not included

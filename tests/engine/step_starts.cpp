@@ -2,6 +2,7 @@
 /// cloth, pins that jump do not.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -193,6 +194,34 @@ TEST_CASE("pins that written positions put down travel no more") {
     REQUIRE(cloth.move_fixed(0, {-0.038, 0, 0}));  // from rest: a jump
     step(cloth, 0.01);
     CHECK(length(cloth.velocity(1)) < 1e-3);
+  }
+}
+
+// The pin jumped, stood still, and took all of the bar's speed.
+TEST_CASE("a cloth that is moved as a whole is towed on at its speed") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.fixed = {0};
+  constexpr double kAway = 100, kSpeed = 8, kStep = 1. / 60;
+  for (const Settings& settings : all_settings(1e-5)) {
+    CAPTURE(text(settings));
+    Cloth cloth = cloth_of(scene, settings);
+    double speed = 0, x = 0;
+    const auto tow = [&] {
+      speed = std::min(kSpeed, speed + 100 * kStep);
+      x -= speed * kStep;
+      REQUIRE(cloth.move_fixed(0, {x, 0, 0}));
+      step(cloth, kStep);
+    };
+    for (int k = 0; k < 20; ++k) tow();
+    REQUIRE(cloth.velocity(1).x == doctest::Approx(-kSpeed).epsilon(1e-3));
+    std::vector<Vec3> moved{cloth.position(0), cloth.position(1)};
+    for (Vec3& p : moved) p.x += kAway;
+    x += kAway;
+    REQUIRE(cloth.write_positions(moved));
+    for (int k = 0; k < 3; ++k) {
+      tow();
+      CHECK(cloth.velocity(1).x == doctest::Approx(-kSpeed).epsilon(1e-3));
+    }
   }
 }
 
