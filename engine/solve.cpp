@@ -94,9 +94,20 @@ kernels::LoopResult sweep_from_start(State& s, double h, kernels::VectorsView st
   }
 }
 
-kernels::LoopResult sweep_velocities(State& s, int most, Team& team) {
+/// Of a fixed number of iterations those that the direct solver has not done, where the system has
+/// no solution: sweeps do them.
+bool are_left(const Settings& settings, const kernels::LoopResult& done) {
+  return done.iterations < settings.iterations;
+}
+kernels::LoopLimits left_of(const Settings& settings, const kernels::LoopResult& done) {
+  kernels::LoopLimits limits = limits_of(settings, 1);
+  limits.fixed_iterations -= done.iterations;
+  return limits;
+}
+
+kernels::LoopResult sweep_velocities(State& s, const kernels::LoopLimits& limits, Team& team) {
   const auto x = s.solved.view(), v = s.next_velocity.view();
-  const kernels::LoopLimits limits = limits_of(s.settings, most);
+
   return s.reference ? s.reference->correct_velocities(x, v, s.contacts, limits)
                      : s.simd->correct_velocities(x, v, s.contacts, limits, team);
 }
@@ -108,7 +119,11 @@ kernels::LoopResult solve_from_start(State& s, double h, kernels::VectorsView st
                                    team);
   }
   if (!s.direct) return sweep_from_start(s, h, start, first, left, team);
-  return s.direct->solve_from_start(s.solved.view(), start, s.contacts, first, left);
+  auto result = s.direct->solve_from_start(s.solved.view(), start, s.contacts, first, left);
+  if (are_left(s.settings, result)) {
+    count(result, sweep_positions(s, h, start, first, left_of(s.settings, result), team));
+  }
+  return result;
 }
 
 /// The direct solver. Where it fails sweeps begin where it did, and take the short waves out; it
@@ -126,6 +141,11 @@ kernels::LoopResult solve_directly(State& s, const Attempt& attempt, From from, 
     return s.direct->solve_positions(s.solved.view(), s.contacts, begin, most, noise_will_do);
   };
   auto result = solve(from, may_sweep ? std::max(1, left / 2) : left);
+  if (are_left(s.settings, result)) {
+    const bool first = from == From::prediction;
+    count(result, sweep_positions(s, attempt.h, {}, first, left_of(s.settings, result), team));
+  }
+
   int sweeps = kFirstSweeps;
   for (bool first = true; result.failed && may_sweep && result.iterations < left; first = false) {
     const int most = std::min(sweeps, left - result.iterations);
@@ -186,7 +206,12 @@ kernels::LoopResult solve_round(State& s, const Attempt& attempt, From from, int
 kernels::LoopResult correct_directly(State& s, bool exact, int most, Team& team) {
   auto result = s.direct->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts,
                                              exact, most);
-  if (result.failed) count(result, sweep_velocities(s, most - result.iterations, team));
+  if (are_left(s.settings, result)) {
+    count(result, sweep_velocities(s, left_of(s.settings, result), team));
+  } else if (result.failed) {
+    const int left = most - result.iterations;
+    count(result, sweep_velocities(s, limits_of(s.settings, left), team));
+  }
   return result;
 }
 
@@ -196,14 +221,15 @@ kernels::LoopResult correct_by_yarns(State& s, bool exact, int most, Team& team)
   auto result = s.yarn->correct_velocities(s.solved.view(), s.next_velocity.view(), s.contacts,
                                            exact, most / 2, team);
   const int left = most - result.iterations;
-  count(result,
-        s.direct ? correct_directly(s, false, left, team) : sweep_velocities(s, left, team));
+  count(result, s.direct ? correct_directly(s, false, left, team)
+                         : sweep_velocities(s, limits_of(s.settings, left), team));
   return result;
 }
 
 kernels::LoopResult solve_velocities(State& s, bool exact, int most, Team& team) {
   if (s.yarn && s.settings.iterations == 0) return correct_by_yarns(s, exact, most, team);
-  return s.direct ? correct_directly(s, exact, most, team) : sweep_velocities(s, most, team);
+  return s.direct ? correct_directly(s, exact, most, team)
+                  : sweep_velocities(s, limits_of(s.settings, most), team);
 }
 
 Ended end_of(const kernels::LoopResult& result, OnFailure on_failure) {

@@ -169,8 +169,8 @@ DirectOutcome DirectSolver::iterate_velocities(VectorsView x, VectorsView v,
 
 /// One solve with what was measured, of u: positions or velocities.
 bool DirectSolver::solve(VectorsView u, LoopResult& result) {
-  ++result.iterations;
   if (!solve_impulses(system_, factor_, bodies_)) return false;
+  ++result.iterations;
   apply_impulses(system_, u);
   result.corrections += system_.active;
   return true;

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <string>
 
 #include "tests/support/clothes.h"
 #include "tests/support/mesh_scenes.h"
@@ -96,6 +98,37 @@ TEST_CASE("frozen directions, renewed once a step, leave an error of second orde
     CHECK(left > 1e-9);
     if (before > 0) CHECK(left < 0.35 * before);
     before = left;
+  }
+}
+
+// More bodies than the direct solver takes: it has no system to solve, and did nothing.
+TEST_CASE("with bodies beyond what the direct solver takes sweeps do its iterations") {
+  constexpr int kBodies = 17, kIterations = 5;
+  SceneDescription scene;
+  for (std::uint32_t i = 0; i < kBodies; ++i) {
+    for (const double y : {0., -0.05, -0.15}) scene.positions.push_back({0.5 * i, y, 0});
+    scene.masses.insert(scene.masses.end(), {1, 0.1, 1});
+    scene.radii.insert(scene.radii.end(), {0, 0, 0.02});
+    scene.fixed.push_back(3 * i);
+    scene.spheres.push_back(3 * i + 2);
+    scene.constraints.push_back({3 * i, 3 * i + 1, 0.05});
+    scene.constraints.push_back({3 * i + 1, 3 * i + 2, 0.1});
+  }
+  for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+    CAPTURE(std::string(name(scheme)));
+    Settings settings;
+    settings.solver = Solver::direct;
+    settings.scheme = scheme;
+    settings.iterations = kIterations;
+    settings.velocity_correction = true;
+    Cloth cloth = cloth_of(scene, settings);
+    for (int k = 0; k < 50; ++k) {
+      const StepReport report = step(cloth, 0.01);
+      REQUIRE(report.status == Status::fixed_iterations);
+      REQUIRE(report.iterations == kIterations);
+      REQUIRE(report.velocity_iterations == kIterations);
+      REQUIRE(report.max_strain < 0.1);
+    }
   }
 }
 
