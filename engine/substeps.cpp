@@ -62,6 +62,7 @@ void explain(State& s, double h, StepReport& report, Team& team) {
   const bool input = predicted < s.model->slots();
   report.failed_particle = s.model->ordering.particle_at[input ? predicted : solved];
   report.passed_particle = kNoIndex;
+  report.substeps = 0;
   worsen(report, input ? Status::non_finite_input : Status::non_finite);
 }
 

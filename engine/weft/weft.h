@@ -307,7 +307,7 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 /// is the worst of them; errors are those at the end.
 struct StepReport {
   Status status = Status::converged;
-  int substeps = 0;                      ///< done
+  int substeps = 0;                      ///< done; 0 where nothing is committed
   int halvings = 0;                      ///< substeps that were redone as two halves
   std::int64_t iterations = 0;           ///< passes over the position constraints; yarn: sweeps and
                                          ///< conjugate gradient iterations; direct: solves
