@@ -16,7 +16,10 @@ Result<JsonOutput> JsonOutput::open(const std::string& destination) {
 }
 
 Result<void> JsonOutput::write(const Json& json) {
-  const std::string text = json.dump(2) + '\n';
+  constexpr int kIndent = 2;
+  // A file's name may be any bytes; JSON is UTF-8.
+  const auto rest = Json::error_handler_t::replace;
+  const std::string text = json.dump(kIndent, ' ', false, rest) + '\n';
   if (!file_) return print_text(text);
   file_->write(text);
   return file_->commit();

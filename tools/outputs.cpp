@@ -36,12 +36,13 @@ Result<void> Outputs::add(const std::string& path) {
   return {};
 }
 
-void Outputs::add_frame(const Cloth& cloth, bool is_last) {
-  if (!motions_.empty()) {
-    const std::vector<Vec3> points = vertex_positions(source_->mesh, cloth);
-    for (Pc2Writer& motion : motions_) motion.add_sample(points);
-  }
-  if (!is_last) return;
+void Outputs::add_frame(const Cloth& cloth) {
+  if (motions_.empty()) return;
+  const std::vector<Vec3> points = vertex_positions(source_->mesh, cloth);
+  for (Pc2Writer& motion : motions_) motion.add_sample(points);
+}
+
+void Outputs::add_last(const Cloth& cloth) {
   for (const PendingFile& mesh : meshes_) {
     mesh.write(obj_text(source_->mesh, source_->description, cloth));
   }

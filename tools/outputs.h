@@ -20,8 +20,9 @@ class Outputs {
   /// Opens all files, so that a place that cannot be written is refused before the run. The source
   /// must outlive the outputs.
   static Result<Outputs> open(const std::vector<std::string>& paths, const SceneSource& source);
-  /// The state after one more frame.
-  void add_frame(const Cloth& cloth, bool is_last);
+  /// The state after one more frame, and that after the last.
+  void add_frame(const Cloth& cloth);
+  void add_last(const Cloth& cloth);
   /// Completes all files; until then none of them is under its name.
   Result<void> finish();
 

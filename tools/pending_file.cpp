@@ -33,6 +33,12 @@ void forget(const char* name) {
   }
 }
 
+/// Of no other file, of this process or another, that is under way to the same place.
+std::string temporary_of(const std::string& path) {
+  static std::atomic<unsigned> count{0};
+  return fmt::format("{}.{}.{}.part", path, getpid(), count++);
+}
+
 /// Through symbolic links: they stay, and what they lead to is written.
 std::string followed(const std::string& path) {
   constexpr int kMostLinks = 40;  // as Linux follows
@@ -77,12 +83,17 @@ Result<PendingFile> PendingFile::open(const std::string& path) {
   state->named = state->path = path;
   if (!exists || S_ISREG(place.st_mode)) {
     state->path = followed(path);
-    state->temporary = fmt::format("{}.{}.part", state->path, getpid());
+    state->temporary = temporary_of(state->path);
     remember(state->temporary.c_str());
   }
   const std::string& name = state->temporary.empty() ? path : state->temporary;
   state->stream = std::fopen(name.c_str(), "wbe");
   if (state->stream == nullptr) return refused();
+  constexpr mode_t kPermissions = 07777;
+  if (exists && !state->temporary.empty() &&
+      fchmod(fileno(state->stream), place.st_mode & kPermissions) != 0) {
+    return refused();
+  }
   return PendingFile(std::move(state));
 }
 

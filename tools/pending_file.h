@@ -1,5 +1,5 @@
 /// A file that appears under its name only when it is complete: it is written beside its place
-/// under a temporary name, and renamed by commit().
+/// under a temporary name, and renamed by commit(). One that replaces another has its permissions.
 #pragma once
 
 #include <weft/weft.h>

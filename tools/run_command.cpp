@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "tools/exit_code.h"
 #include "tools/interrupt.h"
@@ -41,15 +42,23 @@ Result<void> check_plan(const RunPlan& plan) {
   return {};
 }
 
-/// Two outputs of one name would overwrite each other.
+/// Two outputs of one name, however it is spelt, would overwrite each other.
 Result<void> check_destinations(const RunOptions& options) {
-  std::vector<std::filesystem::path> paths(options.out.begin(), options.out.end());
-  if (options.json) paths.emplace_back(*options.json);
-  for (auto& path : paths) path = path.lexically_normal();
-  std::ranges::sort(paths);
-  const auto twice = std::ranges::adjacent_find(paths);
-  if (twice == paths.end()) return {};
-  return Error{fmt::format("--out, --json: '{}' is named twice", twice->string())};
+  struct Destination {
+    std::filesystem::path place;
+    std::string name;
+  };
+  std::vector<Destination> all;
+  const auto add = [&all](const std::string& name) {
+    std::error_code unknown;  // then it is told when the file is opened
+    all.push_back({weakly_canonical(std::filesystem::absolute(name), unknown), name});
+  };
+  std::ranges::for_each(options.out, add);
+  if (options.json && *options.json != "-") add(*options.json);
+  std::ranges::stable_sort(all, {}, &Destination::place);
+  const auto twice = std::ranges::adjacent_find(all, {}, &Destination::place);
+  if (twice == all.end() || twice->place.empty()) return {};
+  return Error{fmt::format("--out, --json: '{}' is named twice", twice->name)};
 }
 
 /// What is known to be possible before anything runs.
@@ -81,7 +90,8 @@ Result<RunSummary> run_and_record(const Prepared& prepared, RunPlan plan, Output
   plan.stop = [&stopped] { return stopped = OrderlyInterrupt::signal() != 0; };
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
     const bool is_last = frame == plan.steps || !committed(report.status) || stopped;
-    outputs.add_frame(cloth, is_last);
+    if (committed(report.status)) outputs.add_frame(cloth);
+    if (is_last) outputs.add_last(cloth);
     if (!progress.redraws()) return;
     progress.show(fmt::format("{} frame {}/{}, strain {}", bar(frame, plan.steps, 30), frame,
                               plan.steps, measured_percent(report.max_strain)));

@@ -121,6 +121,7 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
       {"run hang --out missing/a.obj", "'missing/a.obj'"},
       {"run hang --json missing/a.json", "'missing/a.json'"},
       {"run hang --out a.json --json ./a.json", "'a.json'"},
+      {"run hang --out a.json --json $PWD/a.json", "'a.json'"},
       {"run hang --colour red", "--colour"},
       {"scene hang --out a.obj", "'a.obj'"},
       {"precision --scene curtain", "'curtain'"},
@@ -268,6 +269,34 @@ TEST_CASE("a scene can be written, run, saved and run on") {
   const std::string whole = hash("hang_sphere --size 7 --steps 20");
   CHECK(hash(start + " --steps 10 --out " + half) != whole);
   CHECK(hash(half + " --steps 10") == whole);
+}
+
+TEST_CASE("a step that was taken back is no sample of the motion") {
+  const TemporaryFolder folder;
+  const std::string motion = folder.file("motion.pc2");
+  const Outcome outcome = run_program(folder, "run hang --size 3 --dt 1e200 --out " + motion);
+  CHECK(outcome.exit_code == 3);
+  constexpr std::uintmax_t kHeader = 32, kSample = 9 * 12;
+  CHECK(std::filesystem::file_size(motion) == kHeader + kSample);
+}
+
+TEST_CASE("names of files are any bytes, JSON is UTF-8") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("b\xff.json");
+  CHECK(run_program(folder, "scene hang --size 3 --out " + scene).exit_code == 0);
+  const Outcome outcome = run_program(folder, "run " + scene + " --steps 2 --json -");
+  CHECK(outcome.exit_code == 0);
+  CHECK(nlohmann::json::parse(outcome.out)["frames"] == 2);
+}
+
+TEST_CASE("the folder and the JSON of a study may be one place") {
+  const TemporaryFolder folder;
+  const std::string json = folder.file("precision.json");
+  const Outcome outcome = run_program(folder, "precision --quick --scene hang --size 4 --out " +
+                                                  folder.file("") + " --json " + json);
+  CHECK(outcome.exit_code == 0);
+  CHECK_FALSE(outcome.out.empty());
+  CHECK_FALSE(nlohmann::json::parse(folder.read("precision.json"))["points"].empty());
 }
 
 TEST_CASE("precision: JSON alone on stdout, points and orders of the contract") {

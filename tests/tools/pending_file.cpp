@@ -32,6 +32,31 @@ TEST_CASE("a file that is not committed leaves nothing") {
   CHECK(folder.is_empty());
 }
 
+TEST_CASE("two that are under way to one place do not meet, and the later one stays") {
+  const TemporaryFolder folder;
+  auto first = PendingFile::open(folder.file("a.txt"));
+  auto second = PendingFile::open(folder.file("a.txt"));
+  REQUIRE(first);
+  REQUIRE(second);
+  first.value().write("a longer text");
+  second.value().write("short");
+  CHECK(first.value().commit());
+  CHECK(folder.read("a.txt") == "a longer text");
+  CHECK(second.value().commit());
+  CHECK(folder.read("a.txt") == "short");
+}
+
+TEST_CASE("what replaces a file has its permissions") {
+  using std::filesystem::perms;
+  const TemporaryFolder folder;
+  folder.write("a.txt", "private");
+  const perms own = perms::owner_read | perms::owner_write;
+  std::filesystem::permissions(folder.file("a.txt"), own);
+  CHECK(write_file(folder.file("a.txt"), "new"));
+  CHECK(folder.read("a.txt") == "new");
+  CHECK(std::filesystem::status(folder.file("a.txt")).permissions() == own);
+}
+
 TEST_CASE("a symbolic link stays, and what it leads to is written") {
   const TemporaryFolder folder;
   folder.write("old.txt", "old");

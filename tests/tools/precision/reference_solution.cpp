@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "engine/scenes.h"
 
@@ -55,6 +56,15 @@ double energy(const SceneDescription& scene, const Motion& motion) {
 TEST_CASE("a pendulum let go level: the closed form at its lowest point, second order") {
   CHECK(swing_error(1000) < 2e-6);
   CHECK(swing_error(200) / swing_error(400) == doctest::Approx(4).epsilon(0.02));
+}
+
+TEST_CASE("a step that is too large is refused, also where it leaves the range of numbers") {
+  for (const double h : {1e3, 1e80, 1e200}) {
+    CAPTURE(h);
+    const auto motion = reference_solution(built_in("hang", 5), h, 2);
+    REQUIRE_FALSE(motion);
+    CHECK(motion.error().find("found no impulses") != std::string::npos);
+  }
 }
 
 TEST_CASE("a conical pendulum goes round its circle") {
