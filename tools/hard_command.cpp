@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -33,20 +34,28 @@ std::vector<hard::CaseResult> run_all(const std::vector<hard::Selected>& selecte
   std::vector<hard::CaseResult> results(selected.size());
   std::mutex turn;
   std::size_t next = 0;
+  std::exception_ptr failure;
   const auto take = [&]() -> std::size_t {
     const std::lock_guard lock(turn);
     if (next < selected.size()) line.next(selected[next].name);
     return next++;
   };
   const auto work = [&] {
-    for (std::size_t k = take(); k < selected.size(); k = take()) {
-      results[k] = hard::run(selected[k], quick);
+    try {
+      for (std::size_t k = take(); k < selected.size(); k = take()) {
+        results[k] = hard::run(selected[k], quick);
+      }
+    } catch (...) {  // out of memory
+      const std::lock_guard lock(turn);
+      failure = std::current_exception();
+      next = selected.size();
     }
   };
   std::vector<std::jthread> others(std::max(1U, std::thread::hardware_concurrency()) - 1);
   for (std::jthread& other : others) other = std::jthread(work);
   work();
   others.clear();  // joins
+  if (failure) std::rethrow_exception(failure);
   return results;
 }
 

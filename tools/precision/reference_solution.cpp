@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace weft::tools::precision {
 namespace {
@@ -90,7 +91,7 @@ class Rattle {
     return false;
   }
 
-  /// Fills in g(x) and returns the largest strain.
+  /// Fills in g(x) and returns the largest strain; infinity if x is no motion any more.
   double measure(VectorXd& error) const {
     double largest = 0;
     for (std::size_t c = 0; c < constraints_.size(); ++c) {
@@ -98,6 +99,7 @@ class Rattle {
       const double length =
           (x_.segment<3>(3 * constraint.a) - x_.segment<3>(3 * constraint.b)).norm();
       const double violation = length - constraint.rest_length;
+      if (!std::isfinite(violation)) return std::numeric_limits<double>::infinity();
       error[static_cast<Index>(c)] = violation;
       largest = std::max(largest, std::abs(violation) / constraint.rest_length);
     }
