@@ -113,6 +113,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     if (!report) return Error{report.error()};
     ++summary.frames;
     summary.step_seconds += elapsed.count();
+    summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
     look_for_miss(summary, report.value());
     add_work(summary, report.value());
     add_errors(summary, errors, cloth);

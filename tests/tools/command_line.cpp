@@ -47,7 +47,7 @@ TEST_CASE("with --json - stdout is JSON alone, with every key of the contract") 
   const auto json = nlohmann::json::parse(outcome.out);
   std::istringstream keys(
       "scene particles constraints solver scheme backend isa threads dt steps substeps "
-      "tolerance status ms_per_frame real_time_factor max_strain mean_max_strain "
+      "tolerance status ms_per_frame max_ms_per_frame real_time_factor max_strain mean_max_strain "
       "rms_strain iterations_per_step direction_updates_per_step visits corrections "
       "ns_per_constraint_iteration energy_start energy_end energy_gain lowest_y "
       "state_hash bytes_per_particle stages peak_rss_mb");

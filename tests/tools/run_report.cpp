@@ -16,6 +16,7 @@ RunReport report() {
   summary.frames = 4;
   summary.threads = 3;
   summary.step_seconds = 0.008;
+  summary.longest_step_seconds = 0.0035;
   summary.substeps = 6;
   summary.iterations = 20;
   summary.velocity_iterations = 12;
@@ -27,6 +28,7 @@ RunReport report() {
 TEST_CASE("figures are given per frame, and time beside the time that passes in the scene") {
   const Json json = to_json(report());
   CHECK(json["ms_per_frame"] == doctest::Approx(2));
+  CHECK(json["max_ms_per_frame"] == doctest::Approx(3.5));
   CHECK(json["real_time_factor"] == doctest::Approx(5));
   CHECK(json["iterations_per_step"] == 5);
   CHECK(json["velocity_iterations_per_step"] == 3);
