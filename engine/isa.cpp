@@ -29,17 +29,19 @@ Result<Isa> from_environment() {
 }  // namespace
 
 Result<Isa> resolve(Isa wanted) {
+  std::string source = "isa";
   if (wanted == Isa::automatic) {
     auto named = from_environment();
     if (!named) return named;
     wanted = named.value();
+    source = "WEFT_ISA";
   }
   if (wanted == Isa::automatic) return to_public(simd::best_isa());
   if (wanted > Isa::avx512) {
     return Error{"isa: unknown choice (" + std::to_string(static_cast<int>(wanted)) + ")"};
   }
   if (!simd::supported(to_kernel(wanted))) {
-    return Error{"isa: this machine lacks it (" + std::string(name(wanted)) + ")"};
+    return Error{source + ": this machine lacks it (" + std::string(name(wanted)) + ")"};
   }
   return wanted;
 }

@@ -10,11 +10,10 @@
 namespace weft {
 namespace {
 
-/// So that sums of radii have squares, with a margin.
-constexpr double kMostRadius = 1e150;
+/// What has a square, as its inverse has, of all digits; with a margin, for sums.
+constexpr double kLeastSquared = 1e-150, kMostSquared = 1e150;
 /// So that places of particles, padding and all, have 32 bits, and so have places in lists of who
-/// is whose neighbour: 31 bits of a sparse matrix, where the degree of a hub bounds a row to
-/// some 30.
+/// is whose neighbour.
 constexpr std::size_t kMostParticles = std::size_t{1} << 28;
 constexpr std::size_t kMostConstraints = std::size_t{1} << 26;
 
@@ -46,9 +45,8 @@ Result<void> validate_positive(std::string_view field, double value) {
 /// Of a length or a mass: so that squares of it, and their inverses, are numbers with all digits,
 /// and sums of inverses are numbers.
 Result<void> validate_square(std::string_view field, double value) {
-  const double square = value * value;
-  if (std::isnormal(square) && std::isnormal(1 / square)) return {};
-  return refuse(field, "is too small or too large to be squared", number(value));
+  if (value >= kLeastSquared && value <= kMostSquared) return {};
+  return refuse(field, "must be from 1e-150 to 1e150, to be squared", number(value));
 }
 
 /// The same of floats, with a margin: the simd backend measures errors in tolerances.
@@ -134,8 +132,8 @@ Result<void> validate_contacts(const SceneDescription& d) {
     if (!std::isfinite(d.radii[i]) || d.radii[i] < 0) {
       return refuse(element("radii", i), "must be finite and at least 0", number(d.radii[i]));
     }
-    if (d.radii[i] > kMostRadius) {
-      return refuse(element("radii", i), "must be at most " + number(kMostRadius),
+    if (d.radii[i] > kMostSquared) {
+      return refuse(element("radii", i), "must be at most " + number(kMostSquared),
                     number(d.radii[i]));
     }
   }

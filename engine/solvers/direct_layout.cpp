@@ -3,6 +3,8 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <limits>
+#include <new>
 
 #include "engine/bytes_of.h"
 #include "engine/model.h"
@@ -44,18 +46,21 @@ void for_each_neighbour(const Model& model, const DirectLayout& layout, const Li
   }
 }
 
-/// The matrix's pattern: per member, by its number, those it has an entry with.
+/// The matrix's pattern: per member, by its number, those it has an entry with. What Eigen cannot
+/// count, tens of gigabytes, is more than there is memory for.
 Lists neighbours_of(const Model& model, const DirectLayout& layout, const Lists& at,
                     std::span<const std::uint32_t> members) {
   std::vector<std::uint32_t> number(model.constraints.size(), kNoIndex), list;
   for (std::uint32_t i = 0; i < members.size(); ++i) number[members[i]] = i;
   Lists neighbours;
   neighbours.begin.push_back(0);
+  constexpr std::size_t kMostEntries = std::numeric_limits<int>::max();
   for (const std::uint32_t k : members) {
     list.clear();
     for_each_neighbour(model, layout, at, k,
                        [&](std::uint32_t, std::uint32_t j) { list.push_back(number[j]); });
     neighbours.push_back(list);
+    if (neighbours.items.size() + members.size() > kMostEntries) throw std::bad_alloc();
   }
   return neighbours;
 }
