@@ -20,6 +20,7 @@
 ///     rounds. A worker that helped waits for the next step as long as its part took, at most 0.2
 ///     ms, and may be moved off the calling thread's core. So a plugin that holds weft must not be
 ///     unloaded while workers may still be on their way out: link it with -z nodelete.
+///     Floating-point exceptions are to be masked: lanes compute what nobody takes (1 / 0).
 ///  5. A step allocates nothing once warm (contact lists grow to their largest size and stay).
 ///  6. Errors are values. Bad input yields one line that names the field, the index and the value,
 ///     and nothing is built or changed. weft throws only what the standard allocator throws.
@@ -100,7 +101,7 @@ enum class ConstraintKind : std::uint8_t { distance, rope };
 struct Constraint {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  double rest_length = 0;  ///< m, > 0
+  double rest_length = 0;  ///< m, 1e-150 to 1e150; on the simd backend 1e-18 to 1e18
   ConstraintKind kind = ConstraintKind::distance;
 };
 
@@ -221,9 +222,11 @@ struct Settings {
   /// work: 32 saves a fifth of the iterations and more.
   int renew_after = 32;
   /// Of a whole step, whatever its substeps, halves and schemes; > 0. It bounds the time of a step:
-  /// a game sets it (1000). Each substep has an even share of what is left, and does one at least
-  /// of each of its parts; half of a share is for sweeps where the solver gives up, half for scheme
-  /// paper where rattle is left to it. The velocity loop may do as many of its own.
+  /// a game sets it, to several times of what its frames take, for what one leaves undone the next
+  /// finds. (For the same time in each frame: `iterations` and `substeps`, solver yarn.) Each
+  /// substep has an even share of what is left, and does one at least of each of its parts; half of
+  /// a share is for sweeps where the solver gives up, half for scheme paper where rattle is left to
+  /// it. The velocity loop may do as many of its own.
   int max_iterations = 1'000'000;
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
@@ -261,8 +264,10 @@ inline Settings paper_settings() {
 /// iteration_limit: max_iterations were done and some constraint is still out of tolerance. The
 ///   state is committed.
 /// infeasible: some constraint is out of tolerance and thousands of iterations no longer reduce the
-///   error: constraints contradict each other (a chain whose ends are too far apart), or masses
-///   differ by more than 10^7. The state is committed, with the error spread over the constraints.
+///   error: constraints contradict each other (a chain whose ends are too far apart), masses differ
+///   by more than 10^7, or nothing leads from the start to where they agree (a sheet of triangles
+///   whose pins turned by a right angle in one step). The state is committed, with the error spread
+///   over the constraints.
 /// passed_through: a particle went through a sphere within a substep (tunnelling): no contact was
 ///   found in time, or one pushed it out on the far side. The state is committed; shorter steps
 ///   would have held it.

@@ -50,6 +50,14 @@ TEST_CASE("automatic substeps end at 256 a step") {
   CHECK(step(cloth, 100).substeps == 256);
 }
 
+TEST_CASE("automatic substeps by yarns leave each at least eight of the step's iterations") {
+  for (const int most : {1, 40, 400}) {
+    Cloth cloth = cloth_of(scene_of("hang", 5), {.max_iterations = most});
+    const StepReport report = step(cloth, 100);
+    CHECK(report.substeps - report.halvings == std::max(1, most / 8));
+  }
+}
+
 /// Of a sheet of 1 kg that hangs by one side, with a load at a free corner, in its first step.
 int substeps_under(double load, const Settings& settings) {
   constexpr int kSize = 12;
