@@ -5,14 +5,30 @@
 namespace weft {
 namespace {
 
+/// Ropes to a distance constraint; without any of these infinite.
+double rope_share(const ConstraintStore& constraints) {
+  const auto edges = static_cast<double>(constraints.bilateral);
+  return static_cast<double>(constraints.size()) / edges - 1;
+}
+
 /// Yarns have nothing to solve exactly where all is ropes. Where a seventh is edges sweeps may
 /// still be ten times as fast (a net with every fourth row of edges), or sixteen times as slow (a
 /// sheet that hangs, its diagonals and bending edges ropes, 4.8 to each edge): what decides is what
 /// carries, not how many there are.
-bool is_a_net_of_ropes(const ConstraintStore& constraints) {
-  constexpr std::size_t kRopesEach = 9;  // to a distance constraint
-  const std::size_t ropes = constraints.size() - constraints.bilateral;
-  return ropes > kRopesEach * constraints.bilateral;
+bool is_a_net_of_ropes(const Model& model) { return rope_share(model.constraints) > 9; }
+
+/// A sheet whose diagonals are ropes, one to each cell or both: hundreds of them become taut and
+/// slack again while yarns are solved. Sweeps take, at 1 and 0.1 %, of the time that yarns take, in
+/// 20 to 34 scenes each of capes, flags, skirts and sheets at 60 Hz (perf/tried.md): with rattle,
+/// whose substeps are many, 0.15 and 0.35 with 20 x 20 particles, 0.23 at 40 x 40, 1.04 at 0.01 %.
+/// With the paper's 0.5 and 0.6 with 20 x 20, 0.7 with 28 x 28; larger ones that hang still are for
+/// yarns, and heavy spheres are, which sweeps let gain energy.
+bool is_braced_by_ropes(const Model& model, const Settings& settings) {
+  constexpr double kRopesEach = 1. / 3, kLeastTolerance = 1e-3, kMostUneven = 100;
+  constexpr std::size_t kMostParticles = 1000;
+  const bool few = model.particles <= kMostParticles && model.heaviest_sphere == 0;
+  return rope_share(model.constraints) > kRopesEach && settings.tolerance >= kLeastTolerance &&
+         model.uneven.ratio <= kMostUneven && (settings.scheme == Scheme::rattle || few);
 }
 
 /// Measured (perf/README.md): yarns are the fastest at every size and tolerance, by either scheme,
@@ -27,7 +43,8 @@ bool is_a_net_of_ropes(const ConstraintStore& constraints) {
 /// 0.1 %, under 10^6 16 ms a frame, yarns 30).
 Solver solver_for(const Model& model, const Settings& settings) {
   constexpr double kMostUneven = 1e6;
-  const bool net = is_a_net_of_ropes(model.constraints);
+  if (is_braced_by_ropes(model, settings)) return Solver::gauss_seidel;
+  const bool net = is_a_net_of_ropes(model);
   if (model.uneven.ratio <= kUneven) return net ? Solver::gauss_seidel : Solver::yarn;
   const bool may_follow = settings.substeps == kAutomaticSubsteps && !net;
   return may_follow && model.uneven.ratio < kMostUneven ? Solver::yarn : Solver::direct;

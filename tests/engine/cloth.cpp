@@ -43,17 +43,46 @@ TEST_CASE("the solver that automatic stands for: another than yarns where they h
     CHECK(chosen(heavy, {}) == (ratio < 1e6 ? Solver::yarn : Solver::direct));
     CHECK(chosen(heavy, {.substeps = 2}) == (ratio < 1e4 ? Solver::yarn : Solver::direct));
   }
-  SceneDescription net = scene_of("hang", 10);
+  SceneDescription net = scene_of("hang", 33);
   for (std::size_t c = 0; c < net.constraints.size(); ++c) {
     if (c % 5 > 0) net.constraints[c].kind = ConstraintKind::rope;
   }
   CHECK(chosen(net, {}) == Solver::yarn);
   for (std::size_t c = 0; c < net.constraints.size(); c += 5) {
-    if (c > 20) net.constraints[c].kind = ConstraintKind::rope;
+    if (c > 200) net.constraints[c].kind = ConstraintKind::rope;
   }
   CHECK(chosen(net, {}) == Solver::gauss_seidel);
   net.masses.back() = 2e4 * net.masses[20];
   CHECK(chosen(net, {}) == Solver::direct);
+}
+
+TEST_CASE("automatic leaves sheets that ropes brace to sweeps, unless these have much to carry") {
+  const auto chosen = [](const SceneDescription& scene, const Settings& settings) {
+    return cloth_of(scene, settings).settings().solver;
+  };
+  const auto braced = [](SceneDescription scene, std::size_t every) {
+    for (std::size_t c = 0; c < scene.constraints.size(); c += every) {
+      scene.constraints[c].kind = ConstraintKind::rope;
+    }
+    return scene;
+  };
+  const Settings rattle{.scheme = Scheme::rattle};
+  const SceneDescription few = braced(scene_of("hang", 20), 5);
+  const SceneDescription small = braced(scene_of("hang", 20), 3);
+  const SceneDescription large = braced(scene_of("hang", 33), 3);
+  for (const Settings& settings : {Settings{}, rattle}) {
+    CHECK(chosen(few, settings) == Solver::yarn);
+    CHECK(chosen(small, settings) == Solver::gauss_seidel);
+  }
+  CHECK(chosen(large, {}) == Solver::yarn);
+  CHECK(chosen(large, rattle) == Solver::gauss_seidel);
+  CHECK(chosen(small, {.tolerance = 0.9e-3}) == Solver::yarn);
+  CHECK(chosen(small, {.tolerance = 0.9e-3, .scheme = Scheme::rattle}) == Solver::yarn);
+  CHECK(chosen(braced(scene_of("sphere_drop", 20), 3), {}) == Solver::yarn);
+  CHECK(chosen(braced(scene_of("hang_sphere", 20), 3), {}) == Solver::gauss_seidel);
+  SceneDescription loaded = small;
+  loaded.masses.back() *= 200;
+  CHECK(chosen(loaded, {}) == Solver::yarn);
 }
 
 TEST_CASE("packed floats are the positions, x y z") {
