@@ -107,7 +107,6 @@ kernels::LoopLimits left_of(const Settings& settings, const kernels::LoopResult&
 
 kernels::LoopResult sweep_velocities(State& s, const kernels::LoopLimits& limits, Team& team) {
   const auto x = s.solved.view(), v = s.next_velocity.view();
-
   return s.reference ? s.reference->correct_velocities(x, v, s.contacts, limits)
                      : s.simd->correct_velocities(x, v, s.contacts, limits, team);
 }

@@ -260,8 +260,9 @@ class Substeps {
     return record;
   }
 
-  /// What answers where the solver gives up, in the order in which a step tries them; the first is
-  /// that it is not asked at all.
+  /// What answers where the solver gives up, in the order in which a step tries them, each for all
+  /// that is left of it; the first is that it is not asked at all. OnFailure is what that comes to
+  /// for one attempt. A hopeless substep, of which no part has been accepted, moves on to the next.
   enum class Answer : std::uint8_t { only_sweeps, halves, sweeps };
   /// The substep that is being done.
   struct Present {

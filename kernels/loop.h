@@ -36,7 +36,9 @@ struct LoopResult {
   std::int64_t visits = 0;
   std::int64_t corrections = 0;
   bool converged = false;
-  bool failed = false;  // the solver gave up; what converged then is not its own solution
+  /// The chosen solver gave up, whatever answered for it: what converged then is not its own
+  /// solution. Not with a fixed number of iterations.
+  bool failed = false;
 };
 
 inline void count(LoopResult& result, const Sweep& sweep, int passes = 1) {

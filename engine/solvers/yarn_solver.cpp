@@ -158,7 +158,7 @@ void YarnSolver::sweep(double enough, Team& team, kernels::LoopResult& result) {
   for_each_family(team, [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
     solves_[i] = solve_block(yarns, i, enough, scratch);
   });
-  moved_ = false;
+  moved_ = false;  // a pass goes down every block, also where nothing is corrected
   others_.relax(base_.data(), u_.data());
   std::int64_t visits = 0, corrections = 0;
   for (std::size_t i = 0; i < solves_.size(); ++i) {
