@@ -226,9 +226,9 @@ struct Settings {
   /// Of a whole step, whatever its substeps, halves and schemes; > 0. It bounds the time of a step:
   /// a game sets it, to several times of what its frames take, for what one leaves undone the next
   /// finds. (For the same time in each frame: `iterations` and `substeps`, solver yarn.) Each
-  /// substep has an even share of what is left, and does one at least of each of its parts; half of
-  /// a share is for sweeps where the solver gives up, half for scheme paper where rattle is left to
-  /// it. The velocity loop may do as many of its own.
+  /// substep may do half of what is left, the last one all, and does one at least of each of its
+  /// parts; half of that is for sweeps where the solver gives up, half for scheme paper where
+  /// rattle is left to it. The velocity loop may do as many of its own.
   int max_iterations = 1'000'000;
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
