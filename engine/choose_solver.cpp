@@ -19,9 +19,9 @@ bool is_a_net_of_ropes(const Model& model) { return rope_share(model.constraints
 
 /// A sheet whose diagonals are ropes, one to each cell or both: hundreds of them become taut and
 /// slack again while yarns are solved. Sweeps take, at 1 and 0.1 %, of the time that yarns take, in
-/// 20 to 34 scenes each of capes, flags, skirts and sheets at 60 Hz (perf/tried.md): with rattle,
+/// 14 to 30 scenes each of capes, flags, skirts and sheets at 60 Hz (perf/tried.md): with rattle,
 /// whose substeps are many, 0.15 and 0.35 with 20 x 20 particles, 0.23 at 40 x 40, 1.04 at 0.01 %.
-/// With the paper's 0.5 and 0.6 with 20 x 20, 0.7 with 28 x 28; larger ones that hang still are for
+/// With the paper's 0.5 and 0.7 with 20 x 20, 0.7 with 28 x 28; larger ones that hang still are for
 /// yarns, and heavy spheres are, which sweeps let gain energy.
 bool is_braced_by_ropes(const Model& model, const Settings& settings) {
   constexpr double kRopesEach = 1. / 3, kLeastTolerance = 1e-3, kMostUneven = 100;

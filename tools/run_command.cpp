@@ -51,7 +51,7 @@ Result<void> check_destinations(const RunOptions& options) {
   std::vector<Destination> all;
   const auto add = [&all](const std::string& name) {
     std::error_code unknown;  // then it is told when the file is opened
-    all.push_back({weakly_canonical(std::filesystem::absolute(name), unknown), name});
+    all.push_back({weakly_canonical(std::filesystem::absolute(name, unknown), unknown), name});
   };
   std::ranges::for_each(options.out, add);
   if (options.json && *options.json != "-") add(*options.json);

@@ -59,9 +59,9 @@ struct RunSummary {
   Status status = Status::converged;  ///< the worst of all frames
   std::optional<Miss> first_miss;
 
-  double step_seconds = 0;  ///< wall time in step()
-  double longest_step_seconds = 0;
-  double cpu_seconds = 0;     ///< processor time in step(), all threads together
+  double step_seconds = 0;          ///< wall time in step()
+  double longest_step_seconds = 0;  ///< of one frame
+  double cpu_seconds = 0;           ///< processor time in step(), all threads together
   double solver_seconds = 0;  ///< of all stages but `report`, as the steps themselves measured it
   std::array<double, kStageCount> stage_seconds{};
 

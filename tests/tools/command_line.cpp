@@ -118,6 +118,7 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
       {"run hang --pin top", "--pin"},
       {"run hang --slack 0.1", "--slack"},
       {"run hang --out a.txt", "'a.txt'"},
+      {"run hang --out ''", "''"},
       {"run hang --out missing/a.obj", "'missing/a.obj'"},
       {"run hang --json missing/a.json", "'missing/a.json'"},
       {"run hang --out a.json --json ./a.json", "'a.json'"},
