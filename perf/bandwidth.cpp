@@ -21,19 +21,25 @@ std::size_t size_of_cache(int level, std::size_t otherwise) {
   return otherwise;
 }
 
-/// Copies between two arrays of footprint / 2 bytes each; the best of several goes.
+/// Copies between two arrays of footprint / 2 bytes each; the best of several goes. Within pages,
+/// the second begins half a page behind the first: sixteen bytes behind, a Zen 3 copies at 6 GB/s
+/// what it otherwise does at 180 ("rep movsb", which memcpy may be).
 double measure_copy(std::size_t footprint) {
   using Clock = std::chrono::steady_clock;
   constexpr int kGoes = 15;
+  constexpr std::size_t kPage = 4096;
   const std::size_t half = footprint / 2;
-  std::vector<char> from(half, 1), to(half);
+  const std::size_t pages = (half + kPage - 1) / kPage;
+  std::vector<char> memory((pages + 1) * kPage + half, 1);
+  const char* from = memory.data();
+  char* to = memory.data() + pages * kPage + kPage / 2;
   const std::size_t copies = std::max<std::size_t>(1, (32u << 20) / footprint);
   double best = 0;
   for (int go = 0; go < kGoes; ++go) {
     const auto start = Clock::now();
     for (std::size_t i = 0; i < copies; ++i) {
-      std::memcpy(to.data(), from.data(), half);
-      benchmark::DoNotOptimize(to.data());
+      std::memcpy(to, from, half);
+      benchmark::DoNotOptimize(to);
       benchmark::ClobberMemory();
     }
     const std::chrono::duration<double> seconds = Clock::now() - start;
