@@ -1,6 +1,8 @@
 /// What a Cloth reads, writes and keeps, beside stepping.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "tests/support/clothes.h"
@@ -54,6 +56,67 @@ TEST_CASE("the solver that automatic stands for: another than yarns where they h
   CHECK(chosen(net, {}) == Solver::gauss_seidel);
   net.masses.back() = 2e4 * net.masses[20];
   CHECK(chosen(net, {}) == Solver::direct);
+}
+
+/// Ropes in a row, the first particle fixed, from a plumb line by 0.3 rad.
+SceneDescription cord(std::uint32_t ropes, double length) {
+  SceneDescription scene;
+  const Vec3 along{std::sin(0.3) * length / ropes, -std::cos(0.3) * length / ropes, 0};
+  for (std::uint32_t i = 0; i <= ropes; ++i) {
+    scene.positions.push_back({along.x * i, along.y * i, 0});
+    if (i > 0) scene.constraints.push_back({i - 1, i, length / ropes, ConstraintKind::rope});
+  }
+  scene.masses.assign(ropes + 1, 1);
+  scene.fixed = {0};
+  return scene;
+}
+
+TEST_CASE("automatic: cords are for the direct solver, unless they are fine") {
+  const auto chosen = [](const SceneDescription& scene, const Settings& settings) {
+    return cloth_of(scene, settings).settings().solver;
+  };
+  CHECK(chosen(cord(1, 2), {}) == Solver::direct);
+  CHECK(chosen(cord(40, 1.1), {}) == Solver::direct);
+  CHECK(chosen(cord(40, 0.9), {}) == Solver::gauss_seidel);
+  CHECK(chosen(cord(40, 0.9), {.tolerance = 0.02}) == Solver::direct);
+  SceneDescription loaded = cord(40, 0.9);
+  loaded.masses.back() = 200;
+  CHECK(chosen(loaded, {}) == Solver::direct);
+  SceneDescription bridge = cord(40, 2);  // of two cords
+  const SceneDescription other = cord(40, 2);
+  bridge.positions.insert(bridge.positions.end(), other.positions.begin(), other.positions.end());
+  bridge.masses.assign(82, 1);
+  for (const Constraint& c : other.constraints) {
+    bridge.constraints.push_back({c.a + 41, c.b + 41, c.rest_length, c.kind});
+  }
+  for (std::uint32_t i = 0; i <= 40; ++i) {
+    bridge.positions[i + 41].z = 1;
+    bridge.constraints.push_back({i, i + 41, 1});
+  }
+  CHECK(chosen(bridge, {}) == Solver::direct);
+  SceneDescription net = scene_of("hang", 20);
+  for (Constraint& c : net.constraints) c.kind = ConstraintKind::rope;
+  CHECK(chosen(net, {}) == Solver::gauss_seidel);
+}
+
+TEST_CASE("automatic: a weight on a cord swings, and gains no energy, however short the steps") {
+  for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+    for (const std::uint32_t ropes : {1u, 8u}) {
+      for (const double dt : {1 / 60., 1 / 240.}) {
+        CAPTURE(dt);
+        Cloth cloth = cloth_of(cord(ropes, 2), {.scheme = scheme});
+        const double start = cloth.energy().total();
+        double most = start, fastest = 0;
+        for (double t = 0; t < 2; t += dt) {
+          REQUIRE(cloth.step(dt).value().status == Status::converged);
+          most = std::max(most, cloth.energy().total());
+          fastest = std::max(fastest, cloth.energy().kinetic);
+        }
+        CHECK(most - start < 0.02 * fastest);
+        CHECK(fastest > 0.7 * ropes / 2.);
+      }
+    }
+  }
 }
 
 TEST_CASE("automatic leaves sheets that ropes brace to sweeps, unless these have much to carry") {
