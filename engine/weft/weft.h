@@ -230,7 +230,8 @@ struct Settings {
   /// finds. (For the same time in each frame: `iterations` and `substeps`, solver yarn.) Each
   /// substep may do half of what is left, the last one all, and does one at least of each of its
   /// parts; half of that is for sweeps where the solver gives up, half for scheme paper where
-  /// rattle is left to it. The velocity loop may do as many of its own.
+  /// rattle is left to it. The velocity loop may do as many of its own. Where a substep that is cut
+  /// off would gain energy, its velocities are scaled down (see Solver).
   int max_iterations = 1'000'000;
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
@@ -368,10 +369,11 @@ class WEFT_API Cloth {
 
   /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
   /// is thrown and the state is unchanged. An error means that dt was refused. Meant for frames of
-  /// 10 us to 0.1 s: in shorter ones the rounding of positions shows up as velocity; the cost of
-  /// longer ones is limited by 256 automatic substeps and max_iterations. Before a step of less
-  /// than an eighth of the last one, positions are projected onto the constraints, velocities
-  /// unchanged (yarn, direct): what the last one left within tolerance would become speed.
+  /// 0.1 ms to 0.1 s: in shorter ones the rounding of yarns' floats shows up as velocity, and slows
+  /// motion (rattle and velocity_correction undo that, direct works in double); the cost of longer
+  /// ones is limited by 256 automatic substeps and max_iterations. Before a step of less than an
+  /// eighth of the last one, positions are projected onto the constraints, velocities unchanged
+  /// (yarn, direct): what the last one left within tolerance would become speed.
   Result<StepReport> step(double dt);
 
   std::size_t particle_count() const;
@@ -402,11 +404,12 @@ class WEFT_API Cloth {
   /// Moves a fixed particle; position() returns the new place at once. It travels there in a
   /// straight line during the next step, and the cloth takes on its speed. If its velocity would
   /// change by more than 200 m/s^2 * dt from that of its last step, it jumps instead: it is placed
-  /// before the step, and the cloth is projected after it, velocities unchanged; what a sphere
-  /// jumped over is not passed_through. The last move before a step counts; write_positions cancels
-  /// all. (To teleport a whole cloth, or move the origin, write all its positions: then nothing
-  /// needs solving, and pins go on at their speed.) A fixed particle that is not moved before a
-  /// step stands still in it: where steps are shorter than the frames of an animation, interpolate.
+  /// before the step, and the cloth is projected after it, velocities unchanged (with
+  /// Settings::iterations nothing is projected: a jump becomes speed); what a sphere jumped over is
+  /// not passed_through. The last move before a step counts; write_positions cancels all. (To
+  /// teleport a whole cloth, or move the origin, write all its positions: then nothing needs
+  /// solving, and pins go on at their speed.) A fixed particle that is not moved before a step
+  /// stands still in it: where steps are shorter than the frames of an animation, interpolate.
   Result<void> move_fixed(std::uint32_t particle, Vec3 position);
 
   /// Recomputed from the positions by this thread alone. The last step's is in its report already,
