@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "tools/exit_code.h"
+#include "tools/parse.h"
 
 namespace weft::tools {
 namespace {
@@ -32,11 +33,49 @@ std::string missing_verb(const CLI::App& app, int argc, char** argv) {
   return fmt::format("'{}' is not a verb: {}", first, verbs(app));
 }
 
+template <class Value>
+struct Plain {
+  using Type = Value;
+};
+template <class Value>
+struct Plain<std::optional<Value>> {
+  using Type = Value;
+};
+
+/// CLI11 alone takes 010 for 8, and an empty text for a value that was not given.
+std::string refusal(const std::string& text, int) {
+  return parse_integer(text) ? "" : fmt::format("'{}' is not a whole number", text);
+}
+std::string refusal(const std::string& text, double) {
+  return parse_number(text) ? "" : fmt::format("'{}' is not a number", text);
+}
+std::string refusal(const std::string& text, const std::string&) {
+  return text.empty() ? "'' names nothing" : "";
+}
+
+/// In the form that CLI11 reads as what it says.
+std::string decimal(const std::string& text, int) { return std::to_string(*parse_integer(text)); }
+template <class Other>
+std::string decimal(const std::string& text, const Other&) {
+  return text;
+}
+
+template <class Value>
+CLI::Option* checked(CLI::Option* option) {
+  const auto check = [](std::string& text) {
+    const Value kind{};
+    std::string refused = refusal(text, kind);
+    if (refused.empty()) text = decimal(text, kind);
+    return refused;
+  };
+  return option->transform(CLI::Validator(check, ""));
+}
+
 }  // namespace
 
 template <class Value>
 void Verb::option(const std::string& name, Value& value, const std::string& help) {
-  verb_.add_option(name, value, help);
+  checked<typename Plain<Value>::Type>(verb_.add_option(name, value, help));
 }
 template void Verb::option(const std::string&, int&, const std::string&);
 template void Verb::option(const std::string&, double&, const std::string&);
@@ -46,17 +85,17 @@ template void Verb::option(const std::string&, std::optional<double>&, const std
 template void Verb::option(const std::string&, std::optional<std::string>&, const std::string&);
 
 void Verb::required(const std::string& name, std::string& value, const std::string& help) {
-  verb_.add_option(name, value, help)->required();
+  checked<std::string>(verb_.add_option(name, value, help))->required();
 }
 
 void Verb::within(int least, int most, const std::string& name, std::optional<int>& value,
                   const std::string& help) {
-  verb_.add_option(name, value, help)->check(CLI::Range(least, most));
+  checked<int>(verb_.add_option(name, value, help))->check(CLI::Range(least, most));
 }
 
 void Verb::repeated(const std::string& name, std::vector<std::string>& values,
                     const std::string& help) {
-  verb_.add_option(name, values, help)->allow_extra_args(false);
+  checked<std::string>(verb_.add_option(name, values, help))->allow_extra_args(false);
 }
 
 void Verb::flag(const std::string& name, bool& value, const std::string& help) {

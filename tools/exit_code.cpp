@@ -2,17 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include "tools/text_file.h"
 
 namespace weft::tools {
 
 int refuse(std::string_view message) {
-  fmt::print(stderr, "weft: {}\n", message);
+  print_message(fmt::format("weft: {}\n", message));
   return kRefused;
 }
 
 int missed_tolerance(std::string_view where) {
-  fmt::print(stderr, "weft: the tolerance was missed, first in {}\n", where);
+  print_message(fmt::format("weft: the tolerance was missed, first in {}\n", where));
   return kMissedTolerance;
 }
 

@@ -25,7 +25,7 @@ void say(const char (&line)[kSize]) {
 }
 
 extern "C" void handle_interrupt(int signal) {
-  if (orderly != 0 && received == 0) {
+  if (signal != SIGPIPE && orderly != 0 && received == 0) {
     received = signal;
     const int kept = errno;  // of what was interrupted
     say("weft: stops after this frame; once more to stop at once\n");
@@ -35,6 +35,7 @@ extern "C" void handle_interrupt(int signal) {
   // A terminal that closes sends one, and its shell another.
   if (signal == SIGHUP && received == SIGHUP) return;
   remove_pending_files();
+  if (signal == SIGPIPE) _exit(interrupted_by(signal));  // nobody reads any more
   say("weft: interrupted\n");
   _exit(interrupted_by(signal));
 }
@@ -48,9 +49,11 @@ void install_interrupt_handler() {
   action.sa_flags = SA_RESTART;  // output is to be complete: writing goes on
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  struct sigaction hangup {};  // ignored under nohup, and then left so
-  sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+  for (const int signal : {SIGHUP, SIGPIPE}) {
+    struct sigaction present {};  // ignored, as SIGHUP is under nohup, and then left so
+    sigaction(signal, nullptr, &present);
+    if (present.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
   signal(SIGXFSZ, SIG_IGN);  // writing fails then, and says so
 }
 

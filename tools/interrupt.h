@@ -1,5 +1,5 @@
-/// SIGINT (Ctrl-C), SIGTERM and SIGHUP: nothing is left half-written, and nothing that was reached
-/// is lost.
+/// SIGINT (Ctrl-C), SIGTERM, SIGHUP and SIGPIPE (nobody reads the output any more): nothing is left
+/// half-written, and but for SIGPIPE nothing that was reached is lost.
 #pragma once
 
 namespace weft::tools {

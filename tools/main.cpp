@@ -6,9 +6,11 @@
 #include "tools/precision_command.h"
 #include "tools/run_command.h"
 #include "tools/scene_command.h"
+#include "tools/text_file.h"
 
 int main(int argc, char** argv) {
   using namespace weft::tools;
+  hold_standard_streams();
   install_interrupt_handler();
   CommandLine line("weft: a cloth kernel that reports its error beside its time",
                    "weft " WEFT_VERSION);

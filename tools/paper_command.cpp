@@ -19,6 +19,7 @@
 #include "tools/plotting.h"
 #include "tools/progress.h"
 #include "tools/study_outputs.h"
+#include "tools/text_file.h"
 
 namespace weft::tools {
 namespace {
@@ -66,7 +67,8 @@ Result<void> write_folder(const std::filesystem::path& folder, const paper::Stud
   const std::string json = folder / "paper.json";
   if (auto done = write_json(json, paper::to_json(study)); !done) return done;
   const auto drawn = plot("paper_figures.py", {json, "--out", folder});
-  if (!drawn) fmt::print(stderr, "weft: {}; the data is in {}\n", drawn.error(), folder.c_str());
+  if (!drawn)
+    print_message(fmt::format("weft: {}; the data is in {}\n", drawn.error(), folder.c_str()));
   return {};
 }
 

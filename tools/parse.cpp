@@ -15,12 +15,20 @@ std::optional<Number> parse_whole(std::string_view text) {
   return number;
 }
 
+std::string_view without_plus(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  return text;
+}
+
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  const auto number = parse_whole<double>(text);
+  const auto number = parse_whole<double>(without_plus(text));
   return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::optional<int> parse_integer(std::string_view text) {
+  return parse_whole<int>(without_plus(text));
 }
 
 std::optional<long long> parse_count(std::string_view text) {

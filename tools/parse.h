@@ -14,6 +14,9 @@ namespace weft::tools {
 
 /// The whole text as a finite number, with a sign or without; nothing if it is anything else.
 std::optional<double> parse_number(std::string_view text);
+/// The whole text as a whole number, in decimal digits with a sign or without; nothing if it is
+/// anything else, or more than an int holds.
+std::optional<int> parse_integer(std::string_view text);
 /// The whole text as a whole number from 0 up; nothing if it is anything else.
 std::optional<long long> parse_count(std::string_view text);
 

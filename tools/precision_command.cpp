@@ -21,6 +21,7 @@
 #include "tools/precision/sweep.h"
 #include "tools/progress.h"
 #include "tools/study_outputs.h"
+#include "tools/text_file.h"
 
 namespace weft::tools {
 namespace {
@@ -137,7 +138,8 @@ Result<void> write_folder(const std::filesystem::path& folder, const Study& stud
   const std::string json = folder / "precision.json";
   if (auto done = write_json(json, to_json(study)); !done) return done;
   const auto drawn = plot("precision_charts.py", {json, "--out", folder});
-  if (!drawn) fmt::print(stderr, "weft: {}; the data is in {}\n", drawn.error(), folder.c_str());
+  if (!drawn)
+    print_message(fmt::format("weft: {}; the data is in {}\n", drawn.error(), folder.c_str()));
   return {};
 }
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include "tools/text_file.h"
 
 namespace weft::tools {
 
@@ -15,14 +15,13 @@ std::string bar(std::size_t done, std::size_t total, std::size_t width) {
 ProgressLine::ProgressLine() : redraws_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
-  if (redraws_) fmt::print(stderr, "\r\033[K");
+  if (redraws_) print_message("\r\033[K");
 }
 
 void ProgressLine::draw(std::string_view text) {
   if (!redraws_) return;
   drawn_ = std::chrono::steady_clock::now();
-  fmt::print(stderr, "\r{}\033[K", text);
-  std::fflush(stderr);
+  print_message(fmt::format("\r{}\033[K", text));
 }
 
 void ProgressLine::show(std::string_view text) {
@@ -36,7 +35,7 @@ void TaskLine::next(std::string_view task) {
   if (line_.redraws()) {
     line_.draw(task_);
   } else {
-    fmt::print(stderr, "{}\n", task_);
+    print_message(task_ + "\n");
   }
 }
 

@@ -112,7 +112,7 @@ std::string interruption(const RunSummary& summary, const RunPlan& plan) {
 }
 
 int interrupted(const RunSummary& summary, const RunPlan& plan) {
-  fmt::print(stderr, "weft: interrupted {}\n", interruption(summary, plan));
+  print_message(fmt::format("weft: interrupted {}\n", interruption(summary, plan)));
   return interrupted_by(OrderlyInterrupt::signal());
 }
 

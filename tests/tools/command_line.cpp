@@ -102,11 +102,16 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
       {"run curtain", "'curtain'"},
       {"run none.obj", "'none.obj'"},
       {"run none.json", "'none.json'"},
-      {"run hang --size x", "--size = x"},
+      {"run hang --size x", "--size: 'x' is not a whole number"},
+      {"run hang --size ''", "--size: '' is not a whole number"},
+      {"run hang --size 0x10", "--size: '0x10' is not a whole number"},
+      {"run hang --json ''", "--json: '' names nothing"},
+      {"paper --quick --out ''", "--out: '' names nothing"},
+      {"run sphere_drop --slack ''", "--slack: '' is not a number"},
       {"run hang --size 1", "size"},
       {"run hang --steps 0", "--steps: 0"},
       {"run hang --dt -1", "--dt: -1"},
-      {"run hang --dt nan", "--dt: nan"},
+      {"run hang --dt nan", "--dt: 'nan' is not a number"},
       {"run hang --repeat 0", "--repeat: 0"},
       {"run hang --tolerance 0%", "--tolerance: '0%'"},
       {"run hang --iterations -1", "iterations"},
@@ -118,7 +123,7 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
       {"run hang --pin top", "--pin"},
       {"run hang --slack 0.1", "--slack"},
       {"run hang --out a.txt", "'a.txt'"},
-      {"run hang --out ''", "''"},
+      {"run hang --out ''", "--out: '' names nothing"},
       {"run hang --out missing/a.obj", "'missing/a.obj'"},
       {"run hang --json missing/a.json", "'missing/a.json'"},
       {"run hang --out a.json --json ./a.json", "'a.json'"},
@@ -140,6 +145,40 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
     CHECK(outcome.err.find(refused.named) != std::string::npos);
     CHECK(std::ranges::count(outcome.err, '\n') == 1);
   }
+}
+
+TEST_CASE("numbers are decimal, whatever they begin with") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, "run hang --size 010 --steps +02 --json -");
+  const auto json = nlohmann::json::parse(outcome.out);
+  CHECK(json["particles"] == 100);
+  CHECK(json["steps"] == 2);
+}
+
+TEST_CASE("streams that are closed or full cost no file, and only stdout an error") {
+  const TemporaryFolder folder;
+  const auto exit_code = [](const std::string& arguments) {
+    const int status = std::system((std::string(WEFT_PROGRAM) + " " + arguments).c_str());
+    REQUIRE(WIFEXITED(status));
+    return WEXITSTATUS(status);
+  };
+  const std::string run = "run hang --size 5 --steps 2 --out " + folder.file("a.pc2");
+  CHECK(exit_code(run + " <&- >&- 2>&-") == 2);
+  constexpr std::size_t kHeader = 32, kSample = 25 * 3 * sizeof(float);
+  CHECK(folder.read("a.pc2").size() == kHeader + 3 * kSample);
+  CHECK(exit_code(run + " --json " + folder.file("a.json") + " >/dev/null 2>&-") == 0);
+  CHECK(nlohmann::json::parse(folder.read("a.json"))["steps"] == 2);
+  for (const char* nowhere : {"2>&-", "2>/dev/full"}) {
+    CHECK(exit_code(std::string("run nowhere.obj ") + nowhere) == 2);
+  }
+}
+
+TEST_CASE("a reader that goes away leaves no part of a file") {
+  const TemporaryFolder folder;
+  const std::string command = std::string(WEFT_PROGRAM) + " hard --quick --case chain --json " +
+                              folder.file("a.json") + " 2>&1 | true";
+  CHECK(std::system(command.c_str()) == 0);
+  CHECK(folder.is_empty());
 }
 
 TEST_CASE("the version is that of the project") {
