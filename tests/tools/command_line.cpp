@@ -357,6 +357,8 @@ TEST_CASE("the folder and the JSON of a study may be one place") {
   CHECK(outcome.exit_code == 0);
   CHECK_FALSE(outcome.out.empty());
   CHECK_FALSE(nlohmann::json::parse(folder.read("precision.json"))["points"].empty());
+  CHECK(folder.read("points.csv").find("\nhang,4,yarn,") != std::string::npos);
+  CHECK(folder.read("precision.md").starts_with("| hang 4², ms per frame |"));
 }
 
 TEST_CASE("precision: JSON alone on stdout, points and orders of the contract") {

@@ -200,6 +200,32 @@ TEST_CASE("only what may touch a sphere is deep in it") {
   CHECK(max_penetration(scene, state) == 0);
 }
 
+TEST_CASE("energy and momentum are those of the description") {
+  SceneDescription scene = bar(1);
+  scene.masses = {3, 2};
+  scene.gravity = {0, -5, 0};
+  const Snapshot state{{{0, 1, 0}, {1, 7, 0}}, {{0, 0, 0}, {0, 4, 0}}};
+  CHECK(kinetic_energy(scene, state) == 16);
+  CHECK(energy(scene, state) == 16 + 70);
+  CHECK(length(momentum(scene, state) - Vec3{0, 8, 0}) == 0);
+  CHECK(length(angular_momentum(scene, state, {-1, 0, 0}) - Vec3{0, 0, 16}) == 0);
+}
+
+TEST_CASE("what was seen is told in one line") {
+  CHECK(text(Observed{.steps = 1, .max_strain = 0.25, .energy_gain = 2, .seconds = 0.003}) ==
+        "1 step of 3 ms, max strain 25 %, energy gain 2 J");
+  CHECK(text(Observed{.steps = 6,
+                      .worst = Status::infeasible,
+                      .worst_step = 4,
+                      .missed = 3,
+                      .false_claims = 2,
+                      .finite = false,
+                      .max_penetration = 0.5}) ==
+        "6 steps of 0 ms, max strain 0 %, 0.5 m deep, energy gain 0 J, 3 steps not converged "
+        "(infeasible in step 4), 2 false claims, not finite");
+  CHECK(text(Observed{.refusal = "no"}) == "refused: no");
+}
+
 TEST_CASE("through a sphere goes what was outside of it on both sides") {
   const SceneDescription scene = on_sphere();
   const auto goes_through = [&](Vec3 from, Vec3 to) {

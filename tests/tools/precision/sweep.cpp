@@ -7,6 +7,7 @@
 
 #include "tools/enumerators.h"
 #include "tools/precision/bullet.h"
+#include "tools/precision/meter.h"
 #include "tools/precision/order.h"
 #include "tools/precision/sizes.h"
 
@@ -147,6 +148,30 @@ TEST_CASE("cost against size: a curve for each solver, which ends where time run
   REQUIRE(measure(hasty, [](const std::string&) {}));
   CHECK(hasty.curves.front().points.empty());
   CHECK(hasty.curves.front().end == "4 x 4 did not reach 1 % in 0 s");
+}
+
+TEST_CASE("a motion that was computed elsewhere is measured as weft's own") {
+  Task task = small_task();
+  const std::vector<Vec3> start = task.description.positions;
+  const std::vector<Vec3> still(start.size());
+  std::vector<Vec3> wider = start, higher = start;
+  for (Vec3& position : wider) position.x *= 1.5;
+  for (Vec3& position : higher) position.y += 0.25;
+  task.reference = start;
+  Meter meter(task);
+  REQUIRE(meter.add_frame(wider, still, 1));
+  while (meter.outcome().frames + 1 < kReferenceFrame) REQUIRE(meter.add_frame(start, still, 0));
+  CHECK_FALSE(meter.outcome().trajectory_error);
+  REQUIRE(meter.add_frame(higher, still, 1));
+  CHECK_FALSE(meter.add_frame({}, {}, 0));
+
+  const Outcome outcome = meter.outcome();
+  CHECK(outcome.frames == kReferenceFrame + 1);
+  CHECK(outcome.ms_per_frame == doctest::Approx(2000. / 41));
+  CHECK(outcome.max_strain == doctest::Approx(0.5));
+  CHECK(outcome.mean_max_strain == doctest::Approx(0.5 / 41));
+  CHECK(outcome.energy_gain == doctest::Approx(10 * 0.25 * 20 / 25));  // 20 of 25 are free
+  CHECK(*outcome.trajectory_error == 0.25);
 }
 
 TEST_CASE("Bullet computes the same motion, the better the more it iterates") {
