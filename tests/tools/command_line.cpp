@@ -16,6 +16,7 @@
 
 #include "engine/scenes.h"
 #include "temporary_folder.h"
+#include "tools/scene_file.h"
 
 extern char** environ;
 
@@ -284,6 +285,64 @@ TEST_CASE("the way of iterating can be chosen") {
   }
 }
 
+nlohmann::json report_of(const TemporaryFolder& folder, const std::string& arguments) {
+  const Outcome outcome = run_program(folder, "run " + arguments + " --json -");
+  REQUIRE(outcome.exit_code == 0);
+  return nlohmann::json::parse(outcome.out);
+}
+
+TEST_CASE("a tighter tolerance of contacts leaves less of them") {
+  const TemporaryFolder folder;
+  const std::string run =
+      "hang_sphere --size 9 --steps 60 --solver gauss_seidel --contact-tolerance ";
+  CHECK(report_of(folder, run + "1e-6")["max_penetration"] <= 1e-6);
+  CHECK(report_of(folder, run + "1e-2")["max_penetration"] > 1e-3);
+}
+
+TEST_CASE("a tighter tolerance of velocities takes more iterations") {
+  const TemporaryFolder folder;
+  const auto iterations = [&](const std::string& tolerance) {
+    return report_of(folder,
+                     "hang --size 9 --steps 5 --solver gauss_seidel --velocity-correction "
+                     "on --velocity-tolerance " +
+                         tolerance)["velocity_iterations_per_step"]
+        .get<double>();
+  };
+  CHECK(iterations("1e-5") > 2 * iterations("1e-2"));
+}
+
+TEST_CASE("limited impulses are more of them") {
+  const TemporaryFolder folder;
+  const std::string run = "hang --size 5 --steps 5 --tolerance 1e-4 --backend reference ";
+  const int unlimited = report_of(folder, run)["corrections"];
+  CHECK(report_of(folder, run + "--impulse-limit 1e-5")["corrections"] > 2 * unlimited);
+}
+
+TEST_CASE("frozen directions are renewed as often as is asked") {
+  const TemporaryFolder folder;
+  const auto report = report_of(
+      folder, "hang --size 9 --steps 5 --solver gauss_seidel --tolerance 1e-4 --renew-after 1");
+  CHECK(report["direction_updates_per_step"] == report["iterations_per_step"]);
+}
+
+TEST_CASE("a run may use as many threads as is asked") {
+  const TemporaryFolder folder;
+  CHECK(report_of(folder, "hang --size 4 --steps 1 --threads 1")["threads"] == 1);
+  CHECK(report_of(folder, "hang --size 4 --steps 1 --threads 3")["threads"] == 3);
+}
+
+TEST_CASE("methods of Gauss-Seidel are asked of it; what is named has one substep") {
+  const TemporaryFolder folder;
+  const std::string run = "hang --size 4 --steps 2 --dt 0.1";
+  for (const std::string method : {"--skip on", "--anticipate on", "--directions frozen"}) {
+    CAPTURE(method);
+    CHECK(report_of(folder, run + ' ' + method)["solver"] == "gauss_seidel");
+    CHECK(report_of(folder, run + " --solver yarn " + method)["solver"] == "yarn");
+  }
+  CHECK(report_of(folder, run)["substeps"] > 1);
+  CHECK(report_of(folder, run + " --solver yarn")["substeps"] == 1);
+}
+
 TEST_CASE("options that have no effect beside others do no harm") {
   const TemporaryFolder folder;
   for (const std::string arguments :
@@ -337,6 +396,8 @@ TEST_CASE("the folder and the JSON of a study may be one place") {
   CHECK(outcome.exit_code == 0);
   CHECK_FALSE(outcome.out.empty());
   CHECK_FALSE(nlohmann::json::parse(folder.read("precision.json"))["points"].empty());
+  CHECK(folder.read("points.csv").find("\nhang,4,yarn,") != std::string::npos);
+  CHECK(folder.read("precision.md").starts_with("| hang 4², ms per frame |"));
 }
 
 TEST_CASE("precision: JSON alone on stdout, points and orders of the contract") {
@@ -374,18 +435,59 @@ TEST_CASE("one of a kind is counted in the singular") {
   CHECK(outcome.out.find(": 1 particle, 0 constraints, 1 sphere\n") != std::string::npos);
 }
 
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nf 1 2 3 4\nl 5 3\n";
+
 TEST_CASE("a mesh is pinned, run and saved with its numbering") {
   const TemporaryFolder folder;
-  const std::string mesh =
-      folder.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nf 1 2 3 4\nl 5 3\n");
+  const std::string mesh = folder.write("square.obj", kSquare);
   const Outcome outcome =
       run_program(folder, "run " + mesh + " --pin y'>'0.9 --ropes --steps 3 --json - --out " +
                               folder.file("last.obj") + " --out " + folder.file("motion.pc2"));
   CHECK(outcome.exit_code == 0);
   const auto json = nlohmann::json::parse(outcome.out);
   CHECK(json["particles"] == 4);
-  CHECK(folder.read("last.obj").ends_with("f 1 2 3 4\nl 5 3\n"));
+  CHECK(json["constraints"] == 3 + 2);  // without the edge between two pins, with two ropes
+  const std::string last = folder.read("last.obj");
+  CHECK(last.find("\nv 1 1 0\nv 0 1 0\n") != std::string::npos);
+  CHECK(last.find("\nv 0 0 0\n") == std::string::npos);
+  CHECK(last.ends_with("f 1 2 3 4\nl 5 3\n"));
   CHECK(folder.read("motion.pc2").size() == 32 + 4 * 5 * 12);
+}
+
+TEST_CASE("what is asked of a mesh is what is read") {
+  const TemporaryFolder folder;
+  const std::string arguments = "scene " + folder.write("square.obj", kSquare) +
+                                " --pin y'>'0.9 --mass 6 --scale 0.5 --ropes --out " +
+                                folder.file("scene.json");
+  CHECK(run_program(folder, arguments).exit_code == 0);
+  const auto scene = read_scene_file(folder.file("scene.json"));
+  REQUIRE(scene);
+  CHECK(scene.value().fixed == std::vector<std::uint32_t>{2, 3});
+  CHECK(scene.value().masses == std::vector<double>(4, 1.5));
+  CHECK(scene.value().positions[2].x == 0.5);
+  CHECK(scene.value().positions[2].y == 0.5);
+  const auto is_rope = [](const Constraint& c) { return c.kind == ConstraintKind::rope; };
+  CHECK(std::ranges::count_if(scene.value().constraints, is_rope) == 2);
+}
+
+TEST_CASE("what is asked of a built-in scene is what is made") {
+  const TemporaryFolder folder;
+  const struct {
+    std::string name;
+    std::string arguments;
+    scenes::Options options;
+  } kScenes[] = {{"hang", "--size 4", {.size = 4}},
+                 {"corners", "", {.size = 21}},
+                 {"sphere_drop", "--size 5 --slack 0.2", {.size = 5, .slack = 0.2}},
+                 {"sphere_drop", "--sphere-mass 7", {.sphere_mass = 7}},
+                 {"chain", "--end-mass 9", {.end_mass = 9}}};
+  for (const auto& asked : kScenes) {
+    CAPTURE(asked.arguments);
+    const std::string file = folder.file("scene.json");
+    const std::string arguments = "scene " + asked.name + ' ' + asked.arguments + " --out " + file;
+    CHECK(run_program(folder, arguments).exit_code == 0);
+    CHECK(folder.read("scene.json") == scene_text(scenes::make(asked.name, asked.options).value()));
+  }
 }
 
 /// The program at work in a process of its own.

@@ -3,70 +3,127 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "engine/scenes.h"
+#include "slowness.h"
 
 namespace weft::tools {
 namespace {
 
 SceneDescription hang(int size) { return scenes::make("hang", {.size = size}).value(); }
 
+/// The frames of a run, summed up here once more.
+struct Frames {
+  RunSummary sums;
+  double strain_sum = 0, square_sum = 0;
+  double lowest_y = 0;  ///< in the last one
+  StepReport last;
+
+  void add(const Cloth& cloth, const StepReport& report) {
+    ++sums.frames;
+    sums.substeps += report.substeps;
+    sums.halvings += report.halvings;
+    sums.iterations += report.iterations;
+    sums.velocity_iterations += report.velocity_iterations;
+    sums.direction_updates += report.direction_updates;
+    sums.visits += report.visits;
+    sums.corrections += report.corrections;
+    sums.scheme_fallbacks += report.scheme_fallbacks;
+    sums.max_contacts = std::max(sums.max_contacts, report.contacts);
+    for (std::size_t i = 0; i < kStageCount; ++i) sums.stage_seconds[i] += report.stage_seconds[i];
+    sums.longest_step_seconds = std::max(sums.longest_step_seconds, seconds(report.stage_seconds));
+    const Strain strain = cloth.strain();
+    sums.max_strain = std::max(sums.max_strain, strain.max);
+    strain_sum += strain.max;
+    square_sum += strain.rms * strain.rms;
+    sums.max_penetration = std::max(sums.max_penetration, cloth.max_penetration());
+    lowest_y = cloth.position(0).y;
+    for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
+      lowest_y = std::min(lowest_y, cloth.position(i).y);
+    }
+    sums.lowest_y = std::min(sums.lowest_y, lowest_y);
+    sums.state_hash = cloth.state_hash();
+    sums.energy_end = cloth.energy().total();
+    sums.energy_gain = std::max(sums.energy_gain, sums.energy_end);
+    sums.bytes = cloth.bytes() + describe(*cloth.model()).bytes;
+    last = report;
+  }
+  static double seconds(const std::array<double, kStageCount>& stages) {
+    return std::accumulate(stages.begin(), stages.end(), 0.0);
+  }
+};
+
+/// Swings against the sphere and back, in steps too long for scheme rattle at times.
 TEST_CASE("a summary sums up what the steps reported and what the cloth measured") {
-  const SceneDescription scene = hang(6);
-  RunSummary expected;
-  double strain_sum = 0;
-  double square_sum = 0;
-  const auto summary =
-      run(scene, {}, {.steps = 30}, [&](int frame, const Cloth& cloth, const StepReport& report) {
-        CHECK(frame == ++expected.frames);
-        expected.iterations += report.iterations;
-        expected.visits += report.visits;
-        expected.corrections += report.corrections;
-        expected.direction_updates += report.direction_updates;
-        const Strain strain = cloth.strain();
-        expected.max_strain = std::max(expected.max_strain, strain.max);
-        strain_sum += strain.max;
-        square_sum += strain.rms * strain.rms;
-        expected.state_hash = cloth.state_hash();
-        expected.energy_end = cloth.energy().total();
+  const SceneDescription scene = scenes::make("hang_sphere", {.size = 9}).value();
+  constexpr int kSteps = 60;
+  Frames frames;
+  frames.sums.energy_gain = -1;
+  const auto summary = run(
+      scene,
+      {.substeps = 4, .solver = Solver::gauss_seidel, .scheme = Scheme::rattle, .threads = 1},
+      {.dt = 0.02, .steps = kSteps}, [&](int frame, const Cloth& cloth, const StepReport& report) {
+        frames.add(cloth, report);
+        CHECK(frame == frames.sums.frames);
       });
   REQUIRE(summary);
-  const RunSummary& actual = summary.value();
-  CHECK(actual.frames == 30);
+  const RunSummary &actual = summary.value(), &expected = frames.sums;
+  CHECK(actual.frames == kSteps);
   CHECK(actual.status == Status::converged);
+  CHECK(actual.substeps == expected.substeps);
+  CHECK(actual.halvings == expected.halvings);
   CHECK(actual.iterations == expected.iterations);
+  CHECK(actual.velocity_iterations == expected.velocity_iterations);
+  CHECK(actual.direction_updates == expected.direction_updates);
   CHECK(actual.visits == expected.visits);
   CHECK(actual.corrections == expected.corrections);
-  CHECK(actual.direction_updates == expected.direction_updates);
+  CHECK(actual.scheme_fallbacks == expected.scheme_fallbacks);
+  CHECK(actual.max_contacts == expected.max_contacts);
   CHECK(actual.max_strain == expected.max_strain);
-  CHECK(actual.mean_max_strain == strain_sum / 30);
-  CHECK(actual.rms_strain == doctest::Approx(std::sqrt(square_sum / 30)));
+  CHECK(actual.mean_max_strain == frames.strain_sum / kSteps);
+  CHECK(actual.rms_strain == std::sqrt(frames.square_sum / kSteps));
+  CHECK(actual.max_penetration == expected.max_penetration);
+  CHECK(actual.lowest_y == expected.lowest_y);
   CHECK(actual.state_hash == expected.state_hash);
   CHECK(actual.energy_end == expected.energy_end);
-  CHECK(actual.step_seconds > 0);
-  CHECK(actual.solver_seconds <= actual.step_seconds);
+  CHECK(actual.energy_gain == expected.energy_gain - actual.energy_start);
+  CHECK(actual.stage_seconds == expected.stage_seconds);
+  CHECK(actual.step_seconds >= Frames::seconds(actual.stage_seconds));
+  CHECK(actual.longest_step_seconds >= expected.longest_step_seconds);
+  CHECK(actual.longest_step_seconds < actual.step_seconds);
+  CHECK(actual.cpu_seconds > 0);
+  CHECK(actual.cpu_seconds != actual.step_seconds);  // of another clock
   double other_stages = 0;
   for (std::size_t i = 0; i < kStageCount; ++i) {
     if (static_cast<Stage>(i) != Stage::report) other_stages += actual.stage_seconds[i];
   }
   CHECK(actual.solver_seconds == other_stages);
-  CHECK(actual.model.particles == 36);
+  CHECK(actual.bytes == expected.bytes);
+  CHECK(actual.model.particles == 82);
+
+  // The last frame is not the one with the most of anything.
+  CHECK(frames.last.velocity_iterations < expected.velocity_iterations);
+  CHECK(frames.last.scheme_fallbacks < expected.scheme_fallbacks);
+  CHECK(frames.last.contacts < expected.max_contacts);
+  CHECK(frames.last.max_strain < expected.max_strain);
+  CHECK(frames.last.max_penetration < expected.max_penetration);
+  CHECK(frames.lowest_y > expected.lowest_y);
 }
 
 TEST_CASE("a summary tells of halves, contacts and memory") {
   const SceneDescription corners = scenes::make("corners", {.size = 21}).value();
   const SceneDescription sphere = scenes::make("hang_sphere", {.size = 9}).value();
   for (const SceneDescription* scene : {&corners, &sphere}) {
-    RunSummary expected;
+    Frames frames;
     const auto summary =
         run(*scene, {.substeps = 1, .solver = Solver::yarn}, {.dt = 0.05, .steps = 12},
-            [&](int, const Cloth& cloth, const StepReport& report) {
-              expected.halvings += report.halvings;
-              expected.max_contacts = std::max(expected.max_contacts, report.contacts);
-              expected.bytes = cloth.bytes() + describe(*cloth.model()).bytes;
-            });
+            [&](int, const Cloth& cloth, const StepReport& report) { frames.add(cloth, report); });
     REQUIRE(summary);
+    const RunSummary& expected = frames.sums;
     CHECK((scene == &corners ? expected.halvings : expected.max_contacts) > 0);
     CHECK(summary.value().halvings == expected.halvings);
     CHECK(summary.value().max_contacts == expected.max_contacts);
@@ -101,6 +158,29 @@ TEST_CASE("repeats differ in nothing but their time, and only the first is shown
   CHECK(best.value().visits == once.value().visits);
 }
 
+TEST_CASE("of repeats the fastest is reported, not the last") {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kSteps = 20;
+  Clock::time_point start;
+  std::chrono::duration<double> first_repeat{};
+  std::optional<Slowness> slowness;
+  int frame = 0;  // of all runs, the one to warm up included
+  const auto watch = [&] {
+    if (++frame == kSteps) start = Clock::now();
+    if (frame != 2 * kSteps) return false;
+    first_repeat = Clock::now() - start;
+    slowness.emplace();
+    return false;
+  };
+  const auto summary =
+      run(hang(20), {.tolerance = 1e-4, .solver = Solver::gauss_seidel, .threads = 1},
+          {.steps = kSteps, .repeat = 3, .stop = watch});
+  slowness.reset();
+  REQUIRE(summary);
+  CHECK(summary.value().finished_runs == 4);
+  CHECK(summary.value().step_seconds <= first_repeat.count());
+}
+
 TEST_CASE("where a repeat is stopped the best run before it is reported, whole") {
   const SceneDescription scene = hang(5);
   constexpr int kSteps = 10;
@@ -131,7 +211,30 @@ TEST_CASE("the worst status of all frames is told") {
   CHECK(limited.value().first_miss->frame == 1);
   CHECK(limited.value().first_miss->status == Status::iteration_limit);
   CHECK(limited.value().first_miss->constraint < scene.constraints.size());
-  const auto fixed = run(scene, {.iterations = 2}, {.steps = 5});
+}
+
+TEST_CASE("a frame that missed is not forgotten over those that did not") {
+  SceneDescription shot;
+  shot.positions = {{0, 0, 0}, {-0.5, 0, 0}};
+  shot.velocities = {{0, 0, 0}, {100, 0, 0}};
+  shot.masses = {1, 1};
+  shot.fixed = {0};
+  shot.spheres = {0};
+  shot.radii = {0.1, 0};
+  Status last = Status::passed_through;
+  const auto summary =
+      run(shot, {.substeps = 1}, {.steps = 3},
+          [&](int, const Cloth&, const StepReport& report) { last = report.status; });
+  REQUIRE(summary);
+  CHECK(last == Status::converged);
+  CHECK(summary.value().status == Status::passed_through);
+  REQUIRE(summary.value().first_miss);
+  CHECK(summary.value().first_miss->frame == 1);
+  CHECK(summary.value().first_miss->passed_particle == 1);
+}
+
+TEST_CASE("a fixed number of iterations misses nothing") {
+  const auto fixed = run(hang(8), {.iterations = 2}, {.steps = 5});
   REQUIRE(fixed);
   CHECK(fixed.value().status == Status::fixed_iterations);
   CHECK(fixed.value().iterations == 10);

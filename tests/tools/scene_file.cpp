@@ -110,6 +110,8 @@ TEST_CASE("errors name the place in the file") {
   CHECK(error_with(R"("fixed": [0, -1])") == "fixed[1]: expected a particle number, not -1");
   CHECK(error_with(R"("fixed": [4294967296])") ==
         "fixed[0]: expected a particle number, not 4294967296");
+  CHECK(error_with(R"("fixed": [4294967295])") ==
+        "fixed[0]: expected a particle number, not 4294967295");
   CHECK(error_with(R"("fixed": [0.5])") == "fixed[0]: expected a particle number, not 0.5");
   CHECK(error_with(R"("constraints": [[0,1],[1]])") ==
         "constraints[1]: expected [a, b, rest length, kind], not [1]");

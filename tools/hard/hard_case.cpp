@@ -70,7 +70,10 @@ double energy_of_the_catch(int size, double tolerance, double dt) {
 }
 
 Outcome strain_outcome(const Trial& trial, double energy_allowed) {
-  const Observed observed = observe(trial);
+  return strain_outcome(observe(trial), energy_allowed);
+}
+
+Outcome strain_outcome(const Observed& observed, double energy_allowed) {
   Outcome outcome = outcome_of(observed, energy_allowed);
   outcome.figure = observed.max_strain;
   if (observed.missed > 0 && outcome.failure.empty()) {
@@ -82,7 +85,10 @@ Outcome strain_outcome(const Trial& trial, double energy_allowed) {
 }
 
 Outcome honesty_outcome(const Trial& trial, double energy_allowed) {
-  const Observed observed = observe(trial);
+  return honesty_outcome(observe(trial), energy_allowed);
+}
+
+Outcome honesty_outcome(const Observed& observed, double energy_allowed) {
   Outcome outcome = outcome_of(observed, energy_allowed);
   outcome.figure = observed.false_claims;
   return outcome;

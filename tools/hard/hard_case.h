@@ -53,8 +53,10 @@ bool by_yarns(const Method& method);
 
 /// The largest strain is the figure; it fails where a step did not converge, or claimed what is not
 /// so, or where more energy appeared than `energy_allowed`.
+Outcome strain_outcome(const Observed& observed, double energy_allowed);
 Outcome strain_outcome(const Trial& trial, double energy_allowed);
 /// The number of steps whose report is not true is the figure: what did not converge must say so.
+Outcome honesty_outcome(const Observed& observed, double energy_allowed);
 Outcome honesty_outcome(const Trial& trial, double energy_allowed);
 
 /// J that a level sheet of `size` x `size` particles and 1 kg may gain when it is let go: it falls

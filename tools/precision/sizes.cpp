@@ -24,6 +24,8 @@ Settings settings_of(const SizeStudy& study, Solver solver, int substeps) {
 
 double particles(int size) { return static_cast<double>(size) * size; }
 
+}  // namespace
+
 std::optional<double> exponent(const SizeCurve& curve) {
   std::vector<double> counts, times;
   for (const SizePoint& point : curve.points) {
@@ -32,6 +34,8 @@ std::optional<double> exponent(const SizeCurve& curve) {
   }
   return fitted_exponent(counts, times);
 }
+
+namespace {
 
 /// By the curve so far; one that has too few points is taken to be linear.
 double predicted_seconds(const SizeStudy& study, const SizeCurve& curve, int size) {

@@ -37,6 +37,9 @@ struct SizeStudy {
   std::vector<SizeCurve> curves;
 };
 
+/// By the points that the curve has.
+std::optional<double> exponent(const SizeCurve& curve);
+
 /// quick: up to 60 x 60, and less time.
 SizeStudy size_study(bool quick);
 

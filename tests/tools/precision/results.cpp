@@ -5,7 +5,6 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -69,9 +68,90 @@ TEST_CASE("the JSON has the keys of the contract; peers are apart, failures are 
   CHECK(sizes["curves"][0]["points"][0]["size"] == 20);
 }
 
+/// With figures that are all different.
+Outcome distinct_outcome() {
+  return {.status = "converged",
+          .frames = 50,
+          .ms_per_frame = 0.5,
+          .max_strain = 0.0625,
+          .mean_max_strain = 0.015625,
+          .energy_gain = 0.00025,
+          .substeps = 3.5,
+          .trajectory_error = 0.25};
+}
+
+Study distinct_study() {
+  Study study;
+  Chart& chart = study.charts.emplace_back();
+  chart.task.scene = "corners";
+  chart.task.size = 21;
+  chart.points = {{"yarn", "rattle", "simd", {2, 0.03125, 0}, distinct_outcome()}};
+  study.orders = {{"paper", {{0.01, 0.04}, {0.005, 0.02}}, 1.25}};
+  study.sizes = SizeStudy{};
+  study.sizes->curves = {{"direct", {{30, 4, distinct_outcome()}}, "the end", 1.5}};
+  return study;
+}
+
+TEST_CASE("the JSON of a point, of an order and of a size") {
+  const Json json = to_json(distinct_study());
+  const Json point = Json::parse(R"({
+    "scene": "corners", "size": 21, "contender": "yarn", "solver": "yarn", "scheme": "rattle",
+    "backend": "simd", "substeps": 2, "tolerance": 0.03125, "iterations": 0, "ms_per_frame": 0.5,
+    "max_strain": 0.0625, "trajectory_error": 0.25, "mean_max_strain": 0.015625,
+    "energy_gain": 0.00025, "status": "converged", "frames": 50, "counts": true})");
+  CHECK(json["points"] == Json::array({point}));
+  CHECK(json["order"] == Json::parse(R"({"paper": 1.25, "rattle": null})"));
+  CHECK(json["order_points"][1] ==
+        Json::parse(R"({"scheme": "paper", "dt": 0.005, "trajectory_error": 0.02})"));
+  CHECK(json["sizes"]["curves"] == Json::parse(R"([{
+    "solver": "direct", "exponent": 1.5, "end": "the end",
+    "points": [{
+      "size": 30, "substeps": 4, "ms_per_frame": 0.5, "max_strain": 0.0625,
+      "mean_max_strain": 0.015625, "energy_gain": 0.00025, "status": "converged", "frames": 50,
+      "counts": true}]}])"));
+}
+
+TEST_CASE("automatic substeps are told as what they came to") {
+  Study study = distinct_study();
+  study.charts.front().points.front().knobs.substeps = kAutomaticSubsteps;
+  CHECK(to_json(study)["points"][0]["substeps"] == 3.5);
+}
+
 TEST_CASE("CSV: a heading and a line for each point, peers too") {
-  const std::string csv = points_csv(made_up_study());
-  CHECK(std::ranges::count(csv, '\n') == 6);
+  CHECK(points_csv(distinct_study()) ==
+        "scene,size,contender,solver,scheme,backend,substeps,tolerance,iterations,ms_per_frame,"
+        "max_strain,mean_max_strain,trajectory_error,energy_gain,status,frames,counts\n"
+        "corners,21,yarn,yarn,rattle,simd,2,0.03125,0,0.5,0.0625,0.015625,0.25,0.00025,converged,"
+        "50,true\n");
+  CHECK(points_csv(made_up_study())
+            .ends_with("\nhang,20,bullet,bullet,,,5,,16,0.4,1e-05,0,,0,converged,200,true\n"));
+}
+
+TEST_CASE("CSV: a line for each size") {
+  CHECK(sizes_csv(*distinct_study().sizes) ==
+        "scene,size,solver,substeps,ms_per_frame,max_strain,energy_gain,status\n"
+        "hang,30,direct,4,0.5,0.0625,0.00025,converged\n");
+}
+
+TEST_CASE("costs are told as multiples of auto's") {
+  Study study = made_up_study();
+  study.charts.front().points.push_back(made_up("auto", 0.2, 0.01));
+  const std::string markdown = to_markdown(study);
+  CHECK(markdown.find(" auto | gauss_seidel / auto | bullet / auto |\n") != std::string::npos);
+  CHECK(markdown.find("| 1 % | 0.4 | 0.1 | 0.4 | 0.2 | 0.5 | 2 |\n") != std::string::npos);
+  const std::string text = to_text(study);
+  CHECK(text.find("      1 %  direct                  0.4       2.0      0.001 %            -  "
+                  "paper, 1 %, 1 substep\n") != std::string::npos);
+}
+
+TEST_CASE("the text tells orders in mm, and sizes") {
+  const std::string text = to_text(distinct_study());
+  CHECK(text.find("                  0.01       0.005    order\n"
+                  "paper               40          20     1.25\n") != std::string::npos);
+  CHECK(text.find("     30 x 30  direct                  0.5        3.5       6.25 %\n") !=
+        std::string::npos);
+  CHECK(text.find("direct        time ~ particles^1.50\n") != std::string::npos);
+  CHECK(text.find("direct        the end\n") != std::string::npos);
 }
 
 TEST_CASE("markdown: a row for each bound, a column for each contender") {
