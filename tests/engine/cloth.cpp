@@ -223,6 +223,21 @@ TEST_CASE("a clone, and a cloth that copies the state of another, go on bit for 
   }
 }
 
+TEST_CASE("copies know of moves to come, and at what speed pins have moved") {
+  SceneDescription scene = free_bar(1, 1);
+  scene.fixed = {0};
+  Cloth cloth = cloth_of(scene, {}), back = cloth.clone();
+  for (const double x : {-0.01, -0.03, -0.06, -0.1}) {  // faster by 100 m/s^2
+    REQUIRE(cloth.move_fixed(0, {x, 0, 0}));
+    Cloth clone = cloth.clone();
+    REQUIRE(back.copy_state(cloth));
+    for (Cloth* each : {&cloth, &clone, &back}) step(*each, 0.01);
+    CHECK(clone.state_hash() == cloth.state_hash());
+    CHECK(back.state_hash() == cloth.state_hash());
+  }
+  CHECK(cloth.velocity(1).x < -3);
+}
+
 TEST_CASE("a state goes on to another tolerance, but not to another model") {
   const auto model = model_of(scene_of("hang", 6));
   auto loose = Cloth::create(model, {}), tight = Cloth::create(model, {.tolerance = 1e-4});

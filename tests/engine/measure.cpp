@@ -1,6 +1,8 @@
 /// describe(), strain(), max_penetration(), bytes(): what is measured outside of steps.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
 
@@ -18,6 +20,20 @@ TEST_CASE("a model describes what it holds") {
   CHECK(info.ropes == 1);
   CHECK(info.spheres == 1);
   CHECK(info.bytes > 26 * 10 * sizeof(double));
+}
+
+TEST_CASE("at a hub ropes are told from other constraints") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}};
+  for (std::uint32_t k = 1; k <= 70; ++k) {
+    scene.positions.push_back({std::cos(k), std::sin(k), 0});
+    scene.constraints.push_back({0, k, 1});
+  }
+  scene.constraints[3].kind = ConstraintKind::rope;
+  scene.masses.assign(scene.positions.size(), 1);
+  const ModelInfo info = describe(*model_of(scene));
+  CHECK(info.constraints == 70);
+  CHECK(info.ropes == 1);
 }
 
 TEST_CASE("an inert constraint is neither solved nor measured") {

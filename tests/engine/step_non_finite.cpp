@@ -107,6 +107,30 @@ TEST_CASE("a velocity out of range changes nothing, though the position it leads
   CHECK(cloth.state_hash() == before);
 }
 
+// Two bars in nearly the same direction: only far across them their common end is as fast along
+// each as the other ends are.
+TEST_CASE("a velocity that its correction takes out of range changes nothing") {
+  constexpr double kSpeed = 5e149, kAcross = 0.05;
+  SceneDescription scene;
+  scene.gravity = {0, 0, 0};
+  scene.positions = {{0, 0, 0}, {-1, kAcross, 0}, {-1, -kAcross, 0}};
+  scene.velocities = {{0, 0, 0}, {kSpeed, 0, 0}, {-kSpeed, 0, 0}};
+  scene.masses = {1e-3, 1, 1};
+  const double rest = std::hypot(1, kAcross);
+  scene.constraints = {{0, 1, rest}, {0, 2, rest}};
+  Settings settings = on(Backend::reference);
+  settings.tolerance = 0.1;
+  settings.max_iterations = 10'000;
+  settings.velocity_correction = true;
+  Cloth cloth = cloth_of(scene, settings);
+  const std::uint64_t before = cloth.state_hash();
+  const StepReport report = step(cloth, 1e-152);
+  CHECK(report.status == Status::non_finite);
+  CHECK(report.corrections > 0);
+  CHECK(report.failed_particle == 0);
+  CHECK(cloth.state_hash() == before);
+}
+
 TEST_CASE("the particle that failed is one that can move") {
   const SceneDescription scene = scene_of("hang", 20);
   const auto check = [&](const Settings& settings, double dt) {

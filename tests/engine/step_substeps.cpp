@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "engine/scenes.h"
 #include "tests/support/clothes.h"
@@ -59,9 +60,10 @@ TEST_CASE("automatic substeps by yarns leave each at least eight of the step's i
 }
 
 /// Of a sheet of 1 kg that hangs by one side, with a load at a free corner, in its first step.
-int substeps_under(double load, const Settings& settings) {
+int substeps_under(double load, const Settings& settings, double gravity = 10) {
   constexpr int kSize = 12;
   SceneDescription scene = scene_of("hang", kSize);
+  scene.gravity = {0, -gravity, 0};
   const bool first_is_fixed = scene.fixed[0] == 0;
   scene.masses[first_is_fixed ? scene.masses.size() - 1 : 0] *= load;
   Cloth cloth = cloth_of(scene, settings);
@@ -75,6 +77,14 @@ TEST_CASE("automatic substeps of yarns follow a load, as its root") {
     CAPTURE(load);
     CHECK(substeps_under(load, {}) == static_cast<int>(std::ceil(once * std::sqrt(load))));
     CHECK(substeps_under(load, {.solver = Solver::direct}) == 1);
+  }
+}
+
+TEST_CASE("and gravity, as its root") {
+  for (const double gravity : {1.62, 24.8}) {
+    CAPTURE(gravity);
+    const double wanted = 0.7 * 0.01 * std::sqrt(gravity * 11.0 * 1e5);
+    CHECK(substeps_under(1e5, {}, gravity) == static_cast<int>(std::ceil(wanted)));
   }
 }
 
@@ -130,6 +140,28 @@ TEST_CASE("spheres are loads from where they touch on") {
     CHECK(report.iterations < 20'000);
   }
   CHECK(touches > 50);
+}
+
+/// Of a level sheet on which two spheres lie, in its first step.
+int substeps_under_spheres(double first_mass, double second_mass) {
+  constexpr double kRadius = 0.1;
+  SceneDescription scene = scene_of("hang", 12);
+  scene.radii.assign(scene.positions.size(), 0);
+  for (const auto& [below, mass] : {std::pair{75, first_mass}, std::pair{80, second_mass}}) {
+    scene.spheres.push_back(static_cast<std::uint32_t>(scene.positions.size()));
+    scene.positions.push_back(scene.positions[static_cast<std::size_t>(below)] +
+                              Vec3{0, kRadius, 0});
+    scene.masses.push_back(mass);
+    scene.radii.push_back(kRadius);
+  }
+  Cloth cloth = cloth_of(scene, {});
+  return step(cloth, 0.01).substeps;
+}
+
+TEST_CASE("of several spheres the heaviest is the load, whatever their order") {
+  const double wanted = std::ceil(0.7 * 0.01 * std::sqrt(10 * 100 * 144 * 11.0));
+  CHECK(substeps_under_spheres(100, 0.01) == static_cast<int>(wanted));
+  CHECK(substeps_under_spheres(0.01, 100) == static_cast<int>(wanted));
 }
 
 TEST_CASE("spheres are no loads with scheme rattle") {
@@ -221,6 +253,24 @@ TEST_CASE("the bound on iterations is that of the step, whatever its substeps") 
         }
       }
     }
+  }
+}
+
+TEST_CASE("what projects a start is of the iterations of its step") {
+  constexpr int kMost = 100;
+  SceneDescription scene;  // four links, their ends too far apart
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    scene.positions.push_back({1.1 * i, 0, 0});
+    scene.masses.push_back(1);
+    if (i > 0) scene.constraints.push_back({i - 1, i, 1});
+  }
+  scene.fixed = {0, 4};
+  for (const Solver solver : {Solver::gauss_seidel, Solver::yarn}) {
+    CAPTURE(std::string(name(solver)));
+    Cloth cloth = cloth_of(scene, {.substeps = 1, .max_iterations = kMost, .solver = solver});
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::iteration_limit);
+    CHECK(report.iterations <= kMost);
   }
 }
 

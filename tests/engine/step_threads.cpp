@@ -1,11 +1,15 @@
-/// A Model may be shared by any number of Cloths and threads.
+/// A Model may be shared by any number of Cloths and threads; a step takes as many as it may.
 #include <doctest/doctest.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <thread>
 
+#include "engine/step.h"
 #include "tests/support/clothes.h"
 
 namespace weft::test {
@@ -52,6 +56,22 @@ TEST_CASE("cloths of one model, made and run by the tasks of one arena, agree bi
   REQUIRE(alone);
   run(alone.value(), 0.005, 10);
   for (const std::uint64_t hash : hashes) CHECK(hash == alone.value().state_hash());
+}
+
+TEST_CASE("a step asks for as many threads as the settings say") {
+  const auto model = model_of(scene_of("hang", 64));
+  constexpr int kSlots = 4;
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, kSlots);
+  tbb::task_arena arena(kSlots);
+  for (const int threads : {0, 1, 2, 3, 5}) {
+    CAPTURE(threads);
+    State state(
+        model,
+        {.substeps = 1, .solver = Solver::gauss_seidel, .isa = Isa::sse2, .threads = threads});
+    arena.execute([&] { step(state, 0.001); });
+    const int expected = threads == 0 ? kSlots : std::min(threads, kSlots);
+    CHECK(state.meeting->seats.load() + 1 == static_cast<std::uint32_t>(expected));
+  }
 }
 
 TEST_CASE("a cloth keeps its model alive") {

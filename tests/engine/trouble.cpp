@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "engine/step.h"
 #include "tests/support/clothes.h"
@@ -133,6 +134,43 @@ TEST_CASE("a state that is copied brings its trouble along, but not to other set
     CHECK(other.trouble.allowance() == 1);
     CHECK(other.placed);
   }
+}
+
+TEST_CASE("a step that did not converge is none that a shorter one is compared with") {
+  const auto model = model_of(scene_of("corners", 9));
+  for (const int most : {1, 10'000}) {
+    CAPTURE(most);
+    State state(model,
+                {.substeps = 1, .max_iterations = most, .solver = Solver::yarn, .isa = Isa::sse2});
+    state.last_dt = 0.2;
+    const bool converged = step(state, 0.1).status == Status::converged;
+    REQUIRE(converged == (most > 1));
+    CHECK(state.last_dt == (converged ? 0.1 : 0));
+  }
+}
+
+/// Whether a step that follows on expensive ones leaves the next to sweeps alone.
+bool leaves_to_sweeps(const SceneDescription& scene, Settings settings) {
+  settings.solver = Solver::yarn;
+  settings.isa = Isa::sse2;
+  settings.velocity_correction = settings.scheme == Scheme::rattle;
+  State state(model_of(scene), settings);
+  for (int k = 0; k < 3; ++k) state.trouble.remember({.passes = 1e6});
+  step(state, 0.01);
+  return state.trouble.only_sweeps();
+}
+
+TEST_CASE("with spheres, tight tolerances or scheme rattle nothing is left to sweeps alone") {
+  SceneDescription scene = scene_of("hang", 8);
+  CHECK(leaves_to_sweeps(scene, {}));
+  CHECK_FALSE(leaves_to_sweeps(scene, {.tolerance = 0.003}));
+  CHECK_FALSE(leaves_to_sweeps(scene, {.scheme = Scheme::rattle}));
+  scene.spheres = {static_cast<std::uint32_t>(scene.positions.size())};
+  scene.fixed.push_back(scene.spheres[0]);
+  scene.positions.push_back({0, 100, 0});  // far from everything
+  scene.masses.push_back(1);
+  scene.radii.assign(scene.positions.size(), 1);
+  CHECK_FALSE(leaves_to_sweeps(scene, {}));
 }
 
 struct AfterTrouble {

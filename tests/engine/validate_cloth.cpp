@@ -70,6 +70,33 @@ TEST_CASE("the simd backend refuses what floats cannot square") {
   CHECK(Cloth::create(model_of(scene), on(Backend::reference, Settings{})));
 }
 
+bool fits_lanes(double rest, const Settings& settings) {
+  SceneDescription scene = free_bar(1, 1);
+  scene.constraints[0].rest_length = rest;
+  scene.spheres = {0};
+  scene.radii = {0.1, 0};
+  return static_cast<bool>(Cloth::create(model_of(scene), settings));
+}
+
+TEST_CASE("the simd backend takes lengths and tolerances from 1e-18 to 1e18") {
+  for (const double fits : {1e-18, 1.01e-18, 0.99e18, 1e18}) {
+    CAPTURE(fits);
+    CHECK(fits_lanes(fits, {.tolerance = 1}));
+    CHECK(fits_lanes(1, {.tolerance = fits}));
+    CHECK(fits_lanes(1, {.contact_tolerance = fits}));
+    CHECK(fits_lanes(1, {.velocity_tolerance = fits, .velocity_correction = true}));
+    CHECK(fits_lanes(1, {.velocity_tolerance = fits, .scheme = Scheme::rattle}));
+  }
+  for (const double beyond : {0.99e-18, 1.01e18}) {
+    CAPTURE(beyond);
+    CHECK_FALSE(fits_lanes(beyond, {.tolerance = 1 / beyond}));
+    CHECK_FALSE(fits_lanes(1, {.tolerance = beyond}));
+    CHECK_FALSE(fits_lanes(1, {.contact_tolerance = beyond}));
+    CHECK_FALSE(fits_lanes(1, {.velocity_tolerance = beyond, .velocity_correction = true}));
+    CHECK_FALSE(fits_lanes(1, {.velocity_tolerance = beyond, .scheme = Scheme::rattle}));
+  }
+}
+
 TEST_CASE("tolerances that nothing uses may be anything") {
   const auto hang = model_of(scene_of("hang", 4));
   CHECK(Cloth::create(hang, {.contact_tolerance = 1e-20, .velocity_tolerance = 1e20}));

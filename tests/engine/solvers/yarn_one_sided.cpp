@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/solvers/yarn_others.h"
 #include "engine/solvers/yarn_solver.h"
 #include "tests/support/clothes.h"
 #include "tests/support/vectors.h"
@@ -115,6 +116,62 @@ TEST_CASE("ropes that depend on each other bring no energy into velocities") {
   Trial trial(scene, 1);
   const double before = length(scene.velocities[0]);
   CHECK(length(trial.correct_velocities(true)) <= before * (1 + 1e-6));
+}
+
+/// Ropes and contacts of a lone particle without the yarns, in floats.
+struct Others {
+  explicit Others(const SceneDescription& scene)
+      : trial(scene, 0.01),
+        places(trial.model->yarns().places),
+        base(places.floats),
+        u(places.floats),
+        others(*trial.model, {.tolerance = kTolerance, .contact_tolerance = kContactTolerance}) {
+    others.start(trial.contacts, true);
+    places.clear(u.data());
+    places.split(trial.table, trial.x.view(), 0, 0, trial.model->slots(), base.data(), u.data());
+  }
+  void relax() { others.relax(base.data(), u.data()); }
+  /// In tolerances, with the particle moved so far along x.
+  double violation(double moved) const {
+    auto there = u;
+    there[places.of(trial.model->ordering.slot_of[0])] += static_cast<float>(moved);
+    return others.violation(base.data(), there.data());
+  }
+
+  Trial trial;
+  const YarnPlaces& places;
+  kernels::AlignedVector<float> base, u;
+  YarnOthers others;
+};
+
+TEST_CASE("a rope that ends slack violates nothing unless it has pulled") {
+  for (const double start : {1.9, 2.1}) {
+    CAPTURE(start);
+    SceneDescription scene = lone_particle({start, 0, 0}, {0, 0, 0});
+    add_rope(scene, {0, 0, 0}, 2);
+    Others ropes(scene);
+    ropes.relax();
+    const bool has_pulled = start > 2;
+    CHECK(ropes.violation(has_pulled ? 0 : 0.1) < 0.01);
+    CHECK(ropes.violation(has_pulled ? -0.1 : 0) ==
+          doctest::Approx(has_pulled ? 0.05 / kTolerance : 0).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("a contact is violated where it is too deep, and where it has pushed too far") {
+  for (const double start : {0.45, 0.52}) {
+    CAPTURE(start);
+    SceneDescription scene = lone_particle({start, 0, 0}, {0, 0, 0});
+    add_sphere(scene, {0, 0, 0}, 0.5);
+    Others contacts(scene);
+    REQUIRE(contacts.trial.contacts.count() == 1);
+    contacts.relax();
+    const bool has_pushed = start < 0.5;
+    const double outside = has_pushed ? 0 : 0.02;
+    const auto tolerances = [](double expected) { return doctest::Approx(expected).epsilon(1e-2); };
+    CHECK(contacts.violation(-outside - 0.01) == tolerances(0.01 / kContactTolerance));
+    CHECK(contacts.violation(0.01) == tolerances(has_pushed ? 0.01 / kContactTolerance : 0));
+  }
 }
 
 TEST_CASE("directions at the start serve until a rope has turned by nearly a right angle") {
