@@ -165,7 +165,8 @@ void add_precision_command(CommandLine& line) {
                             [options] { return run_precision(*options); });
   verb.option("--scene", options->scene,
               "only this built-in scene, without cost against size (default: hang, corners "
-              "and cost against size)");
+              "and cost against size). Not one with spheres, which the reference solution has "
+              "not, nor banner, which can hang by no exact lengths");
   verb.option("--size", options->size, "N of the scene (default 40, corners 41; quick 20, 21)");
   add_study_options(verb, *options, "write CSV, JSON, tables and the charts into a folder",
                     "few settings on small scenes: under a minute");

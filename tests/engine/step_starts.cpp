@@ -122,16 +122,17 @@ TEST_CASE("what a projection leaves undone is for the step to tell") {
 
 TEST_CASE("what a step left out of tolerance is no start: the next one makes speed of it") {
   SceneDescription scene = weightless("hang", 6);
-  for (Vec3& p : scene.positions) p.x *= 1.3;
+  for (Vec3& p : scene.positions) p.x *= 1.1;
   Settings settings = on(each_backend());
-  settings.max_iterations = 10;
+  settings.max_iterations = 20;
   Cloth stepped = cloth_of(scene, settings), placed = cloth_of(scene, settings);
   REQUIRE(step(stepped, 0.01).status == Status::iteration_limit);
   REQUIRE(placed.write_positions(positions(stepped)));
   REQUIRE(placed.write_velocities(velocities(stepped)));
-  step(stepped, 0.01);
-  step(placed, 0.01);
-  CHECK(stepped.energy().kinetic > 1.1 * placed.energy().kinetic);
+  CHECK(step(stepped, 0.01).status == Status::converged);
+  CHECK(step(placed, 0.01).status == Status::converged);
+  CHECK(stepped.energy().kinetic > 0.01);
+  CHECK(placed.energy().kinetic < 1e-6);
 }
 
 TEST_CASE("with a fixed number of iterations nothing is projected") {

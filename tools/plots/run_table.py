@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Prints one table of the reports written by `weft run --json FILE`."""
 
+import argparse
 import json
+import os
 import sys
 
 COLUMNS = [
@@ -15,7 +17,7 @@ COLUMNS = [
 ]
 
 
-def main(paths):
+def print_table(paths):
     rows = []
     for path in paths:
         with open(path, encoding="utf-8") as file:
@@ -31,5 +33,14 @@ def main(paths):
         print("  ".join(cells).rstrip())
 
 
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("json", nargs="+", help="written by `weft run --json`")
+    try:
+        print_table(parser.parse_args().json)
+    except (OSError, ValueError, KeyError) as problem:
+        sys.exit(f"{os.path.basename(sys.argv[0])}: {type(problem).__name__}: {problem}")
+
+
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()
