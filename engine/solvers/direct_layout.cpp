@@ -98,12 +98,19 @@ std::vector<std::uint32_t> elimination_order(const Model& model, const DirectLay
   return order;
 }
 
+/// Without its body the last link of a straight string from a fixed particle to a body is one that
+/// the others imply: its pivot is 0. That much more of its diagonal, the compliance of a very stiff
+/// spring, keeps it; the body, whose mass is in the balance of impulses, pulls at it there.
+constexpr double kBodyShift = 1e-8;
+
 void store_rows(const Model& model, DirectLayout& layout) {
   const ConstraintStore& s = model.constraints;
   for (const std::uint32_t c : layout.row_constraint) {
     layout.a.push_back(s.a[c]);
     layout.b.push_back(s.b[c]);
-    layout.diagonal.push_back(weight(model, layout, s.a[c]) + weight(model, layout, s.b[c]));
+    const double own = weight(model, layout, s.a[c]) + weight(model, layout, s.b[c]);
+    const bool at_body = layout.body_of[s.a[c]] != kNoIndex || layout.body_of[s.b[c]] != kNoIndex;
+    layout.diagonal.push_back(at_body ? (1 + kBodyShift) * own : own);
   }
 }
 

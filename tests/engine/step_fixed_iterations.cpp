@@ -149,6 +149,29 @@ TEST_CASE("the direct solver takes sixteen bodies, and leaves more to sweeps") {
   }
 }
 
+// Without the sphere the last link of the string would be implied by the others.
+TEST_CASE("the direct solver holds a sphere on a straight string, whatever its mass") {
+  for (const double mass : {1e-2, 1., 1e4}) {
+    for (const std::uint32_t links : {1u, 2u, 10u}) {
+      CAPTURE(mass);
+      CAPTURE(links);
+      SceneDescription scene;
+      for (std::uint32_t i = 0; i <= links; ++i) {
+        scene.positions.push_back({0, -0.1 * i, 0});
+        if (i > 0) scene.constraints.push_back({i - 1, i, 0.1});
+      }
+      scene.masses.assign(links + 1, 0.1);
+      scene.masses.back() = mass;
+      scene.fixed = {0};
+      scene.spheres = {links};
+      scene.radii.assign(links + 1, 0.01);
+      Cloth cloth = cloth_of(scene, {.substeps = 1, .iterations = 2, .solver = Solver::direct});
+      run(cloth, 0.01, 60);
+      CHECK(cloth.strain().max < 1e-6);
+    }
+  }
+}
+
 // With more bodies than it takes it has no system to solve, and did nothing.
 TEST_CASE("with bodies beyond what the direct solver takes sweeps do its iterations") {
   constexpr int kIterations = 5;
