@@ -127,9 +127,12 @@ Result<int> run_verb(const RunOptions& options) {
   if (!summary) return Error{summary.error()};
 
   const RunReport report{source.name, settings, options.plan, summary.value()};
-  if (auto finished = outputs.value().finish(); !finished) return Error{finished.error()};
+  if (auto finished = outputs.value().finish(); !finished) {
+    return Error{fmt::format("--out: {}", finished.error())};
+  }
   if (json) {
-    if (auto written = json->write(to_json(report)); !written) return Error{written.error()};
+    auto written = json->write(to_json(report));
+    if (!written) return Error{fmt::format("--json: {}", written.error())};
   }
   if (!json || !json->is_stdout()) {
     const auto printed = print_text(to_table(report));

@@ -44,10 +44,12 @@ Result<StudyOutputs> StudyOutputs::open(const StudyOptions& options) {
 Result<void> StudyOutputs::write(const std::string& text, const Json& json,
                                  const WriteFolder& write_folder) {
   if (!folder_.empty()) {
-    if (auto done = write_folder(folder_); !done) return done;
+    auto done = write_folder(folder_);
+    if (!done) return Error{fmt::format("--out: {}", done.error())};
   }
   if (json_) {
-    if (auto done = json_->write(json); !done) return done;
+    auto done = json_->write(json);
+    if (!done) return Error{fmt::format("--json: {}", done.error())};
   }
   return json_ && json_->is_stdout() ? Result<void>{} : print_text(text);
 }
