@@ -10,7 +10,6 @@ namespace {
 
 using kernels::Vector;
 
-constexpr std::size_t kMostBodies = 16;
 constexpr double kLinkShift = 1e-8;  // of w_a + w_b: the spring of a link between bodies
 
 double compliance(const DirectSystem& system, const Tie& tie) {

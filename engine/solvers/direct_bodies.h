@@ -27,6 +27,8 @@ struct Spring {
 
 class DirectBodies {
  public:
+  static constexpr std::size_t kMostBodies = 16;
+
   explicit DirectBodies(const DirectLayout& layout) : column_of_(layout.bodies.size()) {}
 
   /// lambda, being A^-1 e, becomes A^-1 (e + B y). false: the system is not solvable.

@@ -163,14 +163,14 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   apart by: with scheme paper it hangs by that. simd only.
 /// automatic: gauss_seidel on the reference backend or with Settings::iterations. direct for cords,
 ///   ropes that close few loops: chains, trees, bridges; where these are long (the tolerance times
-///   the longest constraint is above 0.25 mm) or loaded (masses differ by more than 100). For all
-///   else the ratio of masses decides, that of the heaviest to the lightest of free particles that
-///   constraints join. Up to 10^4: yarn, or gauss_seidel where there are more than nine ropes to
-///   each distance constraint; for tolerances from 0.1 % on and ratios up to 100 where there is
-///   more than one to three (a sheet with ropes as diagonals), with scheme paper of up to 1,000
-///   particles without free spheres. From 10^6 on, and from 10^4 on such nets or with `substeps`
-///   given: direct. Between them: yarn, with direct to answer where it gives up (so it is wherever
-///   yarn is chosen for ratios above 10^4).
+///   the longest constraint is above 0.25 mm) or loaded (masses differ by more than 100); with more
+///   than 16 free spheres yarn. For all else the ratio of masses decides, that of the heaviest to
+///   the lightest of free particles that constraints join. Up to 10^4: yarn, or gauss_seidel where
+///   there are more than nine ropes to each distance constraint; for tolerances from 0.1 % on and
+///   ratios up to 100 where there is more than one to three (a sheet with ropes as diagonals), with
+///   scheme paper of up to 1,000 particles without free spheres. From 10^6 on, and from 10^4 on
+///   such nets or with `substeps` given: direct. Between them: yarn, with direct to answer where it
+///   gives up (so it is wherever yarn is chosen for ratios above 10^4).
 /// Where yarn or direct gives up, or energy rises by more than gravity, forces and moved pins
 /// explain (engine/energy.h), the substep is redone as two halves, until a step has cost 1500
 /// iterations; where that fails too, Gauss-Seidel takes over. StepReport::iterations counts every

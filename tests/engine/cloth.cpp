@@ -97,6 +97,12 @@ TEST_CASE("automatic: cords are for the direct solver, unless they are fine") {
   SceneDescription net = scene_of("hang", 20);
   for (Constraint& c : net.constraints) c.kind = ConstraintKind::rope;
   CHECK(chosen(net, {}) == Solver::gauss_seidel);
+  SceneDescription beads = cord(17, 2);
+  beads.radii.assign(18, 0.01);
+  for (std::uint32_t i = 0; i <= 16; ++i) beads.spheres.push_back(i);  // the first one is fixed
+  CHECK(chosen(beads, {}) == Solver::direct);
+  beads.spheres.push_back(17);
+  CHECK(chosen(beads, {}) == Solver::yarn);
 }
 
 TEST_CASE("automatic: a weight on a cord swings, and gains no energy, however short the steps") {
