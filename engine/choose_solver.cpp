@@ -1,6 +1,8 @@
 #include "engine/choose_solver.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "engine/model.h"
 #include "engine/solvers/direct_bodies.h"
@@ -12,6 +14,15 @@ namespace {
 double rope_share(const ConstraintStore& constraints) {
   const auto edges = static_cast<double>(constraints.bilateral);
   return static_cast<double>(constraints.size()) / edges - 1;
+}
+
+/// Those that an active constraint joins to another: what decides is about them alone.
+std::size_t joined_particles(const Model& model) {
+  std::vector<std::uint8_t> joined(model.slots());
+  for (const auto* ends : {&model.constraints.a, &model.constraints.b}) {
+    for (const std::uint32_t slot : *ends) joined[slot] = 1;
+  }
+  return static_cast<std::size_t>(std::ranges::count(joined, 1));
 }
 
 /// Cords: ropes, and what they hold, that close few loops: a chain, a tree, a bridge (of whose
@@ -27,7 +38,8 @@ bool are_cords(const Model& model, const Settings& settings) {
   constexpr double kRopesEach = 1. / 3, kMostLoops = 0.4, kMost = 0.25e-3, kUnevenCords = 100;
   const ConstraintStore& constraints = model.constraints;
   const auto all = static_cast<double>(constraints.size());
-  const double loops = all - static_cast<double>(model.particles);  // no more than there are
+  const double loops =
+      all - static_cast<double>(joined_particles(model));  // no more than there are
   if (rope_share(constraints) <= kRopesEach || loops > kMostLoops * all) return false;
   const double longest =
       constraints.size() > 0 ? *std::ranges::max_element(constraints.rest_length) : 0;
@@ -58,9 +70,11 @@ bool is_a_net_of_ropes(const Model& model) { return rope_share(model.constraints
 bool is_braced_by_ropes(const Model& model, const Settings& settings) {
   constexpr double kRopesEach = 1. / 3, kLeastTolerance = 1e-3, kMostUneven = 100;
   constexpr std::size_t kMostParticles = 1000;
-  const bool few = model.particles <= kMostParticles && model.heaviest_sphere == 0;
+  const auto few = [&] {
+    return model.heaviest_sphere == 0 && joined_particles(model) <= kMostParticles;
+  };
   return rope_share(model.constraints) > kRopesEach && settings.tolerance >= kLeastTolerance &&
-         model.uneven.ratio <= kMostUneven && (settings.scheme == Scheme::rattle || few);
+         model.uneven.ratio <= kMostUneven && (settings.scheme == Scheme::rattle || few());
 }
 
 /// Measured (perf/README.md): yarns are the fastest at every size and tolerance, by either scheme,

@@ -154,6 +154,23 @@ TEST_CASE("automatic leaves sheets that ropes brace to sweeps, unless these have
   CHECK(chosen(loaded, {}) == Solver::yarn);
 }
 
+TEST_CASE("automatic: particles that nothing joins have no say in it") {
+  SceneDescription braced = scene_of("hang", 20);
+  for (std::uint32_t i = 0; i < 399; ++i) {
+    const bool diagonal = i % 20 < 19 && i < 380;
+    if (diagonal) {
+      braced.constraints.push_back({i, i + 21, 0.06 * std::sqrt(2.), ConstraintKind::rope});
+    }
+  }
+  for (const SceneDescription& scene : {braced, scene_of("hang", 20), cord(40, 2)}) {
+    const Solver alone = cloth_of(scene, {}).settings().solver;
+    SceneDescription beside = scene;
+    beside.positions.resize(scene.positions.size() + 1000);
+    beside.masses.resize(beside.positions.size(), 1);
+    CHECK(cloth_of(beside, {}).settings().solver == alone);
+  }
+}
+
 TEST_CASE("packed floats are the positions, x y z") {
   const Backend backend = each_backend();
   Cloth cloth = cloth_of(scene_of("corners", 5), on(backend));
