@@ -36,7 +36,8 @@ std::uint32_t find_crossing(const Model& m, const simd::Table& kernels, kernels:
       const std::uint32_t p = moved[i];
       const kernels::Vector from = before[p] - start, to = from + (after[p] - before[p] - along);
       const double surface = (1 - kDeep) * (m.radius[s] + m.radius[p]);
-      if (length(from) < surface || least_distance(from, to) >= surface) continue;
+      // (Far away all of a way may be rounded off, and what is least of it is no number.)
+      if (!(length(from) >= surface && least_distance(from, to) < surface)) continue;
       if (length(to) < surface) continue;  // still in there: that is a penetration, and measured
       if (may_touch(m, s, p)) return p;
     }

@@ -21,12 +21,17 @@ void find_contacts(State& s, StepReport& report) {
 
 namespace {
 
-void watch_crossings(State& s, Trial& trial) {
-  const std::uint32_t passed =
-      find_crossing(*s.model, *s.kernels, s.position.view(), s.solved.view(), s.contacts);
-  if (passed == kNoIndex) return;
-  trial.passed_particle = s.model->ordering.particle_at[passed];
-  trial.worsen(Status::passed_through);
+/// Of an attempt that nothing is tried in place of.
+Trial watch_crossings(State& s, StepReport& report, Trial trial) {
+  if (!s.model->has_contacts() || !trial.has_result()) return trial;
+  timed(report, Stage::find_contacts, [&] {
+    const std::uint32_t passed =
+        find_crossing(*s.model, *s.kernels, s.position.view(), s.solved.view(), s.contacts);
+    if (passed == kNoIndex) return;
+    trial.passed_particle = s.model->ordering.particle_at[passed];
+    trial.worsen(Status::passed_through);
+  });
+  return trial;
 }
 
 /// An attempt by scheme rattle whose positions miss their tolerance is not worth its velocities: as
@@ -79,9 +84,6 @@ Trial run_stages(State& s, const Attempt& attempt, StepReport& report, Team& tea
   if (s.settings.iterations > 0 && trial.status <= Status::iteration_limit) {
     trial.status = Status::fixed_iterations;
   }
-  if (s.model->has_contacts()) {
-    timed(report, Stage::find_contacts, [&] { watch_crossings(s, trial); });
-  }
   return trial;
 }
 
@@ -96,8 +98,7 @@ bool rattle_keeps_energy(State& s, double h, Team& team) {
 /// Whether what scheme rattle came to is kept. With a fixed number of iterations it always is.
 bool is_good(State& s, const Trial& trial, double h, Team& team) {
   if (s.settings.iterations > 0) return true;
-  const bool solved = trial.status == Status::converged || trial.status == Status::passed_through;
-  return solved && trial.has_result() && rattle_keeps_energy(s, h, team);
+  return trial.status == Status::converged && trial.has_result() && rattle_keeps_energy(s, h, team);
 }
 
 int half_of(int most) { return std::max(1, most / 2); }
@@ -109,21 +110,23 @@ int left_of(int most, std::int64_t done) {
 
 /// Until it is accepted a substep leaves position and velocity alone: it can be done again.
 Trial substep(State& s, const Attempt& attempt, StepReport& report, Team& team) {
-  if (s.settings.scheme == Scheme::paper) return run_stages(s, attempt, report, team);
+  if (s.settings.scheme == Scheme::paper) {
+    return watch_crossings(s, report, run_stages(s, attempt, report, team));
+  }
   const std::int64_t done = report.iterations, of_velocities = report.velocity_iterations;
   Attempt by_rattle = attempt;
   by_rattle.start = s.position.view();
   by_rattle.most_iterations = half_of(attempt.most_iterations);
   by_rattle.most_velocity_iterations = half_of(attempt.most_velocity_iterations);
   const Trial trial = run_stages(s, by_rattle, report, team);
-  if (is_good(s, trial, attempt.h, team)) return trial;
+  if (is_good(s, trial, attempt.h, team)) return watch_crossings(s, report, trial);
   ++report.scheme_fallbacks;
   Attempt by_paper = attempt;
   by_paper.predicted = false;
   by_paper.most_iterations = left_of(attempt.most_iterations, report.iterations - done);
   by_paper.most_velocity_iterations =
       left_of(attempt.most_velocity_iterations, report.velocity_iterations - of_velocities);
-  return run_stages(s, by_paper, report, team);
+  return watch_crossings(s, report, run_stages(s, by_paper, report, team));
 }
 
 }  // namespace weft
