@@ -16,7 +16,8 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, problem);
   if (problem) return Error{fmt::format("--out {}: {}", folder.string(), problem.message())};
   const auto probe = PendingFile::open(folder / "probe");  // dropped
-  return probe ? Result<void>{} : Result<void>{Error{probe.error()}};
+  if (!probe) return Error{fmt::format("--out {}: no file can be written there", folder.string())};
+  return {};
 }
 
 }  // namespace
@@ -31,13 +32,13 @@ void add_study_options(Verb verb, StudyOptions& options, const std::string& out,
 Result<StudyOutputs> StudyOutputs::open(const StudyOptions& options) {
   StudyOutputs outputs;
   outputs.folder_ = options.out;
-  if (!options.json.empty()) {
-    auto opened = JsonOutput::open(options.json);
-    if (!opened) return Error{fmt::format("--json: {}", opened.error())};
-    outputs.json_ = std::move(opened.value());
+  if (!options.out.empty()) {
+    if (const auto made = make_folder(options.out); !made) return Error{made.error()};
   }
-  if (options.out.empty()) return outputs;
-  if (const auto made = make_folder(options.out); !made) return Error{made.error()};
+  if (options.json.empty()) return outputs;
+  auto opened = JsonOutput::open(options.json);  // in the folder that was just made, perhaps
+  if (!opened) return Error{fmt::format("--json: {}", opened.error())};
+  outputs.json_ = std::move(opened.value());
   return outputs;
 }
 

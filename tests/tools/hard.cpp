@@ -161,6 +161,8 @@ TEST_CASE("what fails a case is told, whatever its figure") {
     CHECK(outcome_of(seen, 1).failure == "a state that is not finite");
     seen = {.refusal = "no"};
     CHECK(outcome_of(seen, 1).failure == "no");
+    seen = {.steps = 7, .stopped = true};
+    CHECK(outcome_of(seen, 1).failure == "it ended with step 7");
   }
   const Observed liar{.false_claims = 3, .max_strain = 0.25};
   CHECK(strain_outcome(liar, 1).figure == 0.25);
@@ -240,14 +242,16 @@ TEST_CASE("through a sphere goes what was outside of it on both sides") {
   CHECK(went_through(scene, {{{-2, 0, 0}, {}}, {}}, {{{2, 0, 0}, {}}, {}}, 0));
 }
 
-TEST_CASE("there are at least 40 cases, no two of a name, and each is claimed by a method") {
+TEST_CASE("no two cases have a name, and each is claimed by a method") {
   std::set<std::string> names;
   for (const Case& hard_case : all_cases()) {
     CAPTURE(hard_case.name);
     CHECK(names.insert(hard_case.name).second);
     CHECK_FALSE(hard_case.measures.empty());
+    CHECK_FALSE(select(hard_case.name + '/').empty());
   }
-  CHECK(names.size() >= 40);
+  CHECK(names.size() == 69);  // as in tests/README.md
+  CHECK(select("").size() == 505);
 }
 
 int exit_code(const std::string& arguments) {
@@ -270,6 +274,32 @@ TEST_CASE("the verb runs the cases that are named, and writes the table") {
   CHECK(folder.read("stdout").find("one_particle/gauss_seidel ") != std::string::npos);
   CHECK(exit_code("--case no_such_case 2>" + folder.file("stderr")) == 2);
   CHECK(folder.read("stderr") == "weft: --case: no case is named 'no_such_case'\n");
+}
+
+TEST_CASE("studies refuse what WEFT_ISA names and there is not, before all else") {
+  const TemporaryFolder folder;
+  for (const std::string verb :
+       {"hard --quick", "precision --quick --scene hang", "paper --quick"}) {
+    CAPTURE(verb);
+    const std::string command = "WEFT_ISA=neon " WEFT_PROGRAM " " + verb + " >" +
+                                folder.file("stdout") + " 2>" + folder.file("stderr");
+    const int status = std::system(command.c_str());
+    REQUIRE(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 2);
+    CHECK(folder.read("stdout").empty());
+    CHECK(folder.read("stderr").ends_with(
+        "weft: WEFT_ISA: must be auto, sse2, avx2 or avx512 (neon)\n"));
+  }
+}
+
+TEST_CASE("the JSON may go into the folder that is made for the tables") {
+  const TemporaryFolder folder;
+  CHECK(exit_code("--quick --case one_particle/direct --json " + folder.file("new/hard.json") +
+                  " --out " + folder.file("new") + " >" + folder.file("stdout") + " 2>/dev/null") ==
+        0);
+  CHECK(Json::parse(folder.read("new/hard.json"))["failed"] == 0);
+  CHECK(exit_code("--quick --out /proc 2>" + folder.file("stderr")) == 2);
+  CHECK(folder.read("stderr") == "weft: --out /proc: no file can be written there\n");
 }
 
 TEST_CASE("no quick case fails" * doctest::test_suite("slow")) {

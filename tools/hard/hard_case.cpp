@@ -7,35 +7,32 @@
 namespace weft::tools::hard {
 namespace {
 
-/// Not every solver goes with every scheme.
-bool is_offered(const Method& method) {
+/// Why an outcome fails whatever its figure is; empty: it does not.
+std::string failure_of(const Observed& observed, double energy_allowed) {
+  if (!observed.refusal.empty()) return observed.refusal;
+  if (observed.stopped) return fmt::format("it ended with step {}", observed.steps);
+  if (!observed.finite) return "a state that is not finite";
+  if (observed.false_claims > 0) return "a report that is not true";
+  if (observed.energy_gain <= energy_allowed) return {};
+  return fmt::format("{:.3g} J gained, {:.3g} J allowed", observed.energy_gain, energy_allowed);
+}
+
+}  // namespace
+
+Result<void> offered(const Method& method) {
   SceneDescription scene;
   scene.positions = {{0, 0, 0}};
   scene.masses = {1};
   const auto model = build_model(scene);
-  return static_cast<bool>(Cloth::create(model.value(), Setup{method}.settings(0.01)));
+  const auto cloth = Cloth::create(model.value(), Setup{method}.settings(0.01));
+  return cloth ? Result<void>{} : Result<void>{Error{cloth.error()}};
 }
-
-Outcome outcome_of(const Observed& observed, double energy_allowed) {
-  Outcome outcome;
-  outcome.detail = text(observed);
-  outcome.ms_per_step = observed.ms_per_step();
-  if (!observed.refusal.empty()) outcome.failure = observed.refusal;
-  if (!observed.finite) outcome.failure = "a state that is not finite";
-  if (observed.energy_gain > energy_allowed) {
-    outcome.failure =
-        fmt::format("{:.3g} J gained, {:.3g} J allowed", observed.energy_gain, energy_allowed);
-  }
-  return outcome;
-}
-
-}  // namespace
 
 std::vector<Method> all_methods() {
   std::vector<Method> methods;
   for (const Scheme scheme : enumerators<Scheme>()) {
     for (const Solver solver : enumerators<Solver>()) {
-      if (is_offered({solver, scheme})) methods.push_back({solver, scheme});
+      if (offered({solver, scheme})) methods.push_back({solver, scheme});
     }
   }
   return methods;
@@ -69,19 +66,21 @@ double energy_of_the_catch(int size, double tolerance, double dt) {
   return (error / dt) * (error / dt) / 2;
 }
 
+Outcome outcome(double figure, const Observed& observed, double energy_allowed) {
+  return {figure, text(observed), failure_of(observed, energy_allowed), observed.ms_per_step()};
+}
+
 Outcome strain_outcome(const Trial& trial, double energy_allowed) {
   return strain_outcome(observe(trial), energy_allowed);
 }
 
 Outcome strain_outcome(const Observed& observed, double energy_allowed) {
-  Outcome outcome = outcome_of(observed, energy_allowed);
-  outcome.figure = observed.max_strain;
-  if (observed.missed > 0 && outcome.failure.empty()) {
-    outcome.failure =
+  Outcome result = outcome(observed.max_strain, observed, energy_allowed);
+  if (observed.missed > 0 && result.failure.empty()) {
+    result.failure =
         fmt::format("{} of {} steps did not converge", observed.missed, observed.steps);
   }
-  if (observed.false_claims > 0) outcome.failure = "a report that is not true";
-  return outcome;
+  return result;
 }
 
 Outcome honesty_outcome(const Trial& trial, double energy_allowed) {
@@ -89,9 +88,7 @@ Outcome honesty_outcome(const Trial& trial, double energy_allowed) {
 }
 
 Outcome honesty_outcome(const Observed& observed, double energy_allowed) {
-  Outcome outcome = outcome_of(observed, energy_allowed);
-  outcome.figure = observed.false_claims;
-  return outcome;
+  return outcome(observed.false_claims, observed, energy_allowed);
 }
 
 }  // namespace weft::tools::hard

@@ -17,6 +17,8 @@ struct Method {
   Solver solver = Solver::gauss_seidel;
   Scheme scheme = Scheme::paper;
 };
+/// What weft says to it: not every solver goes with every scheme.
+Result<void> offered(const Method& method);
 /// Every solver with every scheme that the library names and takes together.
 std::vector<Method> all_methods();
 /// "direct", "direct+rattle".
@@ -51,8 +53,10 @@ bool not_by_relaxation(const Method& method);
 /// For yarns with scheme paper, and automatic, which chooses them.
 bool by_yarns(const Method& method);
 
-/// The largest strain is the figure; it fails where a step did not converge, or claimed what is not
-/// so, or where more energy appeared than `energy_allowed`.
+/// With any figure it fails where weft refused, or ended before the last step, where a state is not
+/// finite or a report not true, and where more energy appeared than `energy_allowed`.
+Outcome outcome(double figure, const Observed& observed, double energy_allowed);
+/// The largest strain is the figure; it also fails where a step did not converge.
 Outcome strain_outcome(const Observed& observed, double energy_allowed);
 Outcome strain_outcome(const Trial& trial, double energy_allowed);
 /// The number of steps whose report is not true is the figure: what did not converge must say so.

@@ -28,13 +28,13 @@ Outcome run_pulled(const Setup& setup) {
     *last = now;
   };
   const Observed o = observe(trial);
-  Outcome outcome{*speed, text(o), {}, o.ms_per_step()};
+  Outcome result = outcome(*speed, o, kAnyEnergy);
   if (o.missed != o.steps || o.worst != Status::infeasible) {
-    outcome.failure = fmt::format("{} of {} steps did not converge, the worst {}", o.missed,
-                                  o.steps, name(o.worst));
+    result.failure = fmt::format("{} of {} steps did not converge, the worst {}", o.missed, o.steps,
+                                 name(o.worst));
   }
-  if (o.max_strain > 0.5) outcome.failure = "the error is not shared out";
-  return outcome;
+  if (o.max_strain > 0.5) result.failure = "the error is not shared out";
+  return result;
 }
 
 /// The ends come back within a second, without gravity: nothing should move faster than the ends'
@@ -52,9 +52,9 @@ Outcome run_return(const Setup& setup) {
     (void)cloth.move_fixed(end, {stretch * taut, 0, 0});
   };
   const Observed o = observe(trial);
-  Outcome outcome{o.most_kinetic, text(o), {}, o.ms_per_step()};
-  if (o.end_strain > trial.settings.tolerance) outcome.failure = "does not recover";
-  return outcome;
+  Outcome result = outcome(o.most_kinetic, o, kAnyEnergy);
+  if (o.end_strain > trial.settings.tolerance) result.failure = "does not recover";
+  return result;
 }
 
 /// Triangles that share every edge cannot shear: the sheet is a plate, and has to fold or say so.

@@ -32,7 +32,7 @@ bool comes_to_rest(const Method& method) { return method.scheme == Scheme::paper
 Outcome run_drift(const Setup& setup) {
   Trial trial = long_run(setup);
   trial.steps = std::max(trial.steps, 10'000);
-  const auto middle = std::make_shared<Snapshot>();
+  const auto middle = std::make_shared<Snapshot>(Snapshot{trial.scene.positions, {}});
   trial.after_step = [middle, half = trial.steps / 2](const Cloth& cloth, int step) {
     if (step == half) *middle = snapshot(cloth);
   };
@@ -41,7 +41,7 @@ Outcome run_drift(const Setup& setup) {
   for (std::size_t i = 0; i < o.end.positions.size(); ++i) {
     moved = std::max(moved, length(o.end.positions[i] - middle->positions[i]));
   }
-  return {moved, text(o), {}, o.ms_per_step()};
+  return outcome(moved, o, energy_of_the_catch(20, kStrain, kDt));
 }
 
 /// A sheet under gravity so weak that speeds die away through all denormal numbers: its last steps
@@ -56,7 +56,7 @@ Outcome run_denormals(const Setup& setup) {
   Trial normal = trial;
   normal.scene.velocities.assign(normal.scene.positions.size(), {1e-3, 1e-3, 1e-3});
   const Observed small = observe(trial), usual = observe(normal);
-  return {small.seconds / usual.seconds, text(small), {}, small.ms_per_step()};
+  return outcome(small.seconds / usual.seconds, small, kAnyEnergy);
 }
 
 }  // namespace

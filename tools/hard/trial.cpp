@@ -66,7 +66,7 @@ Observed observe(const Trial& trial) {
   o.energy_start = energy(trial.scene, o.end);
   while (o.steps < trial.steps) {
     if (trial.before_step) trial.before_step(cloth.value(), o.steps);
-    if (!take_step(o, trial, cloth.value())) break;
+    if (!take_step(o, trial, cloth.value())) return o.stopped = true, o;
     if (trial.after_step) trial.after_step(cloth.value(), o.steps - 1);
   }
   return o;
@@ -84,6 +84,7 @@ std::string text(const Observed& o) {
   }
   if (o.false_claims > 0) text += fmt::format(", {}", counted(o.false_claims, "false claim"));
   if (!o.finite) text += ", not finite";
+  if (o.stopped) text += ", stopped";
   return text;
 }
 

@@ -25,6 +25,7 @@ struct Trial {
 struct Observed {
   std::string refusal = {};  ///< what weft said instead of taking the scene, the settings or a dt
   int steps = 0;
+  bool stopped = false;  ///< before the last of them: one left the state as it was
   Status worst = Status::converged;
   int worst_step = -1;
   int missed = 0;        ///< steps that did not converge, by their status

@@ -11,7 +11,7 @@ namespace weft::tools::precision {
 
 Meter::Meter(const Task& task)
     : task_(&task),
-      cloth_(std::move(Cloth::create(task.model, {}).value())),  // the defaults are never refused
+      cloth_(std::move(Cloth::create(task.model, {}).value())),  // taken by make_task()
       energy_start_(cloth_.energy().total()) {
   sums_.energy_gain = -std::numeric_limits<double>::infinity();
 }

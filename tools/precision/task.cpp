@@ -14,6 +14,7 @@ Result<Task> make_task(const std::string& scene, int size) {
   if (!description) return Error{description.error()};
   auto model = build_model(description.value());
   if (!model) return Error{model.error()};
+  if (const auto plain = Cloth::create(model.value(), {}); !plain) return Error{plain.error()};
   Task task;
   task.scene = scene;
   task.size = size;

@@ -28,7 +28,8 @@ struct Task {
   bool is_line() const { return scene == "chain"; }
 };
 
-/// Without the reference.
+/// Without the reference. An error too if weft refuses plain settings: WEFT_ISA names no
+/// instruction set of this machine.
 Result<Task> make_task(const std::string& scene, int size);
 
 /// Computes the reference with steps of kFrame / parts and half of that. The second is kept, and a
