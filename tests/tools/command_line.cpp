@@ -193,18 +193,34 @@ TEST_CASE("the version is that of the project") {
 
 TEST_CASE("every solver and scheme can be asked for, and the report names it") {
   const TemporaryFolder folder;
-  for (const std::string arguments :
-       {"--solver gauss_seidel --scheme paper --backend reference --threads 1 --substeps 1",
-        "--solver yarn --substeps 2", "--solver auto --substeps auto", "--solver direct",
-        "--scheme rattle"}) {
-    CAPTURE(arguments);
+  using nlohmann::json;
+  const struct {
+    std::string arguments;
+    json reported;
+  } calls[] = {
+      {"--solver gauss_seidel --scheme paper --backend reference --threads 1 --substeps 1",
+       {{"solver", "gauss_seidel"},
+        {"solver_used", "gauss_seidel"},
+        {"scheme", "paper"},
+        {"backend", "reference"},
+        {"threads", 1},
+        {"substeps", 1}}},
+      {"--solver yarn --substeps 2 --backend simd",
+       {{"solver", "yarn"}, {"solver_used", "yarn"}, {"backend", "simd"}, {"substeps", 2}}},
+      {"--solver auto --substeps auto", {{"solver", "auto"}, {"scheme", "paper"}}},
+      {"--solver direct", {{"solver", "direct"}, {"solver_used", "direct"}}},
+      {"--scheme rattle", {{"solver", "auto"}, {"scheme", "rattle"}}},
+  };
+  for (const auto& call : calls) {
+    CAPTURE(call.arguments);
     const Outcome outcome =
-        run_program(folder, "run hang --size 4 --steps 2 " + arguments + " --json -");
+        run_program(folder, "run hang --size 4 --steps 2 " + call.arguments + " --json -");
     CHECK(outcome.exit_code == 0);
-    const auto json = nlohmann::json::parse(outcome.out);
-    const std::string solver = json["solver"];
-    CHECK((arguments.find(solver) != std::string::npos || solver == "auto"));
-    if (solver != "auto") CHECK(json["solver_used"] == solver);
+    const json report = json::parse(outcome.out);
+    for (const auto& [key, value] : call.reported.items()) {
+      CAPTURE(key);
+      CHECK(report[key] == value);
+    }
   }
 }
 
@@ -413,7 +429,7 @@ TEST_CASE("precision: JSON alone on stdout, points and orders of the contract") 
     CHECK(point["max_strain"] > 0);
   }
   CHECK(json["order"]["paper"] > 0.7);
-  CHECK(json["order"].contains("rattle"));
+  CHECK(json["order"]["rattle"] > 1.7);
 }
 
 TEST_CASE("endings of files may be in capital letters") {

@@ -103,7 +103,7 @@ Json sizes_json(const SizeStudy& study) {
 
 Json to_json(const Study& study) {
   Json json{{"points", points_json(study, false)}, {"order", Json::object()}};
-  // A scheme that weft does not have yet has no order.
+  // Both have a key, measured or not.
   for (const char* scheme : {"paper", "rattle"}) json["order"][scheme] = nullptr;
   json["order_points"] = Json::array();
   for (const Order& order : study.orders) {

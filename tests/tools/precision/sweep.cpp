@@ -24,9 +24,13 @@ Task small_task(int frames = 50) {
 const Effort kOnce{.repeat = 1};
 
 TEST_CASE("solvers and schemes are all that weft.h names") {
-  CHECK(std::ranges::count(enumerators<Solver>(), Solver::gauss_seidel) == 1);
-  CHECK(std::ranges::count(enumerators<Solver>(), Solver::direct) == 1);
-  CHECK(std::ranges::count(enumerators<Scheme>(), Scheme::paper) == 1);
+  for (const Solver solver :
+       {Solver::gauss_seidel, Solver::direct, Solver::yarn, Solver::automatic}) {
+    CHECK(std::ranges::count(enumerators<Solver>(), solver) == 1);
+  }
+  for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+    CHECK(std::ranges::count(enumerators<Scheme>(), scheme) == 1);
+  }
   for (const Solver solver : enumerators<Solver>()) CHECK(name(solver) != "unknown");
 }
 
