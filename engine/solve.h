@@ -39,7 +39,7 @@ enum class Ended : std::uint8_t { solved, made_do, gave_up, lost };
 struct Trial {
   Ended ended = Ended::solved;
   Status status = Status::converged;
-  bool gained = false;                       // it gave up because energy rose (energy.h)
+  bool gained = false;                       // energy rose (energy.h)
   double stood_at = 0;                       // what sweeps could not solve; 0: nothing
   std::uint32_t passed_particle = kNoIndex;  // the description's number
 

@@ -5,10 +5,11 @@
 ///   find_contacts       contacts
 ///   solve_positions     solved (and contacts, by those that it ran into; next_velocity is room)
 ///   commit              next_velocity, kicks
-///   correct_velocities  next_velocity
+///   correct_velocities  next_velocity, kicks
 ///   report              nothing
-/// position and velocity change only when a substep is known to be finite (transaction.h), and are
-/// taken back when a later substep of the same step is not.
+/// position and velocity change only when a substep is known to be finite (transaction.h), where
+/// pins set out and arrive (pins.h), and where a start is projected (substeps.cpp); all of it is
+/// taken back when a later substep of the same step is not finite.
 #pragma once
 
 #include <weft/weft.h>

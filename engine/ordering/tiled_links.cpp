@@ -10,7 +10,7 @@ namespace weft {
 namespace {
 
 /// Within a tile, where no particle has more than 16 links. Between the tiles such particles need
-/// 31 more at most, which makes one bit of a word for each.
+/// 31 more at most, so that each colour of 64 is a bit of a word.
 constexpr std::uint32_t kMostColours = 33;
 
 }  // namespace

@@ -35,7 +35,6 @@ void build_rows(const Model& model, ReferenceLayout& layout) {
 
 void build_blocks(const Model& model, ReferenceLayout& layout) {
   const ConstraintStore& s = model.constraints;
-  // A plain constraint has at most 2 (kHubDegree - 1) neighbours; its colour fits a bit of a mask.
   for (std::size_t c = 0; c < s.plain; ++c) {
     layout.plain_colour.push_back(static_cast<std::uint8_t>(s.colour[c]));
   }

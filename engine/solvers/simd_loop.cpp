@@ -241,7 +241,7 @@ void SimdLoop::relax_one(const Batch& batch, std::size_t i, kernels::Sweep& swee
   const std::uint32_t first = chunk.run.constraint, last = first + chunk.run.length;
   std::uint32_t& corrections = s_.corrections_[i];
   if (!wanted(i)) return;
-  if (masks() && !chunk.singles && !chunk.rope && batch.colour < 64) {
+  if (masks() && !chunk.singles && !chunk.rope) {
     std::uint64_t visits = 0;
     corrections = table_.relax_masked_run(r_, chunk.run, std::uint64_t{1} << batch.colour, visits);
     sweep.visits += std::min<std::int64_t>(static_cast<std::int64_t>(visits), chunk.real);

@@ -50,7 +50,6 @@ class YarnOthers {
   std::size_t bytes() const;
 
  private:
-  /// As large as a cache line.
   struct Pair {
     std::uint32_t a = 0, b = 0;  // places
     int side = 0;                // +1: pulls only, -1: pushes only

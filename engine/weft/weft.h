@@ -142,7 +142,7 @@ struct ModelInfo {
   std::size_t spheres = 0;
   std::size_t colours = 0;
   std::size_t tiles = 0;  ///< groups of particles that threads may work on in parallel
-  double run_share = 0;   ///< share of constraints in contiguous runs
+  double run_share = 0;   ///< of the constraints without a hub (engine/model.h): in contiguous runs
   std::size_t bytes = 0;
 };
 WEFT_API ModelInfo describe(const Model& model);
@@ -212,9 +212,10 @@ struct Settings {
   double tolerance = 0.01;
   /// Each step is done as this many substeps, each solved to the tolerances. 0
   /// (kAutomaticSubsteps): chosen from the motion (rattle: up to 2.5 times as many as paper) and,
-  /// with yarns, from the load that heavy particles and spheres are; 1 on the reference backend
-  /// or with `iterations`. A substep whose solver gives up before max_iterations is redone in
-  /// halves, up to 16 parts (StepReport::halvings). Fine meshes need small substeps.
+  /// with yarns, from the load that heavy particles and, with scheme paper, spheres are; no more
+  /// than max_iterations / 8 then. 1 on the reference backend or with `iterations`. A substep whose
+  /// solver gives up before max_iterations is redone in halves, up to 16 parts
+  /// (StepReport::halvings). Fine meshes need small substeps.
   int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per substep whatever the error,
   /// nothing skipped; gauss_seidel renews frozen directions once per substep, direct and yarn in
@@ -278,7 +279,8 @@ inline Settings paper_settings() {
 ///   would have held it.
 /// non_finite_input: even without constraints, the positions, velocities, forces and dt lead to
 ///   numbers that are not finite. The state is unchanged.
-/// non_finite: a position or velocity would have become NaN or infinite. The state is unchanged.
+/// non_finite: a position or velocity would have become NaN or infinite (yarns hold positions as
+///   floats: none may be beyond 3e38 m). The state is unchanged.
 enum class Status : std::uint8_t {
   converged,
   fixed_iterations,
@@ -325,7 +327,7 @@ struct StepReport {
   std::int64_t velocity_iterations = 0;  ///< passes of the velocity loop; direct: solves
   std::int64_t visits = 0;               ///< constraints whose error was looked at, both loops
   std::int64_t corrections = 0;          ///< impulses applied, both loops
-  int scheme_fallbacks = 0;              ///< substeps that scheme rattle left to the paper's
+  int scheme_fallbacks = 0;              ///< attempts that scheme rattle left to the paper's
   int contacts = 0;                      ///< candidate pairs, near enough to be watched
   double max_strain = 0;                 ///< over all constraints, recomputed from the positions
   double rms_strain = 0;

@@ -2,9 +2,8 @@
 /// constraints were found satisfied since either end last moved.
 ///
 /// The bit of a constraint is its colour: a particle has at most one constraint of each colour, so
-/// the bit is unique at both ends. Colouring is greedy, so a colour beyond 63 needs a particle of
-/// more than 32 constraints, a hub; constraints at hubs, ropes and contacts have no bit and are
-/// always visited.
+/// the bit is unique at both ends. There are no more than 64 (engine/ordering/tiled_links.cpp);
+/// constraints at hubs, ropes and contacts have no bit and are always visited.
 ///
 ///   visit c          iff bit c is set in mask[a] or mask[b]
 ///   c satisfied      clear its bit in both

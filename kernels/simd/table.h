@@ -71,8 +71,9 @@ struct Relaxation {
   bool from_memory = false;       // the blocks do not fit the caches: fetch them ahead
 };
 
-/// Memory of the anticipating form (anticipate.h). Constraint slots as elsewhere; pulls of block i
-/// are first_pull[i] ... first_pull[i + 1] - 1, each kLanes products.
+/// Memory of the anticipating form (anticipate.h), which the engine does not use: it is slower in
+/// lanes than what it does (perf/tried.md), and stays to be measured beside it. Constraint slots as
+/// elsewhere; pulls of block i are first_pull[i] ... first_pull[i + 1] - 1, each kLanes products.
 struct Anticipation {
   float* error = nullptr;                      // per constraint
   float* change = nullptr;                     // per constraint: its last correction
@@ -307,7 +308,7 @@ struct Table {
                      float* base, float* u);
   void (*join_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
                     const float* base, const float* u);
-  // Of yarns. scratch: as many rows as the block has; for patches twice as many, and two.
+  // Of yarns. scratch: one row more than the block has; for patches twice that (scratch_rows()).
   /// start = the directions at base + u.
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch);
   /// Solves the yarns of a block.
