@@ -11,7 +11,8 @@
 ///   32      float32[3]  x y z of point 0 in sample 0, point 1, ...; then sample 1, ...
 ///
 /// Sample 0 is the start and sample k the state after frame k. The points are the vertices of the
-/// object "cloth" in the OBJ file that the same run writes, in its order, spheres not included.
+/// object "cloth" in the OBJ file that the same run writes, in its order. (Spheres are objects of
+/// their own; in a scene of JSON their centres are vertices too, as all particles are.)
 #pragma once
 
 #include <weft/weft.h>

@@ -169,7 +169,9 @@ Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& setti
     return Error{"threads: must be from 0 to " + std::to_string(kMaxThreads) + " (" +
                  std::to_string(settings.threads) + ")"};
   }
-  const int threads = settings.threads > 0 ? settings.threads : tbb::info::default_concurrency();
+  const int threads = settings.threads > 0
+                          ? settings.threads
+                          : std::min(tbb::info::default_concurrency(), kMaxThreads);
   const tbb::global_control at_most(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(std::max(threads, 2)));
   tbb::task_arena arena(threads);

@@ -37,7 +37,7 @@ void add_solver_options(Verb verb, SolverOptions& options) {
   verb.option("--tolerance", options.tolerance,
               "strain that every step must reach, 1% or 0.01 (default 1%)");
   verb.option("--iterations", settings.iterations,
-              "exactly this many iterations of one substep, instead of a tolerance");
+              "exactly this many iterations in each substep, instead of a tolerance");
   verb.option("--max-iterations", settings.max_iterations,
               "most iterations of a step, shared by its substeps (default 1000000)");
   verb.option("--contact-tolerance", settings.contact_tolerance,
