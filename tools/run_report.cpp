@@ -155,10 +155,9 @@ std::string to_table(const RunReport& report) {
   row("frames", fmt::format("{} of {} s{}, status {}", summary.frames, report.plan.dt, in_substeps,
                             name(summary.status)));
   row("time",
-      fmt::format(
-          "{:.4g} ms per frame, {:.3g} the longest, {:.3g} times real time, at max strain {}",
-          1e3 * summary.seconds_per_frame(), 1e3 * summary.longest_step_seconds,
-          real_time_factor(report), measured_percent(summary.max_strain)));
+      fmt::format("{:.4g} ms per frame, {:.3g} the longest, {} times real time, at max strain {}",
+                  1e3 * summary.seconds_per_frame(), 1e3 * summary.longest_step_seconds,
+                  factor_text(real_time_factor(report)), measured_percent(summary.max_strain)));
   row("stages", fmt::format("{} ms at max strain {}", stages_text(summary),
                             measured_percent(summary.max_strain)));
   row("strain",

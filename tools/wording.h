@@ -17,6 +17,11 @@ inline std::string measured_percent(double fraction) {
   return fmt::format("{:.3g} %", 100 * fraction);
 }
 
+/// How many times as much, to three digits: 9.84, 2083.
+inline std::string factor_text(double factor) {
+  return fmt::format(fmt::runtime(factor < 1000 ? "{:.3g}" : "{:.0f}"), factor);
+}
+
 /// "1 sphere", "0 spheres"; for nouns whose plural has no more than an s.
 template <class Number>
 std::string counted(Number count, std::string_view noun) {

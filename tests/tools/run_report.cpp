@@ -1,4 +1,5 @@
 #include "tools/run_report.h"
+#include "tools/wording.h"
 
 #include <doctest/doctest.h>
 
@@ -91,6 +92,13 @@ TEST_CASE("the table has every figure too") {
         "work      5 iterations and 9 direction updates per step, 101 visits, 103 corrections\n"
         "energy    -1.5 J to -2.5 J, largest gain 0.25 J\n"
         "state     0123456789abcdef, lowest y -0.375 m\n");
+}
+
+TEST_CASE("factors have three digits, and all of those before the point") {
+  CHECK(factor_text(0.12345) == "0.123");
+  CHECK(factor_text(12.345) == "12.3");
+  CHECK(factor_text(999) == "999");
+  CHECK(factor_text(2083.4) == "2083");
 }
 
 TEST_CASE("substeps are those asked for, or the mean of those chosen") {

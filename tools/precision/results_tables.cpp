@@ -106,7 +106,7 @@ void write_markdown_row(Text out, const Chart& chart, double bound) {
   const auto plain = ms("auto");
   for (const char* other : {"gauss_seidel", "bullet"}) {
     const auto cost = ms(other);
-    fmt::format_to(out, " {} |", plain && cost ? fmt::format("{:.3g}", *cost / *plain) : "");
+    fmt::format_to(out, " {} |", plain && cost ? factor_text(*cost / *plain) : "");
   }
   fmt::format_to(out, "\n");
 }
