@@ -1,6 +1,5 @@
 #include "engine/motion.h"
 
-#include <algorithm>
 #include <atomic>
 #include <span>
 

@@ -1,13 +1,10 @@
 #include "engine/step.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "engine/measure.h"
-#include "engine/motion.h"
 #include "engine/reporting.h"
+#include "engine/solve.h"
 #include "engine/solvers/team.h"
-#include "engine/substep.h"
 #include "engine/substeps.h"
 
 namespace weft {

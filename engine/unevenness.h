@@ -1,7 +1,6 @@
 /// How much masses differ among particles that constraints join.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 

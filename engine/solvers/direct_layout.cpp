@@ -2,7 +2,6 @@
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
-#include <algorithm>
 #include <limits>
 #include <new>
 

@@ -1,10 +1,12 @@
 #include "engine/solvers/reference_solver.h"
-#include "engine/bytes_of.h"
 
 #include <algorithm>
 #include <limits>
 
+#include "engine/bytes_of.h"
+
 namespace weft {
+
 ReferenceSolver::ReferenceSolver(const Model& model, const Settings& settings)
     : model_(model), layout_(model.reference()), settings_(settings) {
   const ConstraintStore& s = model.constraints;

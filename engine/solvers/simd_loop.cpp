@@ -4,6 +4,7 @@
 #include <atomic>
 
 namespace weft {
+
 SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
     : SimdLoop(solver, unknowns.velocities() ? solver.velocities_ : solver.positions_, unknowns,
                team) {}

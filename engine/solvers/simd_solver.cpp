@@ -1,7 +1,6 @@
 #include "engine/solvers/simd_solver.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 

@@ -16,7 +16,6 @@
 /// it each time: the row of its last particles, which has no next, has the bits of all differences.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "kernels/simd/yarn_places.h"

@@ -32,7 +32,6 @@
 /// to row left in memory.
 #pragma once
 
-#include <algorithm>
 #include <limits>
 #include <type_traits>
 
