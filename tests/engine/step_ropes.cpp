@@ -8,13 +8,6 @@
 namespace weft::test {
 namespace {
 
-SceneDescription free_rope(double start_distance) {
-  SceneDescription scene = free_bar(1, 1);
-  scene.positions[1] = {start_distance, 0, 0};
-  scene.constraints[0].kind = ConstraintKind::rope;
-  return scene;
-}
-
 TEST_CASE("a slack rope lets its ends fly free") {
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));
@@ -100,25 +93,6 @@ TEST_CASE("a rope that pulled in one step owes no push in the next") {
     CHECK(step(cloth, 0.01).corrections == 0);
     CHECK(largest_distance(velocities(cloth), inwards) == 0);
   }
-}
-
-// On one line: A fixed at 0, then M at 0.3 and Q at 0.6, joined by bars, and P at 1.5 and R at
-// -0.35 on ropes of 1 to Q. M, Q and P fly to +x by 0.25 a step. In truth the bars hold M and Q,
-// and Q's rope holds P at 1.6; R's rope stays slack. But until the bars have settled Q is beyond
-// 0.65, whatever the order of visits: R's rope looks overstretched and pulls, all of which must be
-// taken back.
-SceneDescription early_pull() {
-  SceneDescription scene;
-  scene.positions = {{0, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}, {1.5, 0, 0}, {-0.35, 0, 0}};
-  scene.velocities = {{0, 0, 0}, {25, 0, 0}, {25, 0, 0}, {25, 0, 0}, {0, 0, 0}};
-  scene.masses = {1, 1, 1, 2, 1};
-  scene.fixed = {0};
-  scene.constraints = {{4, 2, 1.0, ConstraintKind::rope},
-                       {2, 3, 1.0, ConstraintKind::rope},
-                       {0, 1, 0.3},
-                       {2, 1, 0.3}};
-  scene.gravity = {0, 0, 0};
-  return scene;
 }
 
 TEST_CASE("a rope's early pull is taken back") {

@@ -68,6 +68,27 @@ SceneDescription free_bar(double mass_a, double mass_b) {
   return scene;
 }
 
+SceneDescription free_rope(double start_distance) {
+  SceneDescription scene = free_bar(1, 1);
+  scene.positions[1] = {start_distance, 0, 0};
+  scene.constraints[0].kind = ConstraintKind::rope;
+  return scene;
+}
+
+SceneDescription early_pull() {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}, {1.5, 0, 0}, {-0.35, 0, 0}};
+  scene.velocities = {{0, 0, 0}, {25, 0, 0}, {25, 0, 0}, {25, 0, 0}, {0, 0, 0}};
+  scene.masses = {1, 1, 1, 2, 1};
+  scene.fixed = {0};
+  scene.constraints = {{4, 2, 1.0, ConstraintKind::rope},
+                       {2, 3, 1.0, ConstraintKind::rope},
+                       {0, 1, 0.3},
+                       {2, 1, 0.3}};
+  scene.gravity = {0, 0, 0};
+  return scene;
+}
+
 Backend each_backend() {
   Backend backend = Backend::reference;
   SUBCASE("on the reference backend") { backend = Backend::reference; }

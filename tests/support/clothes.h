@@ -25,6 +25,14 @@ double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
 
 /// Two free particles a bar of length 1 apart along x, without gravity.
 SceneDescription free_bar(double mass_a, double mass_b);
+/// The same of 1 kg each, joined by a rope of length 1.
+SceneDescription free_rope(double start_distance);
+/// On one line: A fixed at 0, then M at 0.3 and Q at 0.6, joined by bars, and P at 1.5 and R at
+/// -0.35 on ropes of 1 to Q. M, Q and P fly to +x by 0.25 a step. In truth the bars hold M and Q,
+/// and Q's rope holds P at 1.6; R's rope stays slack. But until the bars have settled Q is beyond
+/// 0.65, whatever the order of visits: R's rope looks overstretched and pulls, all of which must be
+/// taken back.
+SceneDescription early_pull();
 
 inline constexpr std::array kBackends{Backend::reference, Backend::simd};
 Settings on(Backend backend, Settings settings = paper_settings());

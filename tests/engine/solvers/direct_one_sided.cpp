@@ -20,13 +20,6 @@ Settings direct(Settings settings) {
   return settings;
 }
 
-SceneDescription free_rope(double start_distance) {
-  SceneDescription scene = free_bar(1, 1);
-  scene.positions[1] = {start_distance, 0, 0};
-  scene.constraints[0].kind = ConstraintKind::rope;
-  return scene;
-}
-
 TEST_CASE("a slack rope lets its ends fly free, and so does a taut one inwards") {
   for (const double start : {0.2, 1.0}) {
     SceneDescription scene = free_rope(start);
@@ -52,19 +45,8 @@ TEST_CASE("a rope runs taut and shares the momentum") {
   CHECK(distance(cloth.velocity(1), {5, 0, 0}) < 1e-9);
 }
 
-// As in step_ropes.cpp: R's rope looks taut until the bars have settled, and must give all back.
 TEST_CASE("a rope's early pull is taken back") {
-  SceneDescription scene;
-  scene.positions = {{0, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}, {1.5, 0, 0}, {-0.35, 0, 0}};
-  scene.velocities = {{0, 0, 0}, {25, 0, 0}, {25, 0, 0}, {25, 0, 0}, {0, 0, 0}};
-  scene.masses = {1, 1, 1, 2, 1};
-  scene.fixed = {0};
-  scene.constraints = {{4, 2, 1.0, ConstraintKind::rope},
-                       {2, 3, 1.0, ConstraintKind::rope},
-                       {0, 1, 0.3},
-                       {2, 1, 0.3}};
-  scene.gravity = {0, 0, 0};
-  Cloth cloth = cloth_of(scene, direct(tight(1e-12)));
+  Cloth cloth = cloth_of(early_pull(), direct(tight(1e-12)));
   CHECK(step(cloth, 0.01).status == Status::converged);
   CHECK(distance(cloth.position(2), {0.6, 0, 0}) < 1e-10);
   CHECK(distance(cloth.position(3), {1.6, 0, 0}) < 1e-10);
