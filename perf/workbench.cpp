@@ -4,12 +4,10 @@
 #include <span>
 
 #include "engine/solvers/simd_layout.h"
+#include "kernels/runs.h"
 
 namespace weft::perf {
 namespace {
-
-/// As in engine/solvers/simd_solver.cpp.
-constexpr std::size_t kFetchedAheadAbove = std::size_t{4} << 20;
 
 Ordering order_of(const SceneDescription& scene, const OrderingOptions& options) {
   std::vector<Link> links;
@@ -112,7 +110,7 @@ simd::Relaxation Workbench::relaxation(bool in_quads) {
   r.b = ordering.b.data();
   r.mask = mask.data();
   r.threshold = 0;
-  r.from_memory = blocks_.size() * sizeof blocks_[0] > kFetchedAheadAbove;
+  r.from_memory = blocks_.size() * sizeof blocks_[0] > kernels::kCachedBytes;
   return r;
 }
 
