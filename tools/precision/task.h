@@ -46,11 +46,11 @@ struct Knobs {
 struct Outcome {
   std::string status;  ///< weft's name of it, or out_of_time
   int frames = 0;
-  double ms_per_frame = 0;                   ///< one thread: processor time, else wall time
-  double max_strain = 0;                     ///< over all frames and constraints
-  double mean_max_strain = 0;                ///< mean over the frames
-  double energy_gain = 0;                    ///< J
-  double substeps = 0;                       ///< per frame, mean
+  double ms_per_frame = 0;     ///< one thread, and Bullet: processor time, else wall time
+  double max_strain = 0;       ///< over all frames and constraints
+  double mean_max_strain = 0;  ///< mean over the frames
+  double energy_gain = 0;      ///< J
+  double substeps = 0;         ///< per frame, mean
   std::optional<double> trajectory_error{};  ///< m
 
   bool is_complete() const { return status == "converged" || status == "fixed_iterations"; }
