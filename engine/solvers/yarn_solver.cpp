@@ -258,17 +258,20 @@ bool YarnSolver::may_take_newton(const ContactStore& contacts) const {
   return !from_start_ && !spans_.holds() && contacts.count() == 0;
 }
 
+kernels::LoopResult YarnSolver::sweep_so_often(kernels::VectorsView x, int times, Team& team) {
+  kernels::LoopResult result;
+  while (result.iterations < times) sweep(kNoBound, team, result);
+  join(x, team);
+  return result;
+}
+
 kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
                                                 const ContactStore& contacts, bool first_round,
                                                 int max_iterations, double allowance,
                                                 SimdMeasure& measure, Team& team) {
-  kernels::LoopResult result;
   begin(x, start, contacts, first_round, team);
-  if (settings_.iterations > 0) {
-    while (result.iterations < settings_.iterations) sweep(kNoBound, team, result);
-    join(x, team);
-    return result;
-  }
+  if (settings_.iterations > 0) return sweep_so_often(x, settings_.iterations, team);
+  kernels::LoopResult result;
   const Aim aim = this->aim(allowance);
   Progress progress(from_start_ ? kRattlePatience : kPatience);
   const auto look = [&] {

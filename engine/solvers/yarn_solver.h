@@ -96,6 +96,7 @@ class YarnSolver {
   void join(kernels::VectorsView x, std::size_t first, std::size_t last);
   /// Each family, its blocks until their lengths are within the share `enough`, then the others.
   void sweep(double enough, Team& team, kernels::LoopResult& result);
+  kernels::LoopResult sweep_so_often(kernels::VectorsView x, int times, Team& team);
   std::uint32_t solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
                             simd::YarnScratch* scratch);
   bool loses_energy(kernels::VectorsView v) const;
