@@ -25,22 +25,25 @@ std::size_t joined_particles(const Model& model) {
   return static_cast<std::size_t>(std::ranges::count(joined, 1));
 }
 
-/// Cords: ropes, and what they hold, that close few loops: a chain, a tree, a bridge (of whose
-/// constraints a third close one; of a net half do). Sweeps leave a rope too long, by up to the
-/// tolerance, and what that is comes back as speed when it is corrected: 1.2 m/s of a rope of 2 m,
-/// at 1 % and 60 Hz. Where it may be more than kMost, which is what a particle falls in 1/140 s, or
-/// where a load hangs on them, the direct solver has all lengths right at once, and takes as long.
-/// (1 %, swings of 17 degrees, 3 s: 1 kg on 2 m gains by sweeps 0.5 J at 60 Hz and 10 J at 240, by
-/// the direct solver 0.003 and 0.0002, of 0.9; 40 links under 80 kg 43 J in 7.8 ms a frame, and 0.3
-/// J in 0.4. Fine strands are for sweeps: 100 of 30 links of 1 cm 1.2 ms, 3.3 by the direct
+/// Few loops: chains, trees, bridges (of whose constraints a third close one; of a grid half do).
+bool closes_few_loops(const Model& model) {
+  constexpr double kMostLoops = 0.4;
+  const auto all = static_cast<double>(model.constraints.size());
+  return all - static_cast<double>(joined_particles(model)) <= kMostLoops * all;
+}
+
+/// Cords: ropes, and what they hold, that close few loops. Sweeps leave a rope too long, by up to
+/// the tolerance, and what that is comes back as speed when it is corrected: 1.2 m/s of a rope of 2
+/// m, at 1 % and 60 Hz. Where it may be more than kMost, which is what a particle falls in 1/140 s,
+/// or where a load hangs on them, the direct solver has all lengths right at once, and takes as
+/// long. (1 %, swings of 17 degrees, 3 s: 1 kg on 2 m gains by sweeps 0.5 J at 60 Hz and 10 J at
+/// 240, by the direct solver 0.003 and 0.0002, of 0.9; 40 links under 80 kg 43 J in 7.8 ms a frame,
+/// and 0.3 J in 0.4. Fine strands are for sweeps: 100 of 30 links of 1 cm 1.2 ms, 3.3 by the direct
 /// solver.)
 bool are_cords(const Model& model, const Settings& settings) {
-  constexpr double kRopesEach = 1. / 3, kMostLoops = 0.4, kMost = 0.25e-3, kUnevenCords = 100;
+  constexpr double kRopesEach = 1. / 3, kMost = 0.25e-3, kUnevenCords = 100;
   const ConstraintStore& constraints = model.constraints;
-  const auto all = static_cast<double>(constraints.size());
-  const double loops =
-      all - static_cast<double>(joined_particles(model));  // no more than there are
-  if (rope_share(constraints) <= kRopesEach || loops > kMostLoops * all) return false;
+  if (rope_share(constraints) <= kRopesEach || !closes_few_loops(model)) return false;
   const double longest =
       constraints.size() > 0 ? *std::ranges::max_element(constraints.rest_length) : 0;
   return settings.tolerance * longest > kMost || model.uneven.ratio > kUnevenCords;
@@ -61,20 +64,16 @@ bool are_too_many_bodies(const Model& model) {
 /// carries, not how many there are.
 bool is_a_net_of_ropes(const Model& model) { return rope_share(model.constraints) > 9; }
 
-/// A sheet whose diagonals are ropes, one to each cell or both: hundreds of them become taut and
-/// slack again while yarns are solved. Sweeps take, at 1 and 0.1 %, of the time that yarns take, in
-/// 14 to 30 scenes each of capes, flags, skirts and sheets at 60 Hz (perf/tried.md): with rattle,
-/// whose substeps are many, 0.15 and 0.35 with 20 x 20 particles, 0.23 at 40 x 40, 1.04 at 0.01 %.
-/// With the paper's 0.5 and 0.7 with 20 x 20, 0.7 with 28 x 28; larger ones that hang still are for
-/// yarns, and heavy spheres are, which sweeps let gain energy.
-bool is_braced_by_ropes(const Model& model, const Settings& settings) {
-  constexpr double kRopesEach = 1. / 3, kLeastTolerance = 1e-3, kMostUneven = 100;
-  constexpr std::size_t kMostParticles = 1000;
-  const auto few = [&] {
-    return model.heaviest_sphere == 0 && joined_particles(model) <= kMostParticles;
-  };
-  return rope_share(model.constraints) > kRopesEach && settings.tolerance >= kLeastTolerance &&
-         model.uneven.ratio <= kMostUneven && (settings.scheme == Scheme::rattle || few());
+/// Cloth, at a tolerance that small steps reach at less than it takes to solve exactly. What is not
+/// for them: chains and bridges, where nothing is left to solve beside a yarn; spheres that fly,
+/// and other masses that differ so much that sweeps crawl.
+bool takes_small_steps(const Model& model, const Settings& settings) {
+  constexpr double kLeastTolerance = 1e-3, kMostUneven = 100;
+  if (is_of_small_steps(settings.scheme)) return true;
+  return settings.scheme == Scheme::automatic && settings.backend == Backend::simd &&
+         settings.iterations == 0 && !settings.velocity_correction &&
+         settings.tolerance >= kLeastTolerance && model.uneven.ratio <= kMostUneven &&
+         model.heaviest_sphere == 0 && !closes_few_loops(model);
 }
 
 /// Measured (perf/README.md): yarns are the fastest at every size and tolerance, by either scheme,
@@ -90,7 +89,6 @@ bool is_braced_by_ropes(const Model& model, const Settings& settings) {
 Solver solver_for(const Model& model, const Settings& settings) {
   constexpr double kMostUneven = 1e6;
   if (are_cords(model, settings)) return are_too_many_bodies(model) ? Solver::yarn : Solver::direct;
-  if (is_braced_by_ropes(model, settings)) return Solver::gauss_seidel;
   const bool net = is_a_net_of_ropes(model);
   if (model.uneven.ratio <= kUneven) return net ? Solver::gauss_seidel : Solver::yarn;
   const bool may_follow = settings.substeps == kAutomaticSubsteps && !net;
@@ -99,12 +97,25 @@ Solver solver_for(const Model& model, const Settings& settings) {
 
 }  // namespace
 
+bool is_of_small_steps(Scheme scheme) {
+  return scheme == Scheme::implicit || scheme == Scheme::bdf2;
+}
+
+Scheme scheme_of(const Settings& settings) {
+  if (settings.scheme != Scheme::automatic) return settings.scheme;
+  return settings.solver == Solver::small_steps ? Scheme::bdf2 : Scheme::paper;
+}
+
 /// The reference backend, and a count of iterations in place of a tolerance, are about the paper's
 /// loop.
 void choose_solver(const Model& model, Settings& settings) {
   const bool paper = settings.backend == Backend::reference || settings.iterations > 0;
-  if (settings.solver == Solver::automatic)
-    settings.solver = paper ? Solver::gauss_seidel : solver_for(model, settings);
+  if (settings.solver == Solver::automatic) {
+    if (takes_small_steps(model, settings))
+      settings.solver = Solver::small_steps;
+    else
+      settings.solver = paper ? Solver::gauss_seidel : solver_for(model, settings);
+  }
   if (paper && settings.substeps == kAutomaticSubsteps) settings.substeps = 1;
 }
 

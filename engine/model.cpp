@@ -172,6 +172,10 @@ const YarnLayout& Model::yarns() const {
   return yarns_.get([this] { return make_yarn_layout(*this); });
 }
 
+const SmallStepsLayout& Model::small_steps() const {
+  return small_steps_.get([this] { return make_small_steps_layout(*this); });
+}
+
 std::vector<Link> links_of(const ConstraintStore& store, std::size_t count) {
   std::vector<Link> links;
   links.reserve(count);
@@ -190,7 +194,7 @@ std::size_t Model::bytes() const {
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(spheres) + bytes_of(is_sphere) + bytes_of(joined_) + ordering.bytes() +
          constraints.bytes() + bytes_if_made(reference_) + bytes_if_made(simd_) +
-         bytes_if_made(direct_) + bytes_if_made(yarns_);
+         bytes_if_made(direct_) + bytes_if_made(yarns_) + bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

@@ -14,6 +14,7 @@
 #include "engine/solvers/direct_layout.h"
 #include "engine/solvers/reference_layout.h"
 #include "engine/solvers/simd_layout.h"
+#include "engine/solvers/small_steps_layout.h"
 #include "engine/solvers/yarn_layout.h"
 #include "engine/unevenness.h"
 #include "kernels/vectors.h"
@@ -78,6 +79,7 @@ class Model {
   const SimdLayout& simd() const;
   const DirectLayout& direct() const;
   const YarnLayout& yarns() const;
+  const SmallStepsLayout& small_steps() const;
 
  private:
   struct Draft;
@@ -95,6 +97,7 @@ class Model {
   OnDemand<SimdLayout> simd_;
   OnDemand<DirectLayout> direct_;
   OnDemand<YarnLayout> yarns_;
+  OnDemand<SmallStepsLayout> small_steps_;
 };
 
 }  // namespace weft

@@ -11,6 +11,8 @@ std::string_view name(Solver solver) {
       return "direct";
     case Solver::yarn:
       return "yarn";
+    case Solver::small_steps:
+      return "small_steps";
     case Solver::automatic:
       return "auto";
   }
@@ -23,6 +25,12 @@ std::string_view name(Scheme scheme) {
       return "paper";
     case Scheme::rattle:
       return "rattle";
+    case Scheme::implicit:
+      return "implicit";
+    case Scheme::bdf2:
+      return "bdf2";
+    case Scheme::automatic:
+      return "auto";
   }
   return "unknown";
 }

@@ -30,6 +30,8 @@ class Pins {
   bool depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);
   /// After depart: everyone is where the caller wants them, at rest; arrived: the step was done.
   void stop(bool arrived, kernels::Vectors& position, kernels::Vectors& velocity);
+  /// Whether one has moved in this step or in the last.
+  bool under_way() const { return moving_; }
   std::size_t bytes() const;
 
  private:

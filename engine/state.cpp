@@ -3,12 +3,14 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/choose_solver.h"
 #include "engine/isa.h"
 
 namespace weft {
 
 State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     : model(std::move(shared)), settings(chosen), kernels(&simd::table(to_kernel(chosen.isa))) {
+  settings.scheme = scheme_of(settings);
   position = model->initial_position;
   velocity = model->initial_velocity;
   gravity = model->gravity;
@@ -24,6 +26,10 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   } else {
     simd.emplace(*model, settings, *kernels);
     measure.emplace(*model, *kernels);
+  }
+  if (settings.solver == Solver::small_steps) {
+    small_steps.emplace(*model, settings, *kernels);
+    if (model->has_contacts()) substep_start.resize(model->slots());
   }
   if (settings.solver == Solver::yarn) yarn.emplace(*model, settings, *kernels);
   const bool behind_yarns = yarn && settings.iterations == 0 && model->uneven.ratio > kUneven;
@@ -47,12 +53,15 @@ void State::copy(const State& from) {
   const bool same = alike(settings, from.settings);
   kernels::Vectors its_force = from.force;
   Pins its_pins = from.pins;
+  SmallStepsPast its_past = same && small_steps ? from.small_steps->past() : SmallStepsPast{};
   position = from.position;
   velocity = from.velocity;
   force = std::move(its_force);
   gravity = from.gravity;
   pins = std::move(its_pins);
   trouble = same ? from.trouble : Trouble{};
+  if (small_steps && same) small_steps->set_past(std::move(its_past));
+  if (small_steps && !same) small_steps->forget_past();
   placed = !same || from.placed;
   last_dt = same ? from.last_dt : 0;
 }
@@ -60,7 +69,7 @@ void State::copy(const State& from) {
 std::size_t State::bytes() const {
   std::size_t sum = 0;
   for (const kernels::Vectors* v : {&position, &velocity, &force, &solved, &next_velocity,
-                                    &start_position, &start_velocity, &predicted}) {
+                                    &start_position, &start_velocity, &substep_start, &predicted}) {
     sum += v->bytes();
   }
   sum += contacts.bytes() + bytes_of(kicks) + pins.bytes() + sizeof(Team::Meeting);
@@ -68,6 +77,7 @@ std::size_t State::bytes() const {
   if (simd) sum += simd->bytes() + measure->bytes();
   if (direct) sum += direct->bytes();
   if (yarn) sum += yarn->bytes();
+  if (small_steps) sum += small_steps->bytes();
   return sum;
 }
 

@@ -25,6 +25,7 @@
 #include "engine/solvers/reference_solver.h"
 #include "engine/solvers/simd_measure.h"
 #include "engine/solvers/simd_solver.h"
+#include "engine/solvers/small_steps.h"
 #include "engine/solvers/team.h"
 #include "engine/solvers/yarn_solver.h"
 #include "engine/trouble.h"
@@ -43,6 +44,7 @@ struct State {
   kernels::Vectors solved;  // where the position loop works; the next positions
   kernels::Vectors next_velocity;
   kernels::Vectors start_position, start_velocity;  // of the step
+  kernels::Vectors substep_start;                   // positions; small steps with contacts only
   ContactStore contacts;
   Pins pins;
   Trouble trouble;
@@ -55,7 +57,8 @@ struct State {
   std::optional<ReferenceSolver> reference;
   kernels::Vectors predicted;  // reference only
   std::optional<SimdSolver> simd;
-  std::optional<SimdMeasure> measure;  // simd only
+  std::optional<SimdMeasure> measure;           // simd only
+  std::optional<SmallStepsSolver> small_steps;  // with Solver::small_steps
   // The chosen solver, if it is not Gauss-Seidel. Where it gives up sweeps of the backend answer,
   // or direct behind yarns.
   std::optional<YarnSolver> yarn;      // with Solver::yarn

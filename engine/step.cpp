@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/reporting.h"
+#include "engine/small_step.h"
 #include "engine/solve.h"
 #include "engine/solvers/team.h"
 #include "engine/substeps.h"
@@ -55,7 +56,8 @@ StepReport step(State& s, double dt) {
   Team team(threads_worth_having(s), s.meeting);
   {
     Travel travel(s, dt);
-    if (run_substeps(s, dt, travel.jumped(), report, team)) travel.arrive();
+    const auto run = s.small_steps ? run_small_steps : run_substeps;
+    if (run(s, dt, travel.jumped(), report, team)) travel.arrive();
   }
   timed(report, Stage::report, [&] { report_errors(s, report, team); });
   return report;

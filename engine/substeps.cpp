@@ -8,37 +8,13 @@
 #include "engine/energy.h"
 #include "engine/measure.h"
 #include "engine/motion.h"
+#include "engine/project.h"
 #include "engine/reporting.h"
 #include "engine/substep.h"
 #include "engine/transaction.h"
 
 namespace weft {
 namespace {
-
-/// With a fixed number of iterations nobody asks.
-bool violates_constraints(State& s, Team& team) {
-  return s.settings.iterations == 0 &&
-         (max_strain_at(s, s.position, team) > s.settings.tolerance ||
-          penetration_at(s, s.position) > s.settings.contact_tolerance);
-}
-
-/// Moves the positions onto the constraints and leaves the velocities: the error of a start would
-/// become a velocity of error / h. What cannot be put right with half of the iterations that a
-/// substep may take is left to the step, and to its status. Returns what sweeps could not solve.
-double project(State& s, double h, double allowance, StepReport& report, Team& team) {
-  s.solved = s.position;
-  find_contacts(s, report);
-  const Attempt attempt{.h = h,
-                        .most_iterations = std::max(1, s.settings.max_iterations / 2),
-                        .on_failure = OnFailure::sweep,
-                        .hold_taut = allowance < 1,
-                        .allowance = allowance,
-                        .stood_at = s.trouble.stood_at()};
-  Trial trial;
-  timed(report, Stage::solve_positions, [&] { trial = solve_positions(s, attempt, report, team); });
-  if (all_finite(s.solved)) s.position = s.solved;
-  return trial.stood_at;
-}
 
 /// What the last step left within tolerance, an error e, would come back as speed, e / dt, all the
 /// more in a step that is far shorter: positions are projected before it. Returns the share of what
@@ -51,19 +27,6 @@ double allowance_after_last_step(const State& s, double dt) {
   constexpr double kFarShorter = 0.125, kLeast = 0.01;
   const bool solves_exactly = s.settings.iterations == 0 && (s.yarn || s.direct);
   return solves_exactly && dt < kFarShorter * s.last_dt ? std::max(kLeast, dt / s.last_dt) : 1;
-}
-
-/// Of a step that is not committed: who left the range of numbers, and whether that would have
-/// happened without any constraint.
-void explain(State& s, double h, StepReport& report, Team& team) {
-  const std::size_t solved = first_not_finite(*s.model, s.solved, s.next_velocity);
-  predict(s, h, team);
-  const std::size_t predicted = first_not_finite(*s.model, s.solved, s.solved);
-  const bool input = predicted < s.model->slots();
-  report.failed_particle = s.model->ordering.particle_at[input ? predicted : solved];
-  report.passed_particle = kNoIndex;
-  report.substeps = 0;
-  worsen(report, input ? Status::non_finite_input : Status::non_finite);
 }
 
 /// How often a substep whose solver gives up may be cut in two, and iterations of a step beyond

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "engine/choose_solver.h"
 #include "engine/model.h"
 
 namespace weft {
@@ -212,6 +213,29 @@ Result<void> validate(const SceneDescription& d) {
   return validate_contacts(d);
 }
 
+namespace {
+
+/// Not every scheme goes with every solver.
+Result<void> validate_scheme(const Settings& s) {
+  const bool by_small_steps = is_of_small_steps(s.scheme);
+  const bool small_steps = s.solver == Solver::small_steps;
+  if (by_small_steps && !small_steps && s.solver != Solver::automatic) {
+    return refuse("scheme", "is for solver small_steps, not " + std::string(name(s.solver)),
+                  std::string(name(s.scheme)));
+  }
+  if (!by_small_steps && !small_steps) return {};
+  if (small_steps && !by_small_steps && s.scheme != Scheme::automatic) {
+    return refuse("scheme", "solver small_steps takes implicit and bdf2",
+                  std::string(name(s.scheme)));
+  }
+  if (s.velocity_correction) {
+    return refuse("velocity_correction", "small steps have no velocity loop", "on");
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<void> validate(const Settings& s) {
   if (auto r = validate_positive("tolerance", s.tolerance); !r) return r;
   if (auto r = validate_count("substeps", s.substeps, kAutomaticSubsteps); !r) return r;
@@ -224,18 +248,19 @@ Result<void> validate(const Settings& s) {
     return refuse("impulse_limit", "must be finite and at least 0", number(s.impulse_limit));
   }
   if (auto r = validate_choice("solver", s.solver, Solver::automatic); !r) return r;
-  if (auto r = validate_choice("scheme", s.scheme, Scheme::rattle); !r) return r;
+  if (auto r = validate_choice("scheme", s.scheme, Scheme::automatic); !r) return r;
   if (auto r = validate_choice("backend", s.backend, Backend::simd); !r) return r;
   if (s.impulse_limit > 0 && s.backend != Backend::reference) {
     return refuse("impulse_limit", "only the reference backend limits impulses",
                   number(s.impulse_limit));
   }
-  if (s.impulse_limit > 0 && (s.solver == Solver::direct || s.solver == Solver::yarn)) {
+  if (s.impulse_limit > 0 && (s.solver != Solver::gauss_seidel && s.solver != Solver::automatic)) {
     return refuse("impulse_limit", "only Gauss-Seidel limits impulses", number(s.impulse_limit));
   }
   if (s.solver == Solver::yarn && s.backend != Backend::simd) {
     return refuse("solver", "yarn is for the simd backend", std::string(name(s.backend)));
   }
+  if (auto r = validate_scheme(s); !r) return r;
   if (s.threads < 0 || s.threads > kMaxThreads) {
     return refuse("threads", "must be from 0 to " + std::to_string(kMaxThreads),
                   std::to_string(s.threads));

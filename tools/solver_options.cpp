@@ -95,7 +95,9 @@ Result<Settings> settings_of(const SolverOptions& options) {
   }
   const bool methods = options.anticipate || options.skip || options.directions;
   if (methods && !options.solver) settings.solver = Solver::gauss_seidel;
-  if (settings.solver != Solver::automatic && !options.substeps) settings.substeps = 1;
+  const bool chooses_substeps =
+      settings.solver == Solver::automatic || settings.solver == Solver::small_steps;
+  if (!chooses_substeps && !options.substeps) settings.substeps = 1;
   return settings;
 }
 

@@ -180,6 +180,7 @@ class Builder {
                               static_cast<std::uint32_t>(chains.size())});
     for (std::size_t i = first * kLanes; i < last * kLanes; ++i) {
       layout_.slot.push_back(static_cast<std::uint32_t>(padding + i % kLanes));
+      layout_.constraint.push_back(kNoIndex);
     }
     layout_.links.push_back(0);
     for (std::size_t i = 0; i < chains.size(); ++i) {
@@ -205,6 +206,7 @@ class Builder {
       simd::YarnRow& row = block_[k];
       row.inverse_mass[lane] = static_cast<float>(model_.inverse_mass[slot] * layout_.lightest);
       if (k == chain.links.size()) continue;
+      layout_.constraint[(first + k) * kLanes + lane] = chain.links[k];
       row.rest[lane] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
     }
     add_spans(chain, first, lane);
@@ -283,7 +285,7 @@ std::vector<std::uint32_t> find_longest_at(const Model& model, std::span<const C
 
 }  // namespace
 
-YarnLayout make_yarn_layout(const Model& model) {
+YarnLayout make_yarn_layout(const Model& model, YarnMemory memory) {
   YarnLayout layout;
   layout.cell = cell_of(model.constraints);
   const Yarns yarns =
@@ -311,15 +313,16 @@ YarnLayout make_yarn_layout(const Model& model) {
   layout.not_in_second = slots_not_in_second(model, layout);
   layout.places.floats = 4 * quads_of(model, layout);
   layout.places.padding = 4 * model.slots();
-  weave(model, layout);
+  if (memory == YarnMemory::woven_if_possible) weave(model, layout);
   for (std::uint32_t& slot : layout.not_in_second) slot = layout.places.of(slot);
   return layout;
 }
 
 std::size_t YarnLayout::bytes() const {
-  return bytes_of(blocks) + bytes_of(links) + bytes_of(family_begin) + bytes_of(slot) +
-         bytes_of(patches) + bytes_of(kind) + bytes_of(kinds) + bytes_of(not_in_second) +
-         bytes_of(longest_at) + bytes_of(spans) + bytes_of(span_slots) + places.bytes();
+  return bytes_of(blocks) + bytes_of(links) + bytes_of(constraint) + bytes_of(family_begin) +
+         bytes_of(slot) + bytes_of(patches) + bytes_of(kind) + bytes_of(kinds) +
+         bytes_of(not_in_second) + bytes_of(longest_at) + bytes_of(spans) + bytes_of(span_slots) +
+         places.bytes();
 }
 
 }  // namespace weft

@@ -27,6 +27,7 @@ class Model;
 struct YarnLayout {
   std::vector<simd::YarnBlock> blocks;
   std::vector<std::uint32_t> links;             // constraints of each block
+  std::vector<std::uint32_t> constraint;        // per row and lane: to the next row, or kNoIndex
   std::vector<std::uint32_t> family_begin;      // blocks of family f: [f], ... [f + 1] - 1
   std::vector<std::uint32_t> slot;              // per row and lane, where blocks are in quads
   std::vector<simd::YarnPatch> patches;         // where they are woven
@@ -52,6 +53,9 @@ struct YarnLayout {
   std::size_t bytes() const;
 };
 
-YarnLayout make_yarn_layout(const Model& model);
+/// quads: all of it, also what could be woven.
+enum class YarnMemory : std::uint8_t { woven_if_possible, quads };
+
+YarnLayout make_yarn_layout(const Model& model, YarnMemory memory = YarnMemory::woven_if_possible);
 
 }  // namespace weft

@@ -179,7 +179,7 @@ WEFT_API ModelInfo describe(const Model& model);
 /// automatic substeps are shorter and yarns are solved more tightly. Where yarns took thousands of
 /// passes, with scheme paper, a tolerance above 0.3 % and no spheres, the next steps use
 /// Gauss-Seidel alone. So a step depends slightly on the ones before, until positions are written.
-enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
+enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, automatic };
 /// paper: impulses along the directions at the predicted positions; first order, and dissipative.
 /// rattle: along the directions at the start of the substep, always with velocity correction;
 ///   second order. This includes ropes that become taut within the substep. Contacts arise within
@@ -187,7 +187,7 @@ enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, automatic };
 ///   converge, or its impulses would add energy (engine/rattle.h), the substep is redone from the
 ///   same state by the paper's scheme with velocity correction; StepReport::scheme_fallbacks counts
 ///   these. With Settings::iterations nothing is redone.
-enum class Scheme : std::uint8_t { paper, rattle };
+enum class Scheme : std::uint8_t { paper, rattle, implicit, bdf2, automatic };
 /// each: directions renewed before every iteration (sections 3.2, 4.1).
 /// frozen: only once all errors along them are within tolerance (section 4.4), or after renew_after
 ///   iterations.
@@ -239,7 +239,7 @@ struct Settings {
   double impulse_limit = 0;          ///< N s, the largest impulse of one correction; 0: no limit;
                                      ///< gauss_seidel on the reference backend only
   Solver solver = Solver::automatic;
-  Scheme scheme = Scheme::paper;
+  Scheme scheme = Scheme::automatic;
   Backend backend = Backend::simd;
   Isa isa = Isa::automatic;
   /// Maximum threads of the caller's arena per step; 0: all that it offers, up to kMaxThreads.
@@ -261,6 +261,7 @@ struct Settings {
 inline Settings paper_settings() {
   Settings settings;
   settings.solver = Solver::gauss_seidel;
+  settings.scheme = Scheme::paper;
   settings.substeps = 1;
   return settings;
 }

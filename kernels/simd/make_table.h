@@ -9,6 +9,8 @@
 #include "kernels/simd/masks.h"
 #include "kernels/simd/measure.h"
 #include "kernels/simd/relax.h"
+#include "kernels/simd/small_step_yarns.h"
+#include "kernels/simd/small_steps.h"
 #include "kernels/simd/split.h"
 #include "kernels/simd/yarn_system.h"
 
@@ -80,6 +82,15 @@ constexpr Table make_table() {
           .yarn_pull = as_wide_as_block<yarn_pull, &Table::yarn_pull>(),
           .yarn_finish = as_wide_as_block<yarn_finish, &Table::yarn_finish>(),
           .yarn_add = yarn_add,
+          .advance = advance,
+          .settle = settle,
+          .resume = resume,
+          .keep_past = keep_past,
+          .renew_base = renew_base,
+          .measure_edges = measure_edges,
+          .relax_distances = relax_distances,
+          .relax_ropes = relax_ropes,
+          .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),
           .strain_run = strain_run,
           .strain_singles = strain_singles,
           .stretch_runs = stretch_runs,

@@ -208,6 +208,56 @@ struct Swept {
   bool within = true;
 };
 
+/// Particles in flight (small_steps.h): arrays of floats, all laid out as displacements u are.
+struct Flight {
+  float* u = nullptr;
+  float* u_before = nullptr;            // a substep ago
+  float* predicted = nullptr;           // u, before constraints were relaxed
+  float* v = nullptr;                   // predicted; after settle() it is the velocity
+  float* v_before = nullptr;            // a substep ago
+  const float* acceleration = nullptr;  // of what is fixed: 0
+};
+
+/// What is left of a flight between two frames: the velocity in the end, and how it came about in
+/// the last substep.
+struct Past {
+  float* v = nullptr;
+  float* v_before = nullptr;
+  float* moved = nullptr;  // u - u_before
+};
+
+struct SubstepWeights {
+  float past = 0;  // c, of what the last substep changed
+  float step = 0;  // b h
+  float rate = 0;  // 1 / (b h) of the last substep
+};
+
+/// Edges that small steps relax one by one, in blocks of kLanes; particles in quads. Padding has
+/// shares of 0.
+struct alignas(64) EdgeBlock {
+  std::uint32_t a[kernels::kLanes], b[kernels::kLanes];      // slots
+  float share_a[kernels::kLanes], share_b[kernels::kLanes];  // w_a / (w_a + w_b), w_b / ...
+  float square[kernels::kLanes];                             // rest^2; padding: 1
+};
+/// From b to a, of the base.
+struct alignas(64) EdgeSpans {
+  float x[kernels::kLanes], y[kernels::kLanes], z[kernels::kLanes];
+};
+struct EdgeRelaxation {
+  float* u = nullptr;
+  const EdgeBlock* blocks = nullptr;
+  const EdgeSpans* spans = nullptr;
+  std::uint16_t* out = nullptr;  // per block, a bit per lane: was out of tolerance
+  float omega = 1;
+  float tolerance = 0;  // of l^2 / rest^2 - 1
+};
+struct YarnRelaxation {
+  float omega = 1;
+  float compliance = 0;          // small_step_yarns.h
+  float tolerance = 0;           // as above
+  std::uint32_t* out = nullptr;  // per row, a bit per lane, likewise
+};
+
 struct YarnProducts {
   float product = 0;  // residual . z
   float worst = 0;    // largest |residual| / rest; of velocities, largest |residual|
@@ -334,6 +384,24 @@ struct Table {
   void (*yarn_finish)(const Yarns&, const YarnBlock&, float* t, YarnScratch* scratch);
   /// u += t, of the floats first ... last - 1, multiples of kLanes.
   void (*yarn_add)(float* u, const float* t, std::size_t first, std::size_t last);
+
+  // Small steps (small_steps.h), of the floats first ... last - 1, multiples of kLanes.
+  void (*advance)(const Flight&, const SubstepWeights&, std::size_t first, std::size_t last);
+  /// v becomes the velocity, predicted u.
+  void (*settle)(const Flight&, float rate, std::size_t first, std::size_t last);
+  /// Begins a frame at u with the velocities v, which need not be the past's; h: of its last
+  /// substep.
+  void (*resume)(const Flight&, const Past&, float h, std::size_t first, std::size_t last);
+  void (*keep_past)(const Flight&, const Past&, std::size_t first, std::size_t last);
+  void (*renew_base)(const Flight&, float* base, float cell, std::size_t first, std::size_t last);
+  // Of blocks first ... last - 1.
+  void (*measure_edges)(const EdgeBlock*, EdgeSpans*, const float* base, std::size_t first,
+                        std::size_t last);
+  void (*relax_distances)(const EdgeRelaxation&, std::size_t first, std::size_t last);
+  void (*relax_ropes)(const EdgeRelaxation&, std::size_t first, std::size_t last);
+  /// Scratch as above.
+  void (*relax_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
+                      const YarnRelaxation&);
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);

@@ -1,0 +1,196 @@
+#include "engine/small_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/contacts.h"
+#include "engine/crossings.h"
+#include "engine/energy.h"
+#include "engine/measure.h"
+#include "engine/motion.h"
+#include "engine/project.h"
+#include "engine/reporting.h"
+#include "engine/solve.h"
+#include "engine/substep.h"
+#include "engine/transaction.h"
+#include "engine/tuning.h"
+
+namespace weft {
+namespace {
+
+using kernels::Vector;
+
+/// m/s^2, of gravity and forces: the mean magnitude, by mass.
+double mean_acceleration(const State& s) {
+  if (s.force.size() == 0) return length(s.gravity);
+  double sum = 0, mass = 0;
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (s.model->inverse_mass[slot] == 0) continue;
+    mass += s.model->mass[slot];
+    sum += s.model->mass[slot] * length(acceleration(s, slot));
+  }
+  return mass > 0 ? sum / mass : 0;
+}
+
+int substeps_of(State& s, double dt) {
+  if (s.settings.substeps != kAutomaticSubsteps) return s.settings.substeps;
+  const double h = std::min(tuning::kLongestSubstep,
+                            s.small_steps->substep_length(s.position.view(), mean_acceleration(s)));
+  const double wanted = std::ceil(dt / h);
+  const int most = std::min(tuning::kMostSubsteps, s.settings.max_iterations);
+  return wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
+}
+
+/// The frame that is being done.
+class Frame {
+ public:
+  Frame(State& s, StepReport& report, Team& team)
+      : s_(s),
+        solver_(*s.small_steps),
+        report_(report),
+        team_(team),
+        edges_(static_cast<std::int64_t>(s.model->constraints.size())) {}
+
+  void substep() {
+    solver_.advance(team_);
+    const int sweeps = std::max(1, s_.settings.iterations);
+    for (int i = 0; i < sweeps; ++i) solver_.sweep(team_);
+    report_.iterations += sweeps;
+    report_.direction_updates += sweeps;
+    report_.visits += sweeps * edges_;
+    report_.corrections += sweeps * edges_;
+    if (s_.model->has_contacts()) find_contacts();
+    if (s_.settings.iterations == 0)
+      count(solver_.repair(s_.contacts, most_visits(tuning::kMostVisits)));
+    if (s_.model->has_contacts()) watch_crossings();
+    ++report_.substeps;
+  }
+
+  /// What the last substep left out of tolerance. Returns whether all of it is within.
+  bool finish() {
+    if (s_.settings.iterations > 0) return true;
+    read_positions();
+    for (int round = 0; round < kRounds; ++round) {
+      if (within_tolerance()) return true;
+      count(solver_.repair_everywhere(s_.contacts, most_visits(tuning::kMostLastVisits)));
+      read_positions();
+    }
+    return within_tolerance();
+  }
+
+  /// The new state, in solved and next_velocity.
+  void read() {
+    solver_.settle(team_);
+    read_positions();
+    for (auto* axis : {&s_.next_velocity.x, &s_.next_velocity.y, &s_.next_velocity.z})
+      std::ranges::fill(*axis, 0.0);
+    solver_.read_velocities(s_.next_velocity.view(), team_);
+  }
+
+ private:
+  static constexpr int kRounds = 3;
+
+  std::int64_t most_visits(std::int64_t sweeps) const {
+    const std::int64_t left = s_.settings.max_iterations - report_.iterations;
+    return std::max<std::int64_t>(1, std::min(sweeps, left)) * edges_;
+  }
+  void count(const LocalWork& work) {
+    report_.visits += work.visits;
+    report_.corrections += work.corrections;
+    if (edges_ > 0) report_.iterations += work.visits / edges_;
+  }
+  void read_positions() {
+    s_.solved = s_.position;
+    solver_.read_positions(s_.solved.view(), team_);
+  }
+  bool within_tolerance() {
+    return max_strain_at(s_, s_.solved, team_) <= s_.settings.tolerance &&
+           penetration_at(s_, s_.solved) <= s_.settings.contact_tolerance;
+  }
+  void find_contacts() {
+    read_positions();
+    weft::find_contacts(*s_.model, *s_.kernels, s_.solved.view(), s_.contacts);
+  }
+  void watch_crossings() {
+    read_positions();
+    const std::uint32_t passed = find_crossing(*s_.model, *s_.kernels, s_.substep_start.view(),
+                                               s_.solved.view(), s_.contacts);
+    if (passed != kNoIndex) {
+      report_.passed_particle = s_.model->ordering.particle_at[passed];
+      worsen(report_, Status::passed_through);
+    }
+    s_.substep_start = s_.solved;
+  }
+
+  State& s_;
+  SmallStepsSolver& solver_;
+  StepReport& report_;
+  Team& team_;
+  const std::int64_t edges_;
+};
+
+/// What local passes could not bring within tolerance, with a number of substeps that nobody asked
+/// for: the paper's sweeps, which change positions alone.
+void project_solved(State& s, double dt, StepReport& report, Team& team) {
+  const int left = s.settings.max_iterations - static_cast<int>(report.iterations);
+  if (left <= 0) return worsen(report, Status::iteration_limit);
+  const Attempt attempt{.h = dt, .most_iterations = left, .on_failure = OnFailure::sweep};
+  worsen(report, solve_positions(s, attempt, report, team).status);
+}
+
+/// A frame gains no energy but what forces and pins bring in.
+void guard_energy(State& s, double dt, Team& team) {
+  take_gained_energy(s, measure_kicks(s, dt, team), dt);
+}
+
+}  // namespace
+
+bool run_small_steps(State& s, double dt, bool jumped, StepReport& report, Team& team) {
+  Transaction transaction(s);
+  if ((s.placed || jumped) && violates_constraints(s, team)) {
+    transaction.begin();
+    project(s, dt, 1, report, team);
+  }
+  Frame frame(s, report, team);
+  int substeps = 1;
+  timed(report, Stage::predict, [&] {
+    substeps = substeps_of(s, dt);
+    const kernels::VectorsView force = s.force.size() > 0 ? s.force.view() : kernels::VectorsView{};
+    if (s.model->has_contacts()) s.substep_start = s.position;
+    s.small_steps->begin(s.position.view(), s.velocity.view(), s.gravity, force, dt / substeps,
+                         team);
+  });
+  bool within = true;
+  timed(report, Stage::solve_positions, [&] {
+    for (int i = 0; i < substeps; ++i) frame.substep();
+    within = frame.finish();
+  });
+  bool finite = true;
+  timed(report, Stage::commit, [&] {
+    frame.read();
+    finite = all_finite(s.solved) && all_finite(s.next_velocity);
+  });
+  if (!finite) {
+    explain(s, dt, report, team);
+    return false;
+  }
+  if (!within) {
+    if (s.settings.substeps == kAutomaticSubsteps)
+      project_solved(s, dt, report, team);
+    else
+      worsen(report, Status::iteration_limit);
+  }
+  timed(report, Stage::commit, [&] {
+    if (s.settings.iterations > 0)
+      worsen(report, Status::fixed_iterations);
+    else
+      guard_energy(s, dt, team);
+    s.small_steps->keep(team);
+    transaction.accept();
+    transaction.complete();
+  });
+  s.placed = false;
+  return true;
+}
+
+}  // namespace weft

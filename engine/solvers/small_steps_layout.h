@@ -1,0 +1,70 @@
+/// What small steps (engine/solvers/small_steps.h) need to know of a model: its constraints as
+/// blocks, in the order of a sweep, and where their particles stand.
+///
+///   yarn blocks   family by family, where the distance constraints make yarns; in woven rows where
+///                 yarns are all there is, else in quads
+///   edge blocks   kLanes constraints of one colour each: tile by tile, then between the tiles
+///   serial        constraints at hubs, one after the other
+///
+/// Yarns are made of all distance constraints that are not at hubs, or of none: where the chains
+/// that run straight on through their particles are short, as in sheets of irregular triangles,
+/// each constraint is a block of its own.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/solvers/yarn_layout.h"
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+class Model;
+
+/// Edge blocks of one kind that share no particle.
+struct EdgeBatch {
+  std::uint32_t first = 0, last = 0;
+  bool rope = false;
+};
+
+/// Batches first ... last - 1 of a tile.
+struct EdgeTile {
+  std::uint32_t first = 0, last = 0;
+};
+
+/// What hangs on the pins, for the length of a substep (small_steps_load.h).
+struct SmallStepsLoad {
+  /// A yarn between two pins.
+  struct Span {
+    std::uint32_t first_slot = 0, last_slot = 0;
+    double length = 0;  // m, of its constraints
+  };
+  double particles = 0;    // that a block at a pin carries besides its own
+  double mean_length = 0;  // m, of the constraints
+  std::vector<Span> spans;
+};
+
+struct SmallStepsLayout {
+  YarnLayout yarns;  // no blocks: there are none
+  std::vector<simd::EdgeBlock> blocks;
+  std::vector<std::uint32_t> constraint;  // per edge block and lane, or kNoIndex
+  std::vector<EdgeBatch> batches;         // those of each tile, then those between tiles
+  std::vector<EdgeTile> tiles;
+  std::uint32_t between_tiles = 0;  // first batch
+  std::vector<std::uint32_t> serial;
+
+  double cell = 0;         // that positions are split by
+  std::size_t floats = 0;  // of an array of particles
+  SmallStepsLoad load;
+
+  const YarnPlaces& places() const { return yarns.places; }
+  bool has_yarns() const { return !yarns.blocks.empty(); }
+  /// Work of a sweep: constraints.
+  std::size_t edges() const { return constraint.size(); }
+  std::size_t bytes() const;
+};
+
+SmallStepsLayout make_small_steps_layout(const Model& model);
+
+}  // namespace weft

@@ -1,0 +1,29 @@
+/// Tuned numbers of small steps, each with its unit and what it trades; perf/tried.md has the
+/// experiments.
+#pragma once
+
+#include <cstdint>
+
+namespace weft::tuning {
+
+/// Of a correction. At 1 a woven sheet of 41 x 41 gains 0.9 J in a second in 400 substeps a frame;
+/// at 0.8 none, in 1600. Less is softer.
+inline constexpr double kOmega = 0.8;
+/// Of the tolerance, from which on local passes look at a constraint: what later corrections of its
+/// neighbours may add.
+inline constexpr double kLocalShare = 0.9;
+/// Of the diagonal of a yarn's matrix, which is singular where the yarn is straight between pins.
+inline constexpr double kCompliance = 1e-3;
+/// s, the longest substep: what a sheet that hangs by yarns alone is off the true motion by.
+inline constexpr double kLongestSubstep = 0.005;
+/// Substeps of a frame, at most.
+inline constexpr int kMostSubsteps = 1024;
+/// Constraints in a yarn, on average, from which on yarns are blocks. Random triangles have 3 or 4,
+/// a woven sheet of n x n particles n - 1.
+inline constexpr double kLeastLinks = 8;
+/// Substeps between two renewals of the base: u is rounded to a 2^-24 part of the way in between.
+inline constexpr int kRenewal = 16;
+/// Visits of local passes, of the constraints: in a substep, and when a frame ends.
+inline constexpr std::int64_t kMostVisits = 1, kMostLastVisits = 64;
+
+}  // namespace weft::tuning

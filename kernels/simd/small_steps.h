@@ -1,0 +1,155 @@
+/// The stages of a small step (engine/small_steps.h), in single precision.
+///
+/// Positions are base + u, two floats (split.h). The arrays of a Flight are laid out as u is, in
+/// quads or in woven rows, so that flight is arithmetic on floats one by one. A substep of h, after
+/// one of h / r, is BDF2 with variable steps,
+///
+///     v     = v* + (x - x*) / (b h)              what constraints did, of the last substep
+///     v*    = v + c (v - v_before) + b h a       predicted
+///     x*    = x + c (x - x_before) + b h v*
+///     c = r^2 / (1 + 2 r),   b = (1 + r) / (1 + 2 r)
+///
+/// and with c = 0, b = 1 the implicit Euler method.
+#pragma once
+
+#include "kernels/simd/quads.h"
+#include "kernels/simd/split.h"
+
+namespace weft::simd {
+inline namespace WEFT_LANES {
+namespace {
+
+/// work(i) for each vector of floats first ... last - 1.
+template <class Work>
+[[gnu::always_inline]] inline void for_floats(std::size_t first, std::size_t last, Work&& work) {
+  for (std::size_t i = first; i < last; i += kFloats) work(i);
+}
+
+[[gnu::always_inline]] inline Floats settled(const Flight& f, std::size_t i, Floats rate) {
+  return fused(load(f.u + i) - load(f.predicted + i), rate, load(f.v + i));
+}
+
+void advance(const Flight& flight, const SubstepWeights& weights, std::size_t first,
+             std::size_t last) {
+  const Flight f = flight;  // Stores could be to what references lead to.
+  const Floats rate(weights.rate), c(weights.past), bh(weights.step);
+  for_floats(
+      first, last, [&](std::size_t i) __attribute__((always_inline)) {
+        const Floats x = load(f.u + i), v = settled(f, i, rate);
+        const Floats v_next =
+            fused(bh, load(f.acceleration + i), fused(c, v - load(f.v_before + i), v));
+        const Floats x_next = fused(bh, v_next, fused(c, x - load(f.u_before + i), x));
+        x.store_unaligned(f.u_before + i);
+        v.store_unaligned(f.v_before + i);
+        v_next.store_unaligned(f.v + i);
+        x_next.store_unaligned(f.predicted + i);
+        x_next.store_unaligned(f.u + i);
+      });
+}
+
+void settle(const Flight& flight, float rate, std::size_t first, std::size_t last) {
+  const Flight f = flight;
+  for_floats(
+      first, last, [&](std::size_t i) __attribute__((always_inline)) {
+        settled(f, i, Floats(rate)).store_unaligned(f.v + i);
+        load(f.u + i).store_unaligned(f.predicted + i);
+      });
+}
+
+/// What somebody else did to the velocity since, it did to the one before as well.
+void resume(const Flight& flight, const Past& past, float h, std::size_t first, std::size_t last) {
+  const Flight f = flight;
+  const Past p = past;
+  for_floats(
+      first, last, [&](std::size_t i) __attribute__((always_inline)) {
+        const Floats x = load(f.u + i), jump = load(f.v + i) - load(p.v + i);
+        (load(p.v_before + i) + jump).store_unaligned(f.v_before + i);
+        (x - fused(Floats(h), jump, load(p.moved + i))).store_unaligned(f.u_before + i);
+        x.store_unaligned(f.predicted + i);
+      });
+}
+
+void keep_past(const Flight& flight, const Past& past, std::size_t first, std::size_t last) {
+  const Flight f = flight;
+  const Past p = past;
+  for_floats(
+      first, last, [&](std::size_t i) __attribute__((always_inline)) {
+        load(f.v + i).store_unaligned(p.v + i);
+        load(f.v_before + i).store_unaligned(p.v_before + i);
+        (load(f.u + i) - load(f.u_before + i)).store_unaligned(p.moved + i);
+      });
+}
+
+/// Whole cells of u go into the base, which stays a whole number of them.
+void renew_base(const Flight& flight, float* base, float cell, std::size_t first,
+                std::size_t last) {
+  const Flight f = flight;
+  const Floats far(0x1.8p23f * cell);
+  for_floats(
+      first, last, [&](std::size_t i) __attribute__((always_inline)) {
+        const Floats u = load(f.u + i), from = load(base + i), to = from + ((u + far) - far);
+        const Floats by = to - from;
+        to.store_unaligned(base + i);
+        (u - by).store_unaligned(f.u + i);
+        (load(f.predicted + i) - by).store_unaligned(f.predicted + i);
+        (load(f.u_before + i) - by).store_unaligned(f.u_before + i);
+      });
+}
+
+void measure_edges(const EdgeBlock* blocks, EdgeSpans* spans, const float* base, std::size_t first,
+                   std::size_t last) {
+  QuadLanes at;
+  for (std::size_t i = first; i < last; ++i) {
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      FloatVector a = at.get(base, blocks[i].a + lane), b = at.get(base, blocks[i].b + lane);
+      FloatVector d = a - b;
+      d.x.store_unaligned(spans[i].x + lane);
+      d.y.store_unaligned(spans[i].y + lane);
+      d.z.store_unaligned(spans[i].z + lane);
+    }
+  }
+}
+
+/// Newton's step for C = (l^2 - L^2) / 2 = 0 alone, relaxed, l^2 in its divisor replaced by the
+/// mean of l^2 and L^2: the same to first order in the strain, and finite where the ends coincide.
+///
+///     q = omega (l^2 - L^2) / (l^2 + L^2),   x_a -= w_a / (w_a + w_b) q d,   x_b += ...
+template <bool kRope>
+[[gnu::always_inline]] inline void relax_edges(const EdgeRelaxation& r, std::size_t first,
+                                               std::size_t last) {
+  QuadLanes at;
+  float* const u = r.u;
+  const Floats omega(r.omega), tolerance(r.tolerance), none(0.f);
+  for (std::size_t i = first; i < last; ++i) {
+    const EdgeBlock& block = r.blocks[i];
+    const EdgeSpans& span = r.spans[i];
+    std::uint32_t out = 0;
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      FloatVector a = at.get(u, block.a + lane), b = at.get(u, block.b + lane);
+      FloatVector d =
+          FloatVector{load(span.x + lane), load(span.y + lane), load(span.z + lane)} + (a - b);
+      const Floats square = load(block.square + lane);
+      Floats error = fused(d.x, d.x, fused(d.y, d.y, fused(d.z, d.z, none - square)));
+      const Floats divisor = fused(Floats(2.f), square, error);
+      if constexpr (kRope) error = xsimd::max(error, none);
+      out |= bits(xsimd::abs(error) > tolerance * square) << lane;
+      const Floats q = omega * error / divisor;
+      a = fused(none - q * load(block.share_a + lane), d, a);
+      b = fused(q * load(block.share_b + lane), d, b);
+      at.put(u, block.a + lane, a);
+      at.put(u, block.b + lane, b);
+    }
+    r.out[i] = static_cast<std::uint16_t>(out);
+  }
+}
+
+void relax_distances(const EdgeRelaxation& r, std::size_t first, std::size_t last) {
+  relax_edges<false>(r, first, last);
+}
+void relax_ropes(const EdgeRelaxation& r, std::size_t first, std::size_t last) {
+  relax_edges<true>(r, first, last);
+}
+
+}  // namespace
+}  // namespace WEFT_LANES
+}  // namespace weft::simd
