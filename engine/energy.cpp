@@ -86,7 +86,7 @@ void take_gained_energy(State& s, double h) {
 
 void take_gained_energy(State& s, const kernels::Kicks& kicks, double h) {
   if (!(kicks.gain > 0)) return;
-  if (s.pins.under_way()) return take_gained_energy(s, h);
+  if (s.pins.moving()) return take_gained_energy(s, h);
   const double left = kicks.gain < kicks.energy ? std::sqrt(1 - kicks.gain / kicks.energy) : 0;
   for (auto* axis : {&s.next_velocity.x, &s.next_velocity.y, &s.next_velocity.z}) {
     for (double& v : *axis) v *= left;

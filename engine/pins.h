@@ -30,8 +30,8 @@ class Pins {
   bool depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);
   /// After depart: everyone is where the caller wants them, at rest; arrived: the step was done.
   void stop(bool arrived, kernels::Vectors& position, kernels::Vectors& velocity);
-  /// Whether one has moved in this step or in the last.
-  bool under_way() const { return moving_; }
+  /// Whether one has moved in this step or in the last: if not, nobody is under way.
+  bool moving() const { return moving_; }
   std::size_t bytes() const;
 
  private:
@@ -41,7 +41,7 @@ class Pins {
     kernels::Vector last{}, speed{};  // of the last move and of this one
   };
   std::vector<Pin> pins_;  // empty until one is moved
-  bool moving_ = false;    // one has moved in this step or in the last
+  bool moving_ = false;    // see moving()
 };
 
 }  // namespace weft

@@ -39,6 +39,7 @@ void explain(State& s, double h, StepReport& report, Team& team) {
   report.failed_particle = s.model->ordering.particle_at[input ? predicted : solved];
   report.passed_particle = kNoIndex;
   report.substeps = 0;
+  report.pin_work = 0;
   worsen(report, input ? Status::non_finite_input : Status::non_finite);
 }
 

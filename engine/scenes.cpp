@@ -9,7 +9,10 @@
 #include <numbers>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "engine/irregular_mesh.h"
 
 namespace weft::scenes {
 namespace {
@@ -53,19 +56,55 @@ struct Grid {
   std::uint32_t number(int i, int j) const { return static_cast<std::uint32_t>(i * size + j); }
 };
 
-/// Joins grid neighbours, except where both ends are fixed.
-void add_structural_edges(const Grid& grid, SceneDescription& scene) {
-  std::vector<bool> is_fixed(scene.positions.size(), false);
-  for (const std::uint32_t particle : scene.fixed) is_fixed[particle] = true;
-  const auto add = [&](std::uint32_t a, std::uint32_t b) {
-    if (!is_fixed[a] || !is_fixed[b]) scene.constraints.push_back({a, b, grid.spacing()});
+/// Adds constraints, except where both ends are fixed: what is fixed must be known before.
+class Joiner {
+ public:
+  explicit Joiner(SceneDescription& scene)
+      : scene_(scene), is_fixed_(scene.positions.size(), false) {
+    for (const std::uint32_t particle : scene.fixed) is_fixed_[particle] = true;
+  }
+  void join(std::uint32_t a, std::uint32_t b, double rest_length, ConstraintKind kind) {
+    if (!is_fixed_[a] || !is_fixed_[b]) scene_.constraints.push_back({a, b, rest_length, kind});
+  }
+
+ private:
+  SceneDescription& scene_;
+  std::vector<bool> is_fixed_;
+};
+
+void add_structural_edges(const Grid& grid, Joiner& joiner) {
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    joiner.join(a, b, grid.spacing(), ConstraintKind::distance);
   };
   for (int i = 0; i < grid.size; ++i) {
     for (int j = 0; j < grid.size; ++j) {
-      if (i + 1 < grid.size) add(grid.number(i, j), grid.number(i + 1, j));
-      if (j + 1 < grid.size) add(grid.number(i, j), grid.number(i, j + 1));
+      if (i + 1 < grid.size) join(grid.number(i, j), grid.number(i + 1, j));
+      if (j + 1 < grid.size) join(grid.number(i, j), grid.number(i, j + 1));
     }
   }
+}
+
+void add_diagonals(const Grid& grid, Joiner& joiner) {
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    joiner.join(a, b, std::numbers::sqrt2 * grid.spacing(), ConstraintKind::rope);
+  };
+  for (int i = 0; i + 1 < grid.size; ++i) {
+    for (int j = 0; j + 1 < grid.size; ++j) {
+      join(grid.number(i, j), grid.number(i + 1, j + 1));
+      join(grid.number(i + 1, j), grid.number(i, j + 1));
+    }
+  }
+}
+
+void add_edges(const Grid& grid, const Options& options, SceneDescription& scene) {
+  Joiner joiner(scene);
+  add_structural_edges(grid, joiner);
+  if (options.diagonals) add_diagonals(grid, joiner);
+}
+
+void share_mass(SceneDescription& scene) {
+  const std::size_t count = scene.positions.size();
+  scene.masses.assign(count, kClothMass / static_cast<double>(count));
 }
 
 /// place(i, j) is the position of particle (i, j). Edges are added once it is known what is fixed.
@@ -75,9 +114,12 @@ SceneDescription cloth(const Grid& grid, Place place) {
   for (int i = 0; i < grid.size; ++i) {
     for (int j = 0; j < grid.size; ++j) scene.positions.push_back(place(i, j));
   }
-  const std::size_t count = scene.positions.size();
-  scene.masses.assign(count, kClothMass / static_cast<double>(count));
+  share_mass(scene);
   return scene;
+}
+
+SceneDescription level_sheet(const Grid& grid) {
+  return cloth(grid, [&](int i, int j) { return Vec3{grid.fraction(i), 0, grid.fraction(j)}; });
 }
 
 /// The cloth's own particles have radius 0. Returns the sphere's number.
@@ -93,25 +135,23 @@ std::uint32_t add_sphere(SceneDescription& scene, Vec3 centre, double radius, do
 
 // --------------------------------------------------------------------------------------- hang
 
-SceneDescription hanging_sheet(int size) {
-  const Grid grid{size};
-  SceneDescription scene = cloth(grid, [&](int i, int j) {
-    return Vec3{grid.fraction(i), 0, grid.fraction(j)};
-  });
-  for (int j = 0; j < size; ++j) scene.fixed.push_back(grid.number(0, j));
-  add_structural_edges(grid, scene);
+SceneDescription hanging_sheet(const Options& options) {
+  const Grid grid{options.size};
+  SceneDescription scene = level_sheet(grid);
+  for (int j = 0; j < grid.size; ++j) scene.fixed.push_back(grid.number(0, j));
+  add_edges(grid, options, scene);
   return scene;
 }
 
 Result<SceneDescription> make_hang(const Options& options) {
   if (const auto size = check_size("hang", options.size, 2); !size) return Error{size.error()};
-  return hanging_sheet(options.size);
+  return hanging_sheet(options);
 }
 
 Result<SceneDescription> make_hang_sphere(const Options& options) {
   const auto size = check_size("hang_sphere", options.size, 2);
   if (!size) return Error{size.error()};
-  SceneDescription scene = hanging_sheet(options.size);
+  SceneDescription scene = hanging_sheet(options);
   scene.fixed.push_back(add_sphere(scene, {0.5, -0.6, 0.5}, 0.25, 1));
   return scene;
 }
@@ -170,7 +210,7 @@ Result<SceneDescription> make_sphere_drop(const Options& options) {
     scene.fixed.push_back(grid.number(i, 0));
     scene.fixed.push_back(grid.number(i, grid.size - 1));
   }
-  add_structural_edges(grid, scene);
+  add_edges(grid, options, scene);
   const double middle = arc[arc.size() / 2].y;
   add_sphere(scene, {0.5, middle + kDrop + kRadius, (1 - options.slack) / 2}, kRadius,
              options.sphere_mass);
@@ -194,7 +234,7 @@ Result<SceneDescription> make_corners(const Options& options) {
     return Vec3{grid.fraction(i), -fall * to_border, kSpan * along};
   });
   scene.fixed = {grid.number(0, 0), grid.number(0, grid.size - 1)};
-  add_structural_edges(grid, scene);
+  add_edges(grid, options, scene);
   return scene;
 }
 
@@ -207,7 +247,45 @@ Result<SceneDescription> make_banner(const Options& options) {
     return Vec3{0, -grid.fraction(i), grid.fraction(j)};
   });
   scene.fixed = {grid.number(0, 0), grid.number(0, grid.size - 1)};
-  add_structural_edges(grid, scene);
+  add_edges(grid, options, scene);
+  return scene;
+}
+
+// --------------------------------------------------------------------------------- four_pins
+
+Result<SceneDescription> make_four_pins(const Options& options) {
+  const auto size = check_size("four_pins", options.size, 3);
+  if (!size) return Error{size.error()};
+  const Grid grid{options.size};
+  const int last = grid.size - 1;
+  SceneDescription scene = level_sheet(grid);
+  scene.fixed = {grid.number(0, 0), grid.number(0, last), grid.number(last, 0),
+                 grid.number(last, last)};
+  add_edges(grid, options, scene);
+  return scene;
+}
+
+// -------------------------------------------------------------------------------------- cape
+
+double distance(Vec3 a, Vec3 b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
+
+/// Its upper seam is uneven: what is pinned is a strip, not a row of cells.
+Result<SceneDescription> make_cape(const Options& options) {
+  if (const auto size = check_size("cape", options.size, 3); !size) return Error{size.error()};
+  const Grid grid{options.size};
+  IrregularMesh mesh = irregular_mesh(options.size);
+  SceneDescription scene;
+  scene.positions = std::move(mesh.points);
+  share_mass(scene);
+  const double seam = 1.19 * grid.spacing();
+  for (std::uint32_t i = 0; i < scene.positions.size(); ++i) {
+    if (scene.positions[i].x < seam) scene.fixed.push_back(i);
+  }
+  Joiner joiner(scene);
+  const auto kind = options.ropes ? ConstraintKind::rope : ConstraintKind::distance;
+  for (const auto& [a, b] : edges_of(mesh.faces)) {
+    joiner.join(a, b, distance(scene.positions[a], scene.positions[b]), kind);
+  }
   return scene;
 }
 
@@ -241,12 +319,14 @@ struct Entry {
   Result<SceneDescription> (*make)(const Options&);
 };
 
-constexpr std::array<Entry, 6> kEntries{{
+constexpr std::array<Entry, 8> kEntries{{
     {{"hang", "a sheet with one fixed side swings down"}, make_hang},
     {{"hang_sphere", "the same, swinging into a fixed sphere"}, make_hang_sphere},
     {{"sphere_drop", "a heavy sphere drops into a sagging sheet"}, make_sphere_drop},
     {{"corners", "a folded sheet hangs from two corners"}, make_corners},
     {{"banner", "a sheet hangs from two corners at its own width"}, make_banner},
+    {{"four_pins", "a level sheet sinks between its four fixed corners"}, make_four_pins},
+    {{"cape", "an irregular mesh hangs from an uneven seam"}, make_cape},
     {{"chain", "a line of particles with a heavy end"}, make_chain},
 }};
 

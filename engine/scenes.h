@@ -1,9 +1,11 @@
-/// The built-in scenes: the paper's three and three hard ones. Exact definitions, SI units.
+/// The built-in scenes: the paper's three, three hard ones, and two that are like a game's. Exact
+/// definitions, SI units.
 ///
 /// Cloth scenes are N x N particles over 1 m x 1 m, particle (i, j) has the number i * N + j,
 /// spacing L = 1/(N-1), total mass 1 kg, gravity (0, -10, 0); constraints join grid neighbours
-/// ("structural" edges), those between two fixed particles are left out. All start at rest, every
-/// edge at its rest length; particles of the cloth have radius 0.
+/// ("structural" edges) and, with Options::diagonals, opposite corners of every cell (ropes of
+/// length sqrt(2) L); those between two fixed particles are left out. All start at rest, every edge
+/// at its rest length; particles of the cloth have radius 0.
 ///
 /// hang         (i, j) at (i L, 0, j L); the column i = 0 is fixed.
 /// hang_sphere  The same, and a fixed sphere at (0.5, -0.6, 0.5), radius 0.25.
@@ -14,6 +16,11 @@
 ///              its middle row. (0, 0) and (0, N-1) are fixed.
 /// banner       (i, j) at (0, -i L, j L): upright. (0, 0) and (0, N-1) are fixed, as far apart as
 ///              in it, so that its upper edge can only hang by the strain that is tolerated.
+/// four_pins    (i, j) at (i L, 0, j L); its four corners are fixed, as far apart as in it.
+/// cape         The irregular mesh of triangles and quads of irregular_mesh.h, N x N points in an
+///              order of chance: no grid. Its faces' edges are constraints of the length they have,
+///              ropes with Options::ropes. Fixed is what has x < 1.19 L, an uneven row (N = 120:
+///              x < 0.01, 210 particles).
 /// chain        Particles of 1 kg in a line along x, 0.01 apart; the first is fixed, the last has
 ///              end_mass.
 #pragma once
@@ -30,6 +37,8 @@ struct Options {
   double slack = 0.05;     ///< sphere_drop: how much longer the sheet is than the gap it spans
   double sphere_mass = 1;  ///< sphere_drop, kg
   double end_mass = 1;     ///< chain, kg of the last particle
+  bool diagonals = false;  ///< all but cape and chain: both diagonals of every cell become ropes
+  bool ropes = false;      ///< cape: every edge is a rope
 };
 
 struct BuiltIn {
@@ -37,7 +46,7 @@ struct BuiltIn {
   std::string_view summary;
 };
 
-/// hang, hang_sphere, sphere_drop, corners, banner, chain.
+/// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain.
 std::span<const BuiltIn> list();
 
 /// An unknown name or an option out of range is an error.

@@ -8,6 +8,7 @@
 #include "engine/energy.h"
 #include "engine/measure.h"
 #include "engine/motion.h"
+#include "engine/pin_work.h"
 #include "engine/project.h"
 #include "engine/reporting.h"
 #include "engine/solve.h"
@@ -139,8 +140,9 @@ void project_solved(State& s, double dt, StepReport& report, Team& team) {
 }
 
 /// A frame gains no energy but what forces and pins bring in.
-void guard_energy(State& s, double dt, Team& team) {
+void guard_energy(State& s, double dt, StepReport& report, Team& team) {
   take_gained_energy(s, measure_kicks(s, dt, team), dt);
+  if (s.pins.moving()) report.pin_work = work_of(motion_of_pins(s, dt), s, dt);
 }
 
 }  // namespace
@@ -184,7 +186,7 @@ bool run_small_steps(State& s, double dt, bool jumped, StepReport& report, Team&
     if (s.settings.iterations > 0)
       worsen(report, Status::fixed_iterations);
     else
-      guard_energy(s, dt, team);
+      guard_energy(s, dt, report, team);
     s.small_steps->keep(team);
     transaction.accept();
     transaction.complete();

@@ -8,6 +8,7 @@
 #include "engine/energy.h"
 #include "engine/measure.h"
 #include "engine/motion.h"
+#include "engine/pin_work.h"
 #include "engine/project.h"
 #include "engine/reporting.h"
 #include "engine/substep.h"
@@ -183,6 +184,7 @@ class Substeps {
       if (answer_ == Answer::halves && !trial.gained) record_.helped = false;
     }
     if (present_.gave_up) take_gained_energy(s_, h);
+    add_pin_work(h);
     transaction_.accept();
     record_.stood_at = std::max(record_.stood_at, trial.stood_at);
     worsen(report_, trial.status);
@@ -190,6 +192,14 @@ class Substeps {
     ++report_.substeps;
     ++present_.parts;
     present_.to_do -= h;
+  }
+
+  /// What was taken out of energy beyond it is taken out relative to the pins' own motion, so that
+  /// this is the work of what was left.
+  void add_pin_work(double h) {
+    if (!s_.pins.moving()) return;
+    timed(report_, Stage::report,
+          [&] { report_.pin_work += work_of(motion_of_pins(s_, h), s_, h); });
   }
 
   /// What a state already violates becomes a velocity, error / h: the shorter, the worse. For

@@ -1,6 +1,7 @@
 #include "tools/mesh.h"
 
 #include <numeric>
+#include <utility>
 
 namespace weft::tools {
 namespace {
@@ -25,6 +26,12 @@ Mesh grid_mesh(const SceneDescription& scene, std::uint32_t size) {
       mesh.faces.push_back({corner, corner + 1, corner + size + 1, corner + size});
     }
   }
+  return mesh;
+}
+
+Mesh face_mesh(const SceneDescription& scene, std::vector<std::vector<std::uint32_t>> faces) {
+  Mesh mesh = particle_mesh(scene, scene.positions.size());
+  mesh.faces = std::move(faces);
   return mesh;
 }
 

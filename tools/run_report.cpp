@@ -122,6 +122,7 @@ Json to_json(const RunReport& report) {
       {"ns_per_constraint_iteration", nanoseconds_per_constraint_iteration(summary)},
       {"energy_start", summary.energy_start},
       {"energy_end", summary.energy_end},
+      {"pin_work", summary.pin_work},
       {"energy_gain", summary.energy_gain},
       {"lowest_y", summary.lowest_y},
       {"state_hash", fmt::format("{:016x}", summary.state_hash)},
@@ -171,8 +172,10 @@ std::string to_table(const RunReport& report) {
       fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {}, {}",
                   summary.iterations_per_step(), mean(summary.direction_updates, summary.frames),
                   counted(summary.visits, "visit"), counted(summary.corrections, "correction")));
-  row("energy", fmt::format("{:.6g} J to {:.6g} J, largest gain {:.3g} J", summary.energy_start,
-                            summary.energy_end, summary.energy_gain));
+  const auto by_pins =
+      summary.pin_work != 0 ? fmt::format(", {:.6g} J by moved pins", summary.pin_work) : "";
+  row("energy", fmt::format("{:.6g} J to {:.6g} J{}, largest gain {:.3g} J", summary.energy_start,
+                            summary.energy_end, by_pins, summary.energy_gain));
   row("state", fmt::format("{:016x}, lowest y {:.6g} m", summary.state_hash, summary.lowest_y));
   return text;
 }

@@ -54,6 +54,7 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.corrections += report.corrections;
   summary.scheme_fallbacks += report.scheme_fallbacks;
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
+  summary.pin_work += report.pin_work;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     summary.stage_seconds[stage] += report.stage_seconds[stage];
   }
@@ -72,7 +73,7 @@ void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth) {
   errors.square_strain_sum += strain.rms * strain.rms;
   summary.max_penetration = std::max(summary.max_penetration, cloth.max_penetration());
   summary.lowest_y = std::min(summary.lowest_y, lowest_y(cloth));
-  const double gain = cloth.energy().total() - summary.energy_start;
+  const double gain = cloth.energy().total() - summary.energy_start - summary.pin_work;
   summary.energy_gain = summary.frames == 1 ? gain : std::max(summary.energy_gain, gain);
 }
 

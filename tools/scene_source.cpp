@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/irregular_mesh.h"
 #include "engine/scenes.h"
 #include "tools/file_ending.h"
 #include "tools/obj_mesh.h"
@@ -31,7 +32,10 @@ bool is_built_in(std::string_view name) {
 constexpr std::string_view kBuiltIn = "built-in scenes";
 constexpr std::string_view kSphereDrop = "sphere_drop";
 constexpr std::string_view kChain = "chain";
+constexpr std::string_view kCape = "cape";
+constexpr std::string_view kGrids = "built-in grids";
 constexpr std::string_view kObj = ".obj meshes";
+constexpr std::string_view kMeshes = ".obj meshes and cape";
 
 /// Refuses what was given but belongs to another kind of scene.
 Result<void> check_options(const SceneOptions& options, std::span<const std::string_view> kinds) {
@@ -48,7 +52,8 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--pin", options.pin.has_value(), kObj},
       {"--mass", options.mass.has_value(), kObj},
       {"--scale", options.scale.has_value(), kObj},
-      {"--ropes", options.ropes, kObj},
+      {"--ropes", options.ropes, kMeshes},
+      {"--diagonals", options.diagonals, kGrids},
   };
   for (const Given& given : all) {
     if (!given.is_given || std::ranges::find(kinds, given.kind) != kinds.end()) continue;
@@ -58,8 +63,18 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
   return {};
 }
 
+bool is_grid(std::string_view name) { return name != kCape && name != kChain; }
+
+Mesh mesh_of(std::string_view name, int size, const SceneDescription& scene) {
+  if (name == kChain) return line_mesh(scene);
+  if (name == kCape) return face_mesh(scene, scenes::irregular_mesh(size).faces);
+  return grid_mesh(scene, static_cast<std::uint32_t>(size));
+}
+
 Result<SceneSource> load_built_in(const SceneOptions& options) {
-  const std::string_view kinds[] = {kBuiltIn, options.scene};
+  const std::string_view of_cells = is_grid(options.scene) ? kGrids : options.scene;
+  const std::string_view of_ropes = options.scene == kCape ? kMeshes : options.scene;
+  const std::string_view kinds[] = {kBuiltIn, options.scene, of_cells, of_ropes};
   if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
   scenes::Options values;
   if (options.scene == "corners") values.size = kDefaultCornersSize;
@@ -67,10 +82,11 @@ Result<SceneSource> load_built_in(const SceneOptions& options) {
   values.slack = options.slack.value_or(values.slack);
   values.sphere_mass = options.sphere_mass.value_or(values.sphere_mass);
   values.end_mass = options.end_mass.value_or(values.end_mass);
+  values.diagonals = options.diagonals;
+  values.ropes = options.ropes;
   auto scene = scenes::make(options.scene, values);
   if (!scene) return Error{scene.error()};
-  const auto size = static_cast<std::uint32_t>(values.size);
-  Mesh mesh = options.scene == "chain" ? line_mesh(scene.value()) : grid_mesh(scene.value(), size);
+  Mesh mesh = mesh_of(options.scene, values.size, scene.value());
   return SceneSource{options.scene, std::move(scene.value()), std::move(mesh)};
 }
 
@@ -83,7 +99,7 @@ Result<SceneSource> load_scene_file(const SceneOptions& options) {
 }
 
 Result<SceneSource> load_obj(const SceneOptions& options) {
-  const std::string_view kinds[] = {kObj};
+  const std::string_view kinds[] = {kObj, kMeshes};
   if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
   ObjOptions values;
   values.pin = options.pin.value_or(values.pin);
@@ -111,7 +127,10 @@ void add_scene_options(Verb verb, SceneOptions& options) {
               "coordinates like 'y>0.9' or 'x<=-1', or vertex numbers from 0 like 0,5,7-9");
   verb.option("--mass", options.mass, ".obj: kg of the whole mesh (default 1)");
   verb.option("--scale", options.scale, ".obj: multiplies all coordinates (default 1)");
-  verb.flag("--ropes", options.ropes, ".obj: both diagonals of four-sided faces become ropes");
+  verb.flag("--ropes", options.ropes,
+            ".obj: both diagonals of four-sided faces become ropes; cape: all edges do");
+  verb.flag("--diagonals", options.diagonals,
+            "built-in scenes but cape and chain: both diagonals of every cell become ropes");
 }
 
 Result<SceneSource> load_scene(const SceneOptions& options) {

@@ -22,6 +22,7 @@ struct SceneOptions {
   std::optional<double> mass;
   std::optional<double> scale;
   bool ropes = false;
+  bool diagonals = false;
 };
 
 void add_scene_options(Verb verb, SceneOptions& options);

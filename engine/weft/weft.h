@@ -334,8 +334,12 @@ struct StepReport {
   double rms_strain = 0;
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
   double max_penetration = 0;                 ///< m, 0 without contacts
-  std::uint32_t failed_particle = kNoIndex;   ///< non_finite, non_finite_input: one of those
-  std::uint32_t passed_particle = kNoIndex;   ///< passed_through: one that did
+  double pin_work = 0;  ///< J, work that moved pins did in this step: exact where they move as one
+                        ///< rigid body, else that of the rigid motion nearest to theirs. Jumps do
+                        ///< none. Impulses of fixed spheres count as if they were the pins' own;
+                        ///< what moved spheres do is not in it.
+  std::uint32_t failed_particle = kNoIndex;  ///< non_finite, non_finite_input: one of those
+  std::uint32_t passed_particle = kNoIndex;  ///< passed_through: one that did
   std::array<double, kStageCount> stage_seconds{};
 };
 

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <string>
 
+#include "engine/irregular_mesh.h"
+#include "perf/meshes.h"
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
@@ -37,7 +39,14 @@ TEST_CASE("the list names what make() makes") {
     CHECK(!scene.summary.empty());
     names += std::string(scene.name) + " ";
   }
-  CHECK(names == "hang hang_sphere sphere_drop corners banner chain ");
+  CHECK(names == "hang hang_sphere sphere_drop corners banner four_pins cape chain ");
+}
+
+void check_at_rest(const SceneDescription& scene) {
+  for (const Constraint& c : scene.constraints) {
+    const double l = distance(scene.positions[c.a], scene.positions[c.b]);
+    REQUIRE(std::abs(l - c.rest_length) < 1e-12 * c.rest_length);
+  }
 }
 
 TEST_CASE("every edge of every scene starts at its rest length, and every model builds") {
@@ -46,12 +55,11 @@ TEST_CASE("every edge of every scene starts at its rest length, and every model 
       CAPTURE(std::string(scene.name));
       CAPTURE(size);
       const SceneDescription description = made(scene.name, {.size = size});
+      check_at_rest(description);
       const double rest = scene.name == "chain" ? 0.01 : 1.0 / (size - 1);
       for (const Constraint& c : description.constraints) {
-        REQUIRE(c.rest_length == rest);
+        REQUIRE((c.rest_length == rest || scene.name == "cape"));
         REQUIRE(c.kind == ConstraintKind::distance);
-        const double l = distance(description.positions[c.a], description.positions[c.b]);
-        REQUIRE(std::abs(l - rest) < 1e-12 * rest);
       }
       CHECK(description.velocities.empty());
       CHECK(description.gravity.y == -10);
@@ -149,6 +157,108 @@ TEST_CASE("banner: upright, hung from two corners at its own width") {
   CHECK(cloth_mass(scene, 4) == doctest::Approx(1).epsilon(1e-12));
 }
 
+TEST_CASE("four_pins: a level sheet of 1 kg between its corners") {
+  for (const int n : {3, 6}) {
+    CAPTURE(n);
+    const SceneDescription scene = made("four_pins", {.size = n});
+    const auto last = static_cast<std::uint32_t>(n - 1), row = static_cast<std::uint32_t>(n);
+    CHECK(scene.fixed == std::vector<std::uint32_t>{0, last, last * row, last * row + last});
+    CHECK(scene.constraints.size() == edges(n, 0));
+    CHECK(distance(scene.positions[last], {0, 0, 1}) == 0);
+    CHECK(distance(scene.positions[last * row], {1, 0, 0}) == 0);
+    CHECK(distance(scene.positions[last * row + last], {1, 0, 1}) == 0);
+    CHECK(distance(scene.positions[row + 1], {1.0 / (n - 1), 0, 1.0 / (n - 1)}) < 1e-15);
+    CHECK(cloth_mass(scene, n) == doctest::Approx(1).epsilon(1e-12));
+    CHECK(scene.spheres.empty());
+  }
+}
+
+TEST_CASE(
+    "diagonals: two ropes in every cell of every grid, at rest, beside the edges as they were") {
+  for (const std::string_view name :
+       {"hang", "hang_sphere", "sphere_drop", "corners", "banner", "four_pins"}) {
+    for (const int size : {3, 21}) {
+      CAPTURE(std::string(name));
+      CAPTURE(size);
+      const SceneDescription plain = made(name, {.size = size});
+      const SceneDescription scene = made(name, {.size = size, .diagonals = true});
+      check_at_rest(scene);
+      const auto cells = static_cast<std::size_t>((size - 1) * (size - 1));
+      const std::size_t first = plain.constraints.size();
+      REQUIRE(scene.constraints.size() == first + 2 * cells);
+      for (std::size_t i = 0; i < scene.constraints.size(); ++i) {
+        const Constraint c = scene.constraints[i];
+        const bool is_rope = c.kind == ConstraintKind::rope;
+        REQUIRE(is_rope == (i >= first));
+        if (is_rope) REQUIRE(c.rest_length == std::sqrt(2.0) * (1.0 / (size - 1)));
+      }
+      CHECK(scene.positions.size() == plain.positions.size());
+      CHECK(scene.fixed == plain.fixed);
+      CHECK(describe(*model_of(scene)).inert_constraints == 0);  // nor twice between any two
+    }
+  }
+}
+
+TEST_CASE("of diagonals those between two fixed particles are left out") {
+  const SceneDescription smallest = made("hang", {.size = 2, .diagonals = true});
+  CHECK(smallest.constraints.size() == 3 + 2);
+}
+
+TEST_CASE("cape: the mesh of the benchmarks, without what joins fixed particles") {
+  constexpr int kSize = 120;
+  const SceneDescription whole = perf::irregular(kSize);
+  const SceneDescription scene = made("cape", {.size = kSize});
+  REQUIRE(scene.positions.size() == 14'400);
+  CHECK(whole.constraints.size() == 41'088);
+  CHECK(largest_distance(scene.positions, whole.positions) == 0);
+  CHECK(scene.masses == std::vector<double>(14'400, 1.0 / 14'400));
+  CHECK(scene.fixed.size() == 210);
+  std::vector<bool> is_fixed(scene.positions.size(), false);
+  for (const std::uint32_t particle : scene.fixed) is_fixed[particle] = true;
+  for (std::size_t i = 0; i < scene.positions.size(); ++i) {
+    REQUIRE(is_fixed[i] == (scene.positions[i].x < 0.01));
+  }
+  std::size_t next = 0;
+  for (const Constraint& c : whole.constraints) {
+    if (is_fixed[c.a] && is_fixed[c.b]) continue;
+    REQUIRE(next < scene.constraints.size());
+    const Constraint found = scene.constraints[next++];
+    REQUIRE((found.a == c.a && found.b == c.b && found.rest_length == c.rest_length));
+    REQUIRE(found.kind == ConstraintKind::distance);
+  }
+  CHECK(next == scene.constraints.size());
+  CHECK(next < whole.constraints.size());
+}
+
+TEST_CASE("cape: its edges may be ropes, of the same lengths") {
+  const SceneDescription bars = made("cape", {.size = 20});
+  const SceneDescription ropes = made("cape", {.size = 20, .ropes = true});
+  REQUIRE(ropes.constraints.size() == bars.constraints.size());
+  for (std::size_t i = 0; i < ropes.constraints.size(); ++i) {
+    REQUIRE(ropes.constraints[i].kind == ConstraintKind::rope);
+    REQUIRE(ropes.constraints[i].rest_length == bars.constraints[i].rest_length);
+  }
+  check_at_rest(ropes);
+}
+
+TEST_CASE("the irregular mesh joins neighbours of a grid, and leaves some cells open") {
+  const scenes::IrregularMesh mesh = scenes::irregular_mesh(30);
+  std::size_t triangles = 0, quads = 0;
+  for (const scenes::Face& face : mesh.faces) {
+    (face.size() == 3 ? triangles : quads) += 1;
+    REQUIRE((face.size() == 3 || face.size() == 4));
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Vec3 a = mesh.points[face[k]], b = mesh.points[face[(k + 1) % face.size()]];
+      REQUIRE(distance(a, b) < 1.6 * std::sqrt(2.0) / 29);
+    }
+  }
+  constexpr double kCells = 29 * 29;
+  CHECK(static_cast<double>(quads) == doctest::Approx(0.1 * kCells).epsilon(0.3));
+  CHECK(static_cast<double>(triangles) == doctest::Approx(2 * 0.88 * kCells).epsilon(0.05));
+  CHECK(mesh.first_row.size() == 30);
+  for (const std::uint32_t point : mesh.first_row) CHECK(std::abs(mesh.points[point].x) < 0.3 / 29);
+}
+
 TEST_CASE("chain: a level line with a heavy end") {
   const SceneDescription scene = made("chain", {.size = 20, .end_mass = 1e6});
   CHECK(scene.positions.size() == 20);
@@ -179,6 +289,8 @@ TEST_CASE("options out of range are refused by name and value") {
   check_refused("corners", {.size = 1}, "size", "1");
   check_refused("corners", {.size = 20}, "size", "20");
   check_refused("banner", {.size = 2}, "size", "2");
+  check_refused("four_pins", {.size = 2}, "size", "2");
+  check_refused("cape", {.size = 2}, "size", "2");
   check_refused("chain", {.size = 1}, "size", "1");
   check_refused("chain", {.end_mass = 0}, "end_mass", "0");
   check_refused("chain", {.end_mass = kNan}, "end_mass", "nan");

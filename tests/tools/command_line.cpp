@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/irregular_mesh.h"
 #include "engine/scenes.h"
 #include "temporary_folder.h"
 #include "tools/scene_file.h"
@@ -123,6 +124,11 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
       {"run hang --solver magic", "--solver: 'magic'"},
       {"run hang --pin top", "--pin"},
       {"run hang --slack 0.1", "--slack"},
+      {"run hang --ropes", "--ropes: only for .obj meshes and cape, not for 'hang'"},
+      {"run chain --diagonals", "--diagonals: only for built-in grids, not for 'chain'"},
+      {"run cape --diagonals", "--diagonals: only for built-in grids, not for 'cape'"},
+      {"run none.obj --diagonals", "--diagonals: only for built-in grids, not for 'none.obj'"},
+      {"run none.json --diagonals", "--diagonals: only for built-in grids, not for 'none.json'"},
       {"run hang --out a.txt", "'a.txt'"},
       {"run hang --out ''", "--out: '' names nothing"},
       {"run hang --out missing/a.obj", "'missing/a.obj'"},
@@ -472,6 +478,19 @@ TEST_CASE("a mesh is pinned, run and saved with its numbering") {
   CHECK(folder.read("motion.pc2").size() == 32 + 4 * 5 * 12);
 }
 
+TEST_CASE("a cape is saved with its faces") {
+  const TemporaryFolder folder;
+  const std::string last = folder.file("last.obj");
+  CHECK(run_program(folder, "run cape --size 9 --steps 3 --out " + last).exit_code == 0);
+  std::string faces;
+  for (const scenes::Face& face : scenes::irregular_mesh(9).faces) {
+    faces += 'f';
+    for (const std::uint32_t corner : face) faces += ' ' + std::to_string(corner + 1);
+    faces += '\n';
+  }
+  CHECK(folder.read("last.obj").ends_with('\n' + faces));
+}
+
 TEST_CASE("what is asked of a mesh is what is read") {
   const TemporaryFolder folder;
   const std::string arguments = "scene " + folder.write("square.obj", kSquare) +
@@ -498,6 +517,10 @@ TEST_CASE("what is asked of a built-in scene is what is made") {
                  {"corners", "", {.size = 21}},
                  {"sphere_drop", "--size 5 --slack 0.2", {.size = 5, .slack = 0.2}},
                  {"sphere_drop", "--sphere-mass 7", {.sphere_mass = 7}},
+                 {"four_pins", "--diagonals --size 5", {.size = 5, .diagonals = true}},
+                 {"corners", "--diagonals", {.size = 21, .diagonals = true}},
+                 {"cape", "", {.size = 20}},
+                 {"cape", "--ropes --size 9", {.size = 9, .ropes = true}},
                  {"chain", "--end-mass 9", {.end_mass = 9}}};
   for (const auto& asked : kScenes) {
     CAPTURE(asked.arguments);

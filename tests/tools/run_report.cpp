@@ -40,6 +40,7 @@ RunReport report() {
   summary.max_penetration = 0.75;
   summary.energy_start = -1.5;
   summary.energy_end = -2.5;
+  summary.pin_work = 0.875;
   summary.energy_gain = 0.25;
   summary.lowest_y = -0.375;
   summary.state_hash = 0x0123456789abcdef;
@@ -62,8 +63,8 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
     "max_penetration": 0.75, "max_contacts": 19,
     "iterations_per_step": 5, "velocity_iterations_per_step": 3, "direction_updates_per_step": 9,
     "visits": 101, "corrections": 103, "ns_per_constraint_iteration": 3125000,
-    "energy_start": -1.5, "energy_end": -2.5, "energy_gain": 0.25, "lowest_y": -0.375,
-    "state_hash": "0123456789abcdef", "bytes_per_particle": 100,
+    "energy_start": -1.5, "energy_end": -2.5, "pin_work": 0.875, "energy_gain": 0.25,
+    "lowest_y": -0.375, "state_hash": "0123456789abcdef", "bytes_per_particle": 100,
     "stages": {"predict": 31.25, "find_contacts": 93.75, "solve_positions": 156.25,
                "commit": 218.75, "correct_velocities": 281.25, "report": 343.75}})");
   const Json actual = to_json(report());
@@ -90,8 +91,14 @@ TEST_CASE("the table has every figure too") {
         "strain    max 12.5 %, mean of the frames' max 3.12 %, rms 1.56 %\n"
         "contacts  0.75 m deepest penetration\n"
         "work      5 iterations and 9 direction updates per step, 101 visits, 103 corrections\n"
-        "energy    -1.5 J to -2.5 J, largest gain 0.25 J\n"
+        "energy    -1.5 J to -2.5 J, 0.875 J by moved pins, largest gain 0.25 J\n"
         "state     0123456789abcdef, lowest y -0.375 m\n");
+}
+
+TEST_CASE("a table tells of the work of pins where they did some") {
+  RunReport at_rest = report();
+  at_rest.summary.pin_work = 0;
+  CHECK(to_table(at_rest).find("J to -2.5 J, largest gain 0.25 J\n") != std::string::npos);
 }
 
 TEST_CASE("factors have three digits, and all of those before the point") {
