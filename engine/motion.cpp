@@ -91,4 +91,13 @@ kernels::Kicks measure_kicks(State& s, double h, Team& team) {
   return sum(s.kicks);
 }
 
+kernels::Kicks measure_energy_change(State& s, Team& team) {
+  if (s.reference) return measure_kicks(s, 1, team);
+  const simd::Motion motion = simd_motion(s);
+  team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    s.kicks[first / kStretch] = s.kernels->measure_energy_change(motion, first, last);
+  });
+  return sum(s.kicks);
+}
+
 }  // namespace weft

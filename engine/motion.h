@@ -17,5 +17,7 @@ bool commit(State& s, double h, Team& team);
 bool commit(State& s, double h, kernels::Kicks& kicks, Team& team);
 /// What the impulses of a substep did (engine/rattle.h, engine/energy.h).
 kernels::Kicks measure_kicks(State& s, double h, Team& team);
+/// Gain and energy alone, of a whole step.
+kernels::Kicks measure_energy_change(State& s, Team& team);
 
 }  // namespace weft

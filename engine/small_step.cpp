@@ -52,6 +52,13 @@ class Frame {
         team_(team),
         edges_(static_cast<std::int64_t>(s.model->constraints.size())) {}
 
+  void begin(double h) {
+    const kernels::VectorsView force =
+        s_.force.size() > 0 ? s_.force.view() : kernels::VectorsView{};
+    if (s_.model->has_contacts()) s_.substep_start = s_.position;
+    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, h, team_);
+  }
+
   void substep() {
     solver_.advance(team_);
     const int sweeps = std::max(1, s_.settings.iterations);
@@ -69,23 +76,26 @@ class Frame {
 
   /// What the last substep left out of tolerance. Returns whether all of it is within.
   bool finish() {
-    if (s_.settings.iterations > 0) return true;
     read_positions();
+    if (s_.settings.iterations > 0) return true;
     for (int round = 0; round < kRounds; ++round) {
-      if (within_tolerance()) return true;
+      if (is_within_tolerance()) return true;
       count(solver_.repair_everywhere(s_.contacts, most_visits(tuning::kMostLastVisits)));
       read_positions();
     }
-    return within_tolerance();
+    return is_within_tolerance();
   }
 
-  /// The new state, in solved and next_velocity.
-  void read() {
+  void read_velocities() {
     solver_.settle(team_);
-    read_positions();
-    for (auto* axis : {&s_.next_velocity.x, &s_.next_velocity.y, &s_.next_velocity.z})
-      std::ranges::fill(*axis, 0.0);
     solver_.read_velocities(s_.next_velocity.view(), team_);
+  }
+
+  /// Of what is solved, into the report.
+  bool is_within_tolerance() {
+    timed(report_, Stage::report, [&] { report_errors(s_, s_.solved, report_, team_); });
+    return report_.max_strain <= s_.settings.tolerance &&
+           report_.max_penetration <= s_.settings.contact_tolerance;
   }
 
  private:
@@ -103,10 +113,7 @@ class Frame {
   void read_positions() {
     s_.solved = s_.position;
     solver_.read_positions(s_.solved.view(), team_);
-  }
-  bool within_tolerance() {
-    return max_strain_at(s_, s_.solved, team_) <= s_.settings.tolerance &&
-           penetration_at(s_, s_.solved) <= s_.settings.contact_tolerance;
+    s_.pins.place(s_.solved);
   }
   void find_contacts() {
     read_positions();
@@ -130,19 +137,28 @@ class Frame {
   const std::int64_t edges_;
 };
 
-/// What local passes could not bring within tolerance, with a number of substeps that nobody asked
-/// for: the paper's sweeps, which change positions alone.
-void project_solved(State& s, double dt, StepReport& report, Team& team) {
-  const int left = s.settings.max_iterations - static_cast<int>(report.iterations);
-  if (left <= 0) return worsen(report, Status::iteration_limit);
-  const Attempt attempt{.h = dt, .most_iterations = left, .on_failure = OnFailure::sweep};
+/// What local passes could not bring within tolerance is left to the paper's sweeps, which change
+/// positions alone, unless the number of substeps, and so the work, was given.
+void answer_miss(State& s, Frame& frame, double dt, StepReport& report, Team& team) {
+  const std::int64_t left = s.settings.max_iterations - report.iterations;
+  if (s.settings.substeps != kAutomaticSubsteps || left <= 0)
+    return worsen(report, Status::iteration_limit);
+  const Attempt attempt{
+      .h = dt,
+      .most_iterations = static_cast<int>(std::min<std::int64_t>(left, tuning::kMostLastSweeps)),
+      .on_failure = OnFailure::sweep};
   worsen(report, solve_positions(s, attempt, report, team).status);
+  frame.is_within_tolerance();
 }
 
-/// A frame gains no energy but what forces and pins bring in.
-void guard_energy(State& s, double dt, StepReport& report, Team& team) {
-  take_gained_energy(s, measure_kicks(s, dt, team), dt);
+/// A frame gains no energy but what forces and pins bring in. Returns whether it ends in numbers: a
+/// position is none only where the velocity is none.
+bool guard_energy(State& s, double dt, StepReport& report, Team& team) {
+  const kernels::Kicks kicks = measure_energy_change(s, team);
+  if (!std::isfinite(kicks.energy)) return false;
+  if (s.settings.iterations == 0) take_gained_energy(s, kicks, dt);
   if (s.pins.moving()) report.pin_work = work_of(motion_of_pins(s, dt), s, dt);
+  return true;
 }
 
 }  // namespace
@@ -157,36 +173,29 @@ bool run_small_steps(State& s, double dt, bool jumped, StepReport& report, Team&
   int substeps = 1;
   timed(report, Stage::predict, [&] {
     substeps = substeps_of(s, dt);
-    const kernels::VectorsView force = s.force.size() > 0 ? s.force.view() : kernels::VectorsView{};
-    if (s.model->has_contacts()) s.substep_start = s.position;
-    s.small_steps->begin(s.position.view(), s.velocity.view(), s.gravity, force, dt / substeps,
-                         team);
+    frame.begin(dt / substeps);
   });
   bool within = true;
   timed(report, Stage::solve_positions, [&] {
     for (int i = 0; i < substeps; ++i) frame.substep();
-    within = frame.finish();
   });
+  timed(report, Stage::commit, [&] { within = frame.finish(); });
   bool finite = true;
   timed(report, Stage::commit, [&] {
-    frame.read();
-    finite = all_finite(s.solved) && all_finite(s.next_velocity);
+    frame.read_velocities();
+    finite = guard_energy(s, dt, report, team);
   });
   if (!finite) {
     explain(s, dt, report, team);
     return false;
   }
-  if (!within) {
-    if (s.settings.substeps == kAutomaticSubsteps)
-      project_solved(s, dt, report, team);
-    else
-      worsen(report, Status::iteration_limit);
+  if (s.settings.iterations > 0) {
+    worsen(report, Status::fixed_iterations);
+    frame.is_within_tolerance();
+  } else if (!within) {
+    answer_miss(s, frame, dt, report, team);
   }
   timed(report, Stage::commit, [&] {
-    if (s.settings.iterations > 0)
-      worsen(report, Status::fixed_iterations);
-    else
-      guard_energy(s, dt, report, team);
     s.small_steps->keep(team);
     transaction.accept();
     transaction.complete();

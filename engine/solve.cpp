@@ -22,6 +22,15 @@ double penetration_at(State& s, kernels::Vectors& x) {
   return max_penetration(*s.model, *s.kernels, x.view(), s.contacts);
 }
 
+void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team) {
+  const Strain strain = strain_at(s, x, team);
+  report.max_strain = strain.max;
+  report.rms_strain = strain.rms;
+  report.worst_constraint = strain.worst_constraint;
+  report.contacts = static_cast<int>(s.contacts.count());
+  report.max_penetration = penetration_at(s, x);
+}
+
 namespace {
 
 using From = DirectSolver::From;

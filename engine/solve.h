@@ -57,5 +57,7 @@ Status correct_velocities(State& s, const Attempt& attempt, StepReport& report, 
 Strain strain_at(State& s, kernels::Vectors& x, Team& team);
 double max_strain_at(State& s, kernels::Vectors& x, Team& team);
 double penetration_at(State& s, kernels::Vectors& x);
+/// All of them, for the report.
+void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team);
 
 }  // namespace weft

@@ -18,7 +18,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   next_velocity.resize(model->slots());
   start_position.resize(model->slots());
   start_velocity.resize(model->slots());
-  if (settings.iterations == 0) kicks.resize((model->slots() + kStretch - 1) / kStretch);
+  kicks.resize((model->slots() + kStretch - 1) / kStretch);
   contacts = make_contact_store(*model);
   if (settings.backend == Backend::reference) {
     predicted.resize(model->slots());

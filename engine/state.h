@@ -51,7 +51,7 @@ struct State {
   bool placed = true;  // positions were given, not stepped to: they may violate constraints
   double last_dt = 0;  // of the last step; 0: none yet, or it did not converge
 
-  std::vector<kernels::Kicks> kicks;  // per stretch of slots; none if no step is watched
+  std::vector<kernels::Kicks> kicks;  // per stretch of slots
 
   // The one of the chosen backend.
   std::optional<ReferenceSolver> reference;

@@ -11,15 +11,6 @@
 namespace weft {
 namespace {
 
-void report_errors(State& s, StepReport& report, Team& team) {
-  const Strain strain = strain_at(s, s.position, team);
-  report.max_strain = strain.max;
-  report.rms_strain = strain.rms;
-  report.worst_constraint = strain.worst_constraint;
-  report.contacts = static_cast<int>(s.contacts.count());
-  report.max_penetration = penetration_at(s, s.position);
-}
-
 /// Below this a thread has too little to do between two meetings: two gained nothing at 1,600
 /// particles and 1.7 times at 10,000.
 constexpr std::size_t kLeastSlotsPerThread = 1000;
@@ -54,12 +45,15 @@ class Travel {
 StepReport step(State& s, double dt) {
   StepReport report;
   Team team(threads_worth_having(s), s.meeting);
+  bool done = false;
   {
     Travel travel(s, dt);
     const auto run = s.small_steps ? run_small_steps : run_substeps;
-    if (run(s, dt, travel.jumped(), report, team)) travel.arrive();
+    done = run(s, dt, travel.jumped(), report, team);
+    if (done) travel.arrive();
   }
-  timed(report, Stage::report, [&] { report_errors(s, report, team); });
+  const bool reported = done && s.small_steps;
+  if (!reported) timed(report, Stage::report, [&] { report_errors(s, s.position, report, team); });
   return report;
 }
 

@@ -26,4 +26,8 @@ inline constexpr int kRenewal = 16;
 /// Visits of local passes, of the constraints: in a substep, and when a frame ends.
 inline constexpr std::int64_t kMostVisits = 1, kMostLastVisits = 64;
 
+/// Sweeps that answer where a frame of automatic substeps misses its tolerance all the same: as
+/// many as it takes to tell contradictions from what converges slowly.
+inline constexpr int kMostLastSweeps = 32768;
+
 }  // namespace weft::tuning

@@ -315,7 +315,6 @@ void SmallStepsSolver::start_again(std::uint32_t slot) {
 
 void SmallStepsSolver::settle(Team& team) {
   start_again();
-  std::ranges::fill(rounded_, 0.f);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     table_.settle(flight(), weights_.rate, first, last);
   });
@@ -330,7 +329,7 @@ void SmallStepsSolver::read_positions(kernels::VectorsView x, Team& team) const 
 
 void SmallStepsSolver::read_velocities(kernels::VectorsView v, Team& team) const {
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
-    layout_.places().join(table_, v, first, last, v_.data(), rounded_.data());
+    layout_.places().widen(table_, v, first, last, v_.data());
   });
 }
 

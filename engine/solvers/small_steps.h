@@ -54,7 +54,7 @@ class SmallStepsSolver {
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits);
   /// Where the particles are; x: where they were when the frame began.
   void read_positions(kernels::VectorsView x, Team& team) const;
-  /// After the last substep; v: 0.
+  /// After the last substep.
   void settle(Team& team);
   void read_velocities(kernels::VectorsView v, Team& team) const;
   /// The frame becomes the past of the next one. Without this the one before stays.

@@ -66,6 +66,20 @@ void YarnPlaces::join(const simd::Table& table, kernels::VectorsView x, std::siz
   }
 }
 
+void YarnPlaces::widen(const simd::Table& table, kernels::VectorsView x, std::size_t first,
+                       std::size_t last, const float* from) const {
+  if (!woven()) return table.widen_quads(x, first, last, from);
+  const auto woven = between(rows, slot_of_row, first, last);
+  table.widen_rows(x, woven.data(), woven.size(), from);
+  for (const Loose& one : between(loose, slot_of_loose, first, last)) {
+    std::size_t at = one.place;
+    for (double* axis : {x.x, x.y, x.z}) {
+      axis[one.slot] = static_cast<double>(from[at]);
+      at += stride;
+    }
+  }
+}
+
 void YarnPlaces::clear(float* u) const {
   for (const std::uint32_t row : loose_rows) std::fill_n(u + row, simd::kRowFloats, 0.f);
   std::fill(u + padding, u + floats, 0.f);

@@ -32,6 +32,9 @@ struct YarnPlaces {
              std::size_t last, float* base, float* u) const;
   void join(const simd::Table& table, kernels::VectorsView x, std::size_t first, std::size_t last,
             const float* base, const float* u) const;
+  /// x = from, likewise.
+  void widen(const simd::Table& table, kernels::VectorsView x, std::size_t first, std::size_t last,
+             const float* from) const;
   /// Clears what split() does not write, all that is nobody's: a step that left the range of
   /// numbers may have reached it.
   void clear(float* u) const;

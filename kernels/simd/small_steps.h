@@ -12,6 +12,7 @@
 /// and with c = 0, b = 1 the implicit Euler method.
 #pragma once
 
+#include "kernels/simd/integrate.h"
 #include "kernels/simd/quads.h"
 #include "kernels/simd/split.h"
 
@@ -78,6 +79,37 @@ void keep_past(const Flight& flight, const Past& past, std::size_t first, std::s
         load(f.v_before + i).store_unaligned(p.v_before + i);
         (load(f.u + i) - load(f.u_before + i)).store_unaligned(p.moved + i);
       });
+}
+
+/// Summed in kLanes columns, whatever the width of a vector.
+kernels::Kicks measure_energy_change(const Motion& m, std::size_t first, std::size_t last) {
+  constexpr std::size_t kVectors = kernels::kLanes / kDoubles;
+  const Doubles two(2.), zero(0.);
+  Doubles gain[kVectors], energy[kVectors];
+  for (std::size_t k = 0; k < kVectors; ++k) gain[k] = energy[k] = zero;
+  for (std::size_t block = first; block < last; block += kernels::kLanes) {
+#pragma GCC unroll 8
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      const std::size_t i = block + k * kDoubles;
+      const Doubles mass = xsimd::select(load(m.inverse_mass + i) > zero, load(m.mass + i), zero);
+      DoubleVector v = load(m.velocity, i), next = load(m.next_velocity, i);
+      DoubleVector way = load(m.solved, i) - load(m.position, i);
+      const Doubles square = dot(next, next);
+      gain[k] = fused(mass, square - dot(v, v) - two * dot(acceleration(m, i), way), gain[k]);
+      energy[k] = fused(mass, square, energy[k]);
+    }
+  }
+  alignas(64) double gains[kernels::kLanes], energies[kernels::kLanes];
+  for (std::size_t k = 0; k < kVectors; ++k) {
+    gain[k].store_aligned(gains + k * kDoubles);
+    energy[k].store_aligned(energies + k * kDoubles);
+  }
+  kernels::Kicks sum;
+  for (std::size_t k = 0; k < kernels::kLanes; ++k) {
+    sum.gain += gains[k];
+    sum.energy += energies[k];
+  }
+  return sum;
 }
 
 /// Whole cells of u go into the base, which stays a whole number of them.

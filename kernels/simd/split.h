@@ -209,6 +209,33 @@ void join_rows(kernels::VectorsView x, const WovenRow* rows, std::size_t count, 
   }
 }
 
+void widen_quads(kernels::VectorsView x, std::size_t first, std::size_t last, const float* from) {
+  QuadsInRow at;
+  const auto put = [](double* to, Floats f) {
+    widen_first(f).store_unaligned(to);
+    widen_second(f).store_unaligned(to + kDoubles);
+  };
+  for (std::size_t i = first; i < last; i += kFloats) {
+    FloatVector v = at.get(from + 4 * i);
+    put(x.x + i, v.x);
+    put(x.y + i, v.y);
+    put(x.z + i, v.z);
+  }
+}
+
+void widen_rows(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
+                const float* from) {
+  for (const WovenRow* row = rows; row < rows + count; ++row) {
+    for_lanes(
+        *row, [&](const auto& lanes, std::size_t place) __attribute__((always_inline)) {
+          for (double* axis : {x.x, x.y, x.z}) {
+            lanes.put(axis, load_component(from + place));
+            place += kernels::kLanes;
+          }
+        });
+  }
+}
+
 }  // namespace
 }  // namespace WEFT_LANES
 }  // namespace weft::simd

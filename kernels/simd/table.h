@@ -358,6 +358,11 @@ struct Table {
                      float* base, float* u);
   void (*join_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
                     const float* base, const float* u);
+  /// x = from, in either layout.
+  void (*widen_quads)(kernels::VectorsView x, std::size_t first, std::size_t last,
+                      const float* from);
+  void (*widen_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
+                     const float* from);
   // Of yarns. scratch: one row more than the block has; for patches twice that (scratch_rows()).
   /// start = the directions at base + u.
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch);
@@ -393,6 +398,9 @@ struct Table {
   /// substep.
   void (*resume)(const Flight&, const Past&, float h, std::size_t first, std::size_t last);
   void (*keep_past)(const Flight&, const Past&, std::size_t first, std::size_t last);
+  /// Gain and energy alone of the kicks, of a frame from position and velocity to solved and
+  /// next_velocity; of slots first ... last - 1.
+  kernels::Kicks (*measure_energy_change)(const Motion&, std::size_t first, std::size_t last);
   void (*renew_base)(const Flight&, float* base, float cell, std::size_t first, std::size_t last);
   // Of blocks first ... last - 1.
   void (*measure_edges)(const EdgeBlock*, EdgeSpans*, const float* base, std::size_t first,
