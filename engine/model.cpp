@@ -43,6 +43,7 @@ Model::Model(const SceneDescription& description) : particles(description.positi
   order_particles(draft);
   store_particles(draft);
   store_constraints(draft);
+  find_holds();
   for (const std::uint32_t s : spheres) {
     if (inverse_mass[s] > 0) heaviest_sphere = std::max(heaviest_sphere, 1 / inverse_mass[s]);
   }
@@ -83,6 +84,7 @@ void Model::store_particles(const Draft& draft) {
     mass[slot] = d.masses[i];
     inverse_mass[slot] = draft.fixed[i] ? 0 : 1 / d.masses[i];
     if (!radius.empty()) radius[slot] = d.radii[i];
+    if (draft.fixed[i]) pins.push_back(slot);
     hub[slot] = draft.hub[i];
     if (hub[slot]) hubs.push_back(slot);
   }
@@ -101,6 +103,15 @@ void Model::store_constraints(const Draft& draft) {
   store_batches(draft, ConstraintKind::rope);
   store_hubs(draft, ConstraintKind::rope);
   inert_constraints = draft.description.constraints.size() - constraints.size();
+}
+
+/// Inert constraints are not in the store: the other end is free.
+void Model::find_holds() {
+  for (const auto* ends : {&constraints.a, &constraints.b}) {
+    for (const std::uint32_t s : *ends) {
+      if (inverse_mass[s] == 0) holds.push_back(s);
+    }
+  }
 }
 
 void Model::store_batches(const Draft& draft, ConstraintKind kind) {
@@ -192,9 +203,10 @@ std::size_t ConstraintStore::bytes() const {
 std::size_t Model::bytes() const {
   return initial_position.bytes() + initial_velocity.bytes() + bytes_of(mass) +
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
-         bytes_of(spheres) + bytes_of(is_sphere) + bytes_of(joined_) + ordering.bytes() +
-         constraints.bytes() + bytes_if_made(reference_) + bytes_if_made(simd_) +
-         bytes_if_made(direct_) + bytes_if_made(yarns_) + bytes_if_made(small_steps_);
+         bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
+         bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bytes_if_made(reference_) +
+         bytes_if_made(simd_) + bytes_if_made(direct_) + bytes_if_made(yarns_) +
+         bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

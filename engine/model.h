@@ -59,6 +59,8 @@ class Model {
   kernels::AlignedVector<double> radius;              // empty without spheres
   std::vector<std::uint8_t> hub;
   std::vector<std::uint32_t> hubs;
+  std::vector<std::uint32_t> pins;      // the fixed particles
+  std::vector<std::uint32_t> holds;     // the fixed end of each constraint that has one
   std::vector<std::uint32_t> spheres;   // in ascending order
   std::vector<std::uint8_t> is_sphere;  // empty without spheres
 
@@ -88,6 +90,7 @@ class Model {
   void store_constraints(const Draft& draft);
   void store_batches(const Draft& draft, ConstraintKind kind);
   void store_hubs(const Draft& draft, ConstraintKind kind);
+  void find_holds();
   void find_joined();
   void append(const Constraint& constraint, std::uint32_t described, std::uint32_t a,
               std::uint32_t b);

@@ -1,6 +1,8 @@
 #include "engine/pin_work.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "engine/motion.h"
 
@@ -8,17 +10,6 @@ namespace weft {
 namespace {
 
 using kernels::Vector;
-
-/// work(slot) for the fixed end of each constraint: inert ones are not in the store, so that the
-/// other end is free.
-template <class Work>
-void for_each_hold(const Model& model, Work&& work) {
-  for (const auto* ends : {&model.constraints.a, &model.constraints.b}) {
-    for (const std::uint32_t slot : *ends) {
-      if (model.inverse_mass[slot] == 0) work(slot);
-    }
-  }
-}
 
 /// Where a pin is halfway.
 Vector middle(const State& s, std::size_t slot, double h) {
@@ -51,18 +42,16 @@ struct Inertia {
 };
 
 bool any_under_way(const State& s) {
-  for (std::size_t slot = 0; slot < s.model->slots(); ++slot) {
-    const Vector v = s.velocity[slot];
-    if (s.model->inverse_mass[slot] == 0 && dot(v, v) > 0) return true;
-  }
-  return false;
+  return std::ranges::any_of(s.model->pins, [&](std::uint32_t pin) {
+    const Vector v = s.velocity[pin];
+    return dot(v, v) > 0;
+  });
 }
 
 double largest_stray(const PinMotion& pins, const State& s, double h) {
   double most = 0;
-  for (std::size_t slot = 0; slot < s.model->slots(); ++slot) {
-    if (!s.model->is_particle(slot) || s.model->inverse_mass[slot] != 0) continue;
-    most = std::max(most, length(s.velocity[slot] - pins.at(middle(s, slot, h))));
+  for (const std::uint32_t pin : s.model->pins) {
+    most = std::max(most, length(s.velocity[pin] - pins.at(middle(s, pin, h))));
   }
   return most;
 }
@@ -72,22 +61,22 @@ double largest_stray(const PinMotion& pins, const State& s, double h) {
 PinMotion motion_of_pins(const State& s, double h) {
   PinMotion pins;
   if (!any_under_way(s)) return pins;
-  double count = 0;
-  for_each_hold(*s.model, [&](std::uint32_t slot) {
-    count += 1;
+  const std::vector<std::uint32_t>& holds = s.model->holds;
+  for (const std::uint32_t slot : holds) {
     pins.centre = pins.centre + middle(s, slot, h);
     pins.velocity = pins.velocity + s.velocity[slot];
-  });
-  if (count > 0) {
+  }
+  if (!holds.empty()) {
+    const auto count = static_cast<double>(holds.size());
     pins.centre = (1 / count) * pins.centre;
     pins.velocity = (1 / count) * pins.velocity;
     Inertia inertia;
     Vector angular_momentum{};
-    for_each_hold(*s.model, [&](std::uint32_t slot) {
+    for (const std::uint32_t slot : holds) {
       const Vector r = middle(s, slot, h) - pins.centre;
       inertia.add(r);
       angular_momentum = angular_momentum + cross(r, s.velocity[slot] - pins.velocity);
-    });
+    }
     pins.spin = inertia.spin_of(angular_momentum);
   }
   pins.stray = largest_stray(pins, s, h);

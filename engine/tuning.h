@@ -16,6 +16,9 @@ inline constexpr double kLocalShare = 0.9;
 inline constexpr double kCompliance = 1e-3;
 /// s, the longest substep: what a sheet that hangs by yarns alone is off the true motion by.
 inline constexpr double kLongestSubstep = 0.005;
+/// Of the time in which what falls from its pins passes the length of a constraint: where a fold
+/// runs through a yarn, its constraints turn over in that time.
+inline constexpr double kPassing = 0.9;
 /// Substeps of a frame, at most.
 inline constexpr int kMostSubsteps = 1024;
 /// Constraints in a yarn, on average, from which on yarns are blocks. Random triangles have 3 or 4,

@@ -42,12 +42,13 @@ void Outputs::add_frame(const Cloth& cloth) {
   for (Pc2Writer& motion : motions_) motion.add_sample(points);
 }
 
-void Outputs::add_last(const Cloth& cloth) {
+void Outputs::add_last(const Cloth& cloth, double elapsed) {
   for (const PendingFile& mesh : meshes_) {
     mesh.write(obj_text(source_->mesh, source_->description, cloth));
   }
   for (const PendingFile& scene : scenes_) {
-    scene.write(scene_text(present_scene(source_->description, cloth)));
+    scene.write(scene_text(present_scene(source_->description, cloth),
+                           present_moves(source_->moves, source_->description, elapsed)));
   }
 }
 

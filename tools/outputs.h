@@ -20,9 +20,9 @@ class Outputs {
   /// Opens all files, so that a place that cannot be written is refused before the run. The source
   /// must outlive the outputs.
   static Result<Outputs> open(const std::vector<std::string>& paths, const SceneSource& source);
-  /// The state after one more frame, and that after the last.
+  /// The state after one more frame, and that after the last, so many seconds from the start.
   void add_frame(const Cloth& cloth);
-  void add_last(const Cloth& cloth);
+  void add_last(const Cloth& cloth, double elapsed);
   /// Completes all files; until then none of them is under its name.
   Result<void> finish();
 

@@ -88,10 +88,13 @@ Result<RunSummary> run_and_record(const Prepared& prepared, RunPlan plan, Output
   ProgressLine progress;
   bool stopped = false;
   plan.stop = [&stopped] { return stopped = OrderlyInterrupt::signal() != 0; };
+  plan.moves = prepared.source.moves;
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
-    const bool is_last = frame == plan.steps || !committed(report.status) || stopped;
-    if (committed(report.status)) outputs.add_frame(cloth);
-    if (is_last) outputs.add_last(cloth);
+    const bool is_done = committed(report.status);
+    if (is_done) outputs.add_frame(cloth);
+    if (frame == plan.steps || !is_done || stopped) {
+      outputs.add_last(cloth, plan.dt * (is_done ? frame : frame - 1));
+    }
     if (!progress.redraws()) return;
     progress.show(fmt::format("{} frame {}/{}, strain {}", bar(frame, plan.steps, 30), frame,
                               plan.steps, measured_percent(report.max_strain)));

@@ -100,12 +100,16 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   if (!created) return Error{created.error()};
   Cloth& cloth = created.value();
 
+  const MovedPins pins(plan.moves, cloth);
   RunSummary summary;
   Errors errors;
   summary.energy_start = cloth.energy().total();
   summary.lowest_y = std::numeric_limits<double>::infinity();
   while (summary.frames < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
          committed(summary.status) && !summary.stopped) {
+    if (auto sent = pins.send(cloth, (summary.frames + 1) * plan.dt); !sent) {
+      return Error{sent.error()};
+    }
     const double cpu_start = cpu_seconds();
     const auto start = Clock::now();
     const auto report = cloth.step(plan.dt);

@@ -12,6 +12,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "tools/pin_moves.h"
 
 namespace weft::tools {
 
@@ -25,6 +28,9 @@ struct RunPlan {
   double seconds_limit = std::numeric_limits<double>::infinity();
   /// Asked after every frame, before its callback: true ends the run there.
   std::function<bool()> stop = {};
+  /// Of fixed particles, each in one move at most. Before each frame they are sent to where they
+  /// are at its end.
+  std::vector<PinMove> moves = {};
 };
 
 /// Called once per frame, frames counted from 1, with the state that the frame reached.
@@ -101,7 +107,7 @@ struct RunSummary {
 };
 
 /// Every repeat starts from the model's own state. A step that commits nothing ends the run. An
-/// error means that the settings or dt were refused.
+/// error means that the settings, dt or a move were refused.
 Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& settings,
                        const RunPlan& plan, const FrameCallback& on_frame = {});
 

@@ -24,8 +24,9 @@ Result<void> write_scene(const WriteOptions& options) {
   }
   const auto source = load_scene(options.scene);
   if (!source) return Error{source.error()};
-  if (auto model = build_model(source.value().description); !model) return Error{model.error()};
-  const auto written = write_file(options.out, scene_text(source.value().description));
+  const auto& [name, description, mesh, moves] = source.value();
+  if (auto model = build_model(description); !model) return Error{model.error()};
+  const auto written = write_file(options.out, scene_text(description, moves));
   if (!written) return Error{fmt::format("--out: {}", written.error())};
   return {};
 }

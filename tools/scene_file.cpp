@@ -2,80 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
+#include "tools/json_reading.h"
+#include "tools/scene_moves.h"
 #include "tools/text_file.h"
 
 namespace weft::tools {
 namespace {
 
 // --------------------------------------------------------------------------------------- reading
-
-/// Thrown while reading, caught in parse_scene(): a file nests, and its errors end everything.
-struct Refused {
-  std::string message;
-};
-
-std::string shortened(std::string text) {
-  constexpr std::size_t kMost = 40;
-  if (text.size() <= kMost) return text;
-  const auto within_character = [](char byte) { return (byte & 0xc0) == 0x80; };  // of UTF-8
-  std::size_t end = kMost;
-  while (within_character(text[end])) --end;
-  return text.substr(0, end) + "...";
-}
-
-/// Without what nests in it, which may be as deep as the file is long.
-std::string brief(const Json& found) {
-  if (std::ranges::none_of(found, [](const Json& part) { return part.is_structured(); })) {
-    return shortened(found.dump());
-  }
-  return found.is_array() ? "a nested array" : "a nested object";
-}
-
-/// In one line, whatever it has in it.
-std::string in_quotes(const Json& key) {
-  const std::string text = key.dump();
-  return '\'' + shortened(text.substr(1, text.size() - 2)) + '\'';
-}
-
-[[noreturn]] void refuse(const std::string& place, std::string_view expected, const Json& found) {
-  throw Refused{fmt::format("{}: expected {}, not {}", place, expected, brief(found))};
-}
-
-double read_number(const Json& json, const std::string& place) {
-  if (!json.is_number()) refuse(place, "a number", json);
-  return json.get<double>();
-}
-
-std::uint32_t read_index(const Json& json, const std::string& place) {
-  if (!json.is_number_unsigned() || json.get<std::uint64_t>() >= kNoIndex) {
-    refuse(place, "a particle number", json);
-  }
-  return json.get<std::uint32_t>();
-}
-
-Vec3 read_vector(const Json& json, const std::string& place) {
-  if (!json.is_array() || json.size() != 3) refuse(place, "[x, y, z]", json);
-  const auto component = [&](std::size_t i) {
-    return read_number(json[i], fmt::format("{}[{}]", place, i));
-  };
-  return {component(0), component(1), component(2)};
-}
-
-template <class Read>
-auto read_array(const Json& json, const std::string& place, Read read) {
-  if (!json.is_array()) refuse(place, "an array", json);
-  std::vector<decltype(read(json, place))> values;
-  values.reserve(json.size());
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    values.push_back(read(json[i], fmt::format("{}[{}]", place, i)));
-  }
-  return values;
-}
 
 ConstraintKind read_kind(const Json& json, const std::string& place) {
   if (json == "distance") return ConstraintKind::distance;
@@ -143,12 +82,12 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.spheres = read_array(json, key, read_index);
   } else if (key == "radii") {
     scene.radii = read_array(json, key, read_number);
-  } else if (key != "total_mass") {
+  } else if (key != "total_mass" && key != "moves") {
     throw Refused{fmt::format("unknown key {}", in_quotes(key))};
   }
 }
 
-SceneDescription read_scene(const Json& json) {
+SceneFile read_scene(const Json& json) {
   if (!json.is_object()) throw Refused{"expected an object with the key 'positions'"};
   SceneDescription scene;
   for (const auto& [key, value] : json.items()) read_key(key, value, scene);
@@ -160,18 +99,23 @@ SceneDescription read_scene(const Json& json) {
     share_total_mass(scene, json["total_mass"]);
   }
   measure_rest_lengths(scene);
-  return scene;
+  std::vector<PinMove> moves;
+  if (json.contains("moves")) moves = read_moves(json["moves"], scene);
+  return {std::move(scene), std::move(moves)};
 }
 
 /// Of two values for one key the parser would drop one in silence. Only the keys of the scene
-/// itself are looked at: objects within it are refused anyway.
+/// itself and of what is in its arrays are looked at: other objects are refused anyway.
 Json parse_once_each(std::string_view text) {
-  std::set<std::string> seen;
-  return Json::parse(text, [&seen](int depth, Json::parse_event_t event, const Json& parsed) {
-    if (event != Json::parse_event_t::key || depth != 1) return true;
-    const auto key = parsed.get<std::string>();
-    if (!seen.insert(key).second)
-      throw Refused{fmt::format("the key {} is given twice", in_quotes(key))};
+  constexpr int kOfScene = 1, kOfEntry = 3;
+  std::set<std::string> of_scene, of_entry;
+  return Json::parse(text, [&](int depth, Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start && depth + 1 == kOfEntry) of_entry.clear();
+    if (event != Json::parse_event_t::key || (depth != kOfScene && depth != kOfEntry)) return true;
+    std::set<std::string>& seen = depth == kOfScene ? of_scene : of_entry;
+    if (!seen.insert(parsed.get<std::string>()).second) {
+      throw Refused{fmt::format("the key {} is given twice", in_quotes(parsed))};
+    }
     return true;
   });
 }
@@ -211,7 +155,7 @@ void add_numbers(std::string& text, std::string_view key, const std::vector<Numb
 
 }  // namespace
 
-Result<SceneDescription> parse_scene(std::string_view text) {
+Result<SceneFile> parse_scene(std::string_view text) {
   try {
     return read_scene(parse_once_each(text));
   } catch (const Refused& refused) {
@@ -221,7 +165,7 @@ Result<SceneDescription> parse_scene(std::string_view text) {
   }
 }
 
-Result<SceneDescription> read_scene_file(const std::string& path) {
+Result<SceneFile> read_scene_file(const std::string& path) {
   const auto text = read_text_file(path);
   if (!text) return Error{text.error()};
   auto scene = parse_scene(text.value());
@@ -229,7 +173,7 @@ Result<SceneDescription> read_scene_file(const std::string& path) {
   return scene;
 }
 
-std::string scene_text(const SceneDescription& scene) {
+std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves) {
   std::string text = fmt::format("{{\n\"gravity\": {}", vector_row(scene.gravity));
   add_rows(text, "positions", scene.positions, vector_row);
   add_rows(text, "velocities", scene.velocities, vector_row);
@@ -238,6 +182,7 @@ std::string scene_text(const SceneDescription& scene) {
   add_rows(text, "constraints", scene.constraints, constraint_row);
   add_numbers(text, "spheres", scene.spheres);
   add_numbers(text, "radii", scene.radii);
+  add_rows(text, "moves", moves, move_row);
   return text + "\n}\n";
 }
 

@@ -1,4 +1,5 @@
-/// Scenes as JSON files, read and written. A file mirrors weft::SceneDescription, in SI units:
+/// Scenes as JSON files, read and written. A file mirrors weft::SceneDescription, and how its pins
+/// move (pin_moves.h), in SI units:
 ///
 ///   {
 ///     "gravity":     [0, -10, 0],                 // optional, this is the default
@@ -11,8 +12,21 @@
 ///                     [1, 2],                     // rest length measured from the positions
 ///                     [0, 2, null, "rope"]],      // likewise; kind "distance" (default) or "rope"
 ///     "spheres":     [400],                       // optional; particle numbers from 0
-///     "radii":       [0, 0, ..., 0.15]            // with spheres: one per particle
+///     "radii":       [0, 0, ..., 0.15],           // with spheres: one per particle
+///     "moves": [{                                 // optional
+///       "particles":    [0, 1],                   // fixed; each in one entry at most
+///       "times":        [0, 0.5],                 // s from the start, increasing
+///       "translations": [[x, y, z], ...],         // one per time
+///       "rotations":    [[x, y, z], ...],         // optional; rotation vectors, rad, one per time
+///       "about":        [x, y, z],                // optional; what is turned about, else [0, 0,
+///       0] "from":         [[x, y, z], ...]          // optional; one per particle: its place
+///       without
+///     }, ...]                                     // the motion, else that in "positions"
 ///   }
+///
+/// Between two times translations and rotation vectors are linear; before the first and after the
+/// last pins stand still. Where the first pose differs from "positions" they jump to it in the
+/// first frame.
 ///
 /// (Comments are not allowed in a real file.) Unknown keys are refused, and keys that are given
 /// twice. An error names the place in the file, like "constraints[3][2]". Numbers survive writing
@@ -23,18 +37,25 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "tools/json_output.h"
+#include "tools/pin_moves.h"
 
 namespace weft::tools {
 
-Result<SceneDescription> parse_scene(std::string_view text);
-Result<SceneDescription> read_scene_file(const std::string& path);
+struct SceneFile {
+  SceneDescription description;
+  std::vector<PinMove> moves;
+};
+
+Result<SceneFile> parse_scene(std::string_view text);
+Result<SceneFile> read_scene_file(const std::string& path);
 
 /// The file's text. One row of the arrays per line, so that files can be read and compared.
-std::string scene_text(const SceneDescription& scene);
+std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves = {});
 
-/// The scene with the cloth's present positions and velocities, to be continued from there.
+/// The scene with the cloth's present positions and velocities, to be continued from there. With
+/// moves: present_moves(), whose times begin anew and which say where their pins come "from".
 SceneDescription present_scene(const SceneDescription& scene, const Cloth& cloth);
 
 }  // namespace weft::tools

@@ -92,10 +92,11 @@ Result<SceneSource> load_built_in(const SceneOptions& options) {
 
 Result<SceneSource> load_scene_file(const SceneOptions& options) {
   if (auto checked = check_options(options, {}); !checked) return Error{checked.error()};
-  auto scene = read_scene_file(options.scene);
-  if (!scene) return Error{scene.error()};
-  Mesh mesh = line_mesh(scene.value());
-  return SceneSource{options.scene, std::move(scene.value()), std::move(mesh)};
+  auto read = read_scene_file(options.scene);
+  if (!read) return Error{read.error()};
+  auto& [description, moves] = read.value();
+  Mesh mesh = line_mesh(description);
+  return SceneSource{options.scene, std::move(description), std::move(mesh), std::move(moves)};
 }
 
 Result<SceneSource> load_obj(const SceneOptions& options) {

@@ -5,9 +5,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/command_line.h"
 #include "tools/mesh.h"
+#include "tools/pin_moves.h"
 
 namespace weft::tools {
 
@@ -31,6 +33,7 @@ struct SceneSource {
   std::string name;  ///< the built-in name, or the file's path
   SceneDescription description;
   Mesh mesh;
+  std::vector<PinMove> moves = {};
 };
 
 Result<SceneSource> load_scene(const SceneOptions& options);

@@ -42,6 +42,7 @@ struct SmallStepsLoad {
   };
   double particles = 0;    // that a block at a pin carries besides its own
   double mean_length = 0;  // m, of the constraints
+  double reach = 0;        // m, the longest way from a particle to its nearest pin
   std::vector<Span> spans;
 };
 

@@ -132,12 +132,43 @@ class Levels {
   std::vector<bool> reached_, held_;
 };
 
+/// m, along constraints from the nearest pin to the farthest particle; nearest by their number.
+double find_reach(const Model& model) {
+  const ConstraintStore& s = model.constraints;
+  const Lists at = make_lists(model.slots(), [&](auto&& add) {
+    for (std::uint32_t c = 0; c < s.size(); ++c) {
+      add(s.a[c], c);
+      add(s.b[c], c);
+    }
+  });
+  std::vector<double> way(model.slots(), -1);
+  std::vector<std::uint32_t> queue;
+  for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
+    if (model.inverse_mass[slot] > 0 || at[slot].empty()) continue;
+    way[slot] = 0;
+    queue.push_back(slot);
+  }
+  double longest = 0;
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const std::uint32_t slot = queue[i];
+    longest = std::max(longest, way[slot]);
+    for (const std::uint32_t c : at[slot]) {
+      const std::uint32_t other = s.a[c] == slot ? s.b[c] : s.a[c];
+      if (way[other] >= 0) continue;
+      way[other] = way[slot] + s.rest_length[c];
+      queue.push_back(other);
+    }
+  }
+  return longest;
+}
+
 }  // namespace
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;
   const Blocks blocks = find_blocks(model, layout);
   load.particles = Levels(model, blocks).carried();
+  load.reach = find_reach(model);
   for (const double rest : model.constraints.rest_length) load.mean_length += rest;
   load.mean_length /= static_cast<double>(std::max<std::size_t>(1, model.constraints.size()));
   for_each_yarn(layout.yarns,
@@ -154,8 +185,11 @@ double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double
     over_slope = std::max(over_slope, 1 / std::sqrt(6 * slack));
   }
   const double pull = 6 * acceleration * load.particles * over_slope;
-  if (!(pull > 0)) return std::numeric_limits<double>::infinity();
-  return std::sqrt(tuning::kOmega * tolerance * load.mean_length / pull);
+  const double speed = std::sqrt(2 * acceleration * load.reach);
+  double h = std::numeric_limits<double>::infinity();
+  if (pull > 0) h = std::sqrt(tuning::kOmega * tolerance * load.mean_length / pull);
+  if (speed > 0) h = std::min(h, tuning::kPassing * load.mean_length / speed);
+  return h;
 }
 
 }  // namespace weft

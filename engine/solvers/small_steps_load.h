@@ -24,7 +24,7 @@ namespace weft {
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
 
-/// s; infinite where nothing hangs on anything.
+/// s; infinite where nothing hangs on a pin.
 double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double acceleration,
                       double tolerance);
 

@@ -261,7 +261,67 @@ TEST_CASE("a miss names what its report names") {
   CHECK(text(passed) == "frame 9: passed_through; particle 4 went through a sphere");
 }
 
+/// A quarter of a turn about the pinned side's middle, half a metre up and on, in a second.
+PinMove swing(const SceneDescription& scene) {
+  return {.particles = scene.fixed,
+          .times = {0, 0.25, 1},
+          .translations = {{0, 0, 0}, {0, 0.25, 0}, {0.5, 0.5, 0}},
+          .rotations = {{0, 0, 0}, {0, 0.5, 0}, {0, 1.5, 0}},
+          .about = {0, 0, 0.5}};
+}
+
+TEST_CASE("in every frame pins are where their moves have them at its end, in every repeat") {
+  const SceneDescription scene = hang(5);
+  const RunPlan plan{.dt = 0.02, .steps = 60, .moves = {swing(scene)}};
+  const auto summary = run(scene, {}, plan, [&](int frame, const Cloth& cloth, const StepReport&) {
+    for (const std::uint32_t pin : scene.fixed) {
+      const Vec3 at = cloth.position(pin);
+      const Vec3 to = place_at(plan.moves[0], frame * plan.dt, scene.positions[pin]);
+      CHECK(std::hypot(at.x - to.x, at.y - to.y, at.z - to.z) == 0);
+    }
+  });
+  REQUIRE(summary);
+  CHECK(summary.value().reached_tolerance());
+  RunPlan repeated = plan;
+  repeated.repeat = 2;
+  const auto best = run(scene, {}, repeated);
+  REQUIRE(best);
+  CHECK(best.value().state_hash == summary.value().state_hash);
+  CHECK(best.value().state_hash != run(scene, {}, {.dt = 0.02, .steps = 60}).value().state_hash);
+}
+
+TEST_CASE("the work of moved pins is summed up, and no gain of energy") {
+  const SceneDescription scene = hang(9);
+  for (const Solver solver : {Solver::yarn, Solver::direct, Solver::gauss_seidel}) {
+    CAPTURE(name(solver));
+    double work = 0, most = -1e9, most_beyond = -1e9;
+    const auto summary = run(scene, {.solver = solver}, {.steps = 120, .moves = {swing(scene)}},
+                             [&](int, const Cloth& cloth, const StepReport& report) {
+                               work += report.pin_work;
+                               const double energy = cloth.energy().total();
+                               most = std::max(most, energy);
+                               most_beyond = std::max(most_beyond, energy - work);
+                             });
+    REQUIRE(summary);
+    const RunSummary& actual = summary.value();
+    CHECK(actual.pin_work == work);
+    CHECK(actual.energy_gain == doctest::Approx(most_beyond - actual.energy_start).epsilon(1e-9));
+    CHECK(work > 1);
+    CHECK(most - actual.energy_start > 0.1);
+    CHECK(actual.energy_gain < 1e-3);
+  }
+}
+
+TEST_CASE("where pins stay the work is none") {
+  const auto summary = run(hang(5), {}, {.steps = 10});
+  REQUIRE(summary);
+  CHECK(summary.value().pin_work == 0);
+}
+
 TEST_CASE("what the library refuses is passed on") {
+  const PinMove free{.particles = {24}, .times = {0}, .translations = {{1, 0, 0}}};
+  CHECK_FALSE(run(hang(5), {}, {.moves = {free}}));
+
   CHECK_FALSE(run(SceneDescription{}, {}, {}));
   CHECK_FALSE(run(hang(3), {.tolerance = -1}, {}));
   CHECK_FALSE(run(hang(3), {}, {.dt = -1}));

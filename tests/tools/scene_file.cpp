@@ -50,7 +50,8 @@ TEST_CASE("every built-in scene survives writing and reading to the last bit") {
     REQUIRE(scene);
     const auto again = parse_scene(scene_text(scene.value()));
     REQUIRE(again);
-    check_same(scene.value(), again.value());
+    check_same(scene.value(), again.value().description);
+    CHECK(again.value().moves.empty());
   }
 }
 
@@ -63,7 +64,7 @@ TEST_CASE("velocities and ropes survive writing and reading") {
   scene.gravity = {0, 0, -9.81};
   const auto again = parse_scene(scene_text(scene));
   REQUIRE(again);
-  check_same(scene, again.value());
+  check_same(scene, again.value().description);
 }
 
 TEST_CASE("a run goes on from its last state as if it had not stopped") {
@@ -81,25 +82,25 @@ TEST_CASE("a run goes on from its last state as if it had not stopped") {
   const auto again = parse_scene(scene_text(present_scene(scene.value(), cloth)));
   REQUIRE(again);
   for (int frame = 0; frame < 20; ++frame) REQUIRE(cloth.step(0.01));
-  CHECK(run_from(again.value()).state_hash() == cloth.state_hash());
+  CHECK(run_from(again.value().description).state_hash() == cloth.state_hash());
 }
 
 TEST_CASE("what is left out is measured, shared or usual") {
   const auto scene = parse_scene(R"({"positions": [[0,0,0],[3,4,0]], "total_mass": 3,
                                      "constraints": [[0,1]]})");
   REQUIRE(scene);
-  CHECK(scene.value().masses == std::vector<double>{1.5, 1.5});
-  CHECK(scene.value().constraints[0].rest_length == 5);
-  CHECK(scene.value().constraints[0].kind == ConstraintKind::distance);
-  CHECK(same(scene.value().gravity, Vec3{0, -10, 0}));
-  CHECK(scene.value().velocities.empty());
+  CHECK(scene.value().description.masses == std::vector<double>{1.5, 1.5});
+  CHECK(scene.value().description.constraints[0].rest_length == 5);
+  CHECK(scene.value().description.constraints[0].kind == ConstraintKind::distance);
+  CHECK(same(scene.value().description.gravity, Vec3{0, -10, 0}));
+  CHECK(scene.value().description.velocities.empty());
 }
 
 TEST_CASE("a null rest length is measured too") {
   const auto scene = parse_scene(R"({"positions": [[0,0,0],[3,4,0]], "total_mass": 3,
                                      "constraints": [[0,1,null,"rope"]]})");
   REQUIRE(scene);
-  CHECK(same(scene.value().constraints[0], Constraint{0, 1, 5, ConstraintKind::rope}));
+  CHECK(same(scene.value().description.constraints[0], Constraint{0, 1, 5, ConstraintKind::rope}));
 }
 
 TEST_CASE("errors name the place in the file") {
@@ -163,6 +164,91 @@ TEST_CASE("text that is not JSON is refused in one line") {
     CHECK_FALSE(error.empty());
     CHECK(error.find('\n') == std::string::npos);
   }
+}
+
+// ------------------------------------------------------------------------------------------ moves
+
+void check_same(const PinMove& a, const PinMove& b) {
+  CHECK(a.particles == b.particles);
+  CHECK(a.times == b.times);
+  CHECK(same(a.translations, b.translations));
+  CHECK(same(a.rotations, b.rotations));
+  CHECK(same(a.about, b.about));
+  CHECK(same(a.from, b.from));
+}
+
+TEST_CASE("moves survive writing and reading to the last bit") {
+  const SceneDescription scene = scenes::make("hang", {.size = 4}).value();
+  const std::vector<PinMove> moves{
+      {.particles = {3, 1},
+       .times = {-1e-300, 0.1, 1.0 / 3},
+       .translations = {{0.1, 0.2, 0.3}, {1e-300, -0.0, 4e5}, {0, 0, 2.0 / 3}},
+       .rotations = {{0, 0, 0}, {0.1, 0.7, -0.9}, {3, 2, 1e-17}},
+       .about = {0.1, 1.0 / 3, -5},
+       .from = {{0.3, 0.2, 0.1}, {7, 8, 1.0 / 9}}},
+      {.particles = {0}, .times = {0}, .translations = {{0, 0, 0}}}};
+  const auto again = parse_scene(scene_text(scene, moves));
+  REQUIRE(again);
+  check_same(scene, again.value().description);
+  REQUIRE(again.value().moves.size() == 2);
+  for (std::size_t m = 0; m < 2; ++m) check_same(moves[m], again.value().moves[m]);
+}
+
+TEST_CASE("of a move only particles, times and translations must be given") {
+  const auto scene = parse_scene(R"({"moves": [{"translations": [[1,2,3]], "times": [0.5],
+      "particles": [1]}], "positions": [[0,0,0],[3,4,0]], "total_mass": 3, "fixed": [1]})");
+  REQUIRE(scene);
+  REQUIRE(scene.value().moves.size() == 1);
+  check_same(scene.value().moves[0],
+             {.particles = {1}, .times = {0.5}, .translations = {{1, 2, 3}}});
+}
+
+TEST_CASE("errors of moves name their place") {
+  const auto with = [](const std::string& moves) {
+    return error_with(R"("fixed": [0], "moves": )" + moves);
+  };
+  /// After particles [0], times [0, 1] and two translations.
+  const auto with_key = [&](const std::string& more) {
+    return with(R"([{"particles": [0], "times": [0,1], "translations": [[0,0,0],[0,0,0]], )" +
+                more + "}]");
+  };
+  const auto with_times = [&](const std::string& times) {
+    return with(R"([{"particles": [0], "translations": [], "times": )" + times + "}]");
+  };
+  const auto with_particles = [&](const std::string& particles) {
+    return with(R"([{"times": [0], "translations": [[0,0,0]], "particles": )" + particles + "}]");
+  };
+  CHECK(with("{}") == "moves: expected an array, not {}");
+  CHECK(with("[3]") == "moves[0]: expected an object, not 3");
+  CHECK(with("[{}]") == "moves[0]: the key 'particles' is missing");
+  CHECK(with(R"([{"particles": []}])") == "moves[0]: the key 'times' is missing");
+  CHECK(with(R"([{"particles": [], "times": [0]}])") ==
+        "moves[0]: the key 'translations' is missing");
+  CHECK(with_key(R"("speed": 3)") == "moves[0]: unknown key 'speed'");
+  CHECK(with_key(R"("times": [0,1])") == "the key 'times' is given twice");
+
+  CHECK(with_times("[0,1,1]") == "moves[0].times[2]: expected a time after 1, not 1");
+  CHECK(with_times("[0.5,0.25]") == "moves[0].times[1]: expected a time after 0.5, not 0.25");
+  CHECK(with_times("[0,null]") == "moves[0].times[1]: expected a number, not null");
+  CHECK(with_times("[]") == "moves[0].times: expected one time at least, not []");
+  CHECK(with_times("[1e999]").find("1e999") != std::string::npos);
+  CHECK(with_times("[0]") == "moves[0].translations: expected as many as times, 1, not 0");
+
+  CHECK(with_key(R"("rotations": [[0,0,1]])") ==
+        "moves[0].rotations: expected as many as times, 2, not 1");
+  CHECK(with_key(R"("rotations": [[0,0,1],[0,"x",0]])") ==
+        R"(moves[0].rotations[1][1]: expected a number, not "x")");
+  CHECK(with_key(R"("about": 0)") == "moves[0].about: expected [x, y, z], not 0");
+  CHECK(with_key(R"("from": [[0,0,0],[0,0,0]])") ==
+        "moves[0].from: expected as many as particles, 1, not 2");
+
+  CHECK(with_particles("[-1]") == "moves[0].particles[0]: expected a particle number, not -1");
+  CHECK(with_particles("[1]") == "moves[0].particles[0]: particle 1 is not fixed");
+  CHECK(with_particles("[0,7]") == "moves[0].particles[1]: particle 7 is not fixed");
+  CHECK(with_particles("[0,0]") == "moves[0].particles[1]: particle 0 is moved twice");
+  const std::string still = R"({"particles": [0], "times": [0], "translations": [[0,0,0]]})";
+  CHECK(with('[' + still + ',' + still + ']') ==
+        "moves[1].particles[0]: particle 0 is moved twice");
 }
 
 TEST_CASE("a file's errors name the file") {
