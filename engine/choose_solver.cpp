@@ -116,7 +116,8 @@ void choose_solver(const Model& model, Settings& settings) {
     else
       settings.solver = paper ? Solver::gauss_seidel : solver_for(model, settings);
   }
-  if (paper && settings.substeps == kAutomaticSubsteps) settings.substeps = 1;
+  const bool small_steps = settings.solver == Solver::small_steps;
+  if (paper && !small_steps && settings.substeps == kAutomaticSubsteps) settings.substeps = 1;
 }
 
 }  // namespace weft

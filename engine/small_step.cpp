@@ -33,21 +33,23 @@ double mean_acceleration(const State& s) {
   return mass > 0 ? sum / mass : 0;
 }
 
-int substeps_of(State& s, double dt) {
+template <class Solver>
+int substeps_of(State& s, const Solver& solver, double dt) {
   if (s.settings.substeps != kAutomaticSubsteps) return s.settings.substeps;
   const double h = std::min(tuning::kLongestSubstep,
-                            s.small_steps->substep_length(s.position.view(), mean_acceleration(s)));
+                            solver.substep_length(s.position.view(), mean_acceleration(s)));
   const double wanted = std::ceil(dt / h);
   const int most = std::min(tuning::kMostSubsteps, s.settings.max_iterations);
   return wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
 }
 
 /// The frame that is being done.
+template <class Solver>
 class Frame {
  public:
-  Frame(State& s, StepReport& report, Team& team)
+  Frame(State& s, Solver& solver, StepReport& report, Team& team)
       : s_(s),
-        solver_(*s.small_steps),
+        solver_(solver),
         report_(report),
         team_(team),
         edges_(static_cast<std::int64_t>(s.model->constraints.size())) {}
@@ -131,7 +133,7 @@ class Frame {
   }
 
   State& s_;
-  SmallStepsSolver& solver_;
+  Solver& solver_;
   StepReport& report_;
   Team& team_;
   const std::int64_t edges_;
@@ -139,7 +141,8 @@ class Frame {
 
 /// What local passes could not bring within tolerance is left to the paper's sweeps, which change
 /// positions alone, unless the number of substeps, and so the work, was given.
-void answer_miss(State& s, Frame& frame, double dt, StepReport& report, Team& team) {
+template <class Solver>
+void answer_miss(State& s, Frame<Solver>& frame, double dt, StepReport& report, Team& team) {
   const std::int64_t left = s.settings.max_iterations - report.iterations;
   if (s.settings.substeps != kAutomaticSubsteps || left <= 0)
     return worsen(report, Status::iteration_limit);
@@ -161,18 +164,17 @@ bool guard_energy(State& s, double dt, StepReport& report, Team& team) {
   return true;
 }
 
-}  // namespace
-
-bool run_small_steps(State& s, double dt, bool jumped, StepReport& report, Team& team) {
+template <class Solver>
+bool run(State& s, Solver& solver, double dt, bool jumped, StepReport& report, Team& team) {
   Transaction transaction(s);
   if ((s.placed || jumped) && violates_constraints(s, team)) {
     transaction.begin();
     project(s, dt, 1, report, team);
   }
-  Frame frame(s, report, team);
+  Frame<Solver> frame(s, solver, report, team);
   int substeps = 1;
   timed(report, Stage::predict, [&] {
-    substeps = substeps_of(s, dt);
+    substeps = substeps_of(s, solver, dt);
     frame.begin(dt / substeps);
   });
   bool within = true;
@@ -196,12 +198,19 @@ bool run_small_steps(State& s, double dt, bool jumped, StepReport& report, Team&
     answer_miss(s, frame, dt, report, team);
   }
   timed(report, Stage::commit, [&] {
-    s.small_steps->keep(team);
+    solver.keep(team);
     transaction.accept();
     transaction.complete();
   });
   s.placed = false;
   return true;
+}
+
+}  // namespace
+
+bool run_small_steps(State& s, double dt, bool jumped, StepReport& report, Team& team) {
+  return s.small_steps ? run(s, *s.small_steps, dt, jumped, report, team)
+                       : run(s, *s.reference_small_steps, dt, jumped, report, team);
 }
 
 }  // namespace weft

@@ -1,5 +1,6 @@
 #include "engine/state.h"
 
+#include <type_traits>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -28,7 +29,10 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     measure.emplace(*model, *kernels);
   }
   if (settings.solver == Solver::small_steps) {
-    small_steps.emplace(*model, settings, *kernels);
+    if (reference)
+      reference_small_steps.emplace(*model, settings);
+    else
+      small_steps.emplace(*model, settings, *kernels);
     if (model->has_contacts()) substep_start.resize(model->slots());
   }
   if (settings.solver == Solver::yarn) yarn.emplace(*model, settings, *kernels);
@@ -45,6 +49,21 @@ bool alike(const Settings& a, const Settings& b) {
          a.contact_tolerance == b.contact_tolerance;
 }
 
+/// Of small steps, where both states take them.
+template <class Solver>
+auto copy_of_past(const Solver& to, const Solver& from) {
+  using Past = std::remove_cvref_t<decltype(from->past())>;
+  return to && from ? from->past() : Past{};
+}
+template <class Solver, class Past>
+void take_past(Solver& solver, Past&& past, bool same) {
+  if (!solver) return;
+  if (same)
+    solver->set_past(std::move(past));
+  else
+    solver->forget_past();
+}
+
 }  // namespace
 
 /// What needs memory first: all of it is copied or, where memory runs out, nothing. Under other
@@ -53,15 +72,16 @@ void State::copy(const State& from) {
   const bool same = alike(settings, from.settings);
   kernels::Vectors its_force = from.force;
   Pins its_pins = from.pins;
-  SmallStepsPast its_past = same && small_steps ? from.small_steps->past() : SmallStepsPast{};
+  auto its_past = copy_of_past(small_steps, from.small_steps);
+  auto its_reference_past = copy_of_past(reference_small_steps, from.reference_small_steps);
   position = from.position;
   velocity = from.velocity;
   force = std::move(its_force);
   gravity = from.gravity;
   pins = std::move(its_pins);
   trouble = same ? from.trouble : Trouble{};
-  if (small_steps && same) small_steps->set_past(std::move(its_past));
-  if (small_steps && !same) small_steps->forget_past();
+  take_past(small_steps, std::move(its_past), same);
+  take_past(reference_small_steps, std::move(its_reference_past), same);
   placed = !same || from.placed;
   last_dt = same ? from.last_dt : 0;
 }
@@ -78,6 +98,7 @@ std::size_t State::bytes() const {
   if (direct) sum += direct->bytes();
   if (yarn) sum += yarn->bytes();
   if (small_steps) sum += small_steps->bytes();
+  if (reference_small_steps) sum += reference_small_steps->bytes();
   return sum;
 }
 

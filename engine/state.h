@@ -22,6 +22,7 @@
 #include "engine/model.h"
 #include "engine/pins.h"
 #include "engine/solvers/direct_solver.h"
+#include "engine/solvers/reference_small_steps.h"
 #include "engine/solvers/reference_solver.h"
 #include "engine/solvers/simd_measure.h"
 #include "engine/solvers/simd_solver.h"
@@ -58,7 +59,8 @@ struct State {
   kernels::Vectors predicted;  // reference only
   std::optional<SimdSolver> simd;
   std::optional<SimdMeasure> measure;           // simd only
-  std::optional<SmallStepsSolver> small_steps;  // with Solver::small_steps
+  std::optional<SmallStepsSolver> small_steps;  // with Solver::small_steps, on either backend
+  std::optional<ReferenceSmallSteps> reference_small_steps;
   // The chosen solver, if it is not Gauss-Seidel. Where it gives up sweeps of the backend answer,
   // or direct behind yarns.
   std::optional<YarnSolver> yarn;      // with Solver::yarn

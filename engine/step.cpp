@@ -45,10 +45,11 @@ class Travel {
 StepReport step(State& s, double dt) {
   StepReport report;
   Team team(threads_worth_having(s), s.meeting);
+  const bool by_small_steps = s.settings.solver == Solver::small_steps;
   bool done = false;
   {
     Travel travel(s, dt);
-    const auto run = s.small_steps ? run_small_steps : run_substeps;
+    const auto run = by_small_steps ? run_small_steps : run_substeps;
     done = run(s, dt, travel.jumped(), report, team);
     if (done) travel.arrive();
   }

@@ -12,7 +12,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/solvers/yarn_layout.h"
@@ -21,6 +21,7 @@
 namespace weft {
 
 class Model;
+struct ConstraintStore;
 
 /// Edge blocks of one kind that share no particle.
 struct EdgeBatch {
@@ -67,5 +68,25 @@ struct SmallStepsLayout {
 };
 
 SmallStepsLayout make_small_steps_layout(const Model& model);
+
+/// The particles of a yarn, in the order of its constraints.
+std::vector<std::uint32_t> slots_of(const ConstraintStore& store,
+                                    std::span<const std::uint32_t> links);
+
+/// work(constraints of a yarn, from one end to the other)
+template <class Work>
+void for_each_yarn(const YarnLayout& yarns, Work&& work) {
+  std::vector<std::uint32_t> links;
+  for (const simd::YarnBlock& block : yarns.blocks) {
+    for (std::size_t lane = 0; lane < block.lanes; ++lane) {
+      links.clear();
+      for (std::size_t row = block.first; row < block.last; ++row) {
+        const std::uint32_t c = yarns.constraint[row * kernels::kLanes + lane];
+        if (c != kNoIndex) links.push_back(c);
+      }
+      work(links);
+    }
+  }
+}
 
 }  // namespace weft

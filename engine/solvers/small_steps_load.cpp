@@ -11,30 +11,7 @@
 #include "engine/tuning.h"
 
 namespace weft {
-namespace {
 
-/// The particles of each block, and the blocks of each particle.
-struct Blocks {
-  Lists slots_of, at;
-};
-
-/// work(constraints of a yarn, from one end to the other)
-template <class Work>
-void for_each_yarn(const YarnLayout& yarns, Work&& work) {
-  std::vector<std::uint32_t> links;
-  for (const simd::YarnBlock& block : yarns.blocks) {
-    for (std::size_t lane = 0; lane < block.lanes; ++lane) {
-      links.clear();
-      for (std::size_t row = block.first; row < block.last; ++row) {
-        const std::uint32_t c = yarns.constraint[row * kernels::kLanes + lane];
-        if (c != kNoIndex) links.push_back(c);
-      }
-      work(links);
-    }
-  }
-}
-
-/// The particles of a yarn, in order.
 std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
                                     std::span<const std::uint32_t> links) {
   const auto holds = [&](std::uint32_t c, std::uint32_t slot) {
@@ -46,6 +23,13 @@ std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
   for (const std::uint32_t c : links) slots.push_back(s.a[c] == slots.back() ? s.b[c] : s.a[c]);
   return slots;
 }
+
+namespace {
+
+/// The particles of each block, and the blocks of each particle.
+struct Blocks {
+  Lists slots_of, at;
+};
 
 /// Of the yarn, between each fixed particle and the next.
 void add_spans(const Model& model, std::span<const std::uint32_t> links, SmallStepsLoad& load) {

@@ -1,0 +1,79 @@
+/// The formulas of a small step in double, one particle and one block after the other: what the
+/// vector kernels (kernels/simd/small_steps.h, small_step_yarns.h) are held against.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "kernels/vectors.h"
+
+namespace weft::reference {
+
+/// A particle in flight: where it is, was a substep ago, and would be without constraints; its
+/// velocity, predicted until it is settled, and that of a substep ago.
+struct Flight {
+  kernels::VectorsView x{}, before{}, predicted{}, v{}, v_before{};
+};
+
+/// A substep of b h with the weight c of the past, after one of `last` = b h (0: v is the
+/// velocity):
+///
+///     v  += (x - x*) / last                        settled
+///     v*  = v + c (v - v_before) + b h a
+///     x*  = x + c (x - x_before) + b h v*
+inline void settle(const Flight& f, std::size_t i, double last) {
+  if (last > 0) f.v.set(i, f.v[i] + (1 / last) * (f.x[i] - f.predicted[i]));
+  f.predicted.set(i, f.x[i]);
+}
+inline void advance(const Flight& f, std::size_t i, kernels::Vector a, double c, double bh,
+                    double last) {
+  settle(f, i, last);
+  const kernels::Vector x = f.x[i], v = f.v[i];
+  const kernels::Vector v_next = v + c * (v - f.v_before[i]) + bh * a;
+  const kernels::Vector x_next = x + c * (x - f.before[i]) + bh * v_next;
+  f.before.set(i, x);
+  f.v_before.set(i, v);
+  f.v.set(i, v_next);
+  f.predicted.set(i, x_next);
+  f.x.set(i, x_next);
+}
+
+/// Newton's step for C = (l^2 - L^2) / 2 of one constraint, d its vector, relaxed: the impulse over
+/// d, with the mean of l^2 and L^2 for l^2 in the divisor.
+inline double relaxed_impulse(kernels::Vector d, double rest, double inverse_masses, double omega) {
+  const double square = rest * rest, error = dot(d, d) - square;
+  return omega * error / ((error + 2 * square) * inverse_masses);
+}
+
+/// The same for a chain, of all its constraints together: (A + compliance diag A) lambda = omega C,
+/// A = J M^-1 J^T, by elimination. d[k]: from particle k + 1 to particle k; w: one more. Solved in
+/// place: error becomes lambda.
+struct ChainSystem {
+  std::vector<kernels::Vector> d;
+  std::vector<double> w, error, factor;
+
+  void solve(double omega, double compliance) {
+    const std::size_t n = d.size();
+    factor.assign(n, 0);
+    double pivot = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double size = (w[k] + w[k + 1]) * dot(d[k], d[k]);
+      const double c = k > 0 ? w[k] * dot(d[k - 1], d[k]) : 0;
+      factor[k] = k > 0 && pivot > 0 ? c / pivot : 0;
+      error[k] = omega * error[k] + (k > 0 ? factor[k] * error[k - 1] : 0);
+      pivot = (1 + compliance) * size - factor[k] * c;
+      pivots_.resize(n);
+      pivots_[k] = pivot;
+    }
+    for (std::size_t k = n; k-- > 0;) {
+      error[k] = pivots_[k] > 0 ? error[k] / pivots_[k] : 0;
+      if (k + 1 < n) error[k] += factor[k + 1] * error[k + 1];
+    }
+  }
+
+ private:
+  std::vector<double> pivots_;
+};
+
+}  // namespace weft::reference
