@@ -79,13 +79,16 @@ class Frame {
   /// What the last substep left out of tolerance. Returns whether all of it is within.
   bool finish() {
     read_positions();
-    if (s_.settings.iterations > 0) return true;
+    const bool within = is_within_tolerance();
+    if (within || s_.settings.iterations > 0) return true;
     for (int round = 0; round < kRounds; ++round) {
+      timed(report_, Stage::solve_positions, [&] {
+        count(solver_.repair_everywhere(s_.contacts, most_visits(tuning::kMostLastVisits)));
+        read_positions();
+      });
       if (is_within_tolerance()) return true;
-      count(solver_.repair_everywhere(s_.contacts, most_visits(tuning::kMostLastVisits)));
-      read_positions();
     }
-    return is_within_tolerance();
+    return false;
   }
 
   void read_velocities() {
@@ -154,14 +157,10 @@ void answer_miss(State& s, Frame<Solver>& frame, double dt, StepReport& report, 
   frame.is_within_tolerance();
 }
 
-/// A frame gains no energy but what forces and pins bring in. Returns whether it ends in numbers: a
-/// position is none only where the velocity is none.
-bool guard_energy(State& s, double dt, StepReport& report, Team& team) {
-  const kernels::Kicks kicks = measure_energy_change(s, team);
-  if (!std::isfinite(kicks.energy)) return false;
-  if (s.settings.iterations == 0) take_gained_energy(s, kicks, dt);
+/// A frame gains no energy but what forces and pins bring in.
+void guard_energy(State& s, const kernels::Kicks& change, double dt, StepReport& report) {
+  if (s.settings.iterations == 0) take_gained_energy(s, change, dt);
   if (s.pins.moving()) report.pin_work = work_of(motion_of_pins(s, dt), s, dt);
-  return true;
 }
 
 template <class Solver>
@@ -177,26 +176,26 @@ bool run(State& s, Solver& solver, double dt, bool jumped, StepReport& report, T
     substeps = substeps_of(s, solver, dt);
     frame.begin(dt / substeps);
   });
-  bool within = true;
   timed(report, Stage::solve_positions, [&] {
     for (int i = 0; i < substeps; ++i) frame.substep();
   });
-  timed(report, Stage::commit, [&] { within = frame.finish(); });
-  bool finite = true;
+  const bool within = frame.finish();
+  kernels::Kicks change;
   timed(report, Stage::commit, [&] {
     frame.read_velocities();
-    finite = guard_energy(s, dt, report, team);
+    change = measure_energy_change(s, team);
   });
-  if (!finite) {
+  // A position is no number only where the velocity is none.
+  if (!std::isfinite(change.energy)) {
     explain(s, dt, report, team);
     return false;
   }
-  if (s.settings.iterations > 0) {
-    worsen(report, Status::fixed_iterations);
-    frame.is_within_tolerance();
-  } else if (!within) {
+  if (!within) {
     answer_miss(s, frame, dt, report, team);
+    change = measure_energy_change(s, team);
   }
+  if (s.settings.iterations > 0) worsen(report, Status::fixed_iterations);
+  timed(report, Stage::commit, [&] { guard_energy(s, change, dt, report); });
   timed(report, Stage::commit, [&] {
     solver.keep(team);
     transaction.accept();

@@ -116,8 +116,13 @@ class Levels {
   std::vector<bool> reached_, held_;
 };
 
-/// m, along constraints from the nearest pin to the farthest particle; nearest by their number.
-double find_reach(const Model& model) {
+/// Along constraints from the nearest pin, nearest by their number, to the farthest particle.
+struct Way {
+  double constraints = 0;
+  double length = 0;  // m
+};
+
+Way longest_way(const Model& model) {
   const ConstraintStore& s = model.constraints;
   const Lists at = make_lists(model.slots(), [&](auto&& add) {
     for (std::uint32_t c = 0; c < s.size(); ++c) {
@@ -125,21 +130,20 @@ double find_reach(const Model& model) {
       add(s.b[c], c);
     }
   });
-  std::vector<double> way(model.slots(), -1);
+  std::vector<Way> way(model.slots(), {-1, 0});
   std::vector<std::uint32_t> queue;
-  for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
-    if (model.inverse_mass[slot] > 0 || at[slot].empty()) continue;
-    way[slot] = 0;
+  for (const std::uint32_t slot : model.pins) {
+    way[slot] = {};
     queue.push_back(slot);
   }
-  double longest = 0;
+  Way longest;
   for (std::size_t i = 0; i < queue.size(); ++i) {
-    const std::uint32_t slot = queue[i];
-    longest = std::max(longest, way[slot]);
-    for (const std::uint32_t c : at[slot]) {
-      const std::uint32_t other = s.a[c] == slot ? s.b[c] : s.a[c];
-      if (way[other] >= 0) continue;
-      way[other] = way[slot] + s.rest_length[c];
+    const Way here = way[queue[i]];
+    longest = {here.constraints, std::max(longest.length, here.length)};
+    for (const std::uint32_t c : at[queue[i]]) {
+      const std::uint32_t other = s.a[c] == queue[i] ? s.b[c] : s.a[c];
+      if (way[other].constraints >= 0) continue;
+      way[other] = {here.constraints + 1, here.length + s.rest_length[c]};
       queue.push_back(other);
     }
   }
@@ -151,8 +155,10 @@ double find_reach(const Model& model) {
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;
   const Blocks blocks = find_blocks(model, layout);
+  const Way way = longest_way(model);
   load.particles = Levels(model, blocks).carried();
-  load.reach = find_reach(model);
+  if (!layout.blocks.empty()) load.particles = std::max(load.particles, way.constraints - 1);
+  load.reach = way.length;
   for (const double rest : model.constraints.rest_length) load.mean_length += rest;
   load.mean_length /= static_cast<double>(std::max<std::size_t>(1, model.constraints.size()));
   for_each_yarn(layout.yarns,
