@@ -58,7 +58,7 @@ class Frame {
     const kernels::VectorsView force =
         s_.force.size() > 0 ? s_.force.view() : kernels::VectorsView{};
     if (s_.model->has_contacts()) s_.substep_start = s_.position;
-    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, h, team_);
+    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, h, s_.placed, team_);
   }
 
   void substep() {

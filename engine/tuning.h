@@ -18,7 +18,7 @@ inline constexpr double kCompliance = 1e-3;
 inline constexpr double kLongestSubstep = 0.005;
 /// Of the time in which what falls from its pins passes the length of a constraint: where a fold
 /// runs through a yarn, its constraints turn over in that time.
-inline constexpr double kPassing = 0.9;
+inline constexpr double kPassing = 0.7;
 /// Substeps of a frame, at most.
 inline constexpr int kMostSubsteps = 1024;
 /// Constraints in a yarn, on average, from which on yarns are blocks. Random triangles have 3 or 4,

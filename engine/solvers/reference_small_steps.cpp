@@ -35,7 +35,7 @@ reference::Flight ReferenceSmallSteps::flight() {
 }
 
 void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, Vector gravity,
-                                kernels::VectorsView force, double h, Team&) {
+                                kernels::VectorsView force, double h, bool, Team&) {
   h_ = h;
   last_ = 0;
   for (std::size_t i = 0; i < model_.slots(); ++i) {

@@ -27,7 +27,7 @@ class ReferenceSmallSteps {
 
   double substep_length(kernels::VectorsView x, double acceleration) const;
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
-             kernels::VectorsView force, double h, Team& team);
+             kernels::VectorsView force, double h, bool placed, Team& team);
   void advance(Team& team);
   void sweep(Team& team);
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits);

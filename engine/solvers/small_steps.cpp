@@ -56,8 +56,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       yarns_out_(layout_.yarns.rows()),
       is_touched_(model.slots()) {
   touched_.reserve(model.slots());
-  for (auto* array :
-       {&base_, &u_, &u_before_, &predicted_, &v_, &v_before_, &acceleration_, &rounded_}) {
+  for (auto* array : {&base_, &u_, &u_before_, &predicted_, &v_, &v_before_, &acceleration_}) {
     array->resize(layout_.floats);
   }
   for (auto* array : {&past_.v, &past_.v_before, &past_.moved}) array->resize(layout_.floats);
@@ -131,15 +130,30 @@ void SmallStepsSolver::begin_past(Team& team) {
   });
 }
 
-void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
-                             kernels::Vector gravity, kernels::VectorsView force, double h,
-                             Team& team) {
-  h_ = h;
+/// The base stays for as many substeps as it may, so that what is remembered of it does.
+void SmallStepsSolver::split(kernels::VectorsView x, bool placed, Team& team) {
   const YarnPlaces& places = layout_.places();
+  const bool stays =
+      past_.h > 0 && !placed && past_.since_renewal > 0 && past_.since_renewal < tuning::kRenewal;
+  since_renewal_ = stays ? past_.since_renewal : 0;
+  moved_ |= !stays;
   places.clear(u_.data());
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
-    places.split(table_, x, layout_.cell, first, last, base_.data(), u_.data());
-    places.split(table_, v, 0, first, last, v_.data(), rounded_.data());
+    if (stays)
+      places.offset(table_, x, first, last, base_.data(), u_.data());
+    else
+      places.split(table_, x, layout_.cell, first, last, base_.data(), u_.data());
+  });
+  if (moved_) measure_base(team);
+}
+
+void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
+                             kernels::Vector gravity, kernels::VectorsView force, double h,
+                             bool placed, Team& team) {
+  h_ = h;
+  split(x, placed, team);
+  team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    layout_.places().narrow(table_, v, first, last, v_.data());
   });
   write_acceleration(gravity, force);
   begin_past(team);
@@ -148,8 +162,6 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   formula_ = second_order ? SubstepFormula::bdf2(ratio) : SubstepFormula{};
   next_formula_ = second_order ? SubstepFormula::bdf2(1) : SubstepFormula{};
   weights_.rate = 0;
-  since_renewal_ = 0;
-  measure_base(team);
 }
 
 void SmallStepsSolver::measure_base(Team& team) {
@@ -335,14 +347,28 @@ void SmallStepsSolver::read_velocities(kernels::VectorsView v, Team& team) const
 
 void SmallStepsSolver::keep(Team& team) {
   past_.h = h_;
+  past_.since_renewal = since_renewal_;
   const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
   for_floats(team, [&](std::size_t first, std::size_t last) {
     table_.keep_past(flight(), arrays, first, last);
   });
 }
 
+SmallStepsPast SmallStepsSolver::past() const {
+  SmallStepsPast past = past_;
+  past.base = base_;
+  return past;
+}
+
+void SmallStepsSolver::set_past(SmallStepsPast&& past) {
+  past_ = std::move(past);
+  base_.swap(past_.base);
+  past_.base = {};
+  moved_ = true;
+}
+
 std::size_t SmallStepsSolver::bytes() const {
-  return 11 * bytes_of(u_) + bytes_of(spans_) + bytes_of(base_step_) + bytes_of(scratch_) +
+  return 10 * bytes_of(u_) + bytes_of(spans_) + bytes_of(base_step_) + bytes_of(scratch_) +
          bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) + bytes_of(is_touched_) +
          passes_.bytes();
 }

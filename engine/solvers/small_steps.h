@@ -32,8 +32,10 @@ struct SubstepFormula {
 
 /// What is left of a flight between two frames, in the layout of the solver.
 struct SmallStepsPast {
-  double h = 0;  // of the last substep; 0: there was none
+  double h = 0;           // of the last substep; 0: there was none
+  int since_renewal = 0;  // substeps with the present base
   kernels::AlignedVector<float> v, v_before, moved;
+  kernels::AlignedVector<float> base;
 };
 
 class SmallStepsSolver {
@@ -43,9 +45,9 @@ class SmallStepsSolver {
   /// s, of the longest substep that leaves little to local passes.
   double substep_length(kernels::VectorsView x, double acceleration) const;
 
-  /// A frame in substeps of h from x, with velocities v.
+  /// A frame in substeps of h from x, with velocities v; placed: x is not where the last one ended.
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
-             kernels::VectorsView force, double h, Team& team);
+             kernels::VectorsView force, double h, bool placed, Team& team);
   /// The stages of a substep.
   void advance(Team& team);
   void sweep(Team& team);
@@ -59,8 +61,8 @@ class SmallStepsSolver {
   void read_velocities(kernels::VectorsView v, Team& team) const;
   /// The frame becomes the past of the next one. Without this the one before stays.
   void keep(Team& team);
-  const SmallStepsPast& past() const { return past_; }
-  void set_past(SmallStepsPast&& past) { past_ = std::move(past); }
+  SmallStepsPast past() const;
+  void set_past(SmallStepsPast&& past);
   void forget_past() { past_.h = 0; }
 
   std::size_t edges() const { return model_.constraints.size(); }
@@ -72,6 +74,7 @@ class SmallStepsSolver {
   simd::Yarns yarns();
   void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
   void begin_past(Team& team);
+  void split(kernels::VectorsView x, bool placed, Team& team);
   void measure_base(Team& team);
   void renew_base(Team& team);
   void sweep_yarns(Team& team);
@@ -98,10 +101,9 @@ class SmallStepsSolver {
   int since_renewal_ = 0;
   kernels::Vector gravity_{};
   bool has_force_ = true;  // in acceleration_
-  bool moved_ = true;      // rows of yarns do not remember the present base
+  bool moved_ = true;      // rows of yarns and edges do not remember the present base
 
   kernels::AlignedVector<float> base_, u_, u_before_, predicted_, v_, v_before_, acceleration_;
-  kernels::AlignedVector<float> rounded_;  // what v loses
   kernels::AlignedVector<simd::EdgeSpans> spans_;
   kernels::AlignedVector<simd::YarnBaseSteps> base_step_;  // per row
   kernels::AlignedVector<simd::YarnScratch> scratch_;      // for each thread

@@ -12,11 +12,10 @@
 ///
 /// H: what hangs on the blocks at pins, by particle of theirs, and no less than the number of
 /// blocks on the way from the farthest particle to its nearest pin; less one, for of what a block
-/// carries of itself a sweep leaves no more than (1 - omega) / omega of one particle's. Where single
-/// constraints are blocks, beside yarns too, the load may run through them one by one: then the way
-/// is counted in constraints. A yarn
-/// between two pins whose length exceeds their distance by the share s sags with the slope sqrt(6
-/// s), and its tension is the load divided by that.
+/// carries of itself a sweep leaves no more than (1 - omega) / omega of one particle's. Where
+/// single constraints are blocks, beside yarns too, the load may run through them one by one: then
+/// the way is counted in constraints. A yarn between two pins whose length exceeds their distance
+/// by the share s sags with the slope sqrt(6 s), and its tension is the load divided by that.
 #pragma once
 
 #include "engine/solvers/small_steps_layout.h"

@@ -32,52 +32,61 @@ void join(double& x, float base, float u) {
 
 }  // namespace
 
-void YarnPlaces::split(const simd::Table& table, kernels::VectorsView x, double cell,
-                       std::size_t first, std::size_t last, float* base, float* u) const {
-  if (!woven()) {
-    table.split_quads(x, first, last, cell, base, u);
-    return;
-  }
+template <class ByRows, class OneByOne>
+void YarnPlaces::visit(kernels::VectorsView x, std::size_t first, std::size_t last,
+                       ByRows&& by_rows, OneByOne&& one_by_one) const {
   const auto woven = between(rows, slot_of_row, first, last);
-  table.split_rows(x, woven.data(), woven.size(), cell, base, u);
+  by_rows(woven.data(), woven.size());
   for (const Loose& one : between(loose, slot_of_loose, first, last)) {
     std::size_t at = one.place;
-    for (const double* axis : {x.x, x.y, x.z}) {
-      weft::split(axis[one.slot], cell, base[at], u[at]);
+    for (double* axis : {x.x, x.y, x.z}) {
+      one_by_one(axis[one.slot], at);
       at += stride;
     }
   }
 }
 
+void YarnPlaces::split(const simd::Table& table, kernels::VectorsView x, double cell,
+                       std::size_t first, std::size_t last, float* base, float* u) const {
+  if (!woven()) return table.split_quads(x, first, last, cell, base, u);
+  visit(
+      x, first, last,
+      [&](const auto* of, std::size_t n) { table.split_rows(x, of, n, cell, base, u); },
+      [&](double from, std::size_t at) { weft::split(from, cell, base[at], u[at]); });
+}
+
 void YarnPlaces::join(const simd::Table& table, kernels::VectorsView x, std::size_t first,
                       std::size_t last, const float* base, const float* u) const {
-  if (!woven()) {
-    table.join_quads(x, first, last, base, u);
-    return;
-  }
-  const auto woven = between(rows, slot_of_row, first, last);
-  table.join_rows(x, woven.data(), woven.size(), base, u);
-  for (const Loose& one : between(loose, slot_of_loose, first, last)) {
-    std::size_t at = one.place;
-    for (double* axis : {x.x, x.y, x.z}) {
-      weft::join(axis[one.slot], base[at], u[at]);
-      at += stride;
-    }
-  }
+  if (!woven()) return table.join_quads(x, first, last, base, u);
+  visit(
+      x, first, last, [&](const auto* of, std::size_t n) { table.join_rows(x, of, n, base, u); },
+      [&](double& to, std::size_t at) { weft::join(to, base[at], u[at]); });
+}
+
+void YarnPlaces::offset(const simd::Table& table, kernels::VectorsView x, std::size_t first,
+                        std::size_t last, const float* base, float* u) const {
+  if (!woven()) return table.offset_quads(x, first, last, base, u);
+  visit(
+      x, first, last, [&](const auto* of, std::size_t n) { table.offset_rows(x, of, n, base, u); },
+      [&](double from, std::size_t at) {
+        u[at] = static_cast<float>(from - static_cast<double>(base[at]));
+      });
+}
+
+void YarnPlaces::narrow(const simd::Table& table, kernels::VectorsView x, std::size_t first,
+                        std::size_t last, float* to) const {
+  if (!woven()) return table.narrow_quads(x, first, last, to);
+  visit(
+      x, first, last, [&](const auto* of, std::size_t n) { table.narrow_rows(x, of, n, to); },
+      [&](double from, std::size_t at) { to[at] = static_cast<float>(from); });
 }
 
 void YarnPlaces::widen(const simd::Table& table, kernels::VectorsView x, std::size_t first,
                        std::size_t last, const float* from) const {
   if (!woven()) return table.widen_quads(x, first, last, from);
-  const auto woven = between(rows, slot_of_row, first, last);
-  table.widen_rows(x, woven.data(), woven.size(), from);
-  for (const Loose& one : between(loose, slot_of_loose, first, last)) {
-    std::size_t at = one.place;
-    for (double* axis : {x.x, x.y, x.z}) {
-      axis[one.slot] = static_cast<double>(from[at]);
-      at += stride;
-    }
-  }
+  visit(
+      x, first, last, [&](const auto* of, std::size_t n) { table.widen_rows(x, of, n, from); },
+      [&](double& to, std::size_t at) { to = static_cast<double>(from[at]); });
 }
 
 void YarnPlaces::clear(float* u) const {

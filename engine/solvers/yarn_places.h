@@ -32,13 +32,24 @@ struct YarnPlaces {
              std::size_t last, float* base, float* u) const;
   void join(const simd::Table& table, kernels::VectorsView x, std::size_t first, std::size_t last,
             const float* base, const float* u) const;
-  /// x = from, likewise.
+  /// u = x - base; to = x, rounded; x = from. Likewise.
+  void offset(const simd::Table& table, kernels::VectorsView x, std::size_t first, std::size_t last,
+              const float* base, float* u) const;
+  void narrow(const simd::Table& table, kernels::VectorsView x, std::size_t first, std::size_t last,
+              float* to) const;
   void widen(const simd::Table& table, kernels::VectorsView x, std::size_t first, std::size_t last,
              const float* from) const;
   /// Clears what split() does not write, all that is nobody's: a step that left the range of
   /// numbers may have reached it.
   void clear(float* u) const;
   std::size_t bytes() const;
+
+ private:
+  /// by_rows(rows, how many) of woven rows, one_by_one(a component of x, where it stands) of what
+  /// is in none.
+  template <class ByRows, class OneByOne>
+  void visit(kernels::VectorsView x, std::size_t first, std::size_t last, ByRows&& by_rows,
+             OneByOne&& one_by_one) const;
 };
 
 /// Weaves a layout whose blocks are in quads, if nearly all of it can be woven: its blocks find

@@ -209,6 +209,52 @@ void join_rows(kernels::VectorsView x, const WovenRow* rows, std::size_t count, 
   }
 }
 
+/// u = x - base, where base is near enough to stay.
+void offset_quads(kernels::VectorsView x, std::size_t first, std::size_t last, const float* base,
+                  float* u) {
+  QuadsInRow at;
+  const auto offset = [](const double* from, Floats b) {
+    return narrow(load_component(from) - widen(b));
+  };
+  for (std::size_t i = first; i < last; i += kFloats) {
+    FloatVector b = at.get(base + 4 * i);
+    at.put(u + 4 * i, {offset(x.x + i, b.x), offset(x.y + i, b.y), offset(x.z + i, b.z)});
+  }
+}
+
+void offset_rows(kernels::VectorsView x, const WovenRow* rows, std::size_t count, const float* base,
+                 float* u) {
+  for (const WovenRow* row = rows; row < rows + count; ++row) {
+    for_lanes(
+        *row, [&](const auto& lanes, std::size_t place) __attribute__((always_inline)) {
+          for (const double* axis : {x.x, x.y, x.z}) {
+            narrow(lanes.get(axis) - load_component(base + place)).store_unaligned(u + place);
+            place += kernels::kLanes;
+          }
+        });
+  }
+}
+
+void narrow_quads(kernels::VectorsView x, std::size_t first, std::size_t last, float* to) {
+  QuadsInRow at;
+  for (std::size_t i = first; i < last; i += kFloats) {
+    at.put(to + 4 * i, {narrow(load_component(x.x + i)), narrow(load_component(x.y + i)),
+                        narrow(load_component(x.z + i))});
+  }
+}
+
+void narrow_rows(kernels::VectorsView x, const WovenRow* rows, std::size_t count, float* to) {
+  for (const WovenRow* row = rows; row < rows + count; ++row) {
+    for_lanes(
+        *row, [&](const auto& lanes, std::size_t place) __attribute__((always_inline)) {
+          for (const double* axis : {x.x, x.y, x.z}) {
+            narrow(lanes.get(axis)).store_unaligned(to + place);
+            place += kernels::kLanes;
+          }
+        });
+  }
+}
+
 void widen_quads(kernels::VectorsView x, std::size_t first, std::size_t last, const float* from) {
   QuadsInRow at;
   const auto put = [](double* to, Floats f) {

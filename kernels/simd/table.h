@@ -358,7 +358,14 @@ struct Table {
                      float* base, float* u);
   void (*join_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
                     const float* base, const float* u);
-  /// x = from, in either layout.
+  /// u = x - base.
+  void (*offset_quads)(kernels::VectorsView x, std::size_t first, std::size_t last,
+                       const float* base, float* u);
+  void (*offset_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
+                      const float* base, float* u);
+  /// to = x, rounded to float; and x = from.
+  void (*narrow_quads)(kernels::VectorsView x, std::size_t first, std::size_t last, float* to);
+  void (*narrow_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count, float* to);
   void (*widen_quads)(kernels::VectorsView x, std::size_t first, std::size_t last,
                       const float* from);
   void (*widen_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
