@@ -63,15 +63,11 @@ class Frame {
 
   void substep() {
     solver_.advance(team_);
-    const int sweeps = std::max(1, s_.settings.iterations);
-    for (int i = 0; i < sweeps; ++i) solver_.sweep(team_);
-    report_.iterations += sweeps;
-    report_.direction_updates += sweeps;
-    report_.visits += sweeps * edges_;
-    report_.corrections += sweeps * edges_;
+    const bool to_tolerance = s_.settings.iterations == 0;
+    for (int i = 0; i < std::max(1, s_.settings.iterations); ++i) sweep();
+    if (to_tolerance && many_are_out()) sweep();
     if (s_.model->has_contacts()) find_contacts();
-    if (s_.settings.iterations == 0)
-      count(solver_.repair(s_.contacts, most_visits(tuning::kMostVisits)));
+    if (to_tolerance) count(solver_.repair(s_.contacts, most_visits(tuning::kMostVisits)));
     if (s_.model->has_contacts()) watch_crossings();
     ++report_.substeps;
   }
@@ -105,6 +101,18 @@ class Frame {
 
  private:
   static constexpr int kRounds = 3;
+
+  void sweep() {
+    solver_.sweep(team_);
+    ++report_.iterations;
+    ++report_.direction_updates;
+    report_.visits += edges_;
+    report_.corrections += edges_;
+  }
+  bool many_are_out() const {
+    return static_cast<double>(solver_.count_out()) >
+           tuning::kManyOut * static_cast<double>(edges_);
+  }
 
   std::int64_t most_visits(std::int64_t sweeps) const {
     const std::int64_t left = s_.settings.max_iterations - report_.iterations;

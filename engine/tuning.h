@@ -26,6 +26,8 @@ inline constexpr int kMostSubsteps = 1024;
 inline constexpr double kLeastLinks = 8;
 /// Substeps between two renewals of the base: u is rounded to a 2^-24 part of the way in between.
 inline constexpr int kRenewal = 16;
+/// Of all constraints: where more are out of tolerance, another sweep is cheaper than local passes.
+inline constexpr double kManyOut = 0.02;
 /// Visits of local passes, of the constraints: in a substep, and when a frame ends.
 inline constexpr std::int64_t kMostVisits = 1, kMostLastVisits = 64;
 

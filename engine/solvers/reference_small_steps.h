@@ -4,6 +4,7 @@
 
 #include <weft/weft.h>
 
+#include <iterator>
 #include <vector>
 
 #include "engine/contacts.h"
@@ -30,6 +31,7 @@ class ReferenceSmallSteps {
              kernels::VectorsView force, double h, bool placed, Team& team);
   void advance(Team& team);
   void sweep(Team& team);
+  std::int64_t count_out() const { return std::ssize(out_); }
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits);
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits);
   void read_positions(kernels::VectorsView x, Team& team) const;

@@ -262,6 +262,13 @@ void SmallStepsSolver::sweep_serial() {
   }
 }
 
+std::int64_t SmallStepsSolver::count_out() const {
+  std::int64_t count = 0;
+  for (const std::uint16_t lanes : edges_out_) count += std::popcount(lanes);
+  for (const std::uint32_t lanes : yarns_out_) count += std::popcount(lanes);
+  return count;
+}
+
 /// What a sweep found out of tolerance has been relaxed since, and so have its neighbours: they are
 /// looked at again.
 void SmallStepsSolver::look_near_what_was_out() {

@@ -51,6 +51,8 @@ class SmallStepsSolver {
   /// The stages of a substep.
   void advance(Team& team);
   void sweep(Team& team);
+  /// Constraints that the last sweep found out of tolerance.
+  std::int64_t count_out() const;
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits);
   /// After the last: local passes that look at all constraints.
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits);
@@ -65,7 +67,6 @@ class SmallStepsSolver {
   void set_past(SmallStepsPast&& past);
   void forget_past() { past_.h = 0; }
 
-  std::size_t edges() const { return model_.constraints.size(); }
   std::size_t bytes() const;
 
  private:
