@@ -172,11 +172,6 @@ kernels::LoopResult solve_directly(State& s, const Attempt& attempt, From from, 
 /// Until the commit nobody needs next_velocity: it remembers the positions.
 kernels::LoopResult solve_yarns(State& s, const Attempt& attempt, From from, int left,
                                 Standstill& standstill, Team& team) {
-  if (attempt.only_sweeps) {
-    auto result = sweep_on(s, attempt.h, from == From::prediction, left, standstill, team);
-    result.failed = !result.converged;
-    return result;
-  }
   if (!attempt.hold_taut) {
     s.yarn->release_spans();
   } else if (from == From::prediction) {

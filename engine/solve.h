@@ -20,7 +20,6 @@ struct Attempt {
   int most_iterations = 1;
   int most_velocity_iterations = 1;
   OnFailure on_failure = OnFailure::sweep;
-  bool only_sweeps = false;      // of Gauss-Seidel: no yarns
   bool hold_taut = false;        // taut spans of yarns keep strain (held_spans.h)
   double allowance = 1;          // yarns may leave this share of what they usually leave
   double stood_at = 0;           // sweeps, the last time (standstill.h)

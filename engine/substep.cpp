@@ -41,11 +41,11 @@ bool blown_up(const State& s, const Attempt& attempt, const Trial& trial) {
 }
 
 /// Yarns and the direct solver may solve, by scheme paper, for what is not where the motion leads:
-/// see energy.h. (Where sweeps do all of a step its energy is taken out in any case.) And what one
+/// see energy.h. And what one
 /// substep was cut off from is speed in the next, whose end is still farther: a net under a pin
 /// that jumps by 1 m, 500 iterations a step, came to 10 km/s.
 bool may_gain_energy(const State& s, const Attempt& attempt, const Trial& trial) {
-  const bool exact = (s.yarn || s.direct) && !attempt.only_sweeps;
+  const bool exact = s.yarn || s.direct;
   const bool cut_off = trial.status == Status::iteration_limit;
   return (exact || cut_off) && s.settings.iterations == 0 && !attempt.by_rattle();
 }

@@ -44,9 +44,7 @@ class Substeps {
       : s_(s), report_(report), team_(team), transaction_(s) {
     const bool may_halve = s.settings.iterations == 0 &&
                            s.settings.solver != Solver::gauss_seidel && s.trouble.may_halve();
-    answer_ = s.trouble.only_sweeps() ? Answer::only_sweeps
-              : may_halve             ? Answer::halves
-                                      : Answer::sweeps;
+    answer_ = may_halve ? Answer::halves : Answer::sweeps;
   }
 
   /// Returns whether all of dt was done.
@@ -56,7 +54,6 @@ class Substeps {
       transaction_.begin();
       record_.stood_at = project(s_, dt, allowance, report_, team_);
     }
-    projected_ = report_.visits;
     const int substeps = choose_substeps(dt);
     if (substeps > 1) transaction_.begin();
     for (int left = substeps; left > 0; --left) {
@@ -64,8 +61,7 @@ class Substeps {
       present_ = {.share = share,
                   .left = share,
                   .velocities_left = share_of(report_.velocity_iterations, left),
-                  .to_do = dt / substeps,
-                  .gave_up = answer_ == Answer::only_sweeps};
+                  .to_do = dt / substeps};
       Outcome outcome;
       while ((outcome = advance(dt / substeps, 0)) == Outcome::hopeless) be_safer();
       if (outcome == Outcome::refused) return false;
@@ -103,7 +99,7 @@ class Substeps {
   /// After a substep was hopeless: the next answer. With the last no substep is hopeless.
   void be_safer() {
     if (answer_ == Answer::halves) record_.helped = false;
-    answer_ = answer_ == Answer::only_sweeps ? Answer::halves : Answer::sweeps;
+    answer_ = Answer::sweeps;
   }
 
   /// Advances by h, in halves where the solver gives up. Where even the first of the shortest parts
@@ -150,7 +146,6 @@ class Substeps {
                           .most_iterations = most_iterations(h, on_failure),
                           .most_velocity_iterations = part_of(present_.velocities_left, h),
                           .on_failure = on_failure,
-                          .only_sweeps = answer_ == Answer::only_sweeps,
                           .hold_taut = s_.settings.iterations == 0,
                           .allowance = std::sqrt(s_.trouble.allowance()),
                           .stood_at = std::max(record_.stood_at, s_.trouble.stood_at()),
@@ -171,16 +166,13 @@ class Substeps {
   int most_iterations(double h, OnFailure on_failure) const {
     const int left = present_.left;
     int most = part_of(left, h);
-    if (answer_ == Answer::only_sweeps)
-      most = std::min(left / 2, s_.trouble.most_sweeps());
-    else if (on_failure != OnFailure::sweep)
-      most = left - kept_for_sweeps();
+    if (on_failure != OnFailure::sweep) most = left - kept_for_sweeps();
     return std::max(most, 1);
   }
 
   void accept(const Trial& trial, double h) {
     if (trial.ended == Ended::made_do) {
-      present_.gave_up = record_.made_do = true;
+      present_.gave_up = true;
       if (answer_ == Answer::halves && !trial.gained) record_.helped = false;
     }
     if (present_.gave_up) take_gained_energy(s_, h);
@@ -222,23 +214,16 @@ class Substeps {
     const bool sweeps_converge = s_.yarn && s_.settings.scheme == Scheme::paper &&
                                  s_.settings.tolerance > YarnSolver::kGoal &&
                                  report_.status == Status::converged;
-    const bool began_with_sweeps = s_.trouble.only_sweeps();
-    const auto constraints =
-        static_cast<double>(std::max<std::size_t>(1, s_.model->constraints.size()));
     StepRecord record = record_;
     record.halved = report_.halvings > 0;
     record.helped |= !sweeps_converge;
-    record.only_sweeps = began_with_sweeps;
-    record.swept_in_vain = began_with_sweeps && answer_ != Answer::only_sweeps;
-    record.may_be_swept = sweeps_converge && !s_.direct && !s_.model->has_contacts();
-    record.passes = static_cast<double>(report_.visits - projected_) / constraints;
     return record;
   }
 
   /// What answers where the solver gives up, in the order in which a step tries them, each for all
-  /// that is left of it; the first is that it is not asked at all. OnFailure is what that comes to
-  /// for one attempt. A hopeless substep, of which no part has been accepted, moves on to the next.
-  enum class Answer : std::uint8_t { only_sweeps, halves, sweeps };
+  /// that is left of it. OnFailure is what that comes to for one attempt. A hopeless substep, of
+  /// which no part has been accepted, moves on to the next.
+  enum class Answer : std::uint8_t { halves, sweeps };
   /// The substep that is being done.
   struct Present {
     int share = 0;            // of the step's iterations, for all its parts together
@@ -255,7 +240,6 @@ class Substeps {
   Transaction transaction_;
   Answer answer_ = Answer::sweeps;
   StepRecord record_;
-  std::int64_t projected_ = 0;  // visits of the projection
   bool predicted_ = false;      // the first substep, before it is tried
   Present present_;
 };

@@ -1,4 +1,4 @@
-/// What steps in which a solver gave up, or that were expensive, mean for the next ones.
+/// What steps in which a solver gave up mean for the next ones.
 #include "engine/trouble.h"
 
 #include <doctest/doctest.h>
@@ -11,23 +11,6 @@
 
 namespace weft::test {
 namespace {
-
-constexpr StepRecord kExpensive{.may_be_swept = true, .passes = 1e6};
-constexpr StepRecord kSwept{.made_do = true, .only_sweeps = true, .may_be_swept = true};
-
-/// Sweeps alone come next.
-Trouble after_expensive_steps() {
-  Trouble trouble;
-  for (int k = 0; k < 2; ++k) trouble.remember(kExpensive);
-  REQUIRE(trouble.only_sweeps());
-  return trouble;
-}
-
-int steps_of_sweeps(Trouble& trouble) {
-  int steps = 0;
-  for (; trouble.only_sweeps() && steps < 100; ++steps) trouble.remember(kSwept);
-  return steps;
-}
 
 TEST_CASE("after halves that helped the allowance is less, down to a quarter, for a while") {
   Trouble trouble;
@@ -57,54 +40,6 @@ TEST_CASE("where halves are no answer they are not tried for 1, 2, 4, ... 64 ste
   trouble.remember({.helped = false});
   trouble.remember({});
   CHECK(trouble.may_halve());
-}
-
-TEST_CASE("one step alone is not expensive enough for sweeps, whatever it took") {
-  Trouble trouble;
-  trouble.remember({.may_be_swept = true, .passes = 1e9});
-  for (int k = 0; k < 10; ++k) {
-    CHECK_FALSE(trouble.only_sweeps());
-    trouble.remember({.may_be_swept = true, .passes = 10});
-  }
-}
-
-TEST_CASE(
-    "expensive steps are followed by 8, 16, ... of sweeps, the last of which tries yarns again") {
-  Trouble trouble = after_expensive_steps();
-  for (const int pause : {8, 16, 32, 64, 64}) {
-    CHECK(steps_of_sweeps(trouble) == pause - 1);
-    CHECK_FALSE(trouble.may_halve());
-    trouble.remember({.made_do = true, .may_be_swept = true});
-  }
-  steps_of_sweeps(trouble);
-  trouble.remember({.may_be_swept = true});  // this time yarns have a solution
-  CHECK_FALSE(trouble.only_sweeps());
-}
-
-TEST_CASE("sweeps in vain, or more of them than yarns take, are not tried again for 64 steps") {
-  for (const bool in_vain : {false, true}) {
-    CAPTURE(in_vain);
-    Trouble trouble = after_expensive_steps();
-    const double passes = in_vain ? 0 : 2e6;
-    trouble.remember({.only_sweeps = true, .swept_in_vain = in_vain, .passes = passes});
-    CHECK(trouble.may_halve());
-    for (int k = 0; k < 63; ++k) {
-      CHECK_FALSE(trouble.only_sweeps());
-      trouble.remember(kExpensive);
-    }
-    CHECK_FALSE(trouble.only_sweeps());
-    trouble.remember(kExpensive);
-    CHECK(trouble.only_sweeps());
-  }
-}
-
-TEST_CASE("what sweeps take says nothing about yarns") {
-  Trouble trouble = after_expensive_steps();
-  const int before = trouble.most_sweeps();
-  StepRecord swept = kSwept;
-  swept.passes = 100;
-  trouble.remember(swept);
-  CHECK(trouble.most_sweeps() == before);
 }
 
 TEST_CASE("a state that is copied brings its trouble along, but not to other settings") {
@@ -147,30 +82,6 @@ TEST_CASE("a step that did not converge is none that a shorter one is compared w
     REQUIRE(converged == (most > 1));
     CHECK(state.last_dt == (converged ? 0.1 : 0));
   }
-}
-
-/// Whether a step that follows on expensive ones leaves the next to sweeps alone.
-bool leaves_to_sweeps(const SceneDescription& scene, Settings settings) {
-  settings.solver = Solver::yarn;
-  settings.isa = Isa::sse2;
-  settings.velocity_correction = settings.scheme == Scheme::rattle;
-  State state(model_of(scene), settings);
-  for (int k = 0; k < 3; ++k) state.trouble.remember({.passes = 1e6});
-  step(state, 0.01);
-  return state.trouble.only_sweeps();
-}
-
-TEST_CASE("with spheres, tight tolerances or scheme rattle nothing is left to sweeps alone") {
-  SceneDescription scene = scene_of("hang", 8);
-  CHECK(leaves_to_sweeps(scene, {}));
-  CHECK_FALSE(leaves_to_sweeps(scene, {.tolerance = 0.003}));
-  CHECK_FALSE(leaves_to_sweeps(scene, {.scheme = Scheme::rattle}));
-  scene.spheres = {static_cast<std::uint32_t>(scene.positions.size())};
-  scene.fixed.push_back(scene.spheres[0]);
-  scene.positions.push_back({0, 100, 0});  // far from everything
-  scene.masses.push_back(1);
-  scene.radii.assign(scene.positions.size(), 1);
-  CHECK_FALSE(leaves_to_sweeps(scene, {}));
 }
 
 struct AfterTrouble {
