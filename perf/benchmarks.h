@@ -52,6 +52,7 @@ void register_constraint_benchmarks(Shared& shared);
 void register_batch_benchmarks(Shared& shared);
 void register_contact_benchmarks(Shared& shared);
 void register_yarn_benchmarks(Shared& shared);
+void register_small_step_benchmarks(Shared& shared);
 void register_direct_benchmarks();
 void register_team_benchmarks();
 void register_step_benchmarks();

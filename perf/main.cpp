@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   register_batch_benchmarks(shared);
   register_contact_benchmarks(shared);
   register_yarn_benchmarks(shared);
+  register_small_step_benchmarks(shared);
   register_direct_benchmarks();
   register_team_benchmarks();
   register_step_benchmarks();
