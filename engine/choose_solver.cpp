@@ -116,8 +116,9 @@ void choose_solver(const Model& model, Settings& settings) {
     else
       settings.solver = paper ? Solver::gauss_seidel : solver_for(model, settings);
   }
-  const bool small_steps = settings.solver == Solver::small_steps;
-  if (paper && !small_steps && settings.substeps == kAutomaticSubsteps) settings.substeps = 1;
+  const bool one = paper && settings.solver != Solver::small_steps;
+  if (settings.substeps == kAutomaticSubsteps && (one || settings.iterations > 0))
+    settings.substeps = 1;
 }
 
 }  // namespace weft

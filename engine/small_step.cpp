@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/contacts.h"
 #include "engine/crossings.h"
@@ -54,11 +55,12 @@ class Frame {
         team_(team),
         edges_(static_cast<std::int64_t>(s.model->constraints.size())) {}
 
-  void begin(double h) {
+  void begin(double h, int substeps) {
     const kernels::VectorsView force =
         s_.force.size() > 0 ? s_.force.view() : kernels::VectorsView{};
     if (s_.model->has_contacts()) s_.substep_start = s_.position;
-    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, h, s_.placed, team_);
+    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, h, substeps, s_.placed,
+                  team_);
   }
 
   void substep() {
@@ -72,19 +74,22 @@ class Frame {
     ++report_.substeps;
   }
 
-  /// What the last substep left out of tolerance. Returns whether all of it is within.
-  bool finish() {
+  /// What the last substep left out of tolerance: sweeps, each with local passes that look at all
+  /// constraints. Where these no longer bring the error down it is there to stay.
+  Status finish() {
     read_positions();
-    const bool within = is_within_tolerance();
-    if (within || s_.settings.iterations > 0) return true;
-    for (int round = 0; round < kRounds; ++round) {
-      timed(report_, Stage::solve_positions, [&] {
-        count(solver_.repair_everywhere(s_.contacts, most_visits(tuning::kMostLastVisits)));
-        read_positions();
-      });
-      if (is_within_tolerance()) return true;
+    double worst = std::numeric_limits<double>::infinity();
+    for (int round = 0, stalled = 0;; ++round) {
+      if (is_within_tolerance()) return Status::converged;
+      if (s_.settings.iterations > 0) return Status::fixed_iterations;
+      if (round == most_rounds()) return Status::iteration_limit;
+      const double now = std::max(report_.max_strain / s_.settings.tolerance,
+                                  report_.max_penetration / s_.settings.contact_tolerance);
+      stalled = now < tuning::kFall * worst ? 0 : stalled + 1;
+      if (stalled > tuning::kPatience) return Status::infeasible;
+      worst = std::min(worst, now);
+      timed(report_, Stage::solve_positions, [&] { put_right(); });
     }
-    return false;
   }
 
   void read_velocities() {
@@ -100,8 +105,16 @@ class Frame {
   }
 
  private:
-  static constexpr int kRounds = 3;
-
+  /// With a number of substeps that was given the time of a frame is to be bounded.
+  int most_rounds() const {
+    if (report_.iterations >= s_.settings.max_iterations) return 0;
+    return s_.settings.substeps == kAutomaticSubsteps ? tuning::kMostRounds : 1;
+  }
+  void put_right() {
+    sweep();
+    count(solver_.repair_everywhere(s_.contacts, most_visits(tuning::kMostRoundVisits)));
+    read_positions();
+  }
   void sweep() {
     solver_.sweep(team_);
     ++report_.iterations;
@@ -150,21 +163,6 @@ class Frame {
   const std::int64_t edges_;
 };
 
-/// What local passes could not bring within tolerance is left to the paper's sweeps, which change
-/// positions alone, unless the number of substeps, and so the work, was given.
-template <class Solver>
-void answer_miss(State& s, Frame<Solver>& frame, double dt, StepReport& report, Team& team) {
-  const std::int64_t left = s.settings.max_iterations - report.iterations;
-  if (s.settings.substeps != kAutomaticSubsteps || left <= 0)
-    return worsen(report, Status::iteration_limit);
-  const Attempt attempt{
-      .h = dt,
-      .most_iterations = static_cast<int>(std::min<std::int64_t>(left, tuning::kMostLastSweeps)),
-      .on_failure = OnFailure::sweep};
-  worsen(report, solve_positions(s, attempt, report, team).status);
-  frame.is_within_tolerance();
-}
-
 /// A frame gains no energy but what forces and pins bring in.
 void guard_energy(State& s, const kernels::Kicks& change, double dt, StepReport& report) {
   if (s.settings.iterations == 0) take_gained_energy(s, change, dt);
@@ -182,12 +180,12 @@ bool run(State& s, Solver& solver, double dt, bool jumped, StepReport& report, T
   int substeps = 1;
   timed(report, Stage::predict, [&] {
     substeps = substeps_of(s, solver, dt);
-    frame.begin(dt / substeps);
+    frame.begin(dt / substeps, substeps);
   });
   timed(report, Stage::solve_positions, [&] {
     for (int i = 0; i < substeps; ++i) frame.substep();
   });
-  const bool within = frame.finish();
+  const Status status = frame.finish();
   kernels::Kicks change;
   timed(report, Stage::commit, [&] {
     frame.read_velocities();
@@ -198,11 +196,7 @@ bool run(State& s, Solver& solver, double dt, bool jumped, StepReport& report, T
     explain(s, dt, report, team);
     return false;
   }
-  if (!within) {
-    answer_miss(s, frame, dt, report, team);
-    change = measure_energy_change(s, team);
-  }
-  if (s.settings.iterations > 0) worsen(report, Status::fixed_iterations);
+  worsen(report, s.settings.iterations > 0 ? Status::fixed_iterations : status);
   timed(report, Stage::commit, [&] { guard_energy(s, change, dt, report); });
   timed(report, Stage::commit, [&] {
     solver.keep(team);

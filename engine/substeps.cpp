@@ -240,7 +240,7 @@ class Substeps {
   Transaction transaction_;
   Answer answer_ = Answer::sweeps;
   StepRecord record_;
-  bool predicted_ = false;      // the first substep, before it is tried
+  bool predicted_ = false;  // the first substep, before it is tried
   Present present_;
 };
 

@@ -11,9 +11,9 @@ namespace weft::tuning {
 inline constexpr double kOmega = 0.8;
 /// Of the tolerance, from which on local passes look at a constraint: what later corrections of its
 /// neighbours may add.
-inline constexpr double kLocalShare = 0.9;
+inline constexpr double kLocalShare = 0.99;
 /// Of the diagonal of a yarn's matrix, which is singular where the yarn is straight between pins.
-inline constexpr double kCompliance = 1e-3;
+inline constexpr double kCompliance = 3e-3;
 /// s, the longest substep: what a sheet that hangs by yarns alone is off the true motion by.
 inline constexpr double kLongestSubstep = 0.005;
 /// Of the time in which what falls from its pins passes the length of a constraint: where a fold
@@ -28,11 +28,15 @@ inline constexpr double kLeastLinks = 8;
 inline constexpr int kRenewal = 16;
 /// Of all constraints: where more are out of tolerance, another sweep is cheaper than local passes.
 inline constexpr double kManyOut = 0.02;
-/// Visits of local passes, of the constraints: in a substep, and when a frame ends.
-inline constexpr std::int64_t kMostVisits = 1, kMostLastVisits = 64;
-
-/// Sweeps that answer where a frame of automatic substeps misses its tolerance all the same: as
-/// many as it takes to tell contradictions from what converges slowly.
-inline constexpr int kMostLastSweeps = 32768;
+/// Visits of local passes in a substep, of the constraints.
+inline constexpr std::int64_t kMostVisits = 1;
+/// Rounds that follow the last substep of a frame, where it is out of tolerance: a sweep each, and
+/// local passes of so many visits, of the constraints.
+inline constexpr int kMostRounds = 32;
+inline constexpr std::int64_t kMostRoundVisits = 32;
+/// What a round must bring the error down to at least, and how many may not before the rest counts
+/// as contradictions.
+inline constexpr double kFall = 0.98;
+inline constexpr int kPatience = 8;
 
 }  // namespace weft::tuning

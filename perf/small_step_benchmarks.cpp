@@ -49,7 +49,7 @@ struct Falling {
   /// From its beginning, each time, to the velocities in its end.
   void frame() {
     const double h = std::min(0.005, solver.substep_length(x.view(), 10));
-    solver.begin(x.view(), v.view(), model->gravity, {}, h, true, team);
+    solver.begin(x.view(), v.view(), model->gravity, {}, h, kSubsteps, true, team);
     for (int k = 0; k < kSubsteps; ++k) {
       solver.advance(team);
       solver.sweep(team);

@@ -66,7 +66,7 @@ Result<void> write_folder(const std::filesystem::path& folder,
 }
 
 Result<int> run_hard(const HardOptions& options) {
-  if (const auto any = hard::offered({}); !any) return Error{any.error()};
+  if (const auto any = offered({}); !any) return Error{any.error()};
   const auto selected = hard::select(options.name);
   if (selected.empty()) return Error{fmt::format("--case: no case is named '{}'", options.name)};
   auto outputs = StudyOutputs::open(options);

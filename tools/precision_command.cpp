@@ -36,13 +36,14 @@ struct PrecisionOptions : StudyOptions {
   bool names_scene() const { return scene || size; }
 };
 
-/// `corners` has a middle row, so its size is odd.
+/// `corners` has a middle row, and `four_pins` a middle, so their sizes are odd.
 int default_size(const std::string& scene, bool quick) {
-  return (quick ? 20 : 40) + (scene == "corners" ? 1 : 0);
+  const bool odd = scene == "corners" || scene == "four_pins";
+  return (quick ? 20 : 40) + (odd ? 1 : 0);
 }
 
 Result<std::vector<Task>> tasks_of(const PrecisionOptions& options) {
-  std::vector<std::string> scenes{"hang", "corners"};
+  std::vector<std::string> scenes{"hang", "corners", "cape", "four_pins"};
   if (options.names_scene()) scenes = {options.scene.value_or("hang")};
   std::vector<Task> tasks;
   for (const std::string& scene : scenes) {
@@ -94,19 +95,23 @@ Result<Chart> measure_chart(Task task, const PrecisionOptions& options, TaskLine
 }
 
 Result<std::vector<Order>> orders_of(bool quick, TaskLine& line) {
-  line.next("orders of convergence, hang 20x20");
-  auto task = make_task("hang", 20);
-  if (!task) return Error{task.error()};
-  task.value().frames = kReferenceFrame;
-  if (const auto done = add_reference(task.value(), reference_parts(quick)); !done) {
-    return Error{done.error()};
+  std::vector<Order> orders;
+  for (const std::string scene : {"hang", "corners"}) {
+    auto task = make_task(scene, default_size(scene, true));
+    if (!task) return Error{task.error()};
+    line.next(fmt::format("orders of convergence, {} {}", scene, size_text(task.value())));
+    task.value().frames = kReferenceFrame;
+    if (const auto done = add_reference(task.value(), reference_parts(quick)); !done) {
+      return Error{done.error()};
+    }
+    for (Order& order : measure_orders(task.value())) orders.push_back(std::move(order));
   }
-  return measure_orders(task.value());
+  return orders;
 }
 
 Result<Study> carry_out(const std::vector<Task>& tasks, const PrecisionOptions& options) {
   const bool has_sizes = !options.names_scene();
-  TaskLine line(3 * tasks.size() + 1 + (has_sizes ? 1 : 0));
+  TaskLine line(3 * tasks.size() + 2 + (has_sizes ? 1 : 0));
   Study study;
   study.quick = options.quick;
   study.bullet = bullet_version();
@@ -164,12 +169,13 @@ void add_precision_command(CommandLine& line) {
                             "Measure error against time per frame: every solver, scheme and knob",
                             [options] { return run_precision(*options); });
   verb.option("--scene", options->scene,
-              "only this built-in scene, without cost against size (default: hang, corners "
-              "and cost against size). Not one with spheres, which the reference solution has "
-              "not, nor banner, which can hang by no exact lengths");
-  verb.option("--size", options->size, "N of the scene (default 40, corners 41; quick 20, 21)");
+              "only this built-in scene, without cost against size (default: hang, corners, a "
+              "cape of ropes, four_pins, and cost against size). Not one with spheres, which the "
+              "reference solution has not, nor banner, which can hang by no exact lengths");
+  verb.option("--size", options->size,
+              "N of the scene (default 40, corners and four_pins 41; quick 20, 21)");
   add_study_options(verb, *options, "write CSV, JSON, tables and the charts into a folder",
-                    "few settings on small scenes: under a minute");
+                    "few settings on small scenes: about a minute");
   verb.within(1, kMaxThreads, "--threads", options->threads,
               "threads of every run (default 1; cost against size: all)");
 }

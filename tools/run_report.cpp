@@ -93,7 +93,7 @@ Json to_json(const RunReport& report) {
       {"spheres", summary.model.spheres},
       {"solver", name(settings.solver)},
       {"solver_used", name(summary.solver)},
-      {"scheme", name(settings.scheme)},
+      {"scheme", name(summary.scheme)},
       {"scheme_fallbacks", summary.scheme_fallbacks},
       {"backend", name(settings.backend)},
       {"isa", isa(report)},
@@ -144,8 +144,8 @@ std::string to_table(const RunReport& report) {
                   counted(summary.model.constraints, "constraint"),
                   counted(summary.model.spheres, "sphere")));
   row("solver", fmt::format("{}, scheme {}, backend {}, {}", solver_text(report),
-                            name(settings.scheme), name(settings.backend), goal_text(settings)));
-  if (settings.scheme == Scheme::rattle) {
+                            name(summary.scheme), name(settings.backend), goal_text(settings)));
+  if (summary.scheme == Scheme::rattle) {
     row("scheme", fmt::format("{} of {} left to scheme paper", summary.scheme_fallbacks,
                               counted(summary.substeps, "substep")));
   }

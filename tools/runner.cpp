@@ -82,6 +82,7 @@ void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
   summary.mean_max_strain = errors.strain_sum / frames;
   summary.rms_strain = std::sqrt(errors.square_strain_sum / frames);
   summary.solver = cloth.settings().solver;
+  summary.scheme = cloth.settings().scheme;
   summary.isa = cloth.settings().isa;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     if (static_cast<Stage>(stage) != Stage::report) {

@@ -55,6 +55,7 @@ std::string text(const Miss& miss);
 /// recomputed from the positions after every frame.
 struct RunSummary {
   Solver solver = Solver::automatic;  ///< that was chosen
+  Scheme scheme = Scheme::automatic;  ///< likewise
   Isa isa = Isa::automatic;           ///< what the kernels ran on
   int threads = 1;                    ///< that the steps could use
   int frames = 0;  ///< computed; below RunPlan::steps if stopped, not committed or out of time

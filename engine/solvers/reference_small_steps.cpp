@@ -35,8 +35,9 @@ reference::Flight ReferenceSmallSteps::flight() {
 }
 
 void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, Vector gravity,
-                                kernels::VectorsView force, double h, bool, Team&) {
+                                kernels::VectorsView force, double h, int, bool placed, Team&) {
   h_ = h;
+  if (placed) past_.h = 0;
   last_ = 0;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     const double w = model_.inverse_mass[i];

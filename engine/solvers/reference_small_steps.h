@@ -28,7 +28,7 @@ class ReferenceSmallSteps {
 
   double substep_length(kernels::VectorsView x, double acceleration) const;
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
-             kernels::VectorsView force, double h, bool placed, Team& team);
+             kernels::VectorsView force, double h, int substeps, bool placed, Team& team);
   void advance(Team& team);
   void sweep(Team& team);
   std::int64_t count_out() const { return std::ssize(out_); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/small_steps_load.h"
@@ -59,7 +60,8 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
   for (auto* array : {&base_, &u_, &u_before_, &predicted_, &v_, &v_before_, &acceleration_}) {
     array->resize(layout_.floats);
   }
-  for (auto* array : {&past_.v, &past_.v_before, &past_.moved}) array->resize(layout_.floats);
+  for (auto* array : {&past_.v, &past_.v_before, &past_.moved, &past_.base})
+    array->resize(layout_.floats);
   const std::size_t wanted =
       settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
   if (layout_.has_yarns())
@@ -130,13 +132,21 @@ void SmallStepsSolver::begin_past(Team& team) {
   });
 }
 
-/// The base stays for as many substeps as it may, so that what is remembered of it does.
-void SmallStepsSolver::split(kernels::VectorsView x, bool placed, Team& team) {
+/// The base stays for as many substeps as it may, so that what is remembered of it does. It is
+/// renewed within a frame only where the frame began with a new one: a frame that is not kept
+/// leaves the old one.
+void SmallStepsSolver::split(kernels::VectorsView x, int substeps, Team& team) {
+  if (std::exchange(is_new_, false)) {
+    base_.swap(past_.base);
+    moved_ = true;
+  }
   const YarnPlaces& places = layout_.places();
-  const bool stays =
-      past_.h > 0 && !placed && past_.since_renewal > 0 && past_.since_renewal < tuning::kRenewal;
+  const bool stays = past_.h > 0 && past_.since_renewal + substeps <= tuning::kRenewal;
   since_renewal_ = stays ? past_.since_renewal : 0;
-  moved_ |= !stays;
+  if (!stays) {
+    base_.swap(past_.base);
+    is_new_ = moved_ = true;
+  }
   places.clear(u_.data());
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     if (stays)
@@ -149,9 +159,10 @@ void SmallStepsSolver::split(kernels::VectorsView x, bool placed, Team& team) {
 
 void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
                              kernels::Vector gravity, kernels::VectorsView force, double h,
-                             bool placed, Team& team) {
+                             int substeps, bool placed, Team& team) {
   h_ = h;
-  split(x, placed, team);
+  if (placed) past_.h = 0;
+  split(x, substeps, team);
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());
   });
@@ -180,7 +191,7 @@ void SmallStepsSolver::renew_base(Team& team) {
 
 void SmallStepsSolver::advance(Team& team) {
   start_again();
-  if (since_renewal_++ == tuning::kRenewal) {
+  if (since_renewal_++ == tuning::kRenewal) {  // never where the base is the past's
     since_renewal_ = 1;
     renew_base(team);
   }
@@ -355,6 +366,7 @@ void SmallStepsSolver::read_velocities(kernels::VectorsView v, Team& team) const
 void SmallStepsSolver::keep(Team& team) {
   past_.h = h_;
   past_.since_renewal = since_renewal_;
+  is_new_ = false;
   const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
   for_floats(team, [&](std::size_t first, std::size_t last) {
     table_.keep_past(flight(), arrays, first, last);
@@ -363,19 +375,19 @@ void SmallStepsSolver::keep(Team& team) {
 
 SmallStepsPast SmallStepsSolver::past() const {
   SmallStepsPast past = past_;
-  past.base = base_;
+  if (!is_new_) past.base = base_;
   return past;
 }
 
 void SmallStepsSolver::set_past(SmallStepsPast&& past) {
   past_ = std::move(past);
-  base_.swap(past_.base);
-  past_.base = {};
+  std::ranges::copy(past_.base, base_.begin());
+  is_new_ = false;
   moved_ = true;
 }
 
 std::size_t SmallStepsSolver::bytes() const {
-  return 10 * bytes_of(u_) + bytes_of(spans_) + bytes_of(base_step_) + bytes_of(scratch_) +
+  return 11 * bytes_of(u_) + bytes_of(spans_) + bytes_of(base_step_) + bytes_of(scratch_) +
          bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) + bytes_of(is_touched_) +
          passes_.bytes();
 }

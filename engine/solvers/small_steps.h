@@ -35,7 +35,7 @@ struct SmallStepsPast {
   double h = 0;           // of the last substep; 0: there was none
   int since_renewal = 0;  // substeps with the present base
   kernels::AlignedVector<float> v, v_before, moved;
-  kernels::AlignedVector<float> base;
+  kernels::AlignedVector<float> base;  // of a frame that is kept
 };
 
 class SmallStepsSolver {
@@ -45,9 +45,10 @@ class SmallStepsSolver {
   /// s, of the longest substep that leaves little to local passes.
   double substep_length(kernels::VectorsView x, double acceleration) const;
 
-  /// A frame in substeps of h from x, with velocities v; placed: x is not where the last one ended.
+  /// A frame in so many substeps of h from x, with velocities v; placed: x is not where the last
+  /// one ended, and nothing is known of a past.
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
-             kernels::VectorsView force, double h, bool placed, Team& team);
+             kernels::VectorsView force, double h, int substeps, bool placed, Team& team);
   /// The stages of a substep.
   void advance(Team& team);
   void sweep(Team& team);
@@ -75,7 +76,7 @@ class SmallStepsSolver {
   simd::Yarns yarns();
   void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
   void begin_past(Team& team);
-  void split(kernels::VectorsView x, bool placed, Team& team);
+  void split(kernels::VectorsView x, int substeps, Team& team);
   void measure_base(Team& team);
   void renew_base(Team& team);
   void sweep_yarns(Team& team);
@@ -102,6 +103,7 @@ class SmallStepsSolver {
   int since_renewal_ = 0;
   kernels::Vector gravity_{};
   bool has_force_ = true;  // in acceleration_
+  bool is_new_ = false;    // base_, of a frame that is not kept yet; past_ has the one before
   bool moved_ = true;      // rows of yarns and edges do not remember the present base
 
   kernels::AlignedVector<float> base_, u_, u_before_, predicted_, v_, v_before_, acceleration_;

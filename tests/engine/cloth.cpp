@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "tests/support/clothes.h"
@@ -26,16 +27,61 @@ TEST_CASE("a cloth starts as described") {
   CHECK(describe(*cloth.model()).particles == 16);
 }
 
-TEST_CASE("the solver that automatic stands for: another than yarns where they have no chance") {
-  const auto chosen = [](const SceneDescription& scene, const Settings& settings) {
-    return cloth_of(scene, settings).settings().solver;
+Solver chosen(const SceneDescription& scene, const Settings& settings) {
+  return cloth_of(scene, settings).settings().solver;
+}
+
+TEST_CASE("automatic is small steps for cloth, where these are said to be the fastest") {
+  for (const char* name : {"hang", "hang_sphere", "corners", "banner", "four_pins", "cape"}) {
+    CAPTURE(std::string(name));
+    const SceneDescription scene = scene_of(name, 9);
+    for (const Scheme scheme : {Scheme::automatic, Scheme::bdf2, Scheme::implicit}) {
+      const Cloth cloth = cloth_of(scene, {.scheme = scheme});
+      CHECK(cloth.settings().solver == Solver::small_steps);
+      CHECK(cloth.settings().scheme == (scheme == Scheme::automatic ? Scheme::bdf2 : scheme));
+    }
+    CHECK(chosen(scene, {.tolerance = 1e-3}) == Solver::small_steps);
+    CHECK(chosen(scene, {.tolerance = 0.9e-3}) == Solver::yarn);
+    CHECK(chosen(scene, {.substeps = 4}) == Solver::small_steps);
+    CHECK(chosen(scene, {.scheme = Scheme::paper}) == Solver::yarn);
+    CHECK(chosen(scene, {.scheme = Scheme::rattle}) == Solver::yarn);
+    CHECK(chosen(scene, {.velocity_correction = true}) == Solver::yarn);
+    CHECK(chosen(scene, {.iterations = 3}) == Solver::gauss_seidel);
+    CHECK(chosen(scene, {.backend = Backend::reference}) == Solver::gauss_seidel);
+  }
+  CHECK(chosen(scene_of("sphere_drop", 9), {}) == Solver::yarn);
+  CHECK(chosen(scene_of("chain", 9), {}) == Solver::yarn);
+  SceneDescription uneven = scene_of("hang", 9);
+  uneven.masses.back() *= 99;
+  CHECK(chosen(uneven, {}) == Solver::small_steps);
+  uneven.masses.back() *= 2;
+  CHECK(chosen(uneven, {}) == Solver::yarn);
+  SceneDescription ropes = scene_of("hang", 9);
+  for (Constraint& c : ropes.constraints) c.kind = ConstraintKind::rope;
+  CHECK(chosen(ropes, {}) == Solver::small_steps);
+}
+
+TEST_CASE("what automatic is by scheme: paper unless small steps are chosen") {
+  const SceneDescription scene = scene_of("hang", 9);
+  const auto scheme = [&](const Settings& settings) {
+    return cloth_of(scene, settings).settings().scheme;
   };
+  CHECK(scheme({.solver = Solver::small_steps}) == Scheme::bdf2);
+  CHECK(scheme({.solver = Solver::small_steps, .scheme = Scheme::implicit}) == Scheme::implicit);
+  for (const Solver solver : {Solver::gauss_seidel, Solver::direct, Solver::yarn}) {
+    CHECK(scheme({.solver = solver}) == Scheme::paper);
+  }
+  CHECK(scheme({.tolerance = 1e-4}) == Scheme::paper);
+  CHECK(scheme({.scheme = Scheme::rattle}) == Scheme::rattle);
+}
+
+TEST_CASE("the solver that automatic stands for: another than yarns where they have no chance") {
   const SceneDescription hang = scene_of("hang", 4), sphere = scene_of("hang_sphere", 4);
-  const Settings rattle{.scheme = Scheme::rattle};
-  CHECK(chosen(hang, {}) == Solver::yarn);
-  CHECK(chosen(hang, rattle) == Solver::yarn);
-  CHECK(chosen(sphere, {}) == Solver::yarn);
-  CHECK(chosen(sphere, rattle) == Solver::yarn);
+  const Settings paper{.scheme = Scheme::paper}, rattle{.scheme = Scheme::rattle};
+  for (const Settings& settings : {paper, rattle}) {
+    CHECK(chosen(hang, settings) == Solver::yarn);
+    CHECK(chosen(sphere, settings) == Solver::yarn);
+  }
   CHECK(chosen(hang, {.iterations = 3}) == Solver::gauss_seidel);
   CHECK(chosen(hang, {.backend = Backend::reference}) == Solver::gauss_seidel);
   CHECK(cloth_of(hang, {.backend = Backend::reference}).settings().substeps == 1);
@@ -49,13 +95,13 @@ TEST_CASE("the solver that automatic stands for: another than yarns where they h
   for (std::size_t c = 0; c < net.constraints.size(); ++c) {
     if (c % 5 > 0) net.constraints[c].kind = ConstraintKind::rope;
   }
-  CHECK(chosen(net, {}) == Solver::yarn);
+  CHECK(chosen(net, paper) == Solver::yarn);
   for (std::size_t c = 0; c < net.constraints.size(); c += 5) {
     if (c > 200) net.constraints[c].kind = ConstraintKind::rope;
   }
-  CHECK(chosen(net, {}) == Solver::gauss_seidel);
+  CHECK(chosen(net, paper) == Solver::gauss_seidel);
   net.masses.back() = 2e4 * net.masses[20];
-  CHECK(chosen(net, {}) == Solver::direct);
+  CHECK(chosen(net, paper) == Solver::direct);
 }
 
 /// Ropes in a row, the first particle fixed, from a plumb line by 0.3 rad.
@@ -72,9 +118,6 @@ SceneDescription cord(std::uint32_t ropes, double length) {
 }
 
 TEST_CASE("automatic: cords are for the direct solver, unless they are fine") {
-  const auto chosen = [](const SceneDescription& scene, const Settings& settings) {
-    return cloth_of(scene, settings).settings().solver;
-  };
   CHECK(chosen(cord(1, 2), {}) == Solver::direct);
   CHECK(chosen(cord(40, 1.1), {}) == Solver::direct);
   CHECK(chosen(cord(40, 0.9), {}) == Solver::gauss_seidel);
@@ -96,7 +139,7 @@ TEST_CASE("automatic: cords are for the direct solver, unless they are fine") {
   CHECK(chosen(bridge, {}) == Solver::direct);
   SceneDescription net = scene_of("hang", 20);
   for (Constraint& c : net.constraints) c.kind = ConstraintKind::rope;
-  CHECK(chosen(net, {}) == Solver::gauss_seidel);
+  CHECK(chosen(net, {.scheme = Scheme::paper}) == Solver::gauss_seidel);
   SceneDescription beads = cord(17, 2);
   beads.radii.assign(18, 0.01);
   for (std::uint32_t i = 0; i <= 16; ++i) beads.spheres.push_back(i);  // the first one is fixed
@@ -123,35 +166,6 @@ TEST_CASE("automatic: a weight on a cord swings, and gains no energy, however sh
       }
     }
   }
-}
-
-TEST_CASE("automatic leaves sheets that ropes brace to sweeps, unless these have much to carry") {
-  const auto chosen = [](const SceneDescription& scene, const Settings& settings) {
-    return cloth_of(scene, settings).settings().solver;
-  };
-  const auto braced = [](SceneDescription scene, std::size_t every) {
-    for (std::size_t c = 0; c < scene.constraints.size(); c += every) {
-      scene.constraints[c].kind = ConstraintKind::rope;
-    }
-    return scene;
-  };
-  const Settings rattle{.scheme = Scheme::rattle};
-  const SceneDescription few = braced(scene_of("hang", 20), 5);
-  const SceneDescription small = braced(scene_of("hang", 20), 3);
-  const SceneDescription large = braced(scene_of("hang", 33), 3);
-  for (const Settings& settings : {Settings{}, rattle}) {
-    CHECK(chosen(few, settings) == Solver::yarn);
-    CHECK(chosen(small, settings) == Solver::gauss_seidel);
-  }
-  CHECK(chosen(large, {}) == Solver::yarn);
-  CHECK(chosen(large, rattle) == Solver::gauss_seidel);
-  CHECK(chosen(small, {.tolerance = 0.9e-3}) == Solver::yarn);
-  CHECK(chosen(small, {.tolerance = 0.9e-3, .scheme = Scheme::rattle}) == Solver::yarn);
-  CHECK(chosen(braced(scene_of("sphere_drop", 20), 3), {}) == Solver::yarn);
-  CHECK(chosen(braced(scene_of("hang_sphere", 20), 3), {}) == Solver::gauss_seidel);
-  SceneDescription loaded = small;
-  loaded.masses.back() *= 200;
-  CHECK(chosen(loaded, {}) == Solver::yarn);
 }
 
 TEST_CASE("automatic: particles that nothing joins have no say in it") {

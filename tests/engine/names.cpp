@@ -11,9 +11,13 @@ TEST_CASE("every choice has the name that the command line and reports call it b
   CHECK(name(Solver::gauss_seidel) == "gauss_seidel");
   CHECK(name(Solver::yarn) == "yarn");
   CHECK(name(Solver::direct) == "direct");
+  CHECK(name(Solver::small_steps) == "small_steps");
   CHECK(name(Solver::automatic) == "auto");
   CHECK(name(Scheme::paper) == "paper");
   CHECK(name(Scheme::rattle) == "rattle");
+  CHECK(name(Scheme::implicit) == "implicit");
+  CHECK(name(Scheme::bdf2) == "bdf2");
+  CHECK(name(Scheme::automatic) == "auto");
   CHECK(name(Directions::each) == "each");
   CHECK(name(Directions::frozen) == "frozen");
   CHECK(name(Backend::reference) == "reference");

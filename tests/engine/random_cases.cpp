@@ -86,7 +86,8 @@ double fastest(const State& now) {
 void check_status(const RandomCase& c, const StepReport& report, const State& now) {
   const Settings& s = c.settings;
   if (s.iterations > 0) {
-    CHECK(report.iterations <= (s.substeps + report.scheme_fallbacks) * s.iterations);
+    const int substeps = std::max(s.substeps, 1);  // those of iterations are never automatic
+    CHECK(report.iterations <= (substeps + report.scheme_fallbacks) * s.iterations);
   } else {
     constexpr int kParts = 16;  // of a substep, each of which does one at least, by each scheme
     const int least = 2 * kParts * std::max(s.substeps, report.substeps);

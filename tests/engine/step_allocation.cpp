@@ -72,6 +72,30 @@ TEST_CASE("nor does a warm step by yarns") {
   }
 }
 
+TEST_CASE("nor does a warm step by small steps, nor without contacts the first") {
+  for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners", "four_pins", "cape"}) {
+    for (const Scheme scheme : {Scheme::implicit, Scheme::bdf2}) {
+      CAPTURE(std::string(name));
+      CAPTURE(weft::name(scheme));
+      const SceneDescription scene = scene_of(name, 9);
+      Cloth cloth = cloth_of(scene, {.solver = Solver::small_steps, .scheme = scheme});
+      const std::size_t start = allocations();
+      const auto first = cloth.step(0.01);
+      if (scene.spheres.empty()) CHECK(allocations() == start);
+      REQUIRE(first);
+      for (int k = 0; k < 200; ++k) REQUIRE(cloth.step(0.01));
+      REQUIRE(cloth.write_positions(scene.positions));
+      REQUIRE(cloth.write_velocities(std::vector<Vec3>(scene.positions.size())));
+      const std::size_t before = allocations();
+      std::size_t failed = 0;
+      for (int k = 0; k < 200; ++k) failed += !cloth.step(0.01);
+      const std::size_t after = allocations();
+      CHECK(failed == 0);
+      CHECK(after == before);
+    }
+  }
+}
+
 TEST_CASE("without contacts even the first step allocates nothing") {
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));

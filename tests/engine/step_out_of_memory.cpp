@@ -71,6 +71,15 @@ TEST_CASE("a step without memory changes nothing, and the next one is as if it h
   }
 }
 
+TEST_CASE("nor does a small step without memory change anything") {
+  for (const Scheme scheme : {Scheme::implicit, Scheme::bdf2}) {
+    CAPTURE(name(scheme));
+    const Settings settings{.solver = Solver::small_steps, .scheme = scheme};
+    CHECK(refusals("hang_sphere", settings) > 0);
+    CHECK(refusals("sphere_drop", settings) > 0);
+  }
+}
+
 TEST_CASE("a fixed particle that found no memory has not moved, and travels the next time") {
   const auto moved = [](Cloth& cloth) {
     const Vec3 at = cloth.position(11);

@@ -287,6 +287,12 @@ RandomCase random_case(std::uint32_t seed) {
   const std::uint32_t newer = random.below(4);
   if (newer == 0) c.settings.solver = Solver::automatic;
   if (newer == 1 && c.settings.backend == Backend::simd) c.settings.solver = Solver::yarn;
+  if (random.below(3) == 0 && c.settings.backend == Backend::simd) {
+    c.settings.solver = Solver::small_steps;
+    c.settings.scheme = one_of(std::array{Scheme::implicit, Scheme::bdf2}, random);
+    c.settings.velocity_correction = false;
+    if (random.below(2) == 0) c.settings.substeps = kAutomaticSubsteps;
+  }
   return c;
 }
 

@@ -53,7 +53,7 @@ TEST_CASE("a choice is one of the names of an enum") {
   for (const std::string text : {"", "ten", "unknown", "automatic", "Paper"}) {
     CAPTURE(text);
     CHECK(parse_choice<Scheme>("--scheme", text).error() ==
-          "--scheme: '" + text + "' is not one of paper, rattle");
+          "--scheme: '" + text + "' is not one of paper, rattle, implicit, bdf2, auto");
     CHECK_FALSE(parse_choice<Solver>("--solver", text));
   }
 }

@@ -16,6 +16,7 @@ RunReport report() {
   report.plan.dt = 0.5;
   RunSummary& summary = report.summary;
   summary.solver = Solver::yarn;
+  summary.scheme = Scheme::paper;
   summary.isa = Isa::avx2;
   summary.threads = 3;
   summary.frames = 4;
@@ -79,7 +80,7 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
 
 TEST_CASE("the table has every figure too") {
   RunReport in_all = report();
-  in_all.settings.scheme = Scheme::rattle;
+  in_all.summary.scheme = Scheme::rattle;
   CHECK(to_table(in_all) ==
         "scene     somewhere: 16 particles, 10 constraints, 17 spheres\n"
         "solver    auto (yarn), scheme rattle, backend simd, tolerance 6.25 %\n"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "tools/enumerators.h"
-
 namespace weft::tools::hard {
 namespace {
 
@@ -19,28 +17,10 @@ std::string failure_of(const Observed& observed, double energy_allowed) {
 
 }  // namespace
 
-Result<void> offered(const Method& method) {
-  SceneDescription scene;
-  scene.positions = {{0, 0, 0}};
-  scene.masses = {1};
-  const auto model = build_model(scene);
-  const auto cloth = Cloth::create(model.value(), Setup{method}.settings(0.01));
-  return cloth ? Result<void>{} : Result<void>{Error{cloth.error()}};
-}
-
-std::vector<Method> all_methods() {
-  std::vector<Method> methods;
-  for (const Scheme scheme : enumerators<Scheme>()) {
-    for (const Solver solver : enumerators<Solver>()) {
-      if (offered({solver, scheme})) methods.push_back({solver, scheme});
-    }
-  }
-  return methods;
-}
-
 std::string label(const Method& method) {
   std::string label(name(method.solver));
-  if (method.scheme != Scheme::paper) label += fmt::format("+{}", name(method.scheme));
+  const bool plain = method.scheme == Scheme::paper || method.scheme == Scheme::automatic;
+  if (!plain) label += fmt::format("+{}", name(method.scheme));
   return label;
 }
 
@@ -53,11 +33,13 @@ Settings Setup::settings(double tolerance) const {
   return settings;
 }
 
-bool not_by_relaxation(const Method& method) { return method.solver != Solver::gauss_seidel; }
+bool not_by_relaxation(const Method& method) {
+  return method.solver != Solver::gauss_seidel && method.solver != Solver::small_steps;
+}
 
 bool by_yarns(const Method& method) {
-  const bool yarns = method.solver == Solver::yarn || method.solver == Solver::automatic;
-  return yarns && method.scheme == Scheme::paper;
+  if (method.solver == Solver::automatic) return method.scheme == Scheme::automatic;
+  return method.solver == Solver::yarn && method.scheme == Scheme::paper;
 }
 
 double energy_of_the_catch(int size, double tolerance, double dt) {

@@ -10,18 +10,11 @@
 #include <vector>
 
 #include "tools/hard/trial.h"
+#include "tools/methods.h"
 
 namespace weft::tools::hard {
 
-struct Method {
-  Solver solver = Solver::gauss_seidel;
-  Scheme scheme = Scheme::paper;
-};
-/// What weft says to it: not every solver goes with every scheme.
-Result<void> offered(const Method& method);
-/// Every solver with every scheme that the library names and takes together.
-std::vector<Method> all_methods();
-/// "direct", "direct+rattle".
+/// "direct", "direct+rattle", "small_steps+bdf2", "auto".
 std::string label(const Method& method);
 
 struct Setup {
@@ -50,7 +43,7 @@ struct Case {
 
 /// For methods that bring a tight tolerance in a bounded number of passes.
 bool not_by_relaxation(const Method& method);
-/// For yarns with scheme paper, and automatic, which chooses them.
+/// For yarns with scheme paper, and automatic, which chooses them where spheres are heavy.
 bool by_yarns(const Method& method);
 
 /// With any figure it fails where weft refused, or ended before the last step, where a state is not

@@ -25,8 +25,11 @@ Outcome run_strain(const Setup& setup) {
   return strain_outcome(long_run(setup), energy_of_the_catch(20, kStrain, kDt));
 }
 
-/// Scheme paper damps motion, scheme rattle lets the sheet swing on.
-bool comes_to_rest(const Method& method) { return method.scheme == Scheme::paper; }
+/// Schemes of first order damp motion, those of second order let the sheet swing on. (automatic is
+/// bdf2 here.)
+bool comes_to_rest(const Method& method) {
+  return method.scheme == Scheme::paper || method.scheme == Scheme::implicit;
+}
 
 /// At rest: nothing has moved since the middle of the run, apart from what the tolerance leaves.
 Outcome run_drift(const Setup& setup) {

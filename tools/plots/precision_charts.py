@@ -16,8 +16,9 @@ from matplotlib.transforms import Bbox
 
 # Okabe and Ito's colours, which the colour-blind can tell apart; peers are grey.
 COLOURS = {"auto": "#d55e00", "yarn": "#009e73", "direct": "#0072b2", "gauss_seidel": "#e69f00",
-           "original": "#cc79a7", "bullet": "#808080"}
-OTHER = "#56b4e9"
+           "small_steps": "#56b4e9", "original": "#cc79a7", "bullet": "#808080"}
+OTHER = "#000000"
+FIRST_ORDER = ("paper", "implicit")
 NAMES = {"original": "the paper's original", "bullet": "Bullet"}
 FRAME_MS = 10
 SMALLEST_STRAIN, LARGEST_STRAIN = 4e-6, 0.25
@@ -48,7 +49,7 @@ def curves_of(points):
 
 def curve_name(contender, scheme):
     name = NAMES.get(contender, contender)
-    return f"{name}, {scheme}" if scheme and contender != "original" else name
+    return f"{name}, {scheme}" if scheme not in ("", "auto") and contender != "original" else name
 
 
 def front(points, error):
@@ -116,7 +117,7 @@ def draw_panel(axes, curves, error, limits):
             continue
         xs, ys = [p["ms_per_frame"] for p in best], [p[error] for p in best]
         axes.plot(xs, ys, color=colour, linewidth=2.6 if contender == "auto" else 1.7,
-                  linestyle="-" if scheme != "paper" or contender == "original" else (0, (4, 1.6)),
+                  linestyle=(0, (4, 1.6)) if scheme in FIRST_ORDER and contender != "original" else "-",
                   marker="o", markersize=4.6, markeredgecolor="white", markeredgewidth=0.7,
                   zorder=4 if contender == "auto" else 3)
         lines.append((contender, scheme, colour, xs, ys))
@@ -147,6 +148,8 @@ def decorate(axes):
 
 def trajectory_limits(points, floor):
     errors = [p["trajectory_error"] for p in points if p["trajectory_error"] and p["counts"]]
+    if not errors:
+        return floor, 0.4
     return max(min(errors) / 2, floor), min(max(errors) * 1.6, 0.4)
 
 
@@ -172,7 +175,9 @@ def draw_scene(panels, study, scene):
     trajectory.set_xlim(strain.get_xlim())
     trajectory.yaxis.set_major_formatter(FuncFormatter(lambda v, _: plain(1000 * v) + " mm"))
     trajectory.set_ylabel("largest distance to the true motion at 0.4 s")
-    trajectory.set_title(f"{name}: trajectory error")
+    by = scene["reference_by"].split(",")[0]
+    note = f" (reference: {by})" if by == "small_steps" else ""
+    trajectory.set_title(f"{name}: trajectory error{note}")
     label_lines(trajectory, lines)
 
 
@@ -204,10 +209,8 @@ def precision_figure(study):
                markeredgecolor="white"),
         Line2D([], [], color="0.3", marker="o", markersize=3, linestyle="none", alpha=0.4),
         Line2D([], [], color="0.3", marker="x", markersize=4.5, linestyle="none", alpha=0.6)]
-    texts = ["best settings, scheme rattle (or a peer)", "best settings, scheme paper",
+    texts = ["best settings, second order (or a peer)", "best settings, first order",
              "other settings", f"missed its tolerance, or gained over {ENERGY_BOUND}"]
-    if all(p["scheme"] != "rattle" for p in study["points"]):
-        texts[0] = "best settings"
     figure.legend(handles, texts, loc="lower center", ncol=4, columnspacing=2, handlelength=2.6)
     return figure
 

@@ -18,6 +18,7 @@ struct OrderPoint {
 };
 
 struct Order {
+  std::string scene;  ///< with its size
   std::string scheme;
   std::vector<OrderPoint> points;
   std::optional<double> order;  ///< nothing if a run failed
@@ -27,8 +28,10 @@ struct Order {
 /// points, or if one is not positive.
 std::optional<double> fitted_exponent(std::span<const double> x, std::span<const double> y);
 
-/// Every scheme, with the direct solver and tolerances so tight that nothing but the scheme is
-/// seen, at dt = 0.01 ... 0.00125 s. The task has its reference.
+/// Every scheme, so that nothing but the scheme is seen. paper, rattle: the direct solver, with
+/// tight tolerances, at dt = 0.01 ... 0.00125 s. implicit, bdf2: small steps, with a tolerance so
+/// loose that no local pass has anything to do, at dt = 0.0025 ... 0.0003125 s. The task has its
+/// reference.
 std::vector<Order> measure_orders(const Task& task);
 
 }  // namespace weft::tools::precision

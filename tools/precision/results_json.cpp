@@ -56,6 +56,7 @@ Json scenes_json(const Study& study) {
                     {"frames", chart.task.frames},
                     {"seconds_limit", chart.seconds_limit},
                     {"threads", chart.task.threads},
+                    {"reference_by", chart.task.reference_by},
                     {"reference_error", chart.task.reference_error}});
   }
   return json;
@@ -103,14 +104,20 @@ Json sizes_json(const SizeStudy& study) {
 
 Json to_json(const Study& study) {
   Json json{{"points", points_json(study, false)}, {"order", Json::object()}};
-  // Both have a key, measured or not.
-  for (const char* scheme : {"paper", "rattle"}) json["order"][scheme] = nullptr;
-  json["order_points"] = Json::array();
+  // Of the first scene; each has a key, measured or not.
+  for (const char* scheme : {"paper", "rattle", "implicit", "bdf2"})
+    json["order"][scheme] = nullptr;
+  json["orders"] = json["order_points"] = Json::array();
   for (const Order& order : study.orders) {
-    json["order"][order.scheme] = optional_json(order.order);
+    const Json exponent = optional_json(order.order);
+    if (order.scene == study.orders.front().scene) json["order"][order.scheme] = exponent;
+    json["orders"].push_back(
+        {{"scene", order.scene}, {"scheme", order.scheme}, {"order", exponent}});
     for (const OrderPoint& point : order.points) {
-      json["order_points"].push_back(
-          {{"scheme", order.scheme}, {"dt", point.dt}, {"trajectory_error", point.error}});
+      json["order_points"].push_back({{"scene", order.scene},
+                                      {"scheme", order.scheme},
+                                      {"dt", point.dt},
+                                      {"trajectory_error", point.error}});
     }
   }
   json["peers"] = points_json(study, true);

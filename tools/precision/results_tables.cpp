@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
+#include <set>
+#include <span>
+#include <vector>
 
 #include "tools/wording.h"
 
@@ -16,6 +21,12 @@ std::string knobs_text(const Knobs& knobs) {
   const std::string goal =
       knobs.tolerance ? percent(*knobs.tolerance) : counted(knobs.iterations, "iteration");
   return fmt::format("{}, {}", goal, substeps_text(knobs.substeps));
+}
+
+/// "rattle, "; nothing for peers and where it is automatic.
+std::string scheme_text(const Point& point) {
+  const bool named = !point.scheme.empty() && point.scheme != name(Scheme::automatic);
+  return named ? point.scheme + ", " : "";
 }
 
 std::string error_text(const std::optional<double>& error) {
@@ -56,10 +67,10 @@ void write_cheapest(Text out, const Chart& chart) {
   fmt::format_to(out,
                  "{}, size {}, {} of {} s, {}: the cheapest setting that keeps every strain within "
                  "the bound\nand gains no energy ({}). Trajectory errors at {} s; the reference's "
-                 "own is about {:.2g} mm.\n",
+                 "own is about {:.2g} mm ({}).\n",
                  task.scene, task.size, counted(task.frames, "frame"), kFrame,
                  counted(task.threads, "thread"), no_energy(), kFrame * kReferenceFrame,
-                 1000 * task.reference_error);
+                 1000 * task.reference_error, task.reference_by);
   fmt::format_to(out, "{:>9}  {:14}{:>13}{:>10}{:>13}{:>13}  {}\n", "bound", "", "ms per frame",
                  "x auto", "max strain", "trajectory", "setting");
   for (const double bound : kBounds) {
@@ -75,8 +86,8 @@ void write_cheapest(Text out, const Chart& chart) {
       fmt::format_to(out, "{:>9}  {:14}{:13.4g}{:>10}{:>13}{:>13}  {}{}\n", percent(bound), name,
                      ms, plain ? fmt::format("{:.1f}", ms / plain->outcome.ms_per_frame) : "-",
                      measured_percent(point->outcome.max_strain),
-                     error_text(point->outcome.trajectory_error),
-                     point->scheme.empty() ? "" : point->scheme + ", ", knobs_text(point->knobs));
+                     error_text(point->outcome.trajectory_error), scheme_text(*point),
+                     knobs_text(point->knobs));
     }
   }
   fmt::format_to(out, "\n");
@@ -147,19 +158,41 @@ void write_failures(Text out, const Chart& chart) {
   fmt::format_to(out, "\n");
 }
 
-void write_orders(Text out, const std::vector<Order>& orders) {
-  fmt::format_to(out, "Order of convergence on hang 20 x 20, trajectory error in mm by dt\n{:10}",
-                 "");
-  for (const OrderPoint& point : orders.front().points) fmt::format_to(out, "{:>12g}", point.dt);
+/// Of all orders of a scene, the longest first.
+std::vector<double> steps_of(std::span<const Order> orders) {
+  std::set<double, std::greater<>> steps;
+  for (const Order& order : orders) {
+    for (const OrderPoint& point : order.points) steps.insert(point.dt);
+  }
+  return {steps.begin(), steps.end()};
+}
+
+void write_orders_of_scene(Text out, std::span<const Order> orders) {
+  const std::vector<double> steps = steps_of(orders);
+  fmt::format_to(out, "Order of convergence on {}, trajectory error in mm by dt\n{:10}",
+                 orders.front().scene, "");
+  for (const double step : steps) fmt::format_to(out, "{:>12g}", step);
   fmt::format_to(out, "{:>9}\n", "order");
   for (const Order& order : orders) {
     fmt::format_to(out, "{:10}", order.scheme);
-    for (const OrderPoint& point : order.points) {
-      fmt::format_to(out, "{:12.4g}", 1000 * point.error);
+    for (const double step : steps) {
+      const auto point = std::ranges::find(order.points, step, &OrderPoint::dt);
+      const bool measured = point != order.points.end();
+      fmt::format_to(out, "{:>12}", measured ? fmt::format("{:.4g}", 1000 * point->error) : "");
     }
     fmt::format_to(out, "{:>9}\n", order.order ? fmt::format("{:.2f}", *order.order) : "-");
   }
   fmt::format_to(out, "\n");
+}
+
+void write_orders(Text out, std::span<const Order> orders) {
+  while (!orders.empty()) {
+    const auto other = std::ranges::find_if(
+        orders, [&](const Order& order) { return order.scene != orders.front().scene; });
+    const auto count = static_cast<std::size_t>(other - orders.begin());
+    write_orders_of_scene(out, orders.first(count));
+    orders = orders.subspan(count);
+  }
 }
 
 void write_sizes(Text out, const SizeStudy& study) {
@@ -244,7 +277,7 @@ std::string to_text(const Study& study) {
     write_cheapest(out, chart);
     write_failures(out, chart);
   }
-  if (!study.orders.empty()) write_orders(out, study.orders);
+  write_orders(out, study.orders);
   if (study.sizes) write_sizes(out, *study.sizes);
   return text;
 }

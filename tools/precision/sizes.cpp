@@ -48,7 +48,8 @@ double predicted_seconds(const SizeStudy& study, const SizeCurve& curve, int siz
 
 /// Where the search for substeps starts.
 int first_substeps(Solver solver, const SizeCurve& curve) {
-  if (solver == Solver::automatic) return kAutomaticSubsteps;
+  const bool chooses = solver == Solver::automatic || solver == Solver::small_steps;
+  if (chooses) return kAutomaticSubsteps;
   return curve.points.empty() ? 1 : curve.points.back().substeps;
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "tools/enumerators.h"
+#include "tools/methods.h"
 #include "tools/precision/reference_solution.h"
 #include "tools/runner.h"
 #include "tools/wording.h"
@@ -29,10 +29,22 @@ KnobSet knob_set(bool quick) {
           {4, 16, 64}};
 }
 
+/// One sweep to a substep: what takes the place of iterations is their number.
+KnobSet small_steps_knob_set(bool quick) {
+  if (quick) return {{0.1, 0.01, 1e-3}, {kAutomaticSubsteps, 4, 16, 64}, {}, {}};
+  return {
+      {0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4}, {kAutomaticSubsteps, 2, 4, 8, 16, 32, 64, 128}, {}, {}};
+}
+
 /// The plain call: nothing but the tolerance is chosen by the user.
 KnobSet plain_knob_set(bool quick) {
   if (quick) return {{0.1, 0.01, 1e-3, 1e-4}, {kAutomaticSubsteps}, {}, {}};
   return {{0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, {kAutomaticSubsteps}, {}, {}};
+}
+
+KnobSet knob_set_of(Solver solver, bool quick) {
+  if (solver == Solver::automatic) return plain_knob_set(quick);
+  return solver == Solver::small_steps ? small_steps_knob_set(quick) : knob_set(quick);
 }
 
 bool is_known(const Task& task, const Settings& settings) {
@@ -66,6 +78,7 @@ std::vector<Row> rows_of(const Task& task, Settings base, const KnobSet& knobs) 
 Curve original(const Task& task, const KnobSet& knobs) {
   Settings settings;
   settings.solver = Solver::gauss_seidel;
+  settings.scheme = Scheme::paper;
   settings.backend = Backend::reference;
   settings.directions = Directions::each;
   settings.anticipate = false;
@@ -102,16 +115,16 @@ std::vector<Vec3> positions_of(const Cloth& cloth) {
 
 std::vector<Curve> weft_curves(const Task& task, bool quick) {
   std::vector<Curve> curves{original(task, knob_set(quick))};
-  for (const Solver solver : enumerators<Solver>()) {
-    const KnobSet knobs = solver == Solver::automatic ? plain_knob_set(quick) : knob_set(quick);
-    for (const Scheme scheme : enumerators<Scheme>()) {
-      Settings settings;
-      settings.solver = solver;
-      settings.scheme = scheme;
-      settings.threads = task.threads;
-      curves.push_back(
-          {fmt::format("{}, {}", name(solver), name(scheme)), rows_of(task, settings, knobs)});
-    }
+  for (const Method& method : all_methods()) {
+    const bool plain = method.solver == Solver::automatic;
+    if (plain && method.scheme != Scheme::automatic) continue;
+    Settings settings;
+    settings.solver = method.solver;
+    settings.scheme = method.scheme;
+    settings.threads = task.threads;
+    const std::string label(name(method.solver));
+    curves.push_back({plain ? label : fmt::format("{}, {}", label, name(method.scheme)),
+                      rows_of(task, settings, knob_set_of(method.solver, quick))});
   }
   return curves;
 }

@@ -1,4 +1,4 @@
-/// weft's own curves: every solver with every scheme, each turning its own knobs.
+/// weft's own curves: every solver with every scheme that it takes, each turning its own knobs.
 #pragma once
 
 #include <weft/weft.h>
@@ -21,8 +21,8 @@ struct Curve {
   std::vector<Row> rows;
 };
 
-/// The paper's unoptimised method first, then the simd backend. Combinations that weft refuses are
-/// left out. quick: fewer knobs.
+/// The paper's unoptimised method first, then the simd backend: each method once, of automatic the
+/// plain call alone. quick: fewer knobs.
 std::vector<Curve> weft_curves(const Task& task, bool quick);
 
 /// The fastest of several runs. An error: the settings were refused.

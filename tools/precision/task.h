@@ -23,17 +23,20 @@ struct Task {
   SceneDescription description;
   std::shared_ptr<const Model> model;
   std::vector<Vec3> reference;  ///< positions at kReferenceFrame; empty: not compared
+  std::string reference_by;     ///< what computed them
   double reference_error = 0;   ///< m, how far off they are themselves, estimated
 
   bool is_line() const { return scene == "chain"; }
 };
 
-/// Without the reference. An error too if weft refuses plain settings: WEFT_ISA names no
-/// instruction set of this machine.
+/// The cape is one of ropes. Without the reference. An error too if weft refuses plain settings:
+/// WEFT_ISA names no instruction set of this machine.
 Result<Task> make_task(const std::string& scene, int size);
 
 /// Computes the reference with steps of kFrame / parts and half of that. The second is kept, and a
-/// third of the difference is its error, since the order is two.
+/// third of the difference is its error, since the order is two. Of a scene with ropes, which the
+/// reference solution has not, small steps compute it, in 32 times as many: its error is then the
+/// whole difference, as of a method of first order, since ropes become taut from step to step.
 Result<void> add_reference(Task& task, int parts);
 
 /// A tolerance, or a fixed number of iterations. 0 substeps: automatic.

@@ -30,7 +30,7 @@ Study made_up_study() {
                   made_up("gauss_seidel", 0.05, 0.009, 0.5), made_up("gauss_seidel", 0.01, 0.1)};
   chart.points.push_back({"bullet", "", "", {5, {}, 16}, chart.points.front().outcome});
   chart.tightest = {{"direct", 1e-5}, {"gauss_seidel", 1e-4}, {"bullet", 1e-5}};
-  study.orders = {{"paper", {{0.01, 0.04}, {0.005, 0.02}}, 1.0}};
+  study.orders = {{"hang 20 x 20", "paper", {{0.01, 0.04}, {0.005, 0.02}}, 1.0}};
   return study;
 }
 
@@ -86,7 +86,7 @@ Study distinct_study() {
   chart.task.scene = "corners";
   chart.task.size = 21;
   chart.points = {{"yarn", "rattle", "simd", {2, 0.03125, 0}, distinct_outcome()}};
-  study.orders = {{"paper", {{0.01, 0.04}, {0.005, 0.02}}, 1.25}};
+  study.orders = {{"hang 20 x 20", "paper", {{0.01, 0.04}, {0.005, 0.02}}, 1.25}};
   study.sizes = SizeStudy{};
   study.sizes->curves = {{"direct", {{30, 4, distinct_outcome()}}, "the end", 1.5}};
   return study;
@@ -100,9 +100,13 @@ TEST_CASE("the JSON of a point, of an order and of a size") {
     "max_strain": 0.0625, "trajectory_error": 0.25, "mean_max_strain": 0.015625,
     "energy_gain": 0.00025, "status": "converged", "frames": 50, "counts": true})");
   CHECK(json["points"] == Json::array({point}));
-  CHECK(json["order"] == Json::parse(R"({"paper": 1.25, "rattle": null})"));
+  CHECK(json["order"] ==
+        Json::parse(R"({"paper": 1.25, "rattle": null, "implicit": null, "bdf2": null})"));
+  CHECK(json["orders"] ==
+        Json::parse(R"([{"scene": "hang 20 x 20", "scheme": "paper", "order": 1.25}])"));
   CHECK(json["order_points"][1] ==
-        Json::parse(R"({"scheme": "paper", "dt": 0.005, "trajectory_error": 0.02})"));
+        Json::parse(R"({"scene": "hang 20 x 20", "scheme": "paper", "dt": 0.005,
+                        "trajectory_error": 0.02})"));
   CHECK(json["sizes"]["curves"] == Json::parse(R"([{
     "solver": "direct", "exponent": 1.5, "end": "the end",
     "points": [{
@@ -152,6 +156,31 @@ TEST_CASE("the text tells orders in mm, and sizes") {
         std::string::npos);
   CHECK(text.find("direct        time ~ particles^1.50\n") != std::string::npos);
   CHECK(text.find("direct        the end\n") != std::string::npos);
+}
+
+TEST_CASE("orders are told scene by scene, where they were measured") {
+  Study study = distinct_study();
+  study.orders.push_back({"hang 20 x 20", "bdf2", {{0.005, 0.01}}, {}});
+  study.orders.push_back({"corners 21 x 21", "bdf2", {{0.0025, 0.03}}, 2});
+  const std::string text = to_text(study);
+  CHECK(text.find("Order of convergence on hang 20 x 20, trajectory error in mm by dt\n"
+                  "                  0.01       0.005    order\n"
+                  "paper               40          20     1.25\n"
+                  "bdf2                            10        -\n\n"
+                  "Order of convergence on corners 21 x 21, trajectory error in mm by dt\n"
+                  "                0.0025    order\n"
+                  "bdf2                30     2.00\n") != std::string::npos);
+  const Json json = to_json(study);
+  CHECK(json["order"]["bdf2"].is_null());
+  CHECK(json["orders"][2]["order"] == 2);
+}
+
+TEST_CASE("what is automatic has no scheme of its own in the tables") {
+  Study study = distinct_study();
+  study.charts.front().points.push_back({"auto", "auto", "simd", {0, 0.03125, 0}, {}});
+  study.charts.front().points.back().outcome = distinct_outcome();
+  CHECK(to_text(study).find("  3.12 %, automatic substeps\n") != std::string::npos);
+  CHECK(to_text(study).find("  rattle, 3.12 %, 2 substeps\n") != std::string::npos);
 }
 
 TEST_CASE("markdown: a row for each bound, a column for each contender") {

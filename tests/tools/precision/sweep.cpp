@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "tools/enumerators.h"
+#include "tools/methods.h"
 #include "tools/precision/bullet.h"
 #include "tools/precision/meter.h"
 #include "tools/precision/order.h"
@@ -24,21 +27,39 @@ Task small_task(int frames = 50) {
 const Effort kOnce{.repeat = 1};
 
 TEST_CASE("solvers and schemes are all that weft.h names") {
-  for (const Solver solver :
-       {Solver::gauss_seidel, Solver::direct, Solver::yarn, Solver::automatic}) {
+  for (const Solver solver : {Solver::gauss_seidel, Solver::direct, Solver::yarn,
+                              Solver::small_steps, Solver::automatic}) {
     CHECK(std::ranges::count(enumerators<Solver>(), solver) == 1);
   }
-  for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
+  for (const Scheme scheme :
+       {Scheme::paper, Scheme::rattle, Scheme::implicit, Scheme::bdf2, Scheme::automatic}) {
     CHECK(std::ranges::count(enumerators<Scheme>(), scheme) == 1);
   }
   for (const Solver solver : enumerators<Solver>()) CHECK(name(solver) != "unknown");
 }
 
-TEST_CASE("the curves: the original first, rows of rising cost") {
+TEST_CASE("the methods: every solver with each scheme that it takes, none twice") {
+  std::set<std::string> methods;
+  for (const Method& method : all_methods()) {
+    methods.insert(std::string(name(method.solver)) + " " + std::string(name(method.scheme)));
+  }
+  CHECK(methods == std::set<std::string>{"gauss_seidel paper", "gauss_seidel rattle",
+                                         "direct paper", "direct rattle", "yarn paper",
+                                         "yarn rattle", "small_steps implicit", "small_steps bdf2",
+                                         "auto auto", "auto rattle"});
+  CHECK(all_methods().size() == methods.size());
+  CHECK(offered({Solver::small_steps, Scheme::bdf2}));
+  CHECK_FALSE(offered({Solver::small_steps, Scheme::paper}));
+  CHECK_FALSE(offered({Solver::yarn, Scheme::implicit}));
+}
+
+TEST_CASE("the curves: the original first, each method once, rows of rising cost") {
   const Task task = small_task();
   const auto curves = weft_curves(task, true);
   REQUIRE(curves.size() >= 3);
   CHECK(curves.front().label == "original");
+  CHECK(curves.back().label == "auto");
+  CHECK(curves.size() == all_methods().size());  // not auto with rattle, but the original
   for (const Curve& curve : curves) {
     CAPTURE(curve.label);
     for (const Row& row : curve.rows) {
@@ -71,6 +92,20 @@ TEST_CASE("a point: its tolerance is reached, its trajectory compared") {
   const auto finer = measure(task, {.tolerance = 1e-4, .substeps = 8}, kOnce);
   REQUIRE(finer);
   CHECK(*finer.value().outcome.trajectory_error < *outcome.trajectory_error / 2);
+}
+
+TEST_CASE("a scene with ropes is compared with small steps, whose error is told") {
+  auto task = make_task("cape", 6);
+  REQUIRE(task);
+  CHECK(describe(*task.value().model).ropes > 0);
+  REQUIRE(add_reference(task.value(), 4));
+  CHECK(task.value().reference_by == "small_steps, 256 substeps");
+  CHECK(task.value().reference_error > 0);
+  CHECK(task.value().reference_error < 0.01);
+  const auto point = measure(task.value(), {}, kOnce);
+  REQUIRE(point);
+  REQUIRE(point.value().outcome.trajectory_error);
+  CHECK(*point.value().outcome.trajectory_error > 0);
 }
 
 TEST_CASE("a fixed number of iterations is no tolerance; without a reference nothing is compared") {
@@ -107,19 +142,23 @@ TEST_CASE("the exponent of a power law is found, and refused where there is none
   CHECK_FALSE(fitted_exponent(std::vector{1., 2.}, std::vector{0., 2.}));
 }
 
-TEST_CASE("the paper's scheme is of first order, rattle of second") {
+/// (corners is no smooth motion: its order is for a reader.)
+TEST_CASE("the schemes paper and implicit are of first order, rattle and bdf2 of second") {
   auto task = make_task("hang", 6);
   REQUIRE(task);
   task.value().frames = kReferenceFrame;
   REQUIRE(add_reference(task.value(), 64));
   const auto orders = measure_orders(task.value());
-  REQUIRE(orders.size() == enumerators<Scheme>().size());
+  REQUIRE(orders.size() + 1 == enumerators<Scheme>().size());  // automatic is one of them
   for (const Order& order : orders) {
+    CAPTURE(order.scheme);
+    const bool second = order.scheme == "rattle" || order.scheme == "bdf2";
+    const bool small_steps = order.scheme == "implicit" || order.scheme == "bdf2";
     REQUIRE(order.order);
-    CHECK(std::abs(*order.order - (order.scheme == "rattle" ? 2 : 1)) < 0.1);
+    CHECK(std::abs(*order.order - (second ? 2 : 1)) < 0.1);
     REQUIRE(order.points.size() == 4);
-    CHECK(order.points.front().dt == 0.01);
-    CHECK(order.points.back().dt == 0.00125);
+    CHECK(order.points.front().dt == (small_steps ? 0.0025 : 0.01));
+    CHECK(order.points.back().dt == order.points.front().dt / 8);
   }
 }
 
