@@ -44,7 +44,7 @@
 #include <vector>
 
 #define WEFT_VERSION_MAJOR 0
-#define WEFT_VERSION_MINOR 1
+#define WEFT_VERSION_MINOR 2
 #define WEFT_VERSION_PATCH 0
 
 /// What a shared library shows.
@@ -161,24 +161,33 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   taut between two fixed particles, and not braced by triangles, keeps most of the strain that
 ///   yarns may leave, 0.3 %, or the tolerance if that is less, beyond what its ends are too far
 ///   apart by: with scheme paper it hangs by that. simd only.
-/// automatic: gauss_seidel on the reference backend or with Settings::iterations. direct for cords,
-///   ropes that close few loops: chains, trees, bridges; where these are long (the tolerance times
-///   the longest constraint is above 0.25 mm) or loaded (masses differ by more than 100); with more
-///   than 16 free spheres yarn. For all else the ratio of masses decides, that of the heaviest to
-///   the lightest of free particles that constraints join. Up to 10^4: yarn, or gauss_seidel where
-///   there are more than nine ropes to each distance constraint; for tolerances from 0.1 % on and
-///   ratios up to 100 where there is more than one to three (a sheet with ropes as diagonals), with
-///   scheme paper of up to 1,000 particles without free spheres. From 10^6 on, and from 10^4 on
-///   such nets or with `substeps` given: direct. Between them: yarn, with direct to answer where it
-///   gives up (so it is wherever yarn is chosen for ratios above 10^4).
+/// small_steps: one relaxed sweep in each of many short substeps, over yarns where the cloth has
+///   them and over single constraints elsewhere, and then passes over what is out of tolerance
+///   alone. A sweep leaves a strain that falls with the square of the substep; how long that may be
+///   follows in closed form from what hangs on the pins, and from the tolerance
+///   (engine/solvers/small_steps_load.h). For any mesh, at tolerances of 0.1 % and looser, and for a
+///   motion that is near the true one. Masses should not differ by more than a hundred. Substeps of
+///   one length are best kept to: a change of it by half costs some energy.
+/// automatic: small_steps for cloth (simd, a tolerance from 0.1 % on, free masses that differ by no
+///   more than a hundred, no free spheres, and enough loops: a grid, no chain or bridge), unless a
+///   scheme of other solvers, velocity_correction or `iterations` is asked for. Else gauss_seidel on
+///   the reference backend or with `iterations`. direct for cords, ropes that close few loops:
+///   chains, trees, bridges; where these are long (the tolerance times the longest constraint is
+///   above 0.25 mm) or loaded (masses differ by more than 100); with more than 16 free spheres yarn.
+///   For all else the ratio of masses decides, that of the heaviest to the lightest of free
+///   particles that constraints join. Up to 10^4: yarn, or gauss_seidel where there are more than
+///   nine ropes to each distance constraint. From 10^6 on, and from 10^4 on such nets or with
+///   `substeps` given: direct. Between them: yarn, with direct to answer where it gives up (so it is
+///   wherever yarn is chosen for ratios above 10^4).
 /// Where yarn or direct gives up, or energy rises by more than gravity, forces and moved pins
 /// explain (engine/energy.h), the substep is redone as two halves, until a step has cost 1500
 /// iterations; where that fails too, Gauss-Seidel takes over. StepReport::iterations counts every
 /// attempt. If such a substep would gain energy all velocities are scaled down by one factor, to
 /// rest at most, or to the rigid motion nearest to that of the pins. For some steps afterwards
-/// automatic substeps are shorter and yarns are solved more tightly. Where yarns took thousands of
-/// passes, with scheme paper, a tolerance above 0.3 % and no spheres, the next steps use
-/// Gauss-Seidel alone. So a step depends slightly on the ones before, until positions are written.
+/// automatic substeps are shorter and yarns are solved more tightly. So a step depends slightly on
+/// the ones before, until positions are written. Small steps have one such guard, for each step;
+/// where a step is out of tolerance in the end it is put right in a bounded number of rounds, or
+/// reported.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, automatic };
 /// paper: impulses along the directions at the predicted positions; first order, and dissipative.
 /// rattle: along the directions at the start of the substep, always with velocity correction;
@@ -187,6 +196,11 @@ enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, auto
 ///   converge, or its impulses would add energy (engine/rattle.h), the substep is redone from the
 ///   same state by the paper's scheme with velocity correction; StepReport::scheme_fallbacks counts
 ///   these. With Settings::iterations nothing is redone.
+/// implicit, bdf2: of small_steps alone. The implicit Euler method, first order, and the second
+///   order BDF2 with variable steps; particles that a contact or a local pass has moved go on from
+///   there at first order. Whoever writes velocities changes the step before alike; written
+///   positions have no past.
+/// automatic: bdf2 with small_steps, else paper. Cloth::settings() tells.
 enum class Scheme : std::uint8_t { paper, rattle, implicit, bdf2, automatic };
 /// each: directions renewed before every iteration (sections 3.2, 4.1).
 /// frozen: only once all errors along them are within tolerance (section 4.4), or after renew_after
@@ -210,16 +224,17 @@ struct Settings {
   /// floats: it takes rest lengths, tolerance * rest length, and the tolerances below that are
   /// used, from 1e-18 to 1e18, and Cloth::create refuses others.
   double tolerance = 0.01;
-  /// Each step is done as this many substeps, each solved to the tolerances. 0
-  /// (kAutomaticSubsteps): chosen from the motion (rattle: up to 2.5 times as many as paper) and,
+  /// Each step is done as this many substeps, each solved to the tolerances; with small_steps only
+  /// the last is looked at, and the number bounds the time of a step. 0 (kAutomaticSubsteps): of
+  /// small_steps by closed form, up to 1024; else chosen from the motion (rattle: up to 2.5 times as many as paper) and,
   /// with yarns, from the load that heavy particles and, with scheme paper, spheres are; no more
   /// than max_iterations / 8 then. 1 on the reference backend or with `iterations`. A substep whose
   /// solver gives up before max_iterations is redone in halves, up to 16 parts
   /// (StepReport::halvings). Fine meshes need small substeps.
   int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per substep whatever the error,
-  /// nothing skipped; gauss_seidel renews frozen directions once per substep, direct and yarn in
-  /// every iteration.
+  /// nothing skipped; gauss_seidel renews frozen directions once per substep, the others in every
+  /// iteration.
   int iterations = 0;
   /// frozen: most iterations along the same directions; 0: until all errors along them are within
   /// tolerance, as in the paper (section 4.4; simd: 1024, since between renewals errors in floats
@@ -268,10 +283,10 @@ inline Settings paper_settings() {
 
 /// converged: every constraint is within its tolerance.
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
-/// iteration_limit: max_iterations were done and some constraint is still out of tolerance. The
-///   state is committed.
-/// infeasible: some constraint is out of tolerance and thousands of iterations no longer reduce the
-///   error: constraints contradict each other (a chain whose ends are too far apart), masses differ
+/// iteration_limit: max_iterations were done, or with small_steps all rounds, and some constraint is
+///   still out of tolerance. The state is committed.
+/// infeasible: some constraint is out of tolerance and thousands of iterations (small_steps: eight
+///   rounds of a sweep and local passes) no longer reduce the error: constraints contradict each other (a chain whose ends are too far apart), masses differ
 ///   by more than 10^7, or nothing leads from the start to where they agree (a sheet of triangles
 ///   whose pins turned by a right angle in one step). The state is committed, with the error spread
 ///   over the constraints.
@@ -297,9 +312,9 @@ constexpr bool committed(Status status) { return status < Status::non_finite_inp
 
 /// The stages of a step, in order.
 enum class Stage : std::uint8_t {
-  predict,  ///< also chooses the number of automatic substeps
+  predict,  ///< also chooses the number of automatic substeps; small_steps: what begins a step
   find_contacts,
-  solve_positions,
+  solve_positions,  ///< small_steps: its substeps, all of them
   commit,
   correct_velocities,
   report
@@ -323,7 +338,8 @@ struct StepReport {
   int substeps = 0;                      ///< done; 0 where nothing is committed
   int halvings = 0;                      ///< substeps that were redone as two halves
   std::int64_t iterations = 0;           ///< passes over the position constraints; yarn: sweeps and
-                                         ///< conjugate gradient iterations; direct: solves
+                                         ///< conjugate gradient iterations; direct: solves;
+                                         ///< small_steps: local passes by their visits
   std::int64_t direction_updates = 0;    ///< renewals of the constraint directions
   std::int64_t velocity_iterations = 0;  ///< passes of the velocity loop; direct: solves
   std::int64_t visits = 0;               ///< constraints whose error was looked at, both loops
