@@ -1,9 +1,11 @@
 #include "engine/energy.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/motion.h"
 #include "engine/pin_work.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
@@ -71,12 +73,16 @@ bool gains_energy(const State& s, const kernels::Kicks& kicks, double h) {
   return kicks.gain - brought - twice_at_rest(s, h) > allowed;
 }
 
-void take_gained_energy(State& s, double h) {
-  const PinMotion pins = motion_of_pins(s, h);
-  const Energies twice = measure(s, pins);
-  const double gain = twice.gain - twice_brought(s, pins, h, 1);
-  if (!(gain > 0)) return;
-  const double left = gain < twice.kinetic ? std::sqrt(1 - gain / twice.kinetic) : 0;
+namespace {
+
+/// Of the kinetic energy, twice: by how much velocities are to be slowed down.
+double factor_without(double gain, double kinetic) {
+  if (!(gain > 0)) return 1;
+  return gain < kinetic ? std::sqrt(1 - gain / kinetic) : 0;
+}
+
+void slow_down(State& s, const PinMotion& pins, double left) {
+  if (left == 1) return;
   for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
     if (s.model->inverse_mass[slot] == 0) continue;
     const Vector u = pins.at(middle(s, slot));
@@ -84,13 +90,25 @@ void take_gained_energy(State& s, double h) {
   }
 }
 
-void take_gained_energy(State& s, const kernels::Kicks& kicks, double h) {
-  if (!(kicks.gain > 0)) return;
-  if (s.pins.moving()) return take_gained_energy(s, h);
-  const double left = kicks.gain < kicks.energy ? std::sqrt(1 - kicks.gain / kicks.energy) : 0;
-  for (auto* axis : {&s.next_velocity.x, &s.next_velocity.y, &s.next_velocity.z}) {
-    for (double& v : *axis) v *= left;
+}  // namespace
+
+void take_gained_energy(State& s, double h) {
+  const PinMotion pins = motion_of_pins(s, h);
+  const Energies twice = measure(s, pins);
+  slow_down(s, pins, factor_without(twice.gain - twice_brought(s, pins, h, 1), twice.kinetic));
+}
+
+void take_gained_energy(State& s, const kernels::Kicks& change, double dt) {
+  PinMotion pins;
+  double gain = change.gain, kinetic = change.energy;
+  if (s.pins.moving()) {
+    pins = motion_of_pins(s, dt);
+    kinetic = measure(s, pins).kinetic;
+    gain -= twice_brought(s, pins, dt, 1);
   }
+  const double may_come_back = 2 * s.lost_energy * std::exp(-dt / tuning::kSpringTime);
+  slow_down(s, pins, factor_without(gain - may_come_back, kinetic));
+  s.lost_energy = std::max(0.0, 0.5 * (may_come_back - gain));
 }
 
 }  // namespace weft

@@ -18,8 +18,10 @@ namespace weft {
 /// forces and moved pins explain, and by much of what the kick is worth. kicks: of this substep.
 bool gains_energy(const State& s, const kernels::Kicks& kicks, double h);
 
-/// The same of a step whose kicks are known; it costs little where no pins are under way.
-void take_gained_energy(State& s, const kernels::Kicks& kicks, double h);
+/// The guard of small steps. Likewise, of a step whose change of energy is known, but what was lost
+/// shortly before may come back (State::lost_energy): to constraints that are springs, and to
+/// rounding, which takes as often as it gives. It costs little where no pins are under way.
+void take_gained_energy(State& s, const kernels::Kicks& change, double dt);
 
 /// Slows next_velocity down, all of it by the same factor, as far as the energy rose by more than
 /// gravity, forces and moved pins explain; with pins under way what is slowed down is the motion

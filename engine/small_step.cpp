@@ -34,14 +34,25 @@ double mean_acceleration(const State& s) {
   return mass > 0 ? sum / mass : 0;
 }
 
+/// Substeps of about the length that the load allows. In a step that is far shorter than that each
+/// correction is a smaller one: a sweep is a spring, and to keep its stiffness omega / h^2 is to
+/// release nothing of what it holds.
 template <class Solver>
-int substeps_of(State& s, const Solver& solver, double dt) {
-  if (s.settings.substeps != kAutomaticSubsteps) return s.settings.substeps;
-  const double h = std::min(tuning::kLongestSubstep,
-                            solver.substep_length(s.position.view(), mean_acceleration(s)));
-  const double wanted = std::ceil(dt / h);
-  const int most = std::min(tuning::kMostSubsteps, s.settings.max_iterations);
-  return wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
+FramePlan plan_for(State& s, const Solver& solver, double dt) {
+  FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed};
+  if (s.settings.substeps != kAutomaticSubsteps) {
+    plan.substeps = s.settings.substeps;
+  } else {
+    const double usual = std::min(tuning::kLongestSubstep,
+                                  solver.substep_length(s.position.view(), mean_acceleration(s)));
+    const double wanted = std::ceil(dt / usual);
+    const int most = std::min(tuning::kMostSubsteps, s.settings.max_iterations);
+    plan.substeps = wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
+    const double part = 2 * dt / (plan.substeps * usual);
+    if (part < 1) plan.omega *= part * part;
+  }
+  plan.h = dt / plan.substeps;
+  return plan;
 }
 
 /// The frame that is being done.
@@ -55,12 +66,11 @@ class Frame {
         team_(team),
         edges_(static_cast<std::int64_t>(s.model->constraints.size())) {}
 
-  void begin(double h, int substeps) {
+  void begin(const FramePlan& plan) {
     const kernels::VectorsView force =
         s_.force.size() > 0 ? s_.force.view() : kernels::VectorsView{};
     if (s_.model->has_contacts()) s_.substep_start = s_.position;
-    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, h, substeps, s_.placed,
-                  team_);
+    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, plan, team_);
   }
 
   void substep() {
@@ -177,13 +187,13 @@ bool run(State& s, Solver& solver, double dt, bool jumped, StepReport& report, T
     project(s, dt, 1, report, team);
   }
   Frame<Solver> frame(s, solver, report, team);
-  int substeps = 1;
+  FramePlan plan;
   timed(report, Stage::predict, [&] {
-    substeps = substeps_of(s, solver, dt);
-    frame.begin(dt / substeps, substeps);
+    plan = plan_for(s, solver, dt);
+    frame.begin(plan);
   });
   timed(report, Stage::solve_positions, [&] {
-    for (int i = 0; i < substeps; ++i) frame.substep();
+    for (int i = 0; i < plan.substeps; ++i) frame.substep();
   });
   const Status status = frame.finish();
   kernels::Kicks change;

@@ -83,6 +83,7 @@ void State::copy(const State& from) {
   take_past(small_steps, std::move(its_past), same);
   take_past(reference_small_steps, std::move(its_reference_past), same);
   placed = !same || from.placed;
+  lost_energy = same ? from.lost_energy : 0;
   last_dt = same ? from.last_dt : 0;
 }
 

@@ -49,8 +49,9 @@ struct State {
   ContactStore contacts;
   Pins pins;
   Trouble trouble;
-  bool placed = true;  // positions were given, not stepped to: they may violate constraints
-  double last_dt = 0;  // of the last step; 0: none yet, or it did not converge
+  bool placed = true;      // positions were given, not stepped to: they may violate constraints
+  double lost_energy = 0;  // J, of small steps, lately (energy.h)
+  double last_dt = 0;      // of the last step; 0: none yet, or it did not converge
 
   std::vector<kernels::Kicks> kicks;  // per stretch of slots
 

@@ -19,6 +19,9 @@ inline constexpr double kLongestSubstep = 0.005;
 /// Of the time in which what falls from its pins passes the length of a constraint: where a fold
 /// runs through a yarn, its constraints turn over in that time.
 inline constexpr double kPassing = 0.7;
+/// A substep over the last one, beyond which nothing is made of the past: a longer one would carry
+/// on what is noise beside it.
+inline constexpr double kMostRatio = 4;
 /// Substeps of a frame, at most.
 inline constexpr int kMostSubsteps = 1024;
 /// Constraints in a yarn, on average, from which on yarns are blocks. Random triangles have 3 or 4,
@@ -28,6 +31,9 @@ inline constexpr double kLeastLinks = 8;
 inline constexpr int kRenewal = 16;
 /// Of all constraints: where more are out of tolerance, another sweep is cheaper than local passes.
 inline constexpr double kManyOut = 0.02;
+/// s, in which what the motion has lost is forgotten: until then it may come back from constraints,
+/// which are springs.
+inline constexpr double kSpringTime = 0.1;
 /// Visits of local passes in a substep, of the constraints.
 inline constexpr std::int64_t kMostVisits = 1;
 /// Rounds that follow the last substep of a frame, where it is out of tolerance: a sweep each, and

@@ -6,6 +6,7 @@
 #include "engine/model.h"
 #include "engine/scenes.h"
 #include "engine/solvers/small_steps.h"
+#include "engine/tuning.h"
 #include "perf/benchmarks.h"
 
 namespace weft::perf {
@@ -49,7 +50,8 @@ struct Falling {
   /// From its beginning, each time, to the velocities in its end.
   void frame() {
     const double h = std::min(0.005, solver.substep_length(x.view(), 10));
-    solver.begin(x.view(), v.view(), model->gravity, {}, h, kSubsteps, true, team);
+    solver.begin(x.view(), v.view(), model->gravity, {},
+                 {.h = h, .substeps = kSubsteps, .omega = tuning::kOmega, .placed = true}, team);
     for (int k = 0; k < kSubsteps; ++k) {
       solver.advance(team);
       solver.sweep(team);

@@ -171,7 +171,7 @@ void add_precision_command(CommandLine& line) {
   verb.option("--scene", options->scene,
               "only this built-in scene, without cost against size (default: hang, corners, a "
               "cape of ropes, four_pins, and cost against size). Not one with spheres, which the "
-              "reference solution has not, nor banner, which can hang by no exact lengths");
+              "reference solution has not");
   verb.option("--size", options->size,
               "N of the scene (default 40, corners and four_pins 41; quick 20, 21)");
   add_study_options(verb, *options, "write CSV, JSON, tables and the charts into a folder",

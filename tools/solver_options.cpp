@@ -47,10 +47,12 @@ void add_solver_options(Verb verb, SolverOptions& options) {
   verb.option("--impulse-limit", settings.impulse_limit,
               "--backend reference: N s, largest impulse of one correction (default 0: no limit)");
   verb.option("--solver", options.solver,
-              "auto (default), gauss_seidel, yarn or direct; gauss_seidel where "
+              "auto (default), small_steps, gauss_seidel, yarn or direct; gauss_seidel where "
               "--anticipate, --skip or --directions choose among its methods");
   verb.option("--scheme", options.scheme,
-              "paper (default), or rattle: second order; implies --velocity-correction on");
+              "auto (default): bdf2 with small_steps, else paper. small_steps: implicit, or bdf2: "
+              "second order; the other solvers: paper, or rattle: second order, implies "
+              "--velocity-correction on");
   verb.option(
       "--anticipate", options.anticipate,
       "on (default) or off: update errors instead of recomputing them; simd: skip by flags, or by "

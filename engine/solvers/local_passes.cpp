@@ -51,6 +51,11 @@ void LocalPasses::look_everywhere() {
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) look_at(slot);
 }
 
+void LocalPasses::forget() {
+  for (const std::uint32_t slot : waiting_) next_[slot] = 0;
+  waiting_.clear();
+}
+
 /// What was asked for is done now; now_ is empty.
 void LocalPasses::begin_pass() {
   present_.swap(waiting_);

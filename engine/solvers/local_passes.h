@@ -42,12 +42,13 @@ class LocalPasses {
     look_at(model_.constraints.b[constraint]);
   }
   void look_everywhere();
+  /// Of what was asked for, and not done: where a step was broken off.
+  void forget();
 
-  /// points: difference(a, b), the vector from slot b to slot a, and move(slot, by). touched(slot):
-  /// it was moved.
-  template <class Points, class Touched>
-  LocalWork run(Points& points, const ContactStore& contacts, const LocalLimits& limits,
-                Touched&& touched);
+  /// points: difference(a, b), the vector from slot b to slot a; move(slot, by), of a constraint;
+  /// push(slot, by), of a contact.
+  template <class Points>
+  LocalWork run(Points& points, const ContactStore& contacts, const LocalLimits& limits);
   std::size_t bytes() const;
 
  private:
@@ -62,12 +63,10 @@ class LocalPasses {
     if (next_[place.slot] == 0) waiting_.push_back(place.slot);
     next_[place.slot] |= place.bit;
   }
-  template <class Points, class Touched>
-  bool relax(Points& points, std::uint32_t constraint, const LocalLimits& limits,
-             Touched&& touched);
-  template <class Points, class Touched>
-  bool push_apart(Points& points, const ContactStore& contacts, double least, LocalWork& work,
-                  Touched&& touched);
+  template <class Points>
+  bool relax(Points& points, std::uint32_t constraint, const LocalLimits& limits);
+  template <class Points>
+  bool push_apart(Points& points, const ContactStore& contacts, double least, LocalWork& work);
   void begin_pass();
 
   const Model& model_;
@@ -79,9 +78,8 @@ class LocalPasses {
   static constexpr std::uint8_t kNoBit = 255;
 };
 
-template <class Points, class Touched>
-bool LocalPasses::relax(Points& points, std::uint32_t c, const LocalLimits& limits,
-                        Touched&& touched) {
+template <class Points>
+bool LocalPasses::relax(Points& points, std::uint32_t c, const LocalLimits& limits) {
   const ConstraintStore& s = model_.constraints;
   const std::uint32_t a = s.a[c], b = s.b[c];
   const kernels::Vector d = points.difference(a, b);
@@ -93,17 +91,15 @@ bool LocalPasses::relax(Points& points, std::uint32_t c, const LocalLimits& limi
       (limits.omega * error * s.effective_mass[c]) * kernels::direction(d, l);
   points.move(a, -model_.inverse_mass[a] * by);
   points.move(b, model_.inverse_mass[b] * by);
-  for (const std::uint32_t slot : {a, b}) {
-    touched(slot);
-    look_at(slot);
-  }
+  look_at(a);
+  look_at(b);
   return true;
 }
 
 /// Whether one was deeper than `least`.
-template <class Points, class Touched>
+template <class Points>
 bool LocalPasses::push_apart(Points& points, const ContactStore& contacts, double least,
-                             LocalWork& work, Touched&& touched) {
+                             LocalWork& work) {
   bool any = false;
   for (std::uint32_t k = 0; k < contacts.count(); ++k) {
     const std::uint32_t a = contacts.sphere[k], b = contacts.particle[k];
@@ -113,10 +109,8 @@ bool LocalPasses::push_apart(Points& points, const ContactStore& contacts, doubl
     if (!(depth > least)) continue;
     const double wa = model_.inverse_mass[a], wb = model_.inverse_mass[b];
     const kernels::Vector by = (depth / (wa + wb)) * kernels::direction(d, l);
-    points.move(a, wa * by);
-    points.move(b, -wb * by);
-    touched(a);
-    touched(b);
+    points.push(a, wa * by);
+    points.push(b, -wb * by);
     look_at(a);
     look_at(b);
     ++work.corrections;
@@ -125,11 +119,11 @@ bool LocalPasses::push_apart(Points& points, const ContactStore& contacts, doubl
   return any;
 }
 
-template <class Points, class Touched>
-LocalWork LocalPasses::run(Points& points, const ContactStore& contacts, const LocalLimits& limits,
-                           Touched&& touched) {
+template <class Points>
+LocalWork LocalPasses::run(Points& points, const ContactStore& contacts,
+                           const LocalLimits& limits) {
   LocalWork work;
-  bool again = push_apart(points, contacts, 0, work, touched);
+  bool again = push_apart(points, contacts, 0, work);
   while (again || !waiting_.empty()) {
     if (work.visits >= limits.most_visits) {
       work.done = false;
@@ -138,7 +132,7 @@ LocalWork LocalPasses::run(Points& points, const ContactStore& contacts, const L
     begin_pass();
     const auto visit = [&](std::uint32_t c) {
       ++work.visits;
-      if (relax(points, c, limits, touched)) ++work.corrections;
+      if (relax(points, c, limits)) ++work.corrections;
     };
     for (const std::uint32_t slot : present_) {
       for (std::uint64_t bits = std::exchange(now_[slot], 0); bits != 0; bits &= bits - 1) {
@@ -153,10 +147,9 @@ LocalWork LocalPasses::run(Points& points, const ContactStore& contacts, const L
       }
     }
     for (const std::uint32_t c : always_) visit(c);
-    again = push_apart(points, contacts, limits.contact_tolerance, work, touched);
+    again = push_apart(points, contacts, limits.contact_tolerance, work);
   }
-  for (const std::uint32_t slot : waiting_) next_[slot] = 0;
-  waiting_.clear();
+  forget();
   return work;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/small_steps_load.h"
@@ -12,10 +13,19 @@ namespace weft {
 using kernels::Vector;
 
 struct ReferenceSmallSteps::Points {
-  kernels::VectorsView x;
+  kernels::VectorsView x, predicted;
+  double share;  // of what a local pass does, that the prediction takes: 1 - b
+  std::vector<std::uint32_t>& touched;
 
   Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
-  void move(std::uint32_t slot, Vector by) { x.add(slot, by); }
+  void move(std::uint32_t slot, Vector by) const {
+    x.add(slot, by);
+    predicted.add(slot, share * by);
+  }
+  void push(std::uint32_t slot, Vector by) const {
+    move(slot, by);
+    touched.push_back(slot);
+  }
 };
 
 ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& settings)
@@ -35,9 +45,13 @@ reference::Flight ReferenceSmallSteps::flight() {
 }
 
 void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, Vector gravity,
-                                kernels::VectorsView force, double h, int, bool placed, Team&) {
+                                kernels::VectorsView force, const FramePlan& plan, Team&) {
+  const double h = plan.h;
   h_ = h;
-  if (placed) past_.h = 0;
+  omega_ = plan.omega;
+  passes_.forget();
+  touched_.clear();
+  if (plan.placed || h > tuning::kMostRatio * past_.h) past_.h = 0;
   last_ = 0;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     const double w = model_.inverse_mass[i];
@@ -56,19 +70,17 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     v_before_.set(i, past_.v_before[i] + jump);
     before_.set(i, x[i] - (past_.moved[i] + past_.h * jump));
   }
-  const bool second_order = settings_.scheme == Scheme::bdf2;
-  formula_ = second_order ? SubstepFormula::bdf2(past_.h > 0 ? h / past_.h : 1) : SubstepFormula{};
-  next_formula_ = second_order ? SubstepFormula::bdf2(1) : SubstepFormula{};
+  next_formula_ = SubstepFormula::of(settings_.scheme, past_.h > 0 ? h / past_.h : 1);
 }
 
 void ReferenceSmallSteps::advance(Team&) {
-  start_again();
+  stop_at_contacts();
+  formula_ = std::exchange(next_formula_, SubstepFormula::of(settings_.scheme, 1));
   const double bh = formula_.part * h_;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     reference::advance(flight(), i, acceleration_[i], formula_.past, bh, last_);
   }
   last_ = bh;
-  formula_ = next_formula_;
 }
 
 void ReferenceSmallSteps::sweep(Team&) {
@@ -98,7 +110,7 @@ void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
     system.d.push_back(d);
     system.error.push_back(0.5 * (dot(d, d) - rest * rest));
   }
-  system.solve(tuning::kOmega, tuning::kCompliance);
+  system.solve(omega_, tuning::kCompliance);
   for (std::size_t k = 0; k < links.size(); ++k) {
     const Vector impulse = system.error[k] * system.d[k];
     x_.view().add(slots[k], -system.w[k] * impulse);
@@ -115,20 +127,18 @@ void ReferenceSmallSteps::relax_edge(std::uint32_t c) {
   if ((rope ? error : std::abs(error)) > tuning::kLocalShare * settings_.tolerance * rest)
     out_.push_back(c);
   if (rope && error <= 0) return;
-  const double impulse =
-      reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c], tuning::kOmega);
+  const double impulse = reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c], omega_);
   x_.view().add(a, (-model_.inverse_mass[a] * impulse) * d);
   x_.view().add(b, (model_.inverse_mass[b] * impulse) * d);
 }
 
 LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
-  Points points{x_.view()};
+  Points points{x_.view(), predicted_.view(), 1 - formula_.part, touched_};
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
                            .omega = tuning::kOmega,
                            .most_visits = most_visits};
-  return passes_.run(points, contacts, limits,
-                     [&](std::uint32_t slot) { touched_.push_back(slot); });
+  return passes_.run(points, contacts, limits);
 }
 
 LocalWork ReferenceSmallSteps::repair(const ContactStore& contacts, std::int64_t most_visits) {
@@ -142,7 +152,7 @@ LocalWork ReferenceSmallSteps::repair_everywhere(const ContactStore& contacts,
   return run_passes(contacts, most_visits);
 }
 
-void ReferenceSmallSteps::start_again() {
+void ReferenceSmallSteps::stop_at_contacts() {
   std::ranges::sort(touched_);
   const auto rest = std::ranges::unique(touched_);
   touched_.erase(rest.begin(), rest.end());
@@ -164,7 +174,7 @@ void ReferenceSmallSteps::read_positions(kernels::VectorsView x, Team&) const {
 }
 
 void ReferenceSmallSteps::settle(Team&) {
-  start_again();
+  stop_at_contacts();
   for (std::size_t i = 0; i < model_.slots(); ++i) reference::settle(flight(), i, last_);
   last_ = 0;
 }

@@ -28,7 +28,7 @@ class ReferenceSmallSteps {
 
   double substep_length(kernels::VectorsView x, double acceleration) const;
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
-             kernels::VectorsView force, double h, int substeps, bool placed, Team& team);
+             kernels::VectorsView force, const FramePlan& plan, Team& team);
   void advance(Team& team);
   void sweep(Team& team);
   std::int64_t count_out() const { return std::ssize(out_); }
@@ -51,7 +51,7 @@ class ReferenceSmallSteps {
   void relax_chain(std::span<const std::uint32_t> slots, std::span<const std::uint32_t> links);
   void relax_edge(std::uint32_t constraint);
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
-  void start_again();
+  void stop_at_contacts();
 
   const Model& model_;
   const SmallStepsLayout& layout_;
@@ -60,7 +60,8 @@ class ReferenceSmallSteps {
   Past past_;
   reference::ChainSystem system_;
 
-  double h_ = 0, last_ = 0;  // last_: b h of the last substep
+  double h_ = 0, omega_ = 1;
+  double last_ = 0;  // b h of the last substep
   SubstepFormula formula_, next_formula_;
   kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_;
   std::vector<std::uint32_t> out_;  // constraints that a sweep found out of tolerance

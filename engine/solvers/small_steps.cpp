@@ -23,10 +23,17 @@ float squared_tolerance(const Settings& settings) {
 }  // namespace
 
 /// Positions for local passes: differences of base and of u, which are nearly exact.
+///
+/// What local passes do is no part of a smooth motion. In the velocity by BDF2 it would count 1 / b
+/// times, half as much again, and where much is left to do in each substep errors would grow. It
+/// counts once, since the prediction takes its share 1 - b.
 struct SmallStepsSolver::Points {
   const YarnPlaces& places;
   const float* base;
   float* u;
+  float* predicted;
+  float share;  // 1 - b
+  std::vector<std::uint32_t>& touched;
 
   double axis(std::size_t a, std::size_t b) const {
     return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
@@ -36,13 +43,25 @@ struct SmallStepsSolver::Points {
     const std::size_t a = places.of(slot_a), b = places.of(slot_b), next = places.stride;
     return {axis(a, b), axis(a + next, b + next), axis(a + 2 * next, b + 2 * next)};
   }
-  void move(std::uint32_t slot, kernels::Vector by) {
-    const std::size_t at = places.of(slot), next = places.stride;
-    u[at] += static_cast<float>(by.x);
-    u[at + next] += static_cast<float>(by.y);
-    u[at + 2 * next] += static_cast<float>(by.z);
+  void move(std::uint32_t slot, kernels::Vector by) const {
+    std::size_t at = places.of(slot);
+    for (const double change : {by.x, by.y, by.z}) {
+      const float moved = u[at] + static_cast<float>(change);
+      predicted[at] += share * (moved - u[at]);
+      u[at] = moved;
+      at += places.stride;
+    }
+  }
+  void push(std::uint32_t slot, kernels::Vector by) const {
+    move(slot, by);
+    touched.push_back(slot);
   }
 };
+
+SmallStepsSolver::Points SmallStepsSolver::points(double share) {
+  return {layout_.places(),          base_.data(), u_.data(), predicted_.data(),
+          static_cast<float>(share), touched_};
+}
 
 SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
                                    const simd::Table& table)
@@ -54,9 +73,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       spans_(layout_.blocks.size()),
       base_step_(layout_.yarns.rows()),
       edges_out_(layout_.blocks.size()),
-      yarns_out_(layout_.yarns.rows()),
-      is_touched_(model.slots()) {
-  touched_.reserve(model.slots());
+      yarns_out_(layout_.yarns.rows()) {
   for (auto* array : {&base_, &u_, &u_before_, &predicted_, &v_, &v_before_, &acceleration_}) {
     array->resize(layout_.floats);
   }
@@ -158,20 +175,20 @@ void SmallStepsSolver::split(kernels::VectorsView x, int substeps, Team& team) {
 }
 
 void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
-                             kernels::Vector gravity, kernels::VectorsView force, double h,
-                             int substeps, bool placed, Team& team) {
-  h_ = h;
-  if (placed) past_.h = 0;
-  split(x, substeps, team);
+                             kernels::Vector gravity, kernels::VectorsView force,
+                             const FramePlan& plan, Team& team) {
+  h_ = plan.h;
+  omega_ = plan.omega;
+  passes_.forget();
+  touched_.clear();
+  if (plan.placed || plan.h > tuning::kMostRatio * past_.h) past_.h = 0;
+  split(x, plan.substeps, team);
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());
   });
   write_acceleration(gravity, force);
   begin_past(team);
-  const double ratio = past_.h > 0 ? h / past_.h : 1;
-  const bool second_order = settings_.scheme == Scheme::bdf2;
-  formula_ = second_order ? SubstepFormula::bdf2(ratio) : SubstepFormula{};
-  next_formula_ = second_order ? SubstepFormula::bdf2(1) : SubstepFormula{};
+  next_formula_ = SubstepFormula::of(settings_.scheme, past_.h > 0 ? h_ / past_.h : 1);
   weights_.rate = 0;
 }
 
@@ -190,18 +207,18 @@ void SmallStepsSolver::renew_base(Team& team) {
 }
 
 void SmallStepsSolver::advance(Team& team) {
-  start_again();
+  stop_at_contacts();
   if (since_renewal_++ == tuning::kRenewal) {  // never where the base is the past's
     since_renewal_ = 1;
     renew_base(team);
   }
+  formula_ = std::exchange(next_formula_, SubstepFormula::of(settings_.scheme, 1));
   weights_.past = static_cast<float>(formula_.past);
   weights_.step = static_cast<float>(formula_.part * h_);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     table_.advance(flight(), weights_, first, last);
   });
   weights_.rate = static_cast<float>(1 / (formula_.part * h_));
-  formula_ = next_formula_;
 }
 
 void SmallStepsSolver::sweep(Team& team) {
@@ -212,7 +229,7 @@ void SmallStepsSolver::sweep(Team& team) {
 
 void SmallStepsSolver::sweep_yarns(Team& team) {
   const simd::Yarns yarns = this->yarns();
-  const simd::YarnRelaxation relaxation{static_cast<float>(tuning::kOmega),
+  const simd::YarnRelaxation relaxation{static_cast<float>(omega_),
                                         static_cast<float>(tuning::kCompliance),
                                         squared_tolerance(settings_), yarns_out_.data()};
   const std::size_t rows = layout_.yarns.scratch_rows();
@@ -233,12 +250,9 @@ void SmallStepsSolver::sweep_yarns(Team& team) {
 
 void SmallStepsSolver::sweep_batch(const EdgeBatch& batch, std::uint32_t first,
                                    std::uint32_t last) {
-  const simd::EdgeRelaxation relaxation{u_.data(),
-                                        layout_.blocks.data(),
-                                        spans_.data(),
-                                        edges_out_.data(),
-                                        static_cast<float>(tuning::kOmega),
-                                        squared_tolerance(settings_)};
+  const simd::EdgeRelaxation relaxation{
+      u_.data(),         layout_.blocks.data(),      spans_.data(),
+      edges_out_.data(), static_cast<float>(omega_), squared_tolerance(settings_)};
   (batch.rope ? table_.relax_ropes : table_.relax_distances)(relaxation, first, last);
 }
 
@@ -259,15 +273,14 @@ void SmallStepsSolver::sweep_edges(Team& team) {
 
 void SmallStepsSolver::sweep_serial() {
   const ConstraintStore& s = model_.constraints;
-  Points points{layout_.places(), base_.data(), u_.data()};
+  Points points = this->points(0);
   for (const std::uint32_t c : layout_.serial) {
     const kernels::Vector d = points.difference(s.a[c], s.b[c]);
     const double square = s.rest_length[c] * s.rest_length[c], error = dot(d, d) - square;
     if (std::abs(error) > static_cast<double>(squared_tolerance(settings_)) * square)
       passes_.look_near(c);
     if (c >= s.bilateral && error <= 0) continue;
-    const kernels::Vector by =
-        (tuning::kOmega * error / (error + 2 * square) * s.effective_mass[c]) * d;
+    const kernels::Vector by = (omega_ * error / (error + 2 * square) * s.effective_mass[c]) * d;
     points.move(s.a[c], -model_.inverse_mass[s.a[c]] * by);
     points.move(s.b[c], model_.inverse_mass[s.b[c]] * by);
   }
@@ -297,16 +310,12 @@ void SmallStepsSolver::look_near_what_was_out() {
 }
 
 LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
-  Points points{layout_.places(), base_.data(), u_.data()};
+  Points points = this->points(1 - formula_.part);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
                            .omega = tuning::kOmega,
                            .most_visits = most_visits};
-  return passes_.run(points, contacts, limits, [&](std::uint32_t slot) {
-    if (is_touched_[slot]) return;
-    is_touched_[slot] = 1;
-    touched_.push_back(slot);
-  });
+  return passes_.run(points, contacts, limits);
 }
 
 LocalWork SmallStepsSolver::repair(const ContactStore& contacts, std::int64_t most_visits) {
@@ -320,17 +329,17 @@ LocalWork SmallStepsSolver::repair_everywhere(const ContactStore& contacts,
   return run_passes(contacts, most_visits);
 }
 
-/// What local passes and contacts do is no part of a smooth motion. In the velocity by BDF2 it
-/// would count one and a half times, and where much is left to do in each substep that is too much:
-/// then errors grow. The velocity of such a particle is that of this substep alone, and its past a
-/// free flight that leads to it.
-void SmallStepsSolver::start_again() {
-  for (const std::uint32_t slot : touched_) start_again(slot);
+/// A contact ends a motion. The velocity of a particle that was pushed is that of this substep
+/// alone, and its past a free flight that leads to it.
+void SmallStepsSolver::stop_at_contacts() {
+  std::ranges::sort(touched_);
+  const auto rest = std::ranges::unique(touched_);
+  touched_.erase(rest.begin(), rest.end());
+  for (const std::uint32_t slot : touched_) stop_at_contact(slot);
   touched_.clear();
 }
 
-void SmallStepsSolver::start_again(std::uint32_t slot) {
-  is_touched_[slot] = 0;
+void SmallStepsSolver::stop_at_contact(std::uint32_t slot) {
   if (model_.inverse_mass[slot] == 0) return;
   const auto h = static_cast<float>(h_);
   std::size_t at = layout_.places().of(slot);
@@ -344,7 +353,7 @@ void SmallStepsSolver::start_again(std::uint32_t slot) {
 }
 
 void SmallStepsSolver::settle(Team& team) {
-  start_again();
+  stop_at_contacts();
   for_floats(team, [&](std::size_t first, std::size_t last) {
     table_.settle(flight(), weights_.rate, first, last);
   });
@@ -388,8 +397,7 @@ void SmallStepsSolver::set_past(SmallStepsPast&& past) {
 
 std::size_t SmallStepsSolver::bytes() const {
   return 11 * bytes_of(u_) + bytes_of(spans_) + bytes_of(base_step_) + bytes_of(scratch_) +
-         bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) + bytes_of(is_touched_) +
-         passes_.bytes();
+         bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) + passes_.bytes();
 }
 
 }  // namespace weft

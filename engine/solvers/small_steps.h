@@ -25,9 +25,18 @@ namespace weft {
 struct SubstepFormula {
   double past = 0;  // c
   double part = 1;  // b
-  static SubstepFormula bdf2(double ratio) {
+  static SubstepFormula of(Scheme scheme, double ratio) {
+    if (scheme != Scheme::bdf2) return {};
     return {ratio * ratio / (1 + 2 * ratio), (1 + ratio) / (1 + 2 * ratio)};
   }
+};
+
+/// What a step is done in.
+struct FramePlan {
+  double h = 0;  // s, of a substep
+  int substeps = 1;
+  double omega = 1;     // of a sweep
+  bool placed = false;  // positions are not where the last step ended: nothing is known of a past
 };
 
 /// What is left of a flight between two frames, in the layout of the solver.
@@ -45,10 +54,9 @@ class SmallStepsSolver {
   /// s, of the longest substep that leaves little to local passes.
   double substep_length(kernels::VectorsView x, double acceleration) const;
 
-  /// A frame in so many substeps of h from x, with velocities v; placed: x is not where the last
-  /// one ended, and nothing is known of a past.
+  /// A frame from x, with velocities v.
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
-             kernels::VectorsView force, double h, int substeps, bool placed, Team& team);
+             kernels::VectorsView force, const FramePlan& plan, Team& team);
   /// The stages of a substep.
   void advance(Team& team);
   void sweep(Team& team);
@@ -72,6 +80,7 @@ class SmallStepsSolver {
 
  private:
   struct Points;
+  Points points(double share);
   simd::Flight flight();
   simd::Yarns yarns();
   void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
@@ -85,8 +94,8 @@ class SmallStepsSolver {
   void sweep_batch(const EdgeBatch& batch, std::uint32_t first, std::uint32_t last);
   void look_near_what_was_out();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
-  void start_again();
-  void start_again(std::uint32_t slot);
+  void stop_at_contacts();
+  void stop_at_contact(std::uint32_t slot);
   template <class Work>
   void for_floats(Team& team, Work&& work);
 
@@ -97,9 +106,9 @@ class SmallStepsSolver {
   LocalPasses passes_;
   SmallStepsPast past_;
 
-  double h_ = 0;
+  double h_ = 0, omega_ = 1;
   simd::SubstepWeights weights_;
-  SubstepFormula formula_, next_formula_;  // of this substep, and of those that follow it
+  SubstepFormula formula_, next_formula_;  // of the present substep, and of the next
   int since_renewal_ = 0;
   kernels::Vector gravity_{};
   bool has_force_ = true;  // in acceleration_
@@ -112,8 +121,7 @@ class SmallStepsSolver {
   kernels::AlignedVector<simd::YarnScratch> scratch_;      // for each thread
   std::vector<std::uint16_t> edges_out_;                   // per edge block, a bit per lane
   std::vector<std::uint32_t> yarns_out_;                   // per row of yarns, likewise
-  std::vector<std::uint32_t> touched_;                     // slots that local passes have moved
-  std::vector<std::uint8_t> is_touched_;                   // per slot: is among them
+  std::vector<std::uint32_t> touched_;                     // slots that contacts have pushed
 };
 
 }  // namespace weft

@@ -165,20 +165,20 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   them and over single constraints elsewhere, and then passes over what is out of tolerance
 ///   alone. A sweep leaves a strain that falls with the square of the substep; how long that may be
 ///   follows in closed form from what hangs on the pins, and from the tolerance
-///   (engine/solvers/small_steps_load.h). For any mesh, at tolerances of 0.1 % and looser, and for a
-///   motion that is near the true one. Masses should not differ by more than a hundred. Substeps of
-///   one length are best kept to: a change of it by half costs some energy.
+///   (engine/solvers/small_steps_load.h). For any mesh, at tolerances of 0.1 % and looser, and for
+///   a motion that is near the true one. Masses should not differ by more than a hundred. Substeps
+///   of one length are best kept to: a change of it by half costs some energy.
 /// automatic: small_steps for cloth (simd, a tolerance from 0.1 % on, free masses that differ by no
 ///   more than a hundred, no free spheres, and enough loops: a grid, no chain or bridge), unless a
-///   scheme of other solvers, velocity_correction or `iterations` is asked for. Else gauss_seidel on
-///   the reference backend or with `iterations`. direct for cords, ropes that close few loops:
+///   scheme of other solvers, velocity_correction or `iterations` is asked for. Else gauss_seidel
+///   on the reference backend or with `iterations`. direct for cords, ropes that close few loops:
 ///   chains, trees, bridges; where these are long (the tolerance times the longest constraint is
-///   above 0.25 mm) or loaded (masses differ by more than 100); with more than 16 free spheres yarn.
-///   For all else the ratio of masses decides, that of the heaviest to the lightest of free
+///   above 0.25 mm) or loaded (masses differ by more than 100); with more than 16 free spheres
+///   yarn. For all else the ratio of masses decides, that of the heaviest to the lightest of free
 ///   particles that constraints join. Up to 10^4: yarn, or gauss_seidel where there are more than
 ///   nine ropes to each distance constraint. From 10^6 on, and from 10^4 on such nets or with
-///   `substeps` given: direct. Between them: yarn, with direct to answer where it gives up (so it is
-///   wherever yarn is chosen for ratios above 10^4).
+///   `substeps` given: direct. Between them: yarn, with direct to answer where it gives up (so it
+///   is wherever yarn is chosen for ratios above 10^4).
 /// Where yarn or direct gives up, or energy rises by more than gravity, forces and moved pins
 /// explain (engine/energy.h), the substep is redone as two halves, until a step has cost 1500
 /// iterations; where that fails too, Gauss-Seidel takes over. StepReport::iterations counts every
@@ -226,11 +226,11 @@ struct Settings {
   double tolerance = 0.01;
   /// Each step is done as this many substeps, each solved to the tolerances; with small_steps only
   /// the last is looked at, and the number bounds the time of a step. 0 (kAutomaticSubsteps): of
-  /// small_steps by closed form, up to 1024; else chosen from the motion (rattle: up to 2.5 times as many as paper) and,
-  /// with yarns, from the load that heavy particles and, with scheme paper, spheres are; no more
-  /// than max_iterations / 8 then. 1 on the reference backend or with `iterations`. A substep whose
-  /// solver gives up before max_iterations is redone in halves, up to 16 parts
-  /// (StepReport::halvings). Fine meshes need small substeps.
+  /// small_steps by closed form, up to 1024; else chosen from the motion (rattle: up to 2.5 times
+  /// as many as paper) and, with yarns, from the load that heavy particles and, with scheme paper,
+  /// spheres are; no more than max_iterations / 8 then. 1 on the reference backend or with
+  /// `iterations`. A substep whose solver gives up before max_iterations is redone in halves, up to
+  /// 16 parts (StepReport::halvings). Fine meshes need small substeps.
   int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per substep whatever the error,
   /// nothing skipped; gauss_seidel renews frozen directions once per substep, the others in every
@@ -283,13 +283,14 @@ inline Settings paper_settings() {
 
 /// converged: every constraint is within its tolerance.
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
-/// iteration_limit: max_iterations were done, or with small_steps all rounds, and some constraint is
+/// iteration_limit: max_iterations were done, or with small_steps all rounds, and some constraint
+/// is
 ///   still out of tolerance. The state is committed.
 /// infeasible: some constraint is out of tolerance and thousands of iterations (small_steps: eight
-///   rounds of a sweep and local passes) no longer reduce the error: constraints contradict each other (a chain whose ends are too far apart), masses differ
-///   by more than 10^7, or nothing leads from the start to where they agree (a sheet of triangles
-///   whose pins turned by a right angle in one step). The state is committed, with the error spread
-///   over the constraints.
+///   rounds of a sweep and local passes) no longer reduce the error: constraints contradict each
+///   other (a chain whose ends are too far apart), masses differ by more than 10^7, or nothing
+///   leads from the start to where they agree (a sheet of triangles whose pins turned by a right
+///   angle in one step). The state is committed, with the error spread over the constraints.
 /// passed_through: a particle went through a sphere within a substep (tunnelling): no contact was
 ///   found in time, or one pushed it out on the far side. The state is committed; shorter steps
 ///   would have held it.

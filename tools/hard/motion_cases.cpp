@@ -167,6 +167,11 @@ bool hangs_taut(const Method& method) {
   return by_yarns(method) || method.solver == Solver::small_steps;
 }
 
+/// Those of small steps are floats, rounded in each substep.
+bool velocities_in_doubles(const Method& method) {
+  return method.solver != Solver::small_steps && label(method) != "auto";
+}
+
 }  // namespace
 
 std::vector<Case> motion_cases() {
@@ -182,7 +187,11 @@ std::vector<Case> motion_cases() {
       {"free_flight", "momentum lost, relative", 1e-9,
        [](const Setup& setup) { return run_momentum(setup, Backend::reference); }, runs_in_doubles},
       {"free_flight_in_lanes", "momentum lost, relative, in float lanes", 1e-7,
-       [](const Setup& setup) { return run_momentum(setup, Backend::simd); }},
+       [](const Setup& setup) { return run_momentum(setup, Backend::simd); },
+       velocities_in_doubles},
+      {"free_flight_by_small_steps", "momentum lost, relative, in float lanes", 1e-4,
+       [](const Setup& setup) { return run_momentum(setup, Backend::simd); },
+       [](const Method& method) { return !velocities_in_doubles(method); }},
       {"free_flight_angular", "angular momentum lost, relative", 1e-9, run_angular_momentum,
        keeps_angular_momentum},
       {"spinning_sheet", "max strain", kStrain, run_spin},

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "engine/scenes.h"
@@ -29,11 +28,6 @@ Result<Task> make_task(const std::string& scene, int size) {
 
 namespace {
 
-bool has_ropes(const SceneDescription& scene) {
-  return std::ranges::any_of(scene.constraints,
-                             [](const Constraint& c) { return c.kind == ConstraintKind::rope; });
-}
-
 /// So many substeps that local passes have next to nothing to do.
 Result<std::vector<Vec3>> by_small_steps(const Task& task, int substeps) {
   Settings settings;
@@ -53,7 +47,7 @@ Result<std::vector<Vec3>> by_small_steps(const Task& task, int substeps) {
   return positions;
 }
 
-Result<void> add_reference_with_ropes(Task& task, int substeps) {
+Result<void> add_reference_by_small_steps(Task& task, int substeps) {
   const auto coarse = by_small_steps(task, substeps);
   if (!coarse) return Error{coarse.error()};
   auto fine = by_small_steps(task, 2 * substeps);
@@ -67,14 +61,13 @@ Result<void> add_reference_with_ropes(Task& task, int substeps) {
 }  // namespace
 
 Result<void> add_reference(Task& task, int parts) {
-  if (has_ropes(task.description)) return add_reference_with_ropes(task, 32 * parts);
   const auto at = [&](int n) {
     return reference_solution(task.description, kFrame / n, kReferenceFrame * n);
   };
   const auto coarse = at(parts);
-  if (!coarse) return Error{coarse.error()};
+  if (!coarse) return add_reference_by_small_steps(task, 32 * parts);
   auto fine = at(2 * parts);
-  if (!fine) return Error{fine.error()};
+  if (!fine) return add_reference_by_small_steps(task, 32 * parts);
   task.reference = std::move(fine.value().positions);
   task.reference_by = "rattle in double precision, sparse factors";
   task.reference_error = trajectory_error(coarse.value().positions, task.reference) / 3;

@@ -34,9 +34,11 @@ struct Task {
 Result<Task> make_task(const std::string& scene, int size);
 
 /// Computes the reference with steps of kFrame / parts and half of that. The second is kept, and a
-/// third of the difference is its error, since the order is two. Of a scene with ropes, which the
-/// reference solution has not, small steps compute it, in 32 times as many: its error is then the
-/// whole difference, as of a method of first order, since ropes become taut from step to step.
+/// third of the difference is its error, since the order is two. Of a scene that the reference
+/// solution does not know or cannot move, with ropes or with yarns straight between two pins, small
+/// steps compute it, 32 times as many: its error is then the whole difference, as of a method of
+/// first order, since ropes become taut from step to step, and what is straight sags by the root of
+/// its strain.
 Result<void> add_reference(Task& task, int parts);
 
 /// A tolerance, or a fixed number of iterations. 0 substeps: automatic.

@@ -23,11 +23,11 @@ struct Points {
     x.view().add(slot, by);
     moved.insert(slot);
   }
+  void push(std::uint32_t slot, kernels::Vector by) { move(slot, by); }
 };
 
 constexpr LocalLimits kLimits{
     .tolerance = 0.01, .contact_tolerance = 1e-4, .omega = 0.8, .most_visits = 1'000'000};
-constexpr auto kIgnore = [](std::uint32_t) {};
 
 double largest_strain(const Model& model, const Points& points) {
   double largest = 0;
@@ -48,7 +48,7 @@ TEST_CASE(
   const ConstraintStore& store = model->constraints;
   while (store.a[constraint] != slot && store.b[constraint] != slot) ++constraint;
   passes.look_near(constraint);
-  const LocalWork work = passes.run(points, {}, kLimits, kIgnore);
+  const LocalWork work = passes.run(points, {}, kLimits);
   CHECK(work.done);
   CHECK(work.corrections > 0);
   CHECK(work.visits < 100);
@@ -60,9 +60,9 @@ TEST_CASE("nothing is done where nothing is out of tolerance, and nothing that n
   const auto model = model_of(scene_of("corners", 9));
   LocalPasses passes(*model);
   Points points{model->initial_position};
-  CHECK(passes.run(points, {}, kLimits, kIgnore).visits == 0);
+  CHECK(passes.run(points, {}, kLimits).visits == 0);
   passes.look_everywhere();
-  const LocalWork work = passes.run(points, {}, kLimits, kIgnore);
+  const LocalWork work = passes.run(points, {}, kLimits);
   CHECK(work.visits == static_cast<std::int64_t>(model->constraints.size()));
   CHECK(work.corrections == 0);
 }
@@ -75,12 +75,12 @@ TEST_CASE("the bound on visits holds, and what is left of one run does not leak 
   passes.look_everywhere();
   LocalLimits limits = kLimits;
   limits.most_visits = 1000;
-  const LocalWork work = passes.run(points, {}, limits, kIgnore);
+  const LocalWork work = passes.run(points, {}, limits);
   CHECK_FALSE(work.done);
   CHECK(work.visits < 1000 + 2 * static_cast<std::int64_t>(model->constraints.size()));
-  CHECK(passes.run(points, {}, kLimits, kIgnore).visits == 0);
+  CHECK(passes.run(points, {}, kLimits).visits == 0);
   passes.look_everywhere();
-  CHECK(passes.run(points, {}, kLimits, kIgnore).done);
+  CHECK(passes.run(points, {}, kLimits).done);
   CHECK(largest_strain(*model, points) <= kLimits.tolerance);
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("particles of more constraints than a mask has bits are no exception")
   const std::uint32_t hub = model->ordering.slot_of[0];
   points.x.set(hub, points.x[hub] + kernels::Vector{0.2, 0, 0});
   passes.look_everywhere();
-  CHECK(passes.run(points, {}, kLimits, kIgnore).done);
+  CHECK(passes.run(points, {}, kLimits).done);
   CHECK(largest_strain(*model, points) <= kLimits.tolerance);
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("what is fixed stays, and ropes push nothing apart") {
   LocalPasses passes(*model);
   Points points{model->initial_position};
   passes.look_everywhere();
-  CHECK(passes.run(points, {}, kLimits, kIgnore).done);
+  CHECK(passes.run(points, {}, kLimits).done);
   const auto of = [&](std::uint32_t particle) {
     return points.x[model->ordering.slot_of[particle]];
   };

@@ -179,8 +179,8 @@ TEST_CASE("what is automatic has no scheme of its own in the tables") {
   Study study = distinct_study();
   study.charts.front().points.push_back({"auto", "auto", "simd", {0, 0.03125, 0}, {}});
   study.charts.front().points.back().outcome = distinct_outcome();
-  CHECK(to_text(study).find("  3.12 %, automatic substeps\n") != std::string::npos);
-  CHECK(to_text(study).find("  rattle, 3.12 %, 2 substeps\n") != std::string::npos);
+  CHECK(to_text(study).find("  3.125 %, automatic substeps\n") != std::string::npos);
+  CHECK(to_text(study).find("  rattle, 3.125 %, 2 substeps\n") != std::string::npos);
 }
 
 TEST_CASE("markdown: a row for each bound, a column for each contender") {
