@@ -18,9 +18,10 @@ namespace weft {
 /// forces and moved pins explain, and by much of what the kick is worth. kicks: of this substep.
 bool gains_energy(const State& s, const kernels::Kicks& kicks, double h);
 
-/// The guard of small steps. Likewise, of a step whose change of energy is known, but what was lost
-/// shortly before may come back (State::lost_energy): to constraints that are springs, and to
-/// rounding, which takes as often as it gives. It costs little where no pins are under way.
+/// The guard of small steps does the same for a whole step whose change of energy is known. Energy
+/// that was lost shortly before may come back (State::lost_energy): constraints are springs that
+/// store it, and rounding takes it as often as it gives it. The guard is cheap if no pins are under
+/// way.
 void take_gained_energy(State& s, const kernels::Kicks& change, double dt);
 
 /// Slows next_velocity down, all of it by the same factor, as far as the energy rose by more than

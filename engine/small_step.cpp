@@ -20,8 +20,6 @@
 namespace weft {
 namespace {
 
-using kernels::Vector;
-
 /// m/s^2, of gravity and forces: the mean magnitude, by mass.
 double mean_acceleration(const State& s) {
   if (s.force.size() == 0) return length(s.gravity);
@@ -34,9 +32,9 @@ double mean_acceleration(const State& s) {
   return mass > 0 ? sum / mass : 0;
 }
 
-/// Substeps of about the length that the load allows. In a step that is far shorter than that each
-/// correction is a smaller one: a sweep is a spring, and to keep its stiffness omega / h^2 is to
-/// release nothing of what it holds.
+/// Substeps are about as long as the load allows. In a step that is far shorter than that
+/// corrections are smaller: a sweep is a spring of stiffness omega / h^2, and a spring that keeps
+/// its stiffness releases nothing of what it holds.
 template <class Solver>
 FramePlan plan_for(State& s, const Solver& solver, double dt) {
   FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed};
@@ -84,8 +82,8 @@ class Frame {
     ++report_.substeps;
   }
 
-  /// What the last substep left out of tolerance: sweeps, each with local passes that look at all
-  /// constraints. Where these no longer bring the error down it is there to stay.
+  /// Puts right what the last substep left out of tolerance, in rounds of a sweep and local passes
+  /// that look at all constraints. If rounds no longer bring the error down it is there to stay.
   Status finish() {
     read_positions();
     double worst = std::numeric_limits<double>::infinity();

@@ -132,7 +132,7 @@ void SmallStepsSolver::write_acceleration(kernels::Vector gravity, kernels::Vect
   }
 }
 
-/// Without a past the flight was a free one. (A first-order step instead: as good.)
+/// Without a past the particles are taken to have been in free flight.
 void SmallStepsSolver::begin_past(Team& team) {
   if (past_.h == 0) {
     const auto h = static_cast<float>(h_);
@@ -293,8 +293,8 @@ std::int64_t SmallStepsSolver::count_out() const {
   return count;
 }
 
-/// What a sweep found out of tolerance has been relaxed since, and so have its neighbours: they are
-/// looked at again.
+/// Constraints that a sweep found out of tolerance have been relaxed since, and so have their
+/// neighbours: all of these are looked at again.
 void SmallStepsSolver::look_near_what_was_out() {
   const auto look = [&](const auto& words, const std::vector<std::uint32_t>& constraint) {
     for (std::size_t i = 0; i < words.size(); ++i) {

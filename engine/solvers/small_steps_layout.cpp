@@ -7,7 +7,6 @@
 #include "engine/bytes_of.h"
 #include "engine/model.h"
 #include "engine/ordering/yarns.h"
-#include "engine/solvers/small_steps_load.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -103,6 +102,18 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   layout.floats = kernels::round_up(layout.yarns.places.floats, std::size_t{kLanes});
   layout.load = find_load(model, layout);
   return layout;
+}
+
+std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
+                                    std::span<const std::uint32_t> links) {
+  const auto holds = [&](std::uint32_t c, std::uint32_t slot) {
+    return s.a[c] == slot || s.b[c] == slot;
+  };
+  const std::uint32_t first = links.front();
+  const bool forwards = links.size() == 1 || holds(links[1], s.b[first]);
+  std::vector<std::uint32_t> slots{forwards ? s.a[first] : s.b[first]};
+  for (const std::uint32_t c : links) slots.push_back(s.a[c] == slots.back() ? s.b[c] : s.a[c]);
+  return slots;
 }
 
 std::size_t SmallStepsLayout::bytes() const {

@@ -6,15 +6,16 @@
 ///   edge blocks   kLanes constraints of one colour each: tile by tile, then between the tiles
 ///   serial        constraints at hubs, one after the other
 ///
-/// Yarns are made of all distance constraints that are not at hubs, or of none: where the chains
-/// that run straight on through their particles are short, as in sheets of irregular triangles,
-/// each constraint is a block of its own.
+/// Either all distance constraints that are not at hubs belong to yarns, or none does: if the
+/// chains that run straight on through their particles are short, as in sheets of irregular
+/// triangles, each constraint is a block of its own.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "engine/solvers/small_steps_load.h"
 #include "engine/solvers/yarn_layout.h"
 #include "kernels/simd/table.h"
 
@@ -32,19 +33,6 @@ struct EdgeBatch {
 /// Batches first ... last - 1 of a tile.
 struct EdgeTile {
   std::uint32_t first = 0, last = 0;
-};
-
-/// What hangs on the pins, for the length of a substep (small_steps_load.h).
-struct SmallStepsLoad {
-  /// A yarn between two pins.
-  struct Span {
-    std::uint32_t first_slot = 0, last_slot = 0;
-    double length = 0;  // m, of its constraints
-  };
-  double particles = 0;    // that a block at a pin carries besides its own
-  double mean_length = 0;  // m, of the constraints
-  double reach = 0;        // m, the longest way from a particle to its nearest pin
-  std::vector<Span> spans;
 };
 
 struct SmallStepsLayout {

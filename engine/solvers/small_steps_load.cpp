@@ -8,21 +8,10 @@
 
 #include "engine/lists.h"
 #include "engine/model.h"
+#include "engine/solvers/small_steps_layout.h"
 #include "engine/tuning.h"
 
 namespace weft {
-
-std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
-                                    std::span<const std::uint32_t> links) {
-  const auto holds = [&](std::uint32_t c, std::uint32_t slot) {
-    return s.a[c] == slot || s.b[c] == slot;
-  };
-  const std::uint32_t first = links.front();
-  const bool forwards = links.size() == 1 || holds(links[1], s.b[first]);
-  std::vector<std::uint32_t> slots{forwards ? s.a[first] : s.b[first]};
-  for (const std::uint32_t c : links) slots.push_back(s.a[c] == slots.back() ? s.b[c] : s.a[c]);
-  return slots;
-}
 
 namespace {
 

@@ -1,27 +1,51 @@
 /// The length of a substep, in closed form.
 ///
-/// A relaxed sweep is a spring: of one that hangs under the tension T it leaves the strain
+/// A relaxed sweep is a spring. Under the tension T it leaves a constraint the strain
 ///
 ///     h^2 T (w_a + w_b) / (omega L)
 ///
-/// of each constraint that does not stand in a block with what it carries. At the bottom of a swing
-/// T is three times the weight. With H particles of inverse mass w on one, T = 3 g H / w, it is
-/// within the share epsilon for
+/// unless one block holds both the constraint and its load. At the bottom of a swing T is three
+/// times the weight. With H particles of inverse mass w on the constraint, T = 3 g H / w, and the
+/// strain is within the tolerance epsilon if
 ///
 ///     h = sqrt(omega epsilon L / (6 g H)).
 ///
-/// H: what hangs on the blocks at pins, by particle of theirs, and no less than the number of
-/// blocks on the way from the farthest particle to its nearest pin; less one, for of what a block
-/// carries of itself a sweep leaves no more than (1 - omega) / omega of one particle's. Where
-/// single constraints are blocks, beside yarns too, the load may run through them one by one: then
-/// the way is counted in constraints. A yarn between two pins whose length exceeds their distance
-/// by the share s sags with the slope sqrt(6 s), and its tension is the load divided by that.
+/// H is how many particles a particle next to the pins carries: the mass of all that hangs, divided
+/// by the mass of the particles on blocks that hold a pin; or the number of blocks between a pin
+/// and the particle that is farthest from all pins, if that is larger. One is subtracted, since a
+/// block carries its own particles, and (1 - omega) / 2 is added for what a relaxed sweep leaves of
+/// those. Where single constraints are blocks the load may run through them one by one, also beside
+/// yarns: there the way to the pin is counted in constraints.
+///
+/// A yarn between two pins whose length exceeds their distance by the share s sags with the slope
+/// sqrt(6 s). Its tension is its load divided by that slope, where the slope is below 1.
+///
+/// No constraint should turn over within a substep. What has fallen as far as the cloth reaches
+/// from its pins, D, has the speed sqrt(2 g D), and h is at most a part of L over that speed.
 #pragma once
 
-#include "engine/solvers/small_steps_layout.h"
+#include <cstdint>
+#include <vector>
+
 #include "kernels/vectors.h"
 
 namespace weft {
+
+class Model;
+struct SmallStepsLayout;
+
+/// What hangs on the pins.
+struct SmallStepsLoad {
+  /// A yarn between two pins.
+  struct Span {
+    std::uint32_t first_slot = 0, last_slot = 0;
+    double length = 0;  // m, of its constraints
+  };
+  double particles = 0;    // that a block at a pin carries besides its own
+  double mean_length = 0;  // m, of the constraints
+  double reach = 0;        // m, the longest way from a particle to its nearest pin
+  std::vector<Span> spans;
+};
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
 

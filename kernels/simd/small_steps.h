@@ -4,9 +4,9 @@
 /// quads or in woven rows, so that flight is arithmetic on floats one by one. A substep of h, after
 /// one of h / r, is BDF2 with variable steps,
 ///
-///     v     = v* + (x - x*) / (b h)              what constraints did, of the last substep
-///     v*    = v + c (v - v_before) + b h a       predicted
-///     x*    = x + c (x - x_before) + b h v*
+///     v  = v* + (x - x*) / (b h)             velocity at the end of the last substep
+///     v* = v + c (v - v_before) + b h a      prediction of this one, without constraints
+///     x* = x + c (x - x_before) + b h v*
 ///     c = r^2 / (1 + 2 r),   b = (1 + r) / (1 + 2 r)
 ///
 /// and with c = 0, b = 1 the implicit Euler method.
@@ -57,7 +57,7 @@ void settle(const Flight& flight, float rate, std::size_t first, std::size_t las
       });
 }
 
-/// What somebody else did to the velocity since, it did to the one before as well.
+/// A change of velocity from outside between two frames changes the velocity a substep ago alike.
 void resume(const Flight& flight, const Past& past, float h, std::size_t first, std::size_t last) {
   const Flight f = flight;
   const Past p = past;
