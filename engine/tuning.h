@@ -42,11 +42,11 @@ inline constexpr double kSpringTime = 0.1;
 inline constexpr std::int64_t kMostVisits = 1;
 /// A frame that is out of tolerance after its last substep goes on for at most so many rounds. Each
 /// is a sweep, and local passes of at most so many visits, in units of all constraints.
-inline constexpr int kMostRounds = 32;
+inline constexpr int kMostRounds = 64;
 inline constexpr std::int64_t kMostRoundVisits = 32;
 /// A round makes progress if it brings the error below this share of the least one so far. After
 /// more than kPatience rounds without progress the constraints count as contradictory.
 inline constexpr double kFall = 0.98;
-inline constexpr int kPatience = 8;
+inline constexpr int kPatience = 16;
 
 }  // namespace weft::tuning

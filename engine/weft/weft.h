@@ -286,7 +286,8 @@ inline Settings paper_settings() {
 /// iteration_limit: max_iterations were done, or with small_steps all rounds, and some constraint
 /// is
 ///   still out of tolerance. The state is committed.
-/// infeasible: some constraint is out of tolerance and thousands of iterations (small_steps: eight
+/// infeasible: some constraint is out of tolerance and thousands of iterations (small_steps:
+/// sixteen
 ///   rounds of a sweep and local passes) no longer reduce the error: constraints contradict each
 ///   other (a chain whose ends are too far apart), masses differ by more than 10^7, or nothing
 ///   leads from the start to where they agree (a sheet of triangles whose pins turned by a right
