@@ -90,7 +90,7 @@ class Frame {
     for (int round = 0, stalled = 0;; ++round) {
       if (is_within_tolerance()) return Status::converged;
       if (s_.settings.iterations > 0) return Status::fixed_iterations;
-      if (round == most_rounds()) return Status::iteration_limit;
+      if (round >= most_rounds()) return Status::iteration_limit;
       const double now = std::max(report_.max_strain / s_.settings.tolerance,
                                   report_.max_penetration / s_.settings.contact_tolerance);
       stalled = now < tuning::kFall * worst ? 0 : stalled + 1;
