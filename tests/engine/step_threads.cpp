@@ -39,30 +39,23 @@ TEST_CASE("cloths of one model, run in two threads at once, agree bit for bit") 
   }
 }
 
-void check_that_cloths_agree(Solver solver) {
+TEST_CASE("cloths of one model, made and run by the tasks of one arena, agree bit for bit") {
   const auto model = model_of(scene_of("hang", 41));
   constexpr std::size_t kCloths = 8;
   std::array<std::uint64_t, kCloths> hashes{};
   tbb::task_arena arena(2);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, kCloths, [&](std::size_t i) {
-      auto cloth = Cloth::create(model, {.solver = solver});
+      auto cloth = Cloth::create(model, {});
       if (!cloth) return;
       for (int k = 0; k < 10; ++k) (void)cloth.value().step(0.005);
       hashes[i] = cloth.value().state_hash();
     });
   });
-  auto alone = Cloth::create(model, {.solver = solver, .threads = 1});
+  auto alone = Cloth::create(model, {.threads = 1});
   REQUIRE(alone);
   run(alone.value(), 0.005, 10);
   for (const std::uint64_t hash : hashes) CHECK(hash == alone.value().state_hash());
-}
-
-TEST_CASE("cloths of one model, made and run by the tasks of one arena, agree bit for bit") {
-  for (const Solver solver : {Solver::yarn, Solver::small_steps}) {
-    CAPTURE(name(solver));
-    check_that_cloths_agree(solver);
-  }
 }
 
 TEST_CASE("a step asks for as many threads as the settings say") {
