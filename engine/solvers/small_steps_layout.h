@@ -50,8 +50,6 @@ struct SmallStepsLayout {
 
   const YarnPlaces& places() const { return yarns.places; }
   bool has_yarns() const { return !yarns.blocks.empty(); }
-  /// Work of a sweep: constraints.
-  std::size_t edges() const { return constraint.size(); }
   std::size_t bytes() const;
 };
 
