@@ -2,13 +2,13 @@
 
 #include <bit>
 
-#include "engine/choose_solver.h"
-#include "engine/contacts.h"
+#include "engine/contacts/contacts.h"
 #include "engine/isa.h"
-#include "engine/measure.h"
-#include "engine/state.h"
-#include "engine/step.h"
-#include "engine/validate.h"
+#include "engine/model/validate.h"
+#include "engine/step/choose_solver.h"
+#include "engine/step/measure.h"
+#include "engine/step/state.h"
+#include "engine/step/step.h"
 
 namespace weft {
 namespace {

@@ -1,10 +1,10 @@
 /// The direct solver's linear algebra: factors and substitutions of `hang`.
 #include <algorithm>
 
-#include "engine/model.h"
-#include "engine/scenes.h"
-#include "engine/solvers/direct_factor.h"
+#include "engine/model/model.h"
+#include "engine/solvers/direct/direct_factor.h"
 #include "perf/benchmarks.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::perf {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/irregular_mesh.h"
+#include "tools/scenes/irregular_mesh.h"
 
 namespace weft::perf {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <weft/weft.h>
 
-#include "engine/splitmix.h"
+#include "tools/scenes/splitmix.h"
 
 namespace weft::perf {
 
@@ -12,8 +12,8 @@ using Random = scenes::SplitMix;
 /// N x N particles in the plane, structural edges, every particle moved by up to 2 % of an edge.
 SceneDescription grid(int size);
 
-/// The mesh of engine/irregular_mesh.h, N x N particles. The first row of particles is fixed; rest
-/// lengths are the distances.
+/// The mesh of tools/scenes/irregular_mesh.h, N x N particles. The first row of particles is fixed;
+/// rest lengths are the distances.
 SceneDescription irregular(int size);
 
 }  // namespace weft::perf

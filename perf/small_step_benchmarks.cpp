@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "engine/isa.h"
-#include "engine/model.h"
-#include "engine/scenes.h"
-#include "engine/solvers/small_steps.h"
+#include "engine/model/model.h"
+#include "engine/solvers/small_steps/small_steps.h"
 #include "engine/tuning.h"
 #include "perf/benchmarks.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::perf {
 namespace {

@@ -12,8 +12,8 @@
 #include <cstdlib>
 #include <memory>
 
-#include "engine/scenes.h"
 #include "perf/benchmarks.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::perf {
 namespace {

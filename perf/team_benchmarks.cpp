@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "engine/solvers/team.h"
+#include "engine/parallel/team.h"
 #include "perf/benchmarks.h"
 
 namespace weft::perf {

@@ -1,10 +1,10 @@
 /// Kernels of the yarn solver, each over all families: of `hang`, whose yarns are woven, and of an
 /// irregular triangle mesh, whose yarns find their particles in quads.
-#include "engine/model.h"
-#include "engine/scenes.h"
-#include "engine/solvers/yarn_layout.h"
+#include "engine/model/model.h"
+#include "engine/solvers/yarn/yarn_layout.h"
 #include "perf/benchmarks.h"
 #include "perf/meshes.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::perf {
 namespace {

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "engine/scenes.h"
 #include "tools/exit_code.h"
 #include "tools/json_output.h"
 #include "tools/paper/results.h"
@@ -18,6 +17,7 @@
 #include "tools/pending_file.h"
 #include "tools/plotting.h"
 #include "tools/progress.h"
+#include "tools/scenes/scenes.h"
 #include "tools/study_outputs.h"
 #include "tools/text_file.h"
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "engine/irregular_mesh.h"
-#include "engine/scenes.h"
 #include "tools/file_ending.h"
 #include "tools/obj_mesh.h"
 #include "tools/scene_file.h"
+#include "tools/scenes/irregular_mesh.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools {
 namespace {

@@ -142,7 +142,8 @@ struct ModelInfo {
   std::size_t spheres = 0;
   std::size_t colours = 0;
   std::size_t tiles = 0;  ///< groups of particles that threads may work on in parallel
-  double run_share = 0;   ///< of the constraints without a hub (engine/model.h): in contiguous runs
+  double run_share =
+      0;  ///< of the constraints without a hub (engine/model/model.h): in contiguous runs
   std::size_t bytes = 0;
 };
 WEFT_API ModelInfo describe(const Model& model);
@@ -165,9 +166,9 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   them and over single constraints elsewhere, and then passes over what is out of tolerance
 ///   alone. A sweep leaves a strain that falls with the square of the substep; how long that may be
 ///   follows in closed form from what hangs on the pins, and from the tolerance
-///   (engine/solvers/small_steps_load.h). For any mesh, at tolerances of 0.1 % and looser, and for
-///   a motion that is near the true one. Masses should not differ by more than a hundred. Substeps
-///   of one length are best kept to: a change of it by half costs some energy.
+///   (engine/solvers/small_steps/small_steps_load.h). For any mesh, at tolerances of 0.1 % and
+///   looser, and for a motion that is near the true one. Masses should not differ by more than a
+///   hundred. Substeps of one length are best kept to: a change of it by half costs some energy.
 /// automatic: small_steps for cloth (simd, a tolerance from 0.1 % on, free masses that differ by no
 ///   more than a hundred, no free spheres, and enough loops: a grid, no chain or bridge), unless a
 ///   scheme of other solvers, velocity_correction or `iterations` is asked for. Else gauss_seidel
@@ -180,7 +181,7 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   `substeps` given: direct. Between them: yarn, with direct to answer where it gives up (so it
 ///   is wherever yarn is chosen for ratios above 10^4).
 /// Where yarn or direct gives up, or energy rises by more than gravity, forces and moved pins
-/// explain (engine/energy.h), the substep is redone as two halves, until a step has cost 1500
+/// explain (engine/step/energy.h), the substep is redone as two halves, until a step has cost 1500
 /// iterations; where that fails too, Gauss-Seidel takes over. StepReport::iterations counts every
 /// attempt. If such a substep would gain energy all velocities are scaled down by one factor, to
 /// rest at most, or to the rigid motion nearest to that of the pins. For some steps afterwards
@@ -193,9 +194,9 @@ enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, auto
 /// rattle: along the directions at the start of the substep, always with velocity correction;
 ///   second order. This includes ropes that become taut within the substep. Contacts arise within
 ///   it and, in both schemes, act along their directions at its end. Where rattle does not
-///   converge, or its impulses would add energy (engine/rattle.h), the substep is redone from the
-///   same state by the paper's scheme with velocity correction; StepReport::scheme_fallbacks counts
-///   these. With Settings::iterations nothing is redone.
+///   converge, or its impulses would add energy (engine/step/rattle.h), the substep is redone from
+///   the same state by the paper's scheme with velocity correction; StepReport::scheme_fallbacks
+///   counts these. With Settings::iterations nothing is redone.
 /// implicit, bdf2: of small_steps alone. The implicit Euler method, first order, and the second
 ///   order BDF2 with variable steps; particles that a contact or a local pass has moved go on from
 ///   there at first order. Whoever writes velocities changes the step before alike; written

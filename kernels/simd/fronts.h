@@ -1,4 +1,4 @@
-/// One front of a sparse factorisation, densely (engine/solvers/direct_factor.h).
+/// One front of a sparse factorisation, densely (engine/solvers/direct/direct_factor.h).
 ///
 ///   panel   the columns that are eliminated here, by columns: first their triangle, padded to
 ///           whole groups of 8 rows, then the rows below it, padded likewise

@@ -1,4 +1,4 @@
-/// The linear system of all yarns, for conjugate gradients (engine/solvers/yarn_solver.h). By
+/// The linear system of all yarns, for conjugate gradients (engine/solvers/yarn/yarn_solver.h). By
 /// families, A of all constraints is
 ///
 ///     | T_0  C   |     T_f   tridiagonal: the yarns of family f, which can be solved exactly

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/scenes.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::test {
 

@@ -15,10 +15,10 @@
 #include <thread>
 #include <vector>
 
-#include "engine/irregular_mesh.h"
-#include "engine/scenes.h"
 #include "temporary_folder.h"
 #include "tools/scene_file.h"
+#include "tools/scenes/irregular_mesh.h"
+#include "tools/scenes/scenes.h"
 
 extern char** environ;
 

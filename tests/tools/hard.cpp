@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/scenes.h"
 #include "temporary_folder.h"
 #include "tools/hard/results.h"
 #include "tools/hard/suite.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools::hard {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/scenes.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools {
 namespace {

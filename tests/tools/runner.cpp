@@ -8,8 +8,8 @@
 #include <numeric>
 #include <optional>
 
-#include "engine/scenes.h"
 #include "slowness.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools {
 namespace {

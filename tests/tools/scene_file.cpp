@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "engine/scenes.h"
 #include "temporary_folder.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/scenes.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools::hard {
 

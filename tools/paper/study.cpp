@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "engine/scenes.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools::paper {
 namespace {

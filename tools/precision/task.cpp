@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "engine/scenes.h"
 #include "tools/precision/reference_solution.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools::precision {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/model.h"
+#include "engine/model/model.h"
 #include "tests/support/clothes.h"
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "engine/scenes.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools::precision {
 namespace {

@@ -1,0 +1,115 @@
+#include "engine/contacts/contacts.h"
+
+#include <algorithm>
+
+#include "engine/bytes_of.h"
+
+namespace weft {
+namespace {
+
+constexpr double kMargin = 0.05;  // of the sphere's radius
+
+/// Calls visit(sphere, particle, r1 + r2) for every pair nearer than reach(r1) + r2, where r1 is
+/// the sphere's radius.
+template <class Reach, class Visit>
+void for_each_pair(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
+                   ContactStore& contacts, Reach&& reach, Visit&& visit) {
+  std::uint32_t* const found = contacts.found.data();
+  contacts.boxes.enclose(m, kernels, {x});
+  for (const std::uint32_t s : m.spheres) {
+    const double extra = reach(m.radius[s]);
+    std::size_t near = 0;
+    contacts.boxes.visit_near(
+        m, kernels, x[s], x[s], extra, [&](std::size_t first, std::size_t last) {
+          near += kernels.find_near(x, m.radius.data(), x[s], extra, first, last, found + near);
+        });
+    for (std::size_t i = 0; i < near; ++i) {
+      if (may_touch(m, s, found[i])) visit(s, found[i], m.radius[s] + m.radius[found[i]]);
+    }
+  }
+}
+
+bool listed(const ContactStore& contacts, std::uint32_t s, std::uint32_t p) {
+  for (auto k = contacts.first[p]; k != kNoIndex; k = contacts.next[k]) {
+    if (contacts.sphere[k] == s) return true;
+  }
+  return false;
+}
+
+/// Room in all lists before anything is in one: they stay of one length if memory runs out.
+void make_room(ContactStore& contacts) {
+  if (contacts.count() < contacts.capacity()) return;
+  const std::size_t room = std::max<std::size_t>(64, 2 * std::size_t{contacts.count()});
+  contacts.distance.reserve(room);
+  contacts.next.reserve(room);
+  contacts.particle.reserve(room);
+  contacts.sphere.reserve(room);
+}
+
+void append(ContactStore& contacts, std::uint32_t s, std::uint32_t p, double distance) {
+  make_room(contacts);
+  contacts.next.push_back(contacts.first[p]);
+  contacts.first[p] = contacts.count();
+  contacts.sphere.push_back(s);
+  contacts.particle.push_back(p);
+  contacts.distance.push_back(distance);
+}
+
+}  // namespace
+
+bool may_touch(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
+  if (particle == sphere || !m.is_particle(particle)) return false;
+  if (m.inverse_mass[sphere] + m.inverse_mass[particle] == 0) return false;
+  return !(particle < sphere && m.is_sphere[particle]) && !m.joined_to_sphere(sphere, particle);
+}
+
+std::size_t ContactStore::bytes() const {
+  return bytes_of(sphere) + bytes_of(particle) + bytes_of(distance) + bytes_of(first) +
+         bytes_of(next) + bytes_of(found) + boxes.bytes();
+}
+
+ContactStore make_contact_store(const Model& model) {
+  ContactStore contacts;
+  if (!model.has_contacts()) return contacts;
+  contacts.first.assign(model.slots(), kNoIndex);
+  contacts.found.resize(model.slots());
+  contacts.boxes = ContactBoxes(model);
+  return contacts;
+}
+
+void find_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
+                   ContactStore& contacts) {
+  for (const std::uint32_t p : contacts.particle) contacts.first[p] = kNoIndex;
+  contacts.sphere.clear();
+  contacts.particle.clear();
+  contacts.distance.clear();
+  contacts.next.clear();
+  for_each_pair(
+      m, kernels, x, contacts, [](double radius) { return (1 + kMargin) * radius; },
+      [&](std::uint32_t s, std::uint32_t p, double distance) { append(contacts, s, p, distance); });
+}
+
+std::size_t add_missed_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
+                                double tolerance, ContactStore& contacts) {
+  const std::uint32_t before = contacts.count();
+  for_each_pair(
+      m, kernels, x, contacts, [&](double radius) { return std::max(0.0, radius - tolerance); },
+      [&](std::uint32_t s, std::uint32_t p, double distance) {
+        const bool deep = distance - length(x[s] - x[p]) > tolerance;
+        if (deep && !listed(contacts, s, p)) append(contacts, s, p, distance);
+      });
+  return contacts.count() - before;
+}
+
+double max_penetration(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
+                       ContactStore& contacts) {
+  double deepest = 0;
+  for_each_pair(
+      m, kernels, x, contacts, [](double radius) { return radius; },
+      [&](std::uint32_t s, std::uint32_t p, double distance) {
+        deepest = std::max(deepest, distance - length(x[s] - x[p]));
+      });
+  return deepest;
+}
+
+}  // namespace weft

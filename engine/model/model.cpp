@@ -1,0 +1,230 @@
+#include "engine/model/model.h"
+
+#include <algorithm>
+
+#include "engine/bytes_of.h"
+#include "engine/model/validate.h"
+
+namespace weft {
+namespace {
+
+template <class Layout>
+std::size_t bytes_if_made(const OnDemand<Layout>& layout) {
+  return layout.if_made() != nullptr ? layout.if_made()->bytes() : 0;
+}
+
+std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
+
+}  // namespace
+
+/// What is known of the description, by its numbers, while the model is built.
+struct Model::Draft {
+  const SceneDescription& description;
+  std::vector<std::uint8_t> fixed, hub;         // per particle
+  std::vector<std::uint32_t> described_link{};  // link -> constraint
+
+  explicit Draft(const SceneDescription& d)
+      : description(d), fixed(d.positions.size()), hub(d.positions.size()) {
+    for (const std::uint32_t i : d.fixed) fixed[i] = 1;
+    std::vector<std::uint32_t> degree(hub.size());
+    for (const Constraint& c : d.constraints) {
+      ++degree[c.a];
+      ++degree[c.b];
+    }
+    for (std::size_t i = 0; i < hub.size(); ++i) hub[i] = degree[i] > reference::kHubDegree;
+    for (const std::uint32_t s : d.spheres) hub[s] = 1;
+  }
+  bool is_inert(const Constraint& c) const { return fixed[c.a] && fixed[c.b]; }
+  bool is_at_hub(const Constraint& c) const { return hub[c.a] || hub[c.b]; }
+};
+
+Model::Model(const SceneDescription& description) : particles(description.positions.size()) {
+  Draft draft(description);
+  order_particles(draft);
+  store_particles(draft);
+  store_constraints(draft);
+  find_holds();
+  for (const std::uint32_t s : spheres) {
+    if (inverse_mass[s] > 0) heaviest_sphere = std::max(heaviest_sphere, 1 / inverse_mass[s]);
+  }
+  uneven = find_unevenness(inverse_mass, constraints.a, constraints.b, constraints.rest_length);
+  find_joined();
+}
+
+/// Constraints at hubs take no part: they are solved one after the other anyway.
+void Model::order_particles(Draft& draft) {
+  const SceneDescription& d = draft.description;
+  std::vector<Link> links;
+  for (std::uint32_t i = 0; i < d.constraints.size(); ++i) {
+    const Constraint& c = d.constraints[i];
+    if (draft.is_inert(c) || draft.is_at_hub(c)) continue;
+    links.push_back({c.a, c.b, c.kind});
+    draft.described_link.push_back(i);
+  }
+  ordering = order(d.positions, links);
+  spare_slots = static_cast<std::uint32_t>(ordering.slots());
+  ordering.particle_at.resize(ordering.slots() + kLanes, kNoIndex);
+}
+
+void Model::store_particles(const Draft& draft) {
+  const SceneDescription& d = draft.description;
+  initial_position.resize(slots());
+  initial_velocity.resize(slots());
+  mass.resize(slots());
+  inverse_mass.resize(slots());
+  hub.resize(slots());
+  if (!d.spheres.empty()) radius.resize(slots());
+  for (std::uint32_t slot = 0; slot < slots(); ++slot) {
+    const std::uint32_t i = ordering.particle_at[slot];
+    if (i == kNoIndex) continue;
+    initial_position.set(slot, {d.positions[i].x, d.positions[i].y, d.positions[i].z});
+    if (!d.velocities.empty() && !draft.fixed[i]) {
+      initial_velocity.set(slot, {d.velocities[i].x, d.velocities[i].y, d.velocities[i].z});
+    }
+    mass[slot] = d.masses[i];
+    inverse_mass[slot] = draft.fixed[i] ? 0 : 1 / d.masses[i];
+    if (!radius.empty()) radius[slot] = d.radii[i];
+    if (draft.fixed[i]) pins.push_back(slot);
+    hub[slot] = draft.hub[i];
+    if (hub[slot]) hubs.push_back(slot);
+  }
+  for (const std::uint32_t s : d.spheres) spheres.push_back(ordering.slot_of[s]);
+  std::ranges::sort(spheres);
+  if (!spheres.empty()) is_sphere.resize(slots());
+  for (const std::uint32_t s : spheres) is_sphere[s] = 1;
+  gravity = {d.gravity.x, d.gravity.y, d.gravity.z};
+}
+
+void Model::store_constraints(const Draft& draft) {
+  store_batches(draft, ConstraintKind::distance);
+  constraints.plain = constraints.size();
+  store_hubs(draft, ConstraintKind::distance);
+  constraints.bilateral = constraints.size();
+  store_batches(draft, ConstraintKind::rope);
+  store_hubs(draft, ConstraintKind::rope);
+  inert_constraints = draft.description.constraints.size() - constraints.size();
+}
+
+/// Inert constraints are not in the store: the other end is free.
+void Model::find_holds() {
+  for (const auto* ends : {&constraints.a, &constraints.b}) {
+    for (const std::uint32_t s : *ends) {
+      if (inverse_mass[s] == 0) holds.push_back(s);
+    }
+  }
+}
+
+void Model::store_batches(const Draft& draft, ConstraintKind kind) {
+  for (const Batch& batch : ordering.batches) {
+    if (batch.kind != kind) continue;
+    for (std::uint32_t slot = batch.first; slot < batch.last; ++slot) {
+      const std::uint32_t link = ordering.link_at[slot];
+      if (link == kNoIndex) continue;
+      const std::uint32_t described = draft.described_link[link];
+      append(draft.description.constraints[described], described, ordering.a[slot],
+             ordering.b[slot]);
+      constraints.colour.back() = batch.colour;
+      constraints.slot.back() = slot;
+    }
+  }
+}
+
+void Model::store_hubs(const Draft& draft, ConstraintKind kind) {
+  const SceneDescription& d = draft.description;
+  auto& list = kind == ConstraintKind::distance ? constraints.hub_distances : constraints.hub_ropes;
+  for (std::uint32_t i = 0; i < d.constraints.size(); ++i) {
+    const Constraint& c = d.constraints[i];
+    if (c.kind != kind || draft.is_inert(c) || !draft.is_at_hub(c)) continue;
+    list.push_back(static_cast<std::uint32_t>(constraints.size()));
+    append(c, i, ordering.slot_of[c.a], ordering.slot_of[c.b]);
+  }
+}
+
+/// Spheres are hubs.
+void Model::find_joined() {
+  const ConstraintStore& s = constraints;
+  for (const auto* list : {&s.hub_distances, &s.hub_ropes}) {
+    for (const std::uint32_t c : *list) {
+      if (has_contacts() && is_sphere[s.a[c]]) joined_.push_back(pair_of(s.a[c], s.b[c]));
+      if (has_contacts() && is_sphere[s.b[c]]) joined_.push_back(pair_of(s.b[c], s.a[c]));
+    }
+  }
+  std::ranges::sort(joined_);
+}
+
+bool Model::joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const {
+  return std::ranges::binary_search(joined_, pair_of(sphere, slot));
+}
+
+void Model::append(const Constraint& c, std::uint32_t described, std::uint32_t a, std::uint32_t b) {
+  ConstraintStore& s = constraints;
+  s.a.push_back(a);
+  s.b.push_back(b);
+  s.rest_length.push_back(c.rest_length);
+  s.effective_mass.push_back(1 / (inverse_mass[a] + inverse_mass[b]));
+  s.colour.push_back(kNoIndex);
+  s.described.push_back(described);
+  s.slot.push_back(kNoIndex);
+}
+
+const ReferenceLayout& Model::reference() const {
+  return reference_.get([this] { return make_reference_layout(*this); });
+}
+
+const SimdLayout& Model::simd() const {
+  return simd_.get([this] { return make_simd_layout(*this); });
+}
+
+const DirectLayout& Model::direct() const {
+  return direct_.get([this] { return make_direct_layout(*this); });
+}
+
+const YarnLayout& Model::yarns() const {
+  return yarns_.get([this] { return make_yarn_layout(*this); });
+}
+
+const SmallStepsLayout& Model::small_steps() const {
+  return small_steps_.get([this] { return make_small_steps_layout(*this); });
+}
+
+std::vector<Link> links_of(const ConstraintStore& store, std::size_t count) {
+  std::vector<Link> links;
+  links.reserve(count);
+  for (std::size_t c = 0; c < count; ++c) links.push_back({store.a[c], store.b[c]});
+  return links;
+}
+
+std::size_t ConstraintStore::bytes() const {
+  return bytes_of(a) + bytes_of(b) + bytes_of(rest_length) + bytes_of(effective_mass) +
+         bytes_of(colour) + bytes_of(described) + bytes_of(slot) + bytes_of(hub_distances) +
+         bytes_of(hub_ropes);
+}
+
+std::size_t Model::bytes() const {
+  return initial_position.bytes() + initial_velocity.bytes() + bytes_of(mass) +
+         bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
+         bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
+         bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bytes_if_made(reference_) +
+         bytes_if_made(simd_) + bytes_if_made(direct_) + bytes_if_made(yarns_) +
+         bytes_if_made(small_steps_);
+}
+
+Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {
+  if (auto valid = validate(description); !valid) return Error{valid.error()};
+  return std::shared_ptr<const Model>(std::make_shared<Model>(description));
+}
+
+ModelInfo describe(const Model& model) {
+  const ConstraintStore& s = model.constraints;
+  return {.particles = model.particles,
+          .constraints = s.size(),
+          .inert_constraints = model.inert_constraints,
+          .ropes = s.size() - s.bilateral,
+          .spheres = model.spheres.size(),
+          .colours = model.ordering.colours,
+          .tiles = model.ordering.tiles.size(),
+          .run_share = model.ordering.run_share,
+          .bytes = model.bytes()};
+}
+
+}  // namespace weft

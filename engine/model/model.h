@@ -1,0 +1,106 @@
+/// The immutable part of a cloth: who is joined to whom and how. Shared by any number of Cloths.
+///
+/// Inside the engine particles are numbered by slot (engine/ordering/ordering.h); the description's
+/// numbers appear only at the interface.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/model/on_demand.h"
+#include "engine/model/unevenness.h"
+#include "engine/ordering/ordering.h"
+#include "engine/solvers/direct/direct_layout.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/solvers/sweeps/reference_layout.h"
+#include "engine/solvers/sweeps/simd_layout.h"
+#include "engine/solvers/yarn/yarn_layout.h"
+#include "kernels/vectors.h"
+
+namespace weft {
+
+/// The active constraints in solver order; within each range in the order of the batches:
+///
+///   [0, plain)          distance, no hub at either end
+///   [plain, bilateral)  distance, at a hub
+///   [bilateral, size)   ropes
+///
+/// A hub is a particle of more than kHubDegree constraints, or a sphere.
+struct ConstraintStore {
+  std::size_t plain = 0, bilateral = 0;
+  std::vector<std::uint32_t> a, b;  // slots
+  kernels::AlignedVector<double> rest_length;
+  kernels::AlignedVector<double> effective_mass;  // 1 / (w_a + w_b), kg
+  std::vector<std::uint32_t> colour;              // unique at a particle, hubs left out
+  std::vector<std::uint32_t> described;           // index in the description
+  std::vector<std::uint32_t> slot;                // constraint slot; kNoIndex: at a hub
+  std::vector<std::uint32_t> hub_distances, hub_ropes;
+  std::size_t size() const { return a.size(); }
+  std::size_t bytes() const;
+};
+
+/// Of the first `count` constraints, between slots.
+std::vector<Link> links_of(const ConstraintStore& store, std::size_t count);
+
+class Model {
+ public:
+  explicit Model(const SceneDescription& description);  // must be valid
+
+  std::size_t particles = 0;  // described
+  Ordering ordering;
+  std::uint32_t spare_slots = 0;  // first of kLanes padding slots that no batch uses
+  std::size_t slots() const { return ordering.slots(); }
+
+  // Per slot; padding: at the origin, without mass and fixed.
+  kernels::Vectors initial_position, initial_velocity;
+  kernels::AlignedVector<double> mass, inverse_mass;  // inverse_mass 0: fixed
+  kernels::AlignedVector<double> radius;              // empty without spheres
+  std::vector<std::uint8_t> hub;
+  std::vector<std::uint32_t> hubs;
+  std::vector<std::uint32_t> pins;      // the fixed particles
+  std::vector<std::uint32_t> holds;     // the fixed end of each constraint that has one
+  std::vector<std::uint32_t> spheres;   // in ascending order
+  std::vector<std::uint8_t> is_sphere;  // empty without spheres
+
+  kernels::Vector gravity{};
+  ConstraintStore constraints;
+  Unevenness uneven;
+  double heaviest_sphere = 0;  // kg, of the free ones
+  std::size_t inert_constraints = 0;
+
+  bool has_contacts() const { return !spheres.empty(); }
+  /// Whether a constraint joins the two; slots.
+  bool joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const;
+  bool is_particle(std::size_t slot) const { return ordering.particle_at[slot] != kNoIndex; }
+  std::size_t bytes() const;
+
+  /// What each backend or solver needs besides; made when first asked for, by whichever thread.
+  const ReferenceLayout& reference() const;
+  const SimdLayout& simd() const;
+  const DirectLayout& direct() const;
+  const YarnLayout& yarns() const;
+  const SmallStepsLayout& small_steps() const;
+
+ private:
+  struct Draft;
+  void order_particles(Draft& draft);
+  void store_particles(const Draft& draft);
+  void store_constraints(const Draft& draft);
+  void store_batches(const Draft& draft, ConstraintKind kind);
+  void store_hubs(const Draft& draft, ConstraintKind kind);
+  void find_holds();
+  void find_joined();
+  void append(const Constraint& constraint, std::uint32_t described, std::uint32_t a,
+              std::uint32_t b);
+
+  std::vector<std::uint64_t> joined_;  // a sphere, and who is joined to it, in order
+  OnDemand<ReferenceLayout> reference_;
+  OnDemand<SimdLayout> simd_;
+  OnDemand<DirectLayout> direct_;
+  OnDemand<YarnLayout> yarns_;
+  OnDemand<SmallStepsLayout> small_steps_;
+};
+
+}  // namespace weft

@@ -1,0 +1,177 @@
+#include "engine/solvers/direct/direct_layout.h"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <limits>
+#include <new>
+
+#include "engine/bytes_of.h"
+#include "engine/model/model.h"
+
+namespace weft {
+namespace {
+
+void find_bodies(const Model& model, DirectLayout& layout) {
+  const ConstraintStore& s = model.constraints;
+  std::vector<std::uint32_t> degree(model.slots());
+  for (std::size_t c = 0; c < s.size(); ++c) {
+    ++degree[s.a[c]];
+    ++degree[s.b[c]];
+  }
+  for (const std::uint32_t sphere : model.spheres) degree[sphere] = kNoIndex;
+  layout.body_of.assign(model.slots(), kNoIndex);
+  for (std::uint32_t p = 0; p < model.slots(); ++p) {
+    if (degree[p] <= DirectLayout::kBodyDegree || model.inverse_mass[p] == 0) continue;
+    layout.body_of[p] = static_cast<std::uint32_t>(layout.bodies.size());
+    layout.bodies.push_back(p);
+  }
+}
+
+/// The inverse mass of a particle inside the matrix.
+double weight(const Model& model, const DirectLayout& layout, std::uint32_t p) {
+  return layout.body_of[p] == kNoIndex ? model.inverse_mass[p] : 0;
+}
+
+/// Calls visit(p, j) for every pair of constraints (k, j) that share the particle p.
+template <class Visit>
+void for_each_neighbour(const Model& model, const DirectLayout& layout, const Lists& at,
+                        std::uint32_t k, Visit&& visit) {
+  const ConstraintStore& s = model.constraints;
+  for (const std::uint32_t p : {s.a[k], s.b[k]}) {
+    if (weight(model, layout, p) == 0) continue;
+    for (const std::uint32_t j : at[p]) {
+      if (j != k) visit(p, j);
+    }
+  }
+}
+
+/// The matrix's pattern: per member, by its number, those it has an entry with. What Eigen cannot
+/// count, tens of gigabytes, is more than there is memory for.
+Lists neighbours_of(const Model& model, const DirectLayout& layout, const Lists& at,
+                    std::span<const std::uint32_t> members) {
+  std::vector<std::uint32_t> number(model.constraints.size(), kNoIndex), list;
+  for (std::uint32_t i = 0; i < members.size(); ++i) number[members[i]] = i;
+  Lists neighbours;
+  neighbours.begin.push_back(0);
+  constexpr std::size_t kMostEntries = std::numeric_limits<int>::max();
+  for (const std::uint32_t k : members) {
+    list.clear();
+    for_each_neighbour(model, layout, at, k,
+                       [&](std::uint32_t, std::uint32_t j) { list.push_back(number[j]); });
+    neighbours.push_back(list);
+    if (neighbours.items.size() + members.size() > kMostEntries) throw std::bad_alloc();
+  }
+  return neighbours;
+}
+
+/// In the order in which eliminating them fills least (approximate minimum degree).
+std::vector<std::uint32_t> least_fill(const Lists& neighbours,
+                                      std::span<const std::uint32_t> members) {
+  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+  std::vector<Eigen::Triplet<double, int>> entries;
+  const auto size = static_cast<int>(members.size());
+  for (int k = 0; k < size; ++k) {
+    entries.emplace_back(k, k, 1.0);
+    for (const std::uint32_t j : neighbours[static_cast<std::size_t>(k)]) {
+      entries.emplace_back(k, static_cast<int>(j), 1.0);
+    }
+  }
+  Matrix matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
+  Eigen::AMDOrdering<int>()(matrix, permutation);
+  std::vector<std::uint32_t> order;
+  for (int i = 0; i < size; ++i) {
+    order.push_back(members[static_cast<std::size_t>(permutation.indices()[i])]);
+  }
+  return order;
+}
+
+std::vector<std::uint32_t> elimination_order(const Model& model, const DirectLayout& layout,
+                                             const Lists& at,
+                                             std::span<const std::uint32_t> members) {
+  const auto filling = least_fill(neighbours_of(model, layout, at, members), members);
+  std::vector<std::uint32_t> order;
+  const auto tree = elimination_tree(neighbours_of(model, layout, at, filling));
+  for (const std::uint32_t k : postorder(tree)) order.push_back(filling[k]);
+  return order;
+}
+
+/// Without its body the last link of a straight string from a fixed particle to a body is one that
+/// the others imply: its pivot is 0. That much more of its diagonal, the compliance of a very stiff
+/// spring, keeps it; the body, whose mass is in the balance of impulses, pulls at it there.
+constexpr double kBodyShift = 1e-8;
+
+void store_rows(const Model& model, DirectLayout& layout) {
+  const ConstraintStore& s = model.constraints;
+  for (const std::uint32_t c : layout.row_constraint) {
+    layout.a.push_back(s.a[c]);
+    layout.b.push_back(s.b[c]);
+    const double own = weight(model, layout, s.a[c]) + weight(model, layout, s.b[c]);
+    const bool at_body = layout.body_of[s.a[c]] != kNoIndex || layout.body_of[s.b[c]] != kNoIndex;
+    layout.diagonal.push_back(at_body ? (1 + kBodyShift) * own : own);
+  }
+}
+
+/// By columns, for those of a front are one stretch.
+void store_entries(const Model& model, const Lists& at, DirectLayout& layout) {
+  const ConstraintStore& s = model.constraints;
+  std::vector<std::uint32_t> row_of(s.size(), kNoIndex);  // links between bodies have none
+  for (std::uint32_t row = 0; row < layout.rows(); ++row) row_of[layout.row_constraint[row]] = row;
+  for (const DirectFront& front : layout.fronts.fronts) {
+    layout.entry_begin.push_back(layout.entry_row.size());
+    for (std::uint32_t j = front.first; j < front.first + front.count; ++j) {
+      const std::uint32_t c = layout.row_constraint[j];
+      for_each_neighbour(model, layout, at, c, [&](std::uint32_t p, std::uint32_t other) {
+        const std::uint32_t k = row_of[other];
+        if (k < j) return;
+        const double w = model.inverse_mass[p];
+        layout.entry_row.push_back(k);
+        layout.entry_with.push_back(j);
+        layout.entry_slot.push_back(p);
+        layout.entry_weight.push_back((s.a[other] == p) == (s.a[c] == p) ? w : -w);
+        layout.entry_place.push_back(layout.fronts.place_of(k, j));
+      });
+    }
+  }
+  layout.entry_begin.push_back(layout.entry_row.size());
+}
+
+}  // namespace
+
+DirectLayout make_direct_layout(const Model& model) {
+  const ConstraintStore& s = model.constraints;
+  DirectLayout layout;
+  find_bodies(model, layout);
+  std::vector<std::uint32_t> members;
+  for (std::uint32_t c = 0; c < s.size(); ++c) {
+    const bool inside = weight(model, layout, s.a[c]) + weight(model, layout, s.b[c]) > 0;
+    (inside ? members : layout.links).push_back(c);
+  }
+  const Lists at = make_lists(model.slots(), [&](auto&& add) {
+    for (const std::uint32_t c : members) {
+      add(s.a[c], c);
+      add(s.b[c], c);
+    }
+  });
+  layout.row_constraint = elimination_order(model, layout, at, members);
+  store_rows(model, layout);
+  layout.fronts = make_direct_fronts(neighbours_of(model, layout, at, layout.row_constraint));
+  store_entries(model, at, layout);
+  layout.rows_at = make_lists(model.slots(), [&](auto&& add) {
+    for (std::uint32_t row = 0; row < layout.rows(); ++row) {
+      add(layout.a[row], row);
+      add(layout.b[row], row);
+    }
+  });
+  return layout;
+}
+
+std::size_t DirectLayout::bytes() const {
+  return bytes_of(row_constraint) + bytes_of(a) + bytes_of(b) + bytes_of(diagonal) +
+         bytes_of(entry_begin) + bytes_of(entry_row) + bytes_of(entry_with) + bytes_of(entry_slot) +
+         bytes_of(entry_weight) + bytes_of(entry_place) + fronts.bytes() + rows_at.bytes() +
+         bytes_of(links) + bytes_of(bodies) + bytes_of(body_of);
+}
+
+}  // namespace weft

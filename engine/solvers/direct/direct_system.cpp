@@ -1,0 +1,49 @@
+#include "engine/solvers/direct/direct_system.h"
+
+#include <algorithm>
+
+#include "engine/bytes_of.h"
+
+namespace weft {
+
+DirectSystem::DirectSystem(const Model& model, const Settings& settings)
+    : model(model), layout(model.direct()), settings(settings) {
+  const std::size_t rows = layout.rows();
+  nx.resize(rows);
+  ny.resize(rows);
+  nz.resize(rows);
+  lambda.resize(rows);
+  total.resize(model.constraints.size());
+  if (model.has_contacts()) touch_of.assign(model.slots(), kNoIndex);
+  ties.reserve(layout.links.size());
+}
+
+void DirectSystem::start(const ContactStore& contacts, bool fresh) {
+  if (fresh) total.clear();
+  total.resize(model.constraints.size() + contacts.count());
+}
+
+double DirectSystem::tolerance(std::uint32_t index) const {
+  const ConstraintStore& s = model.constraints;
+  return index < s.size() ? settings.tolerance * s.rest_length[index] : settings.contact_tolerance;
+}
+
+int DirectSystem::side(std::uint32_t index) const {
+  const ConstraintStore& s = model.constraints;
+  if (index < s.bilateral) return 0;
+  return index < s.size() ? 1 : -1;
+}
+
+double DirectSystem::clamped(std::uint32_t index, double impulse) {
+  const int s = side(index);
+  const double allowed = s == 0 ? impulse : s * std::max(s * impulse, -s * total[index]);
+  total[index] += allowed;
+  return allowed;
+}
+
+std::size_t DirectSystem::bytes() const {
+  return bytes_of(nx) + bytes_of(ny) + bytes_of(nz) + bytes_of(lambda) + bytes_of(total) +
+         bytes_of(touches) + bytes_of(touch_of) + bytes_of(ties) + bytes_of(seconds);
+}
+
+}  // namespace weft

@@ -1,0 +1,197 @@
+#include "engine/solvers/small_steps/reference_small_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/bytes_of.h"
+#include "engine/solvers/small_steps/small_steps_load.h"
+#include "engine/tuning.h"
+
+namespace weft {
+
+using kernels::Vector;
+
+struct ReferenceSmallSteps::Points {
+  kernels::VectorsView x, predicted;
+  double share;  // of what a local pass does, that the prediction takes: 1 - b
+  std::vector<std::uint32_t>& touched;
+
+  Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
+  void move(std::uint32_t slot, Vector by) const {
+    x.add(slot, by);
+    predicted.add(slot, share * by);
+  }
+  void push(std::uint32_t slot, Vector by) const {
+    move(slot, by);
+    touched.push_back(slot);
+  }
+};
+
+ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& settings)
+    : model_(model), layout_(model.small_steps()), settings_(settings), passes_(model) {
+  for (auto* vectors : {&x_, &before_, &predicted_, &v_, &v_before_, &acceleration_, &past_.v,
+                        &past_.v_before, &past_.moved}) {
+    vectors->resize(model.slots());
+  }
+}
+
+double ReferenceSmallSteps::substep_length(kernels::VectorsView x, double acceleration) const {
+  return weft::substep_length(layout_.load, x, acceleration, settings_.tolerance);
+}
+
+reference::Flight ReferenceSmallSteps::flight() {
+  return {x_.view(), before_.view(), predicted_.view(), v_.view(), v_before_.view()};
+}
+
+void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, Vector gravity,
+                                kernels::VectorsView force, const FramePlan& plan, Team&) {
+  const double h = plan.h;
+  h_ = h;
+  omega_ = plan.omega;
+  passes_.forget();
+  touched_.clear();
+  if (plan.placed || h > tuning::kMostRatio * past_.h) past_.h = 0;
+  last_ = 0;
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    const double w = model_.inverse_mass[i];
+    const Vector a = w == 0               ? Vector{0, 0, 0}
+                     : force.x != nullptr ? gravity + w * force[i]
+                                          : gravity;
+    acceleration_.set(i, a);
+    x_.set(i, x[i]);
+    v_.set(i, v[i]);
+    if (past_.h == 0) {
+      v_before_.set(i, v[i] - h * a);
+      before_.set(i, x[i] - h * v[i] + (0.5 * h * h) * a);
+      continue;
+    }
+    const Vector jump = v[i] - past_.v[i];
+    v_before_.set(i, past_.v_before[i] + jump);
+    before_.set(i, x[i] - (past_.moved[i] + past_.h * jump));
+  }
+  next_formula_ = SubstepFormula::of(settings_.scheme, past_.h > 0 ? h / past_.h : 1);
+}
+
+void ReferenceSmallSteps::advance(Team&) {
+  stop_at_contacts();
+  formula_ = std::exchange(next_formula_, SubstepFormula::of(settings_.scheme, 1));
+  const double bh = formula_.part * h_;
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    reference::advance(flight(), i, acceleration_[i], formula_.past, bh, last_);
+  }
+  last_ = bh;
+}
+
+void ReferenceSmallSteps::sweep(Team&) {
+  out_.clear();
+  for_each_yarn(layout_.yarns, [&](std::span<const std::uint32_t> links) {
+    relax_chain(slots_of(model_.constraints, links), links);
+  });
+  for (const std::uint32_t c : layout_.constraint) {
+    if (c != kNoIndex) relax_edge(c);
+  }
+  for (const std::uint32_t c : layout_.serial) relax_edge(c);
+}
+
+void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
+                                      std::span<const std::uint32_t> links) {
+  reference::ChainSystem& system = system_;
+  system.d.clear();
+  system.w.clear();
+  system.error.clear();
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    system.w.push_back(model_.inverse_mass[slots[k]]);
+    if (k == links.size()) break;
+    const Vector d = x_[slots[k]] - x_[slots[k + 1]];
+    const double rest = model_.constraints.rest_length[links[k]];
+    if (std::abs(length(d) - rest) > tuning::kLocalShare * settings_.tolerance * rest)
+      out_.push_back(links[k]);
+    system.d.push_back(d);
+    system.error.push_back(0.5 * (dot(d, d) - rest * rest));
+  }
+  system.solve(omega_, tuning::kCompliance);
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    const Vector impulse = system.error[k] * system.d[k];
+    x_.view().add(slots[k], -system.w[k] * impulse);
+    x_.view().add(slots[k + 1], system.w[k + 1] * impulse);
+  }
+}
+
+void ReferenceSmallSteps::relax_edge(std::uint32_t c) {
+  const ConstraintStore& s = model_.constraints;
+  const std::uint32_t a = s.a[c], b = s.b[c];
+  const Vector d = x_[a] - x_[b];
+  const double rest = s.rest_length[c], error = length(d) - rest;
+  const bool rope = c >= s.bilateral;
+  if ((rope ? error : std::abs(error)) > tuning::kLocalShare * settings_.tolerance * rest)
+    out_.push_back(c);
+  if (rope && error <= 0) return;
+  const double impulse = reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c], omega_);
+  x_.view().add(a, (-model_.inverse_mass[a] * impulse) * d);
+  x_.view().add(b, (model_.inverse_mass[b] * impulse) * d);
+}
+
+LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
+  Points points{x_.view(), predicted_.view(), 1 - formula_.part, touched_};
+  const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
+                           .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
+                           .omega = tuning::kOmega,
+                           .most_visits = most_visits};
+  return passes_.run(points, contacts, limits);
+}
+
+LocalWork ReferenceSmallSteps::repair(const ContactStore& contacts, std::int64_t most_visits) {
+  for (const std::uint32_t c : out_) passes_.look_near(c);
+  return run_passes(contacts, most_visits);
+}
+
+LocalWork ReferenceSmallSteps::repair_everywhere(const ContactStore& contacts,
+                                                 std::int64_t most_visits) {
+  passes_.look_everywhere();
+  return run_passes(contacts, most_visits);
+}
+
+void ReferenceSmallSteps::stop_at_contacts() {
+  std::ranges::sort(touched_);
+  const auto rest = std::ranges::unique(touched_);
+  touched_.erase(rest.begin(), rest.end());
+  for (const std::uint32_t i : touched_) {
+    if (!is_free(i)) continue;
+    const Vector a = acceleration_[i], v = (1 / h_) * (x_[i] - before_[i]);
+    predicted_.set(i, x_[i]);
+    v_.set(i, v);
+    v_before_.set(i, v - h_ * a);
+    before_.set(i, x_[i] - h_ * v + (0.5 * h_ * h_) * a);
+  }
+  touched_.clear();
+}
+
+void ReferenceSmallSteps::read_positions(kernels::VectorsView x, Team&) const {
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    if (is_free(i)) x.set(i, x_[i]);
+  }
+}
+
+void ReferenceSmallSteps::settle(Team&) {
+  stop_at_contacts();
+  for (std::size_t i = 0; i < model_.slots(); ++i) reference::settle(flight(), i, last_);
+  last_ = 0;
+}
+
+void ReferenceSmallSteps::read_velocities(kernels::VectorsView v, Team&) const {
+  for (std::size_t i = 0; i < model_.slots(); ++i) v.set(i, v_[i]);
+}
+
+void ReferenceSmallSteps::keep(Team&) {
+  past_.h = h_;
+  past_.v = v_;
+  past_.v_before = v_before_;
+  for (std::size_t i = 0; i < model_.slots(); ++i) past_.moved.set(i, x_[i] - before_[i]);
+}
+
+std::size_t ReferenceSmallSteps::bytes() const {
+  return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + passes_.bytes();
+}
+
+}  // namespace weft

@@ -1,0 +1,71 @@
+/// Small steps in double, one block after the other: the text to read beside
+/// engine/solvers/small_steps/small_steps.h, with whose functions its own go by name and order.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <iterator>
+#include <vector>
+
+#include "engine/contacts/contacts.h"
+#include "engine/model/model.h"
+#include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/local_passes.h"
+#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
+#include "kernels/reference/small_steps.h"
+
+namespace weft {
+
+class ReferenceSmallSteps {
+ public:
+  struct Past {
+    double h = 0;  // of the last substep; 0: there was none
+    kernels::Vectors v, v_before, moved;
+  };
+
+  ReferenceSmallSteps(const Model& model, const Settings& settings);
+
+  double substep_length(kernels::VectorsView x, double acceleration) const;
+  void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
+             kernels::VectorsView force, const FramePlan& plan, Team& team);
+  void advance(Team& team);
+  void sweep(Team& team);
+  std::int64_t count_out() const { return std::ssize(out_); }
+  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits);
+  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits);
+  void read_positions(kernels::VectorsView x, Team& team) const;
+  void settle(Team& team);
+  void read_velocities(kernels::VectorsView v, Team& team) const;
+
+  void keep(Team& team);
+  const Past& past() const { return past_; }
+  void set_past(Past&& past) { past_ = std::move(past); }
+  void forget_past() { past_.h = 0; }
+  std::size_t bytes() const;
+
+ private:
+  struct Points;
+  reference::Flight flight();
+  bool is_free(std::size_t slot) const { return model_.inverse_mass[slot] > 0; }
+  void relax_chain(std::span<const std::uint32_t> slots, std::span<const std::uint32_t> links);
+  void relax_edge(std::uint32_t constraint);
+  LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
+  void stop_at_contacts();
+
+  const Model& model_;
+  const SmallStepsLayout& layout_;
+  const Settings settings_;
+  LocalPasses passes_;
+  Past past_;
+  reference::ChainSystem system_;
+
+  double h_ = 0, omega_ = 1;
+  double last_ = 0;  // b h of the last substep
+  SubstepFormula formula_, next_formula_;
+  kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_;
+  std::vector<std::uint32_t> out_;  // constraints that a sweep found out of tolerance
+  std::vector<std::uint32_t> touched_;
+};
+
+}  // namespace weft

@@ -1,0 +1,403 @@
+#include "engine/solvers/small_steps/small_steps.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "engine/bytes_of.h"
+#include "engine/solvers/small_steps/small_steps_load.h"
+#include "engine/tuning.h"
+
+namespace weft {
+namespace {
+
+constexpr std::size_t kMostShares = 16;      // of the blocks of a family, each with its scratch
+constexpr std::size_t kPart = 4 * kStretch;  // floats that a thread takes at a time
+
+float squared_tolerance(const Settings& settings) {
+  const double strain = tuning::kLocalShare * settings.tolerance;
+  return static_cast<float>(2 * strain + strain * strain);
+}
+
+}  // namespace
+
+/// Positions for local passes: differences of base and of u, which are nearly exact.
+///
+/// What local passes do is no part of a smooth motion. In the velocity by BDF2 it would count 1 / b
+/// times, half as much again, and where much is left to do in each substep errors would grow. It
+/// counts once, since the prediction takes its share 1 - b.
+struct SmallStepsSolver::Points {
+  const YarnPlaces& places;
+  const float* base;
+  float* u;
+  float* predicted;
+  float share;  // 1 - b
+  std::vector<std::uint32_t>& touched;
+
+  double axis(std::size_t a, std::size_t b) const {
+    return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
+           (static_cast<double>(u[a]) - static_cast<double>(u[b]));
+  }
+  kernels::Vector difference(std::uint32_t slot_a, std::uint32_t slot_b) const {
+    const std::size_t a = places.of(slot_a), b = places.of(slot_b), next = places.stride;
+    return {axis(a, b), axis(a + next, b + next), axis(a + 2 * next, b + 2 * next)};
+  }
+  void move(std::uint32_t slot, kernels::Vector by) const {
+    std::size_t at = places.of(slot);
+    for (const double change : {by.x, by.y, by.z}) {
+      const float moved = u[at] + static_cast<float>(change);
+      predicted[at] += share * (moved - u[at]);
+      u[at] = moved;
+      at += places.stride;
+    }
+  }
+  void push(std::uint32_t slot, kernels::Vector by) const {
+    move(slot, by);
+    touched.push_back(slot);
+  }
+};
+
+SmallStepsSolver::Points SmallStepsSolver::points(double share) {
+  return {layout_.places(),          base_.data(), u_.data(), predicted_.data(),
+          static_cast<float>(share), touched_};
+}
+
+SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
+                                   const simd::Table& table)
+    : model_(model),
+      layout_(model.small_steps()),
+      settings_(settings),
+      table_(table),
+      passes_(model),
+      spans_(layout_.blocks.size()),
+      base_step_(layout_.yarns.rows()),
+      edges_out_(layout_.blocks.size()),
+      yarns_out_(layout_.yarns.rows()) {
+  for (auto* array : {&base_, &u_, &u_before_, &predicted_, &v_, &v_before_, &acceleration_}) {
+    array->resize(layout_.floats);
+  }
+  for (auto* array : {&past_.v, &past_.v_before, &past_.moved, &past_.base})
+    array->resize(layout_.floats);
+  const std::size_t wanted =
+      settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
+  if (layout_.has_yarns())
+    scratch_.resize(layout_.yarns.scratch_rows() * std::min(wanted, kMostShares));
+}
+
+double SmallStepsSolver::substep_length(kernels::VectorsView x, double acceleration) const {
+  return weft::substep_length(layout_.load, x, acceleration, settings_.tolerance);
+}
+
+simd::Flight SmallStepsSolver::flight() {
+  return {u_.data(), u_before_.data(), predicted_.data(),
+          v_.data(), v_before_.data(), acceleration_.data()};
+}
+
+simd::Yarns SmallStepsSolver::yarns() {
+  const YarnLayout& yarns = layout_.yarns;
+  return {.kind = yarns.kind.data(),
+          .kinds = yarns.kinds.data(),
+          .slot = yarns.slot.data(),
+          .patch = yarns.patches.data(),
+          .base = base_.data(),
+          .base_step = base_step_.data(),
+          .cell = static_cast<float>(layout_.cell),
+          .moved = moved_,
+          .from_memory = yarns.from_memory()};
+}
+
+template <class Work>
+void SmallStepsSolver::for_floats(Team& team, Work&& work) {
+  team.for_each_part(layout_.floats, kPart, work);
+}
+
+/// Only where it may have changed.
+void SmallStepsSolver::write_acceleration(kernels::Vector gravity, kernels::VectorsView force) {
+  const bool has_force = force.x != nullptr;
+  const bool same = !has_force && !has_force_ && gravity.x == gravity_.x &&
+                    gravity.y == gravity_.y && gravity.z == gravity_.z;
+  if (same) return;
+  gravity_ = gravity;
+  has_force_ = has_force;
+  const YarnPlaces& places = layout_.places();
+  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
+    const double w = model_.inverse_mass[slot];
+    if (w == 0) continue;
+    const kernels::Vector a = has_force ? gravity + w * force[slot] : gravity;
+    const std::size_t at = places.of(slot);
+    acceleration_[at] = static_cast<float>(a.x);
+    acceleration_[at + places.stride] = static_cast<float>(a.y);
+    acceleration_[at + 2 * places.stride] = static_cast<float>(a.z);
+  }
+}
+
+/// Without a past the particles are taken to have been in free flight.
+void SmallStepsSolver::begin_past(Team& team) {
+  if (past_.h == 0) {
+    const auto h = static_cast<float>(h_);
+    for (std::size_t i = 0; i < layout_.floats; ++i) {
+      v_before_[i] = v_[i] - h * acceleration_[i];
+      u_before_[i] = u_[i] - h * v_[i] + 0.5f * h * h * acceleration_[i];
+      predicted_[i] = u_[i];
+    }
+    return;
+  }
+  const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    table_.resume(flight(), arrays, static_cast<float>(past_.h), first, last);
+  });
+}
+
+/// The base stays for as many substeps as it may, so that what is remembered of it does. It is
+/// renewed within a frame only where the frame began with a new one: a frame that is not kept
+/// leaves the old one.
+void SmallStepsSolver::split(kernels::VectorsView x, int substeps, Team& team) {
+  if (std::exchange(is_new_, false)) {
+    base_.swap(past_.base);
+    moved_ = true;
+  }
+  const YarnPlaces& places = layout_.places();
+  const bool stays = past_.h > 0 && past_.since_renewal + substeps <= tuning::kRenewal;
+  since_renewal_ = stays ? past_.since_renewal : 0;
+  if (!stays) {
+    base_.swap(past_.base);
+    is_new_ = moved_ = true;
+  }
+  places.clear(u_.data());
+  team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    if (stays)
+      places.offset(table_, x, first, last, base_.data(), u_.data());
+    else
+      places.split(table_, x, layout_.cell, first, last, base_.data(), u_.data());
+  });
+  if (moved_) measure_base(team);
+}
+
+void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
+                             kernels::Vector gravity, kernels::VectorsView force,
+                             const FramePlan& plan, Team& team) {
+  h_ = plan.h;
+  omega_ = plan.omega;
+  passes_.forget();
+  touched_.clear();
+  if (plan.placed || plan.h > tuning::kMostRatio * past_.h) past_.h = 0;
+  split(x, plan.substeps, team);
+  team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    layout_.places().narrow(table_, v, first, last, v_.data());
+  });
+  write_acceleration(gravity, force);
+  begin_past(team);
+  next_formula_ = SubstepFormula::of(settings_.scheme, past_.h > 0 ? h_ / past_.h : 1);
+  weights_.rate = 0;
+}
+
+void SmallStepsSolver::measure_base(Team& team) {
+  moved_ = true;
+  team.for_each_share(layout_.blocks.size(), [&](std::size_t first, std::size_t last) {
+    table_.measure_edges(layout_.blocks.data(), spans_.data(), base_.data(), first, last);
+  });
+}
+
+void SmallStepsSolver::renew_base(Team& team) {
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    table_.renew_base(flight(), base_.data(), static_cast<float>(layout_.cell), first, last);
+  });
+  measure_base(team);
+}
+
+void SmallStepsSolver::advance(Team& team) {
+  stop_at_contacts();
+  if (since_renewal_++ == tuning::kRenewal) {  // never where the base is the past's
+    since_renewal_ = 1;
+    renew_base(team);
+  }
+  formula_ = std::exchange(next_formula_, SubstepFormula::of(settings_.scheme, 1));
+  weights_.past = static_cast<float>(formula_.past);
+  weights_.step = static_cast<float>(formula_.part * h_);
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    table_.advance(flight(), weights_, first, last);
+  });
+  weights_.rate = static_cast<float>(1 / (formula_.part * h_));
+}
+
+void SmallStepsSolver::sweep(Team& team) {
+  if (layout_.has_yarns()) sweep_yarns(team);
+  sweep_edges(team);
+  sweep_serial();
+}
+
+void SmallStepsSolver::sweep_yarns(Team& team) {
+  const simd::Yarns yarns = this->yarns();
+  const simd::YarnRelaxation relaxation{static_cast<float>(omega_),
+                                        static_cast<float>(tuning::kCompliance),
+                                        squared_tolerance(settings_), yarns_out_.data()};
+  const std::size_t rows = layout_.yarns.scratch_rows();
+  for (std::size_t family = 0; family < layout_.yarns.families(); ++family) {
+    const std::size_t begin = layout_.yarns.family_begin[family];
+    const std::size_t count = layout_.yarns.family_begin[family + 1] - begin;
+    const std::size_t shares = std::min({scratch_.size() / rows, count, team.size()});
+    team.for_each(shares, [&](std::size_t share) {
+      const std::size_t last = begin + count * (share + 1) / shares;
+      for (std::size_t i = begin + count * share / shares; i < last; ++i) {
+        table_.relax_yarns(yarns, layout_.yarns.blocks[i], u_.data(),
+                           scratch_.data() + rows * share, relaxation);
+      }
+    });
+  }
+  moved_ = false;
+}
+
+void SmallStepsSolver::sweep_batch(const EdgeBatch& batch, std::uint32_t first,
+                                   std::uint32_t last) {
+  const simd::EdgeRelaxation relaxation{
+      u_.data(),         layout_.blocks.data(),      spans_.data(),
+      edges_out_.data(), static_cast<float>(omega_), squared_tolerance(settings_)};
+  (batch.rope ? table_.relax_ropes : table_.relax_distances)(relaxation, first, last);
+}
+
+void SmallStepsSolver::sweep_edges(Team& team) {
+  team.for_each(layout_.tiles.size(), [&](std::size_t tile) {
+    for (std::uint32_t i = layout_.tiles[tile].first; i < layout_.tiles[tile].last; ++i) {
+      sweep_batch(layout_.batches[i], layout_.batches[i].first, layout_.batches[i].last);
+    }
+  });
+  for (std::size_t i = layout_.between_tiles; i < layout_.batches.size(); ++i) {
+    const EdgeBatch& batch = layout_.batches[i];
+    team.for_each_share(batch.last - batch.first, [&](std::size_t first, std::size_t last) {
+      sweep_batch(batch, batch.first + static_cast<std::uint32_t>(first),
+                  batch.first + static_cast<std::uint32_t>(last));
+    });
+  }
+}
+
+void SmallStepsSolver::sweep_serial() {
+  const ConstraintStore& s = model_.constraints;
+  Points points = this->points(0);
+  for (const std::uint32_t c : layout_.serial) {
+    const kernels::Vector d = points.difference(s.a[c], s.b[c]);
+    const double square = s.rest_length[c] * s.rest_length[c], error = dot(d, d) - square;
+    if (std::abs(error) > static_cast<double>(squared_tolerance(settings_)) * square)
+      passes_.look_near(c);
+    if (c >= s.bilateral && error <= 0) continue;
+    const kernels::Vector by = (omega_ * error / (error + 2 * square) * s.effective_mass[c]) * d;
+    points.move(s.a[c], -model_.inverse_mass[s.a[c]] * by);
+    points.move(s.b[c], model_.inverse_mass[s.b[c]] * by);
+  }
+}
+
+std::int64_t SmallStepsSolver::count_out() const {
+  std::int64_t count = 0;
+  for (const std::uint16_t lanes : edges_out_) count += std::popcount(lanes);
+  for (const std::uint32_t lanes : yarns_out_) count += std::popcount(lanes);
+  return count;
+}
+
+/// Constraints that a sweep found out of tolerance have been relaxed since, and so have their
+/// neighbours: all of these are looked at again.
+void SmallStepsSolver::look_near_what_was_out() {
+  const auto look = [&](const auto& words, const std::vector<std::uint32_t>& constraint) {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      for (std::uint32_t bits = words[i]; bits != 0; bits &= bits - 1) {
+        const std::uint32_t c =
+            constraint[i * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits))];
+        if (c != kNoIndex) passes_.look_near(c);
+      }
+    }
+  };
+  look(edges_out_, layout_.constraint);
+  look(yarns_out_, layout_.yarns.constraint);
+}
+
+LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
+  Points points = this->points(1 - formula_.part);
+  const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
+                           .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
+                           .omega = tuning::kOmega,
+                           .most_visits = most_visits};
+  return passes_.run(points, contacts, limits);
+}
+
+LocalWork SmallStepsSolver::repair(const ContactStore& contacts, std::int64_t most_visits) {
+  look_near_what_was_out();
+  return run_passes(contacts, most_visits);
+}
+
+LocalWork SmallStepsSolver::repair_everywhere(const ContactStore& contacts,
+                                              std::int64_t most_visits) {
+  passes_.look_everywhere();
+  return run_passes(contacts, most_visits);
+}
+
+/// A contact ends a motion. The velocity of a particle that was pushed is that of this substep
+/// alone, and its past a free flight that leads to it.
+void SmallStepsSolver::stop_at_contacts() {
+  std::ranges::sort(touched_);
+  const auto rest = std::ranges::unique(touched_);
+  touched_.erase(rest.begin(), rest.end());
+  for (const std::uint32_t slot : touched_) stop_at_contact(slot);
+  touched_.clear();
+}
+
+void SmallStepsSolver::stop_at_contact(std::uint32_t slot) {
+  if (model_.inverse_mass[slot] == 0) return;
+  const auto h = static_cast<float>(h_);
+  std::size_t at = layout_.places().of(slot);
+  for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
+    const float a = acceleration_[at], v = (u_[at] - u_before_[at]) / h;
+    predicted_[at] = u_[at];
+    v_[at] = v;
+    v_before_[at] = v - h * a;
+    u_before_[at] = u_[at] - h * v + 0.5f * h * h * a;
+  }
+}
+
+void SmallStepsSolver::settle(Team& team) {
+  stop_at_contacts();
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    table_.settle(flight(), weights_.rate, first, last);
+  });
+  weights_.rate = 0;
+}
+
+void SmallStepsSolver::read_positions(kernels::VectorsView x, Team& team) const {
+  team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    layout_.places().join(table_, x, first, last, base_.data(), u_.data());
+  });
+}
+
+void SmallStepsSolver::read_velocities(kernels::VectorsView v, Team& team) const {
+  team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    layout_.places().widen(table_, v, first, last, v_.data());
+  });
+}
+
+void SmallStepsSolver::keep(Team& team) {
+  past_.h = h_;
+  past_.since_renewal = since_renewal_;
+  is_new_ = false;
+  const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    table_.keep_past(flight(), arrays, first, last);
+  });
+}
+
+SmallStepsPast SmallStepsSolver::past() const {
+  SmallStepsPast past = past_;
+  if (!is_new_) past.base = base_;
+  return past;
+}
+
+void SmallStepsSolver::set_past(SmallStepsPast&& past) {
+  past_ = std::move(past);
+  std::ranges::copy(past_.base, base_.begin());
+  is_new_ = false;
+  moved_ = true;
+}
+
+std::size_t SmallStepsSolver::bytes() const {
+  return 11 * bytes_of(u_) + bytes_of(spans_) + bytes_of(base_step_) + bytes_of(scratch_) +
+         bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) + passes_.bytes();
+}
+
+}  // namespace weft

@@ -1,0 +1,124 @@
+#include "engine/solvers/small_steps/small_steps_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "engine/bytes_of.h"
+#include "engine/model/model.h"
+#include "engine/ordering/yarns.h"
+#include "engine/tuning.h"
+
+namespace weft {
+namespace {
+
+using kernels::kLanes;
+
+bool makes_yarns(const YarnLayout& layout) {
+  double yarns = 0, links = 0;
+  for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
+    yarns += layout.blocks[i].lanes;
+    links += layout.links[i];
+  }
+  return yarns > 0 && links >= tuning::kLeastLinks * yarns;
+}
+
+/// Slots as quads, and nothing else.
+YarnLayout no_yarns(const Model& model) {
+  YarnLayout layout;
+  layout.family_begin = {0};
+  layout.places.floats = layout.places.padding = 4 * model.slots();
+  return layout;
+}
+
+class Builder {
+ public:
+  Builder(const Model& model, SmallStepsLayout& layout) : model_(model), layout_(layout) {}
+
+  void add_batches(bool distances) {
+    const Ordering& ordering = model_.ordering;
+    const auto add = [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t i = first; i < last; ++i) {
+        const bool rope = ordering.batches[i].kind == ConstraintKind::rope;
+        if (rope || distances) add_batch(ordering.batches[i], rope);
+      }
+    };
+    for (const Tile& tile : ordering.tiles) {
+      const auto first = static_cast<std::uint32_t>(layout_.batches.size());
+      add(tile.first_batch, tile.last_batch);
+      layout_.tiles.push_back({first, static_cast<std::uint32_t>(layout_.batches.size())});
+    }
+    layout_.between_tiles = static_cast<std::uint32_t>(layout_.batches.size());
+    add(ordering.between_tiles, static_cast<std::uint32_t>(ordering.batches.size()));
+  }
+
+ private:
+  void add_batch(const Batch& batch, bool rope) {
+    const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
+    for (std::uint32_t slot = batch.first; slot < batch.last; slot += kLanes) add_block(slot);
+    layout_.batches.push_back({first, static_cast<std::uint32_t>(layout_.blocks.size()), rope});
+  }
+  void add_block(std::uint32_t first) {
+    const SimdLayout& simd = model_.simd();
+    simd::EdgeBlock& block = layout_.blocks.emplace_back();
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      const std::uint32_t slot = first + lane, c = simd.constraint_at[slot];
+      block.a[lane] = simd.a[slot];
+      block.b[lane] = simd.b[slot];
+      block.share_a[lane] = static_cast<float>(c == kNoIndex ? 0 : simd.share_a[slot]);
+      block.share_b[lane] = static_cast<float>(c == kNoIndex ? 0 : simd.share_b[slot]);
+      block.square[lane] =
+          static_cast<float>(c == kNoIndex ? 1 : simd.rest_length[slot] * simd.rest_length[slot]);
+      layout_.constraint.push_back(c);
+    }
+  }
+
+  const Model& model_;
+  SmallStepsLayout& layout_;
+};
+
+/// As yarns' cell (kernels/simd/yarn_rows.h), of all constraints.
+double cell_of(std::span<const double> rests) {
+  if (rests.empty()) return 0;
+  const auto [shortest, longest] = std::ranges::minmax(rests);
+  return std::exp2(std::floor(std::log2(std::min(8 * shortest, longest / 64))));
+}
+
+}  // namespace
+
+SmallStepsLayout make_small_steps_layout(const Model& model) {
+  const ConstraintStore& store = model.constraints;
+  SmallStepsLayout layout;
+  const bool only_distances = store.plain == store.size();
+  layout.yarns =
+      make_yarn_layout(model, only_distances ? YarnMemory::woven_if_possible : YarnMemory::quads);
+  const bool woven = makes_yarns(layout.yarns);
+  if (!woven) layout.yarns = no_yarns(model);
+  Builder(model, layout).add_batches(!woven);
+  for (const auto* hubs : {&store.hub_distances, &store.hub_ropes}) {
+    layout.serial.insert(layout.serial.end(), hubs->begin(), hubs->end());
+  }
+  layout.cell = woven ? layout.yarns.cell : cell_of(store.rest_length);
+  layout.floats = kernels::round_up(layout.yarns.places.floats, std::size_t{kLanes});
+  layout.load = find_load(model, layout);
+  return layout;
+}
+
+std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
+                                    std::span<const std::uint32_t> links) {
+  const auto holds = [&](std::uint32_t c, std::uint32_t slot) {
+    return s.a[c] == slot || s.b[c] == slot;
+  };
+  const std::uint32_t first = links.front();
+  const bool forwards = links.size() == 1 || holds(links[1], s.b[first]);
+  std::vector<std::uint32_t> slots{forwards ? s.a[first] : s.b[first]};
+  for (const std::uint32_t c : links) slots.push_back(s.a[c] == slots.back() ? s.b[c] : s.a[c]);
+  return slots;
+}
+
+std::size_t SmallStepsLayout::bytes() const {
+  return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(batches) +
+         bytes_of(tiles) + bytes_of(serial) + bytes_of(load.spans);
+}
+
+}  // namespace weft

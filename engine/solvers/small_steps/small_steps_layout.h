@@ -1,0 +1,78 @@
+/// What small steps (engine/solvers/small_steps/small_steps.h) need to know of a model: its
+/// constraints as blocks, in the order of a sweep, and where their particles stand.
+///
+///   yarn blocks   family by family, where the distance constraints make yarns; in woven rows where
+///                 yarns are all there is, else in quads
+///   edge blocks   kLanes constraints of one colour each: tile by tile, then between the tiles
+///   serial        constraints at hubs, one after the other
+///
+/// Either all distance constraints that are not at hubs belong to yarns, or none does: if the
+/// chains that run straight on through their particles are short, as in sheets of irregular
+/// triangles, each constraint is a block of its own.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/solvers/small_steps/small_steps_load.h"
+#include "engine/solvers/yarn/yarn_layout.h"
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+class Model;
+struct ConstraintStore;
+
+/// Edge blocks of one kind that share no particle.
+struct EdgeBatch {
+  std::uint32_t first = 0, last = 0;
+  bool rope = false;
+};
+
+/// Batches first ... last - 1 of a tile.
+struct EdgeTile {
+  std::uint32_t first = 0, last = 0;
+};
+
+struct SmallStepsLayout {
+  YarnLayout yarns;  // no blocks: there are none
+  std::vector<simd::EdgeBlock> blocks;
+  std::vector<std::uint32_t> constraint;  // per edge block and lane, or kNoIndex
+  std::vector<EdgeBatch> batches;         // those of each tile, then those between tiles
+  std::vector<EdgeTile> tiles;
+  std::uint32_t between_tiles = 0;  // first batch
+  std::vector<std::uint32_t> serial;
+
+  double cell = 0;         // that positions are split by
+  std::size_t floats = 0;  // of an array of particles
+  SmallStepsLoad load;
+
+  const YarnPlaces& places() const { return yarns.places; }
+  bool has_yarns() const { return !yarns.blocks.empty(); }
+  std::size_t bytes() const;
+};
+
+SmallStepsLayout make_small_steps_layout(const Model& model);
+
+/// The particles of a yarn, in the order of its constraints.
+std::vector<std::uint32_t> slots_of(const ConstraintStore& store,
+                                    std::span<const std::uint32_t> links);
+
+/// work(constraints of a yarn, from one end to the other)
+template <class Work>
+void for_each_yarn(const YarnLayout& yarns, Work&& work) {
+  std::vector<std::uint32_t> links;
+  for (const simd::YarnBlock& block : yarns.blocks) {
+    for (std::size_t lane = 0; lane < block.lanes; ++lane) {
+      links.clear();
+      for (std::size_t row = block.first; row < block.last; ++row) {
+        const std::uint32_t c = yarns.constraint[row * kernels::kLanes + lane];
+        if (c != kNoIndex) links.push_back(c);
+      }
+      work(links);
+    }
+  }
+}
+
+}  // namespace weft

@@ -1,0 +1,174 @@
+#include "engine/solvers/small_steps/small_steps_load.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/lists.h"
+#include "engine/model/model.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/tuning.h"
+
+namespace weft {
+
+namespace {
+
+/// The particles of each block, and the blocks of each particle.
+struct Blocks {
+  Lists slots_of, at;
+};
+
+/// Of the yarn, between each fixed particle and the next.
+void add_spans(const Model& model, std::span<const std::uint32_t> links, SmallStepsLoad& load) {
+  const std::vector<std::uint32_t> slots = slots_of(model.constraints, links);
+  SmallStepsLoad::Span span{kNoIndex, kNoIndex, 0};
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    if (k > 0) span.length += model.constraints.rest_length[links[k - 1]];
+    if (model.inverse_mass[slots[k]] > 0) continue;
+    span.last_slot = slots[k];
+    if (span.first_slot != kNoIndex) load.spans.push_back(span);
+    span = {slots[k], kNoIndex, 0};
+  }
+}
+
+Blocks find_blocks(const Model& model, const SmallStepsLayout& layout) {
+  Blocks blocks;
+  const ConstraintStore& s = model.constraints;
+  const auto add = [&](std::uint32_t c) {
+    if (c != kNoIndex) blocks.slots_of.push_back(std::vector{s.a[c], s.b[c]});
+  };
+  for_each_yarn(layout.yarns, [&](std::span<const std::uint32_t> links) {
+    blocks.slots_of.push_back(slots_of(s, links));
+  });
+  std::ranges::for_each(layout.constraint, add);
+  std::ranges::for_each(layout.serial, add);
+  blocks.at = make_lists(model.slots(), [&](auto&& add_at) {
+    for (std::uint32_t i = 0; i < blocks.slots_of.size(); ++i) {
+      for (const std::uint32_t slot : blocks.slots_of[i]) add_at(slot, i);
+    }
+  });
+  return blocks;
+}
+
+/// From the blocks at pins over those that share free particles with them, level by level.
+class Levels {
+ public:
+  Levels(const Model& model, const Blocks& blocks)
+      : model_(model), blocks_(blocks), reached_(blocks.slots_of.size()), held_(model.slots()) {}
+
+  /// Particles on a block at a pin; 0: nothing is at a pin.
+  double carried() {
+    std::vector<std::uint32_t> level, next;
+    for (std::uint32_t i = 0; i < reached_.size(); ++i) {
+      if (is_pinned(i)) reach(i, level);
+    }
+    double first_mass = 0, mass = 0, depth = 0;
+    for (; !level.empty(); level.swap(next)) {
+      next.clear();
+      double held = 0;
+      for (const std::uint32_t i : level) held += hold(i, next);
+      if (held > 0) ++depth;
+      mass += held;
+      if (first_mass == 0) first_mass = mass;
+    }
+    constexpr double kOwn = (1 - tuning::kOmega) / 2;
+    return depth == 0 ? 0 : std::max(mass / first_mass, depth) - 1 + kOwn;
+  }
+
+ private:
+  bool is_free(std::uint32_t slot) const { return model_.inverse_mass[slot] > 0; }
+  bool is_pinned(std::uint32_t block) const {
+    return !std::ranges::all_of(blocks_.slots_of[block],
+                                [&](std::uint32_t slot) { return is_free(slot); });
+  }
+  void reach(std::uint32_t block, std::vector<std::uint32_t>& level) {
+    if (reached_[block]) return;
+    reached_[block] = true;
+    level.push_back(block);
+  }
+  /// kg, of its particles that no other holds.
+  double hold(std::uint32_t block, std::vector<std::uint32_t>& next) {
+    double mass = 0;
+    for (const std::uint32_t slot : blocks_.slots_of[block]) {
+      if (!is_free(slot) || held_[slot]) continue;
+      held_[slot] = true;
+      mass += 1 / model_.inverse_mass[slot];
+      for (const std::uint32_t other : blocks_.at[slot]) reach(other, next);
+    }
+    return mass;
+  }
+
+  const Model& model_;
+  const Blocks& blocks_;
+  std::vector<bool> reached_, held_;
+};
+
+/// Along constraints from the nearest pin, nearest by their number, to the farthest particle.
+struct Way {
+  double constraints = 0;
+  double length = 0;  // m
+};
+
+Way longest_way(const Model& model) {
+  const ConstraintStore& s = model.constraints;
+  const Lists at = make_lists(model.slots(), [&](auto&& add) {
+    for (std::uint32_t c = 0; c < s.size(); ++c) {
+      add(s.a[c], c);
+      add(s.b[c], c);
+    }
+  });
+  std::vector<Way> way(model.slots(), {-1, 0});
+  std::vector<std::uint32_t> queue;
+  for (const std::uint32_t slot : model.pins) {
+    way[slot] = {};
+    queue.push_back(slot);
+  }
+  Way longest;
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const Way here = way[queue[i]];
+    longest = {here.constraints, std::max(longest.length, here.length)};
+    for (const std::uint32_t c : at[queue[i]]) {
+      const std::uint32_t other = s.a[c] == queue[i] ? s.b[c] : s.a[c];
+      if (way[other].constraints >= 0) continue;
+      way[other] = {here.constraints + 1, here.length + s.rest_length[c]};
+      queue.push_back(other);
+    }
+  }
+  return longest;
+}
+
+}  // namespace
+
+SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
+  SmallStepsLoad load;
+  const Blocks blocks = find_blocks(model, layout);
+  const Way way = longest_way(model);
+  load.particles = Levels(model, blocks).carried();
+  if (!layout.blocks.empty()) load.particles = std::max(load.particles, way.constraints - 1);
+  load.reach = way.length;
+  for (const double rest : model.constraints.rest_length) load.mean_length += rest;
+  load.mean_length /= static_cast<double>(std::max<std::size_t>(1, model.constraints.size()));
+  for_each_yarn(layout.yarns,
+                [&](std::span<const std::uint32_t> links) { add_spans(model, links, load); });
+  return load;
+}
+
+double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double acceleration,
+                      double tolerance) {
+  double over_slope = 1;
+  for (const SmallStepsLoad::Span& span : load.spans) {
+    const double distance = length(x[span.first_slot] - x[span.last_slot]);
+    const double slack = std::max(0.0, span.length / distance - 1) + tolerance;
+    over_slope = std::max(over_slope, 1 / std::sqrt(6 * slack));
+  }
+  const double pull = 6 * acceleration * load.particles * over_slope;
+  const double speed = std::sqrt(2 * acceleration * load.reach);
+  double h = std::numeric_limits<double>::infinity();
+  if (pull > 0) h = std::sqrt(tuning::kOmega * tolerance * load.mean_length / pull);
+  if (speed > 0) h = std::min(h, tuning::kPassing * load.mean_length / speed);
+  return h;
+}
+
+}  // namespace weft

@@ -1,0 +1,105 @@
+/// Gauss-Seidel on the vector kernels: the same loop as the reference (kernels/loop.h), one pass
+/// being
+///
+///     for each tile (side by side):  for each of its batches:  for each chunk
+///     for each batch between tiles:  for each chunk (side by side; of the first, what joins the
+///                                    tiles of one thread, at once: sweep_seams)
+///     constraints at hubs, one after the other
+///     contacts, sphere by sphere
+///
+/// The result depends on neither the number of threads nor, where multiplications and additions are
+/// fused, the instruction set.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/contacts/contacts.h"
+#include "engine/model/model.h"
+#include "engine/parallel/team.h"
+#include "engine/solvers/sweeps/simd_layout.h"
+#include "kernels/loop.h"
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+/// Contacts in lanes: those of each sphere together, padded to whole lanes.
+struct ContactLanes {
+  struct Range {
+    std::uint32_t first = 0, last = 0;
+    std::uint32_t real = 0;  // without padding
+  };
+  std::vector<Range> spheres;  // those that have contacts
+  std::vector<std::uint32_t> a, b;
+  std::vector<std::uint32_t> contact;  // in the ContactStore, or kNoIndex
+  kernels::AlignedVector<simd::ConstraintBlock> blocks;
+  kernels::AlignedVector<float> impulse;
+  kernels::AlignedVector<double> distance, scale;
+
+  void resize(std::size_t n);
+  std::size_t bytes() const;
+};
+
+/// The constraints as one of the two loops sees them, errors and directions in its tolerances tau.
+struct ScaledConstraints {
+  kernels::AlignedVector<simd::ConstraintBlock> blocks;
+  kernels::AlignedVector<double> scale;  // 1 / tau
+
+  std::size_t bytes() const;
+};
+
+/// Threads write theirs side by side.
+struct alignas(64) SharedSweep : kernels::Sweep {};
+
+class SimdSolver {
+ public:
+  SimdSolver(const Model& model, const Settings& settings, const simd::Table& table);
+
+  /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
+  /// were found anew, accumulated impulses start at 0. Scheme rattle takes directions at `start`,
+  /// if given, instead of x.
+  kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
+                                      const ContactStore& contacts, bool first_round,
+                                      const kernels::LoopLimits& limits, Team& team);
+  /// The velocity loop at the positions x.
+  kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
+                                         const ContactStore& contacts,
+                                         const kernels::LoopLimits& limits, Team& team);
+  std::size_t bytes() const;
+
+ private:
+  friend class SimdLoop;
+
+  void allocate_displacements();
+  template <class Tolerance>
+  ScaledConstraints scaled(Tolerance&& tau) const;
+  void order_contacts(const ContactStore& contacts);
+  void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
+  void choose_active(kernels::VectorsView x);
+  simd::Relaxation relaxation(ScaledConstraints& constraints);
+  simd::Geometry geometry(kernels::VectorsView x, const ScaledConstraints& constraints) const;
+
+  const Model& model_;
+  const SimdLayout& layout_;
+  const Settings settings_;
+  const simd::Table& table_;
+
+  kernels::AlignedVector<float> u_;
+  std::size_t u_stride_ = 0, u_step_ = 1;       // simd::Displacements
+  kernels::AlignedVector<float> impulse_;       // with ropes only
+  ScaledConstraints positions_, velocities_;    // the latter with velocity correction
+  kernels::AlignedVector<std::uint64_t> mask_;  // skip without anticipation only
+  // Per chunk, skip only: something in it, or in a chunk that shares a particle with it, was
+  // corrected since it was last visited; since its directions were last renewed.
+  std::vector<std::uint8_t> changed_, stale_;
+  std::vector<std::uint32_t> corrections_;      // per chunk, of the present pass
+  kernels::AlignedVector<SharedSweep> sweeps_;  // per share, or piece, of parallel work
+  std::vector<std::uint8_t> open_seam_;         // no share of the present pass had all its tiles
+  ContactLanes contacts_;
+  std::vector<float> contact_impulse_;        // per contact of the ContactStore
+  std::vector<std::uint32_t> contact_order_;  // its contacts, sphere by sphere
+};
+
+}  // namespace weft

@@ -1,0 +1,328 @@
+#include "engine/solvers/yarn/yarn_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <utility>
+
+#include "engine/bytes_of.h"
+#include "engine/model/model.h"
+#include "engine/ordering/used_colours.h"
+#include "engine/ordering/yarns.h"
+
+namespace weft {
+namespace {
+
+using kernels::kLanes;
+
+/// An open yarn: link k joins particles k and k + 1.
+struct Chain {
+  std::vector<std::uint32_t> particles, links;
+  std::uint32_t family = 0;
+};
+
+std::vector<Vec3> positions_of(const Model& model) {
+  std::vector<Vec3> positions;
+  positions.reserve(model.slots());
+  for (std::size_t i = 0; i < model.slots(); ++i) {
+    const kernels::Vector x = model.initial_position[i];
+    positions.push_back({x.x, x.y, x.z});
+  }
+  return positions;
+}
+
+std::vector<Chain> open_chains(const Yarns& yarns, std::size_t slots) {
+  std::vector<Chain> chains;
+  std::vector<Chain> cut;
+  UsedColours used(slots);
+  for (const Yarn& yarn : yarns.yarns) {
+    const auto particles = yarns.particles_of(yarn);
+    const auto links = yarns.links_of(yarn);
+    Chain chain{{particles.begin(), particles.end()}, {links.begin(), links.end()}, yarn.family};
+    for (const std::uint32_t p : particles) used.insert(p, yarn.family);
+    if (yarn.closed) {
+      cut.push_back({{particles.back(), particles.front()}, {chain.links.back()}});
+      chain.links.pop_back();
+    }
+    chains.push_back(std::move(chain));
+  }
+  for (Chain& chain : cut) {
+    chain.family = used.lowest_free(chain.particles);
+    for (const std::uint32_t p : chain.particles) used.insert(p, chain.family);
+    chains.push_back(std::move(chain));
+  }
+  return chains;
+}
+
+/// work(k, links): of the particles k ... k + links the first and the last are fixed. Where there
+/// is one link nothing can move.
+template <class Work>
+void for_each_span(const Model& model, const Chain& chain, Work&& work) {
+  std::size_t before = chain.particles.size();  // the last that was fixed
+  for (std::size_t k = 0; k < chain.particles.size(); ++k) {
+    if (model.inverse_mass[chain.particles[k]] != 0) continue;
+    const std::size_t from = std::exchange(before, k);
+    if (from < k && k - from > 1) work(from, k - from);
+  }
+}
+
+/// The family with most links in spans that are not braced becomes the first, which linear systems
+/// eliminate exactly: a span that is all but straight is too stiff for conjugate gradients. (A
+/// banner of 17 x 16, its rows the second family: 175 iterations a frame; the first: 9.) Not where
+/// there are spheres: what falls on taut sheets of 20 x 20 and 40 x 40 takes as many, and more
+/// energy is gained.
+void begin_with_spans(const Model& model, Braces& braces, std::vector<Chain>& chains) {
+  if (model.has_contacts()) return;
+  std::vector<std::size_t> count;  // per family
+  for (const Chain& chain : chains) {
+    count.resize(std::max<std::size_t>(count.size(), chain.family + 1));
+    for_each_span(model, chain, [&](std::size_t k, std::size_t links) {
+      const bool braced = braces.is_braced(std::span(chain.particles).subspan(k, links + 1));
+      if (!braced) count[chain.family] += links;
+    });
+  }
+  if (count.empty()) return;
+  const auto most = static_cast<std::uint32_t>(std::ranges::max_element(count) - count.begin());
+  for (Chain& chain : chains) {
+    if (chain.family == most)
+      chain.family = 0;
+    else if (chain.family == 0)
+      chain.family = most;
+  }
+}
+
+/// Family by family, long chains first; those of one length in the order of memory.
+void sort(std::vector<Chain>& chains) {
+  for (Chain& chain : chains) {
+    if (chain.particles.front() < chain.particles.back()) continue;
+    std::ranges::reverse(chain.particles);
+    std::ranges::reverse(chain.links);
+  }
+  std::ranges::sort(chains, [](const Chain& one, const Chain& two) {
+    if (one.family != two.family) return one.family < two.family;
+    if (one.links.size() != two.links.size()) return one.links.size() > two.links.size();
+    return one.particles < two.particles;
+  });
+}
+
+/// Whether these chains, of one length, stand side by side in memory, particle by particle.
+bool side_by_side(std::span<const Chain> chains) {
+  for (std::size_t i = 1; i < chains.size(); ++i) {
+    for (std::size_t k = 0; k < chains[0].particles.size(); ++k) {
+      if (chains[i].particles[k] != chains[0].particles[k] + i) return false;
+    }
+  }
+  return true;
+}
+
+/// Of chains of one length: fours that stand side by side first.
+void bring_fours_forward(std::span<Chain> chains) {
+  std::vector<Chain> fours, others;
+  for (std::size_t i = 0; i < chains.size();) {
+    const bool four = i + 4 <= chains.size() && side_by_side(chains.subspan(i, 4));
+    std::vector<Chain>& to = four ? fours : others;
+    for (const std::size_t last = i + (four ? 4 : 1); i < last; ++i) {
+      to.push_back(std::move(chains[i]));
+    }
+  }
+  std::ranges::move(fours, chains.begin());
+  std::ranges::move(others, chains.begin() + static_cast<std::ptrdiff_t>(fours.size()));
+}
+
+/// How many of the first are alike.
+template <class Alike>
+std::size_t stretch(std::span<const Chain> chains, Alike&& alike) {
+  std::size_t n = 1;
+  while (n < chains.size() && alike(chains[0], chains[n])) ++n;
+  return n;
+}
+
+bool of_one_family(const Chain& one, const Chain& two) { return one.family == two.family; }
+bool of_one_length(const Chain& one, const Chain& two) {
+  return of_one_family(one, two) && one.links.size() == two.links.size();
+}
+
+/// Of the rows with these numbers.
+struct LessByBytes {
+  const kernels::AlignedVector<simd::YarnRow>& rows;
+
+  bool operator()(std::uint32_t one, std::uint32_t two) const {
+    return std::memcmp(&rows[one], &rows[two], sizeof(simd::YarnRow)) < 0;
+  }
+};
+
+/// kg; 1 if none can move. What is joined to nothing may be far lighter than a float can tell.
+double lightest_joined(const Model& model) {
+  double most = 0;
+  for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+    most = std::max({most, model.inverse_mass[model.constraints.a[c]],
+                     model.inverse_mass[model.constraints.b[c]]});
+  }
+  return most > 0 ? 1 / most : 1;
+}
+
+class Builder {
+ public:
+  Builder(const Model& model, Braces& braces, YarnLayout& layout)
+      : model_(model), braces_(braces), layout_(layout), known_(LessByBytes{layout.kinds}) {
+    layout.lightest = lightest_joined(model);
+  }
+
+  /// These chains make a block, a lane each; the first is the longest.
+  void add_block(std::span<const Chain> chains) {
+    const std::size_t rows = chains.front().particles.size();
+    const std::size_t first = layout_.rows(), last = first + rows;
+    const std::size_t padding = model_.slots() + kLanes * layout_.blocks.size();
+    block_.assign(rows, {});
+    layout_.longest = std::max(layout_.longest, rows);
+    layout_.blocks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last),
+                              static_cast<std::uint32_t>(chains.size())});
+    for (std::size_t i = first * kLanes; i < last * kLanes; ++i) {
+      layout_.slot.push_back(static_cast<std::uint32_t>(padding + i % kLanes));
+      layout_.constraint.push_back(kNoIndex);
+    }
+    layout_.links.push_back(0);
+    for (std::size_t i = 0; i < chains.size(); ++i) {
+      fill(chains[i], first, i);
+      layout_.links.back() += static_cast<std::uint32_t>(chains[i].links.size());
+    }
+    simd::derive_joints(block_);
+    for (const simd::YarnRow& row : block_) layout_.kind.push_back(kind_of(row));
+  }
+
+ private:
+  std::uint32_t kind_of(const simd::YarnRow& row) {
+    layout_.kinds.push_back(row);
+    const auto [known, is_new] =
+        known_.insert(static_cast<std::uint32_t>(layout_.kinds.size() - 1));
+    if (!is_new) layout_.kinds.pop_back();
+    return *known;
+  }
+  void fill(const Chain& chain, std::size_t first, std::size_t lane) {
+    for (std::size_t k = 0; k < chain.particles.size(); ++k) {
+      const std::uint32_t slot = chain.particles[k];
+      layout_.slot[(first + k) * kLanes + lane] = slot;
+      simd::YarnRow& row = block_[k];
+      row.inverse_mass[lane] = static_cast<float>(model_.inverse_mass[slot] * layout_.lightest);
+      if (k == chain.links.size()) continue;
+      layout_.constraint[(first + k) * kLanes + lane] = chain.links[k];
+      row.rest[lane] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
+    }
+    add_spans(chain, first, lane);
+  }
+  void add_spans(const Chain& chain, std::size_t first, std::size_t lane) {
+    for_each_span(model_, chain, [&](std::size_t k, std::size_t links) {
+      const auto slots = std::span(chain.particles).subspan(k, links + 1);
+      if (braces_.is_braced(slots)) return;
+      YarnSpan& span = layout_.spans.emplace_back();
+      span.row = static_cast<std::uint32_t>(first + k);
+      span.last_row = static_cast<std::uint32_t>(first + k + links);
+      span.lane = static_cast<std::uint32_t>(lane);
+      span.first_slot = static_cast<std::uint32_t>(layout_.span_slots.size());
+      span.has_chords = braces_.has_chords(slots);
+      layout_.span_slots.insert(layout_.span_slots.end(), slots.begin(), slots.end());
+      for (std::size_t i = k; i < k + links; ++i) {
+        span.length += model_.constraints.rest_length[chain.links[i]];
+      }
+    });
+  }
+
+  const Model& model_;
+  Braces& braces_;
+  YarnLayout& layout_;
+  std::set<std::uint32_t, LessByBytes> known_;  // kinds
+  std::vector<simd::YarnRow> block_;
+};
+
+double cell_of(const ConstraintStore& store) {
+  const auto rests = std::span(store.rest_length).first(store.plain);
+  if (rests.empty()) return 0;
+  const auto [shortest, longest] = std::ranges::minmax(rests);
+  return std::exp2(std::floor(std::log2(std::min(8 * shortest, longest / 64))));
+}
+
+/// Quads: of the model's slots, then kLanes of padding for each block.
+std::size_t quads_of(const Model& model, const YarnLayout& layout) {
+  return model.slots() + kLanes * layout.blocks.size();
+}
+
+/// Slots of padding are no particle's.
+std::vector<std::uint32_t> slots_not_in_second(const Model& model, const YarnLayout& layout) {
+  std::vector<bool> held(quads_of(model, layout), false);
+  if (layout.families() > 1) {
+    const std::size_t first = layout.blocks[layout.family_begin[1]].first;
+    const std::size_t last = layout.blocks[layout.family_begin[2] - 1].last;
+    for (std::size_t i = first * kLanes; i < last * kLanes; ++i) held[layout.slot[i]] = true;
+  }
+  std::vector<std::uint32_t> slots;
+  for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
+    if (!held[slot] && model.ordering.particle_at[slot] != kNoIndex) slots.push_back(slot);
+  }
+  return slots;
+}
+
+std::vector<std::uint32_t> find_longest_at(const Model& model, std::span<const Chain> chains) {
+  const auto rows = [](const Chain& chain) {
+    return static_cast<std::uint32_t>(chain.particles.size());
+  };
+  const auto another = [&](const Chain& chain) { return rows(chain) != rows(chains.front()); };
+  if (std::ranges::none_of(chains, another)) return {};
+  std::vector<std::uint32_t> rows_of_yarn(model.constraints.size());
+  for (const Chain& chain : chains) {
+    for (const std::uint32_t link : chain.links) rows_of_yarn[link] = rows(chain);
+  }
+  std::vector<std::uint32_t> longest_at;
+  for (const Chunk& chunk : model.simd().chunks) {
+    std::uint32_t& longest = longest_at.emplace_back(0);
+    for (std::uint32_t i = 0; i < chunk.run.length; ++i) {
+      const std::uint32_t c = model.simd().constraint_at[chunk.run.constraint + i];
+      if (c != kNoIndex) longest = std::max(longest, rows_of_yarn[c]);
+    }
+  }
+  return longest_at;
+}
+
+}  // namespace
+
+YarnLayout make_yarn_layout(const Model& model, YarnMemory memory) {
+  YarnLayout layout;
+  layout.cell = cell_of(model.constraints);
+  const Yarns yarns =
+      find_yarns(positions_of(model), links_of(model.constraints, model.constraints.plain));
+  std::vector<Chain> chains = open_chains(yarns, model.slots());
+  Braces braces(model);
+  begin_with_spans(model, braces, chains);
+  sort(chains);
+  layout.longest_at = find_longest_at(model, chains);
+  Builder builder(model, braces, layout);
+  for (std::span<Chain> left = chains; !left.empty();) {
+    const std::size_t n = stretch(left, of_one_length);
+    bring_fours_forward(left.first(n));
+    left = left.subspan(n);
+  }
+  for (std::span<const Chain> left = chains; !left.empty();) {
+    const std::size_t n = stretch(left, of_one_family);
+    layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
+    for (std::size_t i = 0; i < n; i += kLanes) {
+      builder.add_block(left.subspan(i, std::min<std::size_t>(kLanes, n - i)));
+    }
+    left = left.subspan(n);
+  }
+  layout.family_begin.push_back(static_cast<std::uint32_t>(layout.blocks.size()));
+  layout.not_in_second = slots_not_in_second(model, layout);
+  layout.places.floats = 4 * quads_of(model, layout);
+  layout.places.padding = 4 * model.slots();
+  if (memory == YarnMemory::woven_if_possible) weave(model, layout);
+  for (std::uint32_t& slot : layout.not_in_second) slot = layout.places.of(slot);
+  return layout;
+}
+
+std::size_t YarnLayout::bytes() const {
+  return bytes_of(blocks) + bytes_of(links) + bytes_of(constraint) + bytes_of(family_begin) +
+         bytes_of(slot) + bytes_of(patches) + bytes_of(kind) + bytes_of(kinds) +
+         bytes_of(not_in_second) + bytes_of(longest_at) + bytes_of(spans) + bytes_of(span_slots) +
+         places.bytes();
+}
+
+}  // namespace weft

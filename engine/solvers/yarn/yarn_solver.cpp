@@ -1,0 +1,334 @@
+#include "engine/solvers/yarn/yarn_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/bytes_of.h"
+
+namespace weft {
+namespace {
+
+/// Newton's method comes where sweeps leave more than kSlow of the error and the strain is below
+/// kSmall: beyond, directions change so much that a linear system says little. (With 0.02 steps of
+/// hang_sphere are done in halves; with 0.03 one of sphere_drop, taut, by rattle finds no end.)
+constexpr double kSlow = 0.8;
+constexpr double kSmall = 0.025;
+/// Where one more sweep is not expected to come within so many times the goal, nobody looks at the
+/// errors before the second: a look takes half as long as a sweep.
+constexpr double kFar = 2;
+/// What bends is straightened, turns, and is out again by the square of that. A block that is out
+/// by more than kLeft of the goal when it has been solved is solved again at once, while it is in
+/// the caches: the sweeps, and looks, that are saved cost far more (hang, 300 x 300, 1 %: 21 sweeps
+/// a frame without, 5 with it). If kMostSolves do not bring it there, none but the first do until
+/// the next substep. One that is not out by a hundredth of that is left alone. In floats nobody can
+/// tell below kSeen: every block is solved once then. So it is with scheme rattle: along the
+/// directions at the start twenty solves lead no further than one, and its guard takes what is left
+/// alone for a gain of energy.
+constexpr double kLeft = 0.3;
+constexpr std::uint32_t kMostSolves = 20;
+constexpr double kSeen = 1e-6;
+constexpr double kWithin = 0.5;
+constexpr int kMostIterations = 300;  // of conjugate gradients, in one Newton step
+/// With scheme rattle, whose guard takes noise for a gain of energy: corners, 41 x 41, 8 substeps
+/// leaves a sixth of them to scheme paper, at 0.003 a third, at 1e-5 as few for twice the work.
+constexpr double kRattleGoal = 1e-4;
+/// How far the error must come down from look to look, and how often it may not.
+struct Patience {
+  double fall;
+  int passes;
+};
+constexpr Patience kPatience{0.7, 20};
+/// Another scheme is waiting: four give up as many substeps as twenty, in half the iterations.
+constexpr Patience kRattlePatience{0.9, 4};
+/// Velocities that are to be exact are brought to this share of what they were out by.
+constexpr double kExact = 0.01;
+constexpr Patience kVelocityPatience{0.7, 3};
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
+
+/// Whether the error still comes down.
+class Progress {
+ public:
+  explicit Progress(const Patience& patience) : patience_(patience) {}
+
+  /// After a look, which found the error `worst`.
+  bool goes_on(double worst) {
+    stale_ = worst < patience_.fall * best_ ? 0 : stale_ + 1;
+    best_ = std::min(best_, worst);
+    return std::isfinite(worst) && stale_ <= patience_.passes;
+  }
+
+ private:
+  const Patience& patience_;
+  double best_ = kNoBound;
+  int stale_ = 0;
+};
+
+/// What a look at the errors finds: the largest strain, and what contacts and ropes are out by.
+struct Look {
+  double strain, violation;
+};
+
+/// Shares that the blocks of a family are dealt out in at most, each with a scratch of its own.
+constexpr std::size_t kMostShares = 16;
+
+}  // namespace
+
+YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd::Table& table)
+    : model_(model),
+      layout_(model.yarns()),
+      settings_(settings),
+      usual_(std::min(settings.tolerance, kGoal)),
+      table_(table),
+      base_step_(layout_.rows()),
+      base_(layout_.places.floats),
+      u_(layout_.places.floats),
+      first_end_(layout_.families() > 0 ? layout_.family_begin[1] : 0),
+      products_(layout_.blocks.size()),
+      solves_(layout_.blocks.size()),
+      stubborn_(layout_.blocks.size()),
+      others_(model, settings),
+      spans_(layout_, usual_, settings.tolerance, !model.has_contacts()) {
+  const std::size_t wanted =
+      settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
+  if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
+  system_.reserve(layout_.rows());
+  t_.reserve(u_.size());
+  scratch_.resize(layout_.scratch_rows() * std::min(wanted, kMostShares));
+}
+
+simd::Yarns YarnSolver::yarns() {
+  return {.kind = spans_.holds() ? spans_.kind() : layout_.kind.data(),
+          .kinds = spans_.holds() ? spans_.kinds() : layout_.kinds.data(),
+          .system = system_.data(),
+          .slot = layout_.slot.data(),
+          .patch = layout_.patches.data(),
+          .start = from_start_ ? start_.data() : nullptr,
+          .velocities = velocities_,
+          .base = base_.data(),
+          .base_step = base_step_.data(),
+          .cell = static_cast<float>(cell_),
+          .moved = moved_,
+          .from_memory = layout_.from_memory()};
+}
+
+void YarnSolver::split(kernels::VectorsView x, double cell, Team& team) {
+  layout_.places.clear(u_.data());
+  team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    layout_.places.split(table_, x, cell, first, last, base_.data(), u_.data());
+  });
+  cell_ = cell;
+  moved_ = true;
+}
+
+void YarnSolver::keep_start(kernels::VectorsView start, Team& team) {
+  split(start, team);
+  from_start_ = true;
+  for_each_block(0, layout_.blocks.size(), team,
+                 [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
+                   table_.yarn_keep_start(yarns, layout_.blocks[i], u_.data(), scratch);
+                 });
+  others_.keep_start(base_.data(), u_.data());
+}
+
+void YarnSolver::join(kernels::VectorsView x, Team& team) {
+  team.for_each_part(model_.slots(), kStretch,
+                     [&](std::size_t first, std::size_t last) { join(x, first, last); });
+}
+
+void YarnSolver::join(kernels::VectorsView x, std::size_t first, std::size_t last) {
+  layout_.places.join(table_, x, first, last, base_.data(), u_.data());
+}
+
+/// Returns how often; 0: it was good enough.
+std::uint32_t YarnSolver::solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
+                                      simd::YarnScratch* scratch) {
+  const simd::YarnBlock& block = layout_.blocks[i];
+  if (enough == kNoBound) {
+    table_.yarn_sweep(yarns, block, u_.data(), scratch);
+    return 1;
+  }
+  const simd::Swept swept = table_.yarn_sweep_watched(
+      yarns, block, u_.data(), scratch, static_cast<float>(enough), stubborn_[i] ? 1 : kMostSolves);
+  if (!swept.within && swept.solves == kMostSolves) stubborn_[i] = 1;
+  return swept.solves;
+}
+
+void YarnSolver::sweep(double enough, Team& team, kernels::LoopResult& result) {
+  for_each_family(team, [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
+    solves_[i] = solve_block(yarns, i, enough, scratch);
+  });
+  moved_ = false;  // a pass goes down every block, also where nothing is corrected
+  others_.relax(base_.data(), u_.data());
+  std::int64_t visits = 0, corrections = 0;
+  for (std::size_t i = 0; i < solves_.size(); ++i) {
+    visits += std::int64_t{std::max(1u, solves_[i])} * layout_.links[i];
+    corrections += std::int64_t{solves_[i]} * layout_.links[i];
+  }
+  count(1, visits, corrections, result);
+}
+
+/// visits, corrections: of constraints in yarns; all others are visited in every pass.
+void YarnSolver::count(int passes, std::int64_t visits, std::int64_t corrections,
+                       kernels::LoopResult& result) const {
+  const std::int64_t others = passes * static_cast<std::int64_t>(others_.count());
+  result.iterations += passes;
+  ++result.direction_updates;
+  result.visits += visits + others;
+  result.corrections += corrections + others;
+}
+
+/// More than one system only where one-sided constraints join in or let go, or where floats lost
+/// sight of the last digits.
+kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
+                                                   const ContactStore& contacts, bool exact,
+                                                   int max_iterations, Team& team) {
+  kernels::LoopResult result;
+  from_start_ = false;
+  velocities_ = true;
+  make_system();
+  others_.start(contacts, true);
+  split(x, team);
+  linearise_velocities(team);
+  split(v, 0, team);
+  const double tolerated = kWithin * settings_.velocity_tolerance;
+  double goal = tolerated;
+  Progress progress(kVelocityPatience);
+  for (bool solved = false;; solved = true) {
+    const double worst = read_velocities(team);
+    if (exact && !solved) goal = std::min(goal, kExact * worst);
+    result.converged = worst <= tolerated;
+    const int left = max_iterations - result.iterations;
+    const bool enough = worst <= goal || (result.converged && solved);
+    if (enough || left <= 0 || !progress.goes_on(worst)) break;
+    if (!solve(goal, 0, std::min(kMostIterations, left), team, result)) break;
+  }
+  result.converged = result.converged && loses_energy(v);
+  if (result.converged) join(v, team);
+  return result;
+}
+
+/// Whether base + u has no more energy than v. A projection has not, and neither have conjugate
+/// gradients on their way to it; clamped impulses of one-sided constraints, where these depend on
+/// each other, may bring in any amount.
+bool YarnSolver::loses_energy(kernels::VectorsView v) const {
+  constexpr double kRounding = 1e-6;
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    if (model_.inverse_mass[i] == 0) continue;
+    const std::size_t place = layout_.places.of(static_cast<std::uint32_t>(i));
+    const auto axis = [&](std::size_t k) {
+      return static_cast<double>(base_[place + k * layout_.places.stride]) +
+             static_cast<double>(u_[place + k * layout_.places.stride]);
+    };
+    const kernels::Vector now{axis(0), axis(1), axis(2)};
+    before += model_.mass[i] * kernels::dot(v[i], v[i]);
+    after += model_.mass[i] * kernels::dot(now, now);
+  }
+  return after <= (1 + kRounding) * before;
+}
+
+void YarnSolver::begin(kernels::VectorsView x, kernels::VectorsView start,
+                       const ContactStore& contacts, bool first_round, Team& team) {
+  from_start_ = false;
+  velocities_ = false;
+  others_.start(contacts, first_round);
+  if (start.x != nullptr) {
+    spans_.release();
+    keep_start(start, team);
+  }
+  std::ranges::fill(stubborn_, std::uint8_t{0});
+  split(x, team);
+}
+
+YarnSolver::Aim YarnSolver::aim(double allowance) const {
+  const bool rattle = settings_.scheme == Scheme::rattle;
+  const double wanted = spans_.holds() ? spans_.may_leave() : allowance * usual_;
+  const double goal = rattle && !spans_.holds() ? std::min(wanted, kRattleGoal) : wanted;
+  const double left = spans_.holds() ? spans_.solver_may_leave() : goal;
+  const double block = rattle || kLeft * left < kSeen ? kNoBound : kLeft * left;
+  return {wanted, goal, left, block};
+}
+
+/// A Newton step's result is smoother for the sweep behind it, but in cloth that is carried fast
+/// that sweep may undo what it has reached, each time: then it is taken as it was (a run in a cape
+/// of 48 x 48 at 1 %: 5.0 ms a frame, 413 halves in 240 frames, before; 1.3 and one). Not where
+/// taut spans are held or something touches a sphere: heavy spheres end in millions of sweeps.
+bool YarnSolver::may_take_newton(const ContactStore& contacts) const {
+  return !from_start_ && !spans_.holds() && contacts.count() == 0;
+}
+
+kernels::LoopResult YarnSolver::sweep_so_often(kernels::VectorsView x, int times, Team& team) {
+  kernels::LoopResult result;
+  while (result.iterations < times) sweep(kNoBound, team, result);
+  join(x, team);
+  return result;
+}
+
+kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
+                                                const ContactStore& contacts, bool first_round,
+                                                int max_iterations, double allowance,
+                                                SimdMeasure& measure, Team& team) {
+  begin(x, start, contacts, first_round, team);
+  if (settings_.iterations > 0) return sweep_so_often(x, settings_.iterations, team);
+  kernels::LoopResult result;
+  const Aim aim = this->aim(allowance);
+  Progress progress(from_start_ ? kRattlePatience : kPatience);
+  const auto look = [&] {
+    const double strain = measure.max_strain(
+        x, team, [&](std::size_t first, std::size_t last) { join(x, first, last); });
+    return Look{strain, others_.violation(base_.data(), u_.data())};
+  };
+  double before = kNoBound;
+  int sweeps = 1;      // since the last look
+  bool there = false;  // a Newton step led to the goal; t_ is where
+  sweep(aim.block, team, result);
+  for (;;) {
+    const auto [strain, violation] = look();
+    const bool just = violation <= 1;
+    result.converged = strain <= settings_.tolerance && just;
+    if (strain <= aim.goal && just) return result;
+    if (there) {
+      std::ranges::copy(t_, u_.begin());
+      join(x, team);
+      result.converged = true;
+      return result;
+    }
+    if (result.iterations >= max_iterations) {
+      result.failed = !result.converged;
+      return result;
+    }
+    if (!progress.goes_on(std::max(strain / aim.goal, violation))) {
+      result.failed = !(from_start_ ? result.converged : strain <= aim.wanted && just);
+      return result;
+    }
+    const double fall = sweeps == 1 ? strain / before : std::sqrt(strain / before);
+    const int left = max_iterations - result.iterations - 1;  // but for a sweep that is to come
+    sweeps = 1;
+    if (left > 0 && strain < kSmall && fall > kSlow) {
+      split(x, team);
+      if (!newton(kWithin * aim.left, std::min(kMostIterations, left), team, result)) {
+        result.failed = !result.converged;
+        return result;
+      }
+      if (may_take_newton(contacts)) {
+        const Look after = look();
+        there = after.strain <= aim.goal && after.violation <= 1;
+        if (there) std::ranges::copy(u_, t_.begin());
+      }
+    } else if (left > 0 && fall < 1 && fall * strain > kFar * aim.goal) {
+      sweep(aim.block, team, result);
+      sweeps = 2;
+    }
+    sweep(aim.block, team, result);
+    before = strain;
+  }
+}
+
+std::size_t YarnSolver::bytes() const {
+  return bytes_of(base_step_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
+         bytes_of(base_) + bytes_of(u_) + bytes_of(t_) + bytes_of(products_) + bytes_of(solves_) +
+         bytes_of(stubborn_) + others_.bytes() + spans_.bytes();
+}
+
+}  // namespace weft

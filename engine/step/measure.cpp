@@ -1,0 +1,74 @@
+#include "engine/step/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft {
+
+Strain measure_strain(const Model& m, const kernels::Vectors& x) {
+  const ConstraintStore& s = m.constraints;
+  Strain strain;
+  double sum = 0;
+  for (std::size_t c = 0; c < s.size(); ++c) {
+    const double error = strain_of(m, x, c);
+    sum += error * error;
+    if (error > strain.max || strain.worst_constraint == kNoIndex) {
+      strain.max = error;
+      strain.worst_constraint = s.described[c];
+    }
+  }
+  if (s.size() > 0) strain.rms = std::sqrt(sum / static_cast<double>(s.size()));
+  return strain;
+}
+
+Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,
+                      const kernels::Vectors& v) {
+  Energy energy;
+  for (std::size_t i = 0; i < m.slots(); ++i) {
+    if (m.inverse_mass[i] == 0) continue;
+    energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
+    energy.potential -= m.mass[i] * dot(gravity, x[i]);
+  }
+  return energy;
+}
+
+namespace {
+
+using kernels::kMost;
+
+/// In columns, which become lanes: asked one number after the other this took a fifth of a step.
+bool all_finite(const kernels::AlignedVector<double>& v) {
+  constexpr std::size_t kColumns = 8;
+  double beyond[kColumns] = {};
+  const auto judge = [&](std::size_t i, std::size_t column) {
+    beyond[column] += std::abs(v[i]) <= kMost ? 0. : 1.;
+  };
+  const std::size_t whole = v.size() / kColumns * kColumns;
+  for (std::size_t i = 0; i < whole; i += kColumns) {
+    for (std::size_t column = 0; column < kColumns; ++column) judge(i + column, column);
+  }
+  for (std::size_t i = whole; i < v.size(); ++i) judge(i, 0);
+  return std::ranges::all_of(beyond, [](double count) { return count == 0; });
+}
+
+}  // namespace
+
+bool all_finite(const kernels::Vectors& v) {
+  return all_finite(v.x) && all_finite(v.y) && all_finite(v.z);
+}
+
+std::size_t first_not_finite(const Model& m, const kernels::Vectors& x, const kernels::Vectors& v) {
+  const auto within = [](double number) { return std::abs(number) <= kMost; };
+  const auto finite = [&](const kernels::Vectors& vectors, std::size_t i) {
+    return within(vectors.x[i]) && within(vectors.y[i]) && within(vectors.z[i]);
+  };
+  std::size_t any = m.slots();
+  for (std::size_t i = 0; i < m.slots(); ++i) {
+    if (finite(x, i) && finite(v, i)) continue;
+    if (m.inverse_mass[i] > 0) return i;
+    any = std::min(any, i);
+  }
+  return any;
+}
+
+}  // namespace weft

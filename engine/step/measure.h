@@ -1,0 +1,33 @@
+/// What is measured on a state: always from positions and velocities, never from the solver.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/model/model.h"
+
+namespace weft {
+
+/// | |a-b| - rest | / rest of a constraint; a slack rope has none.
+template <class Vectors>
+double strain_of(const Model& model, const Vectors& position, std::size_t constraint) {
+  const ConstraintStore& s = model.constraints;
+  const double l = length(position[s.a[constraint]] - position[s.b[constraint]]);
+  const double stretch = (l - s.rest_length[constraint]) / s.rest_length[constraint];
+  return constraint < s.bilateral ? std::abs(stretch) : std::max(0.0, stretch);
+}
+
+/// Over all active constraints.
+Strain measure_strain(const Model& model, const kernels::Vectors& position);
+Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
+                      const kernels::Vectors& velocity);
+/// Whether all components, and the squared distances between any two vectors, are finite.
+bool all_finite(const kernels::Vectors& vectors);
+/// The first slot of which that is not true, in x or v; a fixed one only if no free one is among
+/// them. The number of slots if there is none.
+std::size_t first_not_finite(const Model& model, const kernels::Vectors& x,
+                             const kernels::Vectors& v);
+
+}  // namespace weft

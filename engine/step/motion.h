@@ -1,0 +1,23 @@
+/// The stages predict and commit, on either backend.
+#pragma once
+
+#include "engine/step/state.h"
+
+namespace weft {
+
+/// Of a free particle, by gravity and forces.
+inline kernels::Vector acceleration(const State& s, std::size_t slot) {
+  return s.force.size() > 0 ? s.gravity + s.model->inverse_mass[slot] * s.force[slot] : s.gravity;
+}
+/// solved: where the particles would be after h without constraints.
+void predict(State& s, double h, Team& team);
+/// next_velocity: from solved. Returns whether both are finite.
+bool commit(State& s, double h, Team& team);
+/// And what the position loop's impulses did.
+bool commit(State& s, double h, kernels::Kicks& kicks, Team& team);
+/// What the impulses of a substep did (engine/step/rattle.h, engine/step/energy.h).
+kernels::Kicks measure_kicks(State& s, double h, Team& team);
+/// Gain and energy alone, of a whole step.
+kernels::Kicks measure_energy_change(State& s, Team& team);
+
+}  // namespace weft

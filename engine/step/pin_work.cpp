@@ -1,0 +1,105 @@
+#include "engine/step/pin_work.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "engine/step/motion.h"
+
+namespace weft {
+namespace {
+
+using kernels::Vector;
+
+/// Where a pin is halfway.
+Vector middle(const State& s, std::size_t slot, double h) {
+  return s.position[slot] + (0.5 * h) * s.velocity[slot];
+}
+
+/// A symmetric matrix of 3 x 3.
+struct Inertia {
+  Vector x{}, y{}, z{};  // columns
+
+  /// Of a unit mass at r.
+  void add(Vector r) {
+    const double square = dot(r, r);
+    x = x + Vector{square, 0, 0} - r.x * r;
+    y = y + Vector{0, square, 0} - r.y * r;
+    z = z + Vector{0, 0, square} - r.z * r;
+  }
+  /// A body that is a line has no inertia about itself, and does not spin about it.
+  Vector spin_of(Vector angular_momentum) const {
+    constexpr double kLine = 1e-9;
+    const double least = kLine * (x.x + y.y + z.z);
+    if (!(least > 0)) return {};
+    const Vector a = x + Vector{least, 0, 0}, b = y + Vector{0, least, 0},
+                 c = z + Vector{0, 0, least};
+    const Vector bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+    const double over = 1 / dot(a, bc);
+    return {over * dot(bc, angular_momentum), over * dot(ca, angular_momentum),
+            over * dot(ab, angular_momentum)};
+  }
+};
+
+bool any_under_way(const State& s) {
+  return std::ranges::any_of(s.model->pins, [&](std::uint32_t pin) {
+    const Vector v = s.velocity[pin];
+    return dot(v, v) > 0;
+  });
+}
+
+double largest_stray(const PinMotion& pins, const State& s, double h) {
+  double most = 0;
+  for (const std::uint32_t pin : s.model->pins) {
+    most = std::max(most, length(s.velocity[pin] - pins.at(middle(s, pin, h))));
+  }
+  return most;
+}
+
+}  // namespace
+
+PinMotion motion_of_pins(const State& s, double h) {
+  PinMotion pins;
+  if (!any_under_way(s)) return pins;
+  const std::vector<std::uint32_t>& holds = s.model->holds;
+  for (const std::uint32_t slot : holds) {
+    pins.centre = pins.centre + middle(s, slot, h);
+    pins.velocity = pins.velocity + s.velocity[slot];
+  }
+  if (!holds.empty()) {
+    const auto count = static_cast<double>(holds.size());
+    pins.centre = (1 / count) * pins.centre;
+    pins.velocity = (1 / count) * pins.velocity;
+    Inertia inertia;
+    Vector angular_momentum{};
+    for (const std::uint32_t slot : holds) {
+      const Vector r = middle(s, slot, h) - pins.centre;
+      inertia.add(r);
+      angular_momentum = angular_momentum + cross(r, s.velocity[slot] - pins.velocity);
+    }
+    pins.spin = inertia.spin_of(angular_momentum);
+  }
+  pins.stray = largest_stray(pins, s, h);
+  return pins;
+}
+
+double work_of(const PinMotion& pins, const State& s, double h) {
+  Vector linear{}, angular{};
+  for (std::size_t slot = 0; slot < s.model->slots(); ++slot) {
+    const double w = s.model->inverse_mass[slot];
+    if (w == 0) continue;
+    const Vector j =
+        (1 / w) * (s.next_velocity[slot] - s.velocity[slot] - h * acceleration(s, slot));
+    linear = linear + j;
+    angular = angular + cross(0.5 * (s.position[slot] + s.solved[slot]) - pins.centre, j);
+  }
+  return dot(pins.velocity, linear) + dot(pins.spin, angular);
+}
+
+double stray_energy(const PinMotion& pins, const State& s) {
+  double mass = 0;
+  for (const double w : s.model->inverse_mass) mass += w > 0 ? 1 / w : 0;
+  return 0.5 * mass * pins.stray * pins.stray;
+}
+
+}  // namespace weft

@@ -1,0 +1,36 @@
+/// The work that moved pins do on a cloth in a substep.
+///
+/// Solvers do not keep the impulses at pins, but their sums are known: what pins give is what the
+/// free particles get besides gravity and forces, J = m (v' - v - h a) each. A pin of velocity u
+/// that gives J does work u . J; all pins together, where they move as a rigid body does, u + s x
+/// (x - c),
+///
+///     u . sum J  +  s . sum (x - c) x J
+///
+/// Of pins that move otherwise this is the work of the rigid motion nearest to theirs (least
+/// squares, each as often as it has constraints). What they do beyond that, and what moved spheres
+/// do, is not known: `stray` says how fast they do it.
+#pragma once
+
+#include "engine/step/state.h"
+
+namespace weft {
+
+/// Of fixed particles; 0 where none is under way.
+struct PinMotion {
+  kernels::Vector centre{}, velocity{}, spin{};  // u + s x (x - c), as above
+  double stray = 0;                              // m/s, the most by which one moves otherwise
+
+  kernels::Vector at(kernels::Vector x) const { return velocity + cross(spin, x - centre); }
+};
+
+/// Halfway through a substep of h from position, with velocity.
+PinMotion motion_of_pins(const State& s, double h);
+
+/// From (position, velocity) to (solved, next_velocity), J.
+double work_of(const PinMotion& pins, const State& s, double h);
+/// What hits free particles as fast as stray may give them that speed: an energy, J, to be put up
+/// with.
+double stray_energy(const PinMotion& pins, const State& s);
+
+}  // namespace weft

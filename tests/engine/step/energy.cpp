@@ -1,0 +1,198 @@
+/// Energy that a substep gains: when it counts as gained, and what take_gained_energy leaves.
+#include "engine/step/energy.h"
+
+#include <doctest/doctest.h>
+
+#include <utility>
+
+#include "engine/model/model.h"
+#include "engine/step/motion.h"
+#include "tests/support/clothes.h"
+#include "tools/scenes/scenes.h"
+
+namespace weft::test {
+namespace {
+
+using kernels::Vector;
+
+constexpr double kGravity = 10;
+
+/// Free fall for a moment, all of it in the state's two ends.
+State falling(double h) {
+  SceneDescription scene = scene_of("hang", 4);
+  State s(std::make_shared<const Model>(scene), Settings{});
+  s.solved = s.position;
+  s.next_velocity = s.velocity;
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (s.model->inverse_mass[slot] == 0) continue;
+    s.solved.y[slot] -= kGravity * h * h / 2;
+    s.next_velocity.y[slot] = -kGravity * h;
+  }
+  return s;
+}
+
+double kinetic(const State& s) {
+  double sum = 0;
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    const double w = s.model->inverse_mass[slot];
+    if (w > 0) sum += dot(s.next_velocity[slot], s.next_velocity[slot]) / (2 * w);
+  }
+  return sum;
+}
+
+TEST_CASE("what gravity gave stays; what came on top is taken") {
+  State s = falling(0.1);
+  const double fallen = kinetic(s);
+  take_gained_energy(s, 0.1);
+  CHECK(kinetic(s) == doctest::Approx(fallen).epsilon(1e-12));
+  for (double& v : s.next_velocity.y) v *= 3;
+  take_gained_energy(s, 0.1);
+  CHECK(kinetic(s) == doctest::Approx(fallen).epsilon(1e-12));
+}
+
+TEST_CASE("what a force gave stays, and of a little on top nothing") {
+  State s = falling(0.1);
+  s.force = kernels::Vectors(s.model->slots());
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    const double w = s.model->inverse_mass[slot];
+    if (w == 0) continue;
+    s.force.y[slot] = -kGravity / w;
+    s.solved.y[slot] -= kGravity * 0.1 * 0.1 / 2;
+    s.next_velocity.y[slot] *= 2;
+  }
+  const double given = kinetic(s);
+  take_gained_energy(s, 0.1);
+  CHECK(kinetic(s) == doctest::Approx(given).epsilon(1e-12));
+  for (double& v : s.next_velocity.y) v *= 1 + 1e-9;
+  take_gained_energy(s, 0.1);
+  CHECK(kinetic(s) == doctest::Approx(given).epsilon(1e-12));
+}
+
+TEST_CASE("energy that was lost is not given back") {
+  State s = falling(0.1);
+  for (double& v : s.next_velocity.y) v *= 0.5;
+  const double before = kinetic(s);
+  take_gained_energy(s, 0.1);
+  CHECK(kinetic(s) == before);
+}
+
+TEST_CASE("what was lifted without work comes to rest, and no further") {
+  State s = falling(0.1);
+  for (double& y : s.solved.y) y += 1;
+  take_gained_energy(s, 0.1);
+  CHECK(kinetic(s) == 0);
+}
+
+/// In a frame in which this one moves at `speed`.
+State seen_from(State s, Vector speed, double h) {
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (!s.model->is_particle(slot)) continue;
+    s.solved.set(slot, s.solved[slot] + h * speed);
+    s.velocity.set(slot, s.velocity[slot] + speed);
+    s.next_velocity.set(slot, s.next_velocity[slot] + speed);
+  }
+  return s;
+}
+
+TEST_CASE("what is taken does not depend on who looks on") {
+  const double h = 0.1;
+  const Vector speed{3, -20, 40};
+  State s = falling(h);
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (s.model->inverse_mass[slot] == 0) continue;
+    const double k = slot;
+    s.next_velocity.set(slot, {k, 2 - k, 3});
+  }
+  State moving = seen_from(s, speed, h);
+  const double before = kinetic(s);
+  take_gained_energy(s, h);
+  take_gained_energy(moving, h);
+  CHECK(kinetic(s) > 0);
+  CHECK(kinetic(s) < before / 2);
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (!s.model->is_particle(slot)) continue;
+    CHECK(length(moving.next_velocity[slot] - s.next_velocity[slot] - speed) < 1e-10);
+  }
+}
+
+/// As the paper's scheme makes them of the positions.
+void set_velocities(State& s, double h) {
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (s.model->inverse_mass[slot] == 0) continue;
+    const Vector moved = s.solved[slot] - s.position[slot];
+    s.next_velocity.set(slot, (1 / h) * moved + (h / 2) * acceleration(s, slot));
+  }
+}
+
+bool gains(const State& s, double h) {
+  kernels::Kicks kicks;
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    const double w = s.model->inverse_mass[slot];
+    if (w == 0) continue;
+    const Vector a = acceleration(s, slot), v = s.velocity[slot], next = s.next_velocity[slot];
+    const Vector moved = s.solved[slot] - s.position[slot];
+    const Vector kick = next - v - h * a;
+    kicks.first += dot(kick, kick) / w;
+    kicks.gain += (dot(next, next) - dot(v, v) - 2 * dot(a, moved)) / w;
+    kicks.energy += dot(next, next) / w;
+  }
+  return gains_energy(s, kicks, h);
+}
+
+TEST_CASE("what falls gains nothing, nor does what is held from its first substep on") {
+  CHECK_FALSE(gains(falling(0.1), 0.1));
+  State held = falling(0.1);
+  held.solved = held.position;
+  set_velocities(held, 0.1);
+  REQUIRE(kinetic(held) > 0);  // h a / 2
+  CHECK_FALSE(gains(held, 0.1));
+}
+
+TEST_CASE("a kick that turned into speed is a gain, one that stopped something is none") {
+  const double h = 0.1;
+  State s = falling(h);
+  s.gravity = {};
+  s.next_velocity = s.velocity;
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    s.solved.set(slot, s.position[slot]);
+    if (s.model->inverse_mass[slot] > 0) s.solved.z[slot] += 0.01;
+  }
+  set_velocities(s, h);
+  CHECK(gains(s, h));
+  std::swap(s.velocity, s.next_velocity);
+  CHECK_FALSE(gains(s, h));
+}
+
+/// A sheet at rest that a substep takes along with its pins, or some of them.
+State taken_along(Vector speed, std::size_t pins, double h) {
+  const SceneDescription scene = scene_of("hang", 4);
+  State s(std::make_shared<const Model>(scene), Settings{});
+  s.gravity = {};
+  s.solved = s.position;
+  s.next_velocity = s.velocity;
+  for (std::size_t k = 0; k < pins; ++k) {
+    s.velocity.set(s.model->ordering.slot_of[scene.fixed[k]], speed);
+  }
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (s.model->inverse_mass[slot] > 0) s.solved.set(slot, s.position[slot] + h * speed);
+  }
+  set_velocities(s, h);
+  return s;
+}
+
+TEST_CASE("motion that pins brought is no gain") {
+  const Vector speed{1, 2, 3};
+  const std::size_t pins = scene_of("hang", 4).fixed.size();
+  CHECK_FALSE(gains(taken_along(speed, pins, 0.1), 0.1));
+  CHECK_FALSE(gains(taken_along(speed, 1, 0.1), 0.1));  // its kind is not known: put up with
+  CHECK(gains(taken_along(speed, 0, 0.1), 0.1));
+  State s = taken_along(speed, pins, 0.1);
+  take_gained_energy(s, 0.1);
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (s.model->inverse_mass[slot] == 0) continue;
+    CHECK(length(s.next_velocity[slot] - speed) < 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace weft::test
