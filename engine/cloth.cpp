@@ -4,9 +4,9 @@
 
 #include "engine/contacts/contacts.h"
 #include "engine/isa.h"
+#include "engine/measure/state_measure.h"
 #include "engine/model/validate.h"
 #include "engine/step/choose_solver.h"
-#include "engine/step/measure.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"
 
@@ -127,7 +127,7 @@ Result<void> Cloth::write_positions(std::span<const Vec3> in) {
   impl_->placed = true;
   impl_->lost_energy = 0;
   impl_->last_dt = 0;
-  impl_->trouble = {};
+  impl_->refinement = 0;
   return {};
 }
 

@@ -24,9 +24,9 @@ constexpr Kernel kKernels[] = {
      }},
     {"commit_watched", 112, 112,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation&) {
-       kernels::Kicks kicks;
-       t.commit_watched(w.motion(), kStep, 0, w.slots(), kicks);
-       benchmark::DoNotOptimize(kicks);
+       kernels::ImpulseEnergy impulses;
+       t.commit_watched(w.motion(), kStep, 0, w.slots(), impulses);
+       benchmark::DoNotOptimize(impulses);
      }},
     {"apply_displacements", 72, 36,
      [](const simd::Table& t, Workbench& w, const simd::Relaxation& r) {

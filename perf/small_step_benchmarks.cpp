@@ -4,7 +4,7 @@
 
 #include "engine/isa.h"
 #include "engine/model/model.h"
-#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/small_steps/simd_small_steps.h"
 #include "engine/tuning.h"
 #include "perf/benchmarks.h"
 #include "tools/scenes/scenes.h"

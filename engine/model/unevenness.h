@@ -16,10 +16,6 @@ struct Unevenness {
   double lightness_per_metre = 0;  // that over the mean rest length of the part
 };
 
-/// A ratio beyond which the direct solver answers where yarns give up, and is chosen in their place
-/// where the number of substeps is given.
-inline constexpr double kUneven = 1e4;
-
 /// inverse_mass: per particle, 0 where it is fixed. Constraint c joins a[c] to b[c].
 Unevenness find_unevenness(std::span<const double> inverse_mass, std::span<const std::uint32_t> a,
                            std::span<const std::uint32_t> b, std::span<const double> rest_length);

@@ -1,32 +1,55 @@
-/// Energy that a substep brings about, and its answers.
+/// Energy that the solution of constraints brings about: the guard, and what scheme rattle is
+/// rejected for.
 ///
-/// With D, by how much solving moves a particle, a substep by scheme paper is
+/// With D, by how much solving moves a particle, and K, what the velocity loop adds, a substep is
 ///
-///     x' = x + h v + h^2/2 a + D,    v' = v + h a + D / h
+///     x' = x + h v + h^2/2 a + D,    v' = v + h a + D / h + K
 ///
-/// Where x' is the place nearest to the prediction that keeps the constraints, it loses the energy
-/// 1/2 sum m |D / h|^2 of its kick, or nearly, if x kept them. Newton's method, and yarns, may end
-/// in another place that keeps them, far off, all within tolerance: the kick's energy is then
-/// gained (random scenes: 0.78 to 1.0 times it).
+/// An error that is left within tolerance is a loaded spring: its correction, D, comes back as the
+/// speed D / h, the more the shorter the substep. And Newton's method, or yarns, may end in a place
+/// that keeps all constraints far from where the motion leads: the energy of D / h is then gained.
+/// So a substep, but for those of the paper's own loop, is guarded:
+///
+///     1/2 sum m |v'|^2 - m |v|^2 - 2 m a . (x' - x)  <=  work of moved pins
+///
+/// What is gained beyond that is taken out of the velocities, all of them slowed down by the same
+/// factor; with pins under way the motion that differs from theirs is (pin_work.h).
+///
+/// Scheme rattle takes D along the directions at x and K along those at x'. Both are h/2 times the
+/// acceleration that the constraints cause, but for O(h^2), and what they do to the energy cancels
+/// as far. If h does not resolve the motion, because a tension T swings a constraint faster than
+/// that (h^2 T / (m rest) of about 1), energy rises by much of what K is worth. Two measures of the
+/// gain each count one thing too much, and the smaller one holds:
+///
+///     1/2 sum m |v'|^2 - m |v|^2 - 2 m a . (x' - x)    counts the work of moved pins, but for what
+///                                                      is known of it (pin_work.h)
+///     1/2 sum m |D/h|^2 - m |K|^2                      counts what an impact took, or velocities
+///                                                      out of tolerance, as if it were gained
 #pragma once
 
 #include "engine/step/state.h"
 
 namespace weft {
 
-/// Whether energy rose from (position, velocity) to (solved, next_velocity) by more than gravity,
-/// forces and moved pins explain, and by much of what the kick is worth. kicks: of this substep.
-bool gains_energy(const State& s, const kernels::Kicks& kicks, double h);
+/// Whether a substep by scheme rattle gains much of what its impulses are worth.
+bool gains_energy(const State& s, const kernels::ImpulseEnergy& impulses, double h);
 
-/// The guard of small steps does the same for a whole step whose change of energy is known. Energy
-/// that was lost shortly before may come back (State::lost_energy): constraints are springs that
-/// store it, and rounding takes it as often as it gives it. The guard is cheap if no pins are under
-/// way.
-void take_gained_energy(State& s, const kernels::Kicks& change, double dt);
+/// The guard of a substep by a solver, from (position, velocity) to (solved, next_velocity). As
+/// long as it gains less than a share of what its impulses are worth it is left alone, unless it is
+/// suspect: other attempts were rejected. Returns whether there was so much energy in the
+/// velocities: a substep that has lifted its particles by more is in a wrong place. Cheap where
+/// nothing is gained.
+bool guard_energy(State& s, const kernels::ImpulseEnergy& impulses, bool is_suspect, double h);
 
-/// Slows next_velocity down, all of it by the same factor, as far as the energy rose by more than
-/// gravity, forces and moved pins explain; with pins under way what is slowed down is the motion
-/// that differs from theirs (pin_work.h).
-void take_gained_energy(State& s, double h);
+/// The guard of small steps. Constraints are springs here: energy that was lost shortly before
+/// (State::lost_energy) is stored in them, and may come back; and rounding takes it as often as it
+/// gives it. Cheap if no pins are under way.
+void guard_springs(State& s, const kernels::ImpulseEnergy& change, double h);
+
+// Its parts:
+/// J, beyond the work of moved pins.
+double gained_energy(const State& s, const kernels::ImpulseEnergy& change, double h);
+/// Returns whether there was so much in the velocities.
+bool take_energy(State& s, double gain, double h);
 
 }  // namespace weft

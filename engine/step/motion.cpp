@@ -3,7 +3,7 @@
 #include <atomic>
 #include <span>
 
-#include "engine/step/measure.h"
+#include "engine/measure/state_measure.h"
 #include "kernels/reference/integrate.h"
 
 namespace weft {
@@ -35,16 +35,16 @@ simd::Motion simd_motion(State& s) {
   return m;
 }
 
-kernels::Kicks sum(std::span<const kernels::Kicks> of_stretches) {
-  kernels::Kicks sum;
-  for (const kernels::Kicks& kicks : of_stretches) sum.add(kicks);
+kernels::ImpulseEnergy sum(std::span<const kernels::ImpulseEnergy> of_stretches) {
+  kernels::ImpulseEnergy sum;
+  for (const kernels::ImpulseEnergy& impulses : of_stretches) sum.add(impulses);
   return sum;
 }
 
 }  // namespace
 
 void predict(State& s, double h, Team& team) {
-  if (s.reference) return reference::predict(reference_motion(s), h);
+  if (s.settings.backend == Backend::reference) return reference::predict(reference_motion(s), h);
   const simd::Motion motion = simd_motion(s);
   team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
     s.kernels->predict(motion, h, first, last);
@@ -52,7 +52,7 @@ void predict(State& s, double h, Team& team) {
 }
 
 bool commit(State& s, double h, Team& team) {
-  if (s.reference) {
+  if (s.settings.backend == Backend::reference) {
     reference::commit(reference_motion(s), h, s.next_velocity.view());
     return all_finite(s.solved) && all_finite(s.next_velocity);
   }
@@ -64,40 +64,40 @@ bool commit(State& s, double h, Team& team) {
   return finite;
 }
 
-bool commit(State& s, double h, kernels::Kicks& kicks, Team& team) {
-  if (s.reference) {
+bool commit(State& s, double h, kernels::ImpulseEnergy& impulses, Team& team) {
+  if (s.settings.backend == Backend::reference) {
     const bool finite = commit(s, h, team);
-    kicks = measure_kicks(s, h, team);
+    impulses = measure_impulses(s, h, team);
     return finite;
   }
   const simd::Motion motion = simd_motion(s);
   std::atomic<bool> finite{true};
   team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
-    if (!s.kernels->commit_watched(motion, h, first, last, s.kicks[first / kStretch]))
+    if (!s.kernels->commit_watched(motion, h, first, last, s.impulses[first / kStretch]))
       finite.store(false, std::memory_order_relaxed);
   });
-  kicks = sum(s.kicks);
+  impulses = sum(s.impulses);
   return finite;
 }
 
-kernels::Kicks measure_kicks(State& s, double h, Team& team) {
-  if (s.reference) {
-    return reference::measure_kicks(reference_motion(s), h, s.next_velocity.view());
+kernels::ImpulseEnergy measure_impulses(State& s, double h, Team& team) {
+  if (s.settings.backend == Backend::reference) {
+    return reference::measure_impulses(reference_motion(s), h, s.next_velocity.view());
   }
   const simd::Motion motion = simd_motion(s);
   team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
-    s.kicks[first / kStretch] = s.kernels->measure_kicks(motion, h, first, last);
+    s.impulses[first / kStretch] = s.kernels->measure_impulses(motion, h, first, last);
   });
-  return sum(s.kicks);
+  return sum(s.impulses);
 }
 
-kernels::Kicks measure_energy_change(State& s, Team& team) {
-  if (s.reference) return measure_kicks(s, 1, team);
+kernels::ImpulseEnergy measure_energy_change(State& s, Team& team) {
+  if (s.settings.backend == Backend::reference) return measure_impulses(s, 1, team);
   const simd::Motion motion = simd_motion(s);
   team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
-    s.kicks[first / kStretch] = s.kernels->measure_energy_change(motion, first, last);
+    s.impulses[first / kStretch] = s.kernels->measure_energy_change(motion, first, last);
   });
-  return sum(s.kicks);
+  return sum(s.impulses);
 }
 
 }  // namespace weft

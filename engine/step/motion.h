@@ -14,10 +14,10 @@ void predict(State& s, double h, Team& team);
 /// next_velocity: from solved. Returns whether both are finite.
 bool commit(State& s, double h, Team& team);
 /// And what the position loop's impulses did.
-bool commit(State& s, double h, kernels::Kicks& kicks, Team& team);
+bool commit(State& s, double h, kernels::ImpulseEnergy& impulses, Team& team);
 /// What the impulses of a substep did (engine/step/rattle.h, engine/step/energy.h).
-kernels::Kicks measure_kicks(State& s, double h, Team& team);
+kernels::ImpulseEnergy measure_impulses(State& s, double h, Team& team);
 /// Gain and energy alone, of a whole step.
-kernels::Kicks measure_energy_change(State& s, Team& team);
+kernels::ImpulseEnergy measure_energy_change(State& s, Team& team);
 
 }  // namespace weft

@@ -2,33 +2,56 @@
 
 #include <algorithm>
 
-#include "engine/step/measure.h"
+#include "engine/measure/state_measure.h"
+#include "engine/step/exact_substep.h"
 #include "engine/step/motion.h"
 #include "engine/step/reporting.h"
-#include "engine/step/solve.h"
-#include "engine/step/substep.h"
+#include "engine/step/small_step.h"
+#include "engine/tuning.h"
 
 namespace weft {
+namespace {
 
-bool violates_constraints(State& s, Team& team) {
-  return s.settings.iterations == 0 &&
-         (max_strain_at(s, s.position, team) > s.settings.tolerance ||
-          penetration_at(s, s.position) > s.settings.contact_tolerance);
+bool is_exact(const State& s) {
+  return s.settings.solver == Solver::yarn || s.settings.solver == Solver::direct;
 }
 
-double project(State& s, double h, double allowance, StepReport& report, Team& team) {
+bool follows_a_far_longer_step(const State& s, double dt) {
+  return is_exact(s) && dt < tuning::kFarShorter * s.last_dt;
+}
+
+/// Of the strain that the solver usually leaves: what may be left before a step of dt.
+double share_before(const State& s, double dt) {
+  return follows_a_far_longer_step(s, dt) ? std::max(tuning::kLeastShare, dt / s.last_dt) : 1;
+}
+
+}  // namespace
+
+bool needs_projection(State& s, double dt, bool jumped, Team& team) {
+  if (s.settings.iterations > 0) return false;
+  if (follows_a_far_longer_step(s, dt)) return true;
+  return (s.placed || jumped) && s.measure->error(s.position.view(), s.contacts, team) > 1;
+}
+
+void project(State& s, double dt, StepReport& report, Team& team) {
   s.solved = s.position;
   find_contacts(s, report);
-  const Attempt attempt{.h = h,
-                        .most_iterations = std::max(1, s.settings.max_iterations / 2),
-                        .on_failure = OnFailure::sweep,
-                        .hold_taut = allowance < 1,
-                        .allowance = allowance,
-                        .stood_at = s.trouble.stood_at()};
-  Trial trial;
-  timed(report, Stage::solve_positions, [&] { trial = solve_positions(s, attempt, report, team); });
+  timed(report, Stage::solve_positions, [&] {
+    if (s.settings.solver == Solver::small_steps)
+      return project_by_small_steps(s, dt, report, team);
+    const PositionTask task{.x = s.solved.view(),
+                            .start = s.position.view(),
+                            .contacts = s.contacts,
+                            .h = dt,
+                            .share = share_before(s, dt),
+                            .max_iterations = std::max(1, s.settings.max_iterations / 2)};
+    const auto result = solve_positions(s, *s.solver, task, report, team);
+    if (!result.converged && s.small_steps) {
+      s.solved = s.position;
+      project_by_small_steps(s, dt, report, team);
+    }
+  });
   if (all_finite(s.solved)) s.position = s.solved;
-  return trial.stood_at;
 }
 
 void explain(State& s, double h, StepReport& report, Team& team) {
@@ -41,6 +64,15 @@ void explain(State& s, double h, StepReport& report, Team& team) {
   report.substeps = 0;
   report.pin_work = 0;
   worsen(report, input ? Status::non_finite_input : Status::non_finite);
+}
+
+void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team) {
+  const Strain strain = s.measure->strain(x.view(), team);
+  report.max_strain = strain.max;
+  report.rms_strain = strain.rms;
+  report.worst_constraint = strain.worst_constraint;
+  report.contacts = static_cast<int>(s.contacts.count());
+  report.max_penetration = s.measure->penetration(x.view(), s.contacts);
 }
 
 }  // namespace weft

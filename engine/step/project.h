@@ -1,21 +1,25 @@
-/// What a step may have to do before it begins, and to say in the end.
+/// What a step may have to do before it begins, and to say where it is not committed.
 #pragma once
 
 #include "engine/step/state.h"
 
 namespace weft {
 
-/// Whether a constraint or contact is out of tolerance; with a fixed number of iterations nobody
-/// asks.
-bool violates_constraints(State& s, Team& team);
+/// Whether the start is out of tolerance because positions were given, or pins have jumped; or
+/// because it comes from a step that was far longer than dt: what that left within tolerance, an
+/// error e, would come back as speed, e / dt. The paper's loop leaves errors of up to the tolerance
+/// in every step, and small steps release them slowly: for these a far shorter step is none.
+bool needs_projection(State& s, double dt, bool jumped, Team& team);
 
-/// Moves the positions onto the constraints and leaves the velocities: the error of a start would
-/// become a velocity of error / h. What cannot be put right with half of the iterations that a
-/// substep may take is left to the step, and to its status. Returns what sweeps could not solve.
-double project(State& s, double h, double allowance, StepReport& report, Team& team);
+/// Moves the positions onto the constraints and leaves the velocities. What cannot be put right
+/// with half of the iterations that a step may take is left to the step, and to its status.
+void project(State& s, double dt, StepReport& report, Team& team);
 
 /// Of a step that is not committed: who left the range of numbers, and whether that would have
 /// happened without any constraint.
 void explain(State& s, double h, StepReport& report, Team& team);
+
+/// The true errors at x.
+void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team);
 
 }  // namespace weft

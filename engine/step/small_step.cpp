@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 
 #include "engine/contacts/contacts.h"
 #include "engine/contacts/crossings.h"
+#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/stall.h"
 #include "engine/step/energy.h"
-#include "engine/step/measure.h"
+#include "engine/step/exact_substep.h"
 #include "engine/step/motion.h"
 #include "engine/step/pin_work.h"
 #include "engine/step/project.h"
 #include "engine/step/reporting.h"
-#include "engine/step/solve.h"
-#include "engine/step/substep.h"
-#include "engine/step/transaction.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -32,19 +31,22 @@ double mean_acceleration(const State& s) {
   return mass > 0 ? sum / mass : 0;
 }
 
-/// Substeps are about as long as the load allows. In a step that is far shorter than that
+/// Substeps are about as long as the load allows. Whoever takes over from another solver has no
+/// past. In a step that is far shorter than that
 /// corrections are smaller: a sweep is a spring of stiffness omega / h^2, and a spring that keeps
 /// its stiffness releases nothing of what it holds.
-template <class Solver>
-FramePlan plan_for(State& s, const Solver& solver, double dt) {
-  FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed};
-  if (s.settings.substeps != kAutomaticSubsteps) {
+FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& budget) {
+  const bool takes_over = s.settings.solver != Solver::small_steps;
+  FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed || takes_over};
+  if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
     plan.substeps = s.settings.substeps;
   } else {
     const double usual = std::min(tuning::kLongestSubstep,
                                   solver.substep_length(s.position.view(), mean_acceleration(s)));
     const double wanted = std::ceil(dt / usual);
-    const int most = std::min(tuning::kMostSubsteps, s.settings.max_iterations);
+    // A substep is a sweep or two, and visits of local passes.
+    const int most =
+        std::min(tuning::kMostSubsteps, std::max(1, budget.positions / (2 + tuning::kMostVisits)));
     plan.substeps = wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
     const double part = 2 * dt / (plan.substeps * usual);
     if (part < 1) plan.omega *= part * part;
@@ -54,48 +56,47 @@ FramePlan plan_for(State& s, const Solver& solver, double dt) {
 }
 
 /// The frame that is being done.
-template <class Solver>
 class Frame {
  public:
-  Frame(State& s, Solver& solver, StepReport& report, Team& team)
+  Frame(State& s, const Budget& budget, StepReport& report, Team& team)
       : s_(s),
-        solver_(solver),
+        solver_(*s.small_steps),
         report_(report),
         team_(team),
+        end_(report.iterations + budget.positions),
         edges_(static_cast<std::int64_t>(s.model->constraints.size())) {}
 
   void begin(const FramePlan& plan) {
+    plan_ = plan;
     const kernels::VectorsView force =
         s_.force.size() > 0 ? s_.force.view() : kernels::VectorsView{};
-    if (s_.model->has_contacts()) s_.substep_start = s_.position;
+    if (s_.model->has_contacts()) s_.substep_positions = s_.position;
     solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, plan, team_);
   }
 
   void substep() {
     solver_.advance(team_);
+    ++substeps_done_;
     const bool to_tolerance = s_.settings.iterations == 0;
     for (int i = 0; i < std::max(1, s_.settings.iterations); ++i) sweep();
     if (to_tolerance && many_are_out()) sweep();
     if (s_.model->has_contacts()) find_contacts();
     if (to_tolerance) count(solver_.repair(s_.contacts, most_visits(tuning::kMostVisits)));
     if (s_.model->has_contacts()) watch_crossings();
-    ++report_.substeps;
   }
 
   /// Puts right what the last substep left out of tolerance, in rounds of a sweep and local passes
   /// that look at all constraints. If rounds no longer bring the error down it is there to stay.
   Status finish() {
     read_positions();
-    double worst = std::numeric_limits<double>::infinity();
-    for (int round = 0, stalled = 0;; ++round) {
+    Stall stall;
+    for (int round = 0;; ++round) {
       if (is_within_tolerance()) return Status::converged;
       if (s_.settings.iterations > 0) return Status::fixed_iterations;
       if (round >= most_rounds()) return Status::iteration_limit;
-      const double now = std::max(report_.max_strain / s_.settings.tolerance,
-                                  report_.max_penetration / s_.settings.contact_tolerance);
-      stalled = now < tuning::kFall * worst ? 0 : stalled + 1;
-      if (stalled > tuning::kPatience) return Status::infeasible;
-      worst = std::min(worst, now);
+      const double error = std::max(report_.max_strain / s_.settings.tolerance,
+                                    report_.max_penetration / s_.settings.contact_tolerance);
+      if (stall.has_stalled(error)) return Status::infeasible;
       timed(report_, Stage::solve_positions, [&] { put_right(); });
     }
   }
@@ -112,10 +113,12 @@ class Frame {
            report_.max_penetration <= s_.settings.contact_tolerance;
   }
 
+  std::uint32_t passed_particle = kNoIndex;  // the description's number
+
  private:
   /// With a number of substeps that was given the time of a frame is to be bounded.
   int most_rounds() const {
-    if (report_.iterations >= s_.settings.max_iterations) return 0;
+    if (report_.iterations >= end_) return 0;
     return s_.settings.substeps == kAutomaticSubsteps ? tuning::kMostRounds : 1;
   }
   void put_right() {
@@ -136,7 +139,7 @@ class Frame {
   }
 
   std::int64_t most_visits(std::int64_t sweeps) const {
-    const std::int64_t left = s_.settings.max_iterations - report_.iterations;
+    const std::int64_t left = end_ - report_.iterations;
     return std::max<std::int64_t>(1, std::min(sweeps, left)) * edges_;
   }
   void count(const LocalWork& work) {
@@ -147,7 +150,15 @@ class Frame {
   void read_positions() {
     s_.solved = s_.position;
     solver_.read_positions(s_.solved.view(), team_);
-    s_.pins.place(s_.solved);
+    place_pins();
+  }
+  /// Exactly where they travel to: lanes round their way.
+  void place_pins() {
+    if (!s_.pins.moving()) return;
+    const double time = plan_.h * substeps_done_;
+    for (const std::uint32_t pin : s_.model->pins) {
+      s_.solved.set(pin, s_.position[pin] + time * s_.velocity[pin]);
+    }
   }
   void find_contacts() {
     read_positions();
@@ -155,71 +166,74 @@ class Frame {
   }
   void watch_crossings() {
     read_positions();
-    const std::uint32_t passed = find_crossing(*s_.model, *s_.kernels, s_.substep_start.view(),
+    const std::uint32_t passed = find_crossing(*s_.model, *s_.kernels, s_.substep_positions.view(),
                                                s_.solved.view(), s_.contacts);
     if (passed != kNoIndex) {
-      report_.passed_particle = s_.model->ordering.particle_at[passed];
-      worsen(report_, Status::passed_through);
+      passed_particle = s_.model->ordering.particle_at[passed];
     }
-    s_.substep_start = s_.solved;
+    s_.substep_positions = s_.solved;
   }
 
   State& s_;
-  Solver& solver_;
+  SmallSteps& solver_;
   StepReport& report_;
   Team& team_;
-  const std::int64_t edges_;
+  const std::int64_t end_;    // of the budget, as the report counts iterations
+  const std::int64_t edges_;  // all constraints
+  FramePlan plan_;
+  int substeps_done_ = 0;
 };
 
-/// A frame gains no energy but what forces and pins bring in.
-void guard_energy(State& s, const kernels::Kicks& change, double dt, StepReport& report) {
-  if (s.settings.iterations == 0) take_gained_energy(s, change, dt);
-  if (s.pins.moving()) report.pin_work = work_of(motion_of_pins(s, dt), s, dt);
-}
+}  // namespace
 
-template <class Solver>
-bool run(State& s, Solver& solver, double dt, bool jumped, StepReport& report, Team& team) {
-  Transaction transaction(s);
-  if ((s.placed || jumped) && violates_constraints(s, team)) {
-    transaction.begin();
-    project(s, dt, 1, report, team);
-  }
-  Frame<Solver> frame(s, solver, report, team);
+Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budget,
+                 StepReport& report, Team& team) {
+  const bool fixed = s.settings.iterations > 0;
+  Trial trial;
+  Frame frame(s, budget, report, team);
   FramePlan plan;
   timed(report, Stage::predict, [&] {
-    plan = plan_for(s, solver, dt);
+    plan = plan_for(s, *s.small_steps, h, budget);
     frame.begin(plan);
   });
   timed(report, Stage::solve_positions, [&] {
     for (int i = 0; i < plan.substeps; ++i) frame.substep();
   });
-  const Status status = frame.finish();
-  kernels::Kicks change;
-  timed(report, Stage::commit, [&] {
-    frame.read_velocities();
-    change = measure_energy_change(s, team);
-  });
+  trial.substeps = plan.substeps;
+  trial.status = frame.finish();
+  if (trial.status != Status::converged && !attempt.is_last) {
+    trial.outcome = Outcome::rejected;
+    return trial;
+  }
+  kernels::ImpulseEnergy change;
+  timed(report, Stage::commit, [&] { frame.read_velocities(); });
+  if (s.settings.velocity_correction) {
+    timed(report, Stage::correct_velocities,
+          [&] { trial.worsen(correct_velocities(s, *s.sweeps, false, budget, report, team)); });
+  }
+  timed(report, Stage::commit, [&] { change = measure_energy_change(s, team); });
   // A position is no number only where the velocity is none.
   if (!std::isfinite(change.energy)) {
-    explain(s, dt, report, team);
-    return false;
+    trial.outcome = Outcome::not_finite;
+    return trial;
   }
-  worsen(report, s.settings.iterations > 0 ? Status::fixed_iterations : status);
-  timed(report, Stage::commit, [&] { guard_energy(s, change, dt, report); });
+  if (fixed) trial.worsen(Status::fixed_iterations);
+  if (frame.passed_particle != kNoIndex) {
+    trial.passed_particle = frame.passed_particle;
+    trial.worsen(Status::passed_through);
+  }
   timed(report, Stage::commit, [&] {
-    solver.keep(team);
-    transaction.accept();
-    transaction.complete();
+    if (!fixed) guard_springs(s, change, h);
+    if (s.pins.moving()) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
+    s.small_steps->keep(team);
   });
-  s.placed = false;
-  return true;
+  return trial;
 }
 
-}  // namespace
-
-bool run_small_steps(State& s, double dt, bool jumped, StepReport& report, Team& team) {
-  return s.small_steps ? run(s, *s.small_steps, dt, jumped, report, team)
-                       : run(s, *s.reference_small_steps, dt, jumped, report, team);
+void project_by_small_steps(State& s, double h, StepReport& report, Team& team) {
+  Frame frame(s, {.positions = std::max(1, s.settings.max_iterations / 2)}, report, team);
+  frame.begin({.h = h, .omega = tuning::kOmega, .placed = true});
+  frame.finish();
 }
 
 }  // namespace weft

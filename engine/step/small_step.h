@@ -1,11 +1,18 @@
-/// A step by small steps (engine/solvers/small_steps/small_steps.h), from its beginning to its end.
+/// A step, or a substep that other solvers gave up, by small steps: small_step.cpp has the whole of
+/// it from top to bottom.
 #pragma once
 
+#include "engine/step/attempt.h"
 #include "engine/step/state.h"
 
 namespace weft {
 
-/// Returns whether all of dt was done; jumped: pins were put elsewhere before it.
-bool run_small_steps(State& s, double dt, bool jumped, StepReport& report, Team& team);
+/// Computes the next state, in solved and next_velocity; its errors are in the report. What is
+/// out of tolerance in the end is put right in rounds or, if nothing is tried after it, said.
+Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budget,
+                 StepReport& report, Team& team);
+
+/// Puts solved, which is equal to position, right in the same rounds.
+void project_by_small_steps(State& s, double h, StepReport& report, Team& team);
 
 }  // namespace weft

@@ -1,27 +1,60 @@
 #include "engine/step/step.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include "engine/parallel/team.h"
+#include "engine/step/exact_substep.h"
+#include "engine/step/plan.h"
+#include "engine/step/project.h"
 #include "engine/step/reporting.h"
 #include "engine/step/small_step.h"
-#include "engine/step/solve.h"
-#include "engine/step/substeps.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
 
-/// Below this a thread has too little to do between two meetings: two gained nothing at 1,600
-/// particles and 1.7 times at 10,000.
-constexpr std::size_t kLeastSlotsPerThread = 1000;
-
 int threads_worth_having(const State& s) {
-  if (s.reference) return 1;
-  const std::size_t most = s.model->slots() / kLeastSlotsPerThread;
+  if (s.settings.backend == Backend::reference) return 1;
+  const std::size_t most = s.model->slots() / tuning::kLeastSlotsPerThread;
   const std::size_t wanted = s.settings.threads > 0 ? static_cast<std::size_t>(s.settings.threads)
                                                     : static_cast<std::size_t>(kMaxThreads);
   return static_cast<int>(std::min(most, wanted));
 }
+
+/// The state at the beginning of a step, or of a substep: it comes back unless what is done from
+/// there is committed.
+class Transaction {
+ public:
+  Transaction(State& s, Checkpoint& start) : s_(s), start_(start) {}
+  ~Transaction() { roll_back(); }
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+
+  /// Before the first change.
+  void begin() {
+    if (begun_) return;
+    start_.position = s_.position;
+    start_.velocity = s_.velocity;
+    start_.lost_energy = s_.lost_energy;
+    begun_ = true;
+  }
+  void commit() { begun_ = false; }
+  void roll_back() {
+    if (!begun_) return;
+    std::swap(s_.position, start_.position);
+    std::swap(s_.velocity, start_.velocity);
+    s_.lost_energy = start_.lost_energy;
+    begun_ = false;
+  }
+
+ private:
+  State& s_;
+  Checkpoint& start_;
+  bool begun_ = false;
+};
 
 /// The pins under way: whatever becomes of the step, they stand in the end where they were sent.
 class Travel {
@@ -40,21 +73,130 @@ class Travel {
   bool arrived_ = false;
 };
 
+class Step {
+ public:
+  Step(State& s, StepReport& report, Team& team) : s_(s), report_(report), team_(team) {}
+
+  /// Returns whether all of dt was done.
+  bool run(double dt, bool jumped) {
+    Transaction transaction(s_, s_.step_start);
+    if (needs_projection(s_, dt, jumped, team_)) {
+      transaction.begin();
+      project(s_, dt, report_, team_);
+    }
+    plan_ = plan_for(s_, dt, report_, team_);
+    if (plan_.substeps > 1) transaction.begin();
+    for (int left = plan_.substeps; left > 0; --left) {
+      if (do_substep(dt / plan_.substeps, left) != Outcome::accepted) return false;
+    }
+    transaction.commit();
+    s_.placed = false;
+    s_.last_dt = report_.status == Status::converged ? dt : 0;
+    s_.refinement = std::max(most_refined_, s_.refinement - tuning::kCoarsening);
+    return true;
+  }
+
+ private:
+  /// Walks the list of attempts. A rejected one is taken back.
+  Outcome do_substep(double h, int substeps_left) {
+    const std::int64_t most = s_.settings.max_iterations;
+    positions_end_ = report_.iterations + share_of(most - report_.iterations, substeps_left);
+    velocities_end_ =
+        report_.velocity_iterations + share_of(most - report_.velocity_iterations, substeps_left);
+    for (const Attempt& attempt : plan_.list()) {
+      if (report_.iterations >= end_of(attempt, report_.iterations, positions_end_) &&
+          !attempt.is_last)
+        continue;
+      const Outcome outcome = try_attempt(attempt, h);
+      if (outcome == Outcome::accepted) return outcome;
+      if (attempt.is_last) {
+        explain(s_, h, report_, team_);
+        return outcome;
+      }
+      if (attempt.scheme == Scheme::rattle)
+        ++report_.scheme_fallbacks;
+      else
+        ++report_.halvings;
+    }
+    return Outcome::rejected;
+  }
+
+  /// In its parts: each starts from the one before.
+  Outcome try_attempt(const Attempt& attempt, double h) {
+    Trial sum{.substeps = 0};
+    Transaction transaction(s_, s_.substep_start);
+    if (attempt.parts > 1) transaction.begin();
+    const std::int64_t positions_end = end_of(attempt, report_.iterations, positions_end_);
+    const std::int64_t velocities_end =
+        end_of(attempt, report_.velocity_iterations, velocities_end_);
+    for (int part = 0; part < attempt.parts; ++part) {
+      if (!attempt.is_last && report_.iterations >= positions_end) return Outcome::rejected;
+      const Budget budget{left_until(positions_end, report_.iterations),
+                          left_until(velocities_end, report_.velocity_iterations)};
+      const Trial trial = advance(attempt, h / attempt.parts, budget);
+      if (trial.outcome != Outcome::accepted) return trial.outcome;
+      std::swap(s_.position, s_.solved);
+      std::swap(s_.velocity, s_.next_velocity);
+      sum.add(trial);
+    }
+    transaction.commit();
+    worsen(report_, sum.status);
+    report_.substeps += sum.substeps;
+    report_.pin_work += sum.pin_work;
+    if (sum.passed_particle != kNoIndex) report_.passed_particle = sum.passed_particle;
+    remember(attempt);
+    return Outcome::accepted;
+  }
+
+  Trial advance(const Attempt& attempt, double h, const Budget& budget) {
+    const bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
+    return attempt.method == Method::by_small_steps
+               ? small_step(s_, attempt, h, budget, report_, team_)
+               : exact_substep(s_, attempt, h, budget, is_predicted, report_, team_);
+  }
+
+  /// Parts that were needed are for the next steps too. What small steps or sweeps had to do says
+  /// nothing about them.
+  void remember(const Attempt& attempt) {
+    if (attempt.method != Method::by_solver || report_.halvings == 0) return;
+    most_refined_ = std::max(most_refined_, std::log2(attempt.parts));
+  }
+
+  /// Half of the iterations that the step has left are for each substep, and all for the last.
+  static std::int64_t share_of(std::int64_t left, int substeps_left) {
+    return std::max<std::int64_t>(1, left / std::min(substeps_left, 2));
+  }
+  /// Half of what a substep has left is for the attempt that nothing is tried after.
+  static std::int64_t end_of(const Attempt& attempt, std::int64_t done, std::int64_t end) {
+    return attempt.is_last ? end : done + (end - done) / 2;
+  }
+  static int left_until(std::int64_t end, std::int64_t done) {
+    return static_cast<int>(std::max<std::int64_t>(1, end - done));
+  }
+
+  State& s_;
+  StepReport& report_;
+  Team& team_;
+  Plan plan_;
+  double most_refined_ = 0;
+  std::int64_t positions_end_ = 0, velocities_end_ = 0;  // of the substep, as the report counts
+};
+
 }  // namespace
 
 StepReport step(State& s, double dt) {
   StepReport report;
   Team team(threads_worth_having(s), s.meeting);
-  const bool by_small_steps = s.settings.solver == Solver::small_steps;
   bool done = false;
   {
     Travel travel(s, dt);
-    const auto run = by_small_steps ? run_small_steps : run_substeps;
-    done = run(s, dt, travel.jumped(), report, team);
+    done = Step(s, report, team).run(dt, travel.jumped());
     if (done) travel.arrive();
   }
-  const bool reported = done && s.small_steps;
-  if (!reported) timed(report, Stage::report, [&] { report_errors(s, s.position, report, team); });
+  // Small steps have measured what they committed.
+  if (!done || s.settings.solver != Solver::small_steps) {
+    timed(report, Stage::report, [&] { report_errors(s, s.position, report, team); });
+  }
   return report;
 }
 

@@ -1,11 +1,12 @@
-/// One time step: its substeps, and what becomes of them. From top to bottom:
+/// One time step: estimate, try, measure, accept or reject. step.cpp is the whole of it, from top
+/// to bottom; what it calls are
 ///
-///   Cloth::step              cloth.cpp      refuses a bad dt
-///     step                   step.cpp       threads, pins on their way, the report
-///       run_substeps         substeps.cpp   how many; a bad start; halves where one fails
-///         substep            substep.cpp    one of them: the list of stages
-///           solve_positions  solve.cpp      which solver, what answers for it, rounds of contacts
-///             solvers/{reference,simd,yarn,direct}_solver
+///   plan           how many substeps, and the ordered list of attempts at each
+///   project        a start that violates the constraints
+///   exact_substep  one substep by a prediction and a solver of constraints
+///   small_step     a step, or a substep that solvers gave up, by small steps
+///   energy         which attempts are rejected for the energy they gain, and the guard
+///   pins, pin_work fixed particles that are moved, and the work that they do
 #pragma once
 
 #include <weft/weft.h>

@@ -29,8 +29,9 @@ void commit(const Motion& m, double h, const kernels::VectorsView& next_velocity
   }
 }
 
-kernels::Kicks measure_kicks(const Motion& m, double h, const kernels::VectorsView& next_velocity) {
-  kernels::Kicks sum;
+kernels::ImpulseEnergy measure_impulses(const Motion& m, double h,
+                                        const kernels::VectorsView& next_velocity) {
+  kernels::ImpulseEnergy sum;
   for (std::size_t i = 0; i < m.particles; ++i) {
     const double w = m.inverse_mass[i];
     if (w == 0) continue;

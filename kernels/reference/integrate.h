@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "kernels/kicks.h"
+#include "kernels/impulse_energy.h"
 #include "kernels/vectors.h"
 
 namespace weft::reference {
@@ -28,7 +28,7 @@ void predict(const Motion& motion, double h);
 void commit(const Motion& motion, double h, const kernels::VectorsView& next_velocity);
 
 /// Once next_velocity is corrected: by how much it differs from what commit left is the second dv.
-kernels::Kicks measure_kicks(const Motion& motion, double h,
-                             const kernels::VectorsView& next_velocity);
+kernels::ImpulseEnergy measure_impulses(const Motion& motion, double h,
+                                        const kernels::VectorsView& next_velocity);
 
 }  // namespace weft::reference

@@ -1,6 +1,6 @@
-/// predict, apply_displacements, commit and measure_kicks, in double. The formulas are those of the
-/// reference (kernels/reference/integrate.h); the predicted position is formed twice, by the same
-/// operations, rather than kept. Sums are kept in kLanes columns, as those of strain are
+/// predict, apply_displacements, commit and measure_impulses, in double. The formulas are those of
+/// the reference (kernels/reference/integrate.h); the predicted position is formed twice, by the
+/// same operations, rather than kept. Sums are kept in kLanes columns, as those of strain are
 /// (measure.h).
 #pragma once
 
@@ -71,12 +71,12 @@ struct KickColumns {
   alignas(64) double gain[kernels::kLanes] = {};
   alignas(64) double energy[kernels::kLanes] = {};
 
-  kernels::Kicks sums() const {
-    kernels::Kicks kicks;
+  kernels::ImpulseEnergy sums() const {
+    kernels::ImpulseEnergy impulses;
     for (std::uint32_t k = 0; k < kernels::kLanes; ++k) {
-      kicks.add({first[k], second[k], gain[k], energy[k]});
+      impulses.add({first[k], second[k], gain[k], energy[k]});
     }
-    return kicks;
+    return impulses;
   }
 };
 
@@ -84,7 +84,8 @@ struct KickColumns {
   fused(mass, square, load(column)).store_aligned(column);
 }
 
-kernels::Kicks measure_kicks(const Motion& m, double h, std::size_t first, std::size_t last) {
+kernels::ImpulseEnergy measure_impulses(const Motion& m, double h, std::size_t first,
+                                        std::size_t last) {
   KickColumns columns;
   const Doubles rate(1 / h), two(2.), one(1.), zero(0.);
   for (std::size_t i = first; i < last; i += kDoubles) {
@@ -105,9 +106,9 @@ kernels::Kicks measure_kicks(const Motion& m, double h, std::size_t first, std::
   return columns.sums();
 }
 
-/// commit, and the kicks of the range: while there is only one, that of positions.
+/// commit, and the impulses of the range: while there is only one, that of positions.
 bool commit_watched(const Motion& m, double h, std::size_t first, std::size_t last,
-                    kernels::Kicks& kicks) {
+                    kernels::ImpulseEnergy& impulses) {
   constexpr std::size_t kVectors = kernels::kLanes / kDoubles;
   const Doubles rate(1 / h), two(2.), zero(0.);
   Doubles kick[kVectors], gain[kVectors], energy[kVectors];  // in registers, where there are enough
@@ -137,7 +138,7 @@ bool commit_watched(const Motion& m, double h, std::size_t first, std::size_t la
     gain[k].store_aligned(columns.gain + k * kDoubles);
     energy[k].store_aligned(columns.energy + k * kDoubles);
   }
-  kicks = columns.sums();
+  impulses = columns.sums();
   return good;
 }
 

@@ -43,7 +43,7 @@ constexpr Table make_table() {
   return {.predict = predict,
           .commit = commit,
           .commit_watched = commit_watched,
-          .measure_kicks = measure_kicks,
+          .measure_impulses = measure_impulses,
           .apply_displacements = apply_displacements,
           .renew_run = renew_run,
           .renew_singles = renew_singles,

@@ -82,7 +82,7 @@ void keep_past(const Flight& flight, const Past& past, std::size_t first, std::s
 }
 
 /// Summed in kLanes columns, whatever the width of a vector.
-kernels::Kicks measure_energy_change(const Motion& m, std::size_t first, std::size_t last) {
+kernels::ImpulseEnergy measure_energy_change(const Motion& m, std::size_t first, std::size_t last) {
   constexpr std::size_t kVectors = kernels::kLanes / kDoubles;
   const Doubles two(2.), zero(0.);
   Doubles gain[kVectors], energy[kVectors];
@@ -104,7 +104,7 @@ kernels::Kicks measure_energy_change(const Motion& m, std::size_t first, std::si
     gain[k].store_aligned(gains + k * kDoubles);
     energy[k].store_aligned(energies + k * kDoubles);
   }
-  kernels::Kicks sum;
+  kernels::ImpulseEnergy sum;
   for (std::size_t k = 0; k < kernels::kLanes; ++k) {
     sum.gain += gains[k];
     sum.energy += energies[k];

@@ -21,7 +21,7 @@
 #include <cstdint>
 #include <span>
 
-#include "kernels/kicks.h"
+#include "kernels/impulse_energy.h"
 #include "kernels/runs.h"
 #include "kernels/simd/isa.h"
 #include "kernels/vectors.h"
@@ -292,11 +292,12 @@ struct Table {
   /// next_velocity = v + h a + (solved - predicted) / h, predicted formed as in predict. Returns
   /// whether solved and next_velocity are finite.
   bool (*commit)(const Motion&, double h, std::size_t first, std::size_t last);
-  /// The same, and the kicks of the range while those of the velocity loop are still 0.
+  /// The same, and the impulses of the range while those of the velocity loop are still 0.
   bool (*commit_watched)(const Motion&, double h, std::size_t first, std::size_t last,
-                         kernels::Kicks& kicks);
+                         kernels::ImpulseEnergy& impulses);
   /// Once velocities are corrected. Both sum in an order that depends on nothing but the range.
-  kernels::Kicks (*measure_kicks)(const Motion&, double h, std::size_t first, std::size_t last);
+  kernels::ImpulseEnergy (*measure_impulses)(const Motion&, double h, std::size_t first,
+                                             std::size_t last);
   /// x += u, u = 0.
   void (*apply_displacements)(kernels::VectorsView x, Displacements u, std::size_t first,
                               std::size_t last);
@@ -405,9 +406,10 @@ struct Table {
   /// substep.
   void (*resume)(const Flight&, const Past&, float h, std::size_t first, std::size_t last);
   void (*keep_past)(const Flight&, const Past&, std::size_t first, std::size_t last);
-  /// Gain and energy alone of the kicks, of a frame from position and velocity to solved and
+  /// Gain and energy alone of the impulses, of a frame from position and velocity to solved and
   /// next_velocity; of slots first ... last - 1.
-  kernels::Kicks (*measure_energy_change)(const Motion&, std::size_t first, std::size_t last);
+  kernels::ImpulseEnergy (*measure_energy_change)(const Motion&, std::size_t first,
+                                                  std::size_t last);
   void (*renew_base)(const Flight&, float* base, float cell, std::size_t first, std::size_t last);
   // Of blocks first ... last - 1.
   void (*measure_edges)(const EdgeBlock*, EdgeSpans*, const float* base, std::size_t first,

@@ -59,43 +59,43 @@ DirectSolver::DirectSolver(const Model& model, const Settings& settings, const s
       stiff_(model),
       start_(model.slots()) {}
 
-LoopResult DirectSolver::solve_positions(VectorsView x, const ContactStore& contacts, From from,
-                                         int max_iterations, bool noise_will_do) {
+LoopResult DirectSolver::solve_positions(const PositionTask& task, Team&) {
+  if (task.along_start) return solve_from_start(task);
   LoopResult result;
-  const bool anew = from != From::last_round;
-  system_.start(contacts, anew);
+  system_.start(task.contacts, task.first_round);
   if (settings_.iterations > 0) {
-    iterate_fixed(x, {}, contacts, result);
+    iterate_fixed(task.x, {}, task.contacts, result);
     return result;
   }
-  if (anew) balance_.start(x);
-  copy(x, start_.view(), start_.size());
-  const DirectOutcome outcome = iterate(x, {}, contacts, max_iterations, noise_will_do, result);
-  bool solved = outcome == DirectOutcome::converged && balance_.is_explained(system_, x);
-  if (!solved && from != From::sweeps && stiff_.wanted()) {
-    solved = iterate_stiff(x, contacts, max_iterations, result) == DirectOutcome::converged;
+  if (task.first_round) balance_.start(task.x);
+  copy(task.x, start_.view(), start_.size());
+  const DirectOutcome outcome = iterate(task.x, {}, task.contacts, task.max_iterations, result);
+  bool solved = outcome == DirectOutcome::converged && balance_.is_explained(system_, task.x);
+  if (!solved && stiff_.wanted()) {
+    solved = iterate_stiff(task.x, task.contacts, task.max_iterations, result) ==
+             DirectOutcome::converged;
   }
   result.converged = solved;
   result.failed = !solved;
-  if (!solved) copy(start_.view(), x, start_.size());
+  if (!solved) copy(start_.view(), task.x, start_.size());
   return result;
 }
 
-LoopResult DirectSolver::solve_from_start(VectorsView x, VectorsView start,
-                                          const ContactStore& contacts, bool first_round,
-                                          int max_iterations) {
+LoopResult DirectSolver::solve_from_start(const PositionTask& task) {
   LoopResult result;
-  system_.start(contacts, first_round);
-  const DirectOutcome outcome = settings_.iterations > 0
-                                    ? iterate_fixed(x, start, contacts, result)
-                                    : iterate(x, start, contacts, max_iterations, true, result);
+  system_.start(task.contacts, task.first_round);
+  const DirectOutcome outcome =
+      settings_.iterations > 0
+          ? iterate_fixed(task.x, task.start, task.contacts, result)
+          : iterate(task.x, task.start, task.contacts, task.max_iterations, result);
   result.converged = outcome == DirectOutcome::converged;
+  result.failed = !result.converged;
   return result;
 }
 
 /// Newton's method from x; with a start the simplified one.
 DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const ContactStore& contacts,
-                                    int max_iterations, bool noise_will_do, LoopResult& result) {
+                                    int max_iterations, LoopResult& result) {
   Progress progress;
   const double goal = std::min(1.0, kGoal / settings_.tolerance);
   bool solved = false;
@@ -105,7 +105,7 @@ DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const Cont
     if (worst <= kNegligible || (solved && worst <= goal)) return DirectOutcome::converged;
     const bool within = worst <= 1;
     if (!progress.goes_on(worst)) {
-      return within && noise_will_do ? DirectOutcome::converged : DirectOutcome::failed;
+      return within && start.x != nullptr ? DirectOutcome::converged : DirectOutcome::failed;
     }
     if (result.iterations >= max_iterations) {
       return within ? DirectOutcome::converged : DirectOutcome::exhausted;
@@ -135,17 +135,17 @@ DirectOutcome DirectSolver::iterate_fixed(VectorsView x, VectorsView start,
   return DirectOutcome::exhausted;
 }
 
-LoopResult DirectSolver::correct_velocities(VectorsView x, VectorsView v,
-                                            const ContactStore& contacts, bool exact,
-                                            int max_iterations) {
+LoopResult DirectSolver::correct_velocities(const VelocityTask& task, Team&) {
+  const VectorsView v = task.v;
   LoopResult result;
-  system_.start(contacts, true);
+  system_.start(task.contacts, true);
   copy(v, start_.view(), start_.size());
-  const DirectOutcome outcome = iterate_velocities(x, v, contacts, exact, max_iterations, result);
+  const DirectOutcome outcome =
+      iterate_velocities(task.x, v, task.contacts, task.exact, task.max_iterations, result);
   result.converged = outcome == DirectOutcome::converged;
   if (result.converged || settings_.iterations > 0) return result;
   copy(start_.view(), v, start_.size());
-  result.failed = outcome == DirectOutcome::failed && result.iterations < max_iterations;
+  result.failed = outcome == DirectOutcome::failed && result.iterations < task.max_iterations;
   return result;
 }
 

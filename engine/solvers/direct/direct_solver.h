@@ -21,12 +21,13 @@
 /// Newton's method fails where a step bends edges by much of their length, where masses differ by
 /// thousands, and where A is singular and the errors inconsistent (compressed straight chains).
 /// That is seen by errors that no longer fall, or by a motion that its impulses do not explain
-/// (direct_balance.h). The caller is told (LoopResult::failed), and answers
-/// (engine/step/solve.cpp).
+/// (direct_balance.h). The caller is told (LoopResult::failed), and tries something else
+/// (engine/step/plan.h).
 #pragma once
 
 #include <cstdint>
 
+#include "engine/solvers/constraint_solver.h"
 #include "engine/solvers/direct/direct_balance.h"
 #include "engine/solvers/direct/direct_bodies.h"
 #include "engine/solvers/direct/direct_factor.h"
@@ -36,35 +37,25 @@
 
 namespace weft {
 
-class DirectSolver {
+class DirectSolver final : public ConstraintSolver {
  public:
   DirectSolver(const Model& model, const Settings& settings, const simd::Table& kernels);
 
-  /// Where a solve begins. last_round: where the last one ended, with contacts that were found
-  /// since; impulses are kept. sweeps: where those ended that answered its failure.
-  enum class From : std::uint8_t { prediction, last_round, sweeps };
-
   /// Moves x until every constraint and listed contact is within tolerance; where it fails x stays.
-  /// noise_will_do: an error within tolerance is success even if it does not fall to what solves
-  /// aim at. LoopResult::iterations counts solves.
-  kernels::LoopResult solve_positions(kernels::VectorsView x, const ContactStore& contacts,
-                                      From from, int max_iterations, bool noise_will_do);
-  /// The same for scheme rattle, along the directions at `start`, which do not turn: one
-  /// factorisation, and each solve takes off an error about 1 - cos of what the constraint turned
-  /// by. Where that does not converge x is worth nothing, and the answer is a step of the other
-  /// scheme; failed is not set.
-  kernels::LoopResult solve_from_start(kernels::VectorsView x, kernels::VectorsView start,
-                                       const ContactStore& contacts, bool first_round,
-                                       int max_iterations);
-  /// Corrects v at the positions x, or leaves it; with `exact` also what is within tolerance, once.
-  kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts, bool exact,
-                                         int max_iterations);
-  std::size_t bytes() const;
+  /// Impulses are kept from the round before. LoopResult::iterations counts solves.
+  ///
+  /// With scheme rattle the directions at `start` do not turn: one factorisation, and each solve
+  /// takes off an error about 1 - cos of what the constraint turned by. Where that does not
+  /// converge x is worth nothing.
+  kernels::LoopResult solve_positions(const PositionTask& task, Team& team) override;
+  /// Corrects v, or leaves it; with `exact` also what is within tolerance, once.
+  kernels::LoopResult correct_velocities(const VelocityTask& task, Team& team) override;
+  std::size_t bytes() const override;
 
  private:
+  kernels::LoopResult solve_from_start(const PositionTask& task);
   DirectOutcome iterate(kernels::VectorsView x, kernels::VectorsView start,
-                        const ContactStore& contacts, int max_iterations, bool noise_will_do,
+                        const ContactStore& contacts, int max_iterations,
                         kernels::LoopResult& result);
   DirectOutcome iterate_stiff(kernels::VectorsView x, const ContactStore& contacts,
                               int max_iterations, kernels::LoopResult& result);

@@ -1,5 +1,7 @@
 #include "engine/solvers/small_steps/reference_small_steps.h"
 
+#include "engine/solvers/small_steps/simd_small_steps.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -192,6 +194,13 @@ void ReferenceSmallSteps::keep(Team&) {
 
 std::size_t ReferenceSmallSteps::bytes() const {
   return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + passes_.bytes();
+}
+
+std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,
+                                             const simd::Table& table) {
+  if (settings.backend == Backend::reference)
+    return std::make_unique<ReferenceSmallSteps>(model, settings);
+  return std::make_unique<SmallStepsSolver>(model, settings, table);
 }
 
 }  // namespace weft

@@ -1,5 +1,6 @@
 /// Small steps in double, one block after the other: the text to read beside
-/// engine/solvers/small_steps/small_steps.h, with whose functions its own go by name and order.
+/// engine/solvers/small_steps/simd_small_steps.h, with whose functions its own go by name and
+/// order.
 #pragma once
 
 #include <weft/weft.h>
@@ -17,7 +18,7 @@
 
 namespace weft {
 
-class ReferenceSmallSteps {
+class ReferenceSmallSteps final : public SmallSteps {
  public:
   struct Past {
     double h = 0;  // of the last substep; 0: there was none
@@ -26,23 +27,24 @@ class ReferenceSmallSteps {
 
   ReferenceSmallSteps(const Model& model, const Settings& settings);
 
-  double substep_length(kernels::VectorsView x, double acceleration) const;
+  double substep_length(kernels::VectorsView x, double acceleration) const override;
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
-             kernels::VectorsView force, const FramePlan& plan, Team& team);
-  void advance(Team& team);
-  void sweep(Team& team);
-  std::int64_t count_out() const { return std::ssize(out_); }
-  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits);
-  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits);
-  void read_positions(kernels::VectorsView x, Team& team) const;
-  void settle(Team& team);
-  void read_velocities(kernels::VectorsView v, Team& team) const;
+             kernels::VectorsView force, const FramePlan& plan, Team& team) override;
+  void advance(Team& team) override;
+  void sweep(Team& team) override;
+  std::int64_t count_out() const override { return std::ssize(out_); }
+  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
+  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
+  void read_positions(kernels::VectorsView x, Team& team) const override;
+  void settle(Team& team) override;
+  void read_velocities(kernels::VectorsView v, Team& team) const override;
 
-  void keep(Team& team);
-  const Past& past() const { return past_; }
-  void set_past(Past&& past) { past_ = std::move(past); }
-  void forget_past() { past_.h = 0; }
-  std::size_t bytes() const;
+  void keep(Team& team) override;
+  void take_past(const SmallSteps& from) override {
+    past_ = static_cast<const ReferenceSmallSteps&>(from).past_;
+  }
+  void forget_past() override { past_.h = 0; }
+  std::size_t bytes() const override;
 
  private:
   struct Points;

@@ -74,12 +74,14 @@ constexpr std::size_t kMostShares = 16;
 
 }  // namespace
 
-YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd::Table& table)
+YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd::Table& table,
+                       SimdMeasure& measure)
     : model_(model),
       layout_(model.yarns()),
       settings_(settings),
       usual_(std::min(settings.tolerance, kGoal)),
       table_(table),
+      measure_(measure),
       base_step_(layout_.rows()),
       base_(layout_.places.floats),
       u_(layout_.places.floats),
@@ -180,31 +182,30 @@ void YarnSolver::count(int passes, std::int64_t visits, std::int64_t corrections
 
 /// More than one system only where one-sided constraints join in or let go, or where floats lost
 /// sight of the last digits.
-kernels::LoopResult YarnSolver::correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                                   const ContactStore& contacts, bool exact,
-                                                   int max_iterations, Team& team) {
+kernels::LoopResult YarnSolver::correct_velocities(const VelocityTask& task, Team& team) {
+  if (settings_.iterations > 0) return {};  // they are for sweeps
   kernels::LoopResult result;
   from_start_ = false;
   velocities_ = true;
   make_system();
-  others_.start(contacts, true);
-  split(x, team);
+  others_.start(task.contacts, true);
+  split(task.x, team);
   linearise_velocities(team);
-  split(v, 0, team);
+  split(task.v, 0, team);
   const double tolerated = kWithin * settings_.velocity_tolerance;
   double goal = tolerated;
   Progress progress(kVelocityPatience);
   for (bool solved = false;; solved = true) {
     const double worst = read_velocities(team);
-    if (exact && !solved) goal = std::min(goal, kExact * worst);
+    if (task.exact && !solved) goal = std::min(goal, kExact * worst);
     result.converged = worst <= tolerated;
-    const int left = max_iterations - result.iterations;
+    const int left = task.max_iterations - result.iterations;
     const bool enough = worst <= goal || (result.converged && solved);
     if (enough || left <= 0 || !progress.goes_on(worst)) break;
     if (!solve(goal, 0, std::min(kMostIterations, left), team, result)) break;
   }
-  result.converged = result.converged && loses_energy(v);
-  if (result.converged) join(v, team);
+  result.converged = result.converged && loses_energy(task.v);
+  if (result.converged) join(task.v, team);
   return result;
 }
 
@@ -228,22 +229,23 @@ bool YarnSolver::loses_energy(kernels::VectorsView v) const {
   return after <= (1 + kRounding) * before;
 }
 
-void YarnSolver::begin(kernels::VectorsView x, kernels::VectorsView start,
-                       const ContactStore& contacts, bool first_round, Team& team) {
+void YarnSolver::begin(const PositionTask& task, Team& team) {
   from_start_ = false;
   velocities_ = false;
-  others_.start(contacts, first_round);
-  if (start.x != nullptr) {
+  others_.start(task.contacts, task.first_round);
+  if (task.along_start) {
     spans_.release();
-    keep_start(start, team);
+    keep_start(task.start, team);
+  } else if (task.first_round && settings_.iterations == 0) {
+    spans_.hold(task.start, task.x, team);
   }
   std::ranges::fill(stubborn_, std::uint8_t{0});
-  split(x, team);
+  split(task.x, team);
 }
 
-YarnSolver::Aim YarnSolver::aim(double allowance) const {
+YarnSolver::Aim YarnSolver::aim(double share) const {
   const bool rattle = settings_.scheme == Scheme::rattle;
-  const double wanted = spans_.holds() ? spans_.may_leave() : allowance * usual_;
+  const double wanted = spans_.holds() ? spans_.may_leave() : share * usual_;
   const double goal = rattle && !spans_.holds() ? std::min(wanted, kRattleGoal) : wanted;
   const double left = spans_.holds() ? spans_.solver_may_leave() : goal;
   const double block = rattle || kLeft * left < kSeen ? kNoBound : kLeft * left;
@@ -265,17 +267,16 @@ kernels::LoopResult YarnSolver::sweep_so_often(kernels::VectorsView x, int times
   return result;
 }
 
-kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
-                                                const ContactStore& contacts, bool first_round,
-                                                int max_iterations, double allowance,
-                                                SimdMeasure& measure, Team& team) {
-  begin(x, start, contacts, first_round, team);
+kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& team) {
+  const kernels::VectorsView x = task.x;
+  const int max_iterations = task.max_iterations;
+  begin(task, team);
   if (settings_.iterations > 0) return sweep_so_often(x, settings_.iterations, team);
   kernels::LoopResult result;
-  const Aim aim = this->aim(allowance);
+  const Aim aim = this->aim(task.share);
   Progress progress(from_start_ ? kRattlePatience : kPatience);
   const auto look = [&] {
-    const double strain = measure.max_strain(
+    const double strain = measure_.max_strain(
         x, team, [&](std::size_t first, std::size_t last) { join(x, first, last); });
     return Look{strain, others_.violation(base_.data(), u_.data())};
   };
@@ -311,7 +312,7 @@ kernels::LoopResult YarnSolver::solve_positions(kernels::VectorsView x, kernels:
         result.failed = !result.converged;
         return result;
       }
-      if (may_take_newton(contacts)) {
+      if (may_take_newton(task.contacts)) {
         const Look after = look();
         there = after.strain <= aim.goal && after.violation <= 1;
         if (there) std::ranges::copy(u_, t_.begin());

@@ -25,9 +25,10 @@
 #include <vector>
 
 #include "engine/contacts/contacts.h"
+#include "engine/measure/simd_measure.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
-#include "engine/solvers/sweeps/simd_measure.h"
+#include "engine/solvers/constraint_solver.h"
 #include "engine/solvers/yarn/held_spans.h"
 #include "engine/solvers/yarn/yarn_others.h"
 #include "kernels/loop.h"
@@ -35,41 +36,30 @@
 
 namespace weft {
 
-class YarnSolver {
+class YarnSolver final : public ConstraintSolver {
  public:
   /// What is aimed at where the tolerance is larger: what is left is noise that the next steps
   /// would have to fight (corners, 81 x 81, 1 %: as many iterations a frame at a quarter of the
   /// error).
   static constexpr double kGoal = 0.003;
 
-  YarnSolver(const Model& model, const Settings& settings, const simd::Table& table);
+  /// measure: of the true errors.
+  YarnSolver(const Model& model, const Settings& settings, const simd::Table& table,
+             SimdMeasure& measure);
 
   /// Moves x until every constraint and listed contact is well within tolerance, or as far as it
   /// gets: failed where it no longer came nearer and is short of what it wanted (scheme rattle, and
   /// where errors contradict each other: of the tolerance), or where iterations ran out beyond the
-  /// tolerance. Scheme rattle applies impulses along the directions at `start`, if given.
-  /// allowance: the share of what it usually leaves that may be left. measure: of the true errors.
-  /// LoopResult::iterations counts sweeps and iterations of conjugate gradients, at least one in
-  /// each Newton step; visits, every solve of a constraint.
-  kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
-                                      const ContactStore& contacts, bool first_round,
-                                      int max_iterations, double allowance, SimdMeasure& measure,
-                                      Team& team);
-  /// For the next solves by scheme paper, of the substep from `start` to x, the prediction: what
-  /// taut spans keep is left, instead of what `allowance` says (held_spans.h). release: no more.
-  void hold_taut_spans(kernels::VectorsView start, kernels::VectorsView x, Team& team) {
-    spans_.hold(start, x, team);
-  }
-  void release_spans() { spans_.release(); }
-  /// Brings the velocities at the positions x within half of the tolerance, or as far as it gets;
-  /// with `exact` to a small part of what they were out by, however little that is.
-  kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts, bool exact,
-                                         int max_iterations, Team& team);
+  /// tolerance. LoopResult::iterations counts sweeps and iterations of conjugate gradients, at
+  /// least one in each Newton step; visits, every solve of a constraint.
+  kernels::LoopResult solve_positions(const PositionTask& task, Team& team) override;
+  /// Brings the velocities within half of the tolerance, or as far as it gets; with `exact` to a
+  /// small part of what they were out by, however little that is.
+  kernels::LoopResult correct_velocities(const VelocityTask& task, Team& team) override;
   std::size_t longest() const { return layout_.longest; }  // particles of the longest yarn
   /// Per chunk of the measure: of the yarns that have a constraint there. Empty: all are as long.
   std::span<const std::uint32_t> longest_at() const { return layout_.longest_at; }
-  std::size_t bytes() const;
+  std::size_t bytes() const override;
 
  private:
   struct Products {
@@ -84,10 +74,9 @@ class YarnSolver {
     double block;   // a block with less is not solved again at once
   };
   simd::Yarns yarns();
-  Aim aim(double allowance) const;
+  Aim aim(double share) const;
   bool may_take_newton(const ContactStore& contacts) const;
-  void begin(kernels::VectorsView x, kernels::VectorsView start, const ContactStore& contacts,
-             bool first_round, Team& team);
+  void begin(const PositionTask& task, Team& team);
   /// Starts at the positions x.
   void split(kernels::VectorsView x, Team& team) { split(x, layout_.cell, team); }
   void split(kernels::VectorsView x, double cell, Team& team);
@@ -132,6 +121,7 @@ class YarnSolver {
   const Settings settings_;
   const double usual_;  // strain that is aimed at
   const simd::Table& table_;
+  SimdMeasure& measure_;
 
   double cell_ = 0;                               // that base was split by
   bool from_start_ = false, velocities_ = false;  // what is being solved

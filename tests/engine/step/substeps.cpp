@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/parallel/team.h"
+#include "engine/step/plan.h"
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
@@ -52,10 +54,11 @@ TEST_CASE("automatic substeps end at 256 a step") {
 }
 
 TEST_CASE("automatic substeps by yarns leave each at least eight of the step's iterations") {
+  Team team(1);
   for (const int most : {1, 40, 400}) {
-    Cloth cloth = cloth_of(scene_of("hang", 5), {.max_iterations = most});
-    const StepReport report = step(cloth, 100);
-    CHECK(report.substeps - report.halvings == std::max(1, most / 8));
+    State s(model_of(scene_of("hang", 5)), {.max_iterations = most, .solver = Solver::yarn});
+    StepReport report;
+    CHECK(plan_for(s, 100, report, team).substeps == std::max(1, most / 8));
   }
 }
 

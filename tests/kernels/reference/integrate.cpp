@@ -70,7 +70,7 @@ TEST_CASE("the commit takes the preview along, and what was corrected becomes ve
   check_near(particles.velocity[0], {1, 0, -1});
 }
 
-TEST_CASE("kicks: of the corrected position, of the corrected velocity, and the energy gained") {
+TEST_CASE("impulses: of the corrected position, of the corrected velocity, and the energy gained") {
   Particles particles;
   const reference::Motion motion = particles.view();
   predict(motion, 0.1);
@@ -78,14 +78,14 @@ TEST_CASE("kicks: of the corrected position, of the corrected velocity, and the 
   Vectors velocity{2};
   commit(motion, 0.1, velocity.view());
   velocity.set(0, velocity[0] + Vector{0, 0, 3});
-  const kernels::Kicks kicks = measure_kicks(motion, 0.1, velocity.view());
-  CHECK(kicks.first == doctest::Approx(2 * 5 * 5).epsilon(1e-13));
-  CHECK(kicks.second == doctest::Approx(2 * 3 * 3).epsilon(1e-13));
+  const kernels::ImpulseEnergy impulses = measure_impulses(motion, 0.1, velocity.view());
+  CHECK(impulses.first == doctest::Approx(2 * 5 * 5).epsilon(1e-13));
+  CHECK(impulses.second == doctest::Approx(2 * 3 * 3).epsilon(1e-13));
   const Vector v = particles.velocity[0], next = velocity[0], a{4, -10, 2};
   const Vector way = particles.solved[0] - particles.position[0];
-  CHECK(kicks.gain ==
+  CHECK(impulses.gain ==
         doctest::Approx(2 * (dot(next, next) - dot(v, v) - 2 * dot(a, way))).epsilon(1e-13));
-  CHECK(kicks.energy == doctest::Approx(2 * dot(next, next)).epsilon(1e-13));
+  CHECK(impulses.energy == doctest::Approx(2 * dot(next, next)).epsilon(1e-13));
 }
 
 }  // namespace

@@ -99,12 +99,12 @@ TEST_CASE("commit says whether every number is within range, whatever the lane a
   }
 }
 
-TEST_CASE("kicks: sums over the free of a range, equal where instructions fuse") {
+TEST_CASE("impulses: sums over the free of a range, equal where instructions fuse") {
   for_every_range([](const simd::Table& table, const Rounding& rounding, KernelData data,
                      bool forces, std::size_t first, std::size_t last) {
     const simd::Motion m = data.motion(forces);
     const double h = 0.01;
-    kernels::Kicks expected;
+    kernels::ImpulseEnergy expected;
     for (std::size_t i = first; i < last; ++i) {
       if (m.inverse_mass[i] == 0) continue;
       const double mass = 1 / m.inverse_mass[i];
@@ -115,7 +115,7 @@ TEST_CASE("kicks: sums over the free of a range, equal where instructions fuse")
       const double gain = square - dot(v, v) - 2 * dot(a, m.solved[i] - m.position[i]);
       expected.add({mass * dot(kick, kick), mass * dot(rest, rest), mass * gain, mass * square});
     }
-    const kernels::Kicks found = table.measure_kicks(m, h, first, last);
+    const kernels::ImpulseEnergy found = table.measure_impulses(m, h, first, last);
     CHECK(found.first == doctest::Approx(expected.first).epsilon(1e-12));
     CHECK(found.second == doctest::Approx(expected.second).epsilon(1e-12));
     CHECK(found.energy == doctest::Approx(expected.energy).epsilon(1e-12));
@@ -123,36 +123,38 @@ TEST_CASE("kicks: sums over the free of a range, equal where instructions fuse")
   });
   if (!simd::supported(simd::Isa::avx512)) return;
   KernelData data(272, 5);
-  const auto kicks = [&](simd::Isa isa) {
-    return simd::table(isa).measure_kicks(data.motion(true), 0.01, 0, data.slots);
+  const auto impulses = [&](simd::Isa isa) {
+    return simd::table(isa).measure_impulses(data.motion(true), 0.01, 0, data.slots);
   };
-  const kernels::Kicks wide = kicks(simd::Isa::avx512), narrow = kicks(simd::Isa::avx2);
+  const kernels::ImpulseEnergy wide = impulses(simd::Isa::avx512),
+                               narrow = impulses(simd::Isa::avx2);
   CHECK(wide.first == narrow.first);
   CHECK(wide.second == narrow.second);
   CHECK(wide.gain == narrow.gain);
   CHECK(wide.energy == narrow.energy);
 }
 
-TEST_CASE("commit_watched: the same velocities, and the kicks that measure_kicks finds") {
+TEST_CASE("commit_watched: the same velocities, and the impulses that measure_impulses finds") {
   for_every_range([](const simd::Table& table, const Rounding&, KernelData found, bool forces,
                      std::size_t first, std::size_t last) {
     KernelData expected = found;
     const double h = 0.01;
     const bool finite = table.commit(expected.motion(forces), h, first, last);
-    kernels::Kicks kicks;
-    CHECK(table.commit_watched(found.motion(forces), h, first, last, kicks) == finite);
+    kernels::ImpulseEnergy impulses;
+    CHECK(table.commit_watched(found.motion(forces), h, first, last, impulses) == finite);
     CHECK(same(found, expected));
-    const kernels::Kicks after = table.measure_kicks(expected.motion(forces), h, first, last);
-    CHECK(kicks.first == doctest::Approx(after.first).epsilon(1e-12));
-    CHECK(kicks.second == 0);
-    CHECK(kicks.energy == doctest::Approx(after.energy).epsilon(1e-12));
-    CHECK(std::abs(kicks.gain - after.gain) <= 1e-12 * (after.first + after.energy));
+    const kernels::ImpulseEnergy after =
+        table.measure_impulses(expected.motion(forces), h, first, last);
+    CHECK(impulses.first == doctest::Approx(after.first).epsilon(1e-12));
+    CHECK(impulses.second == 0);
+    CHECK(impulses.energy == doctest::Approx(after.energy).epsilon(1e-12));
+    CHECK(std::abs(impulses.gain - after.gain) <= 1e-12 * (after.first + after.energy));
     found.solved.x[first] = std::nan("");
-    CHECK_FALSE(table.commit_watched(found.motion(forces), h, first, last, kicks));
+    CHECK_FALSE(table.commit_watched(found.motion(forces), h, first, last, impulses));
   });
   if (!simd::supported(simd::Isa::avx512)) return;
   KernelData data(272, 5);
-  kernels::Kicks wide, narrow;
+  kernels::ImpulseEnergy wide, narrow;
   simd::table(simd::Isa::avx512).commit_watched(data.motion(true), 0.01, 0, data.slots, wide);
   simd::table(simd::Isa::avx2).commit_watched(data.motion(true), 0.01, 0, data.slots, narrow);
   CHECK(wide.first == narrow.first);

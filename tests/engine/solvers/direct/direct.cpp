@@ -333,14 +333,14 @@ TEST_CASE("both diagonals of every cell: a redundant constraint each") {
 TEST_CASE("steps too large for Newton's method are answered") {
   const SceneDescription scene = scene_of("hang", 30);
   Cloth cloth = cloth_of(scene, direct(tight(1e-2)));
-  bool swept = false;
+  bool retried = false;
   for (int k = 0; k < 20; ++k) {
     const StepReport report = step(cloth, 0.1);
     REQUIRE(report.status == Status::converged);
     REQUIRE(max_strain(scene, positions(cloth)) <= 1e-2 * (1 + 1e-6));
-    swept = swept || report.iterations > 60;
+    retried = retried || report.halvings > 0;
   }
-  CHECK(swept);
+  CHECK(retried);
 }
 
 TEST_CASE("the bound on iterations holds, and the state is committed") {

@@ -34,21 +34,21 @@ struct Trial {
         x(model->initial_position),
         contacts(make_contact_store(*model)),
         solver(*model, Settings{}, simd::table(simd::best_isa())) {}
-  kernels::LoopResult solve(DirectSolver::From from, bool noise_will_do) {
-    return solver.solve_positions(x.view(), contacts, from, 1000, noise_will_do);
+  kernels::LoopResult solve() {
+    Team team(1);
+    return solver.solve_positions(
+        {.x = x.view(), .start = {}, .contacts = contacts, .max_iterations = 1000}, team);
   }
 };
 
 TEST_CASE("failure is told after a few solves, and leaves positions where they were") {
-  for (const bool noise_will_do : {false, true}) {
-    Trial trial(compressed_line());
-    const auto result = trial.solve(DirectSolver::From::prediction, noise_will_do);
-    CHECK(result.failed);
-    CHECK_FALSE(result.converged);
-    CHECK(result.iterations <= 10);
-    for (std::size_t p = 0; p < trial.x.size(); ++p) {
-      CHECK(kernels::length(trial.x[p] - trial.model->initial_position[p]) == 0);
-    }
+  Trial trial(compressed_line());
+  const auto result = trial.solve();
+  CHECK(result.failed);
+  CHECK_FALSE(result.converged);
+  CHECK(result.iterations <= 10);
+  for (std::size_t p = 0; p < trial.x.size(); ++p) {
+    CHECK(kernels::length(trial.x[p] - trial.model->initial_position[p]) == 0);
   }
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("what converges has not failed") {
   for (std::size_t p = 0; p < trial.x.size(); ++p) {
     if (trial.model->inverse_mass[p] > 0) trial.x.view().add(p, {0, -5e-4, 0});
   }
-  const auto result = trial.solve(DirectSolver::From::prediction, false);
+  const auto result = trial.solve();
   CHECK(result.converged);
   CHECK_FALSE(result.failed);
 }

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <set>
 
-#include "engine/step/measure.h"
+#include "engine/measure/state_measure.h"
 #include "tests/support/clothes.h"
 
 namespace weft::test {

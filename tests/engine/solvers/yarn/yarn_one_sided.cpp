@@ -62,18 +62,27 @@ struct Trial {
                {.tolerance = kTolerance,
                 .contact_tolerance = kContactTolerance,
                 .velocity_tolerance = velocity_tolerance},
-               table) {
+               table, measure) {
     find_contacts(*model, table, x.view(), contacts);
   }
   Vec3 correct_velocities(bool exact) {
-    (void)solver.correct_velocities(x.view(), v.view(), contacts, exact, 1000, team);
+    (void)solver.correct_velocities({.x = x.view(),
+                                     .v = v.view(),
+                                     .contacts = contacts,
+                                     .exact = exact,
+                                     .max_iterations = 1000},
+                                    team);
     return of_particle(v);
   }
   /// From where the particle is at the start to `to`, along the directions at the start.
   bool solve_positions(Vec3 to) {
     x.set(model->ordering.slot_of[0], {to.x, to.y, to.z});
-    return solver.solve_positions(x.view(), start.view(), contacts, true, 1000, 1, measure, team)
-        .converged;
+    const PositionTask task{.x = x.view(),
+                            .start = start.view(),
+                            .contacts = contacts,
+                            .along_start = true,
+                            .max_iterations = 1000};
+    return solver.solve_positions(task, team).converged;
   }
   Vec3 of_particle(kernels::Vectors& vectors) const {
     const kernels::Vector at = vectors[model->ordering.slot_of[0]];

@@ -1,4 +1,4 @@
-#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/small_steps/simd_small_steps.h"
 
 #include <algorithm>
 #include <bit>
@@ -382,14 +382,11 @@ void SmallStepsSolver::keep(Team& team) {
   });
 }
 
-SmallStepsPast SmallStepsSolver::past() const {
-  SmallStepsPast past = past_;
-  if (!is_new_) past.base = base_;
-  return past;
-}
-
-void SmallStepsSolver::set_past(SmallStepsPast&& past) {
-  past_ = std::move(past);
+void SmallStepsSolver::take_past(const SmallSteps& from) {
+  const auto& other = static_cast<const SmallStepsSolver&>(from);
+  SmallStepsPast its_past = other.past_;
+  if (!other.is_new_) its_past.base = other.base_;
+  past_ = std::move(its_past);
   std::ranges::copy(past_.base, base_.begin());
   is_new_ = false;
   moved_ = true;

@@ -5,13 +5,13 @@
 namespace weft::kernels {
 
 /// Sums over the free particles, twice an energy each.
-struct Kicks {
+struct ImpulseEnergy {
   double first = 0;   // m |D / h|^2
   double second = 0;  // m |dv|^2, dv of the velocity loop
   double gain = 0;    // m |v'|^2 - m |v|^2 - 2 m a . (x' - x)
   double energy = 0;  // m |v'|^2
 
-  void add(const Kicks& other) {
+  void add(const ImpulseEnergy& other) {
     first += other.first;
     second += other.second;
     gain += other.gain;

@@ -21,6 +21,7 @@ double strain_of(const Model& model, const Vectors& position, std::size_t constr
 
 /// Over all active constraints.
 Strain measure_strain(const Model& model, const kernels::Vectors& position);
+Strain measure_strain(const Model& model, kernels::VectorsView position);
 Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
                       const kernels::Vectors& velocity);
 /// Whether all components, and the squared distances between any two vectors, are finite.

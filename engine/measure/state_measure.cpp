@@ -1,11 +1,13 @@
-#include "engine/step/measure.h"
+#include "engine/measure/state_measure.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace weft {
+namespace {
 
-Strain measure_strain(const Model& m, const kernels::Vectors& x) {
+template <class Vectors>
+Strain strain_over_all(const Model& m, const Vectors& x) {
   const ConstraintStore& s = m.constraints;
   Strain strain;
   double sum = 0;
@@ -20,6 +22,11 @@ Strain measure_strain(const Model& m, const kernels::Vectors& x) {
   if (s.size() > 0) strain.rms = std::sqrt(sum / static_cast<double>(s.size()));
   return strain;
 }
+
+}  // namespace
+
+Strain measure_strain(const Model& m, const kernels::Vectors& x) { return strain_over_all(m, x); }
+Strain measure_strain(const Model& m, kernels::VectorsView x) { return strain_over_all(m, x); }
 
 Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,
                       const kernels::Vectors& v) {

@@ -1,10 +1,10 @@
-#include "engine/solvers/sweeps/simd_measure.h"
+#include "engine/measure/simd_measure.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/bytes_of.h"
-#include "engine/step/measure.h"
+#include "engine/measure/state_measure.h"
 
 namespace weft {
 

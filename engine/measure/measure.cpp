@@ -1,0 +1,35 @@
+#include "engine/measure/measure.h"
+
+#include <algorithm>
+
+#include "engine/measure/state_measure.h"
+
+namespace weft {
+
+Measure::Measure(const Model& model, const Settings& settings, const simd::Table& table)
+    : model_(model),
+      table_(table),
+      tolerance_(settings.tolerance),
+      contact_tolerance_(settings.contact_tolerance) {
+  if (settings.backend == Backend::simd) lanes_.emplace(model, table);
+}
+
+Strain Measure::strain(kernels::VectorsView x, Team& team) {
+  return lanes_ ? lanes_->strain(x, team) : measure_strain(model_, x);
+}
+
+double Measure::max_strain(kernels::VectorsView x, Team& team) {
+  return lanes_ ? lanes_->max_strain(x, team) : measure_strain(model_, x).max;
+}
+
+double Measure::penetration(kernels::VectorsView x, ContactStore& contacts) const {
+  return model_.has_contacts() ? max_penetration(model_, table_, x, contacts) : 0;
+}
+
+double Measure::error(kernels::VectorsView x, ContactStore& contacts, Team& team) {
+  return std::max(max_strain(x, team) / tolerance_, penetration(x, contacts) / contact_tolerance_);
+}
+
+std::size_t Measure::bytes() const { return lanes_ ? lanes_->bytes() : 0; }
+
+}  // namespace weft

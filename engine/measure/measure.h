@@ -1,0 +1,38 @@
+/// The true errors of positions, on either backend.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <optional>
+
+#include "engine/contacts/contacts.h"
+#include "engine/measure/simd_measure.h"
+#include "engine/model/model.h"
+#include "engine/parallel/team.h"
+#include "kernels/simd/table.h"
+#include "kernels/vectors.h"
+
+namespace weft {
+
+class Measure {
+ public:
+  Measure(const Model& model, const Settings& settings, const simd::Table& table);
+
+  Strain strain(kernels::VectorsView x, Team& team);
+  double max_strain(kernels::VectorsView x, Team& team);
+  /// m; the search writes into the scratch of the store.
+  double penetration(kernels::VectorsView x, ContactStore& contacts) const;
+  /// The larger of the largest strain and the deepest penetration, each in its tolerance.
+  double error(kernels::VectorsView x, ContactStore& contacts, Team& team);
+  /// Of the simd backend.
+  SimdMeasure& lanes() { return *lanes_; }
+  std::size_t bytes() const;
+
+ private:
+  const Model& model_;
+  const simd::Table& table_;
+  const double tolerance_, contact_tolerance_;
+  std::optional<SimdMeasure> lanes_;
+};
+
+}  // namespace weft

@@ -1,0 +1,47 @@
+/// What a step asks of a solver, whichever it is.
+///
+///   sweeps/  the paper's impulse loop: one constraint after the other, on either backend
+///   yarn/    whole chains of constraints at a time
+///   direct/  every impulse at once, by a sparse factorisation
+///
+/// Small steps (small_steps/) advance a state by themselves: their prediction, sweep and velocities
+/// are one formula.
+#pragma once
+
+#include "engine/contacts/contacts.h"
+#include "engine/parallel/team.h"
+#include "kernels/loop.h"
+#include "kernels/vectors.h"
+
+namespace weft {
+
+/// Positions that are to be brought within tolerance of every constraint and listed contact.
+struct PositionTask {
+  kernels::VectorsView x;  // in: the prediction; out: the solution, or the nearest that was found
+  kernels::VectorsView start;  // where the substep began
+  ContactStore& contacts;      // of which measuring uses the scratch
+  double h = 0;                // s, of the substep
+  bool along_start = false;    // impulses act along the directions at `start` (scheme rattle)
+  bool first_round = true;     // contacts were found anew: accumulated impulses begin at 0
+  double share = 1;            // of the strain that the solver usually leaves: what it may leave
+  int max_iterations = 1;
+};
+
+/// Velocities that are to be brought within the velocity tolerance, at the positions x.
+struct VelocityTask {
+  kernels::VectorsView x, v;
+  const ContactStore& contacts;
+  bool exact = false;  // removes what is within tolerance as well (scheme rattle)
+  int max_iterations = 1;
+};
+
+class ConstraintSolver {
+ public:
+  virtual ~ConstraintSolver() = default;
+  /// LoopResult::failed: the error no longer fell.
+  virtual kernels::LoopResult solve_positions(const PositionTask& task, Team& team) = 0;
+  virtual kernels::LoopResult correct_velocities(const VelocityTask& task, Team& team) = 0;
+  virtual std::size_t bytes() const = 0;
+};
+
+}  // namespace weft

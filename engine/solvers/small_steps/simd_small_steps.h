@@ -1,0 +1,108 @@
+/// Small steps in lanes.
+///
+/// A sweep goes over blocks, yarns that are solved exactly and single constraints, along directions
+/// that are renewed as it goes (kernels/simd/small_steps.h, small_step_yarns.h). What it leaves of
+/// a load is a strain that falls with the square of the substep (small_steps_load.h): the number of
+/// substeps is chosen so that few constraints are left to local passes. A substep's length must not
+/// change much: a strain is a loaded spring, which a shorter step stiffens.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <vector>
+
+#include "engine/contacts/contacts.h"
+#include "engine/model/model.h"
+#include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/local_passes.h"
+#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+/// What is left of a flight between two frames, in the layout of the solver.
+struct SmallStepsPast {
+  double h = 0;           // of the last substep; 0: there was none
+  int since_renewal = 0;  // substeps with the present base
+  kernels::AlignedVector<float> v, v_before, moved;
+  kernels::AlignedVector<float> base;  // of a frame that is kept
+};
+
+class SmallStepsSolver final : public SmallSteps {
+ public:
+  SmallStepsSolver(const Model& model, const Settings& settings, const simd::Table& table);
+
+  /// s, of the longest substep that leaves little to local passes.
+  double substep_length(kernels::VectorsView x, double acceleration) const override;
+
+  /// A frame from x, with velocities v.
+  void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
+             kernels::VectorsView force, const FramePlan& plan, Team& team) override;
+  /// The stages of a substep.
+  void advance(Team& team) override;
+  void sweep(Team& team) override;
+  /// Constraints that the last sweep found out of tolerance.
+  std::int64_t count_out() const override;
+  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
+  /// After the last: local passes that look at all constraints.
+  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
+  /// Where the particles are; x: where they were when the frame began.
+  void read_positions(kernels::VectorsView x, Team& team) const override;
+  /// After the last substep.
+  void settle(Team& team) override;
+  void read_velocities(kernels::VectorsView v, Team& team) const override;
+  /// The frame becomes the past of the next one. Without this the one before stays.
+  void keep(Team& team) override;
+  void take_past(const SmallSteps& from) override;
+  void forget_past() override { past_.h = 0; }
+
+  std::size_t bytes() const override;
+
+ private:
+  struct Points;
+  Points points(double share);
+  simd::Flight flight();
+  simd::Yarns yarns();
+  void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
+  void begin_past(Team& team);
+  void split(kernels::VectorsView x, int substeps, Team& team);
+  void measure_base(Team& team);
+  void renew_base(Team& team);
+  void sweep_yarns(Team& team);
+  void sweep_edges(Team& team);
+  void sweep_serial();
+  void sweep_batch(const EdgeBatch& batch, std::uint32_t first, std::uint32_t last);
+  void look_near_what_was_out();
+  LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
+  void stop_at_contacts();
+  void stop_at_contact(std::uint32_t slot);
+  template <class Work>
+  void for_floats(Team& team, Work&& work);
+
+  const Model& model_;
+  const SmallStepsLayout& layout_;
+  const Settings settings_;
+  const simd::Table& table_;
+  LocalPasses passes_;
+  SmallStepsPast past_;
+
+  double h_ = 0, omega_ = 1;
+  simd::SubstepWeights weights_;
+  SubstepFormula formula_, next_formula_;  // of the present substep, and of the next
+  int since_renewal_ = 0;
+  kernels::Vector gravity_{};
+  bool has_force_ = true;  // in acceleration_
+  bool is_new_ = false;    // base_, of a frame that is not kept yet; past_ has the one before
+  bool moved_ = true;      // rows of yarns and edges do not remember the present base
+
+  kernels::AlignedVector<float> base_, u_, u_before_, predicted_, v_, v_before_, acceleration_;
+  kernels::AlignedVector<simd::EdgeSpans> spans_;
+  kernels::AlignedVector<simd::YarnBaseSteps> base_step_;  // per row
+  kernels::AlignedVector<simd::YarnScratch> scratch_;      // for each thread
+  std::vector<std::uint16_t> edges_out_;                   // per edge block, a bit per lane
+  std::vector<std::uint32_t> yarns_out_;                   // per row of yarns, likewise
+  std::vector<std::uint32_t> touched_;                     // slots that contacts have pushed
+};
+
+}  // namespace weft

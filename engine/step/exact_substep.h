@@ -1,0 +1,28 @@
+/// One substep by a solver of constraints, from top to bottom: predict, find contacts, solve
+/// positions, set velocities, correct velocities, and judge the result.
+#pragma once
+
+#include "engine/step/attempt.h"
+#include "engine/step/state.h"
+
+namespace weft {
+
+/// Computes the next state, in solved and next_velocity; position and velocity stay. is_predicted:
+/// solved is the prediction already.
+Trial exact_substep(State& s, const Attempt& attempt, double h, const Budget& budget,
+                    bool is_predicted, StepReport& report, Team& team);
+
+/// Brings solved onto the constraints; rounds go on while the solution runs into contacts that the
+/// search had not listed.
+kernels::LoopResult solve_positions(State& s, ConstraintSolver& solver, PositionTask task,
+                                    StepReport& report, Team& team);
+
+/// Brings next_velocity within the velocity tolerance, at the positions solved. What the solver
+/// leaves is for sweeps, which judge in double.
+Status correct_velocities(State& s, ConstraintSolver& solver, bool exact, const Budget& budget,
+                          StepReport& report, Team& team);
+
+/// Lists who may touch whom at solved.
+void find_contacts(State& s, StepReport& report);
+
+}  // namespace weft

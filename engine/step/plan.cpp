@@ -1,0 +1,139 @@
+#include "engine/step/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "engine/contacts/contacts.h"
+#include "engine/step/motion.h"
+#include "engine/step/reporting.h"
+#include "engine/tuning.h"
+
+namespace weft {
+namespace {
+
+/// The strain after a step without constraints grows with the square of the step, so that the
+/// motion wants
+///
+///     sqrt( strain / min(most, longest / n) )     n: particles of the constraint's yarn
+///
+/// substeps, the largest of all constraints. What an edge turns by, all those behind it on its yarn
+/// are swung by: a yarn of many edges wants less.
+double bend_after_motion(State& s, Team& team) {
+  const tuning::Bend& may = s.settings.scheme == Scheme::rattle ? tuning::kRattleBend
+                            : s.yarn                            ? tuning::kYarnBend
+                                                                : tuning::kUsualBend;
+  const auto share = [&](double strain, std::size_t particles_of_yarn) {
+    return std::max(strain / may.most,
+                    strain * static_cast<double>(particles_of_yarn) / may.longest);
+  };
+  const auto x = s.solved.view();
+  const std::size_t longest = s.yarn ? s.yarn->longest() : 0;
+  const double most = share(s.measure->max_strain(x, team), longest);
+  if (!s.yarn || s.yarn->longest_at().empty() || most <= 1) return most;
+  const auto strains = s.measure->lanes().strains_of_chunks(x, team);
+  double finer = share(s.measure->lanes().max_hub_strain(x), 0);
+  for (std::size_t i = 0; i < strains.size(); ++i) {
+    finer = std::max(finer, share(strains[i].largest, s.yarn->longest_at()[i]));
+  }
+  return finer;
+}
+
+/// Of free spheres that touch something where the step would lead; kg.
+double heaviest_sphere(State& s) {
+  const Model& model = *s.model;
+  find_contacts(model, *s.kernels, s.solved.view(), s.contacts);
+  double least = std::numeric_limits<double>::infinity();  // inverse mass
+  const auto weigh = [&](std::uint32_t slot) {
+    const double w = model.inverse_mass[slot];
+    if (w > 0 && model.is_sphere[slot]) least = std::min(least, w);
+  };
+  for (std::uint32_t k = 0; k < s.contacts.count(); ++k) {
+    weigh(s.contacts.sphere[k]);
+    weigh(s.contacts.particle[k]);
+  }
+  return 1 / least;
+}
+
+/// The load over the length of what holds it, 1/m. With scheme rattle a sphere is none: its
+/// substeps are as short already.
+double load_per_metre(State& s) {
+  const Unevenness& uneven = s.model->uneven;
+  double most = uneven.ratio < tuning::kLeastLoad ? 0 : uneven.per_metre;
+  const bool spheres_count = s.settings.scheme == Scheme::paper;
+  if (spheres_count && s.model->heaviest_sphere * uneven.lightness >= tuning::kLeastLoad) {
+    const double mass = heaviest_sphere(s);
+    if (mass * uneven.lightness >= tuning::kLeastLoad)
+      most = std::max(most, mass * uneven.lightness_per_metre);
+  }
+  return most;
+}
+
+/// A load that is `ratio` times as heavy as the lightest particles of what holds it pulls at these
+/// with `ratio` times their weight. Across the pull they swing with the frequency w,
+///
+///     w^2 = ratio g / l,    l: the length of their constraints
+///
+/// and what turns a constraint in a substep moves them (w h)^2 times as far: beyond a few neither
+/// Newton's method nor yarns find their way. So w h is to be 1 / kLoad at most. (The direct solver
+/// keeps to the motion's substeps.)
+double substeps_for_load(State& s, double dt) {
+  if (!s.yarn) return 1;
+  return tuning::kLoad * dt * std::sqrt(length(s.gravity) * load_per_metre(s));
+}
+
+/// A substep by yarns costs as much as some iterations besides its own: with fewer of them to each,
+/// max_iterations would not bound the time of a step.
+int most_substeps(const State& s) {
+  if (!s.yarn) return tuning::kMostExactSubsteps;
+  return std::clamp(s.settings.max_iterations / tuning::kLeastIterations, 1,
+                    tuning::kMostExactSubsteps);
+}
+
+int substeps_wanted(State& s, double dt, Team& team) {
+  predict(s, dt, team);
+  const double bend = bend_after_motion(s, team);
+  const double wanted = std::ceil(std::max(std::sqrt(bend), substeps_for_load(s, dt)));
+  const int most = most_substeps(s);
+  return wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
+}
+
+void add(Plan& plan, const Attempt& attempt) { plan.attempts[plan.count++] = attempt; }
+
+void list_attempts(const State& s, Plan& plan) {
+  const Settings& settings = s.settings;
+  if (settings.solver == Solver::small_steps) {
+    add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme});
+  } else {
+    const bool fixed = settings.iterations > 0;
+    if (settings.scheme == Scheme::rattle) add(plan, {.scheme = Scheme::rattle});
+    if (settings.solver == Solver::gauss_seidel || fixed) {
+      if (plan.count == 0 || !fixed) add(plan, {});
+    } else {
+      const auto first = static_cast<int>(std::lround(s.refinement));
+      for (int i = first; i <= tuning::kMostDoublings; ++i) add(plan, {.parts = 1 << i});
+      if (s.stand_in != nullptr) add(plan, {.method = Method::by_stand_in});
+      add(plan, {.method = Method::by_small_steps});
+      add(plan, {.method = Method::by_sweeps});
+    }
+  }
+  plan.attempts[plan.count - 1].is_last = true;
+}
+
+}  // namespace
+
+Plan plan_for(State& s, double dt, StepReport& report, Team& team) {
+  Plan plan;
+  list_attempts(s, plan);
+  if (s.settings.solver == Solver::small_steps) return plan;
+  if (s.settings.substeps != kAutomaticSubsteps) {
+    plan.substeps = s.settings.substeps;
+  } else {
+    timed(report, Stage::predict, [&] { plan.substeps = substeps_wanted(s, dt, team); });
+    plan.is_predicted = plan.substeps == 1;
+  }
+  return plan;
+}
+
+}  // namespace weft

@@ -1,0 +1,36 @@
+/// How a step is tried: the estimate of its substeps, and the ordered list of attempts that each of
+/// them may need.
+///
+///   1  scheme rattle, if the settings ask for it
+///   2  the solver, in 1, 2, 4, 8 and 16 parts; State::refinement says where to begin
+///   3  the direct solver, where it stands by for unequal masses
+///   4  small steps
+///   5  the paper's loop, whose result is accepted with its error: it comes to rest where
+///      constraints contradict each other
+///
+/// The paper's loop (gauss_seidel) and a fixed number of iterations have nothing but the scheme
+/// that was asked for and, behind rattle, the paper's. A step by small steps is one attempt.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "engine/step/attempt.h"
+#include "engine/step/state.h"
+
+namespace weft {
+
+struct Plan {
+  int substeps = 1;
+  bool is_predicted = false;  // solved is the prediction of the first substep
+  std::array<Attempt, 9> attempts{};
+  std::size_t count = 0;
+
+  std::span<const Attempt> list() const { return {attempts.data(), count}; }
+};
+
+/// The estimate predicts all of dt: it writes over solved and, with heavy spheres, contacts.
+Plan plan_for(State& s, double dt, StepReport& report, Team& team);
+
+}  // namespace weft
