@@ -93,7 +93,7 @@ std::size_t State::bytes() const {
                                     &start_position, &start_velocity, &substep_start, &predicted}) {
     sum += v->bytes();
   }
-  sum += contacts.bytes() + bytes_of(kicks) + pins.bytes() + sizeof(Team::Meeting);
+  sum += contacts.bytes() + bytes_of(kicks) + pins.bytes() + sizeof(Team::SharedState);
   if (reference) sum += reference->bytes();
   if (simd) sum += simd->bytes() + measure->bytes();
   if (direct) sum += direct->bytes();

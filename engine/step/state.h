@@ -67,7 +67,7 @@ struct State {
   std::optional<YarnSolver> yarn;      // with Solver::yarn
   std::optional<DirectSolver> direct;  // with Solver::direct, and behind yarns of uneven masses
   const simd::Table* kernels = nullptr;
-  std::shared_ptr<Team::Meeting> meeting = Team::make_meeting();  // of the team of each step
+  std::shared_ptr<Team::SharedState> team_state = Team::make_shared_state();
 
   State(std::shared_ptr<const Model> model, const Settings& settings);
   /// Goes on from another state of the same model.

@@ -11,7 +11,7 @@
 namespace weft {
 namespace {
 
-/// Below this a thread has too little to do between two meetings: two gained nothing at 1,600
+/// Below this the loops are too short for one more thread: two gained nothing at 1,600
 /// particles and 1.7 times at 10,000.
 constexpr std::size_t kLeastSlotsPerThread = 1000;
 
@@ -44,7 +44,7 @@ class Travel {
 
 StepReport step(State& s, double dt) {
   StepReport report;
-  Team team(threads_worth_having(s), s.meeting);
+  Team team(threads_worth_having(s), s.team_state);
   const bool by_small_steps = s.settings.solver == Solver::small_steps;
   bool done = false;
   {

@@ -37,7 +37,7 @@ Answered answered(double length, OnFailure on_failure, int most_iterations = 100
   s.solved = s.position;
   s.solved.view().add(5, {0.01, 0, 0});  // uneven, and straight
   const kernels::Vectors before = s.solved;
-  Team team(1, s.meeting);
+  Team team(1, s.team_state);
   Answered result;
   const Attempt attempt{.h = 0.01, .most_iterations = most_iterations, .on_failure = on_failure};
   result.trial = solve_positions(s, attempt, result.report, team);
