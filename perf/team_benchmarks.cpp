@@ -1,4 +1,4 @@
-/// What it costs that threads meet: short loops of weft::Team.
+/// What it costs to start and end a loop on several threads: short loops of weft::Team.
 #include <tbb/task_arena.h>
 
 #include <cstdint>
@@ -18,10 +18,9 @@ void work(std::int64_t length) {
   for (std::int64_t i = 0; i < length; ++i) benchmark::DoNotOptimize(x = x * 0.5f + 1);
 }
 
-/// Loops of two equal shares. With one thread 2 w, with two ideally w: the rest is what meeting
-/// costs. A team goes on alone once a thread was kept from its processor; `together` says in how
-/// many of the loops both took part.
-void meet(benchmark::State& state, int threads) {
+/// Loops of two equal shares of w each. One thread takes 2 w, two ideally w: the rest is what it
+/// costs to start and end a loop. `together` says in how many of the loops both threads took part.
+void run_loops(benchmark::State& state, int threads) {
   tbb::task_arena arena(threads);
   std::int64_t together = 0, loops = 0;
   arena.execute([&] {
@@ -50,7 +49,7 @@ void register_team_benchmarks() {
   for (const int threads : {1, 2}) {
     const std::string number = std::to_string(threads);
     benchmark::RegisterBenchmark(("team_for_each/" + number).c_str(),
-                                 [threads](benchmark::State& state) { meet(state, threads); })
+                                 [threads](benchmark::State& state) { run_loops(state, threads); })
         ->Arg(0)
         ->Arg(500)
         ->Arg(5000)

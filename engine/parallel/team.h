@@ -1,28 +1,23 @@
-/// A few threads that do a long list of short parallel loops together.
+/// Threads that carry out the parallel loops of a step together.
 ///
-/// A loop over the batches of a small cloth lasts a microsecond; handing each to the task scheduler
-/// would cost more than that. So the threads are asked for once per step, as oneTBB tasks in the
-/// caller's arena, and from then on meet through atomics:
+/// A loop over the batches of a small cloth lasts a microsecond, and handing its parts to a task
+/// scheduler would take longer. So the threads are asked for once per step, as tasks in the
+/// caller's oneTBB arena. From then on loops are started and ended through atomics:
 ///
-///     leader:  announces a call (rounds, members), does its share of each round, waits for others
-///     member:  waits for a new call, does its share of each round
+///     leader:  publishes a loop, does share 0, waits for the other shares
+///     worker:  waits for the next loop, does its share
 ///
-/// A meeting costs what it takes a cache line to cross between processors, twice; so everything
-/// that a call says is in one line, and nobody touches the lines of another without need.
+/// Starting and ending a loop costs what it takes a cache line to cross between processors, twice.
+/// So everything that describes a loop is in one line, and every share has a line of its own.
 ///
-/// A task that has done its part keeps waiting for as long as that took, about 0.2 ms at most: the
-/// next step may follow at once, and a processor that fell asleep takes tens of microseconds to
-/// wake. It goes when tasks are enqueued for another team. One that finds itself on the leader's
-/// processor is sent to another.
+/// The leader never waits for a task that has not started. Shares are made for the workers that
+/// have joined, and after some microseconds the leader does itself what no worker has claimed. It
+/// waits for claimed shares alone. Which thread does a share is left to chance, so results must not
+/// depend on it.
 ///
-/// Rounds of one loop are announced at once where a share needs no more than its neighbours: it
-/// then meets these alone, when it comes to what they share.
-///
-/// The leader never waits for a task that has not started: one that the scheduler never starts, or
-/// starts late, is no member yet, and after a while the leader does itself the shares that a member
-/// has not begun. If one that was begun takes long, compared with the leader's own, its thread has
-/// lost its processor: the leader works alone for a while. Which thread does a share is left to
-/// chance; results must not depend on it.
+/// The threads remain the caller's: a worker returns to oneTBB when the team ends, and neither its
+/// priority nor the processors that it may run on are changed. Who waits spins for a bounded number
+/// of pauses, then yields, and sleeps in the end.
 #pragma once
 
 #include <algorithm>
@@ -39,28 +34,20 @@ inline constexpr std::size_t kStretch = 1024;  // slots that a thread takes at a
 
 class Team {
  public:
-  static constexpr int kMostMembers = 64;
-  static constexpr int kMostRounds = 240;
-  struct Meeting;
-  /// Of a share in a round, one after the other. The share before it has closed the round before
-  /// when it begins; the front of the share behind it is done when it closes.
-  enum class Stage : std::uint8_t { front, rest, close };
-  struct Part {
-    int round = 0;
-    Stage stage = Stage::rest;
-  };
+  static constexpr int kMaxSize = 64;
+  struct SharedState;
 
-  /// Asks for up to `threads` threads, this one included; at most what the arena has. A meeting may
-  /// be used again by the next team, when this one is gone.
-  explicit Team(int threads, std::shared_ptr<Meeting> meeting = make_meeting());
+  /// Asks for up to `threads` threads, this one included; at most what the arena has. What the
+  /// threads share may be used again by the next team when this one is gone.
+  explicit Team(int threads, std::shared_ptr<SharedState> shared = make_shared_state());
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  static std::shared_ptr<Meeting> make_meeting();
+  static std::shared_ptr<SharedState> make_shared_state();
 
-  /// Threads, if all that were asked for come.
-  std::size_t size() const { return static_cast<std::size_t>(helpers_ > 0 ? helpers_ + 1 : 1); }
+  /// The number of threads if all that were asked for come.
+  std::size_t size() const { return static_cast<std::size_t>(std::max(1, 1 + max_workers_)); }
   /// work(i) for i in [0, count), in shares of consecutive i; returns when all are done.
   template <class Work>
   void for_each(std::size_t count, Work&& work) {
@@ -74,98 +61,73 @@ class Team {
     for_each((count + part - 1) / part,
              [&](std::size_t i) { work(i * part, std::min(count, (i + 1) * part)); });
   }
-  /// work(first, last) of each share.
+  /// work(first, last) of each share of [0, count).
   template <class Work>
   void for_each_share(std::size_t count, Work&& work) {
-    const auto share = [](void* context, const Part&, std::size_t first,
-                          std::size_t last) noexcept {
+    const auto share = [](void* context, std::size_t first, std::size_t last) noexcept {
       (*static_cast<std::remove_reference_t<Work>*>(context))(first, last);
     };
-    run({share, &work, count}, 1);
-  }
-  /// work(part, first, last) of each share, all stages in each of 1 to kMostRounds rounds. Shares
-  /// are the same in all of them, and none is empty.
-  template <class Work>
-  void for_each_share_in_rounds(std::size_t count, int rounds, Work&& work) {
-    const auto share = [](void* context, const Part& part, std::size_t first,
-                          std::size_t last) noexcept {
-      (*static_cast<std::remove_reference_t<Work>*>(context))(part, first, last);
-    };
-    run({share, &work, count, true}, rounds);
+    run({share, &work, count});
   }
 
  private:
   struct Job {
-    /// Who throws would leave others at work with what is gone.
-    void (*work)(void* context, const Part& part, std::size_t first,
-                 std::size_t last) noexcept = nullptr;
+    /// A share that threw would leave others at work on what is gone.
+    void (*work)(void* context, std::size_t first, std::size_t last) noexcept = nullptr;
     void* context = nullptr;
     std::size_t count = 0;
-    bool staged = false;  // or all of it as rest
   };
 
-  void run(const Job& job, int rounds);
-  bool ask_one();
-  void run_alone(const Job& job, int rounds);
-  std::uint32_t members();
+  void run(const Job& job);
+  bool enqueue_worker();
+  std::uint32_t joined() const;
 
-  std::shared_ptr<Meeting> meeting_;
-  int helpers_ = 0;
-  std::uint64_t alone_until_ = 0;  // on the processor's clock; 0: not alone
+  std::shared_ptr<SharedState> shared_;
+  int max_workers_ = 0;
 };
 
-/// Where leader and members meet. It outlives the team, since a task may start when the team is
-/// gone: it finds the door closed.
-struct Team::Meeting {
+/// What leader and workers share. It outlives the team, since a task may start when the team is
+/// gone: it finds the team closed and returns.
+struct Team::SharedState {
   static constexpr std::size_t kCacheLine = 64;
-  /// What is announced: rounds are numbered through, from meeting to meeting.
-  struct Call {
-    std::uint64_t first = 0;  // round
-    std::uint32_t rounds = 0;
-    std::uint32_t members = 0;  // leader included; kStop: go home
+  static constexpr std::uint32_t kEndOfTeam = 0xffu;     // in place of the number of shares
+  static constexpr std::uint32_t kClosed = 0xffffffffu;  // in place of the number of workers
+  /// One word, so that a worker cannot mistake one loop for the next. Loops are numbered through,
+  /// from team to team.
+  struct Loop {
+    std::uint64_t number = 0;
+    std::uint32_t shares = 0;  // kEndOfTeam: there are no more loops
 
-    static Call from(std::uint64_t word);
+    static Loop from(std::uint64_t word);
     std::uint64_t word() const;
-    std::uint64_t last() const { return first + rounds - 1; }
   };
-  struct alignas(kCacheLine) Announced {
-    std::atomic<std::uint64_t> word{0};
-    Job job;  // written by the leader between calls, read by whoever has begun a share
+  struct alignas(kCacheLine) Published {
+    std::atomic<std::uint64_t> loop{0};
+    Job job;  // written by the leader between loops, read by whoever has claimed a share
   };
-  /// The last round in which somebody began, did the front of, and finished the share of a member.
-  struct Share {
-    alignas(kCacheLine) std::atomic<std::uint64_t> begun{0};
-    alignas(kCacheLine) std::atomic<std::uint64_t> front{0};
-    std::atomic<std::uint64_t> done{0};
+  /// 2 n - 1 when a share of loop n is claimed, 2 n when it is done.
+  struct alignas(kCacheLine) Progress {
+    std::atomic<std::uint64_t> value{0};
   };
 
-  Announced announced;
-  alignas(kCacheLine) std::atomic<std::uint32_t> door;  // kClosed, or how many have come in
-  std::atomic<std::uint32_t> seats{0};                  // how many may
-  std::atomic<int> leaders_processor{-1};
-  std::atomic<std::uint32_t> left{0};  // of those who came in
-  std::atomic<int> asked{0};           // tasks not started, or at the door
-  std::uint32_t rounding = 0;          // of the leader (MXCSR); written while the door is closed
-  std::array<Share, kMostMembers> shares;
-  std::uint64_t round = 0;   // the last that was announced
-  std::uint64_t waited = 0;  // by the leader, in this call; ticks
+  Published published;
+  alignas(kCacheLine) std::atomic<std::uint32_t> joined{kClosed};  // workers
+  std::atomic<std::uint32_t> max_workers{0};
+  std::atomic<std::uint32_t> departed{0};  // workers that joined and have seen the end of the team
+  std::atomic<int> pending{0};             // tasks that have not started
+  std::uint32_t rounding = 0;              // the leader's MXCSR; written while the team is closed
+  std::uint64_t loops = 0;                 // how many the leader has published
+  std::array<Progress, kMaxSize> progress;
 
-  Meeting();
-  void announce(const Call& call);
-  void attend();
-  std::uint32_t come_in(std::uint64_t patience);
-  std::uint32_t enter();
-  void take_part(std::uint32_t me);
-  void do_rounds(const Call& call, std::uint32_t share);
-  bool is_done(std::uint32_t share, std::uint64_t by) const;
-  bool all_done(const Call& call) const;
-  bool may_begin(const Call& call, std::uint32_t share, std::uint64_t now) const;
-  bool begin(const Call& call, std::uint32_t share, std::uint64_t now);
-  void do_share(const Call& call, std::uint32_t share, std::uint64_t now, bool leads);
-  void wait_for_front(const Call& call, std::uint32_t share, std::uint64_t of, bool leads);
-  template <class Ready>
-  void wait_as_leader(const Call& call, std::uint32_t first, Ready&& ready);
-  bool help(const Call& call, std::uint32_t first);
+  Loop publish(std::uint32_t shares);
+  void run_task();
+  std::uint32_t join();
+  void work_until_end(std::uint32_t me);
+  bool is_done(const Loop& loop, std::uint32_t share) const;
+  bool all_done(const Loop& loop) const;
+  bool claim(const Loop& loop, std::uint32_t share);
+  void do_share(const Loop& loop, std::uint32_t share);
+  void claim_and_do(const Loop& loop, std::uint32_t share);
 };
 
 }  // namespace weft

@@ -102,7 +102,7 @@ std::size_t State::bytes() const {
     sum += v->bytes();
   }
   sum += contacts.bytes() + bytes_of(impulses) + pins.bytes() + measure->bytes();
-  sum += sizeof(Team::Meeting);
+  sum += sizeof(Team::SharedState);
   if (sweeps) sum += sweeps->bytes();
   if (yarn) sum += yarn->bytes();
   if (direct) sum += direct->bytes();

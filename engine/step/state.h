@@ -67,7 +67,7 @@ struct State {
   std::unique_ptr<SmallSteps> small_steps;
   ConstraintSolver* solver = nullptr;    // the chosen one of sweeps, yarn and direct
   ConstraintSolver* stand_in = nullptr;  // direct, behind yarns of unequal masses
-  std::shared_ptr<Team::Meeting> meeting = Team::make_meeting();  // of the team of each step
+  std::shared_ptr<Team::SharedState> team_state = Team::make_shared_state();
 
   State(std::shared_ptr<const Model> model, const Settings& settings);
   /// Goes on from another state of the same model.

@@ -99,14 +99,10 @@ class Step {
  private:
   /// Walks the list of attempts. A rejected one is taken back.
   Outcome do_substep(double h, int substeps_left) {
-    const std::int64_t most = s_.settings.max_iterations;
-    positions_end_ = report_.iterations + share_of(most - report_.iterations, substeps_left);
-    velocities_end_ =
-        report_.velocity_iterations + share_of(most - report_.velocity_iterations, substeps_left);
+    positions_ = share_of(report_.iterations, substeps_left);
+    velocities_ = share_of(report_.velocity_iterations, substeps_left);
     for (const Attempt& attempt : plan_.list()) {
-      if (report_.iterations >= end_of(attempt, report_.iterations, positions_end_) &&
-          !attempt.is_last)
-        continue;
+      if (!attempt.is_last && report_.iterations >= positions_.early_end) continue;
       const Outcome outcome = try_attempt(attempt, h);
       if (outcome == Outcome::accepted) return outcome;
       if (attempt.is_last) {
@@ -126,13 +122,10 @@ class Step {
     Trial sum{.substeps = 0};
     Transaction transaction(s_, s_.substep_start);
     if (attempt.parts > 1) transaction.begin();
-    const std::int64_t positions_end = end_of(attempt, report_.iterations, positions_end_);
-    const std::int64_t velocities_end =
-        end_of(attempt, report_.velocity_iterations, velocities_end_);
     for (int part = 0; part < attempt.parts; ++part) {
-      if (!attempt.is_last && report_.iterations >= positions_end) return Outcome::rejected;
-      const Budget budget{left_until(positions_end, report_.iterations),
-                          left_until(velocities_end, report_.velocity_iterations)};
+      if (!attempt.is_last && report_.iterations >= positions_.early_end) return Outcome::rejected;
+      const Budget budget{positions_.left(attempt, report_.iterations),
+                          velocities_.left(attempt, report_.velocity_iterations)};
       const Trial trial = advance(attempt, h / attempt.parts, budget);
       if (trial.outcome != Outcome::accepted) return trial.outcome;
       std::swap(s_.position, s_.solved);
@@ -162,16 +155,20 @@ class Step {
     most_refined_ = std::max(most_refined_, std::log2(attempt.parts));
   }
 
+  /// What a substep may do, up to numbers of the report: all of it, and, but for the attempt that
+  /// nothing is tried after, half of it.
+  struct Share {
+    std::int64_t end = 0, early_end = 0;
+    int left(const Attempt& attempt, std::int64_t done) const {
+      return static_cast<int>(
+          std::max<std::int64_t>(1, (attempt.is_last ? end : early_end) - done));
+    }
+  };
   /// Half of the iterations that the step has left are for each substep, and all for the last.
-  static std::int64_t share_of(std::int64_t left, int substeps_left) {
-    return std::max<std::int64_t>(1, left / std::min(substeps_left, 2));
-  }
-  /// Half of what a substep has left is for the attempt that nothing is tried after.
-  static std::int64_t end_of(const Attempt& attempt, std::int64_t done, std::int64_t end) {
-    return attempt.is_last ? end : done + (end - done) / 2;
-  }
-  static int left_until(std::int64_t end, std::int64_t done) {
-    return static_cast<int>(std::max<std::int64_t>(1, end - done));
+  Share share_of(std::int64_t done, int substeps_left) const {
+    const std::int64_t left = s_.settings.max_iterations - done;
+    const std::int64_t share = std::max<std::int64_t>(1, left / std::min(substeps_left, 2));
+    return {done + share, done + share / 2};
   }
 
   State& s_;
@@ -179,14 +176,14 @@ class Step {
   Team& team_;
   Plan plan_;
   double most_refined_ = 0;
-  std::int64_t positions_end_ = 0, velocities_end_ = 0;  // of the substep, as the report counts
+  Share positions_, velocities_;  // of the iterations, for the present substep
 };
 
 }  // namespace
 
 StepReport step(State& s, double dt) {
   StepReport report;
-  Team team(threads_worth_having(s), s.meeting);
+  Team team(threads_worth_having(s), s.team_state);
   bool done = false;
   {
     Travel travel(s, dt);

@@ -17,9 +17,10 @@
 ///     synchronised: one thread at a time, for functions that are const too.
 ///  4. weft owns no threads, and no globals that affect results but WEFT_ISA in the environment
 ///     (Isa). Parallel work runs in the caller's oneTBB arena, rounded as the calling thread
-///     rounds. A worker that helped waits for the next step as long as its part took, at most 0.2
-///     ms, and may be moved off the calling thread's core. So a plugin that holds weft must not be
-///     unloaded while workers may still be on their way out: link it with -z nodelete.
+///     rounds. Threads go back to the arena when the step ends, as they were; weft changes neither
+///     their priority nor the processors that they may run on. A task that the arena had no thread
+///     for may start when its step is over, and returns at once. So a plugin that holds weft must
+///     not be unloaded while tasks may still start: link it with -z nodelete.
 ///     Floating-point exceptions are to be masked: lanes compute what nobody takes (1 / 0).
 ///  5. A step allocates nothing once warm (contact lists grow to their largest size and stay).
 ///  6. Errors are values. Bad input yields one line that names the field, the index and the value,

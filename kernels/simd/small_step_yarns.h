@@ -1,4 +1,4 @@
-/// A relaxed sweep over yarns: what a small step does to them (engine/small_steps.h).
+/// A relaxed sweep over yarns: what a small step does to them (engine/solvers/small_steps).
 ///
 /// As in yarns.h a yarn is solved exactly, here Newton's step for C = (l^2 - L^2) / 2 of each of
 /// its constraints, whose gradient is d: no root is taken. The right side is relaxed by omega; the

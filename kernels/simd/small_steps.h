@@ -1,4 +1,4 @@
-/// The stages of a small step (engine/small_steps.h), in single precision.
+/// The stages of a small step (engine/solvers/small_steps), in single precision.
 ///
 /// Positions are base + u, two floats (split.h). The arrays of a Flight are laid out as u is, in
 /// quads or in woven rows, so that flight is arithmetic on floats one by one. A substep of h, after

@@ -151,7 +151,7 @@ kernels::Sweep SimdLoop::sweep_tile(const Tile& tile) {
 }
 
 /// The first batch between tiles need not wait for all of them: what joins a tile to others of the
-/// same share is done as soon as it is, while both are in the caches, and nobody is met for it.
+/// same share is done as soon as it is, while both are in the caches, and no thread waits for it.
 /// Those of the seams at a tile that begin at tiles from ... to.
 kernels::Sweep SimdLoop::sweep_seams(std::size_t tile, std::size_t from, std::size_t to) {
   kernels::Sweep sweep;

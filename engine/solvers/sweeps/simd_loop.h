@@ -50,9 +50,9 @@ class SimdLoop {
   bool wanted(std::size_t chunk) const { return !marks() || s_.changed_[chunk]; }
   // simd_trips.cpp
   bool meets_neighbours_only() const;
-  void do_part(const Team::Part& part, int rounds, const Share& share);
+  void sweep_trip(std::size_t depth, kernels::Sweep& sum);
   kernels::Sweep sweep_with_seams(std::size_t tile, std::size_t from);
-  kernels::Sweep sweep_trip(const Share& share, std::size_t depth);
+  kernels::Sweep sweep_ahead(const Share& share, std::size_t depth);
   kernels::Sweep sweep_ends(const Share& share, std::size_t pass);
   void choose_density(const kernels::Sweep& sweep);
   void sweep_hubs(kernels::Sweep& sweep);

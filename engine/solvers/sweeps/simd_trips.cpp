@@ -1,10 +1,4 @@
-/// Many passes, with one meeting for all of them and several to a trip through memory.
-///
-/// What a share needs of a pass is the seam with the share before it, and what its own seam with
-/// the share behind it needs is that one's first tile (Team's rounds, a pass each):
-///
-///     share 0:  | tile 0 | tile 1 | seam | tile 0 | tile 1 | seam | ...
-///     share 1:   | tile 2 | tile 3 |     . | tile 2 | tile 3 |    . | ...
+/// Many passes, several of them to a trip through memory.
 ///
 /// kDepth passes make a trip. In the first of them a tile gets the next ones too, while it is in
 /// the caches, as soon as its neighbours have had the ones before:
@@ -12,9 +6,11 @@
 ///     pass 0:  | tile 0 | tile 1 | tile 2 |        | tile 3 |        | tile 4 |        |
 ///     pass 1:                             | tile 1 |        | tile 2 |        | tile 3 |
 ///
-/// In pass p the first p tiles of a share and its last p, with their seams, are left to the pass's
-/// own round: what they need comes from the shares beside it. Every constraint meets the same
-/// displacements as in passes one by one: the bits are the same.
+/// The tiles are divided into one share per thread, the same shares in all passes of a trip. What
+/// pass p needs at the ends of a share comes from the shares beside it, so the first p tiles of a
+/// share and its last p, with their seams, are left to a loop of their own, which begins when all
+/// shares have ended pass p - 1. Seams between shares are swept after each of these loops. Every
+/// constraint meets the same displacements as in passes one by one: the bits are the same.
 #include <algorithm>
 
 #include "engine/solvers/sweeps/simd_loop.h"
@@ -23,7 +19,6 @@ namespace weft {
 namespace {
 
 constexpr int kDepth = 2;
-static_assert(Team::kMostRounds % kDepth == 0);  // only the last trip of all may be shorter
 
 }  // namespace
 
@@ -41,32 +36,25 @@ kernels::Sweep SimdLoop::sweeps(int passes) {
     for (int i = 0; i < passes; ++i) sum += sweep();
     return sum;
   }
-  for (int done = 0; done < passes; done += Team::kMostRounds) {
-    const int rounds = std::min(passes - done, Team::kMostRounds);
-    clear_sweeps();
-    auto work = [&](const Team::Part& part, std::size_t first, std::size_t last) {
-      do_part(part, rounds, {first, last});
-    };
-    team_.for_each_share_in_rounds(s_.model_.ordering.tiles.size(), rounds, work);
-    sum += sum_of_sweeps();
+  for (int done = 0; done < passes; done += kDepth) {
+    sweep_trip(static_cast<std::size_t>(std::min(kDepth, passes - done)), sum);
   }
   return sum;
 }
 
-void SimdLoop::do_part(const Team::Part& part, int rounds, const Share& share) {
-  const int pass = part.round % kDepth, left = rounds - (part.round - pass);
-  kernels::Sweep& sum = s_.sweeps_[share.first];
-  switch (part.stage) {
-    case Team::Stage::front:
-      sum += sweep_with_seams(share.first, share.first);
-      break;
-    case Team::Stage::rest:
-      sum += pass == 0 ? sweep_trip(share, static_cast<std::size_t>(std::min(kDepth, left)))
-                       : sweep_ends(share, static_cast<std::size_t>(pass));
-      break;
-    case Team::Stage::close:
-      sum += sweep_seams(share.last, share.first, share.last - 1);
-      break;
+void SimdLoop::sweep_trip(std::size_t depth, kernels::Sweep& sum) {
+  const std::size_t tiles = s_.model_.ordering.tiles.size(), shares = std::min(tiles, team_.size());
+  for (std::size_t pass = 0; pass < depth; ++pass) {
+    clear_sweeps();
+    team_.for_each(shares, [&](std::size_t i) {
+      const Share share{tiles * i / shares, tiles * (i + 1) / shares};
+      kernels::Sweep sweep = sweep_with_seams(share.first, share.first);
+      sweep += pass == 0 ? sweep_ahead(share, depth) : sweep_ends(share, pass);
+      s_.sweeps_[share.first] = {sweep};
+      for (std::size_t tile = share.first; tile < share.last; ++tile) leave_open(tile, share.first);
+    });
+    sum += sum_of_sweeps();
+    sweep_open_seams(sum);
   }
 }
 
@@ -78,7 +66,7 @@ kernels::Sweep SimdLoop::sweep_with_seams(std::size_t tile, std::size_t from) {
 }
 
 /// All of pass 0 but the first tile, and of pass p the tiles first + p ... last - p - 1.
-kernels::Sweep SimdLoop::sweep_trip(const Share& share, std::size_t depth) {
+kernels::Sweep SimdLoop::sweep_ahead(const Share& share, std::size_t depth) {
   kernels::Sweep sweep;
   for (std::size_t i = share.first + 1; i < share.last; ++i) {
     for (std::size_t pass = 0; pass < depth && i >= share.first + 2 * pass; ++pass) {
@@ -89,7 +77,7 @@ kernels::Sweep SimdLoop::sweep_trip(const Share& share, std::size_t depth) {
   return sweep;
 }
 
-/// What the trip has left of a pass, but the first tile.
+/// What sweep_ahead has left of a pass, but the first tile.
 kernels::Sweep SimdLoop::sweep_ends(const Share& share, std::size_t pass) {
   kernels::Sweep sweep;
   const bool all = share.last - share.first <= 2 * pass;

@@ -121,97 +121,30 @@ TEST_CASE("thousands of loops: what one wrote the next one reads, in whatever th
   });
 }
 
-/// A row of cells whose halves depend on each other within a cell, and across the seam with the
-/// next cell.
-struct Row {
-  std::vector<std::uint64_t> left, right;
-  explicit Row(std::size_t cells) : left(cells, 1), right(cells, 2) {}
-
-  void mix(std::size_t cell, int round) {
-    left[cell] = 3 * left[cell] + right[cell] + static_cast<std::uint64_t>(round);
-    right[cell] = 5 * right[cell] + left[cell];
-  }
-  void sew(std::size_t cell) {
-    right[cell] = 7 * right[cell] + left[cell + 1];
-    left[cell + 1] = 11 * left[cell + 1] + right[cell];
-  }
-  void do_part(const Team::Part& part, std::size_t first, std::size_t last) {
-    if (part.stage == Team::Stage::front) mix(first, part.round);
-    for (std::size_t i = first + 1; part.stage == Team::Stage::rest && i < last; ++i) {
-      mix(i, part.round);
-      sew(i - 1);
-    }
-    if (part.stage == Team::Stage::close && last < left.size()) sew(last - 1);
-  }
-};
-
-TEST_CASE("rounds in which shares meet their neighbours only end as if all had met") {
-  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 8);
-  constexpr int kRounds = 2 * Team::kMostRounds;
-  std::atomic<int> shared{0};  // stages done by helpers
-  for (const std::size_t cells : {1u, 2u, 3u, 4u, 9u, 50u}) {
-    CAPTURE(cells);
-    Row expected(cells);
-    for (int round = 0; round < kRounds; ++round) {
-      for (std::size_t i = 0; i < cells; ++i) expected.mix(i, round % Team::kMostRounds);
-      for (std::size_t i = 0; i + 1 < cells; ++i) expected.sew(i);
-    }
-    for (int run = 0; run < 40; ++run) {
-      const int threads = 1 + run % 6;
-      CAPTURE(threads);
-      in_arena(threads, [&] {
-        const auto leader = std::this_thread::get_id();
-        Team team(threads);
-        if (threads > 1 && run < 20) threads_seen(team);
-        Row row(cells);
-        for (int half = 0; half < 2; ++half) {
-          team.for_each_share_in_rounds(
-              cells, Team::kMostRounds,
-              [&](const Team::Part& part, std::size_t first, std::size_t last) {
-                row.do_part(part, first, last);
-                shared += std::this_thread::get_id() != leader;
-              });
-        }
-        REQUIRE(row.left == expected.left);
-        REQUIRE(row.right == expected.right);
-        REQUIRE(each_once(done_by(team, 10)));
-      });
-    }
-  }
-  if (std::thread::hardware_concurrency() > 1) CHECK(shared > 1000);
+/// The leader would hang here if it waited for shares that nobody has claimed.
+TEST_CASE("a leader does the shares of workers that have joined and claim nothing") {
+  in_arena(4, [] {
+    const auto shared = Team::make_shared_state();
+    shared->pending = 3;  // as if all tasks were enqueued already: no worker comes
+    Team team(4, shared);
+    REQUIRE(team.size() == 4);
+    shared->joined = 3;
+    for (const std::size_t count : {1u, 3u, 4u, 1000u}) CHECK(each_once(done_by(team, count)));
+    shared->departed = 3;
+  });
 }
 
-/// What a leader would hang in if it helped with a share in front of the one it is doing: share 1,
-/// whose next round needs share 2, which needs share 3, all of them late.
-TEST_CASE("a leader that helps the late does not wait for itself") {
-  struct Late {
-    std::shared_ptr<Team::Meeting> meeting = Team::make_meeting();
-    std::atomic<bool> over{false};
-    int parts = 0;
-    void do_part(const Team::Part& part, std::size_t first) {
-      ++parts;
-      const bool second_share = first == 2 && part.round == 0;
-      if (second_share && part.stage == Team::Stage::rest) meeting->shares[1].done = 1;
-    }
-  };
-  const auto late = std::make_shared<Late>();  // outlives a thread that hangs
-  late->meeting->announced.job = {
-      [](void* context, const Team::Part& part, std::size_t first, std::size_t) noexcept {
-        static_cast<Late*>(context)->do_part(part, first);
-      },
-      late.get(), 4, true};
-  late->meeting->shares[1].begun = late->meeting->shares[1].front = 1;  // somebody is at it
-  std::thread([late] {
-    const Team::Meeting::Call call{1, 2, 4};
-    for (const std::uint64_t round : {1u, 2u}) late->meeting->do_share(call, 0, round, true);
-    late->over = true;
-  }).detach();
-  for (int i = 0; i < 5000 && !late->over; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  REQUIRE(late->over);
-  CHECK(late->parts >=
-        3 * 5);  // of shares 0 and 2 in round 1, of share 0 and fronts behind it in 2
+TEST_CASE("a worker that comes late to a loop does none of its shares") {
+  const auto shared = Team::make_shared_state();
+  const Team::SharedState::Loop loop = shared->publish(3);
+  CHECK(shared->claim(loop, 1));
+  CHECK_FALSE(shared->claim(loop, 1));
+  shared->progress[1].value = 2 * loop.number;
+  CHECK_FALSE(shared->claim(loop, 1));
+  const Team::SharedState::Loop next = shared->publish(3);
+  CHECK(shared->claim(next, 1));
+  CHECK(shared->claim(next, 2));
+  CHECK_FALSE(shared->claim(loop, 2));
 }
 
 TEST_CASE("a second thread comes to help, if the arena has one") {
@@ -238,27 +171,44 @@ int processors_allowed() {
   return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : -1;
 }
 
-TEST_CASE("whoever was sent to another processor may still use them all") {
+TEST_CASE("the processors that a worker may run on stay as they are") {
   const int allowed = processors_allowed();
   std::atomic<int> changed{0};
-  for (int i = 0; i < 20; ++i) {
-    in_arena(2, [allowed, &changed] {
-      Team team(2);
-      for (int loop = 0; loop < 1000; ++loop) {
-        team.for_each(2, [&](std::size_t) {
-          if (loop % 100 == 0 && processors_allowed() != allowed) ++changed;
-        });
-      }
-    });
-  }
+  in_arena(2, [allowed, &changed] {
+    Team team(2);
+    threads_seen(team);
+    for (int loop = 0; loop < 1000; ++loop) {
+      team.for_each(2, [&](std::size_t) { changed += processors_allowed() != allowed; });
+    }
+  });
   CHECK(changed == 0);
 }
 
-TEST_CASE("teams that follow each other at one meeting, or at two in turn") {
+TEST_CASE("a worker rounds as before when its team has ended") {
+  const auto shared = Team::make_shared_state();
+  const std::uint32_t before = _mm_getcsr();
+  shared->rounding = before | _MM_ROUND_UP;
+  shared->publish(Team::SharedState::kEndOfTeam);
+  shared->work_until_end(1);
+  CHECK(_mm_getcsr() == before);
+  CHECK(shared->departed == 1);
+}
+
+TEST_CASE("workers wait through a long serial stage, and work on") {
   in_arena(2, [] {
-    const auto meeting = Team::make_meeting(), other = Team::make_meeting();
+    Team team(2);
+    threads_seen(team);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    CHECK(each_once(done_by(team, 1000)));
+    CHECK(threads_seen(team) == (std::thread::hardware_concurrency() > 1 ? 2u : 1u));
+  });
+}
+
+TEST_CASE("teams that follow each other with one shared state, or with two in turn") {
+  in_arena(2, [] {
+    const auto first = Team::make_shared_state(), second = Team::make_shared_state();
     for (int team = 0; team < 4000; ++team) {
-      Team one(2, team < 2000 || team % 2 == 0 ? meeting : other);
+      Team one(2, team < 2000 || team % 2 == 0 ? first : second);
       REQUIRE(each_once(done_by(one, 10)));
     }
   });

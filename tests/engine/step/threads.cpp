@@ -70,7 +70,7 @@ TEST_CASE("a step asks for as many threads as the settings say") {
         {.substeps = 1, .solver = Solver::gauss_seidel, .isa = Isa::sse2, .threads = threads});
     arena.execute([&] { step(state, 0.001); });
     const int expected = threads == 0 ? kSlots : std::min(threads, kSlots);
-    CHECK(state.meeting->seats.load() + 1 == static_cast<std::uint32_t>(expected));
+    CHECK(state.team_state->max_workers.load() + 1 == static_cast<std::uint32_t>(expected));
   }
 }
 
