@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/step/state.h"
+#include "kernels/reference/integrate.h"
 
 namespace weft {
 
@@ -9,6 +10,8 @@ namespace weft {
 inline kernels::Vector acceleration(const State& s, std::size_t slot) {
   return s.force.size() > 0 ? s.gravity + s.model->inverse_mass[slot] * s.force[slot] : s.gravity;
 }
+/// What the reference's stages work on.
+reference::Motion reference_motion(State& s);
 /// solved: where the particles would be after h without constraints.
 void predict(State& s, double h, Team& team);
 /// next_velocity: from solved. Returns whether both are finite.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/step/motion.h"
 #include "engine/step/reporting.h"
 #include "engine/step/standstill.h"
 
@@ -51,9 +52,18 @@ kernels::LoopLimits limits_of(const Settings& settings, int most) {
           .renew_after = settings.renew_after};
 }
 
+/// Until the commit nobody needs next_velocity.
+kernels::LoopResult sweep_previewed_positions(State& s, double h, bool first,
+                                              const kernels::LoopLimits& limits) {
+  reference::Motion motion = reference_motion(s);
+  motion.velocity = s.next_velocity.view();
+  return s.reference->solve_previewed_positions(motion, h, s.contacts, first, limits);
+}
+
 /// With a start: along the directions there (scheme rattle).
 kernels::LoopResult sweep_positions(State& s, double h, kernels::VectorsView start, bool first,
                                     const kernels::LoopLimits& limits, Team& team) {
+  if (s.previews) return sweep_previewed_positions(s, h, first, limits);
   const auto x = s.solved.view();
   return s.reference ? s.reference->solve_positions(x, start, h, s.contacts, first, limits)
                      : s.simd->solve_positions(x, start, s.contacts, first, limits, team);

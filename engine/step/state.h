@@ -58,6 +58,10 @@ struct State {
   // The one of the chosen backend.
   std::optional<ReferenceSolver> reference;
   kernels::Vectors predicted;  // reference only
+  /// The position loop is the original one as the paper has it (kernels/reference/previewed.h):
+  /// with the reference, Gauss-Seidel and scheme paper. No setting of a Cloth: `weft paper` asks
+  /// for it.
+  bool previews = false;
   std::optional<SimdSolver> simd;
   std::optional<SimdMeasure> measure;           // simd only
   std::optional<SmallStepsSolver> small_steps;  // with Solver::small_steps, on either backend
