@@ -75,10 +75,30 @@ template <class From>
   return corrections;
 }
 
+/// Component `axis` of the directions of kFloats constraints from c on, which stand in one block or
+/// in two. note: of two, either load reads beyond what it is for, but not beyond the two blocks.
+[[gnu::always_inline]] inline Floats directions_from(const Relaxation& r, std::size_t c,
+                                                     std::size_t axis) {
+  constexpr std::size_t kLanes = kernels::kLanes, kBlock = sizeof(ConstraintBlock) / sizeof(float);
+  alignas(64) static constexpr float kLane[] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                8, 9, 10, 11, 12, 13, 14, 15};
+  const std::size_t first = c % kLanes;
+  const float* block = &r.blocks[c / kLanes].nx[0] + axis * kLanes;
+  const Floats here = load(block + first);
+  if (first + kFloats <= kLanes) return here;
+  const Floats next = load(block + kBlock + first - kLanes);
+  return xsimd::select(load(kLane) < Floats(static_cast<float>(kLanes - first)), here, next);
+}
+
 /// The directions of the neighbours that a pull of kFloats lanes reads.
-template <class From>
-[[gnu::always_inline]] inline FloatVector directions_of(const Relaxation& r, const From& from,
+[[gnu::always_inline]] inline FloatVector directions_of(const Relaxation& r, const FromRun& from,
                                                         std::size_t pull, std::size_t lane) {
+  const std::size_t c = from.index(pull, lane);
+  return {directions_from(r, c, 0), directions_from(r, c, 1), directions_from(r, c, 2)};
+}
+[[gnu::always_inline]] inline FloatVector directions_of(const Relaxation& r,
+                                                        const FromSingles& from, std::size_t pull,
+                                                        std::size_t lane) {
   alignas(64) float x[kFloats], y[kFloats], z[kFloats];
   for (std::uint32_t k = 0; k < kFloats; ++k) {
     const std::size_t c = from.index(pull, lane + k);
