@@ -7,16 +7,16 @@
 ///
 ///     distance constraints      by what they pull
 ///     their sums                become displacements
-///     ropes, hubs, contacts     by displacements; if that corrected something, all errors of
-///     distance
-///                               constraints are formed from displacements, and nothing is left to
-///                               pull
+///     ropes, hubs, contacts     by displacements
 ///
-/// (The reference, kernels/reference/anticipated.h, forms the products of these few on the spot.)
+/// If the last corrected something, all errors of distance constraints are formed from
+/// displacements, and nothing is left to pull. (The reference, kernels/reference/anticipated.h,
+/// forms the products of these few on the spot.)
 ///
-/// Skipping works as without products: what is passed over had change 0 when it was last visited,
-/// and so had its neighbours since. Every constraint has to be visited once between two visits of a
-/// neighbour, or not at all: this is so in trips (simd_trips.cpp) too.
+/// What a constraint pulls is the last change of each neighbour: between two of its visits each
+/// must have had one, which is so in trips (simd_trips.cpp) too, or have been passed over. Skipping
+/// sees to the rest: a chunk is passed over only if neither it nor a neighbour has changed anything
+/// since its last visit, so that all changes in question are 0.
 #include <algorithm>
 
 #include "engine/solvers/sweeps/simd_loop.h"
