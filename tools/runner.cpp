@@ -55,10 +55,11 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.scheme_fallbacks += report.scheme_fallbacks;
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
   summary.pin_work += report.pin_work;
+  summary.solver_seconds = 0;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     summary.stage_seconds[stage] += report.stage_seconds[stage];
     const bool is_report = static_cast<Stage>(stage) == Stage::report;
-    if (!is_report) summary.solver_seconds += report.stage_seconds[stage];
+    if (!is_report) summary.solver_seconds += summary.stage_seconds[stage];
   }
 }
 
