@@ -17,6 +17,7 @@ struct Arguments {
   simd::Relaxation r;
   simd::Geometry g;
   simd::Anticipation p;
+  const PullLayout* pulls;  // anticipation only
   kernels::VectorsView v;
 };
 
@@ -37,6 +38,28 @@ struct Kernel {
 };
 
 constexpr float kNothingIsCorrected = 1e30f;
+
+/// Some blocks of a run may be scattered, too.
+void relax_anticipated(const Arguments& x, const Piece& piece) {
+  x.pulls->for_each_stretch(piece.first(), piece.last(),
+                            [&](std::uint32_t first, std::uint32_t last, bool scattered) {
+                              if (scattered) {
+                                x.table.relax_anticipated_singles(x.p, first, last);
+                              } else {
+                                x.table.relax_anticipated_run(x.p, {0, 0, first, last - first});
+                              }
+                            });
+}
+void renew_products(const Arguments& x, const Piece& piece) {
+  x.pulls->for_each_stretch(piece.first(), piece.last(),
+                            [&](std::uint32_t first, std::uint32_t last, bool scattered) {
+                              if (scattered) {
+                                x.table.renew_products_singles(x.p, x.r, first, last);
+                              } else {
+                                x.table.renew_products_run(x.p, x.r, {0, 0, first, last - first});
+                              }
+                            });
+}
 
 constexpr Kernel kKernels[] = {
     {"renew",
@@ -108,34 +131,27 @@ constexpr Kernel kKernels[] = {
        benchmark::DoNotOptimize(visits);
      },
      nullptr},
-    {"relax_anticipated",
-     {20, 0, 12, 0, 4},
-     true,
-     false,
-     0,
-     [](const Arguments& x, const Piece& piece) { x.table.relax_anticipated_run(x.p, piece.run); },
-     [](const Arguments& x, const Piece& piece) {
-       x.table.relax_anticipated_singles(x.p, piece.first(), piece.last());
-     }},
-    {"renew_products",
-     {28, 0, 28, 0, 8},
-     true,
-     false,
-     0,
-     [](const Arguments& x, const Piece& piece) {
-       x.table.renew_products_run(x.p, x.r, piece.run);
-     },
-     [](const Arguments& x, const Piece& piece) {
-       x.table.renew_products_singles(x.p, x.r, piece.first(), piece.last());
-     }},
+    {"relax_anticipated", {20, 0, 12, 0, 4}, true, false, 0, relax_anticipated, relax_anticipated},
+    {"renew_products", {28, 0, 28, 0, 8}, true, false, 0, renew_products, renew_products},
     {"apply_sums",
-     {24, 24, 24, 12},
+     {28, 24, 24, 12},
      true,
      true,
      0,
      [](const Arguments& x, const Piece& piece) { x.table.apply_sums_run(x.p, x.r, piece.run); },
      [](const Arguments& x, const Piece& piece) {
        x.table.apply_sums_singles(x.p, x.r, piece.first(), piece.last());
+     }},
+    {"refresh_errors",
+     {32, 12, 32, 12},
+     true,
+     true,
+     0,
+     [](const Arguments& x, const Piece& piece) {
+       x.table.refresh_errors_run(x.p, x.r, piece.run);
+     },
+     [](const Arguments& x, const Piece& piece) {
+       x.table.refresh_errors_singles(x.p, x.r, piece.first(), piece.last());
      }},
     {"strain",
      {16, 24, 16, 24},
@@ -192,18 +208,13 @@ Work work_of(const Kernel& kernel, Workbench& bench) {
 }
 
 Arguments arguments_of(const Kernel& kernel, bool in_quads, Workbench& bench, simd::Isa isa) {
-  Arguments x{
-      simd::table(isa), bench.relaxation(in_quads), bench.geometry(), {}, bench.velocity.view()};
+  Arguments x{simd::table(isa), bench.relaxation(in_quads), bench.geometry(), {},
+              nullptr,          bench.velocity.view()};
   x.r.threshold = kernel.threshold;
   if (kernel.anticipates) {
-    x.p = bench.pulls().anticipation(kernel.threshold);
-    for (const Piece& piece : bench.pieces) {
-      if (piece.singles) {
-        x.table.renew_products_singles(x.p, x.r, piece.first(), piece.last());
-      } else {
-        x.table.renew_products_run(x.p, x.r, piece.run);
-      }
-    }
+    x.pulls = &bench.pulls();
+    x.p = bench.anticipation(kernel.threshold);
+    for (const Piece& piece : bench.pieces) renew_products(x, piece);
   }
   // Ropes, and masks: as before the first pass.
   std::fill(bench.impulse.begin(), bench.impulse.end(), 0.f);

@@ -51,7 +51,7 @@ void Workbench::place_particles(const SceneDescription& scene) {
 
 void Workbench::place_constraints(const SceneDescription& scene) {
   const std::size_t size = constraint_slots();
-  blocks_.resize(size / kLanes + 2);
+  blocks_.resize(size / kLanes);
   impulse.resize(size);
   rest_length_.assign(size, 1);
   inverse_square_.assign(size, 0);
@@ -104,7 +104,7 @@ simd::Relaxation Workbench::relaxation(bool in_quads) {
   fill_errors();
   simd::Relaxation r;
   r.u = {u_.data(), in_quads ? 1 : stride_, in_quads ? std::size_t{4} : 1};
-  r.blocks = blocks_.data() + 1;
+  r.blocks = blocks_.data();
   r.impulse = impulse.data();
   r.a = ordering.a.data();
   r.b = ordering.b.data();
@@ -135,11 +135,18 @@ simd::Motion Workbench::motion() {
   return m;
 }
 
-PullLayout& Workbench::pulls() {
-  if (!pulls_)
-    pulls_ = std::make_unique<PullLayout>(
-        ordering, std::span(blocks_).subspan(1, constraint_slots() / kLanes));
+const PullLayout& Workbench::pulls() {
+  if (!pulls_) {
+    pulls_ = std::make_unique<PullLayout>(make_pull_layout(ordering));
+    pull_memory_ = std::make_unique<PullMemory>(*pulls_);
+    pull_weight_ = pulls_->weights(blocks_);
+  }
   return *pulls_;
+}
+
+simd::Anticipation Workbench::anticipation(float threshold) {
+  const PullLayout& layout = pulls();
+  return pull_memory_->view(layout, pull_weight_, threshold);
 }
 
 Workbench& Workshop::get(const std::string& mesh, int size, bool singles) {

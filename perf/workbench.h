@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "engine/ordering/ordering.h"
+#include "engine/solvers/sweeps/pull_layout.h"
 #include "kernels/simd/table.h"
 #include "perf/meshes.h"
-#include "perf/pull_layout.h"
 
 namespace weft::perf {
 
@@ -44,7 +44,8 @@ class Workbench {
   simd::Geometry geometry();
   simd::Motion motion();
   simd::Boxes boxes();
-  PullLayout& pulls();  // made when first asked for
+  const PullLayout& pulls();  // made when first asked for
+  simd::Anticipation anticipation(float threshold);
 
   kernels::Vectors position, velocity, solved, next_velocity;
   kernels::AlignedVector<double> inverse_mass, mass, reach;
@@ -61,13 +62,15 @@ class Workbench {
   void cut(const kernels::Run& run, const Batch& batch, bool singles);
   void fill_errors();
 
-  simd::ConstraintBlock& block(std::size_t constraint) { return blocks_[1 + constraint / kLanes]; }
+  simd::ConstraintBlock& block(std::size_t constraint) { return blocks_[constraint / kLanes]; }
 
   kernels::AlignedVector<float> u_;
   std::size_t stride_ = 0;
-  kernels::AlignedVector<simd::ConstraintBlock> blocks_;  // with a spare one at either end
+  kernels::AlignedVector<simd::ConstraintBlock> blocks_;
   kernels::AlignedVector<double> rest_length_, inverse_square_, scale_;
   std::unique_ptr<PullLayout> pulls_;
+  std::unique_ptr<PullMemory> pull_memory_;
+  kernels::AlignedVector<float> pull_weight_;
 };
 
 /// Workbenches by mesh ("grid", "irregular"), size and whether all are singles; made when first

@@ -51,7 +51,8 @@ Result<paper::Study> carry_out(const PaperOptions& options) {
       line.next(describe(cell));
       auto measured = paper::measure(cell, study.repeat, progress);
       if (!measured) return Error{measured.error()};
-      for (paper::Row& row : measured.value()) rows->push_back(std::move(row));
+      for (paper::Row& row : measured.value().rows) rows->push_back(std::move(row));
+      study.previewed.push_back(std::move(measured.value().previewed));
     }
   }
   return study;
@@ -61,6 +62,9 @@ Result<paper::Study> carry_out(const PaperOptions& options) {
 Result<void> write_folder(const std::filesystem::path& folder, const paper::Study& study) {
   if (auto done = write_file(folder / "rows.csv", paper::rows_csv(study.rows)); !done) return done;
   if (auto done = write_file(folder / "figure4.csv", paper::rows_csv(study.figure_4)); !done) {
+    return done;
+  }
+  if (auto done = write_file(folder / "previewed.csv", paper::rows_csv(study.previewed)); !done) {
     return done;
   }
   if (auto done = write_file(folder / "summary.csv", paper::summary_csv(study)); !done) return done;

@@ -96,6 +96,7 @@ Json to_json(const RunReport& report) {
       {"scheme", name(summary.scheme)},
       {"scheme_fallbacks", summary.scheme_fallbacks},
       {"backend", name(settings.backend)},
+      {"anticipate_products", settings.anticipate_products},
       {"isa", isa(report)},
       {"threads", settings.backend == Backend::reference ? 1 : summary.threads},
       {"dt", report.plan.dt},

@@ -55,8 +55,11 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.scheme_fallbacks += report.scheme_fallbacks;
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
   summary.pin_work += report.pin_work;
+  summary.solver_seconds = 0;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     summary.stage_seconds[stage] += report.stage_seconds[stage];
+    const bool is_report = static_cast<Stage>(stage) == Stage::report;
+    if (!is_report) summary.solver_seconds += summary.stage_seconds[stage];
   }
 }
 
@@ -84,11 +87,6 @@ void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
   summary.solver = cloth.settings().solver;
   summary.scheme = cloth.settings().scheme;
   summary.isa = cloth.settings().isa;
-  for (std::size_t stage = 0; stage < kStageCount; ++stage) {
-    if (static_cast<Stage>(stage) != Stage::report) {
-      summary.solver_seconds += summary.stage_seconds[stage];
-    }
-  }
   summary.energy_end = cloth.energy().total();
   summary.state_hash = cloth.state_hash();
   summary.model = describe(*cloth.model());
@@ -117,11 +115,9 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     const std::chrono::duration<double> elapsed = Clock::now() - start;
     summary.cpu_seconds += cpu_seconds() - cpu_start;
     if (!report) return Error{report.error()};
-    ++summary.frames;
+    add_frame(summary, report.value());
     summary.step_seconds += elapsed.count();
     summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
-    look_for_miss(summary, report.value());
-    add_work(summary, report.value());
     add_errors(summary, errors, cloth);
     summary.stopped = plan.stop && plan.stop();
     if (on_frame) on_frame(summary.frames, cloth, report.value());
@@ -151,6 +147,12 @@ Result<RunSummary> run_repeatedly(const std::shared_ptr<const Model>& model,
 }
 
 }  // namespace
+
+void add_frame(RunSummary& summary, const StepReport& report) {
+  ++summary.frames;
+  look_for_miss(summary, report);
+  add_work(summary, report);
+}
 
 std::string text(const Miss& miss) {
   const std::string end = fmt::format("frame {}: {}", miss.frame, name(miss.status));

@@ -107,6 +107,9 @@ struct RunSummary {
   }
 };
 
+/// Adds a frame's work, times, status and, if it is the first, its miss.
+void add_frame(RunSummary& summary, const StepReport& report);
+
 /// Every repeat starts from the model's own state. A step that commits nothing ends the run. An
 /// error means that the settings, dt or a move were refused.
 Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& settings,

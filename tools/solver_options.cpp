@@ -19,6 +19,17 @@ Result<int> parse_substeps(std::string_view option, std::string_view text) {
 template <class Value>
 using Parse = Result<Value> (*)(std::string_view option, std::string_view text);
 
+struct Anticipate {
+  bool any = true, products = false;
+};
+Result<Anticipate> parse_anticipate(std::string_view option, std::string_view text) {
+  if (text == "products") return Anticipate{true, true};
+  if (text != "on" && text != "off") {
+    return Error{fmt::format("{}: '{}' is not one of on, off, products", option, text)};
+  }
+  return Anticipate{text == "on", false};
+}
+
 /// Sets the field from the text, if there is one.
 template <class Value>
 Result<void> choose(std::string_view option, const std::optional<std::string>& text,
@@ -56,7 +67,7 @@ void add_solver_options(Verb verb, SolverOptions& options) {
   verb.option(
       "--anticipate", options.anticipate,
       "on (default) or off: update errors instead of recomputing them; simd: skip by flags, or by "
-      "masks (off)");
+      "masks (off); products: simd, through stored products of neighbouring directions");
   verb.option("--skip", options.skip, "on (default) or off: pass over satisfied constraints");
   verb.option("--directions", options.directions,
               "frozen (default) until all errors along them are within tolerance, or each: "
@@ -79,11 +90,12 @@ void add_solver_options(Verb verb, SolverOptions& options) {
 
 Result<Settings> settings_of(const SolverOptions& options) {
   Settings settings = options.settings;
+  Anticipate anticipate{settings.anticipate, settings.anticipate_products};
   const Result<void> checks[] = {
       choose("--tolerance", options.tolerance, parse_tolerance, settings.tolerance),
       choose("--solver", options.solver, parse_choice<Solver>, settings.solver),
       choose("--scheme", options.scheme, parse_choice<Scheme>, settings.scheme),
-      choose("--anticipate", options.anticipate, parse_switch, settings.anticipate),
+      choose("--anticipate", options.anticipate, parse_anticipate, anticipate),
       choose("--skip", options.skip, parse_switch, settings.skip),
       choose("--directions", options.directions, parse_choice<Directions>, settings.directions),
       choose("--velocity-correction", options.velocity_correction, parse_switch,
@@ -95,6 +107,8 @@ Result<Settings> settings_of(const SolverOptions& options) {
   for (const Result<void>& check : checks) {
     if (!check) return Error{check.error()};
   }
+  settings.anticipate = anticipate.any;
+  settings.anticipate_products = anticipate.products;
   const bool methods = options.anticipate || options.skip || options.directions;
   if (methods && !options.solver) settings.solver = Solver::gauss_seidel;
   const bool chooses_substeps =

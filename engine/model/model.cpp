@@ -171,6 +171,9 @@ const ReferenceLayout& Model::reference() const {
   return reference_.get([this] { return make_reference_layout(*this); });
 }
 
+const PullLayout& Model::pulls() const {
+  return pulls_.get([this] { return make_pull_layout(ordering); });
+}
 const SimdLayout& Model::simd() const {
   return simd_.get([this] { return make_simd_layout(*this); });
 }
@@ -205,8 +208,8 @@ std::size_t Model::bytes() const {
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bytes_if_made(reference_) +
-         bytes_if_made(simd_) + bytes_if_made(direct_) + bytes_if_made(yarns_) +
-         bytes_if_made(small_steps_);
+         bytes_if_made(simd_) + bytes_if_made(pulls_) + bytes_if_made(direct_) +
+         bytes_if_made(yarns_) + bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

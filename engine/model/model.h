@@ -14,6 +14,7 @@
 #include "engine/ordering/ordering.h"
 #include "engine/solvers/direct/direct_layout.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/solvers/sweeps/pull_layout.h"
 #include "engine/solvers/sweeps/reference_layout.h"
 #include "engine/solvers/sweeps/simd_layout.h"
 #include "engine/solvers/yarn/yarn_layout.h"
@@ -79,6 +80,7 @@ class Model {
   /// What each backend or solver needs besides; made when first asked for, by whichever thread.
   const ReferenceLayout& reference() const;
   const SimdLayout& simd() const;
+  const PullLayout& pulls() const;
   const DirectLayout& direct() const;
   const YarnLayout& yarns() const;
   const SmallStepsLayout& small_steps() const;
@@ -98,6 +100,7 @@ class Model {
   std::vector<std::uint64_t> joined_;  // a sphere, and who is joined to it, in order
   OnDemand<ReferenceLayout> reference_;
   OnDemand<SimdLayout> simd_;
+  OnDemand<PullLayout> pulls_;
   OnDemand<DirectLayout> direct_;
   OnDemand<YarnLayout> yarns_;
   OnDemand<SmallStepsLayout> small_steps_;

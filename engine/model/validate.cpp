@@ -234,6 +234,19 @@ Result<void> validate_scheme(const Settings& s) {
   return {};
 }
 
+/// The reference keeps products whenever it anticipates, and other solvers have none.
+Result<void> validate_products(const Settings& s) {
+  if (!s.anticipate_products) return {};
+  if (s.backend != Backend::simd) {
+    return refuse("anticipate_products", "is for the simd backend", std::string(name(s.backend)));
+  }
+  if (s.solver != Solver::gauss_seidel) {
+    return refuse("anticipate_products", "is for solver gauss_seidel", std::string(name(s.solver)));
+  }
+  if (!s.anticipate) return refuse("anticipate_products", "needs anticipate", "off");
+  return {};
+}
+
 }  // namespace
 
 Result<void> validate(const Settings& s) {
@@ -257,6 +270,7 @@ Result<void> validate(const Settings& s) {
   if (s.impulse_limit > 0 && (s.solver != Solver::gauss_seidel && s.solver != Solver::automatic)) {
     return refuse("impulse_limit", "only Gauss-Seidel limits impulses", number(s.impulse_limit));
   }
+  if (auto r = validate_products(s); !r) return r;
   if (s.solver == Solver::yarn && s.backend != Backend::simd) {
     return refuse("solver", "yarn is for the simd backend", std::string(name(s.backend)));
   }

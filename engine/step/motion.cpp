@@ -4,10 +4,8 @@
 #include <span>
 
 #include "engine/measure/state_measure.h"
-#include "kernels/reference/integrate.h"
 
 namespace weft {
-namespace {
 
 reference::Motion reference_motion(State& s) {
   reference::Motion m;
@@ -21,6 +19,8 @@ reference::Motion reference_motion(State& s) {
   m.solved = s.solved.view();
   return m;
 }
+
+namespace {
 
 simd::Motion simd_motion(State& s) {
   simd::Motion m;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/step/state.h"
+#include "kernels/reference/integrate.h"
 
 namespace weft {
 
@@ -9,13 +10,15 @@ namespace weft {
 inline kernels::Vector acceleration(const State& s, std::size_t slot) {
   return s.force.size() > 0 ? s.gravity + s.model->inverse_mass[slot] * s.force[slot] : s.gravity;
 }
+/// What the reference's stages work on.
+reference::Motion reference_motion(State& s);
 /// solved: where the particles would be after h without constraints.
 void predict(State& s, double h, Team& team);
 /// next_velocity: from solved. Returns whether both are finite.
 bool commit(State& s, double h, Team& team);
 /// And what the position loop's impulses did.
 bool commit(State& s, double h, kernels::ImpulseEnergy& impulses, Team& team);
-/// What the impulses of a substep did (engine/step/rattle.h, engine/step/energy.h).
+/// What the impulses of a substep did (engine/step/energy.h).
 kernels::ImpulseEnergy measure_impulses(State& s, double h, Team& team);
 /// Gain and energy alone, of a whole step.
 kernels::ImpulseEnergy measure_energy_change(State& s, Team& team);

@@ -4,19 +4,9 @@ namespace weft::reference {
 
 using kernels::Vector;
 
-namespace {
-
-Vector acceleration(const Motion& m, std::size_t i) {
-  if (m.inverse_mass[i] == 0) return {0, 0, 0};
-  if (m.force.x == nullptr) return m.gravity;
-  return m.gravity + m.inverse_mass[i] * m.force[i];
-}
-
-}  // namespace
-
 void predict(const Motion& m, double h) {
   for (std::size_t i = 0; i < m.particles; ++i) {
-    const Vector p = m.position[i] + h * m.velocity[i] + (0.5 * h * h) * acceleration(m, i);
+    const Vector p = preview(m, i, h);
     m.predicted.set(i, p);
     m.solved.set(i, p);
   }

@@ -19,7 +19,19 @@ struct Motion {
   kernels::VectorsView solved{};     // where the position loop works; starts as predicted
 };
 
-/// predicted = solved = p + h v + h^2/2 (g + F/m)            (paper eq. 2)
+/// g + F/m; of a fixed particle 0.
+inline kernels::Vector acceleration(const Motion& motion, std::size_t i) {
+  if (motion.inverse_mass[i] == 0) return {0, 0, 0};
+  if (motion.force.x == nullptr) return motion.gravity;
+  return motion.gravity + motion.inverse_mass[i] * motion.force[i];
+}
+
+/// p + h v + h^2/2 (g + F/m)            (paper eq. 2)
+inline kernels::Vector preview(const Motion& motion, std::size_t i, double h) {
+  return motion.position[i] + h * motion.velocity[i] + (0.5 * h * h) * acceleration(motion, i);
+}
+
+/// predicted = solved = the preview of each particle.
 void predict(const Motion& motion, double h);
 
 /// Position and velocity are only read. With D = solved - predicted

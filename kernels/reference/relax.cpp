@@ -3,6 +3,7 @@
 #include "kernels/reference/anticipated.h"
 #include "kernels/reference/masked.h"
 #include "kernels/reference/original.h"
+#include "kernels/reference/previewed.h"
 
 namespace weft::reference {
 namespace {
@@ -37,6 +38,14 @@ LoopResult relax_positions(const Relaxation& r, const Topology& t, const Contact
                            const Workspace& w, const Method& method) {
   if (method.frozen_directions) return relax<Directions::frozen>(r, t, c, w, method);
   return relax<Directions::each>(r, t, c, w, method);
+}
+
+LoopResult relax_previewed_positions(const Relaxation& r, const Motion& motion, double h,
+                                     const Method& method) {
+  if (method.frozen_directions) {
+    return run<Directions::frozen>(PreviewedLoop<Directions::frozen>(r, motion, h), method);
+  }
+  return run<Directions::each>(PreviewedLoop<Directions::each>(r, motion, h), method);
 }
 
 LoopResult relax_velocities(const Relaxation& r, const Topology& t, const ContactLists& c,

@@ -1,12 +1,14 @@
 /// The impulse loops of the paper, in double, one constraint after the other: the oracle for every
 /// faster kernel. The loop around the methods is
-/// kernels/loop.h; the methods are original.h, masked.h (4.3) and anticipated.h (4.2).
+/// kernels/loop.h; the methods are original.h, masked.h (4.3), anticipated.h (4.2), and
+/// previewed.h, the original as the paper has it, which `weft paper` measures.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "kernels/reference/integrate.h"
 #include "kernels/reference/relaxation.h"
 
 namespace weft::reference {
@@ -72,6 +74,10 @@ struct Method {
 LoopResult relax_positions(const Relaxation& r, const Topology& topology,
                            const ContactLists& contacts, const Workspace& workspace,
                            const Method& method);
+
+/// The same by the method of previewed.h, whatever `method` says of 4.2 and 4.3. Of scheme paper.
+LoopResult relax_previewed_positions(const Relaxation& r, const Motion& motion, double h,
+                                     const Method& method);
 
 /// Velocity loop (3.2, 3.3): r.x are velocities, r.n the directions at the committed positions,
 /// which stay: the problem is linear and one run along fixed directions solves it.

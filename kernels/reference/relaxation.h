@@ -96,8 +96,12 @@ inline double impulse_change(const Relaxation& r, std::size_t c, double e, doubl
   return std::min(change, -impulse);
 }
 
+/// Where d leads from end b to end a.
+inline double error(const Relaxation& r, std::size_t c, Vector d) {
+  return dot(r.n[c], d) - r.target[c];
+}
 inline double error(const Relaxation& r, std::size_t c) {
-  return dot(r.n[c], r.x[r.a[c]] - r.x[r.b[c]]) - r.target[c];
+  return error(r, c, r.x[r.a[c]] - r.x[r.b[c]]);
 }
 
 /// Moves both ends of c by an impulse.
@@ -117,14 +121,18 @@ inline double renew_direction_at_start(const Relaxation& r, std::size_t c) {
   return e;
 }
 
-/// Sets n_c from the positions x and returns the error along it, which is then the true error
-/// (paper 4.2: l = |n|, e = l - dist, n = n / l).
-inline double renew_direction(const Relaxation& r, std::size_t c) {
-  if (r.start.x != nullptr && c < r.pulling) return renew_direction_at_start(r, c);
-  const Vector d = r.x[r.a[c]] - r.x[r.b[c]];
+/// Sets n_c along d, from end b to end a, and returns the error along it, which is then the true
+/// error (paper 4.2: l = |n|, e = l - dist, n = n / l).
+inline double renew_direction(const Relaxation& r, std::size_t c, Vector d) {
   const double l = length(d);
   r.n.set(c, direction(d, l));
   return l - r.target[c];
+}
+
+/// The same from the positions x.
+inline double renew_direction(const Relaxation& r, std::size_t c) {
+  if (r.start.x != nullptr && c < r.pulling) return renew_direction_at_start(r, c);
+  return renew_direction(r, c, r.x[r.a[c]] - r.x[r.b[c]]);
 }
 
 }  // namespace weft::reference

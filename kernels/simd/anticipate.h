@@ -12,7 +12,9 @@
 ///
 /// The weight is the neighbour's gain at the shared particle, negative if that is end b of c (the
 /// paper prints e_j + n_j . n_i e_i, without masses and sign). A constraint that is passed over
-/// must have change 0. Displacements come last: apply_sums.
+/// must have change 0. Displacements come last: apply_sums. Where something else has moved the
+/// ends, errors are formed from displacements once, and then there is nothing to pull:
+/// refresh_errors.
 ///
 ///     pulls of a block of kLanes constraints in a run:   from: one number, plain loads
 ///     pulls of a block of singles:                       from: one number for each lane
@@ -73,10 +75,30 @@ template <class From>
   return corrections;
 }
 
+/// Component `axis` of the directions of kFloats constraints from c on, which stand in one block or
+/// in two. note: of two, either load reads beyond what it is for, but not beyond the two blocks.
+[[gnu::always_inline]] inline Floats directions_from(const Relaxation& r, std::size_t c,
+                                                     std::size_t axis) {
+  constexpr std::size_t kLanes = kernels::kLanes, kBlock = sizeof(ConstraintBlock) / sizeof(float);
+  alignas(64) static constexpr float kLane[] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                8, 9, 10, 11, 12, 13, 14, 15};
+  const std::size_t first = c % kLanes;
+  const float* block = &r.blocks[c / kLanes].nx[0] + axis * kLanes;
+  const Floats here = load(block + first);
+  if (first + kFloats <= kLanes) return here;
+  const Floats next = load(block + kBlock + first - kLanes);
+  return xsimd::select(load(kLane) < Floats(static_cast<float>(kLanes - first)), here, next);
+}
+
 /// The directions of the neighbours that a pull of kFloats lanes reads.
-template <class From>
-[[gnu::always_inline]] inline FloatVector directions_of(const Relaxation& r, const From& from,
+[[gnu::always_inline]] inline FloatVector directions_of(const Relaxation& r, const FromRun& from,
                                                         std::size_t pull, std::size_t lane) {
+  const std::size_t c = from.index(pull, lane);
+  return {directions_from(r, c, 0), directions_from(r, c, 1), directions_from(r, c, 2)};
+}
+[[gnu::always_inline]] inline FloatVector directions_of(const Relaxation& r,
+                                                        const FromSingles& from, std::size_t pull,
+                                                        std::size_t lane) {
   alignas(64) float x[kFloats], y[kFloats], z[kFloats];
   for (std::uint32_t k = 0; k < kFloats; ++k) {
     const std::size_t c = from.index(pull, lane + k);
@@ -127,32 +149,81 @@ void renew_products_singles(const Anticipation& p, const Relaxation& r, std::uin
   renew_products(p, FromSingles{p.from_singles}, r, first, last);
 }
 
-void apply_sums_run(const Anticipation& p, const Relaxation& r, const Run& run) {
-  for (std::size_t k = 0; k < run.length; k += kFloats) {
-    const std::size_t a = run.a + k, b = run.b + k, c = run.constraint + k;
-    const Part here = part(r, c);
-    FloatVector n = here.n();
-    const Floats sum = load(p.sum + c);
-    FloatVector ua = load(r.u, a), ub = load(r.u, b);
-    ua = fused(sum * here.gain_a(), n, ua);
-    ub = fused(sum * here.gain_b(), n, ub);
-    store(r.u, a, ua);
-    store(r.u, b, ub);
+/// The ends of kFloats constraints: side by side in a run, in lanes elsewhere.
+struct RunEnds {
+  const Run& run;
+  [[gnu::always_inline]] FloatVector a(const Relaxation& r, std::size_t c) const {
+    return load(r.u, run.a + (c - run.constraint));
   }
-}
-void apply_sums_singles(const Anticipation& p, const Relaxation& r, std::uint32_t first,
-                        std::uint32_t last) {
-  PlanarLanes at_a, at_b;
+  [[gnu::always_inline]] FloatVector b(const Relaxation& r, std::size_t c) const {
+    return load(r.u, run.b + (c - run.constraint));
+  }
+  [[gnu::always_inline]] void put(const Relaxation& r, std::size_t c, const FloatVector& a,
+                                  const FloatVector& b) const {
+    store(r.u, run.a + (c - run.constraint), a);
+    store(r.u, run.b + (c - run.constraint), b);
+  }
+};
+template <class Lanes>
+struct ScatteredEnds {
+  Lanes at_a, at_b;
+  [[gnu::always_inline]] FloatVector a(const Relaxation& r, std::size_t c) {
+    return at_a.get(r.u, r.a + c);
+  }
+  [[gnu::always_inline]] FloatVector b(const Relaxation& r, std::size_t c) {
+    return at_b.get(r.u, r.b + c);
+  }
+  [[gnu::always_inline]] void put(const Relaxation& r, std::size_t c, const FloatVector& a,
+                                  const FloatVector& b) {
+    at_a.put(r.u, r.a + c, a);
+    at_b.put(r.u, r.b + c, b);
+  }
+};
+
+template <class Ends>
+[[gnu::always_inline]] inline void apply_sums(const Anticipation& p, const Relaxation& r,
+                                              Ends&& ends, std::size_t first, std::size_t last) {
   for (std::size_t c = first; c < last; c += kFloats) {
     const Part here = part(r, c);
     FloatVector n = here.n();
     const Floats sum = load(p.sum + c);
-    FloatVector ua = at_a.get(r.u, r.a + c), ub = at_b.get(r.u, r.b + c);
+    FloatVector ua = ends.a(r, c), ub = ends.b(r, c);
     ua = fused(sum * here.gain_a(), n, ua);
     ub = fused(sum * here.gain_b(), n, ub);
-    at_a.put(r.u, r.a + c, ua);
-    at_b.put(r.u, r.b + c, ub);
+    ends.put(r, c, ua, ub);
+    Floats(0.f).store_unaligned(p.sum + c);
   }
+}
+
+void apply_sums_run(const Anticipation& p, const Relaxation& r, const Run& run) {
+  apply_sums(p, r, RunEnds{run}, run.constraint, run.constraint + run.length);
+}
+void apply_sums_singles(const Anticipation& p, const Relaxation& r, std::uint32_t first,
+                        std::uint32_t last) {
+  if (r.u.in_quads()) return apply_sums(p, r, ScatteredEnds<QuadLanes>{}, first, last);
+  apply_sums(p, r, ScatteredEnds<PlanarLanes>{}, first, last);
+}
+
+template <class Ends>
+[[gnu::always_inline]] inline void refresh_errors(const Anticipation& p, const Relaxation& r,
+                                                  Ends&& ends, std::size_t first,
+                                                  std::size_t last) {
+  for (std::size_t c = first; c < last; c += kFloats) {
+    const Part here = part(r, c);
+    FloatVector n = here.n();
+    FloatVector ua = ends.a(r, c), ub = ends.b(r, c);
+    errors(here, n, ua - ub).store_unaligned(p.error + c);
+    Floats(0.f).store_unaligned(p.change + c);
+  }
+}
+
+void refresh_errors_run(const Anticipation& p, const Relaxation& r, const Run& run) {
+  refresh_errors(p, r, RunEnds{run}, run.constraint, run.constraint + run.length);
+}
+void refresh_errors_singles(const Anticipation& p, const Relaxation& r, std::uint32_t first,
+                            std::uint32_t last) {
+  if (r.u.in_quads()) return refresh_errors(p, r, ScatteredEnds<QuadLanes>{}, first, last);
+  refresh_errors(p, r, ScatteredEnds<PlanarLanes>{}, first, last);
 }
 
 }  // namespace

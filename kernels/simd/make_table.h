@@ -66,6 +66,8 @@ constexpr Table make_table() {
           .relax_anticipated_singles = relax_anticipated_singles,
           .apply_sums_run = apply_sums_run,
           .apply_sums_singles = apply_sums_singles,
+          .refresh_errors_run = refresh_errors_run,
+          .refresh_errors_singles = refresh_errors_singles,
           .split_quads = split_quads,
           .join_quads = join_quads,
           .split_rows = split_rows,

@@ -71,9 +71,9 @@ struct Relaxation {
   bool from_memory = false;       // the blocks do not fit the caches: fetch them ahead
 };
 
-/// Memory of the anticipating form (anticipate.h), which the engine does not use: it is slower in
-/// lanes than what it does (perf/tried.md), and stays to be measured beside it. Constraint slots as
-/// elsewhere; pulls of block i are first_pull[i] ... first_pull[i + 1] - 1, each kLanes products.
+/// Memory of the anticipating form (anticipate.h), for Settings::anticipate_products: it is slower
+/// in lanes than forming errors from displacements (perf/tried.md). Constraint slots as elsewhere;
+/// pulls of block i are first_pull[i] ... first_pull[i + 1] - 1, each kLanes products.
 struct Anticipation {
   float* error = nullptr;                      // per constraint
   float* change = nullptr;                     // per constraint: its last correction
@@ -343,10 +343,14 @@ struct Table {
   std::uint32_t (*relax_anticipated_run)(const Anticipation&, const Run&);
   std::uint32_t (*relax_anticipated_singles)(const Anticipation&, std::uint32_t first,
                                              std::uint32_t last);
-  /// u_a += gain_a sum n, u_b += gain_b sum n.
+  /// u_a += gain_a sum n, u_b += gain_b sum n, sum = 0.
   void (*apply_sums_run)(const Anticipation&, const Relaxation&, const Run&);
   void (*apply_sums_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
                              std::uint32_t last);
+  /// error = e0 + n . (u_a - u_b), change = 0.
+  void (*refresh_errors_run)(const Anticipation&, const Relaxation&, const Run&);
+  void (*refresh_errors_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
+                                 std::uint32_t last);
 
   /// base = x in whole cells, a power of two (0: none), rounded to float, u = x - base; and x moved
   /// to base + u. Of slots first ... last - 1, in quads.

@@ -194,7 +194,9 @@ TEST_CASE("random cases: what is passed over changes no bit") {
     INFO(text(c));
     Settings other = c.settings;
     other.skip = !other.skip;
-    if (c.settings.backend == Backend::simd) other.anticipate = !other.anticipate;
+    if (c.settings.backend == Backend::simd && !c.settings.anticipate_products) {
+      other.anticipate = !other.anticipate;
+    }
     CHECK(hash_after(c, other) == hash_after(c, c.settings));
   });
 }

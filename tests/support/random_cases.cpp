@@ -248,6 +248,12 @@ Settings draw_settings(Random& random) {
   return s;
 }
 
+/// Where there are any.
+void draw_products(Settings& s, Random& random) {
+  const bool may = s.backend == Backend::simd && s.solver == Solver::gauss_seidel && s.anticipate;
+  s.anticipate_products = may && random.below(2) == 0;
+}
+
 std::uint32_t environment(const char* variable, std::uint32_t otherwise) {
   const char* const value = std::getenv(variable);
   if (value == nullptr) return otherwise;
@@ -293,6 +299,7 @@ RandomCase random_case(std::uint32_t seed) {
     c.settings.velocity_correction = false;
     if (random.below(2) == 0) c.settings.substeps = kAutomaticSubsteps;
   }
+  draw_products(c.settings, random);
   return c;
 }
 
@@ -322,6 +329,7 @@ RandomCase gentle_case(std::uint32_t seed) {
     c.settings.tolerance = 1e-6;  // beyond what its floats see, steps are done in halves
     c.settings.velocity_tolerance *= 1000;
   }
+  draw_products(c.settings, random);
   return c;
 }
 
@@ -348,6 +356,7 @@ RandomCase roped_case(std::uint32_t seed) {
   c.settings.max_iterations = 3000;
   c.settings.velocity_correction = false;
   c.steps = 8;
+  draw_products(c.settings, random);
   return c;
 }
 
@@ -359,11 +368,11 @@ std::string text(const RandomCase& c) {
       << " particles, " << d.constraints.size() << " constraints, " << d.fixed.size() << " fixed, "
       << d.spheres.size() << " spheres; dt " << c.dt << "; " << name(s.solver) << ", "
       << name(s.scheme) << ", " << name(s.backend) << ", " << name(s.directions)
-      << (s.anticipate ? ", anticipate" : "") << (s.skip ? ", skip" : "")
-      << (s.velocity_correction ? ", velocity correction" : "") << ", tolerance " << s.tolerance
-      << ", contacts " << s.contact_tolerance << ", velocities " << s.velocity_tolerance
-      << ", substeps " << s.substeps << ", iterations " << s.iterations << " of at most "
-      << s.max_iterations << ", renewed after " << s.renew_after;
+      << (s.anticipate ? ", anticipate" : "") << (s.anticipate_products ? " through products" : "")
+      << (s.skip ? ", skip" : "") << (s.velocity_correction ? ", velocity correction" : "")
+      << ", tolerance " << s.tolerance << ", contacts " << s.contact_tolerance << ", velocities "
+      << s.velocity_tolerance << ", substeps " << s.substeps << ", iterations " << s.iterations
+      << " of at most " << s.max_iterations << ", renewed after " << s.renew_after;
   return out.str();
 }
 

@@ -302,6 +302,7 @@ TEST_CASE("the way of iterating can be chosen") {
   const TemporaryFolder folder;
   for (const std::string method :
        {"--anticipate off --skip off --directions each", "--anticipate on --skip off",
+        "--anticipate products", "--anticipate products --skip off --directions each",
         "--anticipate off --skip on --directions frozen", "--velocity-correction on"}) {
     CAPTURE(method);
     const Outcome outcome = run_program(folder, "run hang --size 6 --steps 10 --json - " + method);
@@ -359,6 +360,9 @@ TEST_CASE("a run may use as many threads as is asked") {
 TEST_CASE("methods of Gauss-Seidel are asked of it; what is named has one substep") {
   const TemporaryFolder folder;
   const std::string run = "hang --size 4 --steps 2 --dt 0.1";
+  const auto by_products = report_of(folder, run + " --anticipate products");
+  CHECK(by_products["solver"] == "gauss_seidel");
+  CHECK(by_products["anticipate_products"] == true);
   for (const std::string method : {"--skip on", "--anticipate on", "--directions frozen"}) {
     CAPTURE(method);
     CHECK(report_of(folder, run + ' ' + method)["solver"] == "gauss_seidel");
@@ -366,6 +370,18 @@ TEST_CASE("methods of Gauss-Seidel are asked of it; what is named has one subste
   }
   CHECK(report_of(folder, run)["substeps"] > 1);
   CHECK(report_of(folder, run + " --solver yarn")["substeps"] == 1);
+}
+
+TEST_CASE("what cannot anticipate through products says so, in a line") {
+  const TemporaryFolder folder;
+  for (const std::string arguments :
+       {"--anticipate products --backend reference", "--anticipate products --solver yarn"}) {
+    CAPTURE(arguments);
+    const Outcome outcome = run_program(folder, "run hang --size 4 " + arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.err.find("anticipate_products") != std::string::npos);
+  }
+  CHECK(run_program(folder, "run hang --size 4 --anticipate some").exit_code == 2);
 }
 
 TEST_CASE("options that have no effect beside others do no harm") {

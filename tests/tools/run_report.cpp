@@ -56,7 +56,7 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
   const Json expected = Json::parse(R"({
     "scene": "somewhere", "particles": 16, "constraints": 10, "spheres": 17,
     "solver": "auto", "solver_used": "yarn", "scheme": "paper", "scheme_fallbacks": 8,
-    "backend": "simd", "isa": "avx2", "threads": 3,
+    "backend": "simd", "anticipate_products": false, "isa": "avx2", "threads": 3,
     "dt": 0.5, "steps": 4, "frames": 4, "substeps": 5.5, "halvings": 7,
     "tolerance": 0.0625, "iterations": 0, "status": "infeasible",
     "ms_per_frame": 250, "max_ms_per_frame": 500, "real_time_factor": 2,

@@ -12,7 +12,7 @@
 
 namespace weft::tools::paper {
 
-/// A line of Table 1 in times faster than the original. `average` is 1 / mean(runtime / original's
+/// A line of Table 1 in times faster than an original. `average` is 1 / mean(runtime / original's
 /// runtime), which is how the paper's column follows from its percentages: for 4.3 it reports
 /// average runtimes of 103 % and 95 %, and 1 / 0.99 = 1.01; in the same way 1 / 0.625 = 1.60 for
 /// 4.2+4.3, 1 / 0.605 = 1.65 (printed 1.66), 1 / 0.40 = 2.50 (2.51), 1 / 0.29 = 3.45 (3.44) with
@@ -31,6 +31,8 @@ struct Gain {
 std::vector<Gain> published_gains();
 /// As measured, in the same order.
 std::vector<Gain> measured_gains(const std::vector<Row>& rows);
+/// Against the previewed original, and the original itself before all others.
+std::vector<Gain> gains_on_previewed(const std::vector<Row>& rows);
 
 /// The first run that missed its tolerance in some frame; none: nullptr.
 const Row* first_missed(const Study& study);

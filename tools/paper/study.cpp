@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "tools/paper/previewed_run.h"
 #include "tools/scenes/scenes.h"
 
 namespace weft::tools::paper {
@@ -22,6 +23,7 @@ constexpr std::array<Variant, 8> kVariants{{
 }};
 
 constexpr std::array<Variant, 2> kFigure4Variants{kVariants.front(), kVariants.back()};
+constexpr Variant kPreviewed{"previewed", false, false, Directions::each, true};
 
 constexpr std::array<std::string_view, 3> kScenes{"hang", "hang_sphere", "sphere_drop"};
 constexpr std::array<double, 3> kStrains{0.1, 0.01, 0.00001};
@@ -73,10 +75,13 @@ Result<void> run_once(const std::shared_ptr<const Model>& model, Measured& measu
   RunPlan plan;
   plan.dt = kDt;
   plan.steps = cell.steps;
-  const auto on_frame = [&](int frame, const Cloth&, const StepReport&) {
+  const auto show = [&](int frame) {
     if (progress) progress(cell, variant, frame, cell.steps);
   };
-  auto summary = run(model, settings_of(cell, variant), plan, on_frame);
+  const auto on_frame = [&](int frame, const Cloth&, const StepReport&) { show(frame); };
+  const Settings settings = settings_of(cell, variant);
+  auto summary = variant.previews ? run_previewed(model, settings, plan, show)
+                                  : run(model, settings, plan, on_frame);
   if (!summary) return Error{summary.error()};
   const double seconds = summary.value().solver_seconds;
   if (measured.row.runs == 0 || seconds < measured.row.seconds) {
@@ -86,6 +91,22 @@ Result<void> run_once(const std::shared_ptr<const Model>& model, Measured& measu
   ++measured.row.runs;
   measured.total_seconds += seconds;
   return {};
+}
+
+/// The original is the first of them, the previewed one the last.
+Measurement compare(std::vector<Measured>& variants) {
+  const double original = variants.front().row.seconds, previewed = variants.back().row.seconds;
+  Measurement measurement;
+  for (Measured& measured : variants) {
+    Row& row = measured.row;
+    const double seconds = std::max(row.seconds, 1e-9);
+    row.times_faster = original / seconds;
+    row.times_faster_than_previewed = previewed / seconds;
+    measurement.rows.push_back(std::move(row));
+  }
+  measurement.previewed = std::move(measurement.rows.back());
+  measurement.rows.pop_back();
+  return measurement;
 }
 
 }  // namespace
@@ -118,11 +139,15 @@ std::vector<Cell> figure_4_cells(bool quick) {
   return cells;
 }
 
-Result<std::vector<Row>> measure(const Cell& cell, int repeat, const Progress& progress) {
+Result<Measurement> measure(const Cell& cell, int repeat, const Progress& progress) {
   const auto model = model_of(cell);
   if (!model) return Error{model.error()};
   std::vector<Measured> variants;
-  for (const Variant& variant : cell.variants) variants.push_back({{cell, variant, 0, 1, 0, {}}});
+  const auto add = [&](const Variant& variant) {
+    variants.push_back({.row = {.cell = cell, .variant = variant}});
+  };
+  for (const Variant& variant : cell.variants) add(variant);
+  add(kPreviewed);
 
   for (bool again = true; again;) {
     again = false;
@@ -134,11 +159,7 @@ Result<std::vector<Row>> measure(const Cell& cell, int repeat, const Progress& p
       again = again || measured.wants_more(repeat);
     }
   }
-
-  std::vector<Row> rows;
-  for (Measured& measured : variants) rows.push_back(std::move(measured.row));
-  for (Row& row : rows) row.times_faster = rows.front().seconds / std::max(row.seconds, 1e-9);
-  return rows;
+  return compare(variants);
 }
 
 }  // namespace weft::tools::paper

@@ -108,19 +108,35 @@ reference::Method ReferenceSolver::method(const kernels::LoopLimits& limits) con
           .limits = limits};
 }
 
+reference::Relaxation ReferenceSolver::position_problem(kernels::VectorsView x, double h,
+                                                        const ContactStore& contacts,
+                                                        bool first_round) {
+  place_contacts(contacts);
+  if (first_round) std::ranges::fill(impulse_, 0.0);
+  reference::Relaxation r = problem(x, contacts.count());
+  if (settings_.impulse_limit > 0) r.limit = settings_.impulse_limit * h;
+  return r;
+}
+
 kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x,
                                                      kernels::VectorsView start, double h,
                                                      const ContactStore& contacts, bool first_round,
                                                      const kernels::LoopLimits& limits) {
-  place_contacts(contacts);
-  if (first_round) std::ranges::fill(impulse_, 0.0);
-  reference::Relaxation r = problem(x, contacts.count());
+  reference::Relaxation r = position_problem(x, h, contacts, first_round);
   if (start.x != nullptr) take_directions_at(start, r);
-  if (settings_.impulse_limit > 0) r.limit = settings_.impulse_limit * h;
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   return reference::relax_positions(r, layout_.topology(),
                                     model_.has_contacts() ? lists : reference::ContactLists{},
                                     workspace(), method(limits));
+}
+
+kernels::LoopResult ReferenceSolver::solve_previewed_positions(const reference::Motion& motion,
+                                                               double h,
+                                                               const ContactStore& contacts,
+                                                               bool first_round,
+                                                               const kernels::LoopLimits& limits) {
+  const auto r = position_problem(motion.solved, h, contacts, first_round);
+  return reference::relax_previewed_positions(r, motion, h, method(limits));
 }
 
 void ReferenceSolver::take_directions_at(kernels::VectorsView start, reference::Relaxation& r) {

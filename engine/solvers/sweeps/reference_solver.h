@@ -22,6 +22,11 @@ class ReferenceSolver {
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start, double h,
                                       const ContactStore& contacts, bool first_round,
                                       const kernels::LoopLimits& limits);
+  /// The same by the original method as the paper has it (kernels/reference/previewed.h), from
+  /// motion.position; motion.velocity is room.
+  kernels::LoopResult solve_previewed_positions(const reference::Motion& motion, double h,
+                                                const ContactStore& contacts, bool first_round,
+                                                const kernels::LoopLimits& limits);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts,
@@ -31,6 +36,8 @@ class ReferenceSolver {
  private:
   void reserve(std::size_t contacts);
   void place_contacts(const ContactStore& contacts);
+  reference::Relaxation position_problem(kernels::VectorsView x, double h,
+                                         const ContactStore& contacts, bool first_round);
   void take_directions_at(kernels::VectorsView start, reference::Relaxation& r);
   void choose_velocity_tolerances(const reference::Relaxation& r, kernels::VectorsView x);
   reference::Relaxation problem(kernels::VectorsView x, std::size_t contacts);

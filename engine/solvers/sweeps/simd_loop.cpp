@@ -28,6 +28,9 @@ SimdLoop::SimdLoop(SimdSolver& solver, ScaledConstraints& constraints, const Unk
   contact_geometry_.rest_length = c.distance.data();
   contact_geometry_.scale = c.scale.data();
   std::ranges::fill(s_.u_, 0.f);
+  if (!anticipates()) return;
+  p_ = s_.pulls_->view(s_.model_.pulls(), constraints.weight, r_.threshold);
+  turn_ = Turn::products;
 }
 
 void SimdLoop::apply_displacements() {
@@ -40,6 +43,8 @@ void SimdLoop::apply_displacements() {
 /// With skipping, only where something moved since the last renewal: elsewhere directions and
 /// errors would come out the same.
 void SimdLoop::renew() {
+  if (anticipates() && renewed_) apply_sums();
+  renewed_ = true;
   apply_displacements();
   team_.for_each_part(layout_.chunks.size(), kPiece, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -51,7 +56,13 @@ void SimdLoop::renew() {
     }
   });
   renew_rest();
+  if (anticipates()) renew_products();
   if (masks()) std::ranges::fill(s_.mask_, ~std::uint64_t{0});
+}
+
+void SimdLoop::finish() {
+  if (anticipates()) apply_sums();
+  apply_displacements();
 }
 
 void SimdLoop::renew_chunk(std::size_t i) {
@@ -92,6 +103,18 @@ void SimdLoop::renew_rest() {
 }
 
 kernels::Sweep SimdLoop::sweep() {
+  kernels::Sweep sweep = sweep_batches();
+  if (!anticipates()) {
+    sweep_hubs(sweep);
+    sweep_contacts(sweep);
+  } else if (has_others()) {
+    sweep += sweep_others();
+  }
+  if (skips()) choose_density(sweep);
+  return sweep;
+}
+
+kernels::Sweep SimdLoop::sweep_batches() {
   const Ordering& ordering = s_.model_.ordering;
   clear_sweeps();
   team_.for_each_share(ordering.tiles.size(), [&](std::size_t first, std::size_t last) {
@@ -103,9 +126,6 @@ kernels::Sweep SimdLoop::sweep() {
   for (std::size_t i = ordering.between_tiles + done; i < ordering.batches.size(); ++i) {
     sweep += sweep_batch_between_tiles(i);
   }
-  sweep_hubs(sweep);
-  sweep_contacts(sweep);
-  if (skips()) choose_density(sweep);
   return sweep;
 }
 
@@ -208,11 +228,17 @@ kernels::Sweep SimdLoop::sweep_batch_between_tiles(std::size_t batch) {
 /// Chunks of one batch touch no particle in common: they are relaxed first and looked at
 /// afterwards.
 kernels::Sweep SimdLoop::sweep_chunks(std::size_t index, std::size_t first, std::size_t last) {
-  const Batch& batch = s_.model_.ordering.batches[index];
   kernels::Sweep sweep;
-  const std::size_t singles = std::clamp<std::size_t>(layout_.batch_singles[index], first, last);
-  relax_runs(batch, first, singles, sweep);
-  for (std::size_t i = singles; i < last; ++i) relax_one(batch, i, sweep);
+  if (!has_turn(s_.model_.ordering.batches[index])) return sweep;
+  if (turn_ == Turn::sums) {
+    apply_sums(first, last);
+    return sweep;
+  }
+  if (turn_ == Turn::products) {
+    relax_anticipated(first, last, sweep);
+  } else {
+    relax_chunks(index, first, last, sweep);
+  }
   for (std::size_t i = first; i < last; ++i) {
     if (!wanted(i)) continue;
     sweep.corrections += s_.corrections_[i];
@@ -221,6 +247,14 @@ kernels::Sweep SimdLoop::sweep_chunks(std::size_t index, std::size_t first, std:
     if (s_.corrections_[i] > 0) mark_neighbours(i);
   }
   return sweep;
+}
+
+void SimdLoop::relax_chunks(std::size_t index, std::size_t first, std::size_t last,
+                            kernels::Sweep& sweep) {
+  const Batch& batch = s_.model_.ordering.batches[index];
+  const std::size_t singles = std::clamp<std::size_t>(layout_.batch_singles[index], first, last);
+  relax_runs(batch, first, singles, sweep);
+  for (std::size_t i = singles; i < last; ++i) relax_one(batch, i, sweep);
 }
 
 void SimdLoop::relax_runs(const Batch& batch, std::size_t first, std::size_t last,

@@ -20,9 +20,16 @@ class SimdLoop {
   kernels::Sweep sweep();
   /// So many, the sum of them.
   kernels::Sweep sweeps(int passes);
-  void finish() { apply_displacements(); }
+  void finish();
 
  private:
+  /// Whose turn it is in a pass over the batches, and by what.
+  enum class Turn : std::uint8_t {
+    all,       // everybody's, by displacements
+    products,  // that of distance constraints, by what they pull
+    sums,      // the same: their sums become displacements
+    ropes      // that of ropes, by displacements
+  };
   struct Share {
     std::size_t first = 0, last = 0;  // tiles
   };
@@ -37,6 +44,7 @@ class SimdLoop {
   void renew_rest();
   void clear_sweeps();
   kernels::Sweep sum_of_sweeps() const;
+  kernels::Sweep sweep_batches();
   kernels::Sweep sweep_tile(const Tile& tile);
   void sweep_share(const Share& share);
   kernels::Sweep sweep_seams(std::size_t tile, std::size_t from, std::size_t to);
@@ -44,10 +52,23 @@ class SimdLoop {
   void sweep_open_seams(kernels::Sweep& sweep);
   kernels::Sweep sweep_batch_between_tiles(std::size_t batch);
   kernels::Sweep sweep_chunks(std::size_t batch, std::size_t first, std::size_t last);
+  void relax_chunks(std::size_t batch, std::size_t first, std::size_t last, kernels::Sweep& sweep);
   void relax_runs(const Batch& batch, std::size_t first, std::size_t last, kernels::Sweep& sweep);
   void relax_one(const Batch& batch, std::size_t chunk, kernels::Sweep& sweep);
   bool marks() const { return skips() && !dense_; }
   bool wanted(std::size_t chunk) const { return !marks() || s_.changed_[chunk]; }
+  // simd_anticipation.cpp
+  bool anticipates() const { return s_.pulls_.has_value(); }
+  bool has_others() const;
+  bool has_turn(const Batch& batch) const;
+  kernels::Sweep sweep_in_turn(Turn turn);
+  kernels::Sweep sweep_others();
+  void relax_anticipated(std::size_t first, std::size_t last, kernels::Sweep& sweep);
+  void apply_sums();
+  void apply_sums(std::size_t first, std::size_t last);
+  void refresh_errors();
+  void renew_products();
+  void renew_products(std::size_t chunk);
   // simd_trips.cpp
   bool meets_neighbours_only() const;
   void sweep_trip(std::size_t depth, kernels::Sweep& sum);
@@ -67,6 +88,9 @@ class SimdLoop {
   Unknowns unknowns_;
   simd::Relaxation r_, contacts_;
   simd::Geometry g_, contact_geometry_;
+  simd::Anticipation p_;
+  Turn turn_ = Turn::all;
+  bool renewed_ = false;
   Team& team_;
   /// So much is corrected that marking costs more than it saves: everything is visited.
   bool dense_ = true;

@@ -48,6 +48,7 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, const simd:
     velocities_ =
         scaled([&](double) { return fixed_iterations ? 1 : settings.velocity_tolerance; });
   }
+  if (settings.anticipate_products) pulls_.emplace(model.pulls());
   if (layout_.has_ropes) impulse_.resize(size);
   if (settings.skip && settings.iterations == 0) {
     if (!settings.anticipate) mask_.resize(layout_.slots);
@@ -88,10 +89,13 @@ ScaledConstraints SimdSolver::scaled(Tolerance&& tolerance) const {
     block.gain_a[c % kernels::kLanes] = static_cast<float>(-tau * tau * layout_.share_a[c]);
     block.gain_b[c % kernels::kLanes] = static_cast<float>(tau * tau * layout_.share_b[c]);
   }
+  if (settings_.anticipate_products) scaled.weight = model_.pulls().weights(scaled.blocks);
   return scaled;
 }
 
-std::size_t ScaledConstraints::bytes() const { return bytes_of(blocks) + bytes_of(scale); }
+std::size_t ScaledConstraints::bytes() const {
+  return bytes_of(blocks) + bytes_of(scale) + bytes_of(weight);
+}
 
 /// The search lists them sphere by sphere; what it missed stands behind.
 void SimdSolver::order_contacts(const ContactStore& store) {
@@ -222,7 +226,7 @@ std::size_t SimdSolver::bytes() const {
   return bytes_of(u_) + bytes_of(impulse_) + positions_.bytes() + velocities_.bytes() +
          bytes_of(mask_) + bytes_of(changed_) + bytes_of(stale_) + bytes_of(corrections_) +
          bytes_of(sweeps_) + bytes_of(open_seam_) + contacts_.bytes() + bytes_of(contact_impulse_) +
-         bytes_of(contact_order_);
+         bytes_of(contact_order_) + (pulls_ ? pulls_->bytes() : 0);
 }
 
 }  // namespace weft

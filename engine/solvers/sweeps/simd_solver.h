@@ -7,6 +7,9 @@
 ///     constraints at hubs, one after the other
 ///     contacts, sphere by sphere
 ///
+/// With Settings::anticipate_products distance constraints keep their errors and pull what their
+/// neighbours changed (simd_anticipation.cpp).
+///
 /// The result depends on neither the number of threads nor, where multiplications and additions are
 /// fused, the instruction set.
 #pragma once
@@ -14,11 +17,13 @@
 #include <weft/weft.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/contacts/contacts.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
+#include "engine/solvers/sweeps/pull_layout.h"
 #include "engine/solvers/sweeps/simd_layout.h"
 #include "kernels/loop.h"
 #include "kernels/simd/table.h"
@@ -46,6 +51,7 @@ struct ContactLanes {
 struct ScaledConstraints {
   kernels::AlignedVector<simd::ConstraintBlock> blocks;
   kernels::AlignedVector<double> scale;  // 1 / tau
+  kernels::AlignedVector<float> weight;  // of the pulls (PullLayout); anticipate_products only
 
   std::size_t bytes() const;
 };
@@ -97,6 +103,7 @@ class SimdSolver {
   std::vector<std::uint32_t> corrections_;      // per chunk, of the present pass
   kernels::AlignedVector<SharedSweep> sweeps_;  // per share, or piece, of parallel work
   std::vector<std::uint8_t> open_seam_;         // no share of the present pass had all its tiles
+  std::optional<PullMemory> pulls_;             // anticipate_products only
   ContactLanes contacts_;
   std::vector<float> contact_impulse_;        // per contact of the ContactStore
   std::vector<std::uint32_t> contact_order_;  // its contacts, sphere by sphere

@@ -27,7 +27,8 @@ bool SimdLoop::meets_neighbours_only() const {
   const Ordering& ordering = s_.model_.ordering;
   return !ordering.tiles.empty() && layout_.seams_join_neighbours &&
          ordering.batches.size() <= ordering.between_tiles + 1 &&
-         layout_.hub_first == layout_.hub_last && s_.contacts_.spheres.empty() && !skips();
+         layout_.hub_first == layout_.hub_last && s_.contacts_.spheres.empty() && !skips() &&
+         !(anticipates() && layout_.has_ropes);
 }
 
 kernels::Sweep SimdLoop::sweeps(int passes) {

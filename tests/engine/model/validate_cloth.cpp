@@ -135,6 +135,29 @@ TEST_CASE("only the reference limits impulses") {
   CHECK(Cloth::create(model_of(scene_of("hang", 4)), settings));
 }
 
+TEST_CASE("products are for Gauss-Seidel in lanes that anticipates") {
+  const auto products = [](Solver solver, Backend backend, bool anticipate) {
+    return [=](auto& s) {
+      s.anticipate_products = true;
+      s.solver = solver;
+      s.backend = backend;
+      s.anticipate = anticipate;
+    };
+  };
+  check_setting(products(Solver::gauss_seidel, Backend::reference, true),
+                {"anticipate_products", "simd", "reference"});
+  for (const Solver solver :
+       {Solver::automatic, Solver::yarn, Solver::direct, Solver::small_steps}) {
+    check_setting(products(solver, Backend::simd, true),
+                  {"anticipate_products", "gauss_seidel", name(solver).data()});
+  }
+  check_setting(products(Solver::gauss_seidel, Backend::simd, false),
+                {"anticipate_products", "anticipate", "off"});
+  Settings settings;
+  products(Solver::gauss_seidel, Backend::simd, true)(settings);
+  CHECK(Cloth::create(model_of(scene_of("hang", 4)), settings));
+}
+
 TEST_CASE("choices that do not exist are refused") {
   check_setting([](auto& s) { s.solver = static_cast<Solver>(200); }, {"solver", "200"});
   check_setting([](auto& s) { s.scheme = static_cast<Scheme>(200); }, {"scheme", "200"});

@@ -55,6 +55,19 @@ TEST_CASE("a warm step allocates nothing") {
   }
 }
 
+TEST_CASE("nor does a warm step through products") {
+  for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners"}) {
+    for (const bool velocity_correction : {false, true}) {
+      CAPTURE(std::string(name));
+      CAPTURE(velocity_correction);
+      Settings settings = paper_settings();
+      settings.anticipate_products = true;
+      settings.velocity_correction = velocity_correction;
+      CHECK(allocations_when_warm(name, settings) == 0);
+    }
+  }
+}
+
 TEST_CASE("nor does a warm step by yarns") {
   for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners"}) {
     for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {

@@ -136,6 +136,25 @@ TEST_CASE("AVX2 and AVX-512 give the same bits, SSE2 about the same motion") {
   });
 }
 
+TEST_CASE("through products: threads, what is passed over, AVX2 or AVX-512 change no bit") {
+  const bool has_both = simd::supported(simd::Isa::avx512);
+  for_every_case([&](const Case& c, Settings settings) {
+    settings.anticipate_products = true;
+    if (has_both) settings.isa = Isa::avx512;
+    settings.threads = 1;
+    const std::uint64_t alone = hash_after(c, settings);
+    settings.threads = 0;
+    CHECK(hash_after(c, settings, 2) == alone);
+    CHECK(hash_after(c, settings, 3) == alone);
+    settings.skip = false;
+    CHECK(hash_after(c, settings) == alone);
+    CHECK(hash_after(c, settings, 2) == alone);
+    if (!has_both) return;
+    settings.isa = Isa::avx2;
+    CHECK(hash_after(c, settings) == alone);
+  });
+}
+
 TEST_CASE("skipping leaves out much of what is at rest") {
   SceneDescription scene = scene_of("hang", 41);
   scene.gravity = {0, 0, 0};

@@ -35,11 +35,14 @@ std::uint32_t sweep(const Workbench& bench, const simd::Table& table, const simd
   return corrections;
 }
 
-std::uint32_t sweep(const Workbench& bench, const simd::Table& table, const simd::Anticipation& p) {
+std::uint32_t sweep(Workbench& bench, const simd::Table& table, const simd::Anticipation& p) {
   std::uint32_t corrections = 0;
   for (const Piece& piece : bench.pieces) {
-    corrections += piece.singles ? table.relax_anticipated_singles(p, piece.first(), piece.last())
-                                 : table.relax_anticipated_run(p, piece.run);
+    bench.pulls().for_each_stretch(
+        piece.first(), piece.last(), [&](std::uint32_t first, std::uint32_t last, bool scattered) {
+          corrections += scattered ? table.relax_anticipated_singles(p, first, last)
+                                   : table.relax_anticipated_run(p, {0, 0, first, last - first});
+        });
   }
   return corrections;
 }
@@ -47,11 +50,14 @@ std::uint32_t sweep(const Workbench& bench, const simd::Table& table, const simd
 void renew_products(Workbench& bench, const simd::Table& table, const simd::Anticipation& p,
                     const simd::Relaxation& r) {
   for (const Piece& piece : bench.pieces) {
-    if (piece.singles) {
-      table.renew_products_singles(p, r, piece.first(), piece.last());
-    } else {
-      table.renew_products_run(p, r, piece.run);
-    }
+    bench.pulls().for_each_stretch(piece.first(), piece.last(),
+                                   [&](std::uint32_t first, std::uint32_t last, bool scattered) {
+                                     if (scattered) {
+                                       table.renew_products_singles(p, r, first, last);
+                                     } else {
+                                       table.renew_products_run(p, r, {0, 0, first, last - first});
+                                     }
+                                   });
   }
 }
 
@@ -66,11 +72,22 @@ void apply_sums(const Workbench& bench, const simd::Table& table, const simd::An
   }
 }
 
-/// Planar displacements of all slots, x y z.
+void refresh_errors(const Workbench& bench, const simd::Table& table, const simd::Anticipation& p,
+                    const simd::Relaxation& r) {
+  for (const Piece& piece : bench.pieces) {
+    if (piece.singles) {
+      table.refresh_errors_singles(p, r, piece.first(), piece.last());
+    } else {
+      table.refresh_errors_run(p, r, piece.run);
+    }
+  }
+}
+
+/// Displacements of all slots, x y z.
 std::vector<float> displacements(const Workbench& bench, const simd::Relaxation& r) {
   std::vector<float> all;
   for (const float* axis : {r.u.x, r.u.y(), r.u.z()}) {
-    all.insert(all.end(), axis, axis + bench.slots());
+    for (std::size_t slot = 0; slot < bench.slots(); ++slot) all.push_back(axis[slot * r.u.step]);
   }
   return all;
 }
@@ -80,17 +97,18 @@ struct Difference {
   std::uint32_t corrections[2] = {0, 0};
 };
 
-Difference compare(Workbench& bench, const simd::Table& table, float threshold, int sweeps) {
+Difference compare(Workbench& bench, const simd::Table& table, float threshold, int sweeps,
+                   bool in_quads = false) {
   Difference d;
-  simd::Relaxation r = bench.relaxation();
+  simd::Relaxation r = bench.relaxation(in_quads);
   r.threshold = threshold;
   renew(bench, table, r);
   for (int i = 0; i < sweeps; ++i) d.corrections[0] += sweep(bench, table, r);
   const std::vector<float> expected = displacements(bench, r);
 
-  r = bench.relaxation();  // back to the start
+  r = bench.relaxation(in_quads);  // back to the start
   renew(bench, table, r);
-  const simd::Anticipation p = bench.pulls().anticipation(threshold);
+  const simd::Anticipation p = bench.anticipation(threshold);
   renew_products(bench, table, p, r);
   for (int i = 0; i < sweeps; ++i) d.corrections[1] += sweep(bench, table, p);
   apply_sums(bench, table, p, r);
@@ -122,9 +140,54 @@ TEST_CASE("both forms move every particle to the same place") {
       CAPTURE(static_cast<int>(isa));
       Workbench& bench = workshop.get(mesh.name, mesh.size, mesh.singles);
       // Sums of some forty corrections, each rounded to a part in 10^7.
-      const Difference d = compare(bench, simd::table(isa), 0, 40);
-      CHECK(d.scale > 0);
-      CHECK(d.largest <= 2e-5f * d.scale);
+      for (const bool in_quads : {false, true}) {
+        if (in_quads && !bench.runs.empty() && !bench.pieces.front().singles) continue;
+        CAPTURE(in_quads);
+        const Difference d = compare(bench, simd::table(isa), 0, 40, in_quads);
+        CHECK(d.scale > 0);
+        CHECK(d.largest <= 2e-5f * d.scale);
+      }
+    }
+  }
+}
+
+/// Errors, changes and sums after some passes and what ends them.
+TEST_CASE("sums are applied once, and errors are those of the displacements they become") {
+  perf::Workshop workshop;
+  for (const Mesh& mesh : kMeshes) {
+    for (const simd::Isa isa : supported_isas()) {
+      CAPTURE(mesh.name);
+      CAPTURE(mesh.size);
+      CAPTURE(mesh.singles);
+      CAPTURE(static_cast<int>(isa));
+      Workbench& bench = workshop.get(mesh.name, mesh.size, mesh.singles);
+      const simd::Table& table = simd::table(isa);
+      const bool in_quads = bench.pieces.front().singles;
+      const simd::Relaxation r = bench.relaxation(in_quads);
+      renew(bench, table, r);
+      const simd::Anticipation p = bench.anticipation(0);
+      renew_products(bench, table, p, r);
+      for (int i = 0; i < 3; ++i) sweep(bench, table, p);
+      apply_sums(bench, table, p, r);
+      const std::vector<float> once = displacements(bench, r);
+      apply_sums(bench, table, p, r);
+      CHECK(displacements(bench, r) == once);
+      refresh_errors(bench, table, p, r);
+      float largest = 0, off = 0;
+      for (std::size_t c = 0; c < bench.constraint_slots(); ++c) {
+        const simd::ConstraintBlock& block = r.blocks[c / kLanes];
+        const std::size_t lane = c % kLanes;
+        const std::size_t a = r.a[c] * r.u.step, b = r.b[c] * r.u.step;
+        const double e = block.e0[lane] + double{block.nx[lane]} * (r.u.x[a] - r.u.x[b]) +
+                         double{block.ny[lane]} * (r.u.y()[a] - r.u.y()[b]) +
+                         double{block.nz[lane]} * (r.u.z()[a] - r.u.z()[b]);
+        largest = std::max(largest, std::abs(block.e0[lane]));
+        off = std::max(off, std::abs(static_cast<float>(e) - p.error[c]));
+        REQUIRE(p.change[c] == 0);
+        REQUIRE(p.sum[c] == 0);
+      }
+      CHECK(largest > 0);
+      CHECK(off <= 1e-6f * largest);
     }
   }
 }

@@ -22,9 +22,10 @@ struct Passed {
 };
 
 /// Passes over a sheet that somebody has pulled at.
-Passed pass(const Model& model, int passes, bool in_trips, int threads) {
+Passed pass(const Model& model, int passes, bool in_trips, int threads, bool products = false) {
   Settings settings;
   settings.iterations = passes;
+  settings.anticipate_products = products;
   SimdSolver solver(model, settings, simd::table(supported_isas().back()));
   Passed passed{model.initial_position, {}};
   for (std::size_t i = 0; i < passed.x.size(); i += 7) passed.x.z[i] += 0.01;
@@ -83,6 +84,25 @@ TEST_CASE("passes in trips are passes one by one") {
   }
   CHECK(trips >= 4);
   CHECK(tiles >= 15);
+}
+
+TEST_CASE("passes through products in trips are passes one by one") {
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 5);
+  for (const SceneDescription& scene :
+       {scene_of("hang", 100), scene_of("hang", 180), roped_sheet(101), random_sheet(75, 8)}) {
+    const auto model = model_of(scene);
+    CAPTURE(model->ordering.tiles.size());
+    for (const int passes : {1, 2, 3, 8}) {
+      CAPTURE(passes);
+      const Passed one_by_one = pass(*model, passes, false, 1, true);
+      for (const int threads : {1, 2, 3, 5}) {
+        CAPTURE(threads);
+        const Passed in_trips = pass(*model, passes, true, threads, true);
+        CHECK(same(in_trips.x, one_by_one.x));
+        CHECK(in_trips.sweep.corrections == one_by_one.sweep.corrections);
+      }
+    }
+  }
 }
 
 }  // namespace
