@@ -148,8 +148,7 @@ class ExactSubstep {
     }
     const bool is_suspect = attempt_.method != Method::by_solver || attempt_.parts > 1;
     const bool is_kept = guard_energy(s_, impulses_, is_suspect, h_);
-
-    if (!is_kept && !is_suspect) trial_.outcome = Outcome::rejected;
+    if (!is_kept && !is_suspect && !attempt_.is_last) trial_.outcome = Outcome::rejected;
   }
 
   void watch_crossings() {
