@@ -159,10 +159,10 @@ WEFT_API ModelInfo describe(const Model& model);
 /// yarn: splits the cloth into chains of constraints that run straight on through it, as the yarns
 ///   of a woven one do. Each is solved exactly, many side by side in SIMD lanes; where sweeps over
 ///   them converge slowly, conjugate gradients solve all of them as one system. Ropes, hubs and
-///   contacts are relaxed one by one after each sweep, and take part in that system. A yarn that is
-///   taut between two fixed particles, and not braced by triangles, keeps most of the strain that
-///   yarns may leave, 0.3 %, or the tolerance if that is less, beyond what its ends are too far
-///   apart by: with scheme paper it hangs by that. simd only.
+///   contacts are relaxed one by one after each sweep, and take part in that system. A yarn
+///   between two fixed particles that is taut, and not braced by triangles, hangs by a strain: with
+///   scheme paper it keeps most of what yarns may leave (0.3 %, or the tolerance if that is less),
+///   in addition to the strain that the distance of its ends demands. simd only.
 /// small_steps: one relaxed sweep in each of many short substeps, over yarns where the cloth has
 ///   them and over single constraints elsewhere, and then passes over what is out of tolerance
 ///   alone. A sweep leaves a strain that falls with the square of the substep; how long that may be
@@ -170,32 +170,25 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   (engine/solvers/small_steps/small_steps_load.h). For any mesh, at tolerances of 0.1 % and
 ///   looser, and for a motion that is near the true one. Masses should not differ by more than a
 ///   hundred. Substeps of one length are best kept to: a change of it by half costs some energy.
-/// automatic: small_steps for cloth (simd, a tolerance from 0.1 % on, free masses that differ by no
-///   more than a hundred, no free spheres, and enough loops: a grid, no chain or bridge), unless a
-///   scheme of other solvers, velocity_correction or `iterations` is asked for. Else gauss_seidel
-///   on the reference backend or with `iterations`. direct for cords, ropes that close few loops:
-///   chains, trees, bridges; where these are long (the tolerance times the longest constraint is
-///   above 0.25 mm) or loaded (masses differ by more than 100); with more than 16 free spheres
-///   yarn. For all else the ratio of masses decides, that of the heaviest to the lightest of free
-///   particles that constraints join. Up to 10^4: yarn, or gauss_seidel where there are more than
-///   nine ropes to each distance constraint. From 10^6 on, and from 10^4 on such nets or with
-///   `substeps` given: direct. Between them: yarn, with direct to answer where it gives up (so it
-///   is wherever yarn is chosen for ratios above 10^4).
-/// Where yarn or direct gives up, or energy rises by more than gravity, forces and moved pins
-/// explain (engine/step/energy.h), the substep is redone as two halves, until a step has cost 1500
-/// iterations; where that fails too, Gauss-Seidel takes over. StepReport::iterations counts every
-/// attempt. If such a substep would gain energy all velocities are scaled down by one factor, to
-/// rest at most, or to the rigid motion nearest to that of the pins. For some steps afterwards
-/// automatic substeps are shorter and yarns are solved more tightly. So a step depends slightly on
-/// the ones before, until positions are written. Small steps have one such guard, for each step;
-/// where a step is out of tolerance in the end it is put right in a bounded number of rounds, or
-/// reported.
+/// automatic: by what the cloth is. small_steps for cloth, woven or a mesh. direct for chains of
+///   ropes, trees and bridges of them, and where masses are extremely unequal. yarn for all else:
+///   cloth at a tolerance that small steps could not afford, with unequal masses or free spheres,
+///   with scheme paper or rattle, or with velocity_correction. gauss_seidel on the reference
+///   backend and with `iterations`. The thresholds are not part of the interface.
+/// What yarn and direct do not bring within tolerance is done by others, in this order: the same
+/// solver in 2, 4, 8 and 16 parts of the substep (StepReport::halvings counts what was rejected);
+/// direct behind yarn, where masses are unequal; small_steps; gauss_seidel, whose result is
+/// committed with its error. For some steps afterwards substeps begin in as many parts. Energy that
+/// a substep gains by more than gravity, forces and moved pins explain is taken out by scaling its
+/// velocities down, to rest at most, or to the rigid motion nearest to that of the pins
+/// (engine/step/energy.h). So a step depends slightly on the ones before, until positions are
+/// written. gauss_seidel is the paper's loop, and is guarded only where it is cut off.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, automatic };
 /// paper: impulses along the directions at the predicted positions; first order, and dissipative.
 /// rattle: along the directions at the start of the substep, always with velocity correction;
 ///   second order. This includes ropes that become taut within the substep. Contacts arise within
 ///   it and, in both schemes, act along their directions at its end. Where rattle does not
-///   converge, or its impulses would add energy (engine/step/rattle.h), the substep is redone from
+///   converge, or its impulses would add energy (engine/step/energy.h), the substep is redone from
 ///   the same state by the paper's scheme with velocity correction; StepReport::scheme_fallbacks
 ///   counts these. With Settings::iterations nothing is redone.
 /// implicit, bdf2: of small_steps alone. The implicit Euler method, first order, and the second
@@ -231,8 +224,7 @@ struct Settings {
   /// small_steps by closed form, up to 1024; else chosen from the motion (rattle: up to 2.5 times
   /// as many as paper) and, with yarns, from the load that heavy particles and, with scheme paper,
   /// spheres are; no more than max_iterations / 8 then. 1 on the reference backend or with
-  /// `iterations`. A substep whose solver gives up before max_iterations is redone in halves, up to
-  /// 16 parts (StepReport::halvings). Fine meshes need small substeps.
+  /// `iterations`. Fine meshes need small substeps.
   int substeps = kAutomaticSubsteps;
   /// 0: iterate to the tolerance. K > 0: exactly K iterations per substep whatever the error,
   /// nothing skipped; gauss_seidel renews frozen directions once per substep, the others in every
@@ -243,13 +235,12 @@ struct Settings {
   /// fall by seven digits at most). Solving exactly along directions that will change is wasted
   /// work: 32 saves a fifth of the iterations and more.
   int renew_after = 32;
-  /// Of a whole step, whatever its substeps, halves and schemes; > 0. It bounds the time of a step:
-  /// a game sets it, to several times of what its frames take, for what one leaves undone the next
-  /// finds. (For the same time in each frame: `iterations` and `substeps`, solver yarn.) Each
-  /// substep may do half of what is left, the last one all, and does one at least of each of its
-  /// parts; half of that is for sweeps where the solver gives up, half for scheme paper where
-  /// rattle is left to it. The velocity loop may do as many of its own. Where a substep that is cut
-  /// off would gain energy, its velocities are scaled down (see Solver).
+  /// Of a whole step, whatever its substeps, attempts and schemes; > 0. It bounds the time of a
+  /// step: a game sets it, to several times of what its frames take, for what one leaves undone the
+  /// next finds. (For the same time in each frame: `iterations` and `substeps`, solver yarn.) Each
+  /// substep may do half of what is left, the last one all; half of that is kept for the last
+  /// attempt (see Solver), which does one at least. The velocity loop may do as many of its own.
+  /// Where a substep that is cut off would gain energy, its velocities are scaled down.
   int max_iterations = 1'000'000;
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
@@ -294,10 +285,9 @@ inline Settings paper_settings() {
 /// iteration_limit: max_iterations were done, or with small_steps all rounds, and some constraint
 /// is
 ///   still out of tolerance. The state is committed.
-/// infeasible: some constraint is out of tolerance and thousands of iterations (small_steps:
-/// sixteen
-///   rounds of a sweep and local passes) no longer reduce the error: constraints contradict each
-///   other (a chain whose ends are too far apart), masses differ by more than 10^7, or nothing
+/// infeasible: some constraint is out of tolerance and tens of thousands of iterations
+///   (small_steps: sixteen rounds of a sweep and local passes) hardly reduce the error: constraints
+///   contradict each other (a chain whose ends are too far apart), masses differ by far, or nothing
 ///   leads from the start to where they agree (a sheet of triangles whose pins turned by a right
 ///   angle in one step). The state is committed, with the error spread over the constraints.
 /// passed_through: a particle went through a sphere within a substep (tunnelling): no contact was
@@ -346,7 +336,7 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 struct StepReport {
   Status status = Status::converged;
   int substeps = 0;                      ///< done; 0 where nothing is committed
-  int halvings = 0;                      ///< substeps that were redone as two halves
+  int halvings = 0;                      ///< attempts at a substep that were rejected (Solver)
   std::int64_t iterations = 0;           ///< passes over the position constraints; yarn: sweeps and
                                          ///< conjugate gradient iterations; direct: solves;
                                          ///< small_steps: local passes by their visits
