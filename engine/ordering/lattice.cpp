@@ -29,7 +29,7 @@ double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * 
 /// way the yarn points is told by the direction of its neighbour.
 class Weaver {
  public:
-  Weaver(std::span<const Vec3> positions, const Yarns& yarns)
+  Weaver(std::span<const Vec3> positions, const WovenYarns& yarns)
       : positions_(positions), yarns_(yarns), cells_(positions.size()) {
     for (auto& crossing : crossings_) crossing.resize(positions.size());
     for (std::uint32_t i = 0; i < yarns.yarns.size(); ++i) {
@@ -144,7 +144,7 @@ class Weaver {
   bool placed(std::uint32_t particle) const { return cells_[particle].part != kNoIndex; }
 
   std::span<const Vec3> positions_;
-  const Yarns& yarns_;
+  const WovenYarns& yarns_;
   std::vector<Cell> cells_;
   std::vector<Crossing> crossings_[2];  // by family and particle
   std::vector<int> direction_;          // by yarn; 0: not reached yet
@@ -185,7 +185,7 @@ void start_at_zero(std::vector<Cell>& cells) {
 
 }  // namespace
 
-std::vector<Cell> find_lattice(std::span<const Vec3> positions, const Yarns& yarns) {
+std::vector<Cell> find_lattice(std::span<const Vec3> positions, const WovenYarns& yarns) {
   std::vector<Cell> cells = Weaver(positions, yarns).cells();
   separate(cells);
   start_at_zero(cells);

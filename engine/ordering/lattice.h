@@ -21,6 +21,6 @@ struct Cell {
 };
 
 /// Every particle gets a cell; one that fits nowhere is a part of its own.
-std::vector<Cell> find_lattice(std::span<const Vec3> positions, const Yarns& yarns);
+std::vector<Cell> find_lattice(std::span<const Vec3> positions, const WovenYarns& yarns);
 
 }  // namespace weft

@@ -105,7 +105,7 @@ class Tracer {
   Tracer(std::span<const Link> links, std::size_t particles, const Pairing& pairing)
       : links_(links), pairing_(pairing), done_(links.size()), visited_by_(particles, kNoIndex) {}
 
-  Yarns trace() {
+  WovenYarns trace() {
     for (std::uint32_t i = 0; i < links_.size(); ++i) {
       if (!done_[i]) trace_from(first_of_chain(i));
     }
@@ -173,12 +173,12 @@ class Tracer {
   const Pairing& pairing_;
   std::vector<bool> done_;
   std::vector<std::uint32_t> visited_by_;  // the last yarn through each particle
-  Yarns yarns_;
+  WovenYarns yarns_;
 };
 
 /// Links over their mean square length: so that, where bending links skip every other particle,
 /// they come after those that they skip over.
-double rank(const Yarns& yarns, const Yarn& yarn, std::span<const Vec3> positions,
+double rank(const WovenYarns& yarns, const Yarn& yarn, std::span<const Vec3> positions,
             std::span<const Link> links) {
   double squares = 0;
   for (const std::uint32_t link : yarns.links_of(yarn)) {
@@ -190,7 +190,8 @@ double rank(const Yarns& yarns, const Yarn& yarn, std::span<const Vec3> position
   return std::isfinite(rank) ? rank : 0;
 }
 
-void choose_families(std::span<const Vec3> positions, std::span<const Link> links, Yarns& yarns) {
+void choose_families(std::span<const Vec3> positions, std::span<const Link> links,
+                     WovenYarns& yarns) {
   std::vector<double> ranks;
   for (const Yarn& yarn : yarns.yarns) ranks.push_back(rank(yarns, yarn, positions, links));
   std::vector<std::uint32_t> by_rank(yarns.yarns.size());
@@ -208,10 +209,10 @@ void choose_families(std::span<const Vec3> positions, std::span<const Link> link
 
 }  // namespace
 
-Yarns find_yarns(std::span<const Vec3> positions, std::span<const Link> links) {
+WovenYarns find_yarns(std::span<const Vec3> positions, std::span<const Link> links) {
   const Lists incidence = links_at(positions.size(), links);
   const Pairing pairing(positions, links, incidence);
-  Yarns yarns = Tracer(links, positions.size(), pairing).trace();
+  WovenYarns yarns = Tracer(links, positions.size(), pairing).trace();
   choose_families(positions, links, yarns);
   return yarns;
 }

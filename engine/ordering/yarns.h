@@ -15,13 +15,13 @@ namespace weft {
 /// Link k of a yarn joins its particles k and k + 1; the last link of a closed yarn joins its last
 /// particle to its first. No particle is twice on a yarn.
 struct Yarn {
-  std::uint32_t first_particle = 0, last_particle = 0;  // in Yarns::particles
-  std::uint32_t first_link = 0, last_link = 0;          // in Yarns::links
+  std::uint32_t first_particle = 0, last_particle = 0;  // in WovenYarns::particles
+  std::uint32_t first_link = 0, last_link = 0;          // in WovenYarns::links
   std::uint32_t family = 0;
   bool closed = false;
 };
 
-struct Yarns {
+struct WovenYarns {
   std::vector<Yarn> yarns;  // each link in exactly one
   std::vector<std::uint32_t> particles, links;
   std::uint32_t families = 0;  // no particle is on two yarns of a family
@@ -36,6 +36,6 @@ struct Yarns {
 
 /// Deterministic: depends on the arguments only. Links must be valid and without duplicates.
 /// Family 0 holds the longest yarns; of equally long ones, those with the shorter links.
-Yarns find_yarns(std::span<const Vec3> positions, std::span<const Link> links);
+WovenYarns find_yarns(std::span<const Vec3> positions, std::span<const Link> links);
 
 }  // namespace weft

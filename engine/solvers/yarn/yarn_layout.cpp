@@ -32,7 +32,7 @@ std::vector<Vec3> positions_of(const Model& model) {
   return positions;
 }
 
-std::vector<Chain> open_chains(const Yarns& yarns, std::size_t slots) {
+std::vector<Chain> open_chains(const WovenYarns& yarns, std::size_t slots) {
   std::vector<Chain> chains;
   std::vector<Chain> cut;
   UsedColours used(slots);
@@ -288,7 +288,7 @@ std::vector<std::uint32_t> find_longest_at(const Model& model, std::span<const C
 YarnLayout make_yarn_layout(const Model& model, YarnMemory memory) {
   YarnLayout layout;
   layout.cell = cell_of(model.constraints);
-  const Yarns yarns =
+  const WovenYarns yarns =
       find_yarns(positions_of(model), links_of(model.constraints, model.constraints.plain));
   std::vector<Chain> chains = open_chains(yarns, model.slots());
   Braces braces(model);

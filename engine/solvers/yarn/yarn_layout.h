@@ -10,7 +10,7 @@
 /// Rows with the same lengths and masses in all lanes share one YarnRow, kinds[kind[row]].
 ///
 /// A closed yarn is cut: its last link is a yarn of its own, in another family. What no yarn can
-/// hold (ropes, which only pull, and constraints at hubs) is left to YarnOthers.
+/// hold (ropes, which only pull, and constraints at hubs) is left to SingleConstraints.
 #pragma once
 
 #include <cstdint>

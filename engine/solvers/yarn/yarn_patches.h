@@ -1,4 +1,4 @@
-/// Patches: what the blocks of yarns that are not in place (yarn_home.h) are cut into.
+/// Patches: what the blocks of yarns that are not in place (yarn_memory_rows.h) are cut into.
 ///
 /// A yarn along the rows of a sheet goes through the lanes of the rows of memory, two slots apart
 /// or in another order; it is the columns that say which particle is where. Rows of a block whose
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/solvers/yarn/yarn_home.h"
+#include "engine/solvers/yarn/yarn_memory_rows.h"
 
 namespace weft {
 

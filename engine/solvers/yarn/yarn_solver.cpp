@@ -89,7 +89,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       products_(layout_.blocks.size()),
       solves_(layout_.blocks.size()),
       stubborn_(layout_.blocks.size()),
-      others_(model, settings),
+      singles_(model, settings),
       spans_(layout_, usual_, settings.tolerance, !model.has_contacts()) {
   const std::size_t wanted =
       settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
@@ -130,7 +130,7 @@ void YarnSolver::keep_start(kernels::VectorsView start, Team& team) {
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
                    table_.yarn_keep_start(yarns, layout_.blocks[i], u_.data(), scratch);
                  });
-  others_.keep_start(base_.data(), u_.data());
+  singles_.keep_start(base_.data(), u_.data());
 }
 
 void YarnSolver::join(kernels::VectorsView x, Team& team) {
@@ -161,7 +161,7 @@ void YarnSolver::sweep(double enough, Team& team, kernels::LoopResult& result) {
     solves_[i] = solve_block(yarns, i, enough, scratch);
   });
   moved_ = false;  // a pass goes down every block, also where nothing is corrected
-  others_.relax(base_.data(), u_.data());
+  singles_.relax(base_.data(), u_.data());
   std::int64_t visits = 0, corrections = 0;
   for (std::size_t i = 0; i < solves_.size(); ++i) {
     visits += std::int64_t{std::max(1u, solves_[i])} * layout_.links[i];
@@ -173,7 +173,7 @@ void YarnSolver::sweep(double enough, Team& team, kernels::LoopResult& result) {
 /// visits, corrections: of constraints in yarns; all others are visited in every pass.
 void YarnSolver::count(int passes, std::int64_t visits, std::int64_t corrections,
                        kernels::LoopResult& result) const {
-  const std::int64_t others = passes * static_cast<std::int64_t>(others_.count());
+  const std::int64_t others = passes * static_cast<std::int64_t>(singles_.count());
   result.iterations += passes;
   ++result.direction_updates;
   result.visits += visits + others;
@@ -188,7 +188,7 @@ kernels::LoopResult YarnSolver::correct_velocities(const VelocityTask& task, Tea
   from_start_ = false;
   velocities_ = true;
   make_system();
-  others_.start(task.contacts, true);
+  singles_.start(task.contacts, true);
   split(task.x, team);
   linearise_velocities(team);
   split(task.v, 0, team);
@@ -232,7 +232,7 @@ bool YarnSolver::loses_energy(kernels::VectorsView v) const {
 void YarnSolver::begin(const PositionTask& task, Team& team) {
   from_start_ = false;
   velocities_ = false;
-  others_.start(task.contacts, task.first_round);
+  singles_.start(task.contacts, task.first_round);
   if (task.along_start) {
     spans_.release();
     keep_start(task.start, team);
@@ -278,18 +278,18 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
   const auto look = [&] {
     const double strain = measure_.max_strain(
         x, team, [&](std::size_t first, std::size_t last) { join(x, first, last); });
-    return Look{strain, others_.violation(base_.data(), u_.data())};
+    return Look{strain, singles_.violation(base_.data(), u_.data())};
   };
   double before = kNoBound;
-  int sweeps = 1;      // since the last look
-  bool there = false;  // a Newton step led to the goal; t_ is where
+  int sweeps = 1;                 // since the last look
+  bool newton_converged = false;  // a Newton step led to the goal; t_ is where
   sweep(aim.block, team, result);
   for (;;) {
     const auto [strain, violation] = look();
-    const bool just = violation <= 1;
-    result.converged = strain <= settings_.tolerance && just;
-    if (strain <= aim.goal && just) return result;
-    if (there) {
+    const bool singles_within = violation <= 1;
+    result.converged = strain <= settings_.tolerance && singles_within;
+    if (strain <= aim.goal && singles_within) return result;
+    if (newton_converged) {
       std::ranges::copy(t_, u_.begin());
       join(x, team);
       result.converged = true;
@@ -300,7 +300,7 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
       return result;
     }
     if (!progress.goes_on(std::max(strain / aim.goal, violation))) {
-      result.failed = !(from_start_ ? result.converged : strain <= aim.wanted && just);
+      result.failed = !(from_start_ ? result.converged : strain <= aim.wanted && singles_within);
       return result;
     }
     const double fall = sweeps == 1 ? strain / before : std::sqrt(strain / before);
@@ -314,8 +314,8 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
       }
       if (may_take_newton(task.contacts)) {
         const Look after = look();
-        there = after.strain <= aim.goal && after.violation <= 1;
-        if (there) std::ranges::copy(u_, t_.begin());
+        newton_converged = after.strain <= aim.goal && after.violation <= 1;
+        if (newton_converged) std::ranges::copy(u_, t_.begin());
       }
     } else if (left > 0 && fall < 1 && fall * strain > kFar * aim.goal) {
       sweep(aim.block, team, result);
@@ -329,7 +329,7 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
 std::size_t YarnSolver::bytes() const {
   return bytes_of(base_step_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
          bytes_of(base_) + bytes_of(u_) + bytes_of(t_) + bytes_of(products_) + bytes_of(solves_) +
-         bytes_of(stubborn_) + others_.bytes() + spans_.bytes();
+         bytes_of(stubborn_) + singles_.bytes() + spans_.bytes();
 }
 
 }  // namespace weft

@@ -30,7 +30,7 @@
 #include "engine/parallel/team.h"
 #include "engine/solvers/constraint_solver.h"
 #include "engine/solvers/yarn/held_spans.h"
-#include "engine/solvers/yarn/yarn_others.h"
+#include "engine/solvers/yarn/single_constraints.h"
 #include "kernels/loop.h"
 #include "kernels/simd/table.h"
 
@@ -135,7 +135,7 @@ class YarnSolver final : public ConstraintSolver {
   std::vector<simd::YarnProducts> products_;               // per block
   std::vector<std::uint32_t> solves_;                      // per block, in one sweep
   std::vector<std::uint8_t> stubborn_;                     // per block: kMostSolves were too few
-  YarnOthers others_;
+  SingleConstraints singles_;
   HeldSpans spans_;
 };
 

@@ -28,12 +28,12 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 void YarnSolver::linearise(Team& team) {
   linearise_yarns(team);
-  others_.linearise(base_.data(), u_.data());
+  singles_.linearise(base_.data(), u_.data());
 }
 
 void YarnSolver::linearise_velocities(Team& team) {
   linearise_yarns(team);
-  others_.linearise_velocities(base_.data(), u_.data());
+  singles_.linearise_velocities(base_.data(), u_.data());
 }
 
 void YarnSolver::linearise_yarns(Team& team) {
@@ -50,7 +50,7 @@ double YarnSolver::read_velocities(Team& team) {
                    products_[i].worst =
                        table_.yarn_read(yarns, layout_.blocks[i], u_.data(), scratch);
                  });
-  double worst = others_.read(base_.data(), u_.data());
+  double worst = singles_.read(base_.data(), u_.data());
   if (!std::isfinite(worst)) return kInfinite;
   for (const simd::YarnProducts& p : products_) {
     if (!std::isfinite(p.worst)) return kInfinite;
@@ -65,7 +65,7 @@ YarnSolver::Products YarnSolver::precondition(double alpha, double goal, Team& t
                    products_[i] = table_.yarn_precondition(yarns, layout_.blocks[i],
                                                            static_cast<float>(alpha));
                  });
-  const simd::YarnProducts others = others_.precondition(alpha, goal);
+  const simd::YarnProducts others = singles_.precondition(alpha, goal);
   Products sum{static_cast<double>(others.product), static_cast<double>(others.worst)};
   for (std::size_t i = first_end_; i < products_.size(); ++i) {
     sum.product += static_cast<double>(products_[i].product);
@@ -102,7 +102,7 @@ void YarnSolver::push(double beta, Team& team) {
                      push(yarns, layout_.blocks[i], factor, t_.data(), scratch);
                    });
   }
-  others_.push(beta, t_.data());
+  singles_.push(beta, t_.data());
 }
 
 /// t -= M^-1 J^T T^-1 J t of the first family; with errors, T^-1 (e + J t).
@@ -120,7 +120,7 @@ double YarnSolver::pull(Team& team) {
                    products_[i].product =
                        table_.yarn_pull(yarns, layout_.blocks[i], t_.data(), scratch);
                  });
-  double sum = others_.pull(t_.data());
+  double sum = singles_.pull(t_.data());
   for (std::size_t i = first_end_; i < products_.size(); ++i) {
     sum += static_cast<double>(products_[i].product);
   }
@@ -137,7 +137,7 @@ void YarnSolver::finish(Team& team) {
                      table_.yarn_finish(yarns, layout_.blocks[i], t_.data(), scratch);
                    });
   }
-  others_.finish(t_.data());
+  singles_.finish(t_.data());
   eliminate(true, team);
   team.for_each_part(t_.size(), kNumbers, [&](std::size_t first, std::size_t last) {
     table_.yarn_add(u_.data(), t_.data(), first, last);

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/solvers/yarn/yarn_home.h"
 #include "engine/solvers/yarn/yarn_layout.h"
+#include "engine/solvers/yarn/yarn_memory_rows.h"
 #include "engine/solvers/yarn/yarn_patches.h"
 #include "engine/solvers/yarn/yarn_places.h"
 

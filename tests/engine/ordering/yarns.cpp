@@ -15,7 +15,7 @@ namespace weft::test {
 namespace {
 
 /// The first rule that is broken, in words; empty if none is.
-std::string fault_of(const Yarns& yarns, const Mesh& mesh) {
+std::string fault_of(const WovenYarns& yarns, const Mesh& mesh) {
   std::vector<int> seen(mesh.links.size());
   std::set<std::pair<std::uint32_t, std::uint32_t>> families_at;  // particle, family
   for (const Yarn& yarn : yarns.yarns) {
@@ -38,8 +38,8 @@ std::string fault_of(const Yarns& yarns, const Mesh& mesh) {
   return once ? "" : "a link in no yarn, or in two";
 }
 
-Yarns yarns_of(const Mesh& mesh) {
-  const Yarns yarns = find_yarns(mesh.positions, mesh.links);
+WovenYarns yarns_of(const Mesh& mesh) {
+  const WovenYarns yarns = find_yarns(mesh.positions, mesh.links);
   CHECK(fault_of(yarns, mesh) == "");
   return yarns;
 }
@@ -51,7 +51,7 @@ TEST_CASE("the yarns of a grid are its rows and its columns") {
       CAPTURE(rows);
       CAPTURE(columns);
       for (const Mesh& mesh : {grid(rows, columns), shuffled(grid(rows, columns), random)}) {
-        const Yarns yarns = yarns_of(mesh);
+        const WovenYarns yarns = yarns_of(mesh);
         CHECK(yarns.yarns.size() == rows + columns);
         CHECK(yarns.families == 2);
         for (const Yarn& yarn : yarns.yarns) {
@@ -82,7 +82,7 @@ TEST_CASE("bending links make yarns of their own, behind those they skip over") 
   Mesh mesh = grid(12, 30);
   const std::size_t structural = mesh.links.size();
   add_bending(mesh, 12, 30, ConstraintKind::distance);
-  const Yarns yarns = yarns_of(mesh);
+  const WovenYarns yarns = yarns_of(mesh);
   for (const Yarn& yarn : yarns.yarns) {
     const auto links = yarns.links_of(yarn);
     for (const std::uint32_t link : links) CHECK((link < structural) == (links[0] < structural));
@@ -92,11 +92,11 @@ TEST_CASE("bending links make yarns of their own, behind those they skip over") 
 }
 
 TEST_CASE("a chain is one yarn, a ring one closed yarn") {
-  const Yarns line = yarns_of(chain(20));
+  const WovenYarns line = yarns_of(chain(20));
   REQUIRE(line.yarns.size() == 1);
   CHECK(!line.yarns[0].closed);
   CHECK(line.particles_of(line.yarns[0]).size() == 20);
-  const Yarns circle = yarns_of(ring(20));
+  const WovenYarns circle = yarns_of(ring(20));
   REQUIRE(circle.yarns.size() == 1);
   CHECK(circle.yarns[0].closed);
   CHECK(circle.particles_of(circle.yarns[0]).size() == 20);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/solvers/yarn/yarn_others.h"
+#include "engine/solvers/yarn/single_constraints.h"
 #include "engine/solvers/yarn/yarn_solver.h"
 #include "tests/support/clothes.h"
 #include "tests/support/vectors.h"
@@ -150,7 +150,7 @@ struct Others {
   Trial trial;
   const YarnPlaces& places;
   kernels::AlignedVector<float> base, u;
-  YarnOthers others;
+  SingleConstraints others;
 };
 
 TEST_CASE("a rope that ends slack violates nothing unless it has pulled") {

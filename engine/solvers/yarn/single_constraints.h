@@ -13,9 +13,9 @@
 namespace weft {
 
 /// Arrays of displacements, base and velocities are laid out as YarnPlaces has it.
-class YarnOthers {
+class SingleConstraints {
  public:
-  YarnOthers(const Model& model, const Settings& settings);
+  SingleConstraints(const Model& model, const Settings& settings);
 
   /// first_round: accumulated impulses start at 0; else contacts may have been added. Impulses act
   /// along the present directions.

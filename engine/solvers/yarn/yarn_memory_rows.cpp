@@ -1,4 +1,4 @@
-#include "engine/solvers/yarn/yarn_home.h"
+#include "engine/solvers/yarn/yarn_memory_rows.h"
 
 namespace weft {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/solvers/yarn/yarn_others.h"
+#include "engine/solvers/yarn/single_constraints.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ double clamped(int side, double& sum, double impulse) {
 
 }  // namespace
 
-YarnOthers::YarnOthers(const Model& model, const Settings& settings)
+SingleConstraints::SingleConstraints(const Model& model, const Settings& settings)
     : model_(model),
       stride_(model.yarns().places.stride),
       tolerance_(settings.tolerance),
@@ -62,14 +62,14 @@ YarnOthers::YarnOthers(const Model& model, const Settings& settings)
   constraints_ = pairs_.size();
 }
 
-void YarnOthers::add(std::uint32_t a, std::uint32_t b, double distance, int side) {
+void SingleConstraints::add(std::uint32_t a, std::uint32_t b, double distance, int side) {
   const YarnLayout& yarns = model_.yarns();
   const double wa = model_.inverse_mass[a] * yarns.lightest;
   const double wb = model_.inverse_mass[b] * yarns.lightest;
   pairs_.push_back({yarns.places.of(a), yarns.places.of(b), side, distance, wa, wb, 1 / (wa + wb)});
 }
 
-void YarnOthers::start(const ContactStore& contacts, bool first_round) {
+void SingleConstraints::start(const ContactStore& contacts, bool first_round) {
   from_start_ = false;
   if (first_round) {
     pairs_.resize(constraints_);
@@ -80,7 +80,7 @@ void YarnOthers::start(const ContactStore& contacts, bool first_round) {
   }
 }
 
-void YarnOthers::keep_start(const float* base, const float* u) {
+void SingleConstraints::keep_start(const float* base, const float* u) {
   from_start_ = true;
   starts_.resize(constraints_);
   for (std::size_t i = 0; i < constraints_; ++i) {
@@ -91,13 +91,13 @@ void YarnOthers::keep_start(const float* base, const float* u) {
 
 /// One-sided, not violated, and without an impulse to take back: most contacts, seen without a
 /// root.
-bool YarnOthers::at_rest(const Pair& pair, Vector d) {
+bool SingleConstraints::at_rest(const Pair& pair, Vector d) {
   return pair.side != 0 && pair.sum == 0 &&
          pair.side * (dot(d, d) - pair.distance * pair.distance) <= 0;
 }
 
 /// A constraint that has turned too far from where its impulses act is left alone.
-void YarnOthers::relax(const float* base, float* u) {
+void SingleConstraints::relax(const float* base, float* u) {
   constexpr double kLeastCosine = 0.1;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
@@ -118,7 +118,7 @@ void YarnOthers::relax(const float* base, float* u) {
   }
 }
 
-double YarnOthers::violation(const float* base, const float* u) const {
+double SingleConstraints::violation(const float* base, const float* u) const {
   const auto error_of = [&](const Pair& pair) {
     return pair.side * (length(difference(base, u, pair, stride_)) - pair.distance);
   };
@@ -136,7 +136,7 @@ double YarnOthers::violation(const float* base, const float* u) const {
 }
 
 /// One-sided ones take part where they are violated or have acted.
-void YarnOthers::set_error(std::size_t i, double error) {
+void SingleConstraints::set_error(std::size_t i, double error) {
   const Pair& pair = pairs_[i];
   Row& row = rows_[i];
   const bool active = row.near && (pair.side == 0 || pair.side * error > 0 || pair.sum != 0);
@@ -146,13 +146,13 @@ void YarnOthers::set_error(std::size_t i, double error) {
   row.lambda = row.p = row.q = 0;
 }
 
-void YarnOthers::make_rows() {
+void SingleConstraints::make_rows() {
   rows_.resize(pairs_.size());
   active_.reserve(pairs_.size());
   active_.clear();
 }
 
-void YarnOthers::linearise(const float* base, const float* u) {
+void SingleConstraints::linearise(const float* base, const float* u) {
   velocities_ = false;
   make_rows();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -165,7 +165,7 @@ void YarnOthers::linearise(const float* base, const float* u) {
   }
 }
 
-void YarnOthers::linearise_velocities(const float* base, const float* u) {
+void SingleConstraints::linearise_velocities(const float* base, const float* u) {
   velocities_ = true;
   make_rows();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -178,7 +178,7 @@ void YarnOthers::linearise_velocities(const float* base, const float* u) {
   }
 }
 
-double YarnOthers::read(const float* base, const float* u) {
+double SingleConstraints::read(const float* base, const float* u) {
   active_.clear();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     set_error(i, dot(rows_[i].n, difference(base, u, pairs_[i], stride_)));
@@ -192,7 +192,7 @@ double YarnOthers::read(const float* base, const float* u) {
   return worst;
 }
 
-simd::YarnProducts YarnOthers::precondition(double alpha, double goal) {
+simd::YarnProducts SingleConstraints::precondition(double alpha, double goal) {
   double product = 0, worst = 0;
   for (const std::uint32_t i : active_) {
     const Pair& pair = pairs_[i];
@@ -209,7 +209,7 @@ simd::YarnProducts YarnOthers::precondition(double alpha, double goal) {
   return {static_cast<float>(product), static_cast<float>(worst)};
 }
 
-void YarnOthers::push(double beta, float* t) {
+void SingleConstraints::push(double beta, float* t) {
   for (const std::uint32_t i : active_) {
     Row& row = rows_[i];
     row.p = row.z + beta * row.p;
@@ -218,7 +218,7 @@ void YarnOthers::push(double beta, float* t) {
   }
 }
 
-double YarnOthers::pull(const float* t) {
+double SingleConstraints::pull(const float* t) {
   double product = 0;
   for (const std::uint32_t i : active_) {
     Row& row = rows_[i];
@@ -228,7 +228,7 @@ double YarnOthers::pull(const float* t) {
   return product;
 }
 
-void YarnOthers::finish(float* t) {
+void SingleConstraints::finish(float* t) {
   for (const std::uint32_t i : active_) {
     Pair& pair = pairs_[i];
     const double impulse = clamped(pair.side, pair.sum, rows_[i].lambda);
@@ -237,7 +237,7 @@ void YarnOthers::finish(float* t) {
   }
 }
 
-std::size_t YarnOthers::bytes() const {
+std::size_t SingleConstraints::bytes() const {
   return bytes_of(pairs_) + bytes_of(starts_) + bytes_of(rows_) + bytes_of(active_);
 }
 
