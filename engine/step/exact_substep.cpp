@@ -58,6 +58,7 @@ Status correct_velocities(State& s, ConstraintSolver& solver, bool exact, const 
     if (is_done || next == nullptr) continue;
     task.max_iterations = std::max(1, budget.velocities - result.iterations);
     count(result, next->correct_velocities(task, team));
+    task.exact = false;  // what was removed once is
   }
   report.velocity_iterations += result.iterations;
   report.visits += result.visits;

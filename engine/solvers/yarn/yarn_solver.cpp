@@ -206,6 +206,7 @@ kernels::LoopResult YarnSolver::correct_velocities(const VelocityTask& task, Tea
   }
   result.converged = result.converged && loses_energy(task.v);
   if (result.converged) join(task.v, team);
+  result.converged = false;  // floats cannot tell: who works in double does
   return result;
 }
 

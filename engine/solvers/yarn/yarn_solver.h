@@ -54,7 +54,8 @@ class YarnSolver final : public ConstraintSolver {
   /// least one in each Newton step; visits, every solve of a constraint.
   kernels::LoopResult solve_positions(const PositionTask& task, Team& team) override;
   /// Brings the velocities within half of the tolerance, or as far as it gets; with `exact` to a
-  /// small part of what they were out by, however little that is.
+  /// small part of what they were out by, however little that is. It works in floats, and so leaves
+  /// it to others to say that velocities have converged.
   kernels::LoopResult correct_velocities(const VelocityTask& task, Team& team) override;
   std::size_t longest() const { return layout_.longest; }  // particles of the longest yarn
   /// Per chunk of the measure: of the yarns that have a constraint there. Empty: all are as long.
