@@ -170,7 +170,7 @@ TEST_CASE("contacts take back over-pushes of thousands of iterations, each its o
     settings.scheme = scheme;
     settings.contact_tolerance = 1e-6;
     Cloth cloth = cloth_of(chains_at_a_sphere(kLinks), settings);
-    CHECK(step(cloth, 0.01).iterations > 4096);  // more than one look at a standstill
+    CHECK(step(cloth, 0.01).iterations > 4096);  // more than one look at a stall
     for (std::uint32_t i = 1; i <= kLinks + 1; ++i) {
       CHECK(std::abs(cloth.position(i).x + cloth.position(i + kLinks + 1).x) < 1e-9);
     }
@@ -198,7 +198,7 @@ TEST_CASE("an over-push is taken back whole, however many iterations that takes"
     Cloth cloth = cloth_of(scene, on(backend, tight(1e-6)));
     const StepReport report = step(cloth, 0.01);
     CHECK(report.status == Status::converged);
-    CHECK(report.iterations > 4096);  // more than one look at a standstill
+    CHECK(report.iterations > 4096);  // more than one look at a stall
     CHECK(distance(cloth.position(0), {0, 0, 0}) < 1e-4);
   }
 }
