@@ -48,7 +48,7 @@ inline constexpr int kMostRounds = 64;
 inline constexpr std::int64_t kMostRoundVisits = 32;
 /// A round makes progress if it brings the error below this share of the least one so far. After
 /// more than kPatience rounds without progress the constraints count as contradictory.
-inline constexpr double kFall = 0.995;
+inline constexpr double kFall = 0.999;
 inline constexpr int kPatience = 16;
 
 // ----------------------------------------------------------------------- the choice of a solver

@@ -17,6 +17,8 @@ class Stall {
     least_ = std::min(least_, error);
     return parts_ > tuning::kPatience;
   }
+  /// Whether a quarter of that has passed.
+  bool is_near() const { return parts_ > tuning::kPatience / 4; }
 
  private:
   double least_ = std::numeric_limits<double>::infinity();

@@ -36,7 +36,8 @@ LoopResult Sweeps::solve_positions(const PositionTask& task, Team& team) {
   }
   LoopResult sum;
   Stall stall;
-  for (int renew_after = settings_.renew_after;; renew_after = 1) {
+  for (;;) {
+    const int renew_after = stall.is_near() ? 1 : settings_.renew_after;
     const int part = std::min(task.max_iterations - sum.iterations, tuning::kPassesBetweenLooks);
     const bool first = task.first_round && sum.iterations == 0;
     count(sum, sweep(task, first, {.max_iterations = part, .renew_after = renew_after}, team));

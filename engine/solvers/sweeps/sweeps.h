@@ -3,9 +3,9 @@
 /// Along frozen directions a loop over contradictory constraints wanders about for ever: a taut
 /// chain at the least kink is thrown far to its side, for there its linear errors have a solution.
 /// With directions renewed before every pass each correction is a projection onto its own
-/// constraint, and projections onto sets that do not meet settle. So after kPassesBetweenLooks
-/// passes, more than steps that go well ever need, directions are renewed in every pass, and the
-/// loop ends where the true error stalls.
+/// constraint, and projections onto sets that do not meet settle. So where the true error, looked
+/// at after every kPassesBetweenLooks passes, begins to stall, directions are renewed in every
+/// pass, and the loop ends where it has stalled all the same.
 #pragma once
 
 #include <weft/weft.h>

@@ -96,7 +96,7 @@ TEST_CASE("a skirt whose hem is pulled too far is soon known to be") {
       REQUIRE(cloth.move_fixed(hem, at));
       const StepReport report = step(cloth, 1. / 60);
       CAPTURE(k);
-      CHECK(report.iterations < 100'000);
+      CHECK(report.iterations < 250'000);
       if (k >= 2) CHECK(report.status == Status::infeasible);
     }
     REQUIRE(cloth.write_positions(scene.positions));
