@@ -30,7 +30,7 @@ kernels::LoopResult solve_positions(State& s, ConstraintSolver& solver, Position
     sum.failed = result.failed;
     task.first_round = false;
     task.max_iterations = std::max(1, task.max_iterations - result.iterations);
-    const bool again = s.model->has_contacts() && result.converged && !result.failed &&
+    const bool again = s.model->has_contacts() && result.converged &&
                        add_missed_contacts(*s.model, *s.kernels, task.x,
                                            s.settings.contact_tolerance, s.contacts) > 0;
     if (!again) break;
