@@ -43,11 +43,6 @@ bool Pins::depart(double dt, Vectors& position, Vectors& velocity) {
   return jumped;
 }
 
-void Pins::place(Vectors& position) const {
-  if (!moving_) return;
-  for (const Pin& pin : pins_) position.set(pin.slot, pin.to);
-}
-
 void Pins::stop(bool arrived, Vectors& position, Vectors& velocity) {
   if (!moving_) return;
   if (arrived) moving_ = false;

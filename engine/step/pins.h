@@ -28,8 +28,6 @@ class Pins {
 
   /// Those that travel start where they were, with their velocities. Whether some jumped.
   bool depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);
-  /// After depart: where everyone is going to be.
-  void place(kernels::Vectors& position) const;
   /// After depart: everyone is where the caller wants them, at rest; arrived: the step was done.
   void stop(bool arrived, kernels::Vectors& position, kernels::Vectors& velocity);
   /// Whether one has moved in this step or in the last: if not, nobody is under way.
