@@ -66,6 +66,7 @@ Result<Cloth> Cloth::create(std::shared_ptr<const Model> model, const Settings& 
   resolved.isa = isa.value();
   resolved.velocity_correction |= settings.scheme == Scheme::rattle;
   choose_solver(*model, resolved);
+  if (auto valid = validate_for_solver(resolved, *model); !valid) return Error{valid.error()};
   return Cloth(std::make_unique<Impl>(std::move(model), resolved));
 }
 

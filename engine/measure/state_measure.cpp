@@ -28,6 +28,34 @@ Strain strain_over_all(const Model& m, const Vectors& x) {
 Strain measure_strain(const Model& m, const kernels::Vectors& x) { return strain_over_all(m, x); }
 Strain measure_strain(const Model& m, kernels::VectorsView x) { return strain_over_all(m, x); }
 
+namespace {
+
+/// C^2 / (2 compliance)
+double energy_of_springs(const Model& m, const kernels::Vectors& x) {
+  const ConstraintStore& s = m.constraints;
+  double sum = 0;
+  for (std::size_t c = 0; c < s.compliance.size(); ++c) {
+    if (s.compliance[c] == 0) continue;
+    const double stretch = s.rest_length[c] * strain_of(m, x, c);
+    sum += stretch * stretch / (2 * s.compliance[c]);
+  }
+  return sum;
+}
+
+double energy_of_bending(const Model& m, const kernels::Vectors& x) {
+  const BendingStore& s = m.bending;
+  double sum = 0;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    kernels::Vector d{0, 0, 0};
+    for (std::size_t k = 0; k < 4; ++k) d = d + s.weights[i][k] * x[s.slots[i][k]];
+    const double bent = length(d) - s.rest[i];
+    sum += bent * bent / (2 * s.compliance[i]);
+  }
+  return sum;
+}
+
+}  // namespace
+
 Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,
                       const kernels::Vectors& v) {
   Energy energy;
@@ -36,6 +64,7 @@ Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Ve
     energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
     energy.potential -= m.mass[i] * dot(gravity, x[i]);
   }
+  energy.elastic = energy_of_springs(m, x) + energy_of_bending(m, x);
   return energy;
 }
 

@@ -43,6 +43,9 @@ Model::Model(const SceneDescription& description) : particles(description.positi
   order_particles(draft);
   store_particles(draft);
   store_constraints(draft);
+  store_bending(description);
+  store_air(description);
+  damping = description.damping;
   find_holds();
   for (const std::uint32_t s : spheres) {
     if (inverse_mass[s] > 0) heaviest_sphere = std::max(heaviest_sphere, 1 / inverse_mass[s]);
@@ -103,6 +106,34 @@ void Model::store_constraints(const Draft& draft) {
   store_batches(draft, ConstraintKind::rope);
   store_hubs(draft, ConstraintKind::rope);
   inert_constraints = draft.description.constraints.size() - constraints.size();
+  if (std::ranges::all_of(constraints.compliance, [](double c) { return c == 0; })) {
+    constraints.compliance = {};
+  }
+}
+
+void Model::store_bending(const SceneDescription& d) {
+  for (const BendingElement& element : d.bending) {
+    std::array<std::uint32_t, 4> slots{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::uint32_t particle = element.particles[i];
+      slots[i] = particle == kNoIndex ? slots[2] : ordering.slot_of[particle];
+    }
+    if (std::ranges::all_of(slots, [&](std::uint32_t s) { return inverse_mass[s] == 0; })) continue;
+    bending.slots.push_back(slots);
+    bending.weights.push_back(element.weights);
+    bending.rest.push_back(element.rest);
+    bending.compliance.push_back(element.compliance);
+  }
+}
+
+void Model::store_air(const SceneDescription& d) {
+  air.density = d.air.density;
+  air.drag = d.air.drag;
+  air.lift = d.air.lift;
+  air.wind = {d.air.wind.x, d.air.wind.y, d.air.wind.z};
+  for (const auto& [a, b, c] : d.air.triangles) {
+    air.triangles.push_back({ordering.slot_of[a], ordering.slot_of[b], ordering.slot_of[c]});
+  }
 }
 
 /// Inert constraints are not in the store: the other end is free.
@@ -162,6 +193,7 @@ void Model::append(const Constraint& c, std::uint32_t described, std::uint32_t a
   s.b.push_back(b);
   s.rest_length.push_back(c.rest_length);
   s.effective_mass.push_back(1 / (inverse_mass[a] + inverse_mass[b]));
+  s.compliance.push_back(c.compliance);
   s.colour.push_back(kNoIndex);
   s.described.push_back(described);
   s.slot.push_back(kNoIndex);
@@ -197,19 +229,24 @@ std::vector<Link> links_of(const ConstraintStore& store, std::size_t count) {
   return links;
 }
 
+std::size_t BendingStore::bytes() const {
+  return bytes_of(slots) + bytes_of(weights) + bytes_of(rest) + bytes_of(compliance);
+}
+
 std::size_t ConstraintStore::bytes() const {
   return bytes_of(a) + bytes_of(b) + bytes_of(rest_length) + bytes_of(effective_mass) +
-         bytes_of(colour) + bytes_of(described) + bytes_of(slot) + bytes_of(hub_distances) +
-         bytes_of(hub_ropes);
+         bytes_of(compliance) + bytes_of(colour) + bytes_of(described) + bytes_of(slot) +
+         bytes_of(hub_distances) + bytes_of(hub_ropes);
 }
 
 std::size_t Model::bytes() const {
   return initial_position.bytes() + initial_velocity.bytes() + bytes_of(mass) +
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
-         bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bytes_if_made(reference_) +
-         bytes_if_made(simd_) + bytes_if_made(pulls_) + bytes_if_made(direct_) +
-         bytes_if_made(yarns_) + bytes_if_made(small_steps_);
+         bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bending.bytes() +
+         bytes_of(air.triangles) + bytes_if_made(reference_) + bytes_if_made(simd_) +
+         bytes_if_made(pulls_) + bytes_if_made(direct_) + bytes_if_made(yarns_) +
+         bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {
@@ -223,6 +260,10 @@ ModelInfo describe(const Model& model) {
           .constraints = s.size(),
           .inert_constraints = model.inert_constraints,
           .ropes = s.size() - s.bilateral,
+          .compliant = static_cast<std::size_t>(
+              std::ranges::count_if(s.compliance, [](double c) { return c > 0; })),
+          .bending_elements = model.bending.size(),
+          .air_triangles = model.air.triangles.size(),
           .spheres = model.spheres.size(),
           .colours = model.ordering.colours,
           .tiles = model.ordering.tiles.size(),

@@ -6,6 +6,7 @@
 
 #include <weft/weft.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -34,12 +35,31 @@ struct ConstraintStore {
   std::vector<std::uint32_t> a, b;  // slots
   kernels::AlignedVector<double> rest_length;
   kernels::AlignedVector<double> effective_mass;  // 1 / (w_a + w_b), kg
+  kernels::AlignedVector<double> compliance;      // m/N, 0: rigid; empty where all are
   std::vector<std::uint32_t> colour;              // unique at a particle, hubs left out
   std::vector<std::uint32_t> described;           // index in the description
   std::vector<std::uint32_t> slot;                // constraint slot; kNoIndex: at a hub
   std::vector<std::uint32_t> hub_distances, hub_ropes;
   std::size_t size() const { return a.size(); }
+  bool has_springs() const { return !compliance.empty(); }
   std::size_t bytes() const;
+};
+
+/// Bending elements (weft.h) in the order of the description, those between fixed particles alone
+/// left out. Where there are three particles the fourth is the third again, with weight 0.
+struct BendingStore {
+  std::vector<std::array<std::uint32_t, 4>> slots;
+  std::vector<std::array<double, 4>> weights;
+  std::vector<double> rest, compliance;
+  std::size_t size() const { return slots.size(); }
+  std::size_t bytes() const;
+};
+
+/// Triangles that feel the air, between slots, and its coefficients (weft.h).
+struct AirStore {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  double density = 0, drag = 0, lift = 0;
+  kernels::Vector wind{};
 };
 
 /// Of the first `count` constraints, between slots.
@@ -67,11 +87,15 @@ class Model {
 
   kernels::Vector gravity{};
   ConstraintStore constraints;
+  BendingStore bending;
+  AirStore air;
+  Damping damping;
   Unevenness uneven;
   double heaviest_sphere = 0;  // kg, of the free ones
   std::size_t inert_constraints = 0;
 
   bool has_contacts() const { return !spheres.empty(); }
+  bool has_air() const { return !air.triangles.empty(); }
   /// Whether a constraint joins the two; slots.
   bool joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const;
   bool is_particle(std::size_t slot) const { return ordering.particle_at[slot] != kNoIndex; }
@@ -92,6 +116,8 @@ class Model {
   void store_constraints(const Draft& draft);
   void store_batches(const Draft& draft, ConstraintKind kind);
   void store_hubs(const Draft& draft, ConstraintKind kind);
+  void store_bending(const SceneDescription& description);
+  void store_air(const SceneDescription& description);
   void find_holds();
   void find_joined();
   void append(const Constraint& constraint, std::uint32_t described, std::uint32_t a,

@@ -11,7 +11,12 @@ Result<void> validate(const SceneDescription& description);
 Result<void> validate(const Settings& settings);
 /// For the simd backend: whether floats can square lengths and the tolerances that are used.
 Result<void> validate_for_lanes(const Settings& settings, const Model& model);
+/// Whether the solver that was chosen knows all that the model has.
+Result<void> validate_for_solver(const Settings& resolved, const Model& model);
+/// What a description says besides particles, constraints and spheres.
+Result<void> validate_material(const SceneDescription& description);
 Result<void> validate_gravity(Vec3 gravity);
+Result<void> validate_wind(Vec3 wind);
 Result<void> validate_time_step(double dt);
 /// One finite vector per particle.
 Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vectors,

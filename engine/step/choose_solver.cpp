@@ -56,6 +56,11 @@ Solver solver_for(const Model& model, const Settings& settings) {
   return direct && few_bodies ? Solver::direct : Solver::yarn;
 }
 
+/// Small steps alone solve springs and bending.
+bool has_material(const Model& model) {
+  return model.constraints.has_springs() || model.bending.size() > 0;
+}
+
 }  // namespace
 
 bool is_of_small_steps(Scheme scheme) {
@@ -73,7 +78,7 @@ void choose_solver(const Model& model, Settings& settings) {
   const bool fixed = settings.iterations > 0;
   const bool paper = settings.backend == Backend::reference || fixed;
   if (settings.solver == Solver::automatic) {
-    if (is_of_small_steps(settings.scheme))
+    if (is_of_small_steps(settings.scheme) || has_material(model))
       settings.solver = Solver::small_steps;
     else
       settings.solver = paper ? Solver::gauss_seidel : solver_for(model, settings);

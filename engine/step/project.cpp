@@ -68,7 +68,7 @@ void explain(State& s, double h, StepReport& report, Team& team) {
 
 void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team) {
   const Strain strain = s.measure->strain(x.view(), team);
-  report.max_strain = strain.max;
+  report.max_strain = report.max_error = strain.max;
   report.rms_strain = strain.rms;
   report.worst_constraint = strain.worst_constraint;
   report.contacts = static_cast<int>(s.contacts.count());

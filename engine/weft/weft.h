@@ -96,14 +96,63 @@ struct Vec3 {
   double x = 0, y = 0, z = 0;
 };
 
+/// In place of the number of a particle or constraint: none.
+inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
+
 /// distance: |a - b| = rest_length. rope: |a - b| <= rest_length (pulls only).
 enum class ConstraintKind : std::uint8_t { distance, rope };
 
+/// With a compliance the constraint is a spring: its tension f obeys the law
+///
+///     |a - b| - rest_length = compliance f          (rope: f >= 0, and 0 where it is slack)
+///
+/// and a tolerance is about what is left of this law, as a fraction of rest_length. Without one the
+/// law is that of a rigid edge. (Macklin et al., "XPBD", 2016; Servin et al. 2006.)
 struct Constraint {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   double rest_length = 0;  ///< m, 1e-150 to 1e150; on the simd backend 1e-18 to 1e18
   ConstraintKind kind = ConstraintKind::distance;
+  double compliance = 0;  ///< m/N, inverse stiffness; finite, at least 0. 0: rigid
+};
+
+/// A bending spring over three or four particles. Its weights sum to zero, so that
+///
+///     d = sum of weights[i] x[particles[i]]
+///
+/// does not change when the particles move as one, and its energy is (|d| - rest)^2 / (2
+/// compliance). With cotangent weights, rest 0 and a compliance of (A0 + A1) / (3 k) this is the
+/// isometric bending of two triangles with the areas A0 and A1 and the stiffness k (Bergou et al.,
+/// "A Quadratic Bending Model for Inextensible Surfaces", 2006).
+struct BendingElement {
+  std::array<std::uint32_t, 4> particles{};  ///< all different; the last may be kNoIndex
+  std::array<double, 4> weights{};           ///< the last is 0 where its particle is kNoIndex
+  double rest = 0;                           ///< m, |d| of the shape at rest; 0: flat
+  double compliance = 0;                     ///< m/N, > 0
+};
+
+/// Times in which springs lose what they swing with, and the decay of all motion.
+struct Damping {
+  /// s. A spring resists its rate of change with its stiffness times this (Macklin et al. 2016,
+  /// eq. 26). Constraints without a compliance have no such rate.
+  double stretch = 0;
+  double bending = 0;
+  double motion = 0;  ///< 1/s; velocities fall by exp(-motion t), whatever the step
+};
+
+/// Drag and lift on triangles of the cloth, from their velocities relative to the wind. A triangle
+/// of area A and unit normal n that moves through still air with velocity v feels the force
+///
+///     -1/2 density A |n . v| (drag v + lift (|v| n' - |n . v| v / |v|))
+///
+/// n' = n or -n, whichever has n' . v >= 0. The first part is against v; the second is across it.
+/// Where the triangle moves along its normal, |force| = 1/2 density A drag |v|^2.
+struct Air {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  double density = 1.2;  ///< kg/m^3
+  double drag = 0;       ///< C_d, of the area that the triangle shows
+  double lift = 0;       ///< C_l
+  Vec3 wind;             ///< m/s; Cloth::set_wind changes it
 };
 
 /// What is simulated. Lengths in m, masses in kg, times in s.
@@ -115,6 +164,9 @@ struct SceneDescription {
   std::vector<double> masses;        ///< one per particle, 1e-150 to 1e150, fixed ones too
   std::vector<std::uint32_t> fixed;  ///< particles of infinite inertia; move them with move_fixed()
   std::vector<Constraint> constraints;
+  std::vector<BendingElement> bending;
+  Damping damping;
+  Air air;
   Vec3 gravity{0, -10, 0};
 
   /// Contacts exist only for the particles listed in `spheres`. Each collides with every other
@@ -140,6 +192,9 @@ struct ModelInfo {
   std::size_t constraints = 0;  ///< active ones, without contacts
   std::size_t inert_constraints = 0;
   std::size_t ropes = 0;
+  std::size_t compliant = 0;  ///< constraints that are springs
+  std::size_t bending_elements = 0;
+  std::size_t air_triangles = 0;
   std::size_t spheres = 0;
   std::size_t colours = 0;
   std::size_t tiles = 0;  ///< groups of particles that threads may work on in parallel
@@ -170,7 +225,9 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   (engine/solvers/small_steps/small_steps_load.h). For any mesh, at tolerances of 0.1 % and
 ///   looser, and for a motion that is near the true one. Masses should not differ by more than a
 ///   hundred. Substeps of one length are best kept to: a change of it by half costs some energy.
-/// automatic: by what the cloth is. small_steps for cloth, woven or a mesh. direct for chains of
+///   It alone solves springs (Constraint::compliance) and bending.
+/// automatic: by what the cloth is. small_steps for cloth, woven or a mesh, and for all springs.
+/// direct for chains of
 ///   ropes, trees and bridges of them, and where masses are extremely unequal. yarn for all else:
 ///   cloth at a tolerance that small steps could not afford, with unequal masses or free spheres,
 ///   with scheme paper or rattle, or with velocity_correction. gauss_seidel on the reference
@@ -330,8 +387,6 @@ WEFT_API std::string_view name(Isa);
 WEFT_API std::string_view name(Status);
 WEFT_API std::string_view name(Stage);
 
-inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
-
 /// What one step did and what it reached. Counts and seconds are summed over the substeps; status
 /// is the worst of them; errors are those at the end.
 struct StepReport {
@@ -349,6 +404,10 @@ struct StepReport {
   int contacts = 0;                      ///< candidate pairs, near enough to be watched
   double max_strain = 0;                 ///< over all constraints, recomputed from the positions
   double rms_strain = 0;
+  /// What is left of the constraints' laws, the largest, as a fraction of rest_length: of rigid
+  /// constraints the strain, of springs | |a-b| - rest_length - compliance f | / rest_length with
+  /// the tension f that the solver applied in the last substep. This is what `tolerance` bounds.
+  double max_error = 0;
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
   double max_penetration = 0;                 ///< m, 0 without contacts
   double pin_work = 0;  ///< J, work that moved pins did in this step: exact where they move as one
@@ -369,7 +428,8 @@ struct Strain {
 struct Energy {
   double kinetic = 0;    ///< J
   double potential = 0;  ///< J, of gravity, zero at the origin
-  double total() const { return kinetic + potential; }
+  double elastic = 0;    ///< J, of springs and bending elements
+  double total() const { return kinetic + potential + elastic; }
 };
 
 /// One moving cloth: the state of a Model and the workspace of its solver. Particle numbers are

@@ -21,7 +21,10 @@ using Spoil = std::function<void(SceneDescription&)>;
 SceneDescription full_scene() {
   SceneDescription scene = scene_of("hang_sphere", 4);
   scene.velocities.assign(scene.positions.size(), Vec3{});
-  scene.constraints.push_back({5, 15, 1.0, ConstraintKind::rope});
+  scene.constraints.push_back({5, 15, 1.0, ConstraintKind::rope, 1e-3});
+  scene.bending.push_back({{0, 1, 2, kNoIndex}, {1, -2, 1, 0}, 0, 1});
+  scene.damping = {0.01, 0.01, 0.1};
+  scene.air = {{{0, 1, 4}}, 1.2, 1, 0.5, {1, 0, 0}};
   return scene;
 }
 
@@ -156,6 +159,34 @@ TEST_CASE("radii come with spheres, one per particle, finite and not negative") 
 TEST_CASE("spheres must exist, once") {
   check_refused([](auto& s) { s.spheres[0] = 17; }, {"spheres[0]", "17"});
   check_refused([](auto& s) { s.spheres.push_back(16); }, {"spheres[1]", "16"});
+}
+
+TEST_CASE("a material that is no material is refused by name, index and value") {
+  check_refused([](auto& s) { s.constraints[3].compliance = -1; },
+                {"constraints[3].compliance", "(-1)"});
+  check_refused([](auto& s) { s.constraints[3].compliance = kNan; },
+                {"constraints[3].compliance", "nan"});
+  check_refused([](auto& s) { s.bending[0].particles[1] = 999; },
+                {"bending[0].particles[1]", "(999)"});
+  check_refused([](auto& s) { s.bending[0].particles[1] = 0; },
+                {"bending[0].particles[1]", "twice", "(0)"});
+  check_refused([](auto& s) { s.bending[0].weights[1] = -1.9; }, {"bending[0].weights", "sum"});
+  check_refused([](auto& s) { s.bending[0].weights = {}; }, {"bending[0].weights", "(0)"});
+  check_refused([](auto& s) { s.bending[0].weights[2] = kInfinity; },
+                {"bending[0].weights[2]", "(inf)"});
+  check_refused([](auto& s) { s.bending[0].weights[3] = 1; },
+                {"bending[0].weights[3]", "no particle", "(1)"});
+  check_refused([](auto& s) { s.bending[0].rest = -1; }, {"bending[0].rest", "(-1)"});
+  check_refused([](auto& s) { s.bending[0].compliance = 0; }, {"bending[0].compliance", "(0)"});
+  check_refused([](auto& s) { s.damping.stretch = -1; }, {"damping.stretch", "(-1)"});
+  check_refused([](auto& s) { s.damping.bending = kNan; }, {"damping.bending", "nan"});
+  check_refused([](auto& s) { s.damping.motion = -2; }, {"damping.motion", "(-2)"});
+  check_refused([](auto& s) { s.air.triangles[0][2] = 999; }, {"air.triangles[0][2]", "(999)"});
+  check_refused([](auto& s) { s.air.triangles[0][2] = 0; }, {"air.triangles[0][2]", "twice"});
+  check_refused([](auto& s) { s.air.density = -1; }, {"air.density", "(-1)"});
+  check_refused([](auto& s) { s.air.lift = -1; }, {"air.lift", "(-1)"});
+  check_refused([](auto& s) { s.air.triangles.clear(); }, {"air.drag", "air.triangles", "(1)"});
+  check_refused([](auto& s) { s.air.wind.y = kInfinity; }, {"air.wind", "inf"});
 }
 
 }  // namespace

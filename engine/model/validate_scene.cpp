@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "engine/model/validate.h"
+#include "engine/model/validation.h"
+
+namespace weft {
+namespace {
+
+/// So that places of particles, padding and all, have 32 bits, and so have places in lists of who
+/// is whose neighbour.
+constexpr std::size_t kMostParticles = std::size_t{1} << 28;
+constexpr std::size_t kMostConstraints = std::size_t{1} << 26;
+
+Result<void> validate_index_list(std::string_view field, std::span<const std::uint32_t> list,
+                                 std::size_t particles) {
+  std::vector<bool> seen(particles);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (auto r = validate_particle(element(field, i), list[i], particles); !r) return r;
+    if (seen[list[i]]) {
+      return refuse(element(field, i), "particle is listed twice", std::to_string(list[i]));
+    }
+    seen[list[i]] = true;
+  }
+  return {};
+}
+
+Result<void> validate_constraint(std::size_t index, const Constraint& c, std::size_t particles) {
+  const std::string field = element("constraints", index);
+  if (auto r = validate_particle(field + ".a", c.a, particles); !r) return r;
+  if (auto r = validate_particle(field + ".b", c.b, particles); !r) return r;
+  if (c.a == c.b) return refuse(field, "joins a particle to itself", std::to_string(c.a));
+  if (c.kind != ConstraintKind::distance && c.kind != ConstraintKind::rope) {
+    return refuse(field + ".kind", "unknown", std::to_string(static_cast<int>(c.kind)));
+  }
+  if (auto r = validate_positive(field + ".rest_length", c.rest_length); !r) return r;
+  if (auto r = validate_square(field + ".rest_length", c.rest_length); !r) return r;
+  return validate_not_negative(field + ".compliance", c.compliance);
+}
+
+std::uint64_t key(const Constraint& c) {
+  const auto [low, high] = std::minmax(c.a, c.b);
+  return (std::uint64_t{low} << 32) | high;
+}
+
+Result<void> validate_no_duplicates(std::span<const Constraint> constraints) {
+  std::vector<std::uint32_t> order(constraints.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+    return std::pair(key(constraints[i]), i) < std::pair(key(constraints[j]), j);
+  });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const Constraint& c = constraints[order[k]];
+    if (key(c) != key(constraints[order[k - 1]])) continue;
+    return refuse(element("constraints", order[k]),
+                  "joins the same particles as " + element("constraints", order[k - 1]),
+                  std::to_string(c.a) + ", " + std::to_string(c.b));
+  }
+  return {};
+}
+
+Result<void> validate_constraints(std::span<const Constraint> constraints, std::size_t particles) {
+  if (constraints.size() > kMostConstraints) {
+    return refuse("constraints", "at most " + std::to_string(kMostConstraints),
+                  std::to_string(constraints.size()));
+  }
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    if (auto r = validate_constraint(i, constraints[i], particles); !r) return r;
+  }
+  return validate_no_duplicates(constraints);
+}
+
+Result<void> validate_contacts(const SceneDescription& d) {
+  if (d.spheres.empty() && d.radii.empty()) return {};
+  if (d.spheres.empty()) {
+    return refuse("radii", "given without spheres, nothing would collide",
+                  std::to_string(d.radii.size()));
+  }
+  if (auto r = validate_size("radii", d.radii.size(), d.positions.size()); !r) return r;
+  for (std::size_t i = 0; i < d.radii.size(); ++i) {
+    if (!std::isfinite(d.radii[i]) || d.radii[i] < 0) {
+      return refuse(element("radii", i), "must be finite and at least 0", number(d.radii[i]));
+    }
+    if (d.radii[i] > kMostSquared) {
+      return refuse(element("radii", i), "must be at most " + number(kMostSquared),
+                    number(d.radii[i]));
+    }
+  }
+  if (auto r = validate_index_list("spheres", d.spheres, d.positions.size()); !r) return r;
+  for (std::size_t i = 0; i < d.spheres.size(); ++i) {
+    if (d.radii[d.spheres[i]] <= 0) {
+      return refuse(element("radii", d.spheres[i]), "a sphere needs a radius greater than 0",
+                    number(d.radii[d.spheres[i]]));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> validate_size(std::string_view field, std::size_t size, std::size_t expected) {
+  if (size == expected) return {};
+  return refuse(field, "needs " + std::to_string(expected) + " elements", std::to_string(size));
+}
+
+Result<void> validate_vector(std::string_view field, std::size_t index, Vec3 vector) {
+  if (finite(vector)) return {};
+  return refuse(element(field, index), "must be finite", text(vector));
+}
+
+Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vectors,
+                              std::size_t particles) {
+  if (auto r = validate_size(field, vectors.size(), particles); !r) return r;
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    if (auto r = validate_vector(field, i, vectors[i]); !r) return r;
+  }
+  return {};
+}
+
+Result<void> validate_gravity(Vec3 gravity) {
+  if (finite(gravity)) return {};
+  return refuse("gravity", "must be finite", text(gravity));
+}
+
+Result<void> validate_time_step(double dt) {
+  if (auto r = validate_positive("dt", dt); !r) return r;
+  if (!std::isfinite(1 / dt)) return refuse("dt", "is too small to be inverted", number(dt));
+  return {};
+}
+
+Result<void> validate(const SceneDescription& d) {
+  const std::size_t particles = d.positions.size();
+  if (particles == 0) return refuse("positions", "a scene needs at least one particle", "0");
+  if (particles > kMostParticles) {
+    return refuse("positions", "at most " + std::to_string(kMostParticles),
+                  std::to_string(particles));
+  }
+  if (auto r = validate_vectors("positions", d.positions, particles); !r) return r;
+  if (!d.velocities.empty()) {
+    if (auto r = validate_vectors("velocities", d.velocities, particles); !r) return r;
+  }
+  if (auto r = validate_size("masses", d.masses.size(), particles); !r) return r;
+  for (std::size_t i = 0; i < particles; ++i) {
+    if (auto r = validate_positive(element("masses", i), d.masses[i]); !r) return r;
+    if (auto r = validate_square(element("masses", i), d.masses[i]); !r) return r;
+  }
+  if (auto r = validate_gravity(d.gravity); !r) return r;
+  if (auto r = validate_index_list("fixed", d.fixed, particles); !r) return r;
+  if (auto r = validate_constraints(d.constraints, particles); !r) return r;
+  if (auto r = validate_material(d); !r) return r;
+  return validate_contacts(d);
+}
+
+}  // namespace weft

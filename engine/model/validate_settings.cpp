@@ -1,0 +1,124 @@
+#include <cmath>
+
+#include "engine/model/model.h"
+#include "engine/model/validate.h"
+#include "engine/model/validation.h"
+#include "engine/step/choose_solver.h"
+
+namespace weft {
+namespace {
+
+Result<void> validate_count(std::string_view field, int value, int least) {
+  if (value >= least) return {};
+  return refuse(field, "must be at least " + std::to_string(least), std::to_string(value));
+}
+
+template <class Enum>
+Result<void> validate_choice(std::string_view field, Enum value, Enum last) {
+  if (value <= last) return {};
+  return refuse(field, "unknown choice", std::to_string(static_cast<int>(value)));
+}
+
+/// Not every scheme goes with every solver.
+Result<void> validate_scheme(const Settings& s) {
+  const bool by_small_steps = is_of_small_steps(s.scheme);
+  const bool small_steps = s.solver == Solver::small_steps;
+  if (by_small_steps && !small_steps && s.solver != Solver::automatic) {
+    return refuse("scheme", "is for solver small_steps, not " + std::string(name(s.solver)),
+                  std::string(name(s.scheme)));
+  }
+  if (!by_small_steps && !small_steps) return {};
+  if (small_steps && !by_small_steps && s.scheme != Scheme::automatic) {
+    return refuse("scheme", "solver small_steps takes implicit and bdf2",
+                  std::string(name(s.scheme)));
+  }
+  if (s.velocity_correction) {
+    return refuse("velocity_correction", "small steps have no velocity loop", "on");
+  }
+  return {};
+}
+
+/// The reference keeps products whenever it anticipates, and other solvers have none.
+Result<void> validate_products(const Settings& s) {
+  if (!s.anticipate_products) return {};
+  if (s.backend != Backend::simd) {
+    return refuse("anticipate_products", "is for the simd backend", std::string(name(s.backend)));
+  }
+  if (s.solver != Solver::gauss_seidel) {
+    return refuse("anticipate_products", "is for solver gauss_seidel", std::string(name(s.solver)));
+  }
+  if (s.scheme == Scheme::rattle) {
+    return refuse("anticipate_products", "is for scheme paper", std::string(name(s.scheme)));
+  }
+  if (!s.anticipate) return refuse("anticipate_products", "needs anticipate", "off");
+  return {};
+}
+
+}  // namespace
+
+Result<void> validate(const Settings& s) {
+  if (auto r = validate_positive("tolerance", s.tolerance); !r) return r;
+  if (auto r = validate_count("substeps", s.substeps, kAutomaticSubsteps); !r) return r;
+  if (auto r = validate_count("iterations", s.iterations, 0); !r) return r;
+  if (auto r = validate_count("renew_after", s.renew_after, 0); !r) return r;
+  if (auto r = validate_count("max_iterations", s.max_iterations, 1); !r) return r;
+  if (auto r = validate_positive("contact_tolerance", s.contact_tolerance); !r) return r;
+  if (auto r = validate_positive("velocity_tolerance", s.velocity_tolerance); !r) return r;
+  if (!std::isfinite(s.impulse_limit) || s.impulse_limit < 0) {
+    return refuse("impulse_limit", "must be finite and at least 0", number(s.impulse_limit));
+  }
+  if (auto r = validate_choice("solver", s.solver, Solver::automatic); !r) return r;
+  if (auto r = validate_choice("scheme", s.scheme, Scheme::automatic); !r) return r;
+  if (auto r = validate_choice("backend", s.backend, Backend::simd); !r) return r;
+  if (s.impulse_limit > 0 && s.backend != Backend::reference) {
+    return refuse("impulse_limit", "only the reference backend limits impulses",
+                  number(s.impulse_limit));
+  }
+  if (s.impulse_limit > 0 && (s.solver != Solver::gauss_seidel && s.solver != Solver::automatic)) {
+    return refuse("impulse_limit", "only Gauss-Seidel limits impulses", number(s.impulse_limit));
+  }
+  if (auto r = validate_products(s); !r) return r;
+  if (s.solver == Solver::yarn && s.backend != Backend::simd) {
+    return refuse("solver", "yarn is for the simd backend", std::string(name(s.backend)));
+  }
+  if (auto r = validate_scheme(s); !r) return r;
+  if (s.threads < 0 || s.threads > kMaxThreads) {
+    return refuse("threads", "must be from 0 to " + std::to_string(kMaxThreads),
+                  std::to_string(s.threads));
+  }
+  return validate_choice("directions", s.directions, Directions::frozen);
+}
+
+Result<void> validate_for_solver(const Settings& s, const Model& model) {
+  if (s.solver == Solver::small_steps) return {};
+  const auto refuse_solver = [&](std::string_view what) {
+    return refuse("solver", what, std::string(name(s.solver)));
+  };
+  if (model.constraints.has_springs()) {
+    return refuse_solver("a compliance is for small_steps, not this one");
+  }
+  if (model.bending.size() > 0) return refuse_solver("bending is for small_steps, not this one");
+  return {};
+}
+
+Result<void> validate_for_lanes(const Settings& s, const Model& model) {
+  const bool corrects_velocities = s.velocity_correction || s.scheme == Scheme::rattle;
+  if (s.iterations == 0 && model.has_contacts()) {
+    if (auto r = validate_float("contact_tolerance", s.contact_tolerance); !r) return r;
+  }
+  if (s.iterations == 0 && corrects_velocities) {
+    if (auto r = validate_float("velocity_tolerance", s.velocity_tolerance); !r) return r;
+  }
+  const double tolerance = s.iterations == 0 ? s.tolerance : 1;
+  const ConstraintStore& constraints = model.constraints;
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    const double rest = constraints.rest_length[c];
+    if (fits_float(rest) && fits_float(tolerance * rest)) continue;
+    const std::string field = element("constraints", constraints.described[c]) + ".rest_length";
+    if (auto r = validate_float(field, rest); !r) return r;
+    return validate_float("tolerance * " + field, tolerance * rest);
+  }
+  return {};
+}
+
+}  // namespace weft

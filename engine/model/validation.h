@@ -1,0 +1,71 @@
+/// What every check of input says, and says it with: one line that names the field, the index and
+/// the value.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace weft {
+
+/// What has a square, as its inverse has, of all digits; with a margin, for sums.
+inline constexpr double kLeastSquared = 1e-150, kMostSquared = 1e150;
+inline std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+inline std::string element(std::string_view field, std::size_t index) {
+  return std::string(field) + "[" + std::to_string(index) + "]";
+}
+
+inline Error refuse(std::string_view what, std::string_view reason, const std::string& value) {
+  return Error{std::string(what) + ": " + std::string(reason) + " (" + value + ")"};
+}
+
+inline bool finite(Vec3 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+inline std::string text(Vec3 v) { return number(v.x) + ", " + number(v.y) + ", " + number(v.z); }
+
+inline Result<void> validate_positive(std::string_view field, double value) {
+  if (!std::isfinite(value) || value <= 0) {
+    return refuse(field, "must be finite and greater than 0", number(value));
+  }
+  return {};
+}
+
+inline Result<void> validate_not_negative(std::string_view field, double value) {
+  if (value >= 0 && value <= kMostSquared) return {};
+  return refuse(field, "must be finite and at least 0", number(value));
+}
+
+/// Of a length or a mass: so that squares of it, and their inverses, are numbers with all digits,
+/// and sums of inverses are numbers.
+inline Result<void> validate_square(std::string_view field, double value) {
+  if (value >= kLeastSquared && value <= kMostSquared) return {};
+  return refuse(field, "must be from 1e-150 to 1e150, to be squared", number(value));
+}
+
+/// The same of floats, with a margin: the simd backend measures errors in tolerances.
+inline bool fits_float(double value) { return value >= 1e-18 && value <= 1e18; }
+
+inline Result<void> validate_float(std::string_view field, double value) {
+  if (fits_float(value)) return {};
+  return refuse(field, "must be from 1e-18 to 1e18 on the simd backend", number(value));
+}
+
+inline Result<void> validate_particle(const std::string& field, std::uint32_t particle,
+                                      std::size_t particles) {
+  if (particle < particles) return {};
+  return refuse(field, "no such particle, the scene has " + std::to_string(particles),
+                std::to_string(particle));
+}
+
+}  // namespace weft
