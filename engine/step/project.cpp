@@ -25,12 +25,29 @@ double share_before(const State& s, double dt) {
   return follows_a_far_longer_step(s, dt) ? std::max(tuning::kLeastShare, dt / s.last_dt) : 1;
 }
 
+/// Springs that are out of shape are no error.
+double largest_rigid_strain(const State& s) {
+  const ConstraintStore& store = s.model->constraints;
+  double most = 0;
+  for (std::size_t c = 0; c < store.size(); ++c) {
+    if (store.compliance[c] == 0) most = std::max(most, strain_of(*s.model, s.position, c));
+  }
+  return most;
+}
+
+bool is_out_of_tolerance(State& s, Team& team) {
+  if (!s.model->constraints.has_springs())
+    return s.measure->error(s.position.view(), s.contacts, team) > 1;
+  return largest_rigid_strain(s) > s.settings.tolerance ||
+         s.measure->penetration(s.position.view(), s.contacts) > s.settings.contact_tolerance;
+}
+
 }  // namespace
 
 bool needs_projection(State& s, double dt, bool jumped, Team& team) {
   if (s.settings.iterations > 0) return false;
   if (follows_a_far_longer_step(s, dt)) return true;
-  return (s.placed || jumped) && s.measure->error(s.position.view(), s.contacts, team) > 1;
+  return (s.placed || jumped) && is_out_of_tolerance(s, team);
 }
 
 void project(State& s, double dt, StepReport& report, Team& team) {

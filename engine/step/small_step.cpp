@@ -94,7 +94,7 @@ class Frame {
       if (is_within_tolerance()) return Status::converged;
       if (s_.settings.iterations > 0) return Status::fixed_iterations;
       if (round >= most_rounds()) return Status::iteration_limit;
-      const double error = std::max(report_.max_strain / s_.settings.tolerance,
+      const double error = std::max(report_.max_error / s_.settings.tolerance,
                                     report_.max_penetration / s_.settings.contact_tolerance);
       if (stall.has_stalled(error)) return Status::infeasible;
       timed(report_, Stage::solve_positions, [&] { put_right(); });
@@ -108,8 +108,11 @@ class Frame {
 
   /// Of what is solved, into the report.
   bool is_within_tolerance() {
-    timed(report_, Stage::report, [&] { report_errors(s_, s_.solved, report_, team_); });
-    return report_.max_strain <= s_.settings.tolerance &&
+    timed(report_, Stage::report, [&] {
+      report_errors(s_, s_.solved, report_, team_);
+      if (s_.model->constraints.has_springs()) report_.max_error = solver_.law_error();
+    });
+    return report_.max_error <= s_.settings.tolerance &&
            report_.max_penetration <= s_.settings.contact_tolerance;
   }
 
@@ -232,7 +235,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
 
 void project_by_small_steps(State& s, double h, StepReport& report, Team& team) {
   Frame frame(s, {.positions = std::max(1, s.settings.max_iterations / 2)}, report, team);
-  frame.begin({.h = h, .omega = tuning::kOmega, .placed = true});
+  frame.begin({.h = h, .omega = tuning::kOmega, .placed = true, .projects = true});
   frame.finish();
 }
 

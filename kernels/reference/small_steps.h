@@ -2,6 +2,7 @@
 /// vector kernels (kernels/simd/small_steps.h, small_step_yarns.h) are held against.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -46,9 +47,46 @@ inline double relaxed_impulse(kernels::Vector d, double rest, double inverse_mas
   return omega * error / ((error + 2 * square) * inverse_masses);
 }
 
-/// The same for a chain, of all its constraints together: (A + compliance diag A) lambda = omega C,
-/// A = J M^-1 J^T, by elimination. d[k]: from particle k + 1 to particle k; w: one more. Solved in
-/// place: error becomes lambda.
+/// The law of a constraint in a substep, with the multiplier mu = (b h)^2 f of its tension f:
+///
+///     C + damping (C - C_start) - softness mu = 0,     C = l - rest,
+///     softness = compliance / (b h)^2,   damping = (time constant) / h
+///
+/// A rope has mu >= 0, and is slack, mu = 0, where the left side is negative. Without a compliance
+/// this is C = 0. C_start: when the substep began.
+struct ConstraintLaw {
+  double softness = 0;
+  double damping = 0;
+  bool is_rope = false;
+
+  /// The left side; m.
+  double residual(double error, double change, double multiplier) const {
+    return error + damping * change - softness * multiplier;
+  }
+  /// What of it breaks the law.
+  double violation(double residual, double multiplier) const {
+    return is_rope ? std::max(residual, -softness * multiplier) : residual;
+  }
+  /// Newton's step for the multiplier of this constraint alone, relaxed; the relaxation is about
+  /// what other constraints move, so a spring of great softness is not relaxed.
+  double impulse(double residual, double multiplier, double inverse_masses, double omega) const {
+    const double change = residual / ((1 + damping) * inverse_masses / omega + softness);
+    return is_rope ? std::max(change, -multiplier) : change;
+  }
+};
+
+/// What the laws of a substep have in common.
+struct SpringStep {
+  double scale = 0;    // 1 / (b h)^2
+  double damping = 0;  // (time constant) / h
+  ConstraintLaw law(double compliance, bool is_rope) const {
+    return {compliance * scale, compliance > 0 ? damping : 0, is_rope};
+  }
+};
+
+/// relaxed_impulse() for a chain, of all its constraints together: (A + compliance diag A) lambda =
+/// omega C, A = J M^-1 J^T, by elimination. d[k]: from particle k + 1 to particle k; w: one more.
+/// Solved in place: error becomes lambda.
 struct ChainSystem {
   std::vector<kernels::Vector> d;
   std::vector<double> w, error, factor;

@@ -99,6 +99,8 @@ constexpr Table make_table() {
           .measure_edges = measure_edges,
           .relax_distances = relax_distances,
           .relax_ropes = relax_ropes,
+          .relax_springs = relax_springs,
+          .relax_rope_springs = relax_rope_springs,
           .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),
           .strain_run = strain_run,
           .strain_singles = strain_singles,

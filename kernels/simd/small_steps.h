@@ -175,6 +175,80 @@ template <bool kRope>
   }
 }
 
+[[gnu::always_inline]] inline FloatVector at_ends(const float* u, const EdgeBlock& block,
+                                                  std::uint32_t lane) {
+  QuadLanes at;
+  FloatVector a = at.get(u, block.a + lane), b = at.get(u, block.b + lane);
+  return a - b;
+}
+
+/// reference::ConstraintLaw, lane by lane. What a constraint breaks of its law when it is visited
+/// is judged by the multiplier of the visit before, in the last substep too.
+template <bool kRope, bool kDamped>
+[[gnu::always_inline]] inline void relax_springs(const SpringRelaxation& r, std::size_t first,
+                                                 std::size_t last) {
+  QuadLanes at;
+  float* const u = r.edges.u;
+  const Floats scale(r.scale), strain(r.strain), none(0.f), one(1.f);
+  const Floats tiny(1e-30f), looseness(1 / r.edges.omega);
+  for (std::size_t i = first; i < last; ++i) {
+    const EdgeBlock& block = r.edges.blocks[i];
+    const EdgeSpans& span = r.edges.spans[i];
+    const SpringBlock& spring = r.springs[i];
+    float* const multipliers = r.multiplier + i * kernels::kLanes;
+    std::uint32_t out = 0;
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      FloatVector a = at.get(u, block.a + lane), b = at.get(u, block.b + lane);
+      FloatVector base = {load(span.x + lane), load(span.y + lane), load(span.z + lane)};
+      FloatVector d = base + (a - b);
+      const Floats square = load(block.square + lane), rest = load(spring.rest + lane);
+      const Floats excess = fused(d.x, d.x, fused(d.y, d.y, fused(d.z, d.z, none - square)));
+      const Floats length = xsimd::sqrt(excess + square);
+      Floats residual = excess / (length + rest);
+      const Floats compliance = load(spring.compliance + lane);
+      Floats weight = load(spring.inverse_masses + lane) * looseness;
+      if constexpr (kDamped) {
+        const Floats damping = xsimd::select(compliance > none, Floats(r.damping), none);
+        FloatVector from = base + at_ends(r.u_start, block, lane);
+        FloatVector sum = d + from, way = d - from;
+        const Floats start = xsimd::sqrt(dot(from, from));
+        residual = fused(damping, dot(way, sum) / (length + start + tiny), residual);
+        weight = weight * (one + damping);
+      }
+      const Floats softness = compliance * scale, before = load(multipliers + lane);
+      Floats violation = fused_from(softness, before, residual);
+      if constexpr (kRope) violation = xsimd::max(violation, none - softness * before);
+      out |= bits(xsimd::abs(violation) > strain * rest) << lane;
+      const Floats multiplier = r.continues ? before : none;
+      Floats impulse = fused_from(softness, multiplier, residual) / (weight + softness);
+      if constexpr (kRope) impulse = xsimd::max(impulse, none - multiplier);
+      (multiplier + impulse).store_unaligned(multipliers + lane);
+      const Floats q = impulse * load(spring.inverse_masses + lane) / (length + tiny);
+      a = fused(none - q * load(block.share_a + lane), d, a);
+      b = fused(q * load(block.share_b + lane), d, b);
+      at.put(u, block.a + lane, a);
+      at.put(u, block.b + lane, b);
+    }
+    r.edges.out[i] = static_cast<std::uint16_t>(out);
+  }
+}
+
+template <bool kRope>
+[[gnu::always_inline]] inline void relax_springs_or_damped(const SpringRelaxation& r,
+                                                           std::size_t first, std::size_t last) {
+  if (r.damping > 0)
+    relax_springs<kRope, true>(r, first, last);
+  else
+    relax_springs<kRope, false>(r, first, last);
+}
+
+void relax_springs(const SpringRelaxation& r, std::size_t first, std::size_t last) {
+  relax_springs_or_damped<false>(r, first, last);
+}
+void relax_rope_springs(const SpringRelaxation& r, std::size_t first, std::size_t last) {
+  relax_springs_or_damped<true>(r, first, last);
+}
+
 void relax_distances(const EdgeRelaxation& r, std::size_t first, std::size_t last) {
   relax_edges<false>(r, first, last);
 }

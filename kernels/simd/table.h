@@ -251,6 +251,23 @@ struct EdgeRelaxation {
   float omega = 1;
   float tolerance = 0;  // of l^2 / rest^2 - 1
 };
+
+/// Of an edge block whose constraints may be springs (reference::ConstraintLaw).
+struct alignas(64) SpringBlock {
+  float rest[kernels::kLanes];
+  float inverse_masses[kernels::kLanes];  // w_a + w_b
+  float compliance[kernels::kLanes];      // m/N
+};
+struct SpringRelaxation {
+  EdgeRelaxation edges;
+  const SpringBlock* springs = nullptr;
+  const float* u_start = nullptr;  // when the substep began
+  float* multiplier = nullptr;     // per block and lane
+  float scale = 0;                 // reference::SpringStep
+  float damping = 0;
+  float strain = 0;        // tolerance of the law, over rest
+  bool continues = false;  // from the multipliers; else from none
+};
 struct YarnRelaxation {
   float omega = 1;
   float compliance = 0;          // small_step_yarns.h
@@ -420,6 +437,8 @@ struct Table {
                         std::size_t last);
   void (*relax_distances)(const EdgeRelaxation&, std::size_t first, std::size_t last);
   void (*relax_ropes)(const EdgeRelaxation&, std::size_t first, std::size_t last);
+  void (*relax_springs)(const SpringRelaxation&, std::size_t first, std::size_t last);
+  void (*relax_rope_springs)(const SpringRelaxation&, std::size_t first, std::size_t last);
   /// Scratch as above.
   void (*relax_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
                       const YarnRelaxation&);

@@ -15,9 +15,10 @@ namespace weft {
 using kernels::Vector;
 
 struct ReferenceSmallSteps::Points {
-  kernels::VectorsView x, predicted;
+  kernels::VectorsView x, predicted, start;
   double share;  // of what a local pass does, that the prediction takes: 1 - b
   std::vector<std::uint32_t>& touched;
+  std::vector<double>& multipliers;
 
   Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
   void move(std::uint32_t slot, Vector by) const {
@@ -28,7 +29,24 @@ struct ReferenceSmallSteps::Points {
     move(slot, by);
     touched.push_back(slot);
   }
+  Vector start_difference(std::uint32_t a, std::uint32_t b) const { return start[a] - start[b]; }
+  double multiplier(std::uint32_t c) const { return multipliers[c]; }
+  void set_multiplier(std::uint32_t c, double to) const { multipliers[c] = to; }
 };
+
+ReferenceSmallSteps::Points ReferenceSmallSteps::points() {
+  return {x_.view(), predicted_.view(), before_.view(), 1 - formula_.part, touched_, multiplier_};
+}
+
+reference::SpringStep ReferenceSmallSteps::spring_step() const {
+  const double bh = formula_.part * h_;
+  return {1 / (bh * bh), model_.damping.stretch / h_};
+}
+
+double ReferenceSmallSteps::law_error() {
+  Points points = this->points();
+  return largest_violation(model_.constraints, points, spring_step(), projects_);
+}
 
 ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& settings)
     : model_(model), layout_(model.small_steps()), settings_(settings), passes_(model) {
@@ -36,6 +54,7 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
                         &past_.v_before, &past_.moved}) {
     vectors->resize(model.slots());
   }
+  if (model.constraints.has_springs()) multiplier_.resize(model.constraints.size());
 }
 
 double ReferenceSmallSteps::substep_length(kernels::VectorsView x, double acceleration) const {
@@ -51,6 +70,8 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   const double h = plan.h;
   h_ = h;
   omega_ = plan.omega;
+  projects_ = plan.projects;
+  is_begun_ = false;
   passes_.forget();
   touched_.clear();
   if (plan.placed || h > tuning::kMostRatio * past_.h) past_.h = 0;
@@ -77,6 +98,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
 
 void ReferenceSmallSteps::advance(Team&) {
   stop_at_contacts();
+  is_begun_ = false;
   formula_ = std::exchange(next_formula_, SubstepFormula::of(settings_.scheme, 1));
   const double bh = formula_.part * h_;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
@@ -94,6 +116,7 @@ void ReferenceSmallSteps::sweep(Team&) {
     if (c != kNoIndex) relax_edge(c);
   }
   for (const std::uint32_t c : layout_.serial) relax_edge(c);
+  is_begun_ = true;
 }
 
 void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
@@ -122,6 +145,7 @@ void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
 
 void ReferenceSmallSteps::relax_edge(std::uint32_t c) {
   const ConstraintStore& s = model_.constraints;
+  if (s.has_springs()) return relax_spring(c);
   const std::uint32_t a = s.a[c], b = s.b[c];
   const Vector d = x_[a] - x_[b];
   const double rest = s.rest_length[c], error = length(d) - rest;
@@ -134,12 +158,31 @@ void ReferenceSmallSteps::relax_edge(std::uint32_t c) {
   x_.view().add(b, (model_.inverse_mass[b] * impulse) * d);
 }
 
+/// What a constraint breaks of its law is judged by the multiplier of the visit before, in the last
+/// substep too; the multiplier of a substep begins at zero.
+void ReferenceSmallSteps::relax_spring(std::uint32_t c) {
+  const ConstraintStore& s = model_.constraints;
+  if (projects_ && s.compliance[c] > 0) return;
+  Points points = this->points();
+  points.share = 0;
+  LawVisit visit = visit_law(s, points, spring_step(), c);
+  if (std::abs(visit.violation()) > tuning::kLocalShare * settings_.tolerance * s.rest_length[c])
+    out_.push_back(c);
+  if (!is_begun_) {
+    visit.residual += visit.law.softness * visit.multiplier;
+    visit.multiplier = 0;
+  }
+  apply_law(model_, points, visit, omega_, c);
+}
+
 LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
-  Points points{x_.view(), predicted_.view(), 1 - formula_.part, touched_};
+  Points points = this->points();
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
                            .omega = tuning::kOmega,
-                           .most_visits = most_visits};
+                           .most_visits = most_visits,
+                           .springs = spring_step(),
+                           .projects = projects_};
   return passes_.run(points, contacts, limits);
 }
 
@@ -193,7 +236,8 @@ void ReferenceSmallSteps::keep(Team&) {
 }
 
 std::size_t ReferenceSmallSteps::bytes() const {
-  return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + passes_.bytes();
+  return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + bytes_of(multiplier_) +
+         passes_.bytes();
 }
 
 std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,

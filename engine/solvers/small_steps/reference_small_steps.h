@@ -35,6 +35,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   std::int64_t count_out() const override { return std::ssize(out_); }
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
+  double law_error() override;
   void read_positions(kernels::VectorsView x, Team& team) const override;
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;
@@ -42,16 +43,20 @@ class ReferenceSmallSteps final : public SmallSteps {
   void keep(Team& team) override;
   void take_past(const SmallSteps& from) override {
     past_ = static_cast<const ReferenceSmallSteps&>(from).past_;
+    multiplier_ = static_cast<const ReferenceSmallSteps&>(from).multiplier_;
   }
   void forget_past() override { past_.h = 0; }
   std::size_t bytes() const override;
 
  private:
   struct Points;
+  Points points();
+  reference::SpringStep spring_step() const;
   reference::Flight flight();
   bool is_free(std::size_t slot) const { return model_.inverse_mass[slot] > 0; }
   void relax_chain(std::span<const std::uint32_t> slots, std::span<const std::uint32_t> links);
   void relax_edge(std::uint32_t constraint);
+  void relax_spring(std::uint32_t constraint);
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
   void stop_at_contacts();
 
@@ -68,6 +73,9 @@ class ReferenceSmallSteps final : public SmallSteps {
   kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_;
   std::vector<std::uint32_t> out_;  // constraints that a sweep found out of tolerance
   std::vector<std::uint32_t> touched_;
+  std::vector<double> multiplier_;  // per constraint; with springs only
+  bool is_begun_ = false;           // the substep has been swept
+  bool projects_ = false;
 };
 
 }  // namespace weft

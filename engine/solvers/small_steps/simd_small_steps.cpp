@@ -13,6 +13,7 @@ namespace weft {
 namespace {
 
 constexpr std::size_t kMostShares = 16;      // of the blocks of a family, each with its scratch
+constexpr float kStill = 1e30f;              // the scale of springs that do not give
 constexpr std::size_t kPart = 4 * kStretch;  // floats that a thread takes at a time
 
 float squared_tolerance(const Settings& settings) {
@@ -32,16 +33,32 @@ struct SmallStepsSolver::Points {
   const float* base;
   float* u;
   float* predicted;
+  const float* u_start;
   float share;  // 1 - b
   std::vector<std::uint32_t>& touched;
+  const std::vector<std::uint32_t>& multiplier_place;
+  float* multipliers;
 
-  double axis(std::size_t a, std::size_t b) const {
+  double axis(const float* from, std::size_t a, std::size_t b) const {
     return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
-           (static_cast<double>(u[a]) - static_cast<double>(u[b]));
+           (static_cast<double>(from[a]) - static_cast<double>(from[b]));
+  }
+  kernels::Vector between(const float* from, std::uint32_t slot_a, std::uint32_t slot_b) const {
+    const std::size_t a = places.of(slot_a), b = places.of(slot_b), next = places.stride;
+    return {axis(from, a, b), axis(from, a + next, b + next),
+            axis(from, a + 2 * next, b + 2 * next)};
   }
   kernels::Vector difference(std::uint32_t slot_a, std::uint32_t slot_b) const {
-    const std::size_t a = places.of(slot_a), b = places.of(slot_b), next = places.stride;
-    return {axis(a, b), axis(a + next, b + next), axis(a + 2 * next, b + 2 * next)};
+    return between(u, slot_a, slot_b);
+  }
+  kernels::Vector start_difference(std::uint32_t slot_a, std::uint32_t slot_b) const {
+    return between(u_start, slot_a, slot_b);
+  }
+  double multiplier(std::uint32_t c) const {
+    return static_cast<double>(multipliers[multiplier_place[c]]);
+  }
+  void set_multiplier(std::uint32_t c, double to) const {
+    multipliers[multiplier_place[c]] = static_cast<float>(to);
   }
   void move(std::uint32_t slot, kernels::Vector by) const {
     std::size_t at = places.of(slot);
@@ -59,8 +76,21 @@ struct SmallStepsSolver::Points {
 };
 
 SmallStepsSolver::Points SmallStepsSolver::points(double share) {
-  return {layout_.places(),          base_.data(), u_.data(), predicted_.data(),
-          static_cast<float>(share), touched_};
+  return {layout_.places(),  base_.data(),
+          u_.data(),         predicted_.data(),
+          u_before_.data(),  static_cast<float>(share),
+          touched_,          layout_.multiplier_place,
+          multiplier_.data()};
+}
+
+reference::SpringStep SmallStepsSolver::spring_step() const {
+  const double bh = formula_.part * h_;
+  return {1 / (bh * bh), model_.damping.stretch / h_};
+}
+
+double SmallStepsSolver::law_error() {
+  Points points = this->points(0);
+  return largest_violation(model_.constraints, points, spring_step(), projects_);
 }
 
 SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
@@ -79,6 +109,9 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
   }
   for (auto* array : {&past_.v, &past_.v_before, &past_.moved, &past_.base})
     array->resize(layout_.floats);
+  if (!layout_.springs.empty() || !layout_.multiplier_place.empty()) {
+    multiplier_.resize(layout_.constraint.size() + layout_.serial.size());
+  }
   const std::size_t wanted =
       settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
   if (layout_.has_yarns())
@@ -179,6 +212,8 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
                              const FramePlan& plan, Team& team) {
   h_ = plan.h;
   omega_ = plan.omega;
+  projects_ = plan.projects;
+  is_begun_ = false;
   passes_.forget();
   touched_.clear();
   if (plan.placed || plan.h > tuning::kMostRatio * past_.h) past_.h = 0;
@@ -208,6 +243,7 @@ void SmallStepsSolver::renew_base(Team& team) {
 
 void SmallStepsSolver::advance(Team& team) {
   stop_at_contacts();
+  is_begun_ = false;
   if (since_renewal_++ == tuning::kRenewal) {  // never where the base is the past's
     since_renewal_ = 1;
     renew_base(team);
@@ -224,7 +260,11 @@ void SmallStepsSolver::advance(Team& team) {
 void SmallStepsSolver::sweep(Team& team) {
   if (layout_.has_yarns()) sweep_yarns(team);
   sweep_edges(team);
-  sweep_serial();
+  if (model_.constraints.has_springs())
+    sweep_serial_springs();
+  else
+    sweep_serial();
+  is_begun_ = true;
 }
 
 void SmallStepsSolver::sweep_yarns(Team& team) {
@@ -253,7 +293,19 @@ void SmallStepsSolver::sweep_batch(const EdgeBatch& batch, std::uint32_t first,
   const simd::EdgeRelaxation relaxation{
       u_.data(),         layout_.blocks.data(),      spans_.data(),
       edges_out_.data(), static_cast<float>(omega_), squared_tolerance(settings_)};
-  (batch.rope ? table_.relax_ropes : table_.relax_distances)(relaxation, first, last);
+  if (layout_.springs.empty())
+    return (batch.rope ? table_.relax_ropes : table_.relax_distances)(relaxation, first, last);
+  const reference::SpringStep step = spring_step();
+  const simd::SpringRelaxation springs{
+      .edges = relaxation,
+      .springs = layout_.springs.data(),
+      .u_start = u_before_.data(),
+      .multiplier = multiplier_.data(),
+      .scale = projects_ ? kStill : static_cast<float>(step.scale),
+      .damping = projects_ ? 0 : static_cast<float>(step.damping),
+      .strain = static_cast<float>(tuning::kLocalShare * settings_.tolerance),
+      .continues = is_begun_};
+  (batch.rope ? table_.relax_rope_springs : table_.relax_springs)(springs, first, last);
 }
 
 void SmallStepsSolver::sweep_edges(Team& team) {
@@ -286,6 +338,22 @@ void SmallStepsSolver::sweep_serial() {
   }
 }
 
+void SmallStepsSolver::sweep_serial_springs() {
+  const ConstraintStore& s = model_.constraints;
+  Points points = this->points(0);
+  for (const std::uint32_t c : layout_.serial) {
+    if (projects_ && s.compliance[c] > 0) continue;
+    LawVisit visit = visit_law(s, points, spring_step(), c);
+    if (std::abs(visit.violation()) > tuning::kLocalShare * settings_.tolerance * s.rest_length[c])
+      passes_.look_near(c);
+    if (!is_begun_) {
+      visit.residual += visit.law.softness * visit.multiplier;
+      visit.multiplier = 0;
+    }
+    apply_law(model_, points, visit, omega_, c);
+  }
+}
+
 std::int64_t SmallStepsSolver::count_out() const {
   std::int64_t count = 0;
   for (const std::uint16_t lanes : edges_out_) count += std::popcount(lanes);
@@ -314,7 +382,9 @@ LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
                            .omega = tuning::kOmega,
-                           .most_visits = most_visits};
+                           .most_visits = most_visits,
+                           .springs = spring_step(),
+                           .projects = projects_};
   return passes_.run(points, contacts, limits);
 }
 
@@ -388,13 +458,15 @@ void SmallStepsSolver::take_past(const SmallSteps& from) {
   if (!other.is_new_) its_past.base = other.base_;
   past_ = std::move(its_past);
   std::ranges::copy(past_.base, base_.begin());
+  multiplier_ = other.multiplier_;
   is_new_ = false;
   moved_ = true;
 }
 
 std::size_t SmallStepsSolver::bytes() const {
   return 11 * bytes_of(u_) + bytes_of(spans_) + bytes_of(base_step_) + bytes_of(scratch_) +
-         bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) + passes_.bytes();
+         bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) + bytes_of(multiplier_) +
+         passes_.bytes();
 }
 
 }  // namespace weft

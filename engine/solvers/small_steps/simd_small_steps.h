@@ -47,6 +47,7 @@ class SmallStepsSolver final : public SmallSteps {
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
   /// After the last: local passes that look at all constraints.
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
+  double law_error() override;
   /// Where the particles are; x: where they were when the frame began.
   void read_positions(kernels::VectorsView x, Team& team) const override;
   /// After the last substep.
@@ -62,6 +63,7 @@ class SmallStepsSolver final : public SmallSteps {
  private:
   struct Points;
   Points points(double share);
+  reference::SpringStep spring_step() const;
   simd::Flight flight();
   simd::Yarns yarns();
   void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
@@ -72,6 +74,7 @@ class SmallStepsSolver final : public SmallSteps {
   void sweep_yarns(Team& team);
   void sweep_edges(Team& team);
   void sweep_serial();
+  void sweep_serial_springs();
   void sweep_batch(const EdgeBatch& batch, std::uint32_t first, std::uint32_t last);
   void look_near_what_was_out();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
@@ -103,6 +106,9 @@ class SmallStepsSolver final : public SmallSteps {
   std::vector<std::uint16_t> edges_out_;                   // per edge block, a bit per lane
   std::vector<std::uint32_t> yarns_out_;                   // per row of yarns, likewise
   std::vector<std::uint32_t> touched_;                     // slots that contacts have pushed
+  kernels::AlignedVector<float> multiplier_;               // in places of the layout
+  bool is_begun_ = false;                                  // the substep has been swept
+  bool projects_ = false;
 };
 
 }  // namespace weft

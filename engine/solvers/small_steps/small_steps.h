@@ -34,8 +34,9 @@ struct SubstepFormula {
 struct FramePlan {
   double h = 0;  // s, of a substep
   int substeps = 1;
-  double omega = 1;     // of a sweep
-  bool placed = false;  // positions are not where the last step ended: nothing is known of a past
+  double omega = 1;       // of a sweep
+  bool placed = false;    // positions are not where the last step ended: nothing is known of a past
+  bool projects = false;  // no time passes: springs are left as they are
 };
 
 class SmallSteps {
@@ -56,6 +57,8 @@ class SmallSteps {
   virtual LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) = 0;
   /// After the last: local passes that look at all constraints.
   virtual LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) = 0;
+  /// What is left of the laws of all constraints, the largest, over rest_length. With springs only.
+  virtual double law_error() = 0;
   /// Where the particles are; x: where they were when the frame began.
   virtual void read_positions(kernels::VectorsView x, Team& team) const = 0;
   /// After the last substep.

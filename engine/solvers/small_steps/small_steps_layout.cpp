@@ -77,6 +77,31 @@ class Builder {
   SmallStepsLayout& layout_;
 };
 
+/// Softer than this a spring of cloth does not exist, and floats hold its softness.
+constexpr double kSoftest = 1e6;
+
+void add_springs(const Model& model, SmallStepsLayout& layout) {
+  const ConstraintStore& store = model.constraints;
+  layout.multiplier_place.resize(store.size());
+  for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
+    simd::SpringBlock& block = layout.springs.emplace_back();
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t place = i * kLanes + lane;
+      const std::uint32_t c = layout.constraint[place];
+      const bool is_one = c != kNoIndex;
+      block.rest[lane] = static_cast<float>(is_one ? store.rest_length[c] : 1);
+      block.inverse_masses[lane] = static_cast<float>(is_one ? 1 / store.effective_mass[c] : 1);
+      block.compliance[lane] =
+          static_cast<float>(is_one ? std::min(store.compliance[c], kSoftest) : 0);
+      if (is_one) layout.multiplier_place[c] = static_cast<std::uint32_t>(place);
+    }
+  }
+  for (std::size_t i = 0; i < layout.serial.size(); ++i) {
+    layout.multiplier_place[layout.serial[i]] =
+        static_cast<std::uint32_t>(layout.constraint.size() + i);
+  }
+}
+
 /// As yarns' cell (kernels/simd/yarn_rows.h), of all constraints.
 double cell_of(std::span<const double> rests) {
   if (rests.empty()) return 0;
@@ -90,14 +115,17 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   const ConstraintStore& store = model.constraints;
   SmallStepsLayout layout;
   const bool only_distances = store.plain == store.size();
-  layout.yarns =
-      make_yarn_layout(model, only_distances ? YarnMemory::woven_if_possible : YarnMemory::quads);
+  if (!store.has_springs()) {
+    layout.yarns =
+        make_yarn_layout(model, only_distances ? YarnMemory::woven_if_possible : YarnMemory::quads);
+  }
   const bool woven = makes_yarns(layout.yarns);
   if (!woven) layout.yarns = no_yarns(model);
   Builder(model, layout).add_batches(!woven);
   for (const auto* hubs : {&store.hub_distances, &store.hub_ropes}) {
     layout.serial.insert(layout.serial.end(), hubs->begin(), hubs->end());
   }
+  if (store.has_springs()) add_springs(model, layout);
   layout.cell = woven ? layout.yarns.cell : cell_of(store.rest_length);
   layout.floats = kernels::round_up(layout.yarns.places.floats, std::size_t{kLanes});
   layout.load = find_load(model, layout);
@@ -117,8 +145,9 @@ std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
 }
 
 std::size_t SmallStepsLayout::bytes() const {
-  return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(batches) +
-         bytes_of(tiles) + bytes_of(serial) + bytes_of(load.spans);
+  return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(springs) +
+         bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) + bytes_of(serial) +
+         bytes_of(load.spans);
 }
 
 }  // namespace weft

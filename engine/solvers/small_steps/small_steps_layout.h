@@ -8,7 +8,7 @@
 ///
 /// Either all distance constraints that are not at hubs belong to yarns, or none does: if the
 /// chains that run straight on through their particles are short, as in sheets of irregular
-/// triangles, each constraint is a block of its own.
+/// triangles, or if any constraint is a spring, each constraint is a block of its own.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,10 @@ struct SmallStepsLayout {
   YarnLayout yarns;  // no blocks: there are none
   std::vector<simd::EdgeBlock> blocks;
   std::vector<std::uint32_t> constraint;  // per edge block and lane, or kNoIndex
-  std::vector<EdgeBatch> batches;         // those of each tile, then those between tiles
+  // Of a model with springs only, whose constraints are all in edge blocks or serial.
+  std::vector<simd::SpringBlock> springs;       // per edge block
+  std::vector<std::uint32_t> multiplier_place;  // per constraint: edge lanes, then serial
+  std::vector<EdgeBatch> batches;               // those of each tile, then those between tiles
   std::vector<EdgeTile> tiles;
   std::uint32_t between_tiles = 0;  // first batch
   std::vector<std::uint32_t> serial;
