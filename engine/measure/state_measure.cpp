@@ -31,13 +31,14 @@ Strain measure_strain(const Model& m, kernels::VectorsView x) { return strain_ov
 namespace {
 
 /// C^2 / (2 compliance)
-double energy_of_springs(const Model& m, const kernels::Vectors& x) {
+double energy_of_springs(const Model& m, const kernels::Vectors& x, double give_per_mass) {
   const ConstraintStore& s = m.constraints;
   double sum = 0;
   for (std::size_t c = 0; c < s.compliance.size(); ++c) {
     if (s.compliance[c] == 0) continue;
     const double stretch = s.rest_length[c] * strain_of(m, x, c);
-    sum += stretch * stretch / (2 * s.compliance[c]);
+    const double compliance = s.compliance[c] + give_per_mass / s.effective_mass[c];
+    sum += stretch * stretch / (2 * compliance);
   }
   return sum;
 }
@@ -56,8 +57,8 @@ double energy_of_bending(const Model& m, const kernels::Vectors& x) {
 
 }  // namespace
 
-double elastic_energy(const Model& m, const kernels::Vectors& x) {
-  return energy_of_springs(m, x) + energy_of_bending(m, x);
+double elastic_energy(const Model& m, const kernels::Vectors& x, double give_per_mass) {
+  return energy_of_springs(m, x, give_per_mass) + energy_of_bending(m, x);
 }
 
 Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,

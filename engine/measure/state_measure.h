@@ -24,8 +24,14 @@ Strain measure_strain(const Model& model, const kernels::Vectors& position);
 Strain measure_strain(const Model& model, kernels::VectorsView position);
 Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
                       const kernels::Vectors& velocity);
-/// J, of springs and bending elements.
-double elastic_energy(const Model& model, const kernels::Vectors& position);
+/// J, of springs and bending elements. To a sweep a spring is softer than it is: of a substep of h
+/// and a relaxation omega give_per_mass is h^2 / omega, and a spring has the compliance
+///
+///     compliance + give_per_mass (w_a + w_b)
+///
+/// 0: its own. Without this what a solver leaves of a stiff spring's law would count as energy.
+double elastic_energy(const Model& model, const kernels::Vectors& position,
+                      double give_per_mass = 0);
 /// Whether all components, and the squared distances between any two vectors, are finite.
 bool all_finite(const kernels::Vectors& vectors);
 /// The first slot of which that is not true, in x or v; a fixed one only if no free one is among

@@ -55,6 +55,12 @@ FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& 
   return plan;
 }
 
+/// The compliance of a sweep, over w_a + w_b.
+double give_per_mass(const State& s, const FramePlan& plan) {
+  const double bh = SubstepFormula::of(s.settings.scheme, 1).part * plan.h;
+  return bh * bh / plan.omega;
+}
+
 /// The frame that is being done.
 class Frame {
  public:
@@ -226,7 +232,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     trial.worsen(Status::passed_through);
   }
   timed(report, Stage::commit, [&] {
-    if (!fixed) guard_springs(s, change, h);
+    if (!fixed) guard_springs(s, change, give_per_mass(s, plan), h);
     if (s.pins.moving()) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
     s.small_steps->keep(team);
   });

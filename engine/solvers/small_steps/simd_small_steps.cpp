@@ -356,7 +356,9 @@ void SmallStepsSolver::sweep_serial_springs() {
 
 std::int64_t SmallStepsSolver::count_out() const {
   std::int64_t count = 0;
-  for (const std::uint16_t lanes : edges_out_) count += std::popcount(lanes);
+  for (std::size_t i = 0; i < edges_out_.size(); ++i) {
+    count += std::popcount(static_cast<std::uint32_t>(edges_out_[i] & layout_.used[i]));
+  }
   for (const std::uint32_t lanes : yarns_out_) count += std::popcount(lanes);
   return count;
 }

@@ -61,6 +61,7 @@ class Builder {
   void add_block(std::uint32_t first) {
     const SimdLayout& simd = model_.simd();
     simd::EdgeBlock& block = layout_.blocks.emplace_back();
+    std::uint32_t used = 0;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
       const std::uint32_t slot = first + lane, c = simd.constraint_at[slot];
       block.a[lane] = simd.a[slot];
@@ -70,7 +71,9 @@ class Builder {
       block.square[lane] =
           static_cast<float>(c == kNoIndex ? 1 : simd.rest_length[slot] * simd.rest_length[slot]);
       layout_.constraint.push_back(c);
+      used |= (c == kNoIndex ? 0u : 1u) << lane;
     }
+    layout_.used.push_back(static_cast<std::uint16_t>(used));
   }
 
   const Model& model_;
@@ -145,9 +148,9 @@ std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
 }
 
 std::size_t SmallStepsLayout::bytes() const {
-  return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(springs) +
-         bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) + bytes_of(serial) +
-         bytes_of(load.spans);
+  return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(used) +
+         bytes_of(springs) + bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) +
+         bytes_of(serial) + bytes_of(load.spans);
 }
 
 }  // namespace weft

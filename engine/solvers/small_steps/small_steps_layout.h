@@ -39,6 +39,7 @@ struct SmallStepsLayout {
   YarnLayout yarns;  // no blocks: there are none
   std::vector<simd::EdgeBlock> blocks;
   std::vector<std::uint32_t> constraint;  // per edge block and lane, or kNoIndex
+  std::vector<std::uint16_t> used;        // per edge block, a bit per lane that has a constraint
   // Of a model with springs only, whose constraints are all in edge blocks or serial.
   std::vector<simd::SpringBlock> springs;       // per edge block
   std::vector<std::uint32_t> multiplier_place;  // per constraint: edge lanes, then serial

@@ -211,7 +211,7 @@ TEST_CASE("what a bending element releases stays, and no more") {
   for (const double share : {0.9, 1.0, 1.3}) {
     s.lost_energy = 0;
     s.next_velocity.set(middle, {0, -std::sqrt(2 * share * stored), 0});
-    guard_springs(s, change_of(s), 0.01);
+    guard_springs(s, change_of(s), 0, 0.01);
     CHECK(kinetic(s) == doctest::Approx(std::min(share, 1.0) * stored).epsilon(1e-12));
     CHECK(s.lost_energy == doctest::Approx(std::max(0.0, 1 - share) * stored).epsilon(1e-12));
   }

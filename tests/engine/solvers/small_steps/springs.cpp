@@ -121,7 +121,8 @@ TEST_CASE("stiffness over nine decades side by side keeps its laws and gains no 
       CAPTURE(frame);
       REQUIRE(report.status == Status::converged);
       REQUIRE(report.max_error <= 0.01);
-      REQUIRE(cloth.energy().total() < start + 1e-3);
+      const Energy energy = cloth.energy();
+      REQUIRE(energy.kinetic + energy.potential < start + 1e-3);
     }
   }
 }
@@ -160,7 +161,9 @@ TEST_CASE("springs keep momentum, and a spring at a hub is one too") {
       scene.velocities.push_back({0, 0.1 * i, -0.2});
       scene.constraints.push_back({0, i, 1, ConstraintKind::distance, 1e-2});
     }
-    Cloth cloth = cloth_of(scene, small_steps(backend, 1e-3));
+    Settings settings = small_steps(backend, 1e-3);
+    settings.scheme = Scheme::implicit;  // which gains no energy that would have to be taken out
+    Cloth cloth = cloth_of(scene, settings);
     const Vec3 before = momentum(scene.masses, velocities(cloth));
     for (int frame = 0; frame < 50; ++frame) REQUIRE(step(cloth, 0.01).max_error <= 1e-3);
     const Vec3 after = momentum(scene.masses, velocities(cloth));
@@ -177,7 +180,8 @@ TEST_CASE("a sheet of springs moves alike in lanes and in double, and with any n
       scene.constraints[i].compliance = i % 3 == 0 ? 0 : 1e-4 * static_cast<double>(i % 5);
     }
     scene.damping.stretch = 0.001;
-    Settings settings = small_steps(Backend::simd, 0.5);  // no local passes
+    Settings settings = small_steps(Backend::simd);
+    settings.iterations = 1;  // no local passes, whose choices differ by rounding
     settings.scheme = scheme;
     settings.substeps = 12;
     Cloth lanes = cloth_of(scene, settings);
@@ -196,6 +200,7 @@ TEST_CASE("a spring too stiff to be seen is a rigid edge") {
     SceneDescription scene = scene_of("corners", 11);
     Settings settings = small_steps(backend, 0.01);
     settings.substeps = 20;
+    settings.iterations = 1;
     for (Constraint& c : scene.constraints) c.compliance = 1e-18;
     Cloth springs = cloth_of(scene, settings);
     for (Constraint& c : scene.constraints) c.compliance = 0;
