@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "engine/step/state.h"
+#include "engine/tuning.h"
 
 namespace weft {
 
@@ -13,19 +14,25 @@ namespace weft {
 /// loop.
 enum class Method : std::uint8_t { by_solver, by_stand_in, by_small_steps, by_sweeps };
 
+/// Parts of a substep, the shortest that are tried.
+inline constexpr int kFinest = 1 << tuning::kMostDoublings;
+
 /// An entry of the ordered list that a substep is tried by (plan.h).
 struct Attempt {
   Method method = Method::by_solver;
   Scheme scheme = Scheme::paper;
-  int parts = 1;         // equal ones, that the substep is done in
+  int parts = 1;         // it does one of so many of a substep, or what is left
   bool is_last = false;  // nothing is tried after it: its result is accepted with its error
+
+  /// In finest parts of the substep, like begin.
+  int end_of(int begin) const { return std::min(kFinest, begin + kFinest / parts); }
 };
 
 /// accepted: solved and next_velocity are the next state. rejected: the next attempt is wanted.
 /// not_finite: there is no next state.
 enum class Outcome : std::uint8_t { accepted, rejected, not_finite };
 
-/// What one part of an attempt came to.
+/// What an attempt came to.
 struct Trial {
   Outcome outcome = Outcome::accepted;
   Status status = Status::converged;
@@ -34,15 +41,9 @@ struct Trial {
   std::uint32_t passed_particle = kNoIndex;  // the description's number
 
   void worsen(Status by) { status = std::max(status, by); }
-  void add(const Trial& next) {
-    worsen(next.status);
-    pin_work += next.pin_work;
-    substeps += next.substeps;
-    if (next.passed_particle != kNoIndex) passed_particle = next.passed_particle;
-  }
 };
 
-/// Iterations that one part of an attempt may take.
+/// Iterations that an attempt may take.
 struct Budget {
   int positions = 1, velocities = 1;
 };

@@ -28,6 +28,12 @@ struct Plan {
   std::size_t count = 0;
 
   std::span<const Attempt> list() const { return {attempts.data(), count}; }
+  /// The first whose parts begin there; begin in finest parts.
+  std::size_t first_at(int begin) const {
+    std::size_t i = 0;
+    while (i + 1 < count && begin % (kFinest / attempts[i].parts) != 0) ++i;
+    return i;
+  }
 };
 
 /// The estimate predicts all of dt: it writes over solved and, with heavy spheres, contacts.

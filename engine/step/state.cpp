@@ -49,10 +49,6 @@ void State::make_solvers() {
     small_steps = make_small_steps(*model, own, *kernels);
     if (model->has_contacts()) substep_positions.resize(model->slots());
   }
-  if (exact && to_tolerance) {
-    substep_start.position.resize(model->slots());
-    substep_start.velocity.resize(model->slots());
-  }
   if (yarn) {
     solver = yarn.get();
     stand_in = direct.get();
@@ -97,8 +93,7 @@ std::size_t State::bytes() const {
   std::size_t sum = 0;
   for (const kernels::Vectors* v :
        {&position, &velocity, &force, &solved, &next_velocity, &step_start.position,
-        &step_start.velocity, &substep_start.position, &substep_start.velocity, &substep_positions,
-        &predicted}) {
+        &step_start.velocity, &substep_positions, &predicted}) {
     sum += v->bytes();
   }
   sum += contacts.bytes() + bytes_of(impulses) + pins.bytes() + measure->bytes();

@@ -46,7 +46,7 @@ struct State {
   kernels::Vector gravity;
   kernels::Vectors solved;  // where the position loop works; the next positions
   kernels::Vectors next_velocity;
-  Checkpoint step_start, substep_start;
+  Checkpoint step_start;
   kernels::Vectors substep_positions;  // where a small step began; with contacts only
   ContactStore contacts;
   Pins pins;

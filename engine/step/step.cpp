@@ -24,35 +24,31 @@ int threads_worth_having(const State& s) {
   return static_cast<int>(std::min(most, wanted));
 }
 
-/// The state at the beginning of a step, or of a substep: it comes back unless what is done from
-/// there is committed.
+/// The state at the beginning of a step: it comes back unless the step is committed.
 class Transaction {
  public:
-  Transaction(State& s, Checkpoint& start) : s_(s), start_(start) {}
-  ~Transaction() { roll_back(); }
+  explicit Transaction(State& s) : s_(s) {}
+  ~Transaction() {
+    if (!begun_) return;
+    std::swap(s_.position, s_.step_start.position);
+    std::swap(s_.velocity, s_.step_start.velocity);
+    s_.lost_energy = s_.step_start.lost_energy;
+  }
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
 
   /// Before the first change.
   void begin() {
     if (begun_) return;
-    start_.position = s_.position;
-    start_.velocity = s_.velocity;
-    start_.lost_energy = s_.lost_energy;
+    s_.step_start.position = s_.position;
+    s_.step_start.velocity = s_.velocity;
+    s_.step_start.lost_energy = s_.lost_energy;
     begun_ = true;
   }
   void commit() { begun_ = false; }
-  void roll_back() {
-    if (!begun_) return;
-    std::swap(s_.position, start_.position);
-    std::swap(s_.velocity, start_.velocity);
-    s_.lost_energy = start_.lost_energy;
-    begun_ = false;
-  }
 
  private:
   State& s_;
-  Checkpoint& start_;
   bool begun_ = false;
 };
 
@@ -75,21 +71,20 @@ class Travel {
 
 class Step {
  public:
-  Step(State& s, StepReport& report, Team& team) : s_(s), report_(report), team_(team) {}
+  Step(State& s, StepReport& report, Team& team)
+      : s_(s), report_(report), team_(team), transaction_(s) {}
 
   /// Returns whether all of dt was done.
   bool run(double dt, bool jumped) {
-    Transaction transaction(s_, s_.step_start);
     if (needs_projection(s_, dt, jumped, team_)) {
-      transaction.begin();
+      transaction_.begin();
       project(s_, dt, report_, team_);
     }
     plan_ = plan_for(s_, dt, report_, team_);
-    if (plan_.substeps > 1) transaction.begin();
     for (int left = plan_.substeps; left > 0; --left) {
-      if (do_substep(dt / plan_.substeps, left) != Outcome::accepted) return false;
+      if (!do_substep(dt / plan_.substeps, left)) return false;
     }
-    transaction.commit();
+    transaction_.commit();
     s_.placed = false;
     s_.last_dt = report_.status == Status::converged ? dt : 0;
     s_.refinement = std::max(most_refined_, s_.refinement - tuning::kCoarsening);
@@ -97,62 +92,56 @@ class Step {
   }
 
  private:
-  /// Walks the list of attempts. A rejected one is taken back.
-  Outcome do_substep(double h, int substeps_left) {
+  /// Walks the list of attempts. Where a part is rejected the next attempt begins; where one is
+  /// accepted the list begins again, at the end of that part.
+  bool do_substep(double h, int substeps_left) {
     positions_ = share_of(report_.iterations, substeps_left);
     velocities_ = share_of(report_.velocity_iterations, substeps_left);
-    for (const Attempt& attempt : plan_.list()) {
-      if (!attempt.is_last && report_.iterations >= positions_.early_end) continue;
-      const Outcome outcome = try_attempt(attempt, h);
-      if (outcome == Outcome::accepted) return outcome;
-      if (attempt.is_last) {
+    int begin = 0;  // in finest parts
+    int parts = 0;  // done
+    for (std::size_t i = 0; begin < kFinest;) {
+      const Attempt& attempt = plan_.attempts[i];
+      const int end = attempt.end_of(begin);
+      if (end < kFinest || substeps_left > 1) transaction_.begin();
+      const Outcome outcome = try_attempt(attempt, h * (end - begin) / kFinest);
+      if (outcome == Outcome::accepted) {
+        begin = end;
+        ++parts;
+        i = plan_.first_at(begin);
+      } else if (!attempt.is_last) {
+        ++i;
+      } else {
         explain(s_, h, report_, team_);
-        return outcome;
+        return false;
       }
-      if (attempt.scheme == Scheme::rattle)
-        ++report_.scheme_fallbacks;
-      else
-        ++report_.halvings;
     }
-    return Outcome::rejected;
+    // Parts that were needed are for the next steps too.
+    if (report_.halvings > 0) most_refined_ = std::max(most_refined_, std::log2(parts));
+    return true;
   }
 
-  /// In its parts: each starts from the one before.
   Outcome try_attempt(const Attempt& attempt, double h) {
-    Trial sum{.substeps = 0};
-    Transaction transaction(s_, s_.substep_start);
-    if (attempt.parts > 1) transaction.begin();
-    for (int part = 0; part < attempt.parts; ++part) {
-      if (!attempt.is_last && report_.iterations >= positions_.early_end) return Outcome::rejected;
-      const Budget budget{positions_.left(attempt, report_.iterations),
-                          velocities_.left(attempt, report_.velocity_iterations)};
-      const Trial trial = advance(attempt, h / attempt.parts, budget);
-      if (trial.outcome != Outcome::accepted) return trial.outcome;
-      std::swap(s_.position, s_.solved);
-      std::swap(s_.velocity, s_.next_velocity);
-      sum.add(trial);
-    }
-    transaction.commit();
-    worsen(report_, sum.status);
-    report_.substeps += sum.substeps;
-    report_.pin_work += sum.pin_work;
-    if (sum.passed_particle != kNoIndex) report_.passed_particle = sum.passed_particle;
-    remember(attempt);
-    return Outcome::accepted;
-  }
-
-  Trial advance(const Attempt& attempt, double h, const Budget& budget) {
+    if (!attempt.is_last && report_.iterations >= positions_.early_end) return Outcome::rejected;
+    const Budget budget{positions_.left(attempt, report_.iterations),
+                        velocities_.left(attempt, report_.velocity_iterations)};
     const bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
-    return attempt.method == Method::by_small_steps
-               ? small_step(s_, attempt, h, budget, report_, team_)
-               : exact_substep(s_, attempt, h, budget, is_predicted, report_, team_);
+    const Trial trial = attempt.method == Method::by_small_steps
+                            ? small_step(s_, attempt, h, budget, report_, team_)
+                            : exact_substep(s_, attempt, h, budget, is_predicted, report_, team_);
+    if (trial.outcome == Outcome::accepted)
+      accept(trial);
+    else if (!attempt.is_last)
+      ++(attempt.scheme == Scheme::rattle ? report_.scheme_fallbacks : report_.halvings);
+    return trial.outcome;
   }
 
-  /// Parts that were needed are for the next steps too. What small steps or sweeps had to do says
-  /// nothing about them.
-  void remember(const Attempt& attempt) {
-    if (attempt.method != Method::by_solver || report_.halvings == 0) return;
-    most_refined_ = std::max(most_refined_, std::log2(attempt.parts));
+  void accept(const Trial& trial) {
+    std::swap(s_.position, s_.solved);
+    std::swap(s_.velocity, s_.next_velocity);
+    worsen(report_, trial.status);
+    report_.substeps += trial.substeps;
+    report_.pin_work += trial.pin_work;
+    if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
   }
 
   /// What a substep may do, up to numbers of the report: all of it, and, but for the attempt that
@@ -174,6 +163,7 @@ class Step {
   State& s_;
   StepReport& report_;
   Team& team_;
+  Transaction transaction_;
   Plan plan_;
   double most_refined_ = 0;
   Share positions_, velocities_;  // of the iterations, for the present substep
