@@ -1,6 +1,7 @@
 #include "engine/step/project.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "engine/measure/state_measure.h"
 #include "engine/step/exact_substep.h"
@@ -51,21 +52,25 @@ bool needs_projection(State& s, double dt, bool jumped, Team& team) {
 }
 
 void project(State& s, double dt, StepReport& report, Team& team) {
+  const int most = std::max(1, s.settings.max_iterations / 2);
+  const auto by_small_steps = [&] {
+    const auto left = static_cast<int>(std::max<std::int64_t>(1, most - report.iterations));
+    project_by_small_steps(s, dt, {.positions = left}, report, team);
+  };
   s.solved = s.position;
   find_contacts(s, report);
   timed(report, Stage::solve_positions, [&] {
-    if (s.settings.solver == Solver::small_steps)
-      return project_by_small_steps(s, dt, report, team);
+    if (s.settings.solver == Solver::small_steps) return by_small_steps();
     const PositionTask task{.x = s.solved.view(),
                             .start = s.position.view(),
                             .contacts = s.contacts,
                             .h = dt,
                             .share = share_before(s, dt),
-                            .max_iterations = std::max(1, s.settings.max_iterations / 2)};
+                            .max_iterations = s.small_steps ? std::max(1, most / 2) : most};
     const auto result = solve_positions(s, *s.solver, task, report, team);
     if (!result.converged && s.small_steps) {
       s.solved = s.position;
-      project_by_small_steps(s, dt, report, team);
+      by_small_steps();
     }
   });
   if (all_finite(s.solved)) s.position = s.solved;

@@ -12,7 +12,8 @@ namespace weft {
 bool needs_projection(State& s, double dt, bool jumped, Team& team);
 
 /// Moves the positions onto the constraints and leaves the velocities. What cannot be put right
-/// with half of the iterations that a step may take is left to the step, and to its status.
+/// with half of the iterations that a step may take is left to the step, and to its status. Small
+/// steps have half of these behind a solver, which ends at the other half.
 void project(State& s, double dt, StepReport& report, Team& team);
 
 /// Of a step that is not committed: who left the range of numbers, and whether that would have

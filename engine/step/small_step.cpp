@@ -149,12 +149,16 @@ class Frame {
 
   std::int64_t most_visits(std::int64_t sweeps) const {
     const std::int64_t left = end_ - report_.iterations;
-    return std::max<std::int64_t>(1, std::min(sweeps, left)) * edges_;
+    return std::max<std::int64_t>(1, std::min(sweeps, left)) * visits_of_an_iteration();
+  }
+  /// Passes visit contacts too, which may be many more than the constraints.
+  std::int64_t visits_of_an_iteration() const {
+    return std::max<std::int64_t>(1, edges_ + s_.contacts.count());
   }
   void count(const LocalWork& work) {
     report_.visits += work.visits;
     report_.corrections += work.corrections;
-    if (edges_ > 0) report_.iterations += work.visits / edges_;
+    report_.iterations += work.visits / visits_of_an_iteration();
   }
   void read_positions() {
     s_.solved = s_.position;
@@ -239,8 +243,9 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   return trial;
 }
 
-void project_by_small_steps(State& s, double h, StepReport& report, Team& team) {
-  Frame frame(s, {.positions = std::max(1, s.settings.max_iterations / 2)}, report, team);
+void project_by_small_steps(State& s, double h, const Budget& budget, StepReport& report,
+                            Team& team) {
+  Frame frame(s, budget, report, team);
   frame.begin({.h = h, .omega = tuning::kOmega, .placed = true, .projects = true});
   frame.finish();
 }

@@ -13,6 +13,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
                  StepReport& report, Team& team);
 
 /// Puts solved, which is equal to position, right in the same rounds.
-void project_by_small_steps(State& s, double h, StepReport& report, Team& team);
+void project_by_small_steps(State& s, double h, const Budget& budget, StepReport& report,
+                            Team& team);
 
 }  // namespace weft

@@ -15,10 +15,16 @@
 ///     2 (1 + 2 kappa) D theta                                                          (2)
 ///
 /// and lanes round each of these motions to float.
+///
+/// Directions that turn within the step may bring in energy. Where that is more than a share of
+/// what the impulses are worth, solvers but for the paper's loop slow all velocities down by one
+/// factor, so that none is gained (engine/step/energy.h).
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "engine/tuning.h"
 #include "tests/support/clothes.h"
 #include "tests/support/dense_projection.h"
 #include "tests/support/motion.h"
@@ -32,7 +38,7 @@ constexpr double kLeastCondition = 1e-3;  // of matrices that Gauss-Seidel solve
 
 struct Solution {
   bool known = false;
-  std::vector<Vec3> predicted, positions, velocities, corrected;
+  std::vector<Vec3> start, predicted, positions, velocities, corrected;
   double motion_per_error = 0, largest_share = 0;
 };
 
@@ -52,6 +58,7 @@ Solution solve(const RandomCase& c) {
     if (!start.project_positions(x) || start.reciprocal_condition() < kLeastCondition) return s;
     s.largest_share = start.largest_share();
   }
+  s.start = x;
   s.predicted = x;
   s.velocities.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -116,6 +123,52 @@ Outcome outcome(const RandomCase& c, const Settings& settings) {
   return o;
 }
 
+/// Twice the energies of a step to Newton's positions, at velocities v.
+struct Energies {
+  double gain = 0, allowed = 0, kinetic = 0;
+  double unknown = 0;  // by how much gain - allowed is off where velocities are off by `most`
+};
+
+Energies energies(const RandomCase& c, const Solution& s, const std::vector<Vec3>& v, double most) {
+  const double h = c.dt;
+  const std::vector<bool> fixed = are_fixed(c.scene);
+  Energies e;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (fixed[i]) continue;
+    const double m = c.scene.masses[i];
+    const Vec3 before = c.scene.velocities.empty() ? Vec3{} : c.scene.velocities[i];
+    const Vec3 a = acceleration(c, i), impulse = (1 / h) * (s.positions[i] - s.predicted[i]);
+    const double square = dot(v[i], v[i]);
+    e.kinetic += m * square;
+    e.gain += m * (square - dot(before, before) - 2 * dot(a, s.positions[i] - s.start[i]));
+    e.allowed += m * (tuning::kMostGain * dot(impulse, impulse) + tuning::kEnergyRounding * square +
+                      h * h / 4 * dot(a, a));
+    e.unknown += m * most * (3 * most + 2 * length(v[i]) + 2 * h * length(a) + length(impulse));
+  }
+  return e;
+}
+
+/// From Newton's velocities to those of a step that are known to `most`, or by how much that is
+/// more from those that are slowed down, if the step gains too much. Where it is unknown whether it
+/// does, the less.
+double velocity_distance(const RandomCase& c, const Solution& s, const std::vector<Vec3>& newtons,
+                         const std::vector<Vec3>& v, double most) {
+  const double plain = largest_distance(v, newtons);
+  if (c.settings.solver == Solver::gauss_seidel) return plain;
+  const Energies e = energies(c, s, newtons, most);
+  if (e.gain <= e.allowed - e.unknown) return plain;
+  std::vector<Vec3> slowed;
+  const double share = std::sqrt(std::max(0.0, 1 - e.gain / e.kinetic));
+  double fastest = 0;
+  for (const Vec3 u : newtons) {
+    slowed.push_back(share * u);
+    fastest = std::max(fastest, length(u));
+  }
+  const double share_unknown = e.unknown / (2 * share * e.kinetic);
+  const double guarded = largest_distance(v, slowed) - fastest * share_unknown;
+  return e.gain > e.allowed + e.unknown ? guarded : std::min(plain, guarded);
+}
+
 /// Positions within `most`, velocities likewise: a displacement is seen in them as itself / h, and
 /// so are directions that differ by 2 most / rest. The velocity loop leaves its own tolerance.
 void check_outcome(const RandomCase& c, const Solution& s, const Outcome& o, double most) {
@@ -124,13 +177,14 @@ void check_outcome(const RandomCase& c, const Solution& s, const Outcome& o, dou
   const double kappa = s.motion_per_error;
   const double apart = 2 * most / c.dt;
   if (!c.settings.velocity_correction) {
-    CHECK(largest_distance(o.velocities, s.velocities) <= apart);
+    CHECK(velocity_distance(c, s, s.velocities, o.velocities, apart) <= apart);
     return;
   }
   const std::vector<Vec3> rest(s.velocities.size());
   const double turned = 2 * most / shortest(c.scene) * largest_distance(s.velocities, rest);
-  CHECK(largest_distance(o.velocities, s.corrected) <=
-        2 * kappa * c.settings.velocity_tolerance + (1 + 2 * kappa) * (apart + 2 * turned));
+  const double known =
+      2 * kappa * c.settings.velocity_tolerance + (1 + 2 * kappa) * (apart + 2 * turned);
+  CHECK(velocity_distance(c, s, s.corrected, o.velocities, known) <= known);
 }
 
 TEST_CASE("random solutions: exact solvers end where Newton's method ends") {
