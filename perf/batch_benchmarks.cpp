@@ -11,7 +11,7 @@ struct Case {
   bool skipped;
 };
 
-void pass(const simd::Table& table, const simd::Relaxation& r, const Workbench& bench,
+void pass(const simd::Table& table, const simd::BlockRelaxation& r, const Workbench& bench,
           const std::uint8_t* wanted, std::uint32_t* corrections) {
   for (const Workbench::Range& batch : bench.batches) {
     table.relax_runs(r, bench.runs.data() + batch.first, batch.singles - batch.first,
@@ -24,7 +24,7 @@ void pass(const simd::Table& table, const simd::Relaxation& r, const Workbench& 
 
 void run(benchmark::State& state, Shared& shared, const Case& c) {
   Workbench& bench = shared.workshop.get("grid", c.size, false);
-  const simd::Relaxation r = bench.relaxation();
+  const simd::BlockRelaxation r = bench.relaxation();
   std::vector<std::uint32_t> corrections(bench.pieces.size());
   const std::vector<std::uint8_t> none(bench.pieces.size());
   for (auto _ : state) {

@@ -14,7 +14,7 @@ namespace {
 /// The tables' arguments, made once per benchmark.
 struct Arguments {
   const simd::Table& table;
-  simd::Relaxation r;
+  simd::BlockRelaxation r;
   simd::Geometry g;
   simd::Anticipation p;
   const PullLayout* pulls;  // anticipation only

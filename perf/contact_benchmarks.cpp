@@ -34,7 +34,7 @@ class Contacts {
   }
 
  private:
-  simd::Relaxation r_;
+  simd::BlockRelaxation r_;
   std::vector<std::uint32_t> slots_, sphere_;
   kernels::AlignedVector<simd::ConstraintBlock> blocks_;
   kernels::AlignedVector<float> impulse_;

@@ -100,9 +100,9 @@ void Workbench::fill_errors() {
   std::ranges::fill(u_, 0.f);
 }
 
-simd::Relaxation Workbench::relaxation(bool in_quads) {
+simd::BlockRelaxation Workbench::relaxation(bool in_quads) {
   fill_errors();
-  simd::Relaxation r;
+  simd::BlockRelaxation r;
   r.u = {u_.data(), in_quads ? 1 : stride_, in_quads ? std::size_t{4} : 1};
   r.blocks = blocks_.data();
   r.impulse = impulse.data();

@@ -40,7 +40,7 @@ class Workbench {
   };
   std::vector<Range> batches;  // pieces of each; those from `singles` on are singles
 
-  simd::Relaxation relaxation(bool in_quads = false);
+  simd::BlockRelaxation relaxation(bool in_quads = false);
   simd::Geometry geometry();
   simd::Motion motion();
   simd::Boxes boxes();

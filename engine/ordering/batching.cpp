@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::uint32_t kLargestGap = kLanes;
 
-/// A vector of plain loads costs about as much as so many gathered constraints: with fewer links in
-/// its lanes than that a run does not pay.
+/// A vector of a run costs about as much as this many gathered constraints, so that a run must have
+/// at least as many links for each of its vectors.
 constexpr std::size_t kLeastLinksPerVector = 6;
 
 bool is_padding(const Joint& joint) { return joint.link == kNoIndex; }
@@ -51,7 +51,8 @@ void Batcher::find_runs(const Joints& joints) {
   }
 }
 
-/// Makes run_ the longest run from `first` on; returns the first joint beyond it.
+/// Makes run_ the longest run that begins with the joint `first`. Returns the first joint beyond
+/// it.
 std::size_t Batcher::extend(const Joints& joints, std::size_t first) {
   run_.assign(1, joints[first]);
   std::size_t next = first + 1;
@@ -78,7 +79,8 @@ bool Batcher::fill_gap(const Joint& from, const Joint& to) {
   return true;
 }
 
-/// Padding behind the run, or before it, or else what does not fill the lanes is cut off.
+/// Pads the run to whole lanes, behind it or before it. If no slots are free for that, the joints
+/// that do not fill the lanes are cut off.
 void Batcher::fill_lanes() {
   const std::size_t wanted = kernels::round_up(run_.size(), kLanes);
   while (run_.size() < wanted && claim(run_.back().a + 1, run_.back().b + 1)) {
@@ -110,7 +112,7 @@ void Batcher::cut_lanes() {
   }
 }
 
-/// A run with too few links is taken apart.
+/// Adds the run to the batch. A run with too few links is taken apart into singles.
 void Batcher::finish_run() {
   const auto padding =
       static_cast<std::size_t>(std::count_if(run_.begin(), run_.end(), is_padding));
@@ -144,7 +146,7 @@ void Batcher::add_singles() {
   }
 }
 
-/// Two slots for padding, if neither is in use.
+/// Marks two slots as used by padding, if both are free.
 bool Batcher::claim(std::uint32_t a, std::uint32_t b) {
   if (a >= used_.size() || b >= used_.size() || used_[a] || used_[b]) return false;
   used_[a] = used_[b] = true;

@@ -1,4 +1,4 @@
-/// Runs and singles: the second half of making an Ordering.
+/// The second half of making an Ordering: batches of runs and singles.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace weft {
 
-/// A constraint slot to be.
+/// A planned constraint slot.
 struct Joint {
   std::uint32_t a = 0, b = 0;     // slots, a < b except in padding
   std::uint32_t link = kNoIndex;  // kNoIndex: padding
@@ -24,7 +24,8 @@ struct PlannedBatch {
 /// Plans batches that lie within a range of slots, one at a time.
 class Batcher {
  public:
-  /// particle_at: of each slot in the range; grows by padding slots where the singles need them.
+  /// particle_at lists the particle of each slot in the range. It grows by padding slots where the
+  /// singles need them.
   explicit Batcher(std::vector<std::uint32_t>& particle_at);
 
   /// No slot may occur twice in `joints`.

@@ -1,4 +1,4 @@
-/// Which links meet at which particle.
+/// The links that meet at each particle.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,8 @@
 namespace weft {
 namespace {
 
-/// The most frequent value, the lowest of equally frequent ones; sorts.
+/// The most frequent value, and how often it occurs. Of equally frequent values it is the lowest.
+/// Sorts the values.
 std::pair<std::int32_t, std::size_t> most_frequent(std::vector<std::int32_t>& values) {
   std::sort(values.begin(), values.end());
   std::pair<std::int32_t, std::size_t> best{0, 0};
@@ -23,10 +24,10 @@ std::pair<std::int32_t, std::size_t> most_frequent(std::vector<std::int32_t>& va
 Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Rows are yarns of family 0, columns yarns of family 1. From a first row the columns through it
-/// are placed, from those the rows that they cross, and so on. A yarn is aligned with those of its
-/// particles that have a place already, by the majority of them; where there is only one, which
-/// way the yarn points is told by the direction of its neighbour.
+/// Rows are yarns of family 0, and columns are yarns of family 1. After a first row, the columns
+/// that cross it are placed, then the rows that these cross, and so on. A yarn is aligned with the
+/// majority of those of its particles that have a place already. If there is only one, the
+/// direction of the neighbouring yarn decides which way the yarn points.
 class Weaver {
  public:
   Weaver(std::span<const Vec3> positions, const WovenYarns& yarns)
@@ -78,7 +79,8 @@ class Weaver {
     queue_.clear();
   }
 
-  /// along = direction * index + shift, across constant.
+  /// Gives the particles of a yarn the coordinate direction * index + shift along it; the
+  /// coordinate across it is constant.
   void place(std::uint32_t i) {
     const Yarn& yarn = yarns_.yarns[i];
     const auto particles = yarns_.particles_of(yarn);
@@ -101,7 +103,7 @@ class Weaver {
     }
   }
 
-  /// The shift that most of the placed particles agree on, and how many they are.
+  /// The shift on which most of the placed particles agree, and the number of these particles.
   std::pair<std::int32_t, std::size_t> votes(const Yarn& yarn, std::int32_t across, int direction) {
     const auto particles = yarns_.particles_of(yarn);
     values_.clear();
@@ -131,7 +133,7 @@ class Weaver {
     }
   }
 
-  /// From the particle before to the particle after.
+  /// The vector from the previous particle of the yarn to the next.
   Vec3 chord(const Crossing& at) const {
     const Yarn& yarn = yarns_.yarns[at.yarn];
     const auto particles = yarns_.particles_of(yarn);

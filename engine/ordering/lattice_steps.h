@@ -1,4 +1,4 @@
-/// The steps across a lattice that links make, and the colours that follow from them.
+/// The steps that links make across a lattice, and the colours that follow from them.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,16 @@ struct Step {
 /// The steps that many links make.
 class Steps {
  public:
-  /// After how many rows and columns the colours repeat.
+  /// The numbers of rows and columns after which the colours repeat.
   struct Period {
     std::uint32_t rows = 2, columns = 2;
   };
 
   Steps(std::span<const Cell> cells, std::span<const Link> links);
 
-  /// Two classes for each step, 2 k and 2 k + 1: along step (r, c) they alternate every r rows, or
-  /// every c columns where r = 0. So a particle is the lower end of one link of a class or the
-  /// upper end of one, and never both. kNoIndex: not one of the frequent steps.
+  /// Step k has two classes, 2 k and 2 k + 1. Those of the step (r, c) alternate every r rows, or
+  /// every c columns where r = 0, so that a particle is never an end of two links of one class.
+  /// Returns kNoIndex if the step is not one of the frequent ones.
   std::uint32_t colour_class(const Link& link) const;
   Period period() const;
 

@@ -64,7 +64,7 @@ class Assembly {
     }
   }
 
-  /// One batch per kind and colour.
+  /// Adds one batch for each kind and colour.
   template <class Slot>
   void add_batches(std::vector<std::uint32_t>& members, const Slot& slot, Batcher& batcher,
                    std::uint32_t first_slot) {

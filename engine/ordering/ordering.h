@@ -1,23 +1,24 @@
 /// Where particles and constraints stand in memory, so that the loops over them are contiguous.
 ///
 ///   slots       particles in memory order; some slots are padding and hold no particle
-///   tile        a range of slots small enough for a core's own cache; tiles are independent of
-///               each other except for the constraints between them
-///   batch       constraints of one colour (and one kind) within a tile, or between tiles: no slot
-///               occurs twice in a batch, padding included, so all of it may be done at once
-///   run         a stretch of a batch in which constraint c + k joins the slots a + k and b + k:
-///               plain loads and stores, no indices
-///   singles     the rest of a batch: constraints that find their slots through an index
+///   tile        a range of slots that fits into the cache of a core; only the constraints between
+///               tiles couple them
+///   batch       constraints of one colour and one kind within a tile, or between tiles. No slot
+///               occurs twice in a batch, padding included, so that its constraints are
+///               independent
+///   run         consecutive constraints c + k of a batch that join the slots a + k and b + k,
+///   which
+///               need no indices
+///   singles     the rest of a batch, whose constraints find their slots through an index
 ///
-/// One pass over the constraints goes through the batches as if in order: tile after tile (tiles
-/// may go side by side), then the batches between tiles one after the other.
+/// One pass over the constraints goes through the batches as if in order: tile after tile, where
+/// tiles may be handled by different threads, then the batches between tiles one after the other.
 ///
 ///   constraint slots of a batch:  | run | run | ... | run | singles |
 ///                                 ^first                  ^singles  ^last
 ///
-/// Every run, and the singles, fill whole lanes: their lengths are multiples of kLanes, made up
-/// with padding constraints, which join slots that are otherwise unused in the batch and move
-/// nothing.
+/// The lengths of all runs and of the singles are multiples of kLanes. Padding constraints fill
+/// them up; they join slots that the batch does not use otherwise, and move nothing.
 #pragma once
 
 #include <weft/weft.h>
@@ -36,7 +37,7 @@ using kernels::Run;
 struct Batch {
   std::uint32_t first = 0, singles = 0, last = 0;  // constraint slots
   std::uint32_t first_run = 0, last_run = 0;       // in Ordering::runs
-  std::uint32_t colour = 0;  // unique per particle: batches between tiles have colours of their own
+  std::uint32_t colour = 0;  // unique at each particle; batches between tiles have their own
   ConstraintKind kind = ConstraintKind::distance;
 };
 
@@ -55,11 +56,11 @@ struct Ordering {
   std::vector<std::uint32_t> slot_of;      // particle -> slot
   std::vector<std::uint32_t> particle_at;  // slot -> particle, kNoIndex: padding
   std::vector<std::uint32_t> link_at;      // constraint slot -> link, kNoIndex: padding
-  std::vector<std::uint32_t> a, b;         // constraint slot -> slots (runs too); a may be link.b
+  std::vector<std::uint32_t> a, b;         // constraint slot -> slots; a may be that of link.b
   std::vector<Run> runs;
   std::vector<Batch> batches;
   std::vector<Tile> tiles;
-  std::uint32_t between_tiles = 0;  // first batch between tiles; they go to the end of batches
+  std::uint32_t between_tiles = 0;  // the first batch between tiles, which come last
   std::uint32_t colours = 0;
   double run_share = 0;  // links in runs / links
 
@@ -70,11 +71,12 @@ struct Ordering {
 
 struct OrderingOptions {
   std::uint32_t tile_particles = 4096;
-  /// Below this share of links in runs the mesh is ordered for locality alone, all links singles.
+  /// A mesh with a smaller share of links in runs is ordered for locality alone, and all of its
+  /// links are singles.
   double least_run_share = 0.7;
 };
 
-/// Deterministic: depends on the arguments only. Links must be valid and without duplicates.
+/// The result depends on the arguments only. Links must be valid and without duplicates.
 Ordering order(std::span<const Vec3> positions, std::span<const Link> links,
                const OrderingOptions& options = {});
 

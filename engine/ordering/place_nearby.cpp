@@ -6,8 +6,8 @@
 namespace weft {
 namespace {
 
-/// Cuts the mesh in two halves again and again, each time along the levels of a breadth-first
-/// search that begins at a far end, until the pieces are as large as a tile.
+/// Recursive bisection of the mesh into tiles. A cut follows the levels of a breadth-first search
+/// that begins at a far end of the piece.
 class Bisection {
  public:
   Bisection(const Lists& incidence, std::span<const Link> links)
@@ -47,8 +47,8 @@ class Bisection {
     return order_.begin() + static_cast<std::ptrdiff_t>(i);
   }
 
-  /// Reorders a piece breadth first from its last particle, which is far off if the piece was in
-  /// this order before. Parts follow each other.
+  /// Sorts a piece by a breadth-first search from its last particle, which is at a far end if the
+  /// piece was in such an order before. Unconnected parts follow each other.
   void search(std::size_t first, std::size_t last) {
     const std::uint32_t piece = ++pieces_;  // marks those not found yet
     for (std::size_t i = first; i < last; ++i) piece_of_[order_[i]] = piece;

@@ -6,7 +6,8 @@
 #include "engine/ordering/placement.h"
 
 // A tile holds whole rows of the lattice. Its slots are grouped by the parity of the row and of the
-// column, each group row by row. With rows of 7 particles (c: column, '.': padding):
+// column, and each group is sorted by rows. With rows of 7 particles, where numbers are columns and
+// '.' is padding:
 //
 //             columns 0 2 4 6        columns 1 3 5
 //   row 0   | 0 2 4 6 |            | 1 3 5 . |
@@ -14,15 +15,15 @@
 //   row 1   | 0 2 4 6 |  group 10  | 1 3 5 . |  group 11
 //   row 3   | 0 2 4 6 |            | 1 3 5 . |
 //
-// In slot order a group is one line: 0 2 4 6 0 2 4 6 ..., so constraint k of the batch "along the
-// rows, from even columns" joins 00 + k with 01 + k, and that of "across, from odd rows" joins
-// 10 + k with 00 + 4 + k. What lies beyond a row's end is joined too, as padding.
-// Where links skip a row or a column the period is 4 instead of 2.
+// In slot order a group is one line, 0 2 4 6 0 2 4 6 and so on, so that constraint k of the batch
+// "along the rows, from even columns" joins 00 + k with 01 + k, and that of "across, from odd rows"
+// joins 10 + k with 00 + 4 + k. Joints across the end of a row are padding. Where links skip a row
+// or a column, the period is 4 instead of 2.
 
 namespace weft {
 namespace {
 
-constexpr double kLargestWaste = 1.2;  // slots of a band of rows over its particles
+constexpr double kLargestWaste = 1.2;  // slots of a band of rows for each of its particles
 
 // --------------------------------------------------------------------------------------- rows
 
@@ -38,7 +39,8 @@ struct Rows {
   std::vector<Row> rows;
 };
 
-/// Rows too wide for several of them to fit into a tile are cut into strips, one after the other.
+/// Rows that are so wide that only few of them fit into a tile are cut into strips, which follow
+/// each other.
 std::vector<std::uint32_t> strip_widths(std::span<const Cell> cells, std::uint32_t tile_particles,
                                         std::uint32_t period) {
   const std::uint32_t widest = std::max(64u, tile_particles / 4);
@@ -80,7 +82,7 @@ Rows list_rows(std::span<const Cell> cells, std::uint32_t tile_particles, std::u
   return rows;
 }
 
-/// The rows' numbers at which tiles begin, and the end.
+/// The numbers of the rows at which tiles begin, and the number of all rows.
 std::vector<std::size_t> cut(const Rows& rows, std::uint32_t tiles) {
   std::vector<std::size_t> begin{0};
   const std::size_t particles = rows.particles.size();
@@ -98,8 +100,8 @@ std::vector<std::size_t> cut(const Rows& rows, std::uint32_t tiles) {
 
 // -------------------------------------------------------------------------------------- bands
 
-/// How a row lies in its tile. The rows of a band have the same origin and so are aligned; a row
-/// with too many holes is stored without them.
+/// The layout of a row in its tile. The rows of a band have the same origin, which aligns them. A
+/// row with too many holes is stored without them.
 struct Lay {
   std::uint32_t origin = 0, width = 0;
   bool dense = false;
@@ -159,7 +161,7 @@ class TileLayout {
   std::vector<std::uint32_t> particle_at() && { return std::move(particle_at_); }
 
  private:
-  /// Slots of the row in the group of columns c.
+  /// The number of slots that the row has in the group of columns c.
   std::uint32_t stride(const Row& row, const Lay& lay, std::uint32_t c) const {
     if (!lay.dense) return (lay.width + period_.columns - 1 - c) / period_.columns;
     std::uint32_t count = 0;
@@ -172,10 +174,10 @@ class TileLayout {
   }
   std::uint32_t column_class(std::size_t i) const { return column(i) % period_.columns; }
 
-  /// Sizes become first slots. Runs end anywhere in a group and are filled up to whole lanes, so
-  /// each group is followed by as many slots as that may take. Rows that stand at the same place in
-  /// tile after tile, and are visited side by side (yarns), must not all want the same sets of a
-  /// cache.
+  /// Replaces the sizes of groups by their first slots. A run may end anywhere in a group and is
+  /// padded to whole lanes, so that each group is followed by enough padding slots. The size of a
+  /// tile is no multiple of a cache way: otherwise rows at the same place in successive tiles,
+  /// which yarns visit together, would fall into the same sets of the cache.
   void start_groups() {
     std::uint32_t slots = 0;
     for (auto& row : next_) {

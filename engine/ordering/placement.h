@@ -1,4 +1,4 @@
-/// Where the particles go: the first half of making an Ordering.
+/// The first half of making an Ordering: the places of the particles.
 #pragma once
 
 #include <weft/weft.h>
@@ -14,22 +14,22 @@
 namespace weft {
 
 struct Placement {
-  std::vector<std::vector<std::uint32_t>> tiles;  // particle of each slot, kNoIndex: padding
-  /// Per link: a number that links of the same colour share, kNoIndex where any free colour does.
-  /// Classes 2 k and 2 k + 1 alternate along the same direction of the lattice.
+  std::vector<std::vector<std::uint32_t>> tiles;  // particle of each slot; kNoIndex in padding
+  /// Per link: its colour class, or kNoIndex if it may have any free colour. Classes 2 k and 2 k +
+  /// 1 alternate along the same direction of the lattice.
   std::vector<std::uint32_t> colour_class;
   bool has_runs = false;
 };
 
-/// Rows of the lattice, tile after tile, so that links between neighbours make runs.
+/// Places the rows of the lattice tile after tile, so that links between neighbours make runs.
 Placement place_woven(std::span<const Cell> cells, std::span<const Link> links,
                       std::uint32_t tile_particles);
 
-/// Compact tiles of any mesh, neighbours near each other; no runs.
+/// Places any mesh in compact tiles with neighbours near each other. There are no runs.
 Placement place_nearby(const Lists& incidence, std::span<const Link> links,
                        std::uint32_t tile_particles);
 
-/// How many tiles to cut: two threads want two at least, and an even number.
+/// The number of tiles. It is even if it is not 1, so that two threads have equal shares.
 std::uint32_t tile_count(std::size_t particles, std::uint32_t tile_particles);
 
 }  // namespace weft

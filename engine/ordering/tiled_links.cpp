@@ -8,8 +8,8 @@
 namespace weft {
 namespace {
 
-/// Within a tile, where no particle has more than 16 links. Between the tiles such particles need
-/// 31 more at most, so that each colour of 64 is a bit of a word.
+/// The largest number of colours within a tile, if no particle has more than 16 links. Links
+/// between tiles then need at most 31 more, so that a word of 64 bits holds a set of colours.
 constexpr std::uint32_t kMostColours = 33;
 
 }  // namespace
@@ -29,8 +29,8 @@ TiledLinks::TiledLinks(const Placement& placement, std::span<const Link> links,
   colour_between(links);
 }
 
-/// Within a tile by the lower slot. Between tiles, those of one direction of the lattice together,
-/// because most of them can share a colour.
+/// Sorts the links within a tile by their lower slot. Links between tiles are first sorted by their
+/// direction in the lattice, because most of those with one direction can share a colour.
 void TiledLinks::sort(const Placement& placement, std::span<const Link> links) {
   for (std::uint32_t i = 0; i < links.size(); ++i) {
     const std::uint32_t tile = place_of[links[i].a].tile;
@@ -63,8 +63,8 @@ void TiledLinks::colour_within(const Placement& placement, std::span<const Link>
   for (const std::uint32_t c : given) {
     if (c != kNoIndex) classes = std::max(classes, c + 1);
   }
-  // The others first try colours of their own: among the runs they would take slots that padding
-  // needs.
+  // The other links first try colours of their own: in the colours of runs they would take slots
+  // that padding needs.
   for (const auto& tile : within) {
     for (const std::uint32_t i : tile) {
       if (given[i] != kNoIndex) continue;
@@ -75,7 +75,7 @@ void TiledLinks::colour_within(const Placement& placement, std::span<const Link>
   }
 }
 
-/// Leaves out the numbers of colours that no link within a tile has.
+/// Renumbers the colours without those that no link within a tile has.
 void TiledLinks::close_gaps() {
   std::vector<std::uint32_t> number;
   for (const auto& tile : within) {
@@ -92,7 +92,7 @@ void TiledLinks::close_gaps() {
   }
 }
 
-/// In colours beyond those within the tiles.
+/// Gives links between tiles colours beyond those within the tiles.
 void TiledLinks::colour_between(std::span<const Link> links) {
   UsedColours used(place_of.size());
   const std::uint32_t first = colours;

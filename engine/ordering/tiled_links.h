@@ -22,7 +22,7 @@ struct TiledLinks {
   std::vector<Place> place_of;                     // by particle
   std::vector<std::vector<std::uint32_t>> within;  // links of each tile
   std::vector<std::uint32_t> between;              // links from tile to tile
-  std::vector<std::uint32_t> colour;  // by link; unique at each particle, no number left out
+  std::vector<std::uint32_t> colour;               // by link; unique at each particle, without gaps
   std::uint32_t colours = 0;
 
  private:

@@ -1,4 +1,5 @@
-/// The colours in use at each particle: 64 bits for each, and more only where they are needed.
+/// The set of colours in use at each particle: one word of 64 bits, and more words only where they
+/// are needed.
 #pragma once
 
 #include <bit>

@@ -11,15 +11,15 @@
 namespace weft {
 namespace {
 
-constexpr double kLeastStraight = -0.5;   // cosine: a yarn turns by less than 60 degrees
-constexpr double kUnevenness = 0.25;      // how much like lengths count beside straightness
-constexpr std::size_t kLargestKnot = 64;  // links at a particle; no yarn runs through larger ones
+constexpr double kLeastStraight = -0.5;   // a cosine: yarns turn by less than 60 degrees
+constexpr double kUnevenness = 0.25;      // the weight of equal lengths against straightness
+constexpr std::size_t kLargestKnot = 64;  // no yarn passes a particle with more links
 
 Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 struct Course {
-  Vec3 direction;  // from a to b; zero where it cannot be told
+  Vec3 direction;  // from a to b; zero if the ends coincide
   double length = 0;
 };
 
@@ -38,7 +38,7 @@ std::vector<Course> courses_of(std::span<const Vec3> positions, std::span<const 
   return courses;
 }
 
-/// How each link goes on at its ends: the next link beyond a and beyond b, or kNoIndex.
+/// The next links of the yarn beyond the ends a and b of a link, or kNoIndex.
 struct Continuation {
   std::uint32_t at_a = kNoIndex, at_b = kNoIndex;
 };
@@ -55,12 +55,13 @@ class Pairing {
 
  private:
   struct Candidate {
-    double cost;  // low for straight pairs of like length
+    double cost;  // low for straight pairs of similar length
     std::uint32_t one, two;
     auto operator<=>(const Candidate&) const = default;
   };
 
-  /// The best pair first; links are left alone where only bends remain.
+  /// Pairs up the links at a particle, the best pair first. Links that would turn too much are not
+  /// paired.
   void pair_up(std::uint32_t particle, std::span<const std::uint32_t> links) {
     if (links.size() > kLargestKnot) return;
     candidates_.clear();
@@ -81,7 +82,8 @@ class Pairing {
     }
   }
 
-  /// Tells a link to the neighbour from one that skips it.
+  /// A measure of unequal lengths, which distinguishes a link to the neighbour from one that skips
+  /// it.
   double unevenness(std::uint32_t one, std::uint32_t two) const {
     const auto [shorter, longer] = std::minmax(courses_[one].length, courses_[two].length);
     return kUnevenness * (1 - shorter / longer);
@@ -114,10 +116,10 @@ class Tracer {
 
  private:
   struct Start {
-    std::uint32_t link, particle;  // leave the particle along the link
+    std::uint32_t link, particle;  // the chain leaves the particle along the link
   };
 
-  /// Back along the chain to its end, or once around where it is closed.
+  /// Goes back along the chain to its end, or once around if it is closed.
   Start first_of_chain(std::uint32_t start) const {
     std::uint32_t link = start, particle = links_[start].a;
     for (;;) {
@@ -136,7 +138,8 @@ class Tracer {
       const std::uint32_t next = pairing_.next(at.link, to);
       const bool closes =
           next == first && to == yarns_.particles[yarns_.yarns.back().first_particle];
-      // A chain that meets itself goes on as another yarn, from one link before the meeting.
+      // A chain that meets itself continues as another yarn, which begins one link before the
+      // meeting.
       if (visited_by_[to] == current() && !closes) {
         end(false);
         begin(at.particle);
@@ -176,8 +179,8 @@ class Tracer {
   WovenYarns yarns_;
 };
 
-/// Links over their mean square length: so that, where bending links skip every other particle,
-/// they come after those that they skip over.
+/// The number of links divided by their mean square length. Bending links that skip every other
+/// particle thus rank below the links over which they skip.
 double rank(const WovenYarns& yarns, const Yarn& yarn, std::span<const Vec3> positions,
             std::span<const Link> links) {
   double squares = 0;

@@ -1,4 +1,4 @@
-/// Yarns: the links, taken apart into chains that run straight on through their particles, as the
+/// Decomposes the links into yarns: chains that run nearly straight through their particles, as the
 /// yarns of a woven cloth do. On a grid they are its rows and its columns.
 #pragma once
 
@@ -13,7 +13,7 @@
 namespace weft {
 
 /// Link k of a yarn joins its particles k and k + 1; the last link of a closed yarn joins its last
-/// particle to its first. No particle is twice on a yarn.
+/// particle to its first. No particle occurs twice on a yarn.
 struct Yarn {
   std::uint32_t first_particle = 0, last_particle = 0;  // in WovenYarns::particles
   std::uint32_t first_link = 0, last_link = 0;          // in WovenYarns::links
@@ -22,9 +22,9 @@ struct Yarn {
 };
 
 struct WovenYarns {
-  std::vector<Yarn> yarns;  // each link in exactly one
+  std::vector<Yarn> yarns;  // each link is in exactly one
   std::vector<std::uint32_t> particles, links;
-  std::uint32_t families = 0;  // no particle is on two yarns of a family
+  std::uint32_t families = 0;  // the yarns of a family share no particle
 
   std::span<const std::uint32_t> particles_of(const Yarn& yarn) const {
     return {particles.data() + yarn.first_particle, particles.data() + yarn.last_particle};
@@ -34,8 +34,8 @@ struct WovenYarns {
   }
 };
 
-/// Deterministic: depends on the arguments only. Links must be valid and without duplicates.
-/// Family 0 holds the longest yarns; of equally long ones, those with the shorter links.
+/// The result depends on the arguments only. Links must be valid and without duplicates. Family 0
+/// has the longest yarns; among equally long yarns, those with the shorter links.
 WovenYarns find_yarns(std::span<const Vec3> positions, std::span<const Link> links);
 
 }  // namespace weft

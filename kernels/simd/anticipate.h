@@ -77,7 +77,7 @@ template <class From>
 
 /// Component `axis` of the directions of kFloats constraints from c on, which stand in one block or
 /// in two. note: of two, either load reads beyond what it is for, but not beyond the two blocks.
-[[gnu::always_inline]] inline Floats directions_from(const Relaxation& r, std::size_t c,
+[[gnu::always_inline]] inline Floats directions_from(const BlockRelaxation& r, std::size_t c,
                                                      std::size_t axis) {
   constexpr std::size_t kLanes = kernels::kLanes, kBlock = sizeof(ConstraintBlock) / sizeof(float);
   alignas(64) static constexpr float kLane[] = {0, 1, 2,  3,  4,  5,  6,  7,
@@ -91,12 +91,13 @@ template <class From>
 }
 
 /// The directions of the neighbours that a pull of kFloats lanes reads.
-[[gnu::always_inline]] inline FloatVector directions_of(const Relaxation& r, const FromRun& from,
-                                                        std::size_t pull, std::size_t lane) {
+[[gnu::always_inline]] inline FloatVector directions_of(const BlockRelaxation& r,
+                                                        const FromRun& from, std::size_t pull,
+                                                        std::size_t lane) {
   const std::size_t c = from.index(pull, lane);
   return {directions_from(r, c, 0), directions_from(r, c, 1), directions_from(r, c, 2)};
 }
-[[gnu::always_inline]] inline FloatVector directions_of(const Relaxation& r,
+[[gnu::always_inline]] inline FloatVector directions_of(const BlockRelaxation& r,
                                                         const FromSingles& from, std::size_t pull,
                                                         std::size_t lane) {
   alignas(64) float x[kFloats], y[kFloats], z[kFloats];
@@ -112,7 +113,7 @@ template <class From>
 
 template <class From>
 [[gnu::always_inline]] inline void renew_products(const Anticipation& p, const From& from,
-                                                  const Relaxation& r, std::uint32_t first,
+                                                  const BlockRelaxation& r, std::uint32_t first,
                                                   std::uint32_t last) {
   for (std::size_t block = first; block < last; block += kernels::kLanes) {
     const std::size_t begin = p.first_pull[block / kernels::kLanes];
@@ -141,10 +142,10 @@ std::uint32_t relax_anticipated_singles(const Anticipation& p, std::uint32_t fir
   return relax_anticipated(p, FromSingles{p.from_singles}, first, last);
 }
 
-void renew_products_run(const Anticipation& p, const Relaxation& r, const Run& run) {
+void renew_products_run(const Anticipation& p, const BlockRelaxation& r, const Run& run) {
   renew_products(p, FromRun{p.from_run}, r, run.constraint, run.constraint + run.length);
 }
-void renew_products_singles(const Anticipation& p, const Relaxation& r, std::uint32_t first,
+void renew_products_singles(const Anticipation& p, const BlockRelaxation& r, std::uint32_t first,
                             std::uint32_t last) {
   renew_products(p, FromSingles{p.from_singles}, r, first, last);
 }
@@ -152,13 +153,13 @@ void renew_products_singles(const Anticipation& p, const Relaxation& r, std::uin
 /// The ends of kFloats constraints: side by side in a run, in lanes elsewhere.
 struct RunEnds {
   const Run& run;
-  [[gnu::always_inline]] FloatVector a(const Relaxation& r, std::size_t c) const {
+  [[gnu::always_inline]] FloatVector a(const BlockRelaxation& r, std::size_t c) const {
     return load(r.u, run.a + (c - run.constraint));
   }
-  [[gnu::always_inline]] FloatVector b(const Relaxation& r, std::size_t c) const {
+  [[gnu::always_inline]] FloatVector b(const BlockRelaxation& r, std::size_t c) const {
     return load(r.u, run.b + (c - run.constraint));
   }
-  [[gnu::always_inline]] void put(const Relaxation& r, std::size_t c, const FloatVector& a,
+  [[gnu::always_inline]] void put(const BlockRelaxation& r, std::size_t c, const FloatVector& a,
                                   const FloatVector& b) const {
     store(r.u, run.a + (c - run.constraint), a);
     store(r.u, run.b + (c - run.constraint), b);
@@ -167,13 +168,13 @@ struct RunEnds {
 template <class Lanes>
 struct ScatteredEnds {
   Lanes at_a, at_b;
-  [[gnu::always_inline]] FloatVector a(const Relaxation& r, std::size_t c) {
+  [[gnu::always_inline]] FloatVector a(const BlockRelaxation& r, std::size_t c) {
     return at_a.get(r.u, r.a + c);
   }
-  [[gnu::always_inline]] FloatVector b(const Relaxation& r, std::size_t c) {
+  [[gnu::always_inline]] FloatVector b(const BlockRelaxation& r, std::size_t c) {
     return at_b.get(r.u, r.b + c);
   }
-  [[gnu::always_inline]] void put(const Relaxation& r, std::size_t c, const FloatVector& a,
+  [[gnu::always_inline]] void put(const BlockRelaxation& r, std::size_t c, const FloatVector& a,
                                   const FloatVector& b) {
     at_a.put(r.u, r.a + c, a);
     at_b.put(r.u, r.b + c, b);
@@ -181,7 +182,7 @@ struct ScatteredEnds {
 };
 
 template <class Ends>
-[[gnu::always_inline]] inline void apply_sums(const Anticipation& p, const Relaxation& r,
+[[gnu::always_inline]] inline void apply_sums(const Anticipation& p, const BlockRelaxation& r,
                                               Ends&& ends, std::size_t first, std::size_t last) {
   for (std::size_t c = first; c < last; c += kFloats) {
     const Part here = part(r, c);
@@ -195,17 +196,17 @@ template <class Ends>
   }
 }
 
-void apply_sums_run(const Anticipation& p, const Relaxation& r, const Run& run) {
+void apply_sums_run(const Anticipation& p, const BlockRelaxation& r, const Run& run) {
   apply_sums(p, r, RunEnds{run}, run.constraint, run.constraint + run.length);
 }
-void apply_sums_singles(const Anticipation& p, const Relaxation& r, std::uint32_t first,
+void apply_sums_singles(const Anticipation& p, const BlockRelaxation& r, std::uint32_t first,
                         std::uint32_t last) {
   if (r.u.in_quads()) return apply_sums(p, r, ScatteredEnds<QuadLanes>{}, first, last);
   apply_sums(p, r, ScatteredEnds<PlanarLanes>{}, first, last);
 }
 
 template <class Ends>
-[[gnu::always_inline]] inline void refresh_errors(const Anticipation& p, const Relaxation& r,
+[[gnu::always_inline]] inline void refresh_errors(const Anticipation& p, const BlockRelaxation& r,
                                                   Ends&& ends, std::size_t first,
                                                   std::size_t last) {
   for (std::size_t c = first; c < last; c += kFloats) {
@@ -217,10 +218,10 @@ template <class Ends>
   }
 }
 
-void refresh_errors_run(const Anticipation& p, const Relaxation& r, const Run& run) {
+void refresh_errors_run(const Anticipation& p, const BlockRelaxation& r, const Run& run) {
   refresh_errors(p, r, RunEnds{run}, run.constraint, run.constraint + run.length);
 }
-void refresh_errors_singles(const Anticipation& p, const Relaxation& r, std::uint32_t first,
+void refresh_errors_singles(const Anticipation& p, const BlockRelaxation& r, std::uint32_t first,
                             std::uint32_t last) {
   if (r.u.in_quads()) return refresh_errors(p, r, ScatteredEnds<QuadLanes>{}, first, last);
   refresh_errors(p, r, ScatteredEnds<PlanarLanes>{}, first, last);

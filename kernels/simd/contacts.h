@@ -131,7 +131,8 @@ std::size_t find_moved(kernels::VectorsView before, kernels::VectorsView after,
 }
 
 template <class Lanes>
-[[gnu::always_inline]] inline std::uint32_t relax_touching(const Relaxation& r, std::uint32_t first,
+[[gnu::always_inline]] inline std::uint32_t relax_touching(const BlockRelaxation& r,
+                                                           std::uint32_t first,
                                                            std::uint32_t last) {
   const Floats threshold(r.threshold);
   const std::size_t sphere = r.a[first] * r.u.step;
@@ -163,7 +164,7 @@ template <class Lanes>
   return corrections;
 }
 
-std::uint32_t relax_contacts(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
+std::uint32_t relax_contacts(const BlockRelaxation& r, std::uint32_t first, std::uint32_t last) {
   return r.u.in_quads() ? relax_touching<QuadLanes>(r, first, last)
                         : relax_touching<PlanarLanes>(r, first, last);
 }

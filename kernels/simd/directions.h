@@ -24,7 +24,7 @@ struct Direction {
   return {{d.x * inverse, xsimd::select(apart, d.y * inverse, Doubles(1.)), d.z * inverse}, length};
 }
 
-[[gnu::always_inline]] inline void store_scaled(const Relaxation& r, std::size_t c,
+[[gnu::always_inline]] inline void store_scaled(const BlockRelaxation& r, std::size_t c,
                                                 const DoubleVector& n, Doubles error,
                                                 Doubles scale) {
   ConstraintBlock& block = r.blocks[c / kernels::kLanes];
@@ -69,7 +69,7 @@ struct Singles {
 };
 
 template <class Range>
-[[gnu::always_inline]] inline void renew(const Geometry& g, const Relaxation& r,
+[[gnu::always_inline]] inline void renew(const Geometry& g, const BlockRelaxation& r,
                                          const Range& range) {
   for (std::size_t c = range.first; c < range.last; c += kDoubles) {
     Direction to = direction(range.between(g.x, c));
@@ -79,7 +79,7 @@ template <class Range>
 
 template <class Range>
 [[gnu::always_inline]] inline void renew_from_start(const Geometry& g, kernels::VectorsView start,
-                                                    const Relaxation& r, const Range& range) {
+                                                    const BlockRelaxation& r, const Range& range) {
   for (std::size_t c = range.first; c < range.last; c += kDoubles) {
     Doubles length = direction(range.between(g.x, c)).length;
     DoubleVector n = direction(range.between(start, c)).n;
@@ -89,31 +89,33 @@ template <class Range>
 
 template <class Range>
 [[gnu::always_inline]] inline void renew_velocity(const Geometry& g, kernels::VectorsView v,
-                                                  const Relaxation& r, const Range& range) {
+                                                  const BlockRelaxation& r, const Range& range) {
   for (std::size_t c = range.first; c < range.last; c += kDoubles) {
     DoubleVector n = direction(range.between(g.x, c)).n;
     store_scaled(r, c, n, dot(n, range.between(v, c)), load(g.scale + c));
   }
 }
 
-void renew_run(const Geometry& g, const Relaxation& r, const Run& run) { renew(g, r, InRun(run)); }
-void renew_singles(const Geometry& g, const Relaxation& r, std::uint32_t first,
+void renew_run(const Geometry& g, const BlockRelaxation& r, const Run& run) {
+  renew(g, r, InRun(run));
+}
+void renew_singles(const Geometry& g, const BlockRelaxation& r, std::uint32_t first,
                    std::uint32_t last) {
   renew(g, r, Singles{g, first, last});
 }
-void renew_from_start_run(const Geometry& g, kernels::VectorsView start, const Relaxation& r,
+void renew_from_start_run(const Geometry& g, kernels::VectorsView start, const BlockRelaxation& r,
                           const Run& run) {
   renew_from_start(g, start, r, InRun(run));
 }
-void renew_from_start_singles(const Geometry& g, kernels::VectorsView start, const Relaxation& r,
-                              std::uint32_t first, std::uint32_t last) {
+void renew_from_start_singles(const Geometry& g, kernels::VectorsView start,
+                              const BlockRelaxation& r, std::uint32_t first, std::uint32_t last) {
   renew_from_start(g, start, r, Singles{g, first, last});
 }
-void renew_velocity_run(const Geometry& g, kernels::VectorsView v, const Relaxation& r,
+void renew_velocity_run(const Geometry& g, kernels::VectorsView v, const BlockRelaxation& r,
                         const Run& run) {
   renew_velocity(g, v, r, InRun(run));
 }
-void renew_velocity_singles(const Geometry& g, kernels::VectorsView v, const Relaxation& r,
+void renew_velocity_singles(const Geometry& g, kernels::VectorsView v, const BlockRelaxation& r,
                             std::uint32_t first, std::uint32_t last) {
   renew_velocity(g, v, r, Singles{g, first, last});
 }

@@ -1,20 +1,21 @@
-/// One front of a sparse factorisation, densely (engine/solvers/direct/direct_factor.h).
+/// The dense operations on one front of a sparse factorisation
+/// (engine/solvers/direct/direct_factor.h).
 ///
-///   panel   the columns that are eliminated here, by columns: first their triangle, padded to
-///           whole groups of 8 rows, then the rows below it, padded likewise
-///   update  what is left for the rows below once those columns are gone, lower triangle
+///   panel   the columns that are eliminated in this front, stored by columns: first their
+///           triangle, then the rows below it, each padded to multiples of kFrontRows rows
+///   update  what remains for the rows below after the elimination, as a lower triangle
 ///
-///                width           (columns in fours; columns and rows of padding are 0)
+///                width           (columns padded to fours; padding is 0)
 ///              +--------+
 ///      triangle|  D, L1 |
 ///              +--------+--------------+
 ///         below|   L2   |  U - L2 D L2^T
 ///              +--------+--------------+
 ///
-/// Four columns at a time: first what all columns before them take from them, a product of
-/// matrices in tiles that stay in registers; then the four among
-/// themselves. Every entry sees its columns in ascending order, whatever the lanes, so that the
-/// bits are those of every instruction set that has an fma.
+/// Columns are eliminated four at a time. First the contribution of all columns before them is
+/// subtracted, a product of matrices in tiles that stay in registers; then the four are eliminated
+/// among themselves. Every entry sees the columns in ascending order, whatever the number of lanes,
+/// so that the bits are the same on every instruction set that has an fma.
 #pragma once
 
 #include "kernels/simd/lanes.h"
@@ -23,13 +24,15 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-constexpr std::size_t kPerGroup = kFrontRows / kDoubles;  // batches
+constexpr std::size_t kPerGroup = kFrontRows / kDoubles;  // SIMD vectors
 constexpr bool kManyRegisters = kDoubles == kFrontRows;   // AVX-512 has 32
 
-/// Columns of the update in a tile: with more registers more products are under way at once.
+/// The number of columns of the update in a tile. With more registers, more products are computed
+/// at once.
 constexpr std::size_t kUpdateColumns = kManyRegisters ? 8 : 4;
 
-/// Its loops are unrolled by force: entries that an index chooses live in memory.
+/// A tile of SIMD vectors. Its loops are unrolled by force, since vectors that a variable index
+/// selects would live in memory.
 template <std::size_t kColumns, std::size_t kGroups>
 struct Tile {
   static constexpr std::size_t kBatches = kGroups * kPerGroup;
@@ -53,7 +56,7 @@ struct Tile {
       }
     }
   }
-  /// c += l y^T over `columns` columns; y: rows of -L D.
+  /// Adds l y^T, a sum over `columns` columns, where y are rows of -L D.
   [[gnu::always_inline]] void take(const double* l, const double* y, std::size_t stride,
                                    std::size_t columns) {
     for (std::size_t k = 0; k < columns; ++k, l += stride, y += stride) {
@@ -74,13 +77,13 @@ struct Tile {
   }
 };
 
-/// Pivots of four columns, and what each takes from the later ones.
+/// The pivots of four columns, and what each subtracts from the later ones.
 struct Corner {
   double reciprocal[4];
   double taken[4][4];  // [j][k], k < j: -L(j, k) d_k
 };
 
-/// From the four columns' diagonal block, already reduced by the columns before.
+/// Eliminates the diagonal block of four columns, which the columns before have reduced already.
 [[gnu::always_inline]] inline Corner eliminate_corner(const double* p, std::size_t stride,
                                                       const double* least) {
   Corner s{};
@@ -130,14 +133,14 @@ template <std::size_t kGroups>
   finish(tile, s, l, f.scratch + column * f.stride + row, f.stride);
 }
 
-/// What the first group of rows got above the diagonal, and on it.
+/// Clears what the first group of rows received on and above the diagonal.
 inline void clear_above(double* l, std::size_t stride, std::size_t first, std::size_t column) {
   for (std::size_t k = 0; k < 4; ++k) {
     for (std::size_t row = first; row <= column + k; ++row) l[k * stride + row] = 0;
   }
 }
 
-/// Columns [column, column + 4) of the panel.
+/// Eliminates the columns [column, column + 4) of the panel.
 inline void eliminate_four(const Front& f, std::size_t column) {
   const std::size_t first = column / kFrontRows * kFrontRows;
   Tile<4, 1> head;
@@ -179,7 +182,8 @@ void eliminate_front(const Front& f) {
   }
 }
 
-/// z = L^-1 z of one front: its own unknowns first, below them what they take from later ones.
+/// Computes z = L^-1 z for one front. z holds the unknowns of the front, and below them what they
+/// subtract from later unknowns.
 void solve_front_forward(const Front& f, double* z) {
   for (std::size_t column = 0; column < f.width; column += 4) {
     const double* const l = f.panel + column * f.stride;
@@ -200,14 +204,14 @@ void solve_front_forward(const Front& f, double* z) {
   }
 }
 
-/// The sum of a group's lanes in a fixed order.
+/// The sum of the lanes of a group in a fixed order.
 [[gnu::always_inline]] inline double sum_of(const Doubles (&sums)[kPerGroup]) {
   alignas(64) double lane[kFrontRows];
   for (std::size_t i = 0; i < kPerGroup; ++i) sums[i].store_aligned(lane + i * kDoubles);
   return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
 }
 
-/// z = L^-T D^-1 z, what stands below being known.
+/// Computes z = L^-T D^-1 z, where the unknowns below are known.
 void solve_front_backward(const Front& f, double* z) {
   for (std::size_t column = f.width; column > 0;) {
     column -= 4;

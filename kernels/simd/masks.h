@@ -49,7 +49,7 @@ struct Marks {
   return xsimd::any((marks & Words(bit)) != Words(std::uint64_t{0}));
 }
 
-std::uint32_t relax_masked_run(const Relaxation& r, const Run& run, std::uint64_t bit,
+std::uint32_t relax_masked_run(const BlockRelaxation& r, const Run& run, std::uint64_t bit,
                                std::uint64_t& visits) {
   const Floats threshold(r.threshold);
   std::uint32_t corrections = 0;

@@ -33,7 +33,7 @@ struct Part {
   [[gnu::always_inline]] Floats gain_b() const { return load(block.gain_b + lane); }
 };
 
-[[gnu::always_inline]] inline Part part(const Relaxation& r, std::size_t c) {
+[[gnu::always_inline]] inline Part part(const BlockRelaxation& r, std::size_t c) {
   return {r.blocks[c / kernels::kLanes], static_cast<std::uint32_t>(c % kernels::kLanes)};
 }
 
@@ -42,8 +42,8 @@ struct Part {
   return fused(n.x, d.x, fused(n.y, d.y, fused(n.z, d.z, part.e0())));
 }
 
-[[gnu::always_inline]] inline Corrected correct_distances(const Relaxation&, std::size_t, Floats e,
-                                                          Floats threshold) {
+[[gnu::always_inline]] inline Corrected correct_distances(const BlockRelaxation&, std::size_t,
+                                                          Floats e, Floats threshold) {
   const FloatMask lanes = xsimd::abs(e) > threshold;
   return {lanes, xsimd::select(lanes, e, Floats(0.f))};
 }
@@ -52,7 +52,7 @@ struct Part {
 enum class Side : std::uint8_t { pulls, pushes };
 
 template <Side kSide>
-[[gnu::always_inline]] inline Corrected correct_one_sided(const Relaxation& r, std::size_t c,
+[[gnu::always_inline]] inline Corrected correct_one_sided(const BlockRelaxation& r, std::size_t c,
                                                           Floats e, Floats threshold) {
   const Floats sum = load(r.impulse + c), back = Floats(0.f) - sum;
   Floats change = kSide == Side::pulls ? xsimd::max(e, back) : xsimd::min(e, back);
@@ -76,8 +76,8 @@ template <Side kSide>
 
 /// Vectors in which nothing is out of tolerance are left without a store.
 template <bool kFromMemory, class Correct>
-[[gnu::always_inline]] inline std::uint32_t relax_contiguous(const Relaxation& r, const Run& run,
-                                                             Correct&& correct) {
+[[gnu::always_inline]] inline std::uint32_t relax_contiguous(const BlockRelaxation& r,
+                                                             const Run& run, Correct&& correct) {
   const Floats threshold(r.threshold);
   const Displacements u = r.u;
   std::uint32_t corrections = 0;
@@ -98,7 +98,7 @@ template <bool kFromMemory, class Correct>
 }
 
 template <class Correct>
-[[gnu::always_inline]] inline std::uint32_t relax_any_contiguous(const Relaxation& r,
+[[gnu::always_inline]] inline std::uint32_t relax_any_contiguous(const BlockRelaxation& r,
                                                                  const Run& run,
                                                                  Correct&& correct) {
   return r.from_memory ? relax_contiguous<true>(r, run, correct)
@@ -132,7 +132,7 @@ struct PlanarLanes {
 };
 
 template <class Lanes, bool kFromMemory, class Correct>
-[[gnu::always_inline]] inline std::uint32_t relax_scattered(const Relaxation& r,
+[[gnu::always_inline]] inline std::uint32_t relax_scattered(const BlockRelaxation& r,
                                                             std::uint32_t first, std::uint32_t last,
                                                             Correct&& correct) {
   const Floats threshold(r.threshold);
@@ -155,7 +155,7 @@ template <class Lanes, bool kFromMemory, class Correct>
 }
 
 template <class Correct>
-[[gnu::always_inline]] inline std::uint32_t relax_any_scattered(const Relaxation& r,
+[[gnu::always_inline]] inline std::uint32_t relax_any_scattered(const BlockRelaxation& r,
                                                                 std::uint32_t first,
                                                                 std::uint32_t last,
                                                                 Correct&& correct) {
@@ -166,7 +166,7 @@ template <class Correct>
 
 /// One constraint after the other: each sees what the one before it did.
 template <class Change>
-[[gnu::always_inline]] inline std::uint32_t relax_one_by_one(const Relaxation& r,
+[[gnu::always_inline]] inline std::uint32_t relax_one_by_one(const BlockRelaxation& r,
                                                              std::uint32_t first,
                                                              std::uint32_t last, Change&& change) {
   float *const x = r.u.x, *const y = r.u.y(), *const z = r.u.z();
@@ -192,10 +192,10 @@ template <class Change>
   return corrections;
 }
 
-std::uint32_t relax_serial(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
+std::uint32_t relax_serial(const BlockRelaxation& r, std::uint32_t first, std::uint32_t last) {
   return relax_one_by_one(r, first, last, [](std::size_t, float e) { return e; });
 }
-std::uint32_t relax_rope_serial(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
+std::uint32_t relax_rope_serial(const BlockRelaxation& r, std::uint32_t first, std::uint32_t last) {
   return relax_one_by_one(r, first, last, [&](std::size_t c, float e) {
     const float change = e > -r.impulse[c] ? e : -r.impulse[c];
     r.impulse[c] += change;
@@ -203,25 +203,26 @@ std::uint32_t relax_rope_serial(const Relaxation& r, std::uint32_t first, std::u
   });
 }
 
-std::uint32_t relax_run(const Relaxation& r, const Run& run) {
+std::uint32_t relax_run(const BlockRelaxation& r, const Run& run) {
   return relax_any_contiguous(r, run, correct_distances);
 }
-void relax_runs(const Relaxation& r, const Run* runs, std::size_t count, const std::uint8_t* wanted,
-                std::uint32_t* corrections) {
-  const Relaxation local = r;  // what nothing in here can change, as far as the compiler knows
+void relax_runs(const BlockRelaxation& r, const Run* runs, std::size_t count,
+                const std::uint8_t* wanted, std::uint32_t* corrections) {
+  const BlockRelaxation local = r;  // what nothing in here can change, as far as the compiler knows
   for (std::size_t i = 0; i < count; ++i) {
     corrections[i] = 0;
     if (wanted != nullptr && wanted[i] == 0) continue;
     corrections[i] = relax_any_contiguous(local, runs[i], correct_distances);
   }
 }
-std::uint32_t relax_singles(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
+std::uint32_t relax_singles(const BlockRelaxation& r, std::uint32_t first, std::uint32_t last) {
   return relax_any_scattered(r, first, last, correct_distances);
 }
-std::uint32_t relax_rope_run(const Relaxation& r, const Run& run) {
+std::uint32_t relax_rope_run(const BlockRelaxation& r, const Run& run) {
   return relax_any_contiguous(r, run, correct_one_sided<Side::pulls>);
 }
-std::uint32_t relax_rope_singles(const Relaxation& r, std::uint32_t first, std::uint32_t last) {
+std::uint32_t relax_rope_singles(const BlockRelaxation& r, std::uint32_t first,
+                                 std::uint32_t last) {
   return relax_any_scattered(r, first, last, correct_one_sided<Side::pulls>);
 }
 

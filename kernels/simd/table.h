@@ -60,7 +60,7 @@ struct alignas(64) ConstraintBlock {
 };
 
 /// What relaxing a constraint reads and writes.
-struct Relaxation {
+struct BlockRelaxation {
   Displacements u;
   ConstraintBlock* blocks = nullptr;
   float* impulse = nullptr;          // ropes, contacts: sum of corrections, >= 0 and <= 0
@@ -320,53 +320,55 @@ struct Table {
                               std::size_t last);
 
   /// n = (x_a - x_b) / l / tau, e0 = (l - rest) / tau (paper 4.2).
-  void (*renew_run)(const Geometry&, const Relaxation&, const Run&);
-  void (*renew_singles)(const Geometry&, const Relaxation&, std::uint32_t first,
+  void (*renew_run)(const Geometry&, const BlockRelaxation&, const Run&);
+  void (*renew_singles)(const Geometry&, const BlockRelaxation&, std::uint32_t first,
                         std::uint32_t last);
   /// The same with n at other positions: those at the start of the step (scheme rattle).
-  void (*renew_from_start_run)(const Geometry&, kernels::VectorsView start, const Relaxation&,
+  void (*renew_from_start_run)(const Geometry&, kernels::VectorsView start, const BlockRelaxation&,
                                const Run&);
-  void (*renew_from_start_singles)(const Geometry&, kernels::VectorsView start, const Relaxation&,
-                                   std::uint32_t first, std::uint32_t last);
+  void (*renew_from_start_singles)(const Geometry&, kernels::VectorsView start,
+                                   const BlockRelaxation&, std::uint32_t first, std::uint32_t last);
   /// n as above with tau in m/s, e0 = n . (v_a - v_b) (paper 3.3).
-  void (*renew_velocity_run)(const Geometry&, kernels::VectorsView v, const Relaxation&,
+  void (*renew_velocity_run)(const Geometry&, kernels::VectorsView v, const BlockRelaxation&,
                              const Run&);
-  void (*renew_velocity_singles)(const Geometry&, kernels::VectorsView v, const Relaxation&,
+  void (*renew_velocity_singles)(const Geometry&, kernels::VectorsView v, const BlockRelaxation&,
                                  std::uint32_t first, std::uint32_t last);
 
   /// One pass over constraints of one colour; returns how many were corrected.
-  std::uint32_t (*relax_run)(const Relaxation&, const Run&);
+  std::uint32_t (*relax_run)(const BlockRelaxation&, const Run&);
   /// The same for many runs, those with wanted[i] == 0 left out (null: none), so that a short run
   /// costs no call. corrections[i] is set for every run.
-  void (*relax_runs)(const Relaxation&, const Run* runs, std::size_t count,
+  void (*relax_runs)(const BlockRelaxation&, const Run* runs, std::size_t count,
                      const std::uint8_t* wanted, std::uint32_t* corrections);
-  std::uint32_t (*relax_singles)(const Relaxation&, std::uint32_t first, std::uint32_t last);
-  std::uint32_t (*relax_rope_run)(const Relaxation&, const Run&);
-  std::uint32_t (*relax_rope_singles)(const Relaxation&, std::uint32_t first, std::uint32_t last);
+  std::uint32_t (*relax_singles)(const BlockRelaxation&, std::uint32_t first, std::uint32_t last);
+  std::uint32_t (*relax_rope_run)(const BlockRelaxation&, const Run&);
+  std::uint32_t (*relax_rope_singles)(const BlockRelaxation&, std::uint32_t first,
+                                      std::uint32_t last);
   /// Constraints that share slots (hubs), one after the other.
-  std::uint32_t (*relax_serial)(const Relaxation&, std::uint32_t first, std::uint32_t last);
-  std::uint32_t (*relax_rope_serial)(const Relaxation&, std::uint32_t first, std::uint32_t last);
+  std::uint32_t (*relax_serial)(const BlockRelaxation&, std::uint32_t first, std::uint32_t last);
+  std::uint32_t (*relax_rope_serial)(const BlockRelaxation&, std::uint32_t first,
+                                     std::uint32_t last);
   /// Contacts of one sphere, the slot a[first]; see contacts.h for their gains.
-  std::uint32_t (*relax_contacts)(const Relaxation&, std::uint32_t first, std::uint32_t last);
+  std::uint32_t (*relax_contacts)(const BlockRelaxation&, std::uint32_t first, std::uint32_t last);
   /// The same with the paper's masks (4.3): lanes whose bit is clear at both ends are passed over,
   /// whole vectors at once. `visits` counts the lanes looked at.
-  std::uint32_t (*relax_masked_run)(const Relaxation&, const Run&, std::uint64_t bit,
+  std::uint32_t (*relax_masked_run)(const BlockRelaxation&, const Run&, std::uint64_t bit,
                                     std::uint64_t& visits);
 
   /// The anticipating form. renew_products starts afresh: error = e0, no changes.
-  void (*renew_products_run)(const Anticipation&, const Relaxation&, const Run&);
-  void (*renew_products_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
+  void (*renew_products_run)(const Anticipation&, const BlockRelaxation&, const Run&);
+  void (*renew_products_singles)(const Anticipation&, const BlockRelaxation&, std::uint32_t first,
                                  std::uint32_t last);
   std::uint32_t (*relax_anticipated_run)(const Anticipation&, const Run&);
   std::uint32_t (*relax_anticipated_singles)(const Anticipation&, std::uint32_t first,
                                              std::uint32_t last);
   /// u_a += gain_a sum n, u_b += gain_b sum n, sum = 0.
-  void (*apply_sums_run)(const Anticipation&, const Relaxation&, const Run&);
-  void (*apply_sums_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
+  void (*apply_sums_run)(const Anticipation&, const BlockRelaxation&, const Run&);
+  void (*apply_sums_singles)(const Anticipation&, const BlockRelaxation&, std::uint32_t first,
                              std::uint32_t last);
   /// error = e0 + n . (u_a - u_b), change = 0.
-  void (*refresh_errors_run)(const Anticipation&, const Relaxation&, const Run&);
-  void (*refresh_errors_singles)(const Anticipation&, const Relaxation&, std::uint32_t first,
+  void (*refresh_errors_run)(const Anticipation&, const BlockRelaxation&, const Run&);
+  void (*refresh_errors_singles)(const Anticipation&, const BlockRelaxation&, std::uint32_t first,
                                  std::uint32_t last);
 
   /// base = x in whole cells, a power of two (0: none), rounded to float, u = x - base; and x moved

@@ -1,13 +1,12 @@
-/// The arrays that have a row for each row of a block, as the kernels see them: vector by vector. A
-/// row of the table (table.h) has kLanes lanes; theirs have kFloats, those of a block's first
-/// kFloats lanes first,
+/// The arrays that have a row for each row of a block, as the kernels see them: vector by vector.
+/// The rows of table.h have kLanes lanes. The rows here have kFloats lanes, and those of the first
+/// kFloats lanes of a block come first:
 ///
 ///     | row 0 | row 1 | ... | row n |  row 0 | row 1 | ... | row n |
 ///       lanes 0 ... kFloats - 1        lanes kFloats ...
 ///
-/// so that what a vector of yarns needs fills whole cache lines, and half as many: with AVX2 the
-/// scratch of a hundred rows fits a first level of 32 KB. (perf/tried.md: a sweep takes 0.8 to 0.9
-/// of the time.)
+/// The data of one vector of yarns therefore fills whole cache lines, and no more of them than it
+/// needs: with AVX2 the scratch of a hundred rows fits into a first-level cache of 32 KB.
 #pragma once
 
 #include <cstddef>
@@ -22,13 +21,13 @@ namespace {
 using kernels::kLanes;
 
 inline std::uint32_t rows_of(const YarnBlock& block) { return block.last - block.first; }
-/// Those that a kernel works on. Where one vector has all of them their number, and so which lane
-/// is the first of a vector, is known to the compiler: otherwise loops take a tenth longer.
+/// The number of lanes that a kernel works on. Where one vector holds all lanes, it is a constant,
+/// so that the compiler knows the first lane of each vector.
 inline std::uint32_t lanes_of(const YarnBlock& block) {
   return kFloats == kLanes ? kLanes : block.lanes;
 }
 
-/// A vector in each lane of a row.
+/// One geometric vector in each lane of a row.
 struct RowVectors {
   float x[kFloats], y[kFloats], z[kFloats];
 };
@@ -41,7 +40,8 @@ struct RowVectors {
   f.z.store_unaligned(v.z);
 }
 
-/// Of an array with a row for each of a block's: those of the vector that begins with a lane.
+/// The rows that belong to the SIMD vector whose first lane is `lane`, of an array with one row for
+/// each row of a block.
 template <class Row, class Wide>
 [[gnu::always_inline]] inline Row* rows_of_vector(Wide* first, std::size_t rows,
                                                   std::uint32_t lane) {
@@ -49,10 +49,10 @@ template <class Row, class Wide>
   return reinterpret_cast<Row*>(first) + rows * (lane / kFloats);
 }
 
-/// The row's part of the linear system (yarn_system.h).
+/// One row of the linear system (yarn_system.h).
 struct SystemRow {
   RowVectors n;
-  float m[kFloats], reciprocal[kFloats];  // factors
+  float m[kFloats], reciprocal[kFloats];  // the factorisation (yarns.h)
   float lambda[kFloats], residual[kFloats];
   float z[kFloats], p[kFloats], q[kFloats];
 };
@@ -61,14 +61,15 @@ struct SystemRow {
   return rows_of_vector<SystemRow>(y.system + block.first, rows_of(block), lane);
 }
 
-/// Scheme rattle's directions; null: present ones.
+/// The directions at the start of the substep, for scheme rattle; null if impulses act along the
+/// present ones.
 [[gnu::always_inline]] inline RowVectors* start_of(const Yarns& y, const YarnBlock& block,
                                                    std::uint32_t lane) {
   if (y.start == nullptr) return nullptr;
   return rows_of_vector<RowVectors>(y.start + block.first, rows_of(block), lane);
 }
 
-/// What rows remember of the base (yarn_rows.h).
+/// The packed differences of base positions (yarn_rows.h).
 struct BaseStep {
   std::int32_t words[kFloats];
 };
@@ -77,14 +78,15 @@ struct BaseStep {
   return rows_of_vector<BaseStep>(y.base_step + block.first, rows_of(block), lane);
 }
 
-/// What a sweep keeps of a row between the way down and the way up; y = r b. u: of rows that do not
-/// stand in memory as they are.
+/// What a sweep keeps of a row between the forward elimination and the back substitution, where y =
+/// r b. Only rows that are not in place keep u.
 struct ScratchRow {
   RowVectors u, n;
   float m[kFloats], y[kFloats];
 };
 
-/// As many rows as the block has, and one behind them: for what in patches is nobody's.
+/// The scratch has one row for each row of the block, and one more for the elements of patches that
+/// have no particle.
 class Scratch {
  public:
   static constexpr std::size_t kFloatsOfRow = sizeof(ScratchRow) / sizeof(float);
@@ -92,11 +94,12 @@ class Scratch {
   [[gnu::always_inline]] Scratch(YarnScratch* scratch, const YarnBlock& block)
       : first_(scratch), rows_(rows_of(block) + 1) {}
 
-  /// Those of the vector that begins with a lane.
+  /// The rows of the SIMD vector whose first lane is `lane`.
   [[gnu::always_inline]] ScratchRow* of(std::uint32_t lane) const {
     return rows_of_vector<ScratchRow>(first_, rows_, lane);
   }
-  /// Floats from one lane's to the next's, of lanes that begin a vector.
+  /// The number of floats from the rows of one SIMD vector to those of the next, for each lane
+  /// between their first lanes.
   [[gnu::always_inline]] std::size_t stride() const { return rows_ * (kFloatsOfRow / kFloats); }
 
  private:

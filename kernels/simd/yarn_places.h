@@ -1,17 +1,17 @@
-/// Where the particles of yarns stand in memory, and how the rows of a block find them. There are
-/// two layouts; base, u and t of a cloth have the same.
+/// The places of the particles of yarns in memory, and how the rows of a block find them. There are
+/// two layouts. The arrays base, u and t of a cloth have the same layout.
 ///
-/// Quads (quads.h), for any mesh: a row gathers its particles, and scatters them again.
+/// Quads (quads.h) serve any mesh: a row gathers its particles, and scatters them again.
 ///
-/// Woven, for sheets: in rows of kLanes particles,
+/// The woven layout serves sheets. It stores rows of kLanes particles,
 ///
 ///     | x x ... x | y y ... y | z z ... z | x x ... x | ...
 ///
-/// block after block of one family, whose yarns stand side by side: its blocks are in place. Where
-/// kLanes yarns of another family cross one of these blocks, each has particles in a row of memory;
-/// where it crosses nobody else's, these rows are a patch. Transposed, it is rows of the other
-/// block: patches are fetched into the scratch, and put back from there. What rows of memory have
-/// besides particles is nobody's, and 0.
+/// block after block of one family, whose yarns are adjacent: these blocks are in place. Where
+/// kLanes yarns of another family cross such a block, the particles of each are in one row of
+/// memory. These rows are a patch if they hold no particles of other yarns. A transposed patch
+/// consists of rows of the other block, so that patches are copied into the scratch and back with a
+/// transposition. Elements of the rows of memory that have no particle are 0.
 ///
 ///     memory, in place:  k | a b c d |      row k of the block; lanes a, b, c, d
 ///                          | e f g h |
@@ -35,12 +35,12 @@ inline void prefetch_row(std::uintptr_t row) {
   }
 }
 
-/// Rows that stand one behind the other: floats from one to the next, and from axis to axis. (Known
-/// only when it runs: yarn_linearise takes 1.1 times as long on AVX2.)
+/// Rows that follow each other at a distance of kRow floats, with kAxis floats from axis to axis.
+/// Both are compile-time constants, because the kernels are slower otherwise.
 template <std::size_t kRow, std::size_t kAxis>
 struct Rows {
   float* first;
-  std::size_t stride;  // floats from one lane to the next, of lanes that begin a vector
+  std::size_t stride;  // floats per lane between the first lanes of two SIMD vectors
 
   [[gnu::always_inline]] float* at(std::uint32_t row, std::uint32_t lane) const {
     return first + row * kRow + lane * stride;
@@ -56,7 +56,7 @@ struct Rows {
     v.y.store_unaligned(x + kAxis);
     v.z.store_unaligned(x + 2 * kAxis);
   }
-  // Between a way down and a way up they stay where they are.
+  // Between the elimination and the back substitution the rows stay where they are.
   [[gnu::always_inline]] void keep(std::uint32_t, std::uint32_t, const FloatVector&) const {}
   [[gnu::always_inline]] FloatVector kept(std::uint32_t row, std::uint32_t lane) const {
     return get(row, lane);
@@ -68,13 +68,13 @@ struct Rows {
   [[gnu::always_inline]] void put_kept(std::uint32_t, std::uint32_t) const {}
 };
 
-/// Rows of memory.
+/// Rows of a block in place: they are rows of memory.
 struct RowsInPlace : Rows<kRowFloats, kLanes> {
-  std::uint32_t ahead = 0;  // rows; 0: all of it is in the caches
+  std::uint32_t ahead = 0;  // the number of rows to prefetch; 0 if all is in the caches
 
   void fetch(std::uint32_t) const {}
   void put_back(std::uint32_t) const {}
-  /// Some rows ahead, into the next block.
+  /// Prefetches rows some way ahead, also of the next block.
   [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t,
                                           std::uint32_t lane) const {
     constexpr std::size_t kAhead = 32;
@@ -85,28 +85,28 @@ struct RowsInPlace : Rows<kRowFloats, kLanes> {
   }
 };
 
-/// Rows in the scratch, of what stands in patches of memory.
+/// Rows in the scratch, which are copies of patches of memory.
 struct FetchedRows : Rows<Scratch::kFloatsOfRow, kFloats> {
   float* memory;
   const YarnPatch* patches;
-  std::uint32_t count;   // of them
-  std::uint32_t nobody;  // row of the block, behind its last
-  bool from_memory;      // not in the caches
-  std::uint32_t ahead;   // rows of the next block's patches that will be wanted from there
+  std::uint32_t count;   // the number of patches
+  std::uint32_t nobody;  // the row of elements without a particle, behind the last
+  bool from_memory;      // the patches are not in the caches
+  std::uint32_t ahead;   // the number of rows of the next block's patches to prefetch
 
-  /// Before the first row of a vector is wanted.
+  /// Copies all patches into the scratch. Called before the first row of a SIMD vector is read.
   void fetch(std::uint32_t lane) const {
     for (std::uint32_t i = 0; i < count; ++i) {
       prefetch_patch(i, lane);
       fetch_patch(patches[i], lane);
     }
   }
-  /// When its last row has been put. What is nobody's is put back as 0.
+  /// Copies all patches back after the last row was written. Elements without a particle become 0.
   void put_back(std::uint32_t lane) const {
     put(nobody, lane, no_vector());
     for (std::uint32_t i = 0; i < count; ++i) put_patch(patches[i], lane);
   }
-  /// Of the patches of the next block, while there is this one to solve.
+  /// Prefetches patches of the next block while this one is being solved.
   [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t,
                                           std::uint32_t lane) const {
     if (row >= ahead || lane > 0) [[likely]]
@@ -115,7 +115,8 @@ struct FetchedRows : Rows<Scratch::kFloatsOfRow, kFloats> {
   }
 
  private:
-  /// Where a vector begins: of each lane from a column on, and of each column from a lane on.
+  /// The addresses of vectors: in memory that of each lane, beginning at a column; in the scratch
+  /// that of each column, beginning at a lane.
   [[gnu::always_inline]] auto in_memory(const YarnPatch& patch, std::uint32_t lane,
                                         std::uint32_t column) const {
     return [&patch, from = memory + column, lane ](std::uint32_t k) __attribute__((always_inline)) {
@@ -128,8 +129,8 @@ struct FetchedRows : Rows<Scratch::kFloatsOfRow, kFloats> {
       return rows.at(patch.row[column + i], lane);
     };
   }
-  // Where a row begins is computed for each patch anew: arrays of pointers to all rows, filled
-  // first, took 1.8 times as long.
+  // The address of a row is computed for each patch anew, which is faster than first filling arrays
+  // of pointers to all rows.
   void fetch_patch(const YarnPatch& patch, std::uint32_t lane) const {
     if (patch.single) {
       return for_each_float(patch, lane, [](float& row, float& place) { row = place; });
@@ -146,7 +147,7 @@ struct FetchedRows : Rows<Scratch::kFloatsOfRow, kFloats> {
       transpose(in_scratch(patch, lane, column), kFloats, in_memory(patch, lane, column), kLanes);
     }
   }
-  /// work(a float of a single row, and where it stands in memory)
+  /// Calls work(float of a single row, its place in memory) for each float.
   template <class Work>
   void for_each_float(const YarnPatch& patch, std::uint32_t lane, Work&& work) const {
     float* row = at(patch.row[0], lane);
@@ -157,7 +158,7 @@ struct FetchedRows : Rows<Scratch::kFloatsOfRow, kFloats> {
       }
     }
   }
-  /// A little ahead.
+  /// Prefetches the patch that is copied a little later.
   void prefetch_patch(std::uint32_t patch, std::uint32_t lane) const {
     constexpr std::uint32_t kAhead = 2;
     if (!from_memory || patch + kAhead >= count) return;
@@ -168,8 +169,8 @@ struct FetchedRows : Rows<Scratch::kFloatsOfRow, kFloats> {
   }
 };
 
-/// Rows of a block gathered from quads. Gathering is dear: what a way down has found, the way up
-/// has from the scratch. (Found again: 1.2 times as long on AVX-512 at 40 x 40.)
+/// Rows of a block that are gathered from quads. Gathering is expensive, so that the back
+/// substitution takes from the scratch what the elimination has gathered.
 struct QuadRows {
   float* u;
   const std::uint32_t* slot;
@@ -199,10 +200,10 @@ struct QuadRows {
       for (std::uint32_t row = 0; row < rows; ++row) put(row, lane, kept(row, lane));
     }
   }
-  // They are gathered and scattered one by one.
+  // Rows are gathered and scattered one by one.
   void fetch(std::uint32_t) const {}
   void put_back(std::uint32_t) const {}
-  /// Of a yarn that runs across memory no prefetcher knows.
+  /// Prefetches particles of the yarns, whose order in memory no hardware prefetcher recognises.
   [[gnu::always_inline]] void fetch_ahead(std::uint32_t row, std::uint32_t last,
                                           std::uint32_t lane) const {
     constexpr std::uint32_t kAhead = 16;
@@ -219,7 +220,7 @@ struct QuadRows {
   }
 };
 
-/// Of u, or of what else has its layout.
+/// The rows of a block in an array that has the layout of u.
 inline RowsInPlace rows_in_place(const Yarns& y, const YarnBlock& block, float* memory) {
   return {{memory + block.place, 1}, y.from_memory ? rows_of(block) : 0};
 }
@@ -234,8 +235,8 @@ inline FetchedRows fetched_rows(const Yarns& y, const YarnBlock& block, float* m
           y.from_memory ? block.patches_ahead * kLanes : 0};
 }
 
-/// work(rows of the block), which fetches a vector of them before it gets any, and puts back what
-/// it has changed.
+/// Calls work(rows of the block). It must call fetch() before it reads rows of a SIMD vector, and
+/// put_back() after it has changed them.
 template <class Work>
 [[gnu::always_inline]] inline void with_rows(const Yarns& y, const YarnBlock& block, float* u,
                                              YarnScratch* scratch, Work&& work) {

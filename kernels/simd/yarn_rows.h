@@ -1,19 +1,20 @@
-/// The rows of a block of yarns (yarns.h): what they are like, and what they remember of their
-/// particles' base.
+/// The rows of a block of yarns (yarns.h): their kinds, and the packed differences of their base
+/// positions.
 ///
-/// Positions are base + u, two floats: base is the double position rounded, u begins with what the
-/// rounding lost. Differences of neighbours are exact to the last bits of u.
+/// A position is the sum base + u of two floats. Base is the rounded double position, and u begins
+/// as the rounding error. Differences of neighbours are exact to the last bits of u.
 ///
-/// Base is a whole number of cells: of the largest power of two that is no more than a sixty-fourth
-/// of the longest constraint, nor eight times the shortest, which keeps what is left to u as small
-/// as what floats round off a difference. Between neighbours base differs by few cells, which rows
-/// remember from the first pass over a new base on:
+/// Base is a multiple of the cell, which is the largest power of two that does not exceed a
+/// sixty-fourth of the longest constraint or eight times the shortest. This keeps u as small as the
+/// rounding error of a difference. The base positions of neighbours differ by few cells, and the
+/// first pass over a new base stores these differences in the rows:
 ///
 ///     |  x: 10 bits  |  y: 10 bits  |  z: 10 bits  | 00 |     in each lane
 ///
-/// a quarter of the bytes that it takes to fetch base again. A block in which a difference is
-/// larger (a cloth torn apart, constraints that are thousands of times as long as others) fetches
-/// it each time: the row of its last particles, which has no next, has the bits of all differences.
+/// which takes a quarter of the bytes of fetching base again. A block with larger differences (in a
+/// cloth that is torn apart, or with constraints thousands of times as long as others) fetches base
+/// each time. The row of its last particles, which has no next row, holds the union of the bits of
+/// all differences, and so tells whether they fit.
 #pragma once
 
 #include <cstdint>
@@ -24,32 +25,35 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-/// What a row is like.
+/// The kind of a row: lengths and masses.
 [[gnu::always_inline]] inline const YarnRow& kind_of(const Yarns& y, std::size_t row) {
   return y.kinds[y.kind[row]];
 }
 
-/// A whole number n of -512 ... 511 as n + 512, in bits; what is beyond is negative
-/// or 1024 and more, infinities and what is no number too.
+/// The bits of n + 512, where n = v * factor is a whole number from -512 to 511. For any other v,
+/// infinities and NaN included, the result is negative or at least 1024.
 [[gnu::always_inline]] inline Ints ten_bits(Floats v, Floats factor) {
-  const Floats far(0x1.8p23f + 512);  // the next float is 1 away: the last bits count
+  const Floats far(0x1.8p23f + 512);  // neighbouring floats differ by 1 here
   const Ints bits = same_bits<Ints>(fused(v, factor, far));
   return bits ^ same_bits<Ints>(Floats(0x1.8p23f));
 }
-/// Three of them.
+/// Packs three such numbers.
 [[gnu::always_inline]] inline Ints packed(Ints x, Ints y, Ints z) {
-  const Ints signs(static_cast<std::int32_t>(0x80200800));  // n + 512 has the sign bit of n wrong
+  // n + 512 has the inverted sign bit of n.
+  const Ints signs(static_cast<std::int32_t>(0x80200800));
   return ((x << 22) | (y << 12) | (z << 2)) ^ signs;
 }
 
 #if defined(__AVX512F__)
-/// The numbers again, times a cell, and u added. A number's bits are put into the middle of the
-/// fraction of a power of two, where they count in cells, and that is taken away again, exactly:
+/// Unpacks the numbers, multiplies them by the cell, and adds u. The bits of a number are put into
+/// the middle of the fraction of a power of two, where their unit is the cell, and the power of two
+/// is subtracted, which is exact:
 ///
 ///     2^11 cell + (n + 512) cell  -  (2^11 + 512) cell  =  n cell
 ///
-/// Conversions and most of the shifts would be work for the units that add. Without instructions
-/// that take three operands, and registers for the constants, these are faster all the same.
+/// This relieves the units that add, which would have to do conversions and most of the shifts. On
+/// processors without three-operand logic and enough registers for the constants, conversions are
+/// faster.
 struct Unpacking {
   Ints middle = Ints(0x3ff << 12), power;
   Floats taken;
@@ -79,11 +83,12 @@ struct Unpacking {
 };
 #endif
 
-/// remembered: rows have its difference to that of the next. fetched: it is read, and then
-/// remembered.
+/// Where base comes from. remembered: rows hold its difference to the next row. fetched: base is
+/// read, and the differences are stored.
 enum class Base : std::uint8_t { remembered, fetched };
 
-/// Rows of the base, of the kind that those of u are. Where it is remembered nobody looks at them.
+/// The rows of base, found in the same way as those of u. They are not read where base is
+/// remembered.
 inline QuadRows rows_of_base(const Yarns& y, const YarnBlock&, const QuadRows& of_u, YarnScratch*) {
   return {y.base, of_u.slot, of_u.scratch, of_u.from_memory};
 }
@@ -96,22 +101,22 @@ inline FetchedRows rows_of_base(const Yarns& y, const YarnBlock& block, const Fe
   return fetched_rows(y, block, y.base, Scratch(scratch + rows_of(block) + 1, block));
 }
 
-/// Rows of both, before the first of a vector is wanted.
+/// Fetches the rows of u and of base. Called before the first row of a SIMD vector is read.
 template <Base kBase, class At>
 [[gnu::always_inline]] inline void fetch(const At& at, const At& base, std::uint32_t lane) {
   at.fetch(lane);
   if constexpr (kBase == Base::fetched) base.fetch(lane);
 }
 
-/// The base, from row to row.
+/// Follows the base from row to row.
 template <Base kBase, class At>
 struct BaseDown {
   const Yarns& y;
-  At at;  // base; not looked at where it is remembered
+  At at;  // rows of base; not read where it is remembered
   BaseStep* steps;
   std::uint32_t lane;
   FloatVector here = no_vector();
-  Ints all = Ints(0);  // that has been remembered
+  Ints all = Ints(0);  // the union of the bits of all differences
   Unpacking unpacking;
 
   [[gnu::always_inline]] BaseDown(const Yarns& yarns, const YarnBlock& block, At base,
@@ -123,7 +128,8 @@ struct BaseDown {
         unpacking(yarns.cell) {
     if constexpr (kBase == Base::fetched) here = at.get(0, lane);
   }
-  /// base + u, from particle k + 1 to particle k; without a constraint base counts for 0.
+  /// The difference of base + u from particle k + 1 to particle k, where u is given as a
+  /// difference. In a lane without a constraint base counts as 0.
   [[gnu::always_inline]] FloatVector step(std::uint32_t k, const FloatVector& u, Floats rest) {
     if constexpr (kBase == Base::remembered) {
       if (kFloats == kLanes && y.from_memory) fetch_ahead(k);
@@ -142,14 +148,15 @@ struct BaseDown {
     here = next;
     return difference + u;
   }
-  /// After all but the last row.
+  /// Called after all rows but the last.
   [[gnu::always_inline]] void end(std::uint32_t last) {
     if constexpr (kBase == Base::remembered) return;
     all.store_unaligned(steps[last].words);
   }
 
  private:
-  /// What a way down reads once is not to push displacements out of the caches.
+  /// Prefetches differences without keeping them in the caches, since they are read once and must
+  /// not displace u.
   [[gnu::always_inline]] void fetch_ahead(std::uint32_t row) const {
     constexpr std::uintptr_t kAhead = 32 * sizeof(BaseStep);
     constexpr int kToRead = 0, kNotAgain = 0;
@@ -158,7 +165,7 @@ struct BaseDown {
   }
 };
 
-/// Whether rows remember the present base.
+/// Whether the rows hold the differences of the present base.
 inline bool remembered(const Yarns& y, const YarnBlock& block) {
   if (y.moved) return false;
   Ints all(0);

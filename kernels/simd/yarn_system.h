@@ -1,27 +1,27 @@
-/// The linear system of all yarns, for conjugate gradients (engine/solvers/yarn/yarn_solver.h). By
-/// families, A of all constraints is
+/// The linear system of all yarns, for conjugate gradients (engine/solvers/yarn/yarn_solver.h).
+/// Divided by families, the matrix A of all constraints is
 ///
-///     | T_0  C   |     T_f   tridiagonal: the yarns of family f, which can be solved exactly
-///     | C^T  R   |     C     where yarns of the first family share particles with others
+///     | T_0  C   |     T_f   tridiagonal: the yarns of family f, which are solved exactly
+///     | C^T  R   |     C     the coupling of the first family with all others
 ///                      R     all other families, with blockdiag(T_1, T_2, ...) as preconditioner
 ///
-/// The first family is eliminated: what is solved is the Schur complement, S = R - C^T T_0^-1 C.
-/// With two families that takes half of the iterations that A takes with blockdiag(T_0, T_1), for
-/// the same work in each (Reid 1972: A has property A; the odd iterations are for nothing).
+/// The first family is eliminated, and conjugate gradients solve with the Schur complement S = R -
+/// C^T T_0^-1 C. With two families this takes half of the iterations that A takes with
+/// blockdiag(T_0, T_1), for the same work in each, because A has property A (Reid 1972).
 ///
-/// S p is never formed by entries. The impulses p push the particles by t = M^-1 J^T p (yarn_push,
-/// one family after the other). The first family's impulses take back what that changes its lengths
-/// by, t -= M^-1 J_0^T T_0^-1 J_0 t (yarn_eliminate), and each other constraint reads off what is
-/// left of its own change, J t (yarn_pull). With its errors on the right side as well, elimination
-/// gives the right side of the reduced system, and in the end the first family's own impulses.
+/// S p is computed without the entries of S. The impulses p move the particles by t = M^-1 J^T p
+/// (yarn_push, one family after the other). The impulses of the first family restore its lengths, t
+/// -= M^-1 J_0^T T_0^-1 J_0 t (yarn_eliminate), and each other constraint then finds its change J t
+/// (yarn_pull). With the errors of the first family included, the elimination gives the right side
+/// of the reduced system, and in the end the impulses of the first family.
 ///
-/// With scheme rattle A is that of the directions at the start, J(q) M^-1 J(q)^T, which is
-/// symmetric and off by what constraints have turned by since: each Newton step leaves that part of
-/// the error (simplified Newton), and the sweep after it, whose tridiagonal matrices are exact,
-/// some of it.
+/// With scheme rattle A = J(q) M^-1 J(q)^T has the directions q at the start of the substep. It is
+/// symmetric, but ignores what constraints have turned by since. Each Newton step (of the
+/// simplified Newton method) leaves that part of the error, which the sweep after it, whose
+/// tridiagonal matrices are exact, reduces.
 ///
-/// Velocities have the same system, directions and factors of the positions, with J v on the right
-/// (yarn_read).
+/// Velocities have the same system, with the directions and factors of the positions and the right
+/// side J v (yarn_read).
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,7 @@ namespace {
   return total;
 }
 
-/// Of absolute values. What is not a number may be lost: sums have it too.
+/// The larger of two absolute values. A NaN may be lost, but the sums have it too.
 [[gnu::always_inline]] inline Floats larger(Floats most, Floats v) {
   return xsimd::select(xsimd::abs(v) <= most, most, xsimd::abs(v));
 }
@@ -72,7 +72,7 @@ template <Along kAlong, Base kBase, class At>
   }
 }
 
-/// Directions, factors and errors at base + u; lambda = p = q = 0.
+/// Computes directions, factors and errors at base + u, and sets lambda = p = q = 0.
 void yarn_linearise(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
   with_rows(y, block, u, scratch, [&](auto at) {
     with_base(y, block, [&](auto where) {
@@ -117,8 +117,8 @@ template <class At>
   return most + sum(poison);
 }
 
-/// residual = J (base + u), of velocities; lambda = p = q = 0. Returns the largest; not a number if
-/// one is not finite.
+/// Sets residual = J (base + u), where base + u are velocities, and lambda = p = q = 0. Returns the
+/// largest residual, or NaN if one is not finite.
 float yarn_read(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
   float most = 0;
   with_rows(y, block, u, scratch,
@@ -126,7 +126,7 @@ float yarn_read(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* s
   return most;
 }
 
-/// lambda += alpha p, residual -= alpha q, z = T^-1 residual.
+/// Computes lambda += alpha p, residual -= alpha q and z = T^-1 residual.
 YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alpha) {
   YarnProducts result;
   alignas(64) float products[kLanes] = {};
@@ -160,7 +160,8 @@ YarnProducts yarn_precondition(const Yarns& y, const YarnBlock& block, float alp
   return result;
 }
 
-/// Down the yarns with p = z + beta p: push(row of the block, t of its particles).
+/// Goes down the yarns with p = z + beta p, and calls push(row of the block, M^-1 J^T p at its
+/// particles).
 template <class Push>
 [[gnu::always_inline]] inline void push_down(const Yarns& y, const YarnBlock& block,
                                              std::uint32_t lane, float beta, Push&& push) {
@@ -178,8 +179,8 @@ template <class Push>
   }
 }
 
-/// Of the first to push: t = M^-1 J^T p at its particles, whatever it was; 0 in lanes without
-/// yarns, or the scratch would be put back as it is.
+/// Sets t = M^-1 J^T p at the particles of the block. It serves the first family that pushes, and
+/// overwrites t. In lanes without yarns t becomes 0, since the scratch is copied back as a whole.
 void yarn_push_first(const Yarns& y, const YarnBlock& block, float beta, float* t,
                      YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
@@ -191,7 +192,7 @@ void yarn_push_first(const Yarns& y, const YarnBlock& block, float beta, float* 
   });
 }
 
-/// t += M^-1 J^T p.
+/// Adds M^-1 J^T p to t.
 void yarn_push(const Yarns& y, const YarnBlock& block, float beta, float* t, YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
@@ -221,7 +222,7 @@ template <class At>
   return product;
 }
 
-/// q = J t; returns p . q.
+/// Sets q = J t, and returns p . q.
 float yarn_pull(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* scratch) {
   alignas(64) float products[kLanes] = {};
   with_rows(y, block, t, scratch, [&](auto at) {
@@ -233,7 +234,7 @@ float yarn_pull(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* s
   return sum(products);
 }
 
-/// t -= M^-1 J^T lambda.
+/// Subtracts M^-1 J^T lambda from t.
 void yarn_finish(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
@@ -285,7 +286,7 @@ template <bool kErrors, class At>
   }
 }
 
-/// t -= M^-1 J^T T^-1 (J t), or with errors T^-1 (residual + J t).
+/// Subtracts M^-1 J^T T^-1 (J t) from t, or with errors M^-1 J^T T^-1 (residual + J t).
 void yarn_eliminate(const Yarns& y, const YarnBlock& block, float* t, bool errors,
                     YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
@@ -296,7 +297,7 @@ void yarn_eliminate(const Yarns& y, const YarnBlock& block, float* t, bool error
   });
 }
 
-/// u += t, of the floats first ... last - 1, multiples of kLanes.
+/// Adds t to u in the range [first, last) of floats, whose bounds are multiples of kLanes.
 void yarn_add(float* u, const float* t, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; i += kFloats) {
     (load(u + i) + load(t + i)).store_unaligned(u + i);

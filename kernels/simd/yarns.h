@@ -1,4 +1,5 @@
-/// Yarns: chains of constraints solved exactly, kLanes chains side by side, one in each lane.
+/// Yarns: chains of constraints that are solved exactly, kLanes of them at a time, one in each
+/// lane.
 ///
 /// Row k of a block holds particle k of every yarn, and the constraint that joins it to particle
 /// k + 1. Along a yarn the matrix A = J M^-1 J^T of the impulses is tridiagonal,
@@ -11,25 +12,24 @@
 ///     lambda_k = r_k b_k + m_{k+1} lambda_{k+1}
 ///     x_k += w_k (lambda_{k-1} n_{k-1} - lambda_k n_k)
 ///
-/// A pivot that all but vanishes belongs to a constraint that those before it imply (a straight
-/// yarn between two fixed ends): its impulse is taken as 0. Where a yarn has ended, or a lane has
-/// none, rows have rest length 0, and `joined`, which stands for w_k + w_{k+1}, is 0: they have no
-/// pivot.
+/// A pivot that vanishes up to rounding belongs to a constraint that those before it imply (in a
+/// straight yarn between two fixed ends), and its impulse is taken as 0. Beyond the end of a yarn,
+/// or in a lane without one, the rest length of a row is 0, and so is `joined`, which holds w_k +
+/// w_{k+1}: such rows have no pivot.
 ///
-/// Scheme rattle has impulses along s, the directions at the start of the substep, while errors
-/// change along n: A = J(x) M^-1 J(q)^T is not symmetric, but tridiagonal all the same,
+/// With scheme rattle, impulses act along s, the directions at the start of the substep, while
+/// errors change along n. A = J(x) M^-1 J(q)^T is then not symmetric, but still tridiagonal,
 ///
 ///     A(k, k) = (w_k + w_{k+1}) n_k . s_k,   A(k, k - 1) = -w_k n_k . s_{k-1} = -l_k,
 ///     A(k - 1, k) = -w_k n_{k-1} . s_k = -c_k
 ///
-/// so that m_k = l_k r_{k-1} on the way down, and c_k r_{k-1} on the way up.
+/// so that m_k is l_k r_{k-1} on the way down, and c_k r_{k-1} on the way up.
 ///
-/// Positions are base + u, two floats; what rows remember of the base: yarn_rows.h; where they find
-/// their particles: yarn_places.h.
+/// Positions are sums base + u of two floats (yarn_rows.h). How rows find their particles:
+/// yarn_places.h.
 ///
-/// One chain per lane is bound by work, not by the latency of its recurrence: two vectors at a time
-/// took 1.4 times as long on AVX2 for want of registers, and as long with what they carry from row
-/// to row left in memory.
+/// The loops handle one SIMD vector at a time: they are limited by the number of operations and not
+/// by the latency of the recurrence, and two vectors at a time need too many registers.
 #pragma once
 
 #include <limits>
@@ -41,32 +41,31 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-/// Of w_k + w_{k+1}. That of a straight yarn between fixed ends, 0, comes out as 3e-7 at most,
-/// however long it is. (1e-4: more velocities of a taut sheet under a sphere cannot be corrected;
-/// 1e-5: more steps of a hub are left to scheme paper.)
+/// The least pivot, as a share of w_k + w_{k+1}. For a straight yarn between fixed ends the last
+/// pivot is 0, and is computed as at most 3e-7, however long the yarn is.
 constexpr float kLeastPivot = 3e-5f;
-/// Beyond that: what is less has no inverse among floats.
+/// No smaller number has an inverse among floats.
 constexpr float kLeastNormal = std::numeric_limits<float>::min();
 
-/// Ends that coincide are taken to be this share of a cell apart, in y. What it changes in others
-/// is less than what floats round off a length.
+/// Added to the y of all differences, in cells, so that ends that coincide have a direction. The
+/// change is smaller than the rounding error of a length.
 constexpr float kApart = 0x1p-24f;
 
-/// present: impulses act along the directions that errors change along. start: along those at the
-/// start of the substep. frozen: errors too are taken to change along those, so that A is symmetric
-/// and stays (yarn_system.h).
+/// The direction along which impulses act. present: that along which errors change. start: that at
+/// the start of the substep. frozen: errors are also taken to change along the direction at the
+/// start, so that A is symmetric and constant (yarn_system.h).
 enum class Along : std::uint8_t { present, start, frozen };
 
 struct YarnLink {
   FloatVector n;
   Floats error;
-  Floats size;        // of A(k, k) over w_k + w_{k+1}: n . n; n's length if along is another
-  FloatVector along;  // what its impulse acts along
+  Floats size;        // the scale of A(k, k) / (w_k + w_{k+1}): n . n, or the length of n
+  FloatVector along;  // the direction of the impulse
   Floats off;         // length - rest
 };
 
-/// v where there is a constraint, else 0. On AVX-512 by the sign of -rest: comparisons into masks
-/// are work for the units that multiply.
+/// Returns v in lanes with a constraint, and 0 in others. On AVX-512 it uses the sign of -rest,
+/// because comparisons into masks occupy the units that multiply.
 [[gnu::always_inline]] inline Floats where_present(Floats rest, Floats v) {
 #if defined(__AVX512F__)
   const Ints none(0), sign = (none - same_bits<Ints>(rest)) >> 31;
@@ -77,7 +76,8 @@ struct YarnLink {
 #endif
 }
 
-/// d: from particle k + 1 to particle k. Should it be 0 all the same any direction separates them.
+/// d is the vector from particle k + 1 to particle k. If its length vanishes, any direction serves
+/// to separate them.
 [[gnu::always_inline]] inline YarnLink unit_link(const FloatVector& d, Floats rest) {
   const Floats one(1.f), length = xsimd::sqrt(dot(d, d));
   const auto distinct = length >= Floats(kLeastNormal);
@@ -89,8 +89,9 @@ struct YarnLink {
   return {n, off, one, n, off};
 }
 
-/// The same row of the system times the constraint's length, n = d, and its impulse over it: a
-/// division less. Without a constraint they are anything finite.
+/// The same row of the system multiplied by the length of the constraint, so that n = d and the
+/// impulse is divided by the length. This saves a division. In lanes without a constraint the
+/// values are arbitrary but finite.
 template <Along kAlong>
 [[gnu::always_inline]] inline YarnLink scaled_link(const FloatVector& d, Floats rest) {
   const Floats square = dot(d, d);
@@ -111,11 +112,11 @@ template <Along kAlong>
   return {d.x, d.y + Floats(kApart * y.cell), d.z};
 }
 
-/// Of a row: the factors of what it passes on.
+/// The factors of a row.
 struct Factors {
   Floats down, up;
   FloatMask regular;
-  Floats quotient;  // r, where regular
+  Floats quotient;  // r where the pivot is regular
 
   [[gnu::always_inline]] Floats reciprocal() const {
     return xsimd::select(regular, quotient, Floats(0.f));
@@ -128,16 +129,17 @@ struct Factors {
 /// The factorisation, row by row.
 template <Along kAlong>
 struct Elimination {
-  FloatVector n = no_vector(), along = no_vector();  // of the row above
-  Floats quotient = Floats(0.f);                     // r, but where the pivot was not regular
+  FloatVector n = no_vector(), along = no_vector();  // of the previous row
+  Floats quotient = Floats(0.f);                     // r where its pivot was regular
   FloatMask regular = FloatMask(false);
 
-  /// Takes the next row; w: of its particle; joined: 0 where it has no constraint, and so no pivot.
+  /// Takes the next row. w is the inverse mass of its particle; joined is 0 where it has no
+  /// constraint, and thus no pivot.
   [[gnu::always_inline]] Factors step(const YarnLink& next, Floats w, Floats joined) {
     constexpr bool kSymmetric = kAlong != Along::start;
     const Floats c = w * dot(n, next.along);
     const Floats l = kSymmetric ? c : w * dot(along, next.n);
-    // Selected here, not from the quotient, which would have to wait for the comparison.
+    // Selecting products avoids that the quotient has to wait for the comparison.
     const Floats none(0.f);
     const Floats down = xsimd::select(regular, l * quotient, none);
     const Floats up = kSymmetric ? down : xsimd::select(regular, c * quotient, none);
@@ -151,14 +153,14 @@ struct Elimination {
   }
 };
 
-/// work(where the base is)
+/// Calls work with a constant that tells where base comes from.
 template <class Work>
 [[gnu::always_inline]] inline void with_base(const Yarns& y, const YarnBlock& block, Work&& work) {
   if (remembered(y, block)) return work(std::integral_constant<Base, Base::remembered>());
   return work(std::integral_constant<Base, Base::fetched>());
 }
 
-/// Directions for scheme rattle, at base + u.
+/// Stores the directions at base + u for scheme rattle.
 void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
   with_rows(y, block, u, scratch, [&](auto at) {
     const auto base = rows_of_base(y, block, at, scratch);
@@ -179,15 +181,15 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScrat
   });
 }
 
-/// Down the yarns: take(row of the block, u of its particle, link, factors) for each link =
-/// make_link(d, rest). What is done in each row must be inlined by force, here and in go_up: GCC 12
-/// calls a lambda that it finds in two places, and what that one captures then lives in memory (1.3
-/// times as long).
+/// Goes down the yarns, and calls take(row of the block, u of its particle, link, factors) for each
+/// row, where link = make_link(d, rest). The lambdas must be inlined by force, here and in go_up:
+/// GCC 12 does not inline a lambda that is called in two places, and its captures then live in
+/// memory.
 template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
 [[gnu::always_inline]] inline void go_down(const Yarns& yarns, const YarnBlock& block, At at,
                                            At base, std::uint32_t lane, MakeLink&& make_link,
                                            Take&& take) {
-  // Stores of vectors could be to what references lead to, which would be read again.
+  // A copy, since stores of vectors could change what a reference leads to.
   const Yarns y = yarns;
   const std::uint32_t first = block.first, last = rows_of(block) - 1;
   Elimination<kAlong> elimination;
@@ -213,7 +215,7 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
        Factors{none, none, FloatMask(false), none});
 }
 
-/// What a way up needs of those of a row.
+/// The factors of a row that the back substitution needs.
 struct RowFactors {
   FloatVector n;
   Floats m;
@@ -224,14 +226,15 @@ struct RowFactors {
   };
 }
 
-/// Up again: move(row of the block, its inverse mass, its impulse). factors(row): n and m.
+/// Goes up the yarns, and calls move(row of the block, its inverse mass, the sum of its impulses).
+/// factors(row) returns n and m.
 template <class GetFactors, class Move>
 [[gnu::always_inline]] inline void go_up(const Yarns& yarns, const YarnBlock& block,
                                          std::uint32_t lane, const ScratchRow* scratch,
                                          GetFactors&& factors, Move&& move) {
   const Yarns y = yarns;  // as in go_down
   const std::uint32_t first = block.first;
-  FloatVector below = no_vector();  // impulse of the row's own constraint
+  FloatVector below = no_vector();  // impulse of the constraint to the next row
   Floats lambda(0.f), m(0.f);
   for (std::uint32_t k = rows_of(block) - 1; k > 0; --k) {
     lambda = fused(m, lambda, load(scratch[k - 1].y));
@@ -244,7 +247,7 @@ template <class GetFactors, class Move>
   move(0, load(kind_of(y, first).inverse_mass + lane), no_vector() - below);
 }
 
-/// The right side, eliminated on the way down.
+/// The forward elimination of the right side.
 struct Substitution {
   Floats b = Floats(0.f);
 
@@ -279,19 +282,20 @@ template <Along kAlong, Base kBase, class At>
   }
 }
 
-/// What lengths are out by before a solve: rest | length - rest |.
+/// Measures the errors of lengths before a solve, as rest | length - rest |.
 struct Before {
   Floats enough;
-  Floats beyond = Floats(0.f);  // the most by which one is out beyond that
+  Floats beyond = Floats(0.f);  // the most by which an error exceeds that share
 
   [[gnu::always_inline]] void take(const YarnLink& link, Floats rest, Floats square) {
     beyond = xsimd::max(beyond, fused_from(enough, square, rest * xsimd::abs(link.off)));
   }
 };
 
-enum class Visit : std::uint8_t { first, again };  // of a block
+/// The first visit of a block fetches its rows; later ones find them in place.
+enum class Visit : std::uint8_t { first, again };
 
-/// Down a block. Returns whether no length is out by more than the share `quiet`.
+/// Eliminates a block forwards. Returns whether no length has an error above the share `quiet`.
 template <Base kBase, Visit kVisit, class At>
 [[gnu::always_inline]] inline bool find_impulses(const Yarns& y, const YarnBlock& block, At at,
                                                  At base, const Scratch& all, float quiet) {
@@ -316,7 +320,7 @@ template <Base kBase, Visit kVisit, class At>
   return is_quiet;
 }
 
-/// The same from what the last solve kept.
+/// The same with the differences that the last solve kept in the scratch.
 [[gnu::always_inline]] inline void find_impulses_again(const Yarns& y, const YarnBlock& block,
                                                        const Scratch& all) {
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
@@ -333,13 +337,14 @@ template <Base kBase, Visit kVisit, class At>
   }
 }
 
-/// What lengths are out by after a solve: | length^2 - rest^2 | = 2 rest | length - rest |, nearly.
+/// Measures the errors of lengths after a solve, as | length^2 - rest^2 |, which is nearly 2 rest |
+/// length - rest |.
 struct After {
   Floats allowed;
   Floats beyond = Floats(0.f);
-  FloatVector below = no_vector();  // what the next particle was moved by
+  FloatVector below = no_vector();  // the motion of the next particle
 
-  /// d before it, and what the row's own particle is moved by. Returns d after it.
+  /// Takes d before the solve and the motion of the particle of the row. Returns d after the solve.
   [[gnu::always_inline]] FloatVector take(const FloatVector& d, const FloatVector& by, Floats rest,
                                           Floats square) {
     FloatVector now = d + (by - below);
@@ -351,8 +356,8 @@ struct After {
   }
 };
 
-/// keep(row, lane, d, u): what they are from now on. Returns whether a length is out by more than
-/// the share `enough`.
+/// Substitutes backwards, and calls keep(row, lane, d, u) with the new values. Returns whether a
+/// length has an error above the share `enough`.
 template <class At, class Keep>
 [[gnu::always_inline]] inline bool apply_impulses(const Yarns& y, const YarnBlock& block, At at,
                                                   const Scratch& all, float enough, Keep&& keep) {
@@ -375,12 +380,10 @@ template <class At, class Keep>
   return out;
 }
 
-/// Where nothing is out by a hundredth of `enough` nothing is done. (By all of it: what a block may
-/// keep comes back as speed: sphere_drop in 8 substeps gains 2 mJ instead of less than 0.03.) A
-/// third solve, and all that follow, stay within the scratch, or the rows in place: 0.8 times as
-/// long in the caches, 0.65 times where yarns have a thousand particles. (Kept by the first solve
-/// already: hang 40 x 40 takes 1.03 times as long, 300 x 300 0.97. A link whose ends a solve brings
-/// together exactly is left to the next sweep.)
+/// Solves a block until its errors are within `enough`, at most `most` times. A block whose errors
+/// are below a hundredth of `enough` is not solved, because larger errors that stay come back as
+/// speed. From the third solve on everything stays in the scratch, or in place. A link whose ends a
+/// solve brings together exactly is left to the next sweep.
 template <Base kBase, class At>
 [[gnu::always_inline]] inline Swept sweep_watched(const Yarns& y, const YarnBlock& block, At at,
                                                   At base, const Scratch& scratch, float enough,

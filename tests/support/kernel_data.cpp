@@ -88,8 +88,8 @@ void KernelData::make_padding(std::uint32_t c) {
   scale[c] = 0;
 }
 
-simd::Relaxation KernelData::relaxation(float threshold) {
-  simd::Relaxation r;
+simd::BlockRelaxation KernelData::relaxation(float threshold) {
+  simd::BlockRelaxation r;
   r.u = {u.data(), stride(), 1};
   r.blocks = blocks.data();
   r.impulse = impulse.data();

@@ -53,7 +53,7 @@ struct KernelData {
   bool is_padding(std::uint32_t c) const { return scale[c] == 0; }
   void make_padding(std::uint32_t c);
 
-  simd::Relaxation relaxation(float threshold);
+  simd::BlockRelaxation relaxation(float threshold);
   simd::Geometry geometry();
   simd::Motion motion(bool forces);
 

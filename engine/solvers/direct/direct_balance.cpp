@@ -10,10 +10,10 @@ namespace {
 using kernels::Vector;
 using kernels::VectorsView;
 
-/// In tolerances: less of an imbalance is none.
+/// In units of the tolerance: a smaller imbalance does not count.
 constexpr double kNegligible = 0.1;
-/// Of the motion. Nearly all random steps of ropes leave a hundredth; sheets that whip about in
-/// long steps leave 0.6; those that are thrown leave 0.9 and more.
+/// The largest share of the motion that impulses may leave unexplained. Long steps of sheets that
+/// whip about leave 0.6 of it, and steps that are thrown off leave 0.9 and more.
 constexpr double kMostUnexplained = 0.75;
 
 }  // namespace

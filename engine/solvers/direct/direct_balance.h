@@ -1,12 +1,13 @@
-/// Whether impulses explain a motion. Of all positions that satisfy the constraints those nearest
-/// to the prediction x~, masses weighing, are where
+/// Checks whether impulses explain a motion. Among all positions that satisfy the constraints,
+/// those nearest to the prediction x~ in the norm weighted by masses satisfy
 ///
 ///     g = M (x - x~) + J^T lambda = 0,     J at x itself
 ///
-/// Each solve acts along the directions before it, so that a turn of theta leaves about sin theta
-/// of its motion in g. Where A is nearly singular and the errors are inconsistent (more ropes than
-/// a flat net has room for) a solve throws particles far to the side, and those after it converge
-/// over there: every constraint is satisfied, and the way there is energy out of nothing.
+/// The impulses of a solve act along the directions before it, so that a turn of theta leaves about
+/// sin theta of its motion in g. Where A is nearly singular and the errors are inconsistent (more
+/// ropes than a flat net has room for), a solve throws particles far to the side, and the following
+/// solves converge there: every constraint is satisfied, but the motion has gained energy out of
+/// nothing.
 #pragma once
 
 #include "engine/solvers/direct/direct_system.h"
@@ -17,11 +18,12 @@ class DirectBalance {
  public:
   explicit DirectBalance(const Model& model) : predicted_(model.slots()), g_(model.slots()) {}
 
-  /// From here on impulses are summed.
+  /// Takes the positions x as the prediction. The system sums impulses from here on.
   void start(kernels::VectorsView x);
-  /// Finds g at the positions x that were measured last; the largest |W g| in tolerances.
+  /// Finds g at the positions x, which were measured last. Returns the largest |W g| in units of
+  /// the tolerance.
   double find(const DirectSystem& system, kernels::VectorsView x);
-  /// Whether x is the end of a motion that its impulses explain.
+  /// Whether the impulses explain the motion from the prediction to x.
   bool is_explained(const DirectSystem& system, kernels::VectorsView x);
 
   kernels::Vectors& g() { return g_; }

@@ -10,7 +10,8 @@ namespace {
 
 using kernels::Vector;
 
-constexpr double kLinkShift = 1e-8;  // of w_a + w_b: the spring of a link between bodies
+/// The compliance of a link between bodies, as a share of w_a + w_b.
+constexpr double kLinkShift = 1e-8;
 
 double compliance(const DirectSystem& system, const Tie& tie) {
   return kLinkShift * (system.model.inverse_mass[tie.a] + system.model.inverse_mass[tie.b]);
@@ -45,7 +46,7 @@ bool DirectBodies::solve(DirectSystem& system, DirectFactor& factor) {
   return true;
 }
 
-/// The bodies that something acts on. false: too many for this method.
+/// Chooses the bodies that something acts on. Returns false if they are too many for this method.
 bool DirectBodies::choose(const DirectSystem& system) {
   const DirectLayout& layout = system.layout;
   bodies_.clear();
@@ -69,7 +70,7 @@ bool DirectBodies::choose(const DirectSystem& system) {
   return bodies_.size() <= kMostBodies;
 }
 
-/// B of one body: how the errors change with its motion.
+/// Fills the columns of B for one body: the change of the errors with its motion.
 void DirectBodies::fill_column(const DirectSystem& system, std::size_t body) {
   const DirectLayout& layout = system.layout;
   const std::size_t rows = layout.rows();
@@ -124,7 +125,7 @@ void DirectBodies::fill_balance(const DirectSystem& system, DirectFactor& factor
   }
 }
 
-/// A sphere in contact carries the inertia of the particle along n.
+/// A sphere that touches a particle carries the inertia of the particle along n.
 void DirectBodies::balance_touches(const DirectSystem& system) {
   const std::size_t size = motion_.size();
   for (const Tie& touch : system.touches) {
@@ -166,7 +167,7 @@ void DirectBodies::balance_spring(const DirectLayout& layout, const Spring& spri
   }
 }
 
-/// Cholesky, in place.
+/// Solves the small system by a Cholesky factorisation in place.
 bool DirectBodies::solve_balance() {
   const std::size_t size = motion_.size();
   double* const l = balance_.data();

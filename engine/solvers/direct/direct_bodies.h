@@ -1,16 +1,18 @@
-/// Bodies (spheres, and particles of many constraints: engine/solvers/direct/direct_layout.h) are
-/// unknowns beside the matrix, by their motions y. With the bodies' motion the errors are e + B y,
-/// so lambda = A^-1 (e + B y), and the balance of impulses of the bodies gives
+/// Bodies (spheres, and particles of many constraints: engine/solvers/direct/direct_layout.h) have
+/// their motions y as unknowns beside the matrix. When the bodies move, the errors are e + B y, so
+/// that lambda = A^-1 (e + B y), and the balance of the bodies' impulses gives
 ///
 ///     (W^-1 + B^T A^-1 B + contacts) y = -B^T A^-1 e - contacts,
 ///
-/// three back-substitutions for each body. Links between bodies have no inverse mass in A: they act
-/// in this small system as very stiff springs, whose error the next iteration takes.
+/// which takes three back-substitutions for each body. Links between bodies have no row in A: they
+/// act in this small system as very stiff springs, whose remaining error the next iteration
+/// removes.
 ///
-/// So does a second contact of a particle p, of the sphere s' with the normal n', while the touch
-/// of s with n holds it: p moves along n as s does, so that the spring is one between the spheres,
-/// of the error e' - c (e + n . y) + n' . y' with c = n . n', softened by the way that p may give,
-/// w_p (1 - c^2). What its rows do to p across n comes with the next iteration.
+/// A second contact of a particle p, with the sphere s' and the normal n', is also a spring while
+/// the first contact, with s and n, holds it. The particle moves along n as s does, so that the
+/// spring acts between the two spheres. Its error is e' - c (e + n . y) + n' . y' with c = n . n',
+/// and its compliance includes the inverse mass w_p (1 - c^2) with which p can give way. What the
+/// rows of p do across n is left to the next iteration.
 #pragma once
 
 #include "engine/solvers/direct/direct_factor.h"
@@ -18,7 +20,8 @@
 
 namespace weft {
 
-/// An impulse (error + n[0] . y[0] + n[1] . y[1]) / compliance, y the motions of two slots.
+/// A spring between two slots with the motions y[0] and y[1]. Its impulse is (error + n[0] . y[0] +
+/// n[1] . y[1]) / compliance.
 struct Spring {
   std::uint32_t slot[2];
   kernels::Vector n[2];
@@ -31,11 +34,11 @@ class DirectBodies {
 
   explicit DirectBodies(const DirectLayout& layout) : column_of_(layout.bodies.size()) {}
 
-  /// lambda, being A^-1 e, becomes A^-1 (e + B y). false: the system is not solvable.
+  /// Turns lambda = A^-1 e into A^-1 (e + B y). Returns false if the system cannot be solved.
   bool solve(DirectSystem& system, DirectFactor& factor);
-  /// y of what stands at a slot.
+  /// The motion y of the body at a slot; 0 if there is none.
   kernels::Vector motion(const DirectLayout& layout, std::uint32_t slot) const;
-  /// The impulse of a tie or of a second contact, the bodies having moved.
+  /// The impulse of a tie or of a second contact after the motion of the bodies.
   double impulse_of_tie(const DirectSystem& system, const Tie& tie) const;
   double impulse_of_second(const DirectSystem& system, const Tie& second) const;
   std::size_t bytes() const;
@@ -49,8 +52,8 @@ class DirectBodies {
   double impulse(const DirectLayout& layout, const Spring& spring) const;
   bool solve_balance();
 
-  std::vector<std::uint32_t> bodies_;     // slots of those that take part
-  std::vector<std::uint32_t> column_of_;  // per body of the layout
+  std::vector<std::uint32_t> bodies_;     // slots of the bodies that take part
+  std::vector<std::uint32_t> column_of_;  // per body of the layout: its place in bodies_
   std::vector<double> columns_;           // B, three columns for each body
   std::vector<double> solved_;            // A^-1 B
   std::vector<double> balance_, motion_;  // the small system

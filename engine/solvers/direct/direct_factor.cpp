@@ -48,7 +48,7 @@ void DirectFactor::eliminate(std::size_t i) {
   kernels_.eliminate_front(front);
 }
 
-/// Column by column, to the panel or to the update of the parent.
+/// Adds the update of a child, column by column, to the panel or to the update of its parent.
 void DirectFactor::add_update(const DirectFront& child, std::size_t number,
                               const simd::Front& parent) const {
   const auto place = layout_.fronts.place[number];

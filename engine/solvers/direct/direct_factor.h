@@ -1,12 +1,12 @@
-/// A = L D L^T on the fixed fronts of a DirectLayout. A front is assembled from the matrix's
-/// entries in its columns and from what its children pass on, eliminated densely
-/// (kernels/simd/fronts.h), and passes on an update itself. Nothing is allocated after
-/// construction.
+/// The factorisation A = L D L^T on the fixed fronts of a DirectLayout. A front is the sum of the
+/// matrix entries in its columns and the updates of its children. It is eliminated as a dense
+/// matrix (kernels/simd/fronts.h), and its own update goes to its parent. Nothing is allocated
+/// after construction.
 ///
-/// Redundant constraints make A singular: the pivot of the last of them vanishes but for rounding.
-/// The diagonal w_a + w_b is raised by kShift of itself, which the outer iteration corrects with
-/// its next direction update; and a pivot that is hardly more than that (kLeastPivot) belongs to a
-/// constraint that the others imply already: its impulse is taken as 0.
+/// Redundant constraints make A singular: the pivot of the last of them vanishes up to rounding.
+/// The diagonal w_a + w_b is therefore raised by the share kShift, which the outer iteration
+/// corrects when it renews directions. A pivot that is hardly larger than that (kLeastPivot)
+/// belongs to a constraint that the others imply, and its impulse is taken as 0.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class DirectFactor {
 
   DirectFactor(const DirectLayout& layout, const simd::Table& kernels);
 
-  /// entry(e): the value of entry e of the layout; diagonal(k): A(k, k).
+  /// entry(e) returns the value of entry e of the layout, and diagonal(k) returns A(k, k).
   template <class Entry, class Diagonal>
   void factorise(Entry&& entry, Diagonal&& diagonal) {
     for (std::size_t i = 0; i < layout_.fronts.fronts.size(); ++i) {
@@ -40,7 +40,7 @@ class DirectFactor {
       eliminate(i);
     }
   }
-  /// b = A^-1 b.
+  /// Replaces b by A^-1 b.
   void solve(double* b);
   std::size_t bytes() const;
 
@@ -52,10 +52,10 @@ class DirectFactor {
 
   const DirectLayout& layout_;
   const simd::Table& kernels_;
-  kernels::AlignedVector<double> lower_;               // panels
+  kernels::AlignedVector<double> lower_;               // the panels of all fronts
   kernels::AlignedVector<double> reciprocal_, least_;  // per padded column
-  kernels::AlignedVector<double> updates_[2];          // stacks
-  kernels::AlignedVector<double> scratch_, part_;      // of a panel; of a right side
+  kernels::AlignedVector<double> updates_[2];          // stacks of even and odd levels
+  kernels::AlignedVector<double> scratch_, part_;      // for a panel; for a right side
 };
 
 }  // namespace weft

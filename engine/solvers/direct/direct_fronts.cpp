@@ -11,14 +11,14 @@
 namespace weft {
 namespace {
 
-/// A front before it has a place.
+/// A front before it is stored.
 struct Draft {
   std::uint32_t first, count;
   std::vector<std::uint32_t> below;
 };
 
-/// ns, fitted: of a front, of a value that is assembled or passed on, of a product. The optimum is
-/// flat.
+/// Estimated times in ns: for a front, for a value that is assembled or passed on, and for a
+/// product.
 constexpr double kFrontTime = 300, kValueTime = 0.6, kProductTime = 0.12;
 
 double estimated_time(std::size_t count, std::size_t rows_below) {
@@ -30,7 +30,7 @@ double estimated_time(std::size_t count, std::size_t rows_below) {
   return kFrontTime + kValueTime * (0.5 * passed * passed + 0.25 * panel) + kProductTime * products;
 }
 
-/// Whether a front should become part of its parent, which stands right behind it.
+/// Whether a front should become part of its parent, which directly follows it.
 bool is_worth_merging(const Draft& child, const Draft& parent) {
   if (child.below.empty() || child.below[0] >= parent.first + parent.count) return false;
   return estimated_time(child.count + parent.count, parent.below.size()) <=
@@ -46,10 +46,11 @@ void unite(std::vector<std::uint32_t>& rows, std::span<const std::uint32_t> more
   rows.swap(scratch);
 }
 
-/// Column by column: its pattern is that of A and of its children, itself left out.
+/// The pattern of each column is the union of its pattern in A and those of its children, without
+/// the column itself.
 std::vector<Draft> draft_fronts(const Lists& neighbours) {
   std::vector<Draft> drafts;
-  std::vector<std::uint32_t> open, scratch, sorted;  // open: drafts whose parent has not come
+  std::vector<std::uint32_t> open, scratch, sorted;  // open: drafts without a parent so far
   for (std::uint32_t k = 0; k < neighbours.size(); ++k) {
     Draft front{k, 1, {}};
     sorted.assign(neighbours[k].begin(), neighbours[k].end());
@@ -91,7 +92,7 @@ void store_fronts(const std::vector<Draft>& drafts, DirectFronts& f) {
   }
 }
 
-/// The row of a front's panel that is this row of the matrix.
+/// The row of the panel of a front that holds this row of the matrix.
 std::uint32_t row_in(const DirectFronts& f, std::uint32_t front, std::uint32_t row) {
   const DirectFront& own = f.fronts[front];
   if (row < own.first + own.count) return row - own.first;
@@ -120,8 +121,8 @@ void store_tree(DirectFronts& f) {
   });
 }
 
-/// Updates wait on two stacks, of even and of odd levels, so that a front's is put on one while its
-/// children's are taken from the other.
+/// Updates wait on two stacks, one for even and one for odd levels: the update of a front is pushed
+/// on one while those of its children are popped from the other.
 void place_updates(DirectFronts& f) {
   for (std::size_t i = f.fronts.size(); i-- > 0;) {
     DirectFront& front = f.fronts[i];

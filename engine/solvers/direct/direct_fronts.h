@@ -1,12 +1,13 @@
 /// The fronts of a sparse factorisation A = L D L^T (multifrontal: Duff and Reid 1983).
 ///
-/// Columns of L with nearly the same pattern form a front, eliminated together as a dense matrix
-/// (kernels/simd/fronts.h). What it leaves for the rows below its columns, its update, is added to
-/// the front that eliminates the first of these rows, its parent. So the fronts are a tree, and
-/// they stand in an order that has children before parents and every subtree in one stretch.
+/// Columns of L with nearly the same pattern form a front, and are eliminated together as a dense
+/// matrix (kernels/simd/fronts.h). The update is what a front leaves for the rows below its
+/// columns. It is added to the parent, which is the front that eliminates the first of these rows.
+/// The fronts thus form a tree. They are sorted so that children come before parents and every
+/// subtree is contiguous.
 ///
-/// Merging a front with its parent makes more zeros to compute with and fewer updates to add: it is
-/// done where an estimate of the time says so.
+/// Merging a front with its parent adds zeros to compute with and saves an update to add. Fronts
+/// are merged where an estimate of the time is in favour of it.
 #pragma once
 
 #include <cstddef>
@@ -17,18 +18,18 @@
 
 namespace weft {
 
-/// Eight rows are a group: triangles and what is below them are padded to whole groups, columns to
-/// fours.
+/// A front, padded: the rows of the triangle and the rows below it to multiples of kFrontRows, the
+/// columns to multiples of four.
 struct DirectFront {
-  std::uint32_t first = 0, count = 0;  // columns of the matrix
+  std::uint32_t first = 0, count = 0;  // its columns in the matrix
   std::uint32_t width = 0;             // count, padded
   std::uint32_t triangle = 0;          // rows of the triangle, padded
   std::uint32_t below = 0;             // rows below, padded
-  std::uint32_t parent = 0;            // kNoIndex: none
-  std::size_t panel = 0;               // of its first value in L
-  std::size_t column = 0;              // of its first column among all padded columns
-  std::size_t update = 0;              // of its first value in the stack of its level
-  std::uint32_t level = 0;             // 0 or 1, the parent's being the other
+  std::uint32_t parent = 0;            // kNoIndex at a root
+  std::size_t panel = 0;               // index of its first value in L
+  std::size_t column = 0;              // index of its first column among all padded columns
+  std::size_t update = 0;              // index of its first value in the stack of its level
+  std::uint32_t level = 0;             // parity of its depth, which selects a stack
 
   std::size_t stride() const { return std::size_t{triangle} + below; }
 };
@@ -36,24 +37,24 @@ struct DirectFront {
 struct DirectFronts {
   std::vector<DirectFront> fronts;
   Lists rows;                           // per front: the rows below its columns, ascending
-  Lists place;                          // where these stand in the parent: rows of its panel
+  Lists place;                          // per front: these rows as rows of the parent
   Lists children;                       // per front
-  std::size_t values = 0, columns = 0;  // padded, of all panels
-  std::size_t most_values = 0;          // of one panel
-  std::size_t most_rows = 0;            // of one panel
-  std::size_t stack[2] = {0, 0};        // updates waiting, at most, on even and on odd levels
+  std::size_t values = 0, columns = 0;  // padded, in all panels
+  std::size_t most_values = 0;          // in one panel
+  std::size_t most_rows = 0;            // in one panel
+  std::size_t stack[2] = {0, 0};        // the size of the stack of each level
 
-  /// Of the entry (row, column) of the lower triangle: its place among all values.
+  /// The index of the entry (row, column) of the lower triangle among all values.
   std::size_t place_of(std::uint32_t row, std::uint32_t column) const;
   std::size_t bytes() const;
 };
 
-/// The parent of each column in the tree of elimination, kNoIndex at a root (Liu 1990).
-/// neighbours: per row those it has an entry with.
+/// The parent of each column in the elimination tree, kNoIndex at a root (Liu 1990). `neighbours`
+/// lists, for each row, the rows with which it has an entry.
 std::vector<std::uint32_t> elimination_tree(const Lists& neighbours);
-/// The columns in an order that has every subtree in one stretch, children before parents.
+/// The columns in postorder: every subtree is contiguous, and children come before parents.
 std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent);
-/// Of a matrix that is in such an order.
+/// Makes the fronts of a matrix that is in postorder.
 DirectFronts make_direct_fronts(const Lists& neighbours);
 
 }  // namespace weft

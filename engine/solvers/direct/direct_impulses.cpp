@@ -6,7 +6,7 @@ namespace {
 using kernels::Vector;
 using kernels::VectorsView;
 
-/// Particles in contact are moved out of it: the errors that this brings.
+/// Adds the errors that arise from moving particles out of their contacts.
 void absorb_touches(DirectSystem& s) {
   for (const Tie& touch : s.touches) {
     for (const std::uint32_t row : s.layout.rows_at[touch.b]) {
@@ -56,10 +56,11 @@ void clamp_ties(DirectSystem& s, const DirectBodies& bodies) {
   }
 }
 
-/// A contact's impulse is what its particle, moved by all others, lacks to move with the sphere.
+/// The impulse of a contact is what its particle lacks to move with the sphere after all other
+/// impulses.
 void clamp_touches(DirectSystem& s, const DirectBodies& bodies) {
   for (Tie& touch : s.touches) {
-    Vector impulse{0, 0, 0};  // on the particle, of its rows and further contacts
+    Vector impulse{0, 0, 0};  // on the particle, from its rows and second contacts
     for (const Tie& second : s.seconds) {
       if (second.b == touch.b) impulse = impulse + second.impulse * second.n;
     }
@@ -73,8 +74,8 @@ void clamp_touches(DirectSystem& s, const DirectBodies& bodies) {
   }
 }
 
-/// As long as no direction turns, the factor serves again: to velocities after positions, and to
-/// all solves of a rattle step.
+/// Factorises the matrix only if a direction has turned: the factor serves for velocities after
+/// positions, and for all solves of a step by scheme rattle.
 void factorise(DirectSystem& s, DirectFactor& factor) {
   if (!s.turned) return;
   s.turned = false;

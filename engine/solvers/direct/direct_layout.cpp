@@ -27,7 +27,7 @@ void find_bodies(const Model& model, DirectLayout& layout) {
   }
 }
 
-/// The inverse mass of a particle inside the matrix.
+/// The inverse mass of a particle in the matrix, where that of a body is 0.
 double weight(const Model& model, const DirectLayout& layout, std::uint32_t p) {
   return layout.body_of[p] == kNoIndex ? model.inverse_mass[p] : 0;
 }
@@ -45,8 +45,8 @@ void for_each_neighbour(const Model& model, const DirectLayout& layout, const Li
   }
 }
 
-/// The matrix's pattern: per member, by its number, those it has an entry with. What Eigen cannot
-/// count, tens of gigabytes, is more than there is memory for.
+/// The pattern of the matrix: for each member the numbers of those with which it has an entry. More
+/// entries than Eigen can count would need tens of gigabytes, and are treated as a lack of memory.
 Lists neighbours_of(const Model& model, const DirectLayout& layout, const Lists& at,
                     std::span<const std::uint32_t> members) {
   std::vector<std::uint32_t> number(model.constraints.size(), kNoIndex), list;
@@ -64,7 +64,7 @@ Lists neighbours_of(const Model& model, const DirectLayout& layout, const Lists&
   return neighbours;
 }
 
-/// In the order in which eliminating them fills least (approximate minimum degree).
+/// Sorts the members for little fill-in of the factor, by approximate minimum degree.
 std::vector<std::uint32_t> least_fill(const Lists& neighbours,
                                       std::span<const std::uint32_t> members) {
   using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
@@ -97,9 +97,10 @@ std::vector<std::uint32_t> elimination_order(const Model& model, const DirectLay
   return order;
 }
 
-/// Without its body the last link of a straight string from a fixed particle to a body is one that
-/// the others imply: its pivot is 0. That much more of its diagonal, the compliance of a very stiff
-/// spring, keeps it; the body, whose mass is in the balance of impulses, pulls at it there.
+/// The share by which the diagonal of a constraint at a body is raised. In a straight string from a
+/// fixed particle to a body, the other links imply the last one as long as the body does not move,
+/// and its pivot is 0. The raised diagonal, which is the compliance of a very stiff spring, keeps
+/// it in the system, and the body, whose mass is in the balance of impulses, pulls at it.
 constexpr double kBodyShift = 1e-8;
 
 void store_rows(const Model& model, DirectLayout& layout) {
@@ -113,7 +114,7 @@ void store_rows(const Model& model, DirectLayout& layout) {
   }
 }
 
-/// By columns, for those of a front are one stretch.
+/// Stores the entries by columns, since the columns of a front are contiguous.
 void store_entries(const Model& model, const Lists& at, DirectLayout& layout) {
   const ConstraintStore& s = model.constraints;
   std::vector<std::uint32_t> row_of(s.size(), kNoIndex);  // links between bodies have none

@@ -11,14 +11,14 @@ namespace {
 using kernels::Vector;
 using kernels::VectorsView;
 
-/// Where a constraint stands, before it is known whether it takes part.
+/// The state of a constraint before it is decided whether it takes part.
 struct Reading {
   Vector n{};
   double error = 0, tolerance = 0;
-  bool near = true;  // one-sided: may act at all
+  bool near = true;  // a one-sided constraint that is taut or touches, so that it may act
 };
 
-/// Decides who takes part, and keeps count.
+/// Decides which constraints take part, counts them, and finds the largest error.
 struct Judge {
   DirectSystem& system;
   double worst = 0;
@@ -32,7 +32,7 @@ struct Judge {
       violated = r.near && (outwards > 0 || (acted && outwards < -r.tolerance));
     }
     system.active += active;
-    // What is no number is neither outwards nor inwards, and must not pass for solved.
+    // An error that is not a number fails both comparisons, and must not pass for solved.
     if (violated || !std::isfinite(r.error)) worsen(std::abs(r.error) / r.tolerance);
     return active;
   }
@@ -69,13 +69,13 @@ void measure_links(DirectSystem& s, Judge& takes_part, Read&& read) {
   }
 }
 
-/// Of two contacts at one particle the deeper one holds it.
+/// Of several contacts of one particle, the deepest is its touch.
 void add_contact(DirectSystem& s, const Tie& contact) {
   const std::uint32_t p = contact.b;
   if (s.layout.body_of[p] != kNoIndex || s.model.inverse_mass[p] == 0) {
     s.ties.push_back(contact);
   } else if (s.touch_of[p] == kNoIndex) {
-    s.touches.push_back(contact);  // first: memory may run out
+    s.touches.push_back(contact);  // before touch_of, because it may throw
     s.touch_of[p] = static_cast<std::uint32_t>(s.touches.size() - 1);
   } else {
     Tie& holding = s.touches[s.touch_of[p]];
@@ -100,7 +100,7 @@ void measure_contacts(DirectSystem& s, const ContactStore& contacts, Judge& take
   s.turned |= !s.touches.empty();
 }
 
-/// read(index, a, b, target) is the Reading of a constraint or contact.
+/// read(index, a, b, target) returns the Reading of a constraint or contact.
 template <class Read>
 double measure(DirectSystem& system, const ContactStore& contacts, Read&& read) {
   Judge takes_part{system};
@@ -126,7 +126,7 @@ double measure_positions(DirectSystem& system, VectorsView x, VectorsView start,
                  });
 }
 
-/// Ropes and contacts take part where they are taut or touch.
+/// One-sided constraints take part only where they are taut or touch at x.
 double measure_velocities(DirectSystem& system, VectorsView x, VectorsView v,
                           const ContactStore& contacts) {
   return measure(system, contacts,

@@ -13,15 +13,14 @@ namespace {
 using kernels::LoopResult;
 using kernels::VectorsView;
 
-/// In tolerances. What is within tolerance is solved all the same, once: left alone it would grow
-/// until a later step had to remove all of it at once, as a blow.
+/// In units of the tolerance: a smaller error is not solved for. Larger errors within the tolerance
+/// are, once, or they would grow until a later step had to remove all of them in one blow.
 constexpr double kNegligible = 1e-6;
-/// The strain that solves aim at where the tolerance is larger: one more solve takes the error from
-/// 1 % far below that, and the next steps have no noise to fight (corners, 41 x 41, 4 substeps, 1
-/// %: 30 ms a frame and 0.45 J gained without it).
+/// The strain to reach where the tolerance is larger. One more solve takes an error of 1 % far
+/// below it, and later steps have no noise to remove.
 constexpr double kGoal = 1e-5;
-constexpr int kMostSolves = 60;  // of one attempt; two or three are usual
-constexpr int kPatience = 4;     // solves that need not halve the error
+constexpr int kMostSolves = 60;  // in one attempt, where two or three are usual
+constexpr int kPatience = 4;     // successive solves that may fail to halve the error
 
 void copy(VectorsView from, VectorsView to, std::size_t n) {
   std::copy_n(from.x, n, to.x);
@@ -29,10 +28,10 @@ void copy(VectorsView from, VectorsView to, std::size_t n) {
   std::copy_n(from.z, n, to.z);
 }
 
-/// Sees the errors fall, or not.
+/// Follows the largest error from solve to solve.
 class Progress {
  public:
-  /// Whether there still is hope, with this largest error.
+  /// Whether to go on after a measurement of the error `worst`.
   bool goes_on(double worst) {
     if (!std::isfinite(worst) || ++solves_ > kMostSolves) return false;
     if (worst < 0.5 * best_) {
@@ -93,7 +92,7 @@ LoopResult DirectSolver::solve_from_start(const PositionTask& task) {
   return result;
 }
 
-/// Newton's method from x; with a start the simplified one.
+/// Newton's method from x; with directions at `start`, the simplified Newton method.
 DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const ContactStore& contacts,
                                     int max_iterations, LoopResult& result) {
   Progress progress;
@@ -149,7 +148,8 @@ LoopResult DirectSolver::correct_velocities(const VelocityTask& task, Team&) {
   return result;
 }
 
-/// Linear: more than one solve only where the active set changes.
+/// The constraints are linear in the velocities, so that more than one solve is needed only where
+/// the active set changes.
 DirectOutcome DirectSolver::iterate_velocities(VectorsView x, VectorsView v,
                                                const ContactStore& contacts, bool exact,
                                                int max_iterations, LoopResult& result) {
@@ -167,7 +167,7 @@ DirectOutcome DirectSolver::iterate_velocities(VectorsView x, VectorsView v,
   }
 }
 
-/// One solve with what was measured, of u: positions or velocities.
+/// One solve with the measured errors. It changes u, which are positions or velocities.
 bool DirectSolver::solve(VectorsView u, LoopResult& result) {
   if (!solve_impulses(system_, factor_, bodies_)) return false;
   ++result.iterations;

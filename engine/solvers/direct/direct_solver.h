@@ -1,27 +1,28 @@
-/// The direct solver: every impulse of a step at once.
+/// The direct solver, which finds all impulses of a step at once.
 ///
 /// Along frozen directions n the impulses lambda that remove the errors e solve a linear system,
 ///
 ///     A lambda = e,     A = J M^-1 J^T,     then x -= M^-1 J^T lambda,
 ///
-/// J having +n at a constraint's end a and -n at its end b. Renewing directions and errors after
-/// each solve is Newton's method for the projection onto the constraints: the error is squared
-/// each time. Velocities need one solve, for they are linear.
+/// where the row of a constraint in J has +n at its end a and -n at its end b. Directions and
+/// errors are renewed after each solve, which is Newton's method for the projection onto the
+/// constraints and converges quadratically. Velocities need one solve, since the constraints are
+/// linear in them.
 ///
-///   direct_layout    which constraint is which row, and where its values stand
+///   direct_layout    the row of each constraint, and the places of its values
 ///   direct_fronts    the dense parts of the factor
 ///   direct_factor    A = L D L^T
-///   direct_system    what one solve works on
+///   direct_system    the data of one solve
 ///   direct_measure   directions, errors, the active set of ropes and contacts
-///   direct_impulses  errors become impulses become motion
+///   direct_impulses  from errors to impulses to motion
 ///   direct_balance   whether impulses explain a motion
-///   direct_bodies    spheres and particles of many constraints, unknowns beside the matrix
-///   direct_stiff     an attempt for masses that differ by hundreds
+///   direct_bodies    spheres and particles of many constraints, as unknowns beside the matrix
+///   direct_stiff     a second method, for masses that differ by hundreds
 ///
 /// Newton's method fails where a step bends edges by much of their length, where masses differ by
-/// thousands, and where A is singular and the errors inconsistent (compressed straight chains).
-/// That is seen by errors that no longer fall, or by a motion that its impulses do not explain
-/// (direct_balance.h). The caller is told (LoopResult::failed), and tries something else
+/// thousands, and where A is singular and the errors are inconsistent (compressed straight chains).
+/// Failure shows in errors that no longer fall, or in a motion that its impulses do not explain
+/// (direct_balance.h). It is reported in LoopResult::failed, and the caller tries something else
 /// (engine/step/plan.h).
 #pragma once
 
@@ -41,14 +42,15 @@ class DirectSolver final : public ConstraintSolver {
  public:
   DirectSolver(const Model& model, const Settings& settings, const simd::Table& kernels);
 
-  /// Moves x until every constraint and listed contact is within tolerance; where it fails x stays.
-  /// Impulses are kept from the round before. LoopResult::iterations counts solves.
+  /// Moves x until every constraint and listed contact is within tolerance; if it fails, x is as
+  /// before. Impulses of the round before are kept. LoopResult::iterations counts solves.
   ///
-  /// With scheme rattle the directions at `start` do not turn: one factorisation, and each solve
-  /// takes off an error about 1 - cos of what the constraint turned by. Where that does not
-  /// converge x is worth nothing.
+  /// With scheme rattle, impulses act along the directions at `start`. One factorisation serves for
+  /// all solves, and each solve leaves the share 1 - cos theta of an error, where theta is the
+  /// angle by which the constraint has turned. If this does not converge, x is useless.
   kernels::LoopResult solve_positions(const PositionTask& task, Team& team) override;
-  /// Corrects v, or leaves it; with `exact` also what is within tolerance, once.
+  /// Corrects v, or leaves it as it was. With `exact`, errors within the tolerance are also
+  /// removed, by one solve.
   kernels::LoopResult correct_velocities(const VelocityTask& task, Team& team) override;
   std::size_t bytes() const override;
 
@@ -72,7 +74,7 @@ class DirectSolver final : public ConstraintSolver {
   DirectBodies bodies_;
   DirectBalance balance_;
   DirectStiff stiff_;
-  kernels::Vectors start_;  // where an attempt begins
+  kernels::Vectors start_;  // positions or velocities before an attempt
 };
 
 }  // namespace weft

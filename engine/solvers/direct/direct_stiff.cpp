@@ -13,9 +13,9 @@ using kernels::LoopResult;
 using kernels::Vector;
 using kernels::VectorsView;
 
-constexpr double kLeastRatio = 100;             // of masses that are joined
-constexpr int kMostSolves = 20000;              // of a small scene
-constexpr std::size_t kMostWork = 100'000'000;  // values of all factors of a large one
+constexpr double kLeastRatio = 100;             // of two masses that a constraint joins
+constexpr int kMostSolves = 20000;              // in a small scene
+constexpr std::size_t kMostWork = 100'000'000;  // values of all factors, in a large scene
 
 Vector operator*(const Symmetric& s, Vector v) {
   return {s.xx * v.x + s.xy * v.y + s.xz * v.z, s.xy * v.x + s.yy * v.y + s.yz * v.z,
@@ -30,7 +30,8 @@ Symmetric inverse(const Symmetric& s) {
           f * xz, f * (s.xy * s.xz - s.xx * s.yz)};
 }
 
-/// Its imbalance first grows by orders of magnitude: patience is all there is to bound it by.
+/// The imbalance first grows by orders of magnitude, so that only the number of solves can bound
+/// the work.
 int most_solves(const DirectLayout& layout) {
   const std::size_t most = kMostWork / (layout.fronts.values + 1);
   return static_cast<int>(std::clamp<std::size_t>(most, 100, kMostSolves));
@@ -70,7 +71,7 @@ DirectOutcome DirectStiff::iterate(DirectSystem& system, DirectFactor& factor,
   }
 }
 
-/// W~ = (M + sum k (1 - n n^T))^-1 per particle.
+/// Sets W~ = (M + sum of k (1 - n n^T))^-1 for each particle.
 void DirectStiff::stiffen(const DirectSystem& system) {
   const Model& model = system.model;
   const DirectLayout& layout = system.layout;

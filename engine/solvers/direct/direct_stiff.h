@@ -1,18 +1,18 @@
-/// The stiff attempt of the direct solver.
+/// A second Newton method of the direct solver, which includes the geometric stiffness.
 ///
-/// Under a heavy end the impulses are so large that a light particle at the least kink is thrown
-/// far: the turning of n, which A leaves out, matters most. It is part of the derivative of the
-/// balance g (direct_balance.h): that of J^T lambda is the geometric stiffness of the tensions
-/// (Tournier et al. 2015), here bounded from above by a block for each particle (Andrews et al.
-/// 2017):
+/// Where a chain ends in a heavy particle, the impulses are so large that the smallest kink throws
+/// a light particle far: the turning of n, which A leaves out, dominates. It is part of the
+/// derivative of the balance g (direct_balance.h). The derivative of J^T lambda is the geometric
+/// stiffness of the tensions (Tournier et al. 2015), which is bounded from above here by one block
+/// for each particle (Andrews et al. 2017):
 ///
 ///     W~ = (M + sum over its constraints of 2 |lambda| / rest (1 - n n^T))^-1
 ///     (J W~ J^T) d = e - J W~ g,     x -= W~ (g + J^T d),     lambda += d
 ///
-/// It converges slowly but surely: a chain of 20 under 10^6 times its particles' mass needs it, on
-/// sheets of equal masses sweeps are faster. So it comes before them, but only where masses differ
-/// by a factor of 100 and more, and in scenes of rows alone. At the end what is left of g is
-/// applied, so that momentum is kept to rounding.
+/// The method converges slowly but reliably. It is used only where masses differ by a factor of 100
+/// or more, since sweeps are faster on sheets of equal masses, and only in scenes without bodies
+/// and contacts. At the end what is left of g is applied, so that momentum is conserved up to
+/// rounding.
 #pragma once
 
 #include "engine/solvers/direct/direct_balance.h"
@@ -31,9 +31,9 @@ class DirectStiff {
  public:
   explicit DirectStiff(const Model& model);
 
-  /// Whether masses are such that the attempt may be needed.
+  /// Whether the model is one for which the method is used.
   bool wanted() const { return !soft_.empty(); }
-  /// From x, where the balance starts.
+  /// Iterates from x, which is also the prediction of the balance.
   DirectOutcome iterate(DirectSystem& system, DirectFactor& factor, DirectBalance& balance,
                         kernels::VectorsView x, const ContactStore& contacts, int max_iterations,
                         kernels::LoopResult& result);

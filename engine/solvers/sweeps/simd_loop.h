@@ -86,7 +86,7 @@ class SimdLoop {
   const SimdLayout& layout_;
   const simd::Table& table_;
   Unknowns unknowns_;
-  simd::Relaxation r_, contacts_;
+  simd::BlockRelaxation r_, contacts_;
   simd::Geometry g_, contact_geometry_;
   simd::Anticipation p_;
   Turn turn_ = Turn::all;

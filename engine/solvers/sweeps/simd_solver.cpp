@@ -199,8 +199,8 @@ kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kerne
   return kernels::iterate(loop, kernels::Directions::frozen, not_too_old(limits));
 }
 
-simd::Relaxation SimdSolver::relaxation(ScaledConstraints& constraints) {
-  simd::Relaxation r;
+simd::BlockRelaxation SimdSolver::relaxation(ScaledConstraints& constraints) {
+  simd::BlockRelaxation r;
   r.u = {u_.data(), u_stride_, u_step_};
   r.blocks = constraints.blocks.data();
   r.impulse = impulse_.data();

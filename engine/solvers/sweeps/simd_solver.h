@@ -84,7 +84,7 @@ class SimdSolver {
   void order_contacts(const ContactStore& contacts);
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
   void choose_active(kernels::VectorsView x);
-  simd::Relaxation relaxation(ScaledConstraints& constraints);
+  simd::BlockRelaxation relaxation(ScaledConstraints& constraints);
   simd::Geometry geometry(kernels::VectorsView x, const ScaledConstraints& constraints) const;
 
   const Model& model_;

@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-constexpr std::size_t kSpans = 16;  // that a thread takes at a time
+constexpr std::size_t kSpans = 16;  // the number of spans that a thread takes at a time
 
 double distance(kernels::VectorsView x, std::uint32_t a, std::uint32_t b) {
   const kernels::Vector d = x[a] - x[b];
@@ -26,7 +26,7 @@ HeldSpans::HeldSpans(const YarnLayout& layout, double usual, double tolerance, b
   spans_.resize(layout.spans.size());
   for (const YarnSpan& span : layout.spans) {
     for (std::uint32_t row = span.row; row < span.last_row; ++row) {
-      if (kind_[row] >= layout.kinds.size()) continue;  // it has its own
+      if (kind_[row] >= layout.kinds.size()) continue;  // another lane gave it a kind
       kinds_.push_back(layout.kinds[layout.kind[row]]);
       kind_[row] = static_cast<std::uint32_t>(kinds_.size() - 1);
     }
@@ -58,7 +58,8 @@ double HeldSpans::largest_strain(const YarnSpan& span, kernels::VectorsView x) c
   return most;
 }
 
-/// stretch_of(slots of both ends, rest length): the link's length over that.
+/// Sets the length of each link. stretch_of(slots of both ends, rest length) returns its ratio to
+/// the rest length.
 template <class Stretch>
 void HeldSpans::stretch(const YarnSpan& span, Stretch&& stretch_of) {
   const std::uint32_t* slot = &layout_.span_slots[span.first_slot];

@@ -1,24 +1,25 @@
-/// What taut spans of yarns keep.
+/// Taut spans of yarns, and the lengths that the yarn solver gives them.
 ///
-/// A span that is as long as its ends are apart can only be straight, and its constraints depend on
-/// each other there. With a sag s it is longer by the strain e = 8/3 (s / L)^2: a Newton step
-/// halves s, and however little strain it takes back, it moves the span by s / 2, which becomes a
-/// speed of s / (2 h). (A sheet of 40 x 40 that hangs by two corners, as far apart as they are in
-/// the sheet: 1 % of strain is a sag of 6 cm; 60 ms a frame in sweeps that noise calls for.)
+/// A span whose length equals the distance of its ends can only be straight, and there its
+/// constraints are linearly dependent. With a sag s it is longer than that distance, by the strain
+/// e = 8/3 (s / L)^2. A Newton step for this equation halves s: however little strain it removes,
+/// it moves the span by s / 2, which becomes a speed of s / (2 h).
 ///
-/// So a taut span, one that the strain which yarns may leave could straighten, is as long as a
-/// substep predicts it to be, and only what is out by more than most of that strain is taken back.
-/// It hangs by what is tolerated, and its sag with it. (0.9 ms a frame.) All of its links are
-/// stretched alike: a straight one that keeps what each has at the start of the substep hardly
-/// comes to sag (banner, 20 x 20: 210 iterations a frame instead of 13). But where chords join its
-/// particles (bending edges) each link keeps what it has at the start, or it would disagree with
-/// them (16 x 16: 1500 iterations a frame instead of 30). So it is where sweeps have left more
-/// strain than yarns would, here and there (10 kg on a taut sheet of 40 x 40: a step of 2.4 million
-/// iterations), and in scenes with spheres: what hangs by all that it may gives way less to what
-/// lands on it.
+/// A span is taut if the distance of its ends differs from its length by no more than the strain
+/// that the solver may leave. During a substep the rest lengths of such a span are those of the
+/// prediction, clamped to the share kKept of that strain, and the solver removes only what lies
+/// beyond them: the span hangs by the tolerated strain, and its sag stays. All of its links are
+/// stretched by the same ratio, since a straight span whose links keep the lengths that they have
+/// at the start of the substep hardly begins to sag.
 ///
-/// Not where it is braced, most of its links sides of triangles: these carry it as well (a sheet of
-/// triangles that hangs by two corners, 40 x 40: 3.4 ms a frame, 10 if it kept lengths).
+/// The links keep those lengths nevertheless in three cases: where constraints other than the links
+/// join the particles of the span (bending edges), because a common ratio would contradict these;
+/// where a link begins the substep with more strain than the yarn solver leaves; and in scenes with
+/// spheres, because a span that hangs by all of its permitted strain gives way less to a sphere
+/// that lands on it.
+///
+/// A span is not held where it is braced, which means that more than half of its links are sides of
+/// triangles: the triangles carry it as well.
 #pragma once
 
 #include <cstdint>
@@ -33,23 +34,24 @@ namespace weft {
 
 struct YarnLayout;
 
-/// What rows are like while taut spans are held.
+/// The kinds of rows (lengths and masses) that the solver works with while taut spans are held.
 class HeldSpans {
  public:
-  /// usual: the strain that yarns leave, if nothing is held; tolerance: no less. may_stretch: spans
-  /// may be as long as predicted; else each of their links as long as at the start of a substep.
+  /// usual: the strain that the solver leaves if no span is held. It does not exceed the tolerance.
+  /// may_stretch: the links of a span may share the predicted length; otherwise each keeps its
+  /// length at the start of a substep.
   HeldSpans(const YarnLayout& layout, double usual, double tolerance, bool may_stretch);
 
-  /// Holds the spans that are taut with their ends as in x, the prediction. Each may leave `usual`
-  /// beyond what its ends are too far apart or, if a link is strained by more at the start of the
-  /// substep, that; no more than the tolerance. Up to most of it it is as long as in x. Ends that
-  /// are too far apart for the tolerance are no reason.
+  /// Holds the spans that are taut when their ends are where the prediction x has them. The strain
+  /// that a span may leave is `usual` plus what its ends are too far apart, or the largest strain
+  /// of its links at the start of the substep if that is more, and never more than the tolerance. A
+  /// span whose ends are too far apart for the tolerance is not held.
   void hold(kernels::VectorsView start, kernels::VectorsView x, Team& team);
   void release() { may_leave_ = 0; }
 
   bool holds() const { return may_leave_ > 0; }
-  /// While it holds: the strain that may be left, and what of it is up to the solver; the rest is
-  /// in the lengths of the spans.
+  /// While spans are held: the strain that may be left, and the part of it that the solver may
+  /// leave. The rest is in the lengths of the spans.
   double may_leave() const { return may_leave_; }
   double solver_may_leave() const { return may_leave_ - kept_; }
   const std::uint32_t* kind() const { return kind_.data(); }
@@ -61,7 +63,7 @@ class HeldSpans {
 
   struct Span {
     bool is_taut = false;
-    bool is_quiet = true;  // if it is taut: no link is strained by more than is usual
+    bool is_quiet = true;  // taut, and no link is strained by more than the solver leaves
     double may_leave = 0, kept = 0;
   };
   Span judge(const YarnSpan& span, kernels::VectorsView start, kernels::VectorsView x) const;
@@ -76,8 +78,8 @@ class HeldSpans {
   const YarnLayout& layout_;
   const double usual_, tolerance_;
   const bool may_stretch_;
-  double may_leave_ = 0, kept_ = 0;  // by all of them
-  std::vector<std::uint32_t> kind_;  // as the layout's; rows of spans have their own
+  double may_leave_ = 0, kept_ = 0;  // the largest of all spans
+  std::vector<std::uint32_t> kind_;  // that of the layout, except for rows of spans
   kernels::AlignedVector<simd::YarnRow> kinds_;
   std::vector<Span> spans_;
 };

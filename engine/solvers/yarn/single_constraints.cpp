@@ -10,7 +10,8 @@ namespace {
 
 using kernels::Vector;
 
-/// In double: what is judged by it may be nearly as small as what floats round off.
+/// The difference is in double, because the errors computed from it may be as small as the rounding
+/// error of a float.
 template <class Pair>
 [[gnu::always_inline]] inline Vector difference(const float* u, const Pair& pair,
                                                 std::size_t stride) {
@@ -33,15 +34,15 @@ void move(float* x, Vector d, std::size_t stride) {
   x[2 * stride] += static_cast<float>(d.z);
 }
 
-/// Each by its inverse mass times the impulse. What is fixed is not even written to: every next
-/// contact with a fixed sphere would wait for it (hang_sphere: a fifth of a step).
+/// Moves both ends by their inverse mass times the impulse. A fixed end is not written to:
+/// otherwise the next contact with the same fixed sphere would have to wait for the store.
 template <class Pair>
 void move_together(const Pair& pair, Vector impulse, float* u, std::size_t stride) {
   if (pair.wa > 0) move(u + pair.a, -pair.wa * impulse, stride);
   if (pair.wb > 0) move(u + pair.b, pair.wb * impulse, stride);
 }
 
-/// The part of an impulse that keeps the sum on its side of 0.
+/// The part of an impulse that keeps the sign of the sum.
 double clamped(int side, double& sum, double impulse) {
   if (side != 0) impulse = side * std::max(side * impulse, -side * sum);
   sum += impulse;
@@ -89,14 +90,14 @@ void SingleConstraints::keep_start(const float* base, const float* u) {
   }
 }
 
-/// One-sided, not violated, and without an impulse to take back: most contacts, seen without a
-/// root.
+/// Whether a one-sided constraint is satisfied and has no impulse to take back. Most contacts are,
+/// and this test needs no square root.
 bool SingleConstraints::at_rest(const Pair& pair, Vector d) {
   return pair.side != 0 && pair.sum == 0 &&
          pair.side * (dot(d, d) - pair.distance * pair.distance) <= 0;
 }
 
-/// A constraint that has turned too far from where its impulses act is left alone.
+/// A constraint whose direction has turned too far from that of its impulses is not relaxed.
 void SingleConstraints::relax(const float* base, float* u) {
   constexpr double kLeastCosine = 0.1;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -127,7 +128,8 @@ double SingleConstraints::violation(const float* base, const float* u) const {
     const Pair& pair = pairs_[i];
     if (pair.sum != 0) ropes = std::max(ropes, -error_of(pair) / pair.distance);
   }
-  for (std::size_t i = constraints_; i < pairs_.size(); ++i) {  // no branch here can be foreseen
+  // This loop has no branches, since they would be unpredictable.
+  for (std::size_t i = constraints_; i < pairs_.size(); ++i) {
     const double error = error_of(pairs_[i]);
     const double acted = pairs_[i].sum != 0;
     contacts = std::max({contacts, error, -acted * error});
@@ -135,7 +137,7 @@ double SingleConstraints::violation(const float* base, const float* u) const {
   return std::max(ropes / tolerance_, contacts / contact_tolerance_);
 }
 
-/// One-sided ones take part where they are violated or have acted.
+/// Sets the error of a row. A one-sided constraint takes part if it is violated or has acted.
 void SingleConstraints::set_error(std::size_t i, double error) {
   const Pair& pair = pairs_[i];
   Row& row = rows_[i];

@@ -1,5 +1,6 @@
-/// What no yarn holds: ropes, constraints at hubs, contacts. After a sweep they are relaxed one by
-/// one; in the linear system each is a family of its own, with its diagonal as preconditioner.
+/// The constraints that belong to no yarn: ropes, constraints at hubs, and contacts. After a sweep
+/// of the yarns they are relaxed one by one. In the linear system each is a block of its own, with
+/// its diagonal as preconditioner.
 #pragma once
 
 #include <weft/weft.h>
@@ -12,36 +13,38 @@
 
 namespace weft {
 
-/// Arrays of displacements, base and velocities are laid out as YarnPlaces has it.
+/// Arrays of displacements, base positions and velocities have the layout of YarnPlaces.
 class SingleConstraints {
  public:
   SingleConstraints(const Model& model, const Settings& settings);
 
-  /// first_round: accumulated impulses start at 0; else contacts may have been added. Impulses act
-  /// along the present directions.
+  /// In the first round accumulated impulses start at 0; in later rounds contacts may have been
+  /// added. Impulses act along the directions at the present positions.
   void start(const ContactStore& contacts, bool first_round);
   std::size_t count() const { return pairs_.size(); }
-  /// With scheme rattle: from here on impulses of constraints act along the directions at base + u.
-  /// Contacts come about within a step: theirs are present ones.
+  /// For scheme rattle: from here on the impulses of constraints act along the directions at base +
+  /// u. Contacts come about within a step, and theirs act along present directions.
   void keep_start(const float* base, const float* u);
-  /// One pass, at the positions base + u. One-sided ones keep the sum of their impulses on their
-  /// side: a rope that has pulled too much gives back what it had.
+  /// One pass at the positions base + u. The sum of the impulses of a one-sided constraint keeps
+  /// its sign: a rope that has pulled too much gives back what it had.
   void relax(const float* base, float* u);
-  /// Largest error in tolerances: of contacts, and of what has pulled or pushed and holds nothing
-  /// any more: a rope that ends slack has given what was not its to give. (Ropes that are too long
-  /// are the strain's.)
+  /// The largest error in units of the tolerance, of contacts that overlap and of one-sided
+  /// constraints that have acted but are slack in the end. A rope that is too long counts as
+  /// strain, which others measure.
   double violation(const float* base, const float* u) const;
 
-  // The stages of conjugate gradients (kernels/simd/yarn_system.h). Of the one-sided those take
-  // part that are violated or have pushed or pulled before; finish() clamps the sums, and the next
-  // linearise() sees what that leaves.
+  // The stages of conjugate gradients (kernels/simd/yarn_system.h). A one-sided constraint takes
+  // part if it is violated or has an impulse from before; finish() clamps the sums, and the next
+  // linearise() sees the errors that this leaves.
   void linearise(const float* base, const float* u);
-  /// Of velocities: the directions at the positions base + u, and who is taut or touches there;
-  /// then the errors, at the velocities base + u.
+  /// For velocities: linearise_velocities() finds the directions at the positions base + u and
+  /// which one-sided constraints are taut or touch there; read() then finds the errors at the
+  /// velocities base + u.
   void linearise_velocities(const float* base, const float* u);
-  double read(const float* base, const float* u);  // returns the largest, or what is not a number
-  /// worst: in strains, where a contact's tolerance counts as much as `goal`; of velocities as they
-  /// are.
+  /// Returns the largest error, or NaN if one is NaN.
+  double read(const float* base, const float* u);
+  /// YarnProducts::worst is a strain, in which the tolerance of contacts counts as `goal`; for
+  /// velocities it is in m/s.
   simd::YarnProducts precondition(double alpha, double goal);
   void push(double beta, float* t);
   double pull(const float* t);
@@ -54,13 +57,13 @@ class SingleConstraints {
     std::uint32_t a = 0, b = 0;  // places
     int side = 0;                // +1: pulls only, -1: pushes only
     double distance = 0;
-    double wa = 0, wb = 0;  // 1 / mass, in YarnLayout::lightest
-    double reciprocal = 0;  // of their sum
-    double sum = 0;         // of its impulses
+    double wa = 0, wb = 0;  // inverse masses, in units of 1 / YarnLayout::lightest
+    double reciprocal = 0;  // 1 / (wa + wb)
+    double sum = 0;         // of the impulses so far
   };
   struct Row {
     kernels::Vector n{};
-    bool near = true;  // may act at all
+    bool near = true;  // taut or touching, so that it may act
     double lambda = 0, residual = 0, z = 0, p = 0, q = 0;
   };
   static bool at_rest(const Pair& pair, kernels::Vector d);
@@ -72,12 +75,12 @@ class SingleConstraints {
   const Model& model_;
   const std::size_t stride_;  // YarnPlaces
   const double tolerance_, contact_tolerance_;
-  std::size_t constraints_ = 0;  // the first of pairs_; contacts come behind
+  std::size_t constraints_ = 0;  // the first of pairs_; the others are contacts
   bool from_start_ = false, velocities_ = false;
   kernels::AlignedVector<Pair> pairs_;
-  std::vector<kernels::Vector> starts_;  // of constraints, for scheme rattle: directions there
-  std::vector<Row> rows_;                // of the linear system,
-  std::vector<std::uint32_t> active_;    // and those that take part in it
+  std::vector<kernels::Vector> starts_;  // scheme rattle: directions at the start of the substep
+  std::vector<Row> rows_;                // of the linear system, one for each pair
+  std::vector<std::uint32_t> active_;    // the rows that take part in it
 };
 
 }  // namespace weft

@@ -55,11 +55,11 @@ std::vector<Chain> open_chains(const WovenYarns& yarns, std::size_t slots) {
   return chains;
 }
 
-/// work(k, links): of the particles k ... k + links the first and the last are fixed. Where there
-/// is one link nothing can move.
+/// Calls work(k, links) for each span: the particles k and k + links are fixed, and those between
+/// them are free. A single link between two fixed particles is no span, since nothing can move.
 template <class Work>
 void for_each_span(const Model& model, const Chain& chain, Work&& work) {
-  std::size_t before = chain.particles.size();  // the last that was fixed
+  std::size_t before = chain.particles.size();  // the last fixed particle, if any
   for (std::size_t k = 0; k < chain.particles.size(); ++k) {
     if (model.inverse_mass[chain.particles[k]] != 0) continue;
     const std::size_t from = std::exchange(before, k);
@@ -68,10 +68,9 @@ void for_each_span(const Model& model, const Chain& chain, Work&& work) {
 }
 
 /// The family with most links in spans that are not braced becomes the first, which linear systems
-/// eliminate exactly: a span that is all but straight is too stiff for conjugate gradients. (A
-/// banner of 17 x 16, its rows the second family: 175 iterations a frame; the first: 9.) Not where
-/// there are spheres: what falls on taut sheets of 20 x 20 and 40 x 40 takes as many, and more
-/// energy is gained.
+/// eliminate exactly: a span that is almost straight is too stiff for conjugate gradients. In
+/// scenes with spheres the order stays, because there the change saves no iterations and gains
+/// energy.
 void begin_with_spans(const Model& model, Braces& braces, std::vector<Chain>& chains) {
   if (model.has_contacts()) return;
   std::vector<std::size_t> count;  // per family
@@ -92,7 +91,7 @@ void begin_with_spans(const Model& model, Braces& braces, std::vector<Chain>& ch
   }
 }
 
-/// Family by family, long chains first; those of one length in the order of memory.
+/// Sorts by family, then by length, the longest chains first, then by position in memory.
 void sort(std::vector<Chain>& chains) {
   for (Chain& chain : chains) {
     if (chain.particles.front() < chain.particles.back()) continue;
@@ -106,7 +105,8 @@ void sort(std::vector<Chain>& chains) {
   });
 }
 
-/// Whether these chains, of one length, stand side by side in memory, particle by particle.
+/// Whether these chains of equal length are adjacent in memory: the k-th particles of all chains
+/// have consecutive slots.
 bool side_by_side(std::span<const Chain> chains) {
   for (std::size_t i = 1; i < chains.size(); ++i) {
     for (std::size_t k = 0; k < chains[0].particles.size(); ++k) {
@@ -116,7 +116,7 @@ bool side_by_side(std::span<const Chain> chains) {
   return true;
 }
 
-/// Of chains of one length: fours that stand side by side first.
+/// Sorts chains of equal length so that groups of four that are adjacent in memory come first.
 void bring_fours_forward(std::span<Chain> chains) {
   std::vector<Chain> fours, others;
   for (std::size_t i = 0; i < chains.size();) {
@@ -130,7 +130,7 @@ void bring_fours_forward(std::span<Chain> chains) {
   std::ranges::move(others, chains.begin() + static_cast<std::ptrdiff_t>(fours.size()));
 }
 
-/// How many of the first are alike.
+/// How many chains at the beginning are like the first.
 template <class Alike>
 std::size_t stretch(std::span<const Chain> chains, Alike&& alike) {
   std::size_t n = 1;
@@ -143,7 +143,7 @@ bool of_one_length(const Chain& one, const Chain& two) {
   return of_one_family(one, two) && one.links.size() == two.links.size();
 }
 
-/// Of the rows with these numbers.
+/// Compares the rows with these numbers.
 struct LessByBytes {
   const kernels::AlignedVector<simd::YarnRow>& rows;
 
@@ -152,7 +152,8 @@ struct LessByBytes {
   }
 };
 
-/// kg; 1 if none can move. What is joined to nothing may be far lighter than a float can tell.
+/// In kg; 1 if no particle is free. Particles that no constraint joins do not count: their mass may
+/// be out of the range of a float.
 double lightest_joined(const Model& model) {
   double most = 0;
   for (std::size_t c = 0; c < model.constraints.size(); ++c) {
@@ -169,7 +170,7 @@ class Builder {
     layout.lightest = lightest_joined(model);
   }
 
-  /// These chains make a block, a lane each; the first is the longest.
+  /// Makes a block of these chains, one in each lane. The first is the longest.
   void add_block(std::span<const Chain> chains) {
     const std::size_t rows = chains.front().particles.size();
     const std::size_t first = layout_.rows(), last = first + rows;
@@ -231,7 +232,7 @@ class Builder {
   const Model& model_;
   Braces& braces_;
   YarnLayout& layout_;
-  std::set<std::uint32_t, LessByBytes> known_;  // kinds
+  std::set<std::uint32_t, LessByBytes> known_;  // the kinds so far, without duplicates
   std::vector<simd::YarnRow> block_;
 };
 
@@ -242,12 +243,12 @@ double cell_of(const ConstraintStore& store) {
   return std::exp2(std::floor(std::log2(std::min(8 * shortest, longest / 64))));
 }
 
-/// Quads: of the model's slots, then kLanes of padding for each block.
+/// The number of quads: one for each slot of the model, then kLanes of padding for each block.
 std::size_t quads_of(const Model& model, const YarnLayout& layout) {
   return model.slots() + kLanes * layout.blocks.size();
 }
 
-/// Slots of padding are no particle's.
+/// The slots of particles that are on no yarn of the second family.
 std::vector<std::uint32_t> slots_not_in_second(const Model& model, const YarnLayout& layout) {
   std::vector<bool> held(quads_of(model, layout), false);
   if (layout.families() > 1) {

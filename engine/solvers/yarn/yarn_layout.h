@@ -1,4 +1,4 @@
-/// Where the yarns of a model stand in memory, for the yarn solver.
+/// The memory layout of the yarns of a model, for the yarn solver.
 ///
 ///   families   the yarns of a family share no particle: all of them may be solved at once
 ///   block      kLanes yarns of a family, of about the same length, a lane each
@@ -9,8 +9,9 @@
 ///
 /// Rows with the same lengths and masses in all lanes share one YarnRow, kinds[kind[row]].
 ///
-/// A closed yarn is cut: its last link is a yarn of its own, in another family. What no yarn can
-/// hold (ropes, which only pull, and constraints at hubs) is left to SingleConstraints.
+/// A closed yarn is cut open: its last link becomes a yarn of its own, in another family.
+/// Constraints that no yarn can contain (ropes, which only pull, and constraints at hubs) are left
+/// to SingleConstraints.
 #pragma once
 
 #include <cstdint>
@@ -26,34 +27,36 @@ class Model;
 
 struct YarnLayout {
   std::vector<simd::YarnBlock> blocks;
-  std::vector<std::uint32_t> links;             // constraints of each block
-  std::vector<std::uint32_t> constraint;        // per row and lane: to the next row, or kNoIndex
+  std::vector<std::uint32_t> links;       // per block: its number of constraints
+  std::vector<std::uint32_t> constraint;  // per row and lane: the one to the next row, or kNoIndex
   std::vector<std::uint32_t> family_begin;      // blocks of family f: [f], ... [f + 1] - 1
-  std::vector<std::uint32_t> slot;              // per row and lane, where blocks are in quads
-  std::vector<simd::YarnPatch> patches;         // where they are woven
+  std::vector<std::uint32_t> slot;              // per row and lane; only if blocks are in quads
+  std::vector<simd::YarnPatch> patches;         // only if blocks are woven
   std::vector<std::uint32_t> kind;              // per row
-  kernels::AlignedVector<simd::YarnRow> kinds;  // masses in lightest
+  kernels::AlignedVector<simd::YarnRow> kinds;  // inverse masses in 1 / lightest
   std::vector<std::uint32_t> not_in_second;     // places that yarn_push_first does not write
   std::vector<YarnSpan> spans;
-  std::vector<std::uint32_t> span_slots;  // of their particles, both ends included
+  std::vector<std::uint32_t> span_slots;  // the particles of all spans, with their ends
   YarnPlaces places;
 
-  double lightest = 1;                    // kg, of the particles that constraints join
-  double cell = 0;                        // that positions are split by (kernels/simd/yarn_rows.h)
-  std::size_t longest = 0;                // rows of the longest block
-  std::vector<std::uint32_t> longest_at;  // per chunk of model.simd(): of those yarns with a
-                                          // constraint there; empty if all yarns are as long
+  double lightest = 1;      // kg, of the particles that constraints join
+  double cell = 0;          // m, the grid of base positions (kernels/simd/yarn_rows.h)
+  std::size_t longest = 0;  // rows of the longest block
+  /// Per chunk of model.simd(): the rows of the longest yarn that has a constraint in it. Empty if
+  /// all yarns have the same length.
+  std::vector<std::uint32_t> longest_at;
 
-  /// Whether displacements are too many for the caches.
+  /// Whether the displacements do not fit into the caches.
   bool from_memory() const { return places.floats * sizeof(float) > kernels::kCachedBytes; }
-  /// One behind those of a block (kernels/simd/yarn_arrays.h); for patches of the base as many.
+  /// The scratch has one row more than the longest block (kernels/simd/yarn_arrays.h), and as many
+  /// again for the base where there are patches.
   std::size_t scratch_rows() const { return (patches.empty() ? 1 : 2) * (longest + 1); }
   std::size_t rows() const { return kind.size(); }
   std::size_t families() const { return family_begin.size() - 1; }
   std::size_t bytes() const;
 };
 
-/// quads: all of it, also what could be woven.
+/// With `quads` even a model that could be woven is laid out in quads.
 enum class YarnMemory : std::uint8_t { woven_if_possible, quads };
 
 YarnLayout make_yarn_layout(const Model& model, YarnMemory memory = YarnMemory::woven_if_possible);

@@ -6,12 +6,12 @@ namespace {
 using kernels::kLanes;
 using Slots = SlotRows::Slots;
 
-/// It has this share of all particles, and has them in rows of memory that are not half empty. Else
-/// quads are faster, or as fast.
+/// A family can be in place if it has at least this share of all particles, in rows of memory that
+/// have at most kMostRoom lanes for each particle.
 constexpr double kLeastShare = 0.75;
-constexpr std::size_t kMostRoom = 2;  // lanes for each particle
+constexpr std::size_t kMostRoom = 2;
 
-/// Rows of the layout.
+/// A range of rows of the layout.
 struct Range {
   std::size_t first = 0, last = 0;
 };
@@ -22,7 +22,7 @@ Range rows_of_family(const YarnLayout& layout, std::size_t f) {
           layout.blocks[layout.family_begin[f + 1] - 1].last};
 }
 
-/// Slots in a row and then nobody's; simd::WovenRow.
+/// Whether the four slots are consecutive, with padding at most at the end (simd::WovenRow).
 bool is_four(const SlotRows& rows, Slots four) {
   const std::uint32_t own = rows.count(four);
   for (std::uint32_t k = 0; k < own; ++k) {
@@ -87,7 +87,7 @@ void place_family(const SlotRows& slots, Range rows, YarnHome& home) {
   std::ranges::sort(places.rows, {}, [](const simd::WovenRow& row) { return row.four[0]; });
 }
 
-/// Particles of no yarn of the home family.
+/// Places the particles that are on no yarn of the home family.
 void place_others(const Model& model, YarnHome& home) {
   YarnPlaces& places = home.places;
   std::uint32_t lane = 0;

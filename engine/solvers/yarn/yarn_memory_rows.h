@@ -1,8 +1,8 @@
-/// The family of yarns that is in place: its blocks' rows are the rows of memory.
+/// The family of yarns that is in place: the rows of its blocks are the rows of memory.
 ///
-/// Woven slots (engine/ordering) follow the rows of a sheet, so that yarns across these stand side
-/// by side: kLanes of them, row by row, are kLanes slots in a row each time, or fours of slots.
-/// They make the rows of memory. All other particles stand behind them.
+/// Woven slots (engine/ordering) follow the rows of a sheet, so that the yarns across these rows
+/// are adjacent: kLanes of them have, in each row, kLanes consecutive slots, or groups of four
+/// consecutive slots. These become the rows of memory. All other particles are stored behind them.
 #pragma once
 
 #include <algorithm>
@@ -23,11 +23,11 @@ struct SlotRows {
   const Model& model;
   const YarnLayout& layout;
 
-  /// Of a row of the layout: kLanes of them.
+  /// The kLanes slots of a row of the layout.
   Slots of(std::size_t row) const {
     return Slots(layout.slot).subspan(row * kernels::kLanes, kernels::kLanes);
   }
-  /// Or of a lane without a yarn.
+  /// Whether the slot is of the model, and not the padding of a lane without a yarn.
   bool real(std::uint32_t slot) const { return slot < model.slots(); }
   std::uint32_t count(Slots slots) const {
     return static_cast<std::uint32_t>(
@@ -37,12 +37,12 @@ struct SlotRows {
 
 struct YarnHome {
   std::size_t family = 0;
-  YarnPlaces places;     // floats is left to those who add rows to memory
-  std::size_t rows = 0;  // of memory
+  YarnPlaces places;     // without `floats`, since the caller may add rows to memory
+  std::size_t rows = 0;  // the rows of memory so far
 };
 
-/// The family that has most particles in rows of fours, and where all particles are then; none if
-/// these are too few.
+/// Finds the family with the most particles in rows of fours, and the place of every particle if it
+/// is in place. Returns nothing if it has too few.
 std::optional<YarnHome> find_home(const SlotRows& slots);
 
 }  // namespace weft

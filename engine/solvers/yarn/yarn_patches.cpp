@@ -9,8 +9,8 @@ namespace {
 
 using kernels::kLanes;
 
-/// Of the particles of a lane, for a patch to be transposed whole.
-constexpr int kLeastOfPatch = 4;  // (1 to 4: as fast on sheets)
+/// A patch is transposed as a whole if each lane has at least this many particles in it.
+constexpr int kLeastOfPatch = 4;
 
 std::uint32_t first_row(const simd::YarnPatch& patch) {
   return patch.single ? patch.row[0] : *std::ranges::min_element(patch.row);
@@ -76,7 +76,7 @@ YarnPatches::Stand YarnPatches::stand(SlotRows::Slots slots, std::uint32_t nobod
   return stand;
 }
 
-/// Of a good number of columns, in rows of memory that hold nobody else's particles.
+/// Whether a patch has enough columns, and its rows of memory have no particles of other yarns.
 bool YarnPatches::is_whole(const Memory& memory, const Columns& columns,
                            std::uint32_t nobody) const {
   std::uint32_t own = 0, all = 0;

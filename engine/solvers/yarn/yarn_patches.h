@@ -1,9 +1,10 @@
-/// Patches: what the blocks of yarns that are not in place (yarn_memory_rows.h) are cut into.
+/// Patches: the pieces into which blocks are cut whose yarns are not in place (yarn_memory_rows.h).
 ///
-/// A yarn along the rows of a sheet goes through the lanes of the rows of memory, two slots apart
-/// or in another order; it is the columns that say which particle is where. Rows of a block whose
-/// lanes stand in the same rows of memory make a patch, which a kernel transposes whole: the row of
-/// the block for each column. Other rows are single: each lane finds its particle by itself.
+/// A yarn along the rows of a sheet passes through the lanes of the rows of memory, two slots apart
+/// or in another order; the column of each particle tells which one it is. The rows of a block
+/// whose lanes lie in the same rows of memory make a patch, which a kernel transposes as a whole:
+/// it has one row of the block for each column. All other rows are single: each lane is gathered by
+/// itself.
 #pragma once
 
 #include <array>
@@ -19,20 +20,21 @@ class YarnPatches {
  public:
   YarnPatches(const SlotRows& slots, const YarnHome& home);
 
-  /// The block, its rows cut. Adds a row to memory that is nobody's, for its padding lanes.
+  /// Cuts the rows of a block into patches. Adds a row of memory without particles, for the padding
+  /// lanes of the block.
   simd::YarnBlock cut(simd::YarnBlock block);
 
   std::size_t rows_of_memory() const { return rows_; }
-  /// Of the rows that were cut, those in patches that are not single.
+  /// The share of all cut rows that are in whole patches.
   double share_whole() const;
   std::vector<simd::YarnPatch> patches() && { return std::move(patches_); }
 
  private:
-  using Memory = std::array<std::uint32_t, kernels::kLanes>;   // a place per lane: of its row
-  using Columns = std::array<std::uint32_t, kernels::kLanes>;  // a row of the block per column
+  using Memory = std::array<std::uint32_t, kernels::kLanes>;   // per lane: its row of memory
+  using Columns = std::array<std::uint32_t, kernels::kLanes>;  // per column: the row of the block
 
-  /// Where the particles of a block's row stand: per lane, the row of memory, and, where it is the
-  /// same for all of them, the column.
+  /// Where the particles of a row of a block are: per lane the row of memory, and the column if all
+  /// lanes have the same.
   struct Stand {
     Memory memory{};
     std::uint32_t column = kNoIndex;
@@ -43,11 +45,11 @@ class YarnPatches {
   void add_single(const simd::YarnBlock& block, std::uint32_t row, std::uint32_t nobody);
 
   SlotRows slots_;
-  const std::vector<std::uint32_t>& place_;  // per slot
-  std::size_t rows_;                         // of memory
-  std::vector<std::uint32_t> particles_;     // per row of memory, a bit for each
+  const std::vector<std::uint32_t>& place_;  // per slot (YarnPlaces)
+  std::size_t rows_;                         // the number of rows of memory
+  std::vector<std::uint32_t> particles_;     // per row of memory: a bit for each particle
   std::vector<simd::YarnPatch> patches_;
-  std::size_t cut_ = 0, whole_ = 0;  // rows of blocks
+  std::size_t cut_ = 0, whole_ = 0;  // rows of blocks: all, and those in whole patches
 };
 
 }  // namespace weft

@@ -8,7 +8,7 @@
 namespace weft {
 namespace {
 
-/// Of a list in the order of slots, what begins with slots first ... last - 1.
+/// The part of a list, sorted by slots, whose slots are in [first, last).
 template <class T, class SlotOf>
 std::span<const T> between(const std::vector<T>& list, SlotOf slot_of, std::size_t first,
                            std::size_t last) {
@@ -19,7 +19,7 @@ std::span<const T> between(const std::vector<T>& list, SlotOf slot_of, std::size
 std::size_t slot_of_row(const simd::WovenRow& row) { return row.four[0]; }
 std::size_t slot_of_loose(const YarnPlaces::Loose& loose) { return loose.slot; }
 
-/// kernels/simd/split.h, one by one.
+/// The operations of kernels/simd/split.h for one number.
 void split(double x, double cell, float& base, float& u) {
   const double far = 0x1.8p52 * cell;
   base = static_cast<float>((x + far) - far);

@@ -9,39 +9,40 @@
 namespace weft {
 namespace {
 
-/// Newton's method comes where sweeps leave more than kSlow of the error and the strain is below
-/// kSmall: beyond, directions change so much that a linear system says little. (With 0.02 steps of
-/// hang_sphere are done in halves; with 0.03 one of sphere_drop, taut, by rattle finds no end.)
+/// A Newton step follows where a sweep leaves more than kSlow of the error and the strain is below
+/// kSmall: with larger strains, directions change so much that a linear system is a poor model.
 constexpr double kSlow = 0.8;
 constexpr double kSmall = 0.025;
-/// Where one more sweep is not expected to come within so many times the goal, nobody looks at the
-/// errors before the second: a look takes half as long as a sweep.
+/// Where one more sweep is not expected to reach this multiple of the goal, a second one follows
+/// before errors are measured, because measuring them takes half as long as a sweep.
 constexpr double kFar = 2;
-/// What bends is straightened, turns, and is out again by the square of that. A block that is out
-/// by more than kLeft of the goal when it has been solved is solved again at once, while it is in
-/// the caches: the sweeps, and looks, that are saved cost far more (hang, 300 x 300, 1 %: 21 sweeps
-/// a frame without, 5 with it). If kMostSolves do not bring it there, none but the first do until
-/// the next substep. One that is not out by a hundredth of that is left alone. In floats nobody can
-/// tell below kSeen: every block is solved once then. So it is with scheme rattle: along the
-/// directions at the start twenty solves lead no further than one, and its guard takes what is left
-/// alone for a gain of energy.
+/// A solve turns constraints, which leaves an error of second order in the angle. A block whose
+/// strain exceeds kLeft of the goal after a solve is solved again at once, while it is in the
+/// caches, which saves sweeps and measurements. If kMostSolves do not suffice, the block is solved
+/// once in each sweep until the next substep. A block with less than a hundredth of that strain is
+/// not corrected at all. Below kSeen the rounding of floats hides strains, and every block is
+/// solved once. So it is with scheme rattle: along the directions at the start further solves do
+/// not converge, and what an uncorrected block leaves appears as a gain of energy.
 constexpr double kLeft = 0.3;
 constexpr std::uint32_t kMostSolves = 20;
 constexpr double kSeen = 1e-6;
+/// Linear systems are solved to this share of the goal.
 constexpr double kWithin = 0.5;
-constexpr int kMostIterations = 300;  // of conjugate gradients, in one Newton step
-/// With scheme rattle, whose guard takes noise for a gain of energy: corners, 41 x 41, 8 substeps
-/// leaves a sixth of them to scheme paper, at 0.003 a third, at 1e-5 as few for twice the work.
+/// Iterations of conjugate gradients in one Newton step.
+constexpr int kMostIterations = 300;
+/// The strain to reach with scheme rattle, whose check of the energy does not tell noise from a
+/// gain.
 constexpr double kRattleGoal = 1e-4;
-/// How far the error must come down from look to look, and how often it may not.
+/// The error counts as falling while a measurement finds less than the share `fall` of the least
+/// error before; it may fail to do so in `passes` measurements.
 struct Patience {
   double fall;
   int passes;
 };
 constexpr Patience kPatience{0.7, 20};
-/// Another scheme is waiting: four give up as many substeps as twenty, in half the iterations.
+/// Scheme rattle is given up earlier, because another scheme takes its place.
 constexpr Patience kRattlePatience{0.9, 4};
-/// Velocities that are to be exact are brought to this share of what they were out by.
+/// Velocities that are to be exact are brought to this share of their error.
 constexpr double kExact = 0.01;
 constexpr Patience kVelocityPatience{0.7, 3};
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
@@ -51,7 +52,7 @@ class Progress {
  public:
   explicit Progress(const Patience& patience) : patience_(patience) {}
 
-  /// After a look, which found the error `worst`.
+  /// Whether to go on after a measurement of the error `worst`.
   bool goes_on(double worst) {
     stale_ = worst < patience_.fall * best_ ? 0 : stale_ + 1;
     best_ = std::min(best_, worst);
@@ -64,12 +65,14 @@ class Progress {
   int stale_ = 0;
 };
 
-/// What a look at the errors finds: the largest strain, and what contacts and ropes are out by.
+/// The measured errors: the largest strain, and the largest error of contacts and slack ropes in
+/// units of their tolerance.
 struct Look {
   double strain, violation;
 };
 
-/// Shares that the blocks of a family are dealt out in at most, each with a scratch of its own.
+/// The blocks of a family are divided into at most this many shares, each with a scratch of its
+/// own.
 constexpr std::size_t kMostShares = 16;
 
 }  // namespace
@@ -142,7 +145,7 @@ void YarnSolver::join(kernels::VectorsView x, std::size_t first, std::size_t las
   layout_.places.join(table_, x, first, last, base_.data(), u_.data());
 }
 
-/// Returns how often; 0: it was good enough.
+/// Returns the number of solves, 0 if the block needed none.
 std::uint32_t YarnSolver::solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
                                       simd::YarnScratch* scratch) {
   const simd::YarnBlock& block = layout_.blocks[i];
@@ -160,7 +163,7 @@ void YarnSolver::sweep(double enough, Team& team, kernels::LoopResult& result) {
   for_each_family(team, [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
     solves_[i] = solve_block(yarns, i, enough, scratch);
   });
-  moved_ = false;  // a pass goes down every block, also where nothing is corrected
+  moved_ = false;  // a pass reads the base of every block, corrected or not
   singles_.relax(base_.data(), u_.data());
   std::int64_t visits = 0, corrections = 0;
   for (std::size_t i = 0; i < solves_.size(); ++i) {
@@ -170,7 +173,7 @@ void YarnSolver::sweep(double enough, Team& team, kernels::LoopResult& result) {
   count(1, visits, corrections, result);
 }
 
-/// visits, corrections: of constraints in yarns; all others are visited in every pass.
+/// The arguments count constraints in yarns; single constraints are visited in every pass.
 void YarnSolver::count(int passes, std::int64_t visits, std::int64_t corrections,
                        kernels::LoopResult& result) const {
   const std::int64_t others = passes * static_cast<std::int64_t>(singles_.count());
@@ -180,10 +183,10 @@ void YarnSolver::count(int passes, std::int64_t visits, std::int64_t corrections
   result.corrections += corrections + others;
 }
 
-/// More than one system only where one-sided constraints join in or let go, or where floats lost
-/// sight of the last digits.
+/// More than one system is needed only where one-sided constraints begin or cease to act, or where
+/// the rounding of floats left an error.
 kernels::LoopResult YarnSolver::correct_velocities(const VelocityTask& task, Team& team) {
-  if (settings_.iterations > 0) return {};  // they are for sweeps
+  if (settings_.iterations > 0) return {};  // these are sweeps of positions
   kernels::LoopResult result;
   from_start_ = false;
   velocities_ = true;
@@ -206,13 +209,13 @@ kernels::LoopResult YarnSolver::correct_velocities(const VelocityTask& task, Tea
   }
   result.converged = result.converged && loses_energy(task.v);
   if (result.converged) join(task.v, team);
-  result.converged = false;  // floats cannot tell: who works in double does
+  result.converged = false;  // the caller measures convergence in double
   return result;
 }
 
-/// Whether base + u has no more energy than v. A projection has not, and neither have conjugate
-/// gradients on their way to it; clamped impulses of one-sided constraints, where these depend on
-/// each other, may bring in any amount.
+/// Whether base + u has no more kinetic energy than v. A projection never adds energy, nor do
+/// conjugate gradients on their way to it; but clamped impulses of linearly dependent one-sided
+/// constraints may add any amount.
 bool YarnSolver::loses_energy(kernels::VectorsView v) const {
   constexpr double kRounding = 1e-6;
   double before = 0, after = 0;
@@ -253,10 +256,10 @@ YarnSolver::Aim YarnSolver::aim(double share) const {
   return {wanted, goal, left, block};
 }
 
-/// A Newton step's result is smoother for the sweep behind it, but in cloth that is carried fast
-/// that sweep may undo what it has reached, each time: then it is taken as it was (a run in a cape
-/// of 48 x 48 at 1 %: 5.0 ms a frame, 413 halves in 240 frames, before; 1.3 and one). Not where
-/// taut spans are held or something touches a sphere: heavy spheres end in millions of sweeps.
+/// Whether the result of a Newton step may be taken without the sweep that follows it. The sweep
+/// makes the result smoother, but in cloth that is carried fast it may undo what the step has
+/// reached, each time. The sweep is always kept where taut spans are held or something touches a
+/// sphere.
 bool YarnSolver::may_take_newton(const ContactStore& contacts) const {
   return !from_start_ && !spans_.holds() && contacts.count() == 0;
 }
@@ -282,8 +285,8 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
     return Look{strain, singles_.violation(base_.data(), u_.data())};
   };
   double before = kNoBound;
-  int sweeps = 1;                 // since the last look
-  bool newton_converged = false;  // a Newton step led to the goal; t_ is where
+  int sweeps = 1;                 // since the last measurement
+  bool newton_converged = false;  // a Newton step reached the goal; t_ is its result
   sweep(aim.block, team, result);
   for (;;) {
     const auto [strain, violation] = look();
@@ -305,7 +308,7 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
       return result;
     }
     const double fall = sweeps == 1 ? strain / before : std::sqrt(strain / before);
-    const int left = max_iterations - result.iterations - 1;  // but for a sweep that is to come
+    const int left = max_iterations - result.iterations - 1;  // without the sweep that follows
     sweeps = 1;
     if (left > 0 && strain < kSmall && fall > kSlow) {
       split(x, team);

@@ -1,22 +1,22 @@
-/// The yarn solver: whole chains of constraints at a time.
+/// The yarn solver, which solves whole chains of constraints at a time.
 ///
 /// A sweep solves the yarns of each family, one family after the other, until their own errors are
-/// small: Newton's method on kLanes yarns at a time, directions and errors taken anew, between
-/// families block Gauss-Seidel (kernels/simd/yarns.h). After it come the constraints that no yarn
-/// holds (ropes, hubs, contacts), one by one, their accumulated impulses clamped. Every
-/// block minimises the same convex quadratic of the impulses, 1/2 l'Al - e'l, over its own ones
-/// with the others held, so that along fixed directions a pass never raises it: this is why the
-/// coupling converges.
+/// small. Within a block of kLanes yarns this is Newton's method, with directions and errors
+/// renewed in each iteration; between families it is block Gauss-Seidel (kernels/simd/yarns.h). The
+/// constraints of no yarn (ropes, hubs, contacts) follow one by one, with their accumulated
+/// impulses clamped. Every block minimises the same convex quadratic function of the impulses, 1/2
+/// l'Al - e'l, over its own impulses with all others held. Along fixed directions a pass therefore
+/// never raises it, which is why the iteration converges.
 ///
-/// Where sweeps gain too little, Newton's method takes over: all yarns as one linear system, the
-/// first family eliminated, the others solved by conjugate gradients with their yarns as
-/// preconditioner (kernels/simd/yarn_system.h).
+/// Where sweeps converge too slowly, Newton's method takes over with one linear system for all
+/// yarns: the first family is eliminated, and the others are solved by conjugate gradients with the
+/// tridiagonal matrices of their yarns as preconditioner (kernels/simd/yarn_system.h).
 ///
-/// Velocities are linear: one system, solved in the same way.
+/// The constraints are linear in the velocities, so that one such system corrects these.
 ///
-/// Errors are judged in double after each sweep, while they are far off after every second; a
-/// Newton step has a sweep behind it. If they do not fall the solver gives up early, for its caller
-/// to answer.
+/// Errors are measured in double after each sweep, or after every second one while they are large;
+/// a Newton step is followed by a sweep. If the errors do not fall, the solver gives up early and
+/// leaves the answer to its caller.
 #pragma once
 
 #include <weft/weft.h>
@@ -38,53 +38,55 @@ namespace weft {
 
 class YarnSolver final : public ConstraintSolver {
  public:
-  /// What is aimed at where the tolerance is larger: what is left is noise that the next steps
-  /// would have to fight (corners, 81 x 81, 1 %: as many iterations a frame at a quarter of the
-  /// error).
+  /// The strain to reach where the tolerance is larger. What is left is noise that later steps
+  /// would have to remove.
   static constexpr double kGoal = 0.003;
 
-  /// measure: of the true errors.
+  /// `measure` finds the true errors, in double.
   YarnSolver(const Model& model, const Settings& settings, const simd::Table& table,
              SimdMeasure& measure);
 
-  /// Moves x until every constraint and listed contact is well within tolerance, or as far as it
-  /// gets: failed where it no longer came nearer and is short of what it wanted (scheme rattle, and
-  /// where errors contradict each other: of the tolerance), or where iterations ran out beyond the
-  /// tolerance. LoopResult::iterations counts sweeps and iterations of conjugate gradients, at
-  /// least one in each Newton step; visits, every solve of a constraint.
+  /// Moves x until every constraint and listed contact is well within tolerance, or until progress
+  /// ends. The result is `failed` if the errors no longer fell and are larger than wanted (with
+  /// scheme rattle, and where errors contradict each other: than the tolerance), or if iterations
+  /// ran out beyond the tolerance. LoopResult::iterations counts sweeps and iterations of conjugate
+  /// gradients, at least one in each Newton step; visits counts every solve of a constraint.
   kernels::LoopResult solve_positions(const PositionTask& task, Team& team) override;
-  /// Brings the velocities within half of the tolerance, or as far as it gets; with `exact` to a
-  /// small part of what they were out by, however little that is. It works in floats, and so leaves
-  /// it to others to say that velocities have converged.
+  /// Brings the velocities within half of the tolerance, or as near as it can; with `exact` it
+  /// reduces their error to a small share, even if that is within the tolerance. It works in
+  /// floats, and therefore never reports convergence, which its caller checks in double.
   kernels::LoopResult correct_velocities(const VelocityTask& task, Team& team) override;
-  std::size_t longest() const { return layout_.longest; }  // particles of the longest yarn
-  /// Per chunk of the measure: of the yarns that have a constraint there. Empty: all are as long.
+  /// The number of particles of the longest yarn.
+  std::size_t longest() const { return layout_.longest; }
+  /// The same for each chunk of the measure, of the yarns that have a constraint in it. Empty if
+  /// all yarns have the same length.
   std::span<const std::uint32_t> longest_at() const { return layout_.longest_at; }
   std::size_t bytes() const override;
 
  private:
   struct Products {
-    double product = 0;  // residual . z
+    double product = 0;  // of residual and z
     double worst = 0;    // largest strain left, or velocity
   };
-  /// Of a solve, as strains.
+  /// The strains that a solve aims at.
   struct Aim {
-    double wanted;  // with more the solver has failed
-    double goal;    // with this it is done
-    double left;    // a linear system leaves less
-    double block;   // a block with less is not solved again at once
+    double wanted;  // a solve that ends with more has failed
+    double goal;    // a solve ends when it reaches this
+    double left;    // a linear system must leave less
+    double block;   // a block with more is solved again at once
   };
   simd::Yarns yarns();
   Aim aim(double share) const;
   bool may_take_newton(const ContactStore& contacts) const;
   void begin(const PositionTask& task, Team& team);
-  /// Starts at the positions x.
+  /// Sets base and u to the positions x.
   void split(kernels::VectorsView x, Team& team) { split(x, layout_.cell, team); }
   void split(kernels::VectorsView x, double cell, Team& team);
   void keep_start(kernels::VectorsView start, Team& team);
   void join(kernels::VectorsView x, Team& team);
   void join(kernels::VectorsView x, std::size_t first, std::size_t last);
-  /// Each family, its blocks until their lengths are within the share `enough`, then the others.
+  /// Solves the blocks of each family until their strain is at most `enough`, then relaxes the
+  /// single constraints.
   void sweep(double enough, Team& team, kernels::LoopResult& result);
   kernels::LoopResult sweep_so_often(kernels::VectorsView x, int times, Team& team);
   std::uint32_t solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
@@ -93,17 +95,19 @@ class YarnSolver final : public ConstraintSolver {
   void count(int passes, std::int64_t visits, std::int64_t corrections,
              kernels::LoopResult& result) const;
 
-  // The linear system: yarn_system.cpp.
-  /// One of them, to the strain `goal`. Returns whether it came nearer; if not, nothing was moved.
+  // The linear system (yarn_system.cpp).
+  /// One Newton step, solved to the strain `goal`. Returns whether the residual fell; if not, u is
+  /// as before.
   bool newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result);
-  /// What was linearised, until no error is above `goal`, or the share `part` of what is left
-  /// when the first family is eliminated. Returns as newton.
+  /// Solves the linearised system until no error exceeds `goal`, or the share `part` of the errors
+  /// that are left when the first family is eliminated. Returns what newton() does.
   bool solve(double goal, double part, int max_iterations, Team& team, kernels::LoopResult& result);
   void make_system();
   void linearise(Team& team);
   void linearise_yarns(Team& team);
   void linearise_velocities(Team& team);
-  double read_velocities(Team& team);  // the largest; infinite if one is not a number
+  /// The largest error of the velocities; infinite if one is not finite.
+  double read_velocities(Team& team);
   Products precondition(double alpha, double goal, Team& team);
   void clear_push(Team& team);
   Products reduce(double goal, Team& team);
@@ -120,27 +124,28 @@ class YarnSolver final : public ConstraintSolver {
   const Model& model_;
   const YarnLayout& layout_;
   const Settings settings_;
-  const double usual_;  // strain that is aimed at
+  const double usual_;  // the strain to reach if no spans are held
   const simd::Table& table_;
   SimdMeasure& measure_;
 
-  double cell_ = 0;                               // that base was split by
+  double cell_ = 0;                               // the grid of base_
   bool from_start_ = false, velocities_ = false;  // what is being solved
-  bool moved_ = false;                            // the rows do not remember the present base
+  bool moved_ = false;                            // rows have no differences of this base yet
   kernels::AlignedVector<simd::YarnBaseSteps> base_step_;  // per row
   kernels::AlignedVector<simd::YarnDirections> start_;     // scheme rattle only
   kernels::AlignedVector<simd::YarnSystemRow> system_;     // from the first Newton step on
-  kernels::AlignedVector<simd::YarnScratch> scratch_;      // for each thread
-  kernels::AlignedVector<float> base_, u_, t_;             // as YarnPlaces has it
-  const std::size_t first_end_;                            // blocks of the first family
+  kernels::AlignedVector<simd::YarnScratch> scratch_;      // one part for each share of blocks
+  kernels::AlignedVector<float> base_, u_, t_;             // in the layout of YarnPlaces
+  const std::size_t first_end_;                            // end of the first family's blocks
   std::vector<simd::YarnProducts> products_;               // per block
-  std::vector<std::uint32_t> solves_;                      // per block, in one sweep
-  std::vector<std::uint8_t> stubborn_;                     // per block: kMostSolves were too few
+  std::vector<std::uint32_t> solves_;                      // per block: solves in one sweep
+  std::vector<std::uint8_t> stubborn_;                     // per block: kMostSolves did not do
   SingleConstraints singles_;
   HeldSpans spans_;
 };
 
-/// work(yarns, block's number, scratch); shares of blocks side by side.
+/// Calls work(yarns, number of the block, scratch) for each block; threads take shares of the
+/// blocks.
 template <class Work>
 void YarnSolver::for_each_block(std::size_t first, std::size_t last, Team& team, Work&& work) {
   if (first == last) return;
@@ -156,7 +161,7 @@ void YarnSolver::for_each_block(std::size_t first, std::size_t last, Team& team,
   });
 }
 
-/// One family after the other.
+/// Calls work for the blocks of one family after the other.
 template <class Work>
 void YarnSolver::for_each_family(Team& team, Work&& work) {
   for (std::size_t f = 0; f < layout_.families(); ++f) {

@@ -22,7 +22,8 @@ std::uint32_t Braces::other(std::uint32_t link, std::uint32_t slot) const {
   return other_end(links_[link], slot);
 }
 
-/// Of a triangle the third particle is a neighbour of both ends, and not of the span.
+/// A link is the side of a triangle if a particle outside the span is a neighbour of both of its
+/// ends.
 bool Braces::is_braced(std::span<const std::uint32_t> slots) {
   enter(slots);
   std::size_t triangles = 0;

@@ -1,4 +1,4 @@
-/// Spans: the stretches of yarns between two fixed particles (held_spans.h: what for).
+/// Spans: the parts of yarns between two fixed particles. What they are for: held_spans.h.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,22 @@ namespace weft {
 class Model;
 
 struct YarnSpan {
-  std::uint32_t row = 0, last_row = 0;  // its links; row of the layout, one past the last
+  std::uint32_t row = 0, last_row = 0;  // rows of the layout, one for each link
   std::uint32_t lane = 0;
   std::uint32_t first_slot = 0;  // where its particles begin in YarnLayout::span_slots
   bool has_chords = false;
   double length = 0;  // m
 };
 
-/// What else joins the particles of a span, which are given by their slots.
+/// Finds what other constraints join the particles of a span. The span is given by the slots of its
+/// particles.
 class Braces {
  public:
   explicit Braces(const Model& model) : model_(model) {}
 
-  /// Whether more than half of its links are sides of triangles.
+  /// Whether more than half of the links are sides of triangles.
   bool is_braced(std::span<const std::uint32_t> slots);
-  /// Whether constraints that are not its links join particles of it to each other.
+  /// Whether constraints other than the links join two particles of the span.
   bool has_chords(std::span<const std::uint32_t> slots);
 
  private:
@@ -36,11 +37,11 @@ class Braces {
   std::uint32_t other(std::uint32_t link, std::uint32_t slot) const;
 
   const Model& model_;
-  // From when they are first wanted:
+  // Filled when a span is first asked about.
   std::vector<Link> links_;
   Lists incidence_;
-  std::vector<std::uint32_t> met_;     // per slot: when a link led there
-  std::vector<std::uint32_t> inside_;  // per slot: when it was last in a span
+  std::vector<std::uint32_t> met_;     // per slot: the last time that a link led there
+  std::vector<std::uint32_t> inside_;  // per slot: the last time that it was in a span
   std::uint32_t time_ = 0, entered_ = 0;
 };
 

@@ -8,20 +8,16 @@
 namespace weft {
 namespace {
 
-/// Newton steps are solved to this share of what eliminating the first family leaves of the error,
-/// or of the tolerance. (0.1 and 0.3: as fast on corners 41 x 41 at 1 %; 0.3 takes a tenth more
-/// iterations at 0.001 %.)
+/// A Newton step is solved until the error is this share of what eliminating the first family
+/// leaves of it, or within the goal.
 constexpr double kForcing = 0.2;
-/// Errors that contradict each other, as those of triangles that cannot follow a step, have no
-/// solution: the residual stays, and impulses grow along what the system cannot tell apart, until
-/// all is out by far more than before. So where it has not come down for kPatience iterations, and
-/// is not far below what it was at first, nothing is moved. (A walk in a cape of 20 x 20 triangles
-/// of random shape, 60 Hz, 1 %: 300 iterations from 0.3 to 4 %, 172 ms in the worst frame; 19 now.
-/// A patience of 30: what converges is given up as well. Sheets that hang by two corners do not
-/// come to it, up to 321 x 321 and 781 iterations a frame.)
+/// Contradictory errors, such as those of triangles that cannot follow a step, have no solution:
+/// the residual stays, and the impulses grow in the null space of the system until the errors are
+/// far larger than before. So nothing is moved if the residual has not fallen to kFall of its least
+/// value for kPatience iterations, unless it is below kFarBelow of its initial value.
 constexpr double kFall = 0.95, kFarBelow = 0.3;
 constexpr int kPatience = 60;
-constexpr std::size_t kNumbers = 4096;  // floats that a thread takes at a time
+constexpr std::size_t kNumbers = 4096;  // the number of floats that a thread takes at a time
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -80,7 +76,7 @@ void YarnSolver::clear_push(Team& team) {
   });
 }
 
-/// The right side without the first family, and its first preconditioned residual.
+/// Forms the right side of the reduced system, and its first preconditioned residual.
 YarnSolver::Products YarnSolver::reduce(double goal, Team& team) {
   clear_push(team);
   eliminate(true, team);
@@ -88,7 +84,7 @@ YarnSolver::Products YarnSolver::reduce(double goal, Team& team) {
   return precondition(-1, goal, team);
 }
 
-/// t = M^-1 J^T p of all but the first family.
+/// Sets t = M^-1 J^T p, with the impulses of all families but the first.
 void YarnSolver::push(double beta, Team& team) {
   const auto factor = static_cast<float>(beta);
   const std::vector<std::uint32_t>& begin = layout_.family_begin;
@@ -105,7 +101,7 @@ void YarnSolver::push(double beta, Team& team) {
   singles_.push(beta, t_.data());
 }
 
-/// t -= M^-1 J^T T^-1 J t of the first family; with errors, T^-1 (e + J t).
+/// Subtracts M^-1 J^T T^-1 J t of the first family from t; with errors, M^-1 J^T T^-1 (e + J t).
 void YarnSolver::eliminate(bool errors, Team& team) {
   for_each_block(0, first_end_, team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
@@ -113,7 +109,7 @@ void YarnSolver::eliminate(bool errors, Team& team) {
                  });
 }
 
-/// q = J t of all but the first family; returns p . q.
+/// Sets q = J t for all families but the first. Returns p . q.
 double YarnSolver::pull(Team& team) {
   for_each_block(first_end_, layout_.blocks.size(), team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
@@ -127,7 +123,8 @@ double YarnSolver::pull(Team& team) {
   return sum;
 }
 
-/// u -= M^-1 J^T lambda, the first family's impulses from those of all others.
+/// Subtracts M^-1 J^T lambda from u; the impulses of the first family follow from those of all
+/// others.
 void YarnSolver::finish(Team& team) {
   const std::vector<std::uint32_t>& begin = layout_.family_begin;
   clear_push(team);
@@ -151,7 +148,7 @@ bool YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
   const double enough = std::max(goal, part * now.worst);
   const double first = now.product;
   double beta = 0, lowest = first;
-  int done = 0, since = 0;  // since: the residual came down
+  int done = 0, since = 0;  // iterations: all, and those since the residual last fell
   while (now.worst > enough && done < max_iterations && since < kPatience) {
     push(beta, team);
     eliminate(false, team);
@@ -181,8 +178,8 @@ bool YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::Lo
   return solve(goal, kForcing, max_iterations, team, result);
 }
 
-/// The linear system, from when it is first wanted; room for it was made, and is not touched
-/// before.
+/// Makes the linear system when it is first needed. Its memory was reserved before, and is not
+/// touched until then.
 void YarnSolver::make_system() {
   system_.resize(layout_.rows());
   t_.resize(u_.size());

@@ -1,4 +1,4 @@
-// One family of yarns in place, the others in patches.
+// Weaving a layout: one family of yarns is in place, the others are in patches.
 
 #include <utility>
 #include <vector>
@@ -11,8 +11,8 @@
 namespace weft {
 namespace {
 
-/// Of the rows of the other families, this share is in patches that are not single. Else quads are
-/// faster, or as fast.
+/// A layout is woven if at least this share of the rows of the other families is in whole patches;
+/// otherwise quads are at least as fast.
 constexpr double kLeastWhole = 0.75;
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 using perf::Piece;
 using perf::Workbench;
 
-void renew(Workbench& bench, const simd::Table& table, const simd::Relaxation& r) {
+void renew(Workbench& bench, const simd::Table& table, const simd::BlockRelaxation& r) {
   const simd::Geometry g = bench.geometry();
   for (const Piece& piece : bench.pieces) {
     if (piece.singles) {
@@ -26,7 +26,8 @@ void renew(Workbench& bench, const simd::Table& table, const simd::Relaxation& r
   }
 }
 
-std::uint32_t sweep(const Workbench& bench, const simd::Table& table, const simd::Relaxation& r) {
+std::uint32_t sweep(const Workbench& bench, const simd::Table& table,
+                    const simd::BlockRelaxation& r) {
   std::uint32_t corrections = 0;
   for (const Piece& piece : bench.pieces) {
     corrections += piece.singles ? table.relax_singles(r, piece.first(), piece.last())
@@ -48,7 +49,7 @@ std::uint32_t sweep(Workbench& bench, const simd::Table& table, const simd::Anti
 }
 
 void renew_products(Workbench& bench, const simd::Table& table, const simd::Anticipation& p,
-                    const simd::Relaxation& r) {
+                    const simd::BlockRelaxation& r) {
   for (const Piece& piece : bench.pieces) {
     bench.pulls().for_each_stretch(piece.first(), piece.last(),
                                    [&](std::uint32_t first, std::uint32_t last, bool scattered) {
@@ -62,7 +63,7 @@ void renew_products(Workbench& bench, const simd::Table& table, const simd::Anti
 }
 
 void apply_sums(const Workbench& bench, const simd::Table& table, const simd::Anticipation& p,
-                const simd::Relaxation& r) {
+                const simd::BlockRelaxation& r) {
   for (const Piece& piece : bench.pieces) {
     if (piece.singles) {
       table.apply_sums_singles(p, r, piece.first(), piece.last());
@@ -73,7 +74,7 @@ void apply_sums(const Workbench& bench, const simd::Table& table, const simd::An
 }
 
 void refresh_errors(const Workbench& bench, const simd::Table& table, const simd::Anticipation& p,
-                    const simd::Relaxation& r) {
+                    const simd::BlockRelaxation& r) {
   for (const Piece& piece : bench.pieces) {
     if (piece.singles) {
       table.refresh_errors_singles(p, r, piece.first(), piece.last());
@@ -84,7 +85,7 @@ void refresh_errors(const Workbench& bench, const simd::Table& table, const simd
 }
 
 /// Displacements of all slots, x y z.
-std::vector<float> displacements(const Workbench& bench, const simd::Relaxation& r) {
+std::vector<float> displacements(const Workbench& bench, const simd::BlockRelaxation& r) {
   std::vector<float> all;
   for (const float* axis : {r.u.x, r.u.y(), r.u.z()}) {
     for (std::size_t slot = 0; slot < bench.slots(); ++slot) all.push_back(axis[slot * r.u.step]);
@@ -100,7 +101,7 @@ struct Difference {
 Difference compare(Workbench& bench, const simd::Table& table, float threshold, int sweeps,
                    bool in_quads = false) {
   Difference d;
-  simd::Relaxation r = bench.relaxation(in_quads);
+  simd::BlockRelaxation r = bench.relaxation(in_quads);
   r.threshold = threshold;
   renew(bench, table, r);
   for (int i = 0; i < sweeps; ++i) d.corrections[0] += sweep(bench, table, r);
@@ -163,7 +164,7 @@ TEST_CASE("sums are applied once, and errors are those of the displacements they
       Workbench& bench = workshop.get(mesh.name, mesh.size, mesh.singles);
       const simd::Table& table = simd::table(isa);
       const bool in_quads = bench.pieces.front().singles;
-      const simd::Relaxation r = bench.relaxation(in_quads);
+      const simd::BlockRelaxation r = bench.relaxation(in_quads);
       renew(bench, table, r);
       const simd::Anticipation p = bench.anticipation(0);
       renew_products(bench, table, p, r);

@@ -66,7 +66,7 @@ TEST_CASE("contacts push, sixteen at a time, and the sphere takes the sum") {
         CAPTURE(length);
         CAPTURE(threshold);
         KernelData found = touching(length), expected = touching(length);
-        const simd::Relaxation r = found.relaxation(threshold);
+        const simd::BlockRelaxation r = found.relaxation(threshold);
         for (int pass = 0; pass < 3; ++pass) {
           std::uint32_t wanted = 0;
           for (std::uint32_t c = found.first; c < found.last; c += kLanes) {

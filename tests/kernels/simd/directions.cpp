@@ -32,7 +32,7 @@ void renew(const Rounding& rounding, KernelData& data, std::uint32_t c, Ends at,
 }
 
 void renew(const simd::Table& table, KernelData& data, bool singles, bool velocity) {
-  const simd::Relaxation r = data.relaxation(1);
+  const simd::BlockRelaxation r = data.relaxation(1);
   const simd::Geometry g = data.geometry();
   if (singles && velocity) {
     table.renew_velocity_singles(g, data.velocity.view(), r, data.first, data.last);
@@ -97,7 +97,7 @@ TEST_CASE("rattle: directions of the start, true errors") {
           to.nz[c % kLanes] = from.nz[c % kLanes];
         }
         const simd::Table& table = simd::table(isa);
-        const simd::Relaxation r = found.relaxation(1);
+        const simd::BlockRelaxation r = found.relaxation(1);
         if (singles) {
           table.renew_from_start_singles(found.geometry(), found.solved.view(), r, found.first,
                                          found.last);

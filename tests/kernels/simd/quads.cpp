@@ -15,7 +15,7 @@ using perf::Workbench;
 /// Positions after some sweeps over an irregular mesh, pass by pass by another kernel.
 std::vector<double> moved(bool in_quads, const simd::Table& table) {
   Workbench bench(perf::irregular(20), {});
-  const simd::Relaxation r = bench.relaxation(in_quads);
+  const simd::BlockRelaxation r = bench.relaxation(in_quads);
   std::uint32_t corrections = 0;
   for (int i = 0; i < 5; ++i) {
     for (const Piece& piece : bench.pieces) {
@@ -52,7 +52,7 @@ TEST_CASE("quads and planar displacements give the same bits") {
 std::vector<float> touched(bool in_quads, const simd::Table& table) {
   constexpr std::uint32_t kContacts = 3 * kLanes;
   Workbench bench(perf::irregular(20), {});
-  simd::Relaxation r = bench.relaxation(in_quads);
+  simd::BlockRelaxation r = bench.relaxation(in_quads);
   kernels::AlignedVector<simd::ConstraintBlock> blocks(kContacts / kLanes);
   std::vector<std::uint32_t> a(kContacts, static_cast<std::uint32_t>(bench.slots() - 1)), b;
   perf::Random random(3);

@@ -75,7 +75,7 @@ TEST_CASE("runs of distance constraints and of ropes") {
       for_every_length(
           [&](simd::Isa isa, const simd::Table& table, float threshold, KernelData found) {
             KernelData expected = found;
-            simd::Relaxation r = found.relaxation(threshold);
+            simd::BlockRelaxation r = found.relaxation(threshold);
             r.from_memory = from_memory;
             const auto kernel = kind == Kind::rope ? table.relax_rope_run : table.relax_run;
             for (int pass = 0; pass < 3; ++pass) {
@@ -95,7 +95,7 @@ TEST_CASE("singles of distance constraints and of ropes") {
     for_every_length(
         [&](simd::Isa isa, const simd::Table& table, float threshold, KernelData found) {
           KernelData expected = found;
-          const simd::Relaxation r = found.relaxation(threshold);
+          const simd::BlockRelaxation r = found.relaxation(threshold);
           const auto kernel = kind == Kind::rope ? table.relax_rope_singles : table.relax_singles;
           for (int pass = 0; pass < 3; ++pass) {
             const auto count = kernel(r, found.first, found.last);
@@ -116,7 +116,7 @@ TEST_CASE("serial constraints see what the one before them did, in any number") 
       for (std::uint32_t c = found.first; c < found.last; ++c) found.a[c] = 7;  // a hub
       for (std::uint32_t& slot : found.b) slot += slot == 7;
       KernelData expected = found;
-      const simd::Relaxation r = found.relaxation(threshold);
+      const simd::BlockRelaxation r = found.relaxation(threshold);
       const auto kernel = kind == Kind::rope ? table.relax_rope_serial : table.relax_serial;
       for (const std::uint32_t last : {found.first, found.first + 1, found.last - 3}) {
         const auto count = kernel(r, found.first, last);
@@ -161,7 +161,7 @@ TEST_CASE("padding moves nothing, not even where its slots are far out") {
       for (std::uint32_t c = data.first; c < data.last; ++c) data.make_padding(c);
       for (std::size_t i = 0; i < data.u.size(); i += 2) data.u[i] *= 1e30f;
       const KernelData before = data;
-      const simd::Relaxation r = data.relaxation(threshold);
+      const simd::BlockRelaxation r = data.relaxation(threshold);
       const simd::Table& t = simd::table(isa);
       std::uint64_t visits = 0;
       std::ranges::fill(data.mask, 1u);
@@ -182,7 +182,7 @@ TEST_CASE("a rope pulls only, and gives back no more than it pulled") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
     KernelData data(128, 10);
-    const simd::Relaxation r = data.relaxation(0);
+    const simd::BlockRelaxation r = data.relaxation(0);
     float before = 0, after = 0;
     for (std::uint32_t c = data.first; c < data.last; ++c) before += data.impulse[c];
     for (int pass = 0; pass < 5; ++pass) {
