@@ -104,7 +104,11 @@ void add(Plan& plan, const Attempt& attempt) { plan.attempts[plan.count++] = att
 void list_attempts(const State& s, Plan& plan) {
   const Settings& settings = s.settings;
   if (settings.solver == Solver::small_steps) {
-    add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme});
+    const bool may_refine = settings.substeps == kAutomaticSubsteps && settings.iterations == 0;
+    if (!may_refine || std::lround(s.refinement) == 0)
+      add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme});
+    if (may_refine)
+      add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme, .parts = 2});
   } else {
     const bool fixed = settings.iterations > 0;
     if (settings.scheme == Scheme::rattle) add(plan, {.scheme = Scheme::rattle});

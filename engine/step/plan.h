@@ -9,7 +9,8 @@
 ///      constraints contradict each other
 ///
 /// The paper's loop (gauss_seidel) and a fixed number of iterations have nothing but the scheme
-/// that was asked for and, behind rattle, the paper's. A step by small steps is one attempt.
+/// that was asked for and, behind rattle, the paper's. A step by small steps is done in one part
+/// or, where that is rejected, in two, of substeps half as long.
 #pragma once
 
 #include <array>

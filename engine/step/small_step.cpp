@@ -35,7 +35,8 @@ double mean_acceleration(const State& s) {
 /// past. In a step that is far shorter than that
 /// corrections are smaller: a sweep is a spring of stiffness omega / h^2, and a spring that keeps
 /// its stiffness releases nothing of what it holds.
-FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& budget) {
+FramePlan plan_for(State& s, const SmallSteps& solver, const Attempt& attempt, double dt,
+                   const Budget& budget) {
   const bool takes_over = s.settings.solver != Solver::small_steps;
   FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed || takes_over};
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
@@ -43,12 +44,12 @@ FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& 
   } else {
     const double usual = std::min(tuning::kLongestSubstep,
                                   solver.substep_length(s.position.view(), mean_acceleration(s)));
-    const double wanted = std::ceil(dt / usual);
+    const double wanted = std::ceil(dt / usual) * attempt.parts;
     // A substep is a sweep or two, and visits of local passes.
     const int most =
         std::min(tuning::kMostSubsteps, std::max(1, budget.positions / (2 + tuning::kMostVisits)));
     plan.substeps = wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
-    const double part = 2 * dt / (plan.substeps * usual);
+    const double part = 2 * dt * attempt.parts / (plan.substeps * usual);
     if (part < 1) plan.omega *= part * part;
   }
   plan.h = dt / plan.substeps;
@@ -206,7 +207,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   Frame frame(s, budget, report, team);
   FramePlan plan;
   timed(report, Stage::predict, [&] {
-    plan = plan_for(s, *s.small_steps, h, budget);
+    plan = plan_for(s, *s.small_steps, attempt, h, budget);
     frame.begin(plan);
   });
   timed(report, Stage::solve_positions, [&] {
