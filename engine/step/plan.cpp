@@ -105,10 +105,11 @@ void list_attempts(const State& s, Plan& plan) {
   const Settings& settings = s.settings;
   if (settings.solver == Solver::small_steps) {
     const bool may_refine = settings.substeps == kAutomaticSubsteps && settings.iterations == 0;
-    if (!may_refine || std::lround(s.refinement) == 0)
-      add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme});
-    if (may_refine)
-      add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme, .parts = 2});
+    const int most = may_refine ? tuning::kMostRefinements : 0;
+    const auto first = static_cast<int>(std::lround(s.refinement));
+    for (int i = std::min(first, most); i <= most; ++i) {
+      add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme, .parts = 1 << i});
+    }
   } else {
     const bool fixed = settings.iterations > 0;
     if (settings.scheme == Scheme::rattle) add(plan, {.scheme = Scheme::rattle});

@@ -10,7 +10,7 @@
 ///
 /// The paper's loop (gauss_seidel) and a fixed number of iterations have nothing but the scheme
 /// that was asked for and, behind rattle, the paper's. A step by small steps is done in one part
-/// or, where that is rejected, in two, of substeps half as long.
+/// or, where that is rejected, in two and in four, of substeps that much shorter.
 #pragma once
 
 #include <array>

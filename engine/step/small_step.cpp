@@ -237,7 +237,12 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     trial.worsen(Status::passed_through);
   }
   timed(report, Stage::commit, [&] {
-    if (!fixed) guard_springs(s, change, give_per_mass(s, plan), h);
+    const double lost_before = s.lost_energy;
+    if (!fixed && !guard_springs(s, change, give_per_mass(s, plan), h) && !attempt.is_last) {
+      s.lost_energy = lost_before;
+      trial.outcome = Outcome::rejected;
+      return;
+    }
     if (s.pins.moving()) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
     s.small_steps->keep(team);
   });
