@@ -31,12 +31,14 @@ double mean_acceleration(const State& s) {
   return mass > 0 ? sum / mass : 0;
 }
 
+bool takes_over_in(const State& s) { return s.settings.solver != Solver::small_steps; }
+
 /// Substeps are about as long as the load allows. Whoever takes over from another solver has no
-/// past. In a step that is far shorter than that
-/// corrections are smaller: a sweep is a spring of stiffness omega / h^2, and a spring that keeps
-/// its stiffness releases nothing of what it holds.
+/// past, and no energy in springs. In a step that is far shorter than that corrections are smaller:
+/// a sweep is a spring of stiffness omega / h^2, and a spring that keeps its stiffness releases
+/// nothing of what it holds.
 FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& budget) {
-  const bool takes_over = s.settings.solver != Solver::small_steps;
+  const bool takes_over = takes_over_in(s);
   FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed || takes_over};
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
     plan.substeps = s.settings.substeps;
@@ -223,6 +225,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     trial.worsen(Status::passed_through);
   }
   timed(report, Stage::commit, [&] {
+    if (takes_over_in(s)) s.lost_energy = 0;
     if (!fixed) guard_springs(s, change, h);
     if (s.pins.moving()) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
     s.small_steps->keep(team);
