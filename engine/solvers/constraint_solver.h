@@ -38,7 +38,8 @@ struct VelocityTask {
 class ConstraintSolver {
  public:
   virtual ~ConstraintSolver() = default;
-  /// LoopResult::failed: the error no longer fell.
+  /// LoopResult::failed: the error no longer fell. It may have converged nevertheless, if the
+  /// solver aims at less than the tolerance.
   virtual kernels::LoopResult solve_positions(const PositionTask& task, Team& team) = 0;
   virtual kernels::LoopResult correct_velocities(const VelocityTask& task, Team& team) = 0;
   virtual std::size_t bytes() const = 0;

@@ -114,7 +114,9 @@ class ExactSubstep {
       return;
     }
     is_solved_ = result.converged;
-    if (!is_solved_ && !attempt_.is_last) trial_.outcome = Outcome::rejected;
+    // Within tolerance, but short of what the solver aims at: the next part would begin with that.
+    const bool is_short = result.failed && attempt_.parts < kFinest;
+    if ((!is_solved_ || is_short) && !attempt_.is_last) trial_.outcome = Outcome::rejected;
     if (!result.converged) {
       trial_.status = result.failed ? Status::infeasible : Status::iteration_limit;
     }

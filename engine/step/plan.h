@@ -8,6 +8,11 @@
 ///   5  the paper's loop, whose result is accepted with its error: it comes to rest where
 ///      constraints contradict each other
 ///
+/// Only the part that is rejected is left to the next attempt: those before it are kept. Where that
+/// has been accepted the list begins again, with the first attempt that has a part beginning there.
+/// So a substep that is rejected, and then in its second half, is done as a half and two quarters.
+/// Small steps, sweeps and the direct solver behind yarns do all that is left of the substep.
+///
 /// The paper's loop (gauss_seidel) and a fixed number of iterations have nothing but the scheme
 /// that was asked for and, behind rattle, the paper's. A step by small steps is done in one part
 /// or, where that is rejected, in two and in four, of substeps that much shorter.

@@ -31,13 +31,15 @@ double mean_acceleration(const State& s) {
   return mass > 0 ? sum / mass : 0;
 }
 
+bool takes_over_in(const State& s) { return s.settings.solver != Solver::small_steps; }
+
 /// Substeps are about as long as the load allows. Whoever takes over from another solver has no
-/// past. In a step that is far shorter than that
-/// corrections are smaller: a sweep is a spring of stiffness omega / h^2, and a spring that keeps
-/// its stiffness releases nothing of what it holds.
+/// past, and no energy in springs. In a step that is far shorter than that corrections are smaller:
+/// a sweep is a spring of stiffness omega / h^2, and a spring that keeps its stiffness releases
+/// nothing of what it holds.
 FramePlan plan_for(State& s, const SmallSteps& solver, const Attempt& attempt, double dt,
                    const Budget& budget) {
-  const bool takes_over = s.settings.solver != Solver::small_steps;
+  const bool takes_over = takes_over_in(s);
   FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed || takes_over};
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
     plan.substeps = s.settings.substeps;
@@ -238,6 +240,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   }
   timed(report, Stage::commit, [&] {
     const double lost_before = s.lost_energy;
+    if (takes_over_in(s)) s.lost_energy = 0;
     if (!fixed && !guard_springs(s, change, give_per_mass(s, plan), h) && !attempt.is_last) {
       s.lost_energy = lost_before;
       trial.outcome = Outcome::rejected;

@@ -87,7 +87,8 @@ class Step {
     transaction_.commit();
     s_.placed = false;
     s_.last_dt = report_.status == Status::converged ? dt : 0;
-    s_.refinement = std::max(most_refined_, s_.refinement - tuning::kCoarsening);
+    const double needed = report_.halvings > 0 ? std::log2(parts_ / plan_.substeps) : 0;
+    s_.refinement = std::max(needed, s_.refinement - tuning::kCoarsening);
     return true;
   }
 
@@ -97,8 +98,7 @@ class Step {
   bool do_substep(double h, int substeps_left) {
     positions_ = share_of(report_.iterations, substeps_left);
     velocities_ = share_of(report_.velocity_iterations, substeps_left);
-    int begin = 0;  // in finest parts
-    int parts = 0;  // done
+    int begin = 0;  // of the present part, in finest parts
     for (std::size_t i = 0; begin < kFinest;) {
       const Attempt& attempt = plan_.attempts[i];
       const int end = attempt.end_of(begin);
@@ -106,8 +106,8 @@ class Step {
       const Outcome outcome = try_attempt(attempt, h * (end - begin) / kFinest);
       if (outcome == Outcome::accepted) {
         begin = end;
-        ++parts;
         i = plan_.first_at(begin);
+        ++parts_;
       } else if (!attempt.is_last) {
         ++i;
       } else {
@@ -115,8 +115,6 @@ class Step {
         return false;
       }
     }
-    // Parts that were needed are for the next steps too.
-    if (report_.halvings > 0) most_refined_ = std::max(most_refined_, std::log2(parts));
     return true;
   }
 
@@ -165,7 +163,7 @@ class Step {
   Team& team_;
   Transaction transaction_;
   Plan plan_;
-  double most_refined_ = 0;
+  double parts_ = 0;              // done
   Share positions_, velocities_;  // of the iterations, for the present substep
 };
 

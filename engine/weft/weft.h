@@ -233,9 +233,10 @@ WEFT_API ModelInfo describe(const Model& model);
 ///   with scheme paper or rattle, or with velocity_correction. gauss_seidel on the reference
 ///   backend and with `iterations`. The thresholds are not part of the interface.
 /// What yarn and direct do not bring within tolerance is done by others, in this order: the same
-/// solver in 2, 4, 8 and 16 parts of the substep (StepReport::halvings counts what was rejected);
-/// direct behind yarn, where masses are unequal; small_steps; gauss_seidel, whose result is
-/// committed with its error. For some steps afterwards substeps begin in as many parts. Energy that
+/// solver in shorter parts, halves of what was rejected down to a sixteenth of the substep
+/// (StepReport::halvings counts what was rejected); and for the rest of the substep direct behind
+/// yarn, where masses are unequal; small_steps; gauss_seidel, whose result is committed with its
+/// error. For some steps afterwards substeps begin in about as many parts. Energy that
 /// a substep gains by more than gravity, forces and moved pins explain is taken out by scaling its
 /// velocities down, to rest at most, or to the rigid motion nearest to that of the pins
 /// (engine/step/energy.h). So a step depends slightly on the ones before, until positions are

@@ -71,7 +71,7 @@ Trial drop(const Setup& setup, double sphere_mass, double slack) {
 /// must say so, and the sheet must hold. One that is taut can only stop a sphere by forces far
 /// beyond its weight.
 constexpr double heaviest_caught(double slack) { return slack > 0 ? 10 : 1; }
-constexpr double heaviest_by_yarns(double slack) { return slack > 0 ? 100 : 10; }
+constexpr double kHeaviestCaughtByYarns = 100;
 
 Outcome run_heaviest(const Setup& setup, double sphere_mass, double slack) {
   Trial trial = drop(setup, sphere_mass, slack);
@@ -112,7 +112,7 @@ std::vector<Case> drop_cases() {
       const bool by_all = mass <= heaviest_caught(slack);
       cases.push_back(by_all ? caught("drop", mass, slack) : too_heavy(mass, slack));
       if (mass > kHeaviestBySmallSteps) cases.back().claimed = not_by_small_steps;
-      if (by_all || mass > heaviest_by_yarns(slack)) continue;
+      if (by_all || mass > kHeaviestCaughtByYarns) continue;
       cases.push_back(caught("caught", mass, slack));
       cases.back().claimed = by_yarns;
     }

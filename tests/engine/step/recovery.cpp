@@ -112,7 +112,7 @@ TEST_CASE("energy from what a start violates says nothing about halves") {
 
 TEST_CASE("where sweeps had to do, what they leave brings in little energy") {
   CHECK(most_gained(15, 1, 1, 0.06) < 1);
-  CHECK(most_gained(10, 30, 2, 0.04) < 5);
+  CHECK(most_gained(10, 30, 2, 0.04) < 1);
 }
 
 TEST_CASE("a cloth that is given a state goes on like a new one, whatever its steps came to") {
@@ -394,7 +394,7 @@ TEST_CASE("where iterations run out nothing is torn apart, and few more are done
       for (int k = 1; k <= 120; ++k) {
         pinch.move(cloth, k / 60.);
         const StepReport report = step(cloth, 1. / 60);
-        CHECK(report.max_strain < 0.4);
+        CHECK(report.max_strain < 0.2);
         CHECK(report.iterations <= most + 16 * report.substeps);
       }
     }
