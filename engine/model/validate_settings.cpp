@@ -47,9 +47,6 @@ Result<void> validate_products(const Settings& s) {
   if (s.solver != Solver::gauss_seidel) {
     return refuse("anticipate_products", "is for solver gauss_seidel", std::string(name(s.solver)));
   }
-  if (s.scheme == Scheme::rattle) {
-    return refuse("anticipate_products", "is for scheme paper", std::string(name(s.scheme)));
-  }
   if (!s.anticipate) return refuse("anticipate_products", "needs anticipate", "off");
   return {};
 }

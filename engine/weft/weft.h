@@ -316,12 +316,11 @@ struct Settings {
   /// either way, which is faster in lanes (perf/tried.md); there this selects how `skip` tracks
   /// satisfied constraints: true, by flags of chunks; false, by the paper's 64-bit masks.
   bool anticipate = true;
-  /// simd, gauss_seidel, scheme paper, with `anticipate`: errors of distance constraints, in both
-  /// loops, are kept, and updated through the stored products of neighbouring directions, as in
-  /// section 4.2. Ropes, constraints at hubs and contacts still form theirs from displacements. An
-  /// iteration takes 1.3 to 2 times as long as by displacements, on irregular meshes 3 times
-  /// (perf/tried.md). The reference backend keeps products whenever it anticipates, and refuses
-  /// this.
+  /// simd, gauss_seidel, with `anticipate`: errors of distance constraints, in both loops, are
+  /// kept, and updated through the stored products of neighbouring directions, as in section 4.2.
+  /// Ropes, constraints at hubs and contacts still form theirs from displacements. An iteration
+  /// takes 1.3 to 2 times as long as by displacements, on irregular meshes 3 times (perf/tried.md).
+  /// The reference backend keeps products whenever it anticipates, and refuses this.
   bool anticipate_products = false;
   bool skip = true;  ///< section 4.3: satisfied constraints are passed over
   /// Sections 3.2, 3.3: a second loop, on velocities; rattle has it always. Without it gauss_seidel

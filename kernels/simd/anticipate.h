@@ -12,8 +12,10 @@
 ///
 /// The weight is the neighbour's gain at the shared particle, negative if that is end b of c (the
 /// paper prints e_j + n_j . n_i e_i, without masses and sign). A constraint that is passed over
-/// must have change 0. Displacements come last: apply_sums. Where something else has moved the
-/// ends, errors are formed from displacements once, and then there is nothing to pull:
+/// must have change 0. A lane without a neighbour has weight and product 0, and pulls nothing
+/// whatever it reads: what it reads may have diverged, and when others wrote it depends on the
+/// width of vectors and on threads. Displacements come last: apply_sums. Where something else has
+/// moved the ends, errors are formed from displacements once, and then there is nothing to pull:
 /// refresh_errors.
 ///
 ///     pulls of a block of kLanes constraints in a run:   from: one number, plain loads
@@ -53,7 +55,7 @@ template <class From>
 [[gnu::always_inline]] inline std::uint32_t relax_anticipated(const Anticipation& p,
                                                               const From& from, std::uint32_t first,
                                                               std::uint32_t last) {
-  const Floats threshold(p.threshold);
+  const Floats threshold(p.threshold), none(0.f);
   std::uint32_t corrections = 0;
   for (std::size_t block = first; block < last; block += kernels::kLanes) {
     const std::size_t begin = p.first_pull[block / kernels::kLanes];
@@ -63,7 +65,8 @@ template <class From>
       Floats e = load(p.error + c);
       for (std::size_t pull = begin; pull < end; ++pull) {
         const Floats product = load(p.product + pull * kernels::kLanes + lane);
-        e = fused(product, from.get(p.change, pull, lane), e);
+        const Floats change = from.get(p.change, pull, lane);
+        e = fused(product, xsimd::select(product != none, change, none), e);
       }
       Corrected corrected = correct_distances({}, c, e, threshold);
       corrected.by.store_unaligned(p.change + c);
@@ -125,7 +128,8 @@ template <class From>
       for (std::size_t pull = begin; pull < end; ++pull) {
         const std::size_t k = pull * kernels::kLanes + lane;
         FloatVector other = directions_of(r, from, pull, lane);
-        (load(p.weight + k) * dot(n, other)).store_unaligned(p.product + k);
+        const Floats weight = load(p.weight + k), none(0.f);
+        xsimd::select(weight != none, weight * dot(n, other), none).store_unaligned(p.product + k);
       }
       here.e0().store_unaligned(p.error + c);
       Floats(0.f).store_unaligned(p.change + c);

@@ -250,8 +250,7 @@ Settings draw_settings(Random& random) {
 
 /// Where there are any.
 void draw_products(Settings& s, Random& random) {
-  const bool may = s.backend == Backend::simd && s.solver == Solver::gauss_seidel &&
-                   s.scheme != Scheme::rattle && s.anticipate;
+  const bool may = s.backend == Backend::simd && s.solver == Solver::gauss_seidel && s.anticipate;
   s.anticipate_products = may && random.below(2) == 0;
 }
 

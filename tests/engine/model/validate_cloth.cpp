@@ -151,13 +151,6 @@ TEST_CASE("products are for Gauss-Seidel in lanes that anticipates") {
     check_setting(products(solver, Backend::simd, true),
                   {"anticipate_products", "gauss_seidel", name(solver).data()});
   }
-  check_setting(
-      [](auto& s) {
-        s.solver = Solver::gauss_seidel;
-        s.anticipate_products = true;
-        s.scheme = Scheme::rattle;
-      },
-      {"anticipate_products", "paper", "rattle"});
   check_setting(products(Solver::gauss_seidel, Backend::simd, false),
                 {"anticipate_products", "anticipate", "off"});
   Settings settings;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "perf/workbench.h"
@@ -189,6 +190,60 @@ TEST_CASE("sums are applied once, and errors are those of the displacements they
       }
       CHECK(largest > 0);
       CHECK(off <= 1e-6f * largest);
+    }
+  }
+}
+
+/// Whether an end of one is an end of the other.
+bool meet(const Ordering& ordering, std::size_t c, std::size_t j) {
+  const auto is_end = [&](std::uint32_t slot) {
+    return slot == ordering.a[c] || slot == ordering.b[c];
+  };
+  return is_end(ordering.a[j]) || is_end(ordering.b[j]);
+}
+
+/// Of constraint c alone, whose error is 1, when none that it meets has changed and all others have
+/// diverged.
+float change_among_diverged(Workbench& bench, const simd::Table& table, std::size_t c) {
+  const simd::Relaxation r = bench.relaxation(bench.pieces.front().singles);
+  const simd::Anticipation p = bench.anticipation(0);
+  renew(bench, table, r);
+  r.blocks[c / kLanes].e0[c % kLanes] = 1;
+  const auto for_each_other = [&](auto&& diverge) {
+    for (std::size_t j = 0; j < bench.constraint_slots(); ++j) {
+      if (!meet(bench.ordering, c, j)) diverge(j);
+    }
+  };
+  for_each_other([&](std::size_t j) {
+    r.blocks[j / kLanes].nx[j % kLanes] = std::numeric_limits<float>::quiet_NaN();
+  });
+  renew_products(bench, table, p, r);
+  std::fill_n(p.change, bench.constraint_slots(), 0.f);
+  for_each_other([&](std::size_t j) { p.change[j] = std::numeric_limits<float>::infinity(); });
+  const auto first = static_cast<std::uint32_t>(c / kLanes * kLanes);
+  bench.pulls().for_each_stretch(first, first + kLanes, [&](auto begin, auto end, bool scattered) {
+    scattered ? table.relax_anticipated_singles(p, begin, end)
+              : table.relax_anticipated_run(p, {0, 0, begin, end - begin});
+  });
+  return p.change[c];
+}
+
+// Lanes without a neighbour read all the same.
+TEST_CASE("a constraint pulls nothing from those that it does not meet, even if they diverge") {
+  perf::Workshop workshop;
+  for (const Mesh& mesh : {Mesh{"grid", 12, false}, {"grid", 12, true}, {"irregular", 9, false}}) {
+    for (const simd::Isa isa : supported_isas()) {
+      CAPTURE(mesh.name);
+      CAPTURE(mesh.singles);
+      CAPTURE(static_cast<int>(isa));
+      Workbench& bench = workshop.get(mesh.name, mesh.size, mesh.singles);
+      std::size_t checked = 0;
+      for (std::size_t c = 0; c < bench.constraint_slots(); ++c) {
+        if (bench.ordering.link_at[c] == kNoIndex) continue;
+        REQUIRE(change_among_diverged(bench, simd::table(isa), c) == 1);
+        ++checked;
+      }
+      CHECK(checked == bench.constraints);
     }
   }
 }
