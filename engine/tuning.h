@@ -8,6 +8,13 @@
 
 namespace weft::tuning {
 
+/// The error of an iteration falls if it comes below the share `fall` of the least one so far. The
+/// iteration has stalled after more than `most` successive times without that.
+struct Patience {
+  double fall;
+  int most;
+};
+
 /// Relaxation factor of a correction. At 1 a woven sheet of 41 x 41 gains 0.9 J in a second in 400
 /// substeps a frame; at 0.8 it gains none in 1600. A smaller factor makes softer constraints.
 inline constexpr double kOmega = 0.8;
@@ -46,10 +53,8 @@ inline constexpr int kMostVisits = 1;
 /// is a sweep, and local passes of at most so many visits, in units of all constraints.
 inline constexpr int kMostRounds = 64;
 inline constexpr std::int64_t kMostRoundVisits = 32;
-/// A round makes progress if it brings the error below this share of the least one so far. After
-/// more than kPatience rounds without progress the constraints count as contradictory.
-inline constexpr double kFall = 0.999;
-inline constexpr int kPatience = 16;
+/// Rounds of a frame, and parts of the paper's loop: then the constraints count as contradictory.
+inline constexpr Patience kRoundPatience{0.999, 16};
 
 // ----------------------------------------------------------------------- the choice of a solver
 
@@ -114,5 +119,90 @@ inline constexpr double kMostGain = 0.5;
 /// rounded.
 inline constexpr double kRattleGain = 0.1;
 inline constexpr double kEnergyRounding = 1e-9;
+
+// ---------------------------------------------------------------------------- the yarn solver
+
+/// The strain to reach where the tolerance is larger, and with scheme rattle, whose check of the
+/// energy does not tell noise from a gain. Less costs iterations; more is noise for later steps.
+inline constexpr double kYarnGoal = 0.003;
+inline constexpr double kRattleGoal = 1e-4;
+/// Taut spans are given the lengths of the prediction up to this share of the permitted strain.
+/// More leaves the solver less room; less takes their sag away.
+inline constexpr double kHeldShare = 0.8;
+/// A Newton step follows a sweep that leaves more than this share of the error, if the strain is
+/// below kNewtonStrain: with larger strains directions turn too far for a linear system.
+inline constexpr double kSlowSweep = 0.8;
+inline constexpr double kNewtonStrain = 0.025;
+/// Where one more sweep is not expected to reach this multiple of the goal, a second one follows
+/// before errors are measured, which takes half as long as a sweep.
+inline constexpr double kFarFromGoal = 2;
+/// A block whose strain exceeds this share of the goal after a solve is solved again at once, while
+/// it is in the caches, but at most kMostBlockSolves times in a sweep. A smaller share means fewer
+/// sweeps, and more solves of blocks that their neighbours move again.
+inline constexpr double kBlockShare = 0.3;
+inline constexpr std::uint32_t kMostBlockSolves = 20;
+/// Strain that the rounding of floats hides: blocks are not solved again for less.
+inline constexpr double kLeastSeen = 1e-6;
+/// Linear systems are solved to this share of the goal, or to the share kForcing of the error that
+/// eliminating the first family leaves, in at most kMostSystemIterations. Less costs iterations;
+/// more costs Newton steps.
+inline constexpr double kSystemShare = 0.5;
+inline constexpr double kForcing = 0.2;
+inline constexpr int kMostSystemIterations = 300;
+/// Velocities that are to be exact are brought to this share of their error.
+inline constexpr double kExactVelocity = 0.01;
+/// Measurements of the error; with scheme rattle, which another scheme can replace; of velocities.
+inline constexpr Patience kYarnPatience{0.7, 20};
+inline constexpr Patience kRattlePatience{0.9, 4};
+inline constexpr Patience kVelocityPatience{0.7, 3};
+/// Iterations of a linear system. If it stalls with more than the share kFarBelow of its first
+/// residual, its errors contradict each other, and nothing is moved.
+inline constexpr Patience kSystemPatience{0.95, 60};
+inline constexpr double kFarBelow = 0.3;
+/// With scheme rattle, a constraint outside of yarns is not relaxed if the cosine of the angle by
+/// which it has turned is less: its impulse would be far larger than its error.
+inline constexpr double kLeastCosine = 0.1;
+/// Blocks are woven if a family has at least this share of all particles in rows of fours, if this
+/// share of the other families' rows is in whole patches, and if the rows of memory have at most
+/// kMostRoom lanes for each particle. Otherwise quads are at least as fast.
+inline constexpr double kLeastWoven = 0.75;
+inline constexpr std::size_t kMostRoom = 2;
+/// A patch is transposed as a whole if each of its lanes has at least this many particles in it.
+inline constexpr int kLeastOfPatch = 4;
+
+// -------------------------------------------------------------------------- the direct solver
+
+/// The strain to reach where the tolerance is larger, at the cost of one more solve: more is noise
+/// that later steps have to remove.
+inline constexpr double kDirectGoal = 1e-5;
+/// In units of the tolerance: smaller errors are not solved for. Larger ones within the tolerance
+/// are, once, or they would grow until a later step had to remove them in one blow.
+inline constexpr double kNegligibleError = 1e-6;
+/// An attempt ends after this many solves, or if more than kMostStaleSolves in a row have not
+/// halved the least error before them. Two or three solves are usual.
+inline constexpr int kMostSolves = 60;
+inline constexpr int kMostStaleSolves = 4;
+/// The imbalance that does not count, in units of the tolerance; and the largest share of a motion
+/// that impulses may leave unexplained, beyond which it gains energy. Less rejects sheets that whip
+/// about in long steps.
+inline constexpr double kNegligibleImbalance = 0.1;
+inline constexpr double kMostUnexplained = 0.75;
+/// Particles with more constraints are bodies, unknowns beside the matrix: in it each would make a
+/// dense block. More than kMostBodies bodies take longer than other solvers.
+inline constexpr std::size_t kBodyDegree = 64;
+inline constexpr std::size_t kMostBodies = 16;
+/// Compliance of a constraint at a body, as a share of the inverse masses of its ends. It replaces
+/// what is singular; its error is left to the next solve.
+inline constexpr double kBodyCompliance = 1e-8;
+/// The ratio of masses from which on the method with geometric stiffness is tried. It takes at most
+/// kMostStiffSolves solves, and fewer where the values of all factors would exceed kMostStiffWork.
+inline constexpr double kStiffRatio = 100;
+inline constexpr std::size_t kMostStiffSolves = 20000;
+inline constexpr std::size_t kMostStiffWork = 100000000;
+/// ns: the estimated times of a front, of a value that is assembled or passed on, and of a product.
+/// Fronts are merged by them; the optimum is flat.
+inline constexpr double kFrontTime = 300;
+inline constexpr double kValueTime = 0.6;
+inline constexpr double kProductTime = 0.12;
 
 }  // namespace weft::tuning

@@ -10,17 +10,19 @@ namespace weft {
 
 class Stall {
  public:
-  /// The error after another part of the work. Returns whether it has stalled: in more than
-  /// kPatience parts it did not come below the share kFall of the least one before.
+  explicit Stall(const tuning::Patience& patience) : patience_(patience) {}
+
+  /// The error after another part of the work. Returns whether it has stalled.
   bool has_stalled(double error) {
-    parts_ = error < tuning::kFall * least_ ? 0 : parts_ + 1;
+    parts_ = error < patience_.fall * least_ ? 0 : parts_ + 1;
     least_ = std::min(least_, error);
-    return parts_ > tuning::kPatience;
+    return parts_ > patience_.most;
   }
-  /// Whether a quarter of that has passed.
-  bool is_near() const { return parts_ > tuning::kPatience / 4; }
+  /// Whether a quarter of the patience is spent.
+  bool is_near() const { return parts_ > patience_.most / 4; }
 
  private:
+  tuning::Patience patience_;
   double least_ = std::numeric_limits<double>::infinity();
   int parts_ = 0;  // since it last fell
 };

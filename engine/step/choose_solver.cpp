@@ -50,7 +50,7 @@ bool takes_small_steps(const Model& model, const Settings& settings) {
 Solver solver_for(const Model& model, const Settings& settings) {
   const bool chain = is_a_chain(model);
   if (!chain && takes_small_steps(model, settings)) return Solver::small_steps;
-  const bool few_bodies = free_spheres(model) <= DirectBodies::kMostBodies;
+  const bool few_bodies = free_spheres(model) <= tuning::kMostBodies;
   const bool direct =
       (chain && is_of_ropes(model.constraints)) || model.uneven.ratio >= tuning::kExtremeMasses;
   return direct && few_bodies ? Solver::direct : Solver::yarn;

@@ -98,7 +98,7 @@ class Frame {
   /// that look at all constraints. If rounds no longer bring the error down it is there to stay.
   Status finish() {
     read_positions();
-    Stall stall;
+    Stall stall(tuning::kRoundPatience);
     for (int round = 0;; ++round) {
       if (is_within_tolerance()) return Status::converged;
       if (s_.settings.iterations > 0) return Status::fixed_iterations;

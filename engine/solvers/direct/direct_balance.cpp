@@ -4,17 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/tuning.h"
+
 namespace weft {
 namespace {
 
 using kernels::Vector;
 using kernels::VectorsView;
-
-/// In units of the tolerance: a smaller imbalance does not count.
-constexpr double kNegligible = 0.1;
-/// The largest share of the motion that impulses may leave unexplained. Long steps of sheets that
-/// whip about leave 0.6 of it, and steps that are thrown off leave 0.9 and more.
-constexpr double kMostUnexplained = 0.75;
 
 }  // namespace
 
@@ -52,7 +48,7 @@ double DirectBalance::find(const DirectSystem& system, VectorsView x) {
 }
 
 bool DirectBalance::is_explained(const DirectSystem& system, VectorsView x) {
-  if (find(system, x) <= kNegligible) return true;
+  if (find(system, x) <= tuning::kNegligibleImbalance) return true;
   double unexplained = 0, motion = 0;
   for (std::size_t p = 0; p < g_.size(); ++p) {
     const double w = system.model.inverse_mass[p];
@@ -61,7 +57,7 @@ bool DirectBalance::is_explained(const DirectSystem& system, VectorsView x) {
     unexplained += w * dot(g_[p], g_[p]);
     motion += dot(d, d) / w;
   }
-  return unexplained <= kMostUnexplained * kMostUnexplained * motion;
+  return unexplained <= tuning::kMostUnexplained * tuning::kMostUnexplained * motion;
 }
 
 }  // namespace weft

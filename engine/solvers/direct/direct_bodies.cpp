@@ -4,17 +4,16 @@
 #include <cmath>
 
 #include "engine/bytes_of.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
 
 using kernels::Vector;
 
-/// The compliance of a link between bodies, as a share of w_a + w_b.
-constexpr double kLinkShift = 1e-8;
-
 double compliance(const DirectSystem& system, const Tie& tie) {
-  return kLinkShift * (system.model.inverse_mass[tie.a] + system.model.inverse_mass[tie.b]);
+  return tuning::kBodyCompliance *
+         (system.model.inverse_mass[tie.a] + system.model.inverse_mass[tie.b]);
 }
 
 Spring spring_of_tie(const DirectSystem& system, const Tie& tie) {
@@ -67,7 +66,7 @@ bool DirectBodies::choose(const DirectSystem& system) {
   }
   for (const Tie& touch : system.touches) add(touch.a);
   for (const Tie& second : system.seconds) add(second.a);
-  return bodies_.size() <= kMostBodies;
+  return bodies_.size() <= tuning::kMostBodies;
 }
 
 /// Fills the columns of B for one body: the change of the errors with its motion.

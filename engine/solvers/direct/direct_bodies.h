@@ -30,8 +30,6 @@ struct Spring {
 
 class DirectBodies {
  public:
-  static constexpr std::size_t kMostBodies = 16;
-
   explicit DirectBodies(const DirectLayout& layout) : column_of_(layout.bodies.size()) {}
 
   /// Turns lambda = A^-1 e into A^-1 (e + B y). Returns false if the system cannot be solved.

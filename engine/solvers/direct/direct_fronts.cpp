@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "engine/bytes_of.h"
+#include "engine/tuning.h"
 #include "kernels/simd/table.h"
 
 namespace weft {
@@ -17,17 +18,14 @@ struct Draft {
   std::vector<std::uint32_t> below;
 };
 
-/// Estimated times in ns: for a front, for a value that is assembled or passed on, and for a
-/// product.
-constexpr double kFrontTime = 300, kValueTime = 0.6, kProductTime = 0.12;
-
 double estimated_time(std::size_t count, std::size_t rows_below) {
   const auto width = static_cast<double>(kernels::round_up(count, 4));
   const auto below = static_cast<double>(kernels::round_up(rows_below, simd::kFrontRows));
   const auto passed = static_cast<double>(rows_below);
   const double panel = width * (0.5 * width + below);
   const double products = width * (width * width / 6 + 0.5 * width * below + 0.5 * below * below);
-  return kFrontTime + kValueTime * (0.5 * passed * passed + 0.25 * panel) + kProductTime * products;
+  return tuning::kFrontTime + tuning::kValueTime * (0.5 * passed * passed + 0.25 * panel) +
+         tuning::kProductTime * products;
 }
 
 /// Whether a front should become part of its parent, which directly follows it.

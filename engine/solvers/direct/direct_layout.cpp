@@ -7,6 +7,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
@@ -21,7 +22,7 @@ void find_bodies(const Model& model, DirectLayout& layout) {
   for (const std::uint32_t sphere : model.spheres) degree[sphere] = kNoIndex;
   layout.body_of.assign(model.slots(), kNoIndex);
   for (std::uint32_t p = 0; p < model.slots(); ++p) {
-    if (degree[p] <= DirectLayout::kBodyDegree || model.inverse_mass[p] == 0) continue;
+    if (degree[p] <= tuning::kBodyDegree || model.inverse_mass[p] == 0) continue;
     layout.body_of[p] = static_cast<std::uint32_t>(layout.bodies.size());
     layout.bodies.push_back(p);
   }
@@ -97,12 +98,11 @@ std::vector<std::uint32_t> elimination_order(const Model& model, const DirectLay
   return order;
 }
 
-/// The share by which the diagonal of a constraint at a body is raised. In a straight string from a
-/// fixed particle to a body, the other links imply the last one as long as the body does not move,
-/// and its pivot is 0. The raised diagonal, which is the compliance of a very stiff spring, keeps
-/// it in the system, and the body, whose mass is in the balance of impulses, pulls at it.
-constexpr double kBodyShift = 1e-8;
-
+/// The diagonal of a constraint at a body is raised by tuning::kBodyCompliance. In a straight
+/// string from a fixed particle to a body, the other links imply the last one as long as the body
+/// does not move, and its pivot is 0. The raised diagonal, which is the compliance of a very stiff
+/// spring, keeps it in the system, and the body, whose mass is in the balance of impulses, pulls at
+/// it.
 void store_rows(const Model& model, DirectLayout& layout) {
   const ConstraintStore& s = model.constraints;
   for (const std::uint32_t c : layout.row_constraint) {
@@ -110,7 +110,7 @@ void store_rows(const Model& model, DirectLayout& layout) {
     layout.b.push_back(s.b[c]);
     const double own = weight(model, layout, s.a[c]) + weight(model, layout, s.b[c]);
     const bool at_body = layout.body_of[s.a[c]] != kNoIndex || layout.body_of[s.b[c]] != kNoIndex;
-    layout.diagonal.push_back(at_body ? (1 + kBodyShift) * own : own);
+    layout.diagonal.push_back(at_body ? (1 + tuning::kBodyCompliance) * own : own);
   }
 }
 

@@ -11,8 +11,8 @@
 ///            the order of the fronts that contain them.
 ///
 /// Bodies are not in the matrix. They are free particles that would couple too many constraints
-/// with each other: spheres, and particles of more than kBodyDegree constraints, which would make
-/// dense blocks. Their motions are unknowns beside the matrix
+/// with each other: spheres, and particles of more than tuning::kBodyDegree constraints, which
+/// would make dense blocks. Their motions are unknowns beside the matrix
 /// (engine/solvers/direct/direct_bodies.h). A constraint whose ends are bodies or fixed particles
 /// only is a link between bodies.
 #pragma once
@@ -30,8 +30,6 @@ namespace weft {
 class Model;
 
 struct DirectLayout {
-  static constexpr std::size_t kBodyDegree = 64;
-
   std::vector<std::uint32_t> row_constraint;
   std::vector<std::uint32_t> a, b;  // slots, per row
   std::vector<double> diagonal;     // w_a + w_b per row; w of a body is 0

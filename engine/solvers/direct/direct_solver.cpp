@@ -6,21 +6,13 @@
 
 #include "engine/solvers/direct/direct_impulses.h"
 #include "engine/solvers/direct/direct_measure.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
 
 using kernels::LoopResult;
 using kernels::VectorsView;
-
-/// In units of the tolerance: a smaller error is not solved for. Larger errors within the tolerance
-/// are, once, or they would grow until a later step had to remove all of them in one blow.
-constexpr double kNegligible = 1e-6;
-/// The strain to reach where the tolerance is larger. One more solve takes an error of 1 % far
-/// below it, and later steps have no noise to remove.
-constexpr double kGoal = 1e-5;
-constexpr int kMostSolves = 60;  // in one attempt, where two or three are usual
-constexpr int kPatience = 4;     // successive solves that may fail to halve the error
 
 void copy(VectorsView from, VectorsView to, std::size_t n) {
   std::copy_n(from.x, n, to.x);
@@ -33,13 +25,13 @@ class Progress {
  public:
   /// Whether to go on after a measurement of the error `worst`.
   bool goes_on(double worst) {
-    if (!std::isfinite(worst) || ++solves_ > kMostSolves) return false;
+    if (!std::isfinite(worst) || ++solves_ > tuning::kMostSolves) return false;
     if (worst < 0.5 * best_) {
       best_ = worst;
       stale_ = 0;
       return true;
     }
-    return ++stale_ <= kPatience;
+    return ++stale_ <= tuning::kMostStaleSolves;
   }
 
  private:
@@ -96,12 +88,13 @@ LoopResult DirectSolver::solve_from_start(const PositionTask& task) {
 DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const ContactStore& contacts,
                                     int max_iterations, LoopResult& result) {
   Progress progress;
-  const double goal = std::min(1.0, kGoal / settings_.tolerance);
+  const double goal = std::min(1.0, tuning::kDirectGoal / settings_.tolerance);
   bool solved = false;
   for (;;) {
     const double worst = measure_positions(system_, x, start, contacts);
     result.visits += system_.count();
-    if (worst <= kNegligible || (solved && worst <= goal)) return DirectOutcome::converged;
+    if (worst <= tuning::kNegligibleError || (solved && worst <= goal))
+      return DirectOutcome::converged;
     const bool within = worst <= 1;
     if (!progress.goes_on(worst)) {
       return within && start.x != nullptr ? DirectOutcome::converged : DirectOutcome::failed;
@@ -158,7 +151,7 @@ DirectOutcome DirectSolver::iterate_velocities(VectorsView x, VectorsView v,
   for (;;) {
     const double worst = measure_velocities(system_, x, v, contacts);
     result.visits += system_.count();
-    const bool wanted = exact && result.iterations == 0 && worst > kNegligible;
+    const bool wanted = exact && result.iterations == 0 && worst > tuning::kNegligibleError;
     if (!fixed && worst <= 1 && !wanted) return DirectOutcome::converged;
     if (fixed && result.iterations == settings_.iterations) return DirectOutcome::exhausted;
     if (!fixed && !progress.goes_on(worst)) return DirectOutcome::failed;

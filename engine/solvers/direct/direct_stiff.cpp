@@ -5,6 +5,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/direct/direct_measure.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
@@ -12,10 +13,6 @@ namespace {
 using kernels::LoopResult;
 using kernels::Vector;
 using kernels::VectorsView;
-
-constexpr double kLeastRatio = 100;             // of two masses that a constraint joins
-constexpr int kMostSolves = 20000;              // in a small scene
-constexpr std::size_t kMostWork = 100'000'000;  // values of all factors, in a large scene
 
 Vector operator*(const Symmetric& s, Vector v) {
   return {s.xx * v.x + s.xy * v.y + s.xz * v.z, s.xy * v.x + s.yy * v.y + s.yz * v.z,
@@ -33,14 +30,15 @@ Symmetric inverse(const Symmetric& s) {
 /// The imbalance first grows by orders of magnitude, so that only the number of solves can bound
 /// the work.
 int most_solves(const DirectLayout& layout) {
-  const std::size_t most = kMostWork / (layout.fronts.values + 1);
-  return static_cast<int>(std::clamp<std::size_t>(most, 100, kMostSolves));
+  const std::size_t most = tuning::kMostStiffWork / (layout.fronts.values + 1);
+  return static_cast<int>(std::clamp<std::size_t>(most, 100, tuning::kMostStiffSolves));
 }
 
 }  // namespace
 
 DirectStiff::DirectStiff(const Model& model) {
-  if (model.uneven.ratio < kLeastRatio || !model.direct().bodies.empty() || model.has_contacts())
+  if (model.uneven.ratio < tuning::kStiffRatio || !model.direct().bodies.empty() ||
+      model.has_contacts())
     return;
   soft_.resize(model.slots());
 }

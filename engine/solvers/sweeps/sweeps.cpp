@@ -35,7 +35,7 @@ LoopResult Sweeps::solve_positions(const PositionTask& task, Team& team) {
     return sweep(task, task.first_round, limits, team);
   }
   LoopResult sum;
-  Stall stall;
+  Stall stall(tuning::kRoundPatience);
   for (;;) {
     const int renew_after = stall.is_near() ? 1 : settings_.renew_after;
     const int part = std::min(task.max_iterations - sum.iterations, tuning::kPassesBetweenLooks);

@@ -5,6 +5,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/yarn/yarn_layout.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
@@ -44,8 +45,9 @@ HeldSpans::Span HeldSpans::judge(const YarnSpan& span, kernels::VectorsView star
   if (!(apart >= -usual_ && apart <= tolerance_)) return {};
   const double least = std::max(apart + usual_, usual_), strain = largest_strain(span, start);
   const double may_leave = std::min(std::max(least, strain), tolerance_);
-  const double to_sag = std::min(apart + kKept * usual_, tolerance_ - (1 - kKept) * usual_);
-  return {true, strain <= least, may_leave, std::max(kKept * may_leave, to_sag)};
+  const double to_sag =
+      std::min(apart + tuning::kHeldShare * usual_, tolerance_ - (1 - tuning::kHeldShare) * usual_);
+  return {true, strain <= least, may_leave, std::max(tuning::kHeldShare * may_leave, to_sag)};
 }
 
 double HeldSpans::largest_strain(const YarnSpan& span, kernels::VectorsView x) const {

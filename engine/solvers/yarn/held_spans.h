@@ -7,10 +7,10 @@
 ///
 /// A span is taut if the distance of its ends differs from its length by no more than the strain
 /// that the solver may leave. During a substep the rest lengths of such a span are those of the
-/// prediction, clamped to the share kKept of that strain, and the solver removes only what lies
-/// beyond them: the span hangs by the tolerated strain, and its sag stays. All of its links are
-/// stretched by the same ratio, since a straight span whose links keep the lengths that they have
-/// at the start of the substep hardly begins to sag.
+/// prediction, clamped to most of that strain (tuning::kHeldShare), and the solver removes only
+/// what lies beyond them: the span hangs by the tolerated strain, and its sag stays. All of its
+/// links are stretched by the same ratio, since a straight span whose links keep the lengths that
+/// they have at the start of the substep hardly begins to sag.
 ///
 /// The links keep those lengths nevertheless in three cases: where constraints other than the links
 /// join the particles of the span (bending edges), because a common ratio would contradict these;
@@ -59,8 +59,6 @@ class HeldSpans {
   std::size_t bytes() const;
 
  private:
-  static constexpr double kKept = 0.8;
-
   struct Span {
     bool is_taut = false;
     bool is_quiet = true;  // taut, and no link is strained by more than the solver leaves

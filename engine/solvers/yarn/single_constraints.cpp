@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/bytes_of.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
@@ -99,7 +100,6 @@ bool SingleConstraints::at_rest(const Pair& pair, Vector d) {
 
 /// A constraint whose direction has turned too far from that of its impulses is not relaxed.
 void SingleConstraints::relax(const float* base, float* u) {
-  constexpr double kLeastCosine = 0.1;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     const Vector d = difference(base, u, pair, stride_);
@@ -109,7 +109,7 @@ void SingleConstraints::relax(const float* base, float* u) {
     double change = (l - pair.distance) * pair.reciprocal;
     if (from_start(i)) {
       const double cosine = dot(along, starts_[i]);
-      if (cosine < kLeastCosine) continue;
+      if (cosine < tuning::kLeastCosine) continue;
       along = starts_[i];
       change /= cosine;
     }

@@ -1,15 +1,12 @@
 #include "engine/solvers/yarn/yarn_memory_rows.h"
 
+#include "engine/tuning.h"
+
 namespace weft {
 namespace {
 
 using kernels::kLanes;
 using Slots = SlotRows::Slots;
-
-/// A family can be in place if it has at least this share of all particles, in rows of memory that
-/// have at most kMostRoom lanes for each particle.
-constexpr double kLeastShare = 0.75;
-constexpr std::size_t kMostRoom = 2;
 
 /// A range of rows of the layout.
 struct Range {
@@ -118,8 +115,9 @@ std::optional<YarnHome> find_home(const SlotRows& slots) {
   }
   if (most == 0) return std::nullopt;
   const Range rows = rows_of_family(layout, home.family);
-  const bool roomy = (rows.last - rows.first) * kLanes > kMostRoom * most;
-  const bool few = static_cast<double>(most) < kLeastShare * static_cast<double>(model.particles);
+  const bool roomy = (rows.last - rows.first) * kLanes > tuning::kMostRoom * most;
+  const bool few =
+      static_cast<double>(most) < tuning::kLeastWoven * static_cast<double>(model.particles);
   if (roomy || few) return std::nullopt;
   home.places.stride = kLanes;
   home.places.place.assign(model.slots(), kNoIndex);

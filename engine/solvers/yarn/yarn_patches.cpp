@@ -4,13 +4,12 @@
 #include <bit>
 #include <map>
 
+#include "engine/tuning.h"
+
 namespace weft {
 namespace {
 
 using kernels::kLanes;
-
-/// A patch is transposed as a whole if each lane has at least this many particles in it.
-constexpr int kLeastOfPatch = 4;
 
 std::uint32_t first_row(const simd::YarnPatch& patch) {
   return patch.single ? patch.row[0] : *std::ranges::min_element(patch.row);
@@ -86,7 +85,7 @@ bool YarnPatches::is_whole(const Memory& memory, const Columns& columns,
   for (const std::uint32_t place : memory) {
     if (place != nobody) all |= particles_[place / simd::kRowFloats];
   }
-  return (all & ~own) == 0 && std::popcount(own) >= kLeastOfPatch;
+  return (all & ~own) == 0 && std::popcount(own) >= tuning::kLeastOfPatch;
 }
 
 void YarnPatches::add_whole(const Memory& memory, const Columns& columns, std::uint32_t rows) {

@@ -5,65 +5,13 @@
 #include <limits>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/stall.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
 
-/// A Newton step follows where a sweep leaves more than kSlow of the error and the strain is below
-/// kSmall: with larger strains, directions change so much that a linear system is a poor model.
-constexpr double kSlow = 0.8;
-constexpr double kSmall = 0.025;
-/// Where one more sweep is not expected to reach this multiple of the goal, a second one follows
-/// before errors are measured, because measuring them takes half as long as a sweep.
-constexpr double kFar = 2;
-/// A solve turns constraints, which leaves an error of second order in the angle. A block whose
-/// strain exceeds kLeft of the goal after a solve is solved again at once, while it is in the
-/// caches, which saves sweeps and measurements. If kMostSolves do not suffice, the block is solved
-/// once in each sweep until the next substep. A block with less than a hundredth of that strain is
-/// not corrected at all. Below kSeen the rounding of floats hides strains, and every block is
-/// solved once. So it is with scheme rattle: along the directions at the start further solves do
-/// not converge, and what an uncorrected block leaves appears as a gain of energy.
-constexpr double kLeft = 0.3;
-constexpr std::uint32_t kMostSolves = 20;
-constexpr double kSeen = 1e-6;
-/// Linear systems are solved to this share of the goal.
-constexpr double kWithin = 0.5;
-/// Iterations of conjugate gradients in one Newton step.
-constexpr int kMostIterations = 300;
-/// The strain to reach with scheme rattle, whose check of the energy does not tell noise from a
-/// gain.
-constexpr double kRattleGoal = 1e-4;
-/// The error counts as falling while a measurement finds less than the share `fall` of the least
-/// error before; it may fail to do so in `passes` measurements.
-struct Patience {
-  double fall;
-  int passes;
-};
-constexpr Patience kPatience{0.7, 20};
-/// Scheme rattle is given up earlier, because another scheme takes its place.
-constexpr Patience kRattlePatience{0.9, 4};
-/// Velocities that are to be exact are brought to this share of their error.
-constexpr double kExact = 0.01;
-constexpr Patience kVelocityPatience{0.7, 3};
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
-
-/// Whether the error still comes down.
-class Progress {
- public:
-  explicit Progress(const Patience& patience) : patience_(patience) {}
-
-  /// Whether to go on after a measurement of the error `worst`.
-  bool goes_on(double worst) {
-    stale_ = worst < patience_.fall * best_ ? 0 : stale_ + 1;
-    best_ = std::min(best_, worst);
-    return std::isfinite(worst) && stale_ <= patience_.passes;
-  }
-
- private:
-  const Patience& patience_;
-  double best_ = kNoBound;
-  int stale_ = 0;
-};
 
 /// The measured errors: the largest strain, and the largest error of contacts and slack ropes in
 /// units of their tolerance.
@@ -82,7 +30,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
     : model_(model),
       layout_(model.yarns()),
       settings_(settings),
-      usual_(std::min(settings.tolerance, kGoal)),
+      usual_(std::min(settings.tolerance, tuning::kYarnGoal)),
       table_(table),
       measure_(measure),
       base_step_(layout_.rows()),
@@ -145,7 +93,9 @@ void YarnSolver::join(kernels::VectorsView x, std::size_t first, std::size_t las
   layout_.places.join(table_, x, first, last, base_.data(), u_.data());
 }
 
-/// Returns the number of solves, 0 if the block needed none.
+/// Solves a block until its strain is at most `enough`. A solve turns constraints, which leaves an
+/// error of second order in the angle. A block that takes too many solves is solved once in each
+/// sweep until the next substep. Returns the number of solves, 0 if the block needed none.
 std::uint32_t YarnSolver::solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
                                       simd::YarnScratch* scratch) {
   const simd::YarnBlock& block = layout_.blocks[i];
@@ -153,9 +103,10 @@ std::uint32_t YarnSolver::solve_block(const simd::Yarns& yarns, std::size_t i, d
     table_.yarn_sweep(yarns, block, u_.data(), scratch);
     return 1;
   }
-  const simd::Swept swept = table_.yarn_sweep_watched(
-      yarns, block, u_.data(), scratch, static_cast<float>(enough), stubborn_[i] ? 1 : kMostSolves);
-  if (!swept.within && swept.solves == kMostSolves) stubborn_[i] = 1;
+  const simd::Swept swept =
+      table_.yarn_sweep_watched(yarns, block, u_.data(), scratch, static_cast<float>(enough),
+                                stubborn_[i] ? 1 : tuning::kMostBlockSolves);
+  if (!swept.within && swept.solves == tuning::kMostBlockSolves) stubborn_[i] = 1;
   return swept.solves;
 }
 
@@ -195,17 +146,17 @@ kernels::LoopResult YarnSolver::correct_velocities(const VelocityTask& task, Tea
   split(task.x, team);
   linearise_velocities(team);
   split(task.v, 0, team);
-  const double tolerated = kWithin * settings_.velocity_tolerance;
+  const double tolerated = tuning::kSystemShare * settings_.velocity_tolerance;
   double goal = tolerated;
-  Progress progress(kVelocityPatience);
+  Stall stall(tuning::kVelocityPatience);
   for (bool solved = false;; solved = true) {
     const double worst = read_velocities(team);
-    if (task.exact && !solved) goal = std::min(goal, kExact * worst);
+    if (task.exact && !solved) goal = std::min(goal, tuning::kExactVelocity * worst);
     result.converged = worst <= tolerated;
     const int left = task.max_iterations - result.iterations;
     const bool enough = worst <= goal || (result.converged && solved);
-    if (enough || left <= 0 || !progress.goes_on(worst)) break;
-    if (!solve(goal, 0, std::min(kMostIterations, left), team, result)) break;
+    if (enough || left <= 0 || !std::isfinite(worst) || stall.has_stalled(worst)) break;
+    if (!solve(goal, 0, std::min(tuning::kMostSystemIterations, left), team, result)) break;
   }
   result.converged = result.converged && loses_energy(task.v);
   if (result.converged) join(task.v, team);
@@ -247,13 +198,16 @@ void YarnSolver::begin(const PositionTask& task, Team& team) {
   split(task.x, team);
 }
 
+/// With scheme rattle every block is solved once in a sweep: along the directions at the start
+/// further solves do not converge, and what a block that is left alone keeps appears as a gain of
+/// energy.
 YarnSolver::Aim YarnSolver::aim(double share) const {
   const bool rattle = settings_.scheme == Scheme::rattle;
   const double wanted = spans_.holds() ? spans_.may_leave() : share * usual_;
-  const double goal = rattle && !spans_.holds() ? std::min(wanted, kRattleGoal) : wanted;
+  const double goal = rattle && !spans_.holds() ? std::min(wanted, tuning::kRattleGoal) : wanted;
   const double left = spans_.holds() ? spans_.solver_may_leave() : goal;
-  const double block = rattle || kLeft * left < kSeen ? kNoBound : kLeft * left;
-  return {wanted, goal, left, block};
+  const double block = tuning::kBlockShare * left;
+  return {wanted, goal, left, rattle || block < tuning::kLeastSeen ? kNoBound : block};
 }
 
 /// Whether the result of a Newton step may be taken without the sweep that follows it. The sweep
@@ -278,7 +232,7 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
   if (settings_.iterations > 0) return sweep_so_often(x, settings_.iterations, team);
   kernels::LoopResult result;
   const Aim aim = this->aim(task.share);
-  Progress progress(from_start_ ? kRattlePatience : kPatience);
+  Stall stall(from_start_ ? tuning::kRattlePatience : tuning::kYarnPatience);
   const auto look = [&] {
     const double strain = measure_.max_strain(
         x, team, [&](std::size_t first, std::size_t last) { join(x, first, last); });
@@ -303,16 +257,18 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
       result.failed = !result.converged;
       return result;
     }
-    if (!progress.goes_on(std::max(strain / aim.goal, violation))) {
+    const double error = std::max(strain / aim.goal, violation);
+    if (!std::isfinite(error) || stall.has_stalled(error)) {
       result.failed = !(from_start_ ? result.converged : strain <= aim.wanted && singles_within);
       return result;
     }
     const double fall = sweeps == 1 ? strain / before : std::sqrt(strain / before);
     const int left = max_iterations - result.iterations - 1;  // without the sweep that follows
     sweeps = 1;
-    if (left > 0 && strain < kSmall && fall > kSlow) {
+    if (left > 0 && strain < tuning::kNewtonStrain && fall > tuning::kSlowSweep) {
       split(x, team);
-      if (!newton(kWithin * aim.left, std::min(kMostIterations, left), team, result)) {
+      if (!newton(tuning::kSystemShare * aim.left, std::min(tuning::kMostSystemIterations, left),
+                  team, result)) {
         result.failed = !result.converged;
         return result;
       }
@@ -321,7 +277,7 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
         newton_converged = after.strain <= aim.goal && after.violation <= 1;
         if (newton_converged) std::ranges::copy(u_, t_.begin());
       }
-    } else if (left > 0 && fall < 1 && fall * strain > kFar * aim.goal) {
+    } else if (left > 0 && fall < 1 && fall * strain > tuning::kFarFromGoal * aim.goal) {
       sweep(aim.block, team, result);
       sweeps = 2;
     }

@@ -38,10 +38,6 @@ namespace weft {
 
 class YarnSolver final : public ConstraintSolver {
  public:
-  /// The strain to reach where the tolerance is larger. What is left is noise that later steps
-  /// would have to remove.
-  static constexpr double kGoal = 0.003;
-
   /// `measure` finds the true errors, in double.
   YarnSolver(const Model& model, const Settings& settings, const simd::Table& table,
              SimdMeasure& measure);
@@ -139,7 +135,7 @@ class YarnSolver final : public ConstraintSolver {
   const std::size_t first_end_;                            // end of the first family's blocks
   std::vector<simd::YarnProducts> products_;               // per block
   std::vector<std::uint32_t> solves_;                      // per block: solves in one sweep
-  std::vector<std::uint8_t> stubborn_;                     // per block: kMostSolves did not do
+  std::vector<std::uint8_t> stubborn_;                     // per block: kMostBlockSolves did not do
   SingleConstraints singles_;
   HeldSpans spans_;
 };

@@ -4,19 +4,11 @@
 #include <limits>
 
 #include "engine/solvers/yarn/yarn_solver.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
 
-/// A Newton step is solved until the error is this share of what eliminating the first family
-/// leaves of it, or within the goal.
-constexpr double kForcing = 0.2;
-/// Contradictory errors, such as those of triangles that cannot follow a step, have no solution:
-/// the residual stays, and the impulses grow in the null space of the system until the errors are
-/// far larger than before. So nothing is moved if the residual has not fallen to kFall of its least
-/// value for kPatience iterations, unless it is below kFarBelow of its initial value.
-constexpr double kFall = 0.95, kFarBelow = 0.3;
-constexpr int kPatience = 60;
 constexpr std::size_t kNumbers = 4096;  // the number of floats that a thread takes at a time
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -142,6 +134,9 @@ void YarnSolver::finish(Team& team) {
 }
 
 /// Preconditioned conjugate gradients on the reduced system, then u -= M^-1 J^T lambda.
+/// Contradictory errors, such as those of triangles that cannot follow a step, have no solution:
+/// the residual stays, and the impulses grow in the null space of the system until the errors are
+/// far larger than before. So nothing is moved if the residual stalls (tuning::kSystemPatience).
 bool YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
                        kernels::LoopResult& result) {
   Products now = reduce(goal, team);
@@ -149,7 +144,7 @@ bool YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
   const double first = now.product;
   double beta = 0, lowest = first;
   int done = 0, since = 0;  // iterations: all, and those since the residual last fell
-  while (now.worst > enough && done < max_iterations && since < kPatience) {
+  while (now.worst > enough && done < max_iterations && since < tuning::kSystemPatience.most) {
     push(beta, team);
     eliminate(false, team);
     const double curvature = pull(team);
@@ -159,12 +154,13 @@ bool YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
     now = next;
     ++done;
     ++since;
-    if (now.product < kFall * lowest) {
+    if (now.product < tuning::kSystemPatience.fall * lowest) {
       lowest = now.product;
       since = 0;
     }
   }
-  const bool gained = now.worst <= enough || since < kPatience || lowest < kFarBelow * first;
+  const bool gained = now.worst <= enough || since < tuning::kSystemPatience.most ||
+                      lowest < tuning::kFarBelow * first;
   if (gained && std::isfinite(now.product)) finish(team);
   const int passes = std::max(1, done);
   const std::int64_t visits = passes * static_cast<std::int64_t>(model_.constraints.plain);
@@ -175,7 +171,7 @@ bool YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
 bool YarnSolver::newton(double goal, int max_iterations, Team& team, kernels::LoopResult& result) {
   make_system();
   linearise(team);
-  return solve(goal, kForcing, max_iterations, team, result);
+  return solve(goal, tuning::kForcing, max_iterations, team, result);
 }
 
 /// Makes the linear system when it is first needed. Its memory was reserved before, and is not

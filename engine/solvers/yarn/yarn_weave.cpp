@@ -7,16 +7,9 @@
 #include "engine/solvers/yarn/yarn_memory_rows.h"
 #include "engine/solvers/yarn/yarn_patches.h"
 #include "engine/solvers/yarn/yarn_places.h"
+#include "engine/tuning.h"
 
 namespace weft {
-namespace {
-
-/// A layout is woven if at least this share of the rows of the other families is in whole patches;
-/// otherwise quads are at least as fast.
-constexpr double kLeastWhole = 0.75;
-
-}  // namespace
-
 void weave(const Model& model, YarnLayout& layout) {
   const SlotRows slots{model, layout};
   auto home = find_home(slots);
@@ -35,7 +28,7 @@ void weave(const Model& model, YarnLayout& layout) {
       }
     }
   }
-  if (patches.share_whole() < kLeastWhole) return;
+  if (patches.share_whole() < tuning::kLeastWoven) return;
   home->places.floats = patches.rows_of_memory() * simd::kRowFloats;
   layout.blocks = std::move(blocks);
   layout.patches = std::move(patches).patches();
