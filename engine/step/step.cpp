@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/parallel/team.h"
+#include "engine/step/air.h"
 #include "engine/step/exact_substep.h"
 #include "engine/step/plan.h"
 #include "engine/step/project.h"
@@ -84,6 +85,7 @@ class Step {
       transaction.begin();
       project(s_, dt, report_, team_);
     }
+    if (is_resisted(*s_.model)) resist(dt);
     plan_ = plan_for(s_, dt, report_, team_);
     if (plan_.substeps > 1) transaction.begin();
     for (int left = plan_.substeps; left > 0; --left) {
@@ -121,7 +123,7 @@ class Step {
   Outcome try_attempt(const Attempt& attempt, double h) {
     Trial sum{.substeps = 0};
     Transaction transaction(s_, s_.substep_start);
-    if (attempt.parts > 1) transaction.begin();
+    if (attempt.parts > 1 || s_.model->damping.motion > 0) transaction.begin();
     for (int part = 0; part < attempt.parts; ++part) {
       if (!attempt.is_last && report_.iterations >= positions_.early_end) return Outcome::rejected;
       const Budget budget{positions_.left(attempt, report_.iterations),
@@ -142,10 +144,19 @@ class Step {
   }
 
   Trial advance(const Attempt& attempt, double h, const Budget& budget) {
-    const bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
+    bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
+    if (is_resisted(*s_.model)) {
+      resist(h);
+      if (s_.model->damping.motion > 0) decay(s_, h);
+      is_predicted = false;
+    }
     return attempt.method == Method::by_small_steps
                ? small_step(s_, attempt, h, budget, report_, team_)
                : exact_substep(s_, attempt, h, budget, is_predicted, report_, team_);
+  }
+
+  void resist(double h) {
+    timed(report_, Stage::predict, [&] { find_resistance(s_, h, team_); });
   }
 
   /// Parts that were needed are for the next steps too. What small steps or sweeps had to do says
