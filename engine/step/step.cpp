@@ -85,7 +85,6 @@ class Step {
       transaction.begin();
       project(s_, dt, report_, team_);
     }
-    if (is_resisted(*s_.model)) resist(dt);
     plan_ = plan_for(s_, dt, report_, team_);
     if (plan_.substeps > 1) transaction.begin();
     for (int left = plan_.substeps; left > 0; --left) {
@@ -146,8 +145,7 @@ class Step {
   Trial advance(const Attempt& attempt, double h, const Budget& budget) {
     bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
     if (is_resisted(*s_.model)) {
-      resist(h);
-      if (s_.model->damping.motion > 0) decay(s_, h);
+      timed(report_, Stage::predict, [&] { resist(h); });
       is_predicted = false;
     }
     return attempt.method == Method::by_small_steps
@@ -156,7 +154,8 @@ class Step {
   }
 
   void resist(double h) {
-    timed(report_, Stage::predict, [&] { find_resistance(s_, h, team_); });
+    find_resistance(s_, h, team_);
+    if (s_.model->damping.motion > 0) decay(s_, h);
   }
 
   /// Parts that were needed are for the next steps too. What small steps or sweeps had to do says

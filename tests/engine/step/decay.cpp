@@ -2,9 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
+#include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
 namespace weft::test {
@@ -68,43 +70,39 @@ TEST_CASE("what falls reaches g / c, whatever the step") {
 TEST_CASE("a sheet that swings loses energy, the faster the larger the rate") {
   for (const Solver solver : kSolvers) {
     CAPTURE(name(solver));
-    double before = 0;
+    double before = -1;
     for (const double rate : {0., 0.5, 5.}) {
       CAPTURE(rate);
-      SceneDescription scene = scene_of("corners", 11);
+      SceneDescription scene = scene_of("hang", 11);
       scene.damping.motion = rate;
       Cloth cloth = cloth_of(scene, {.solver = solver});
       const double start = cloth.energy().total();
-      double least = start;
-      for (int k = 0; k < 100; ++k) {
+      for (int k = 0; k < 50; ++k) {
         step(cloth, 0.01);
-        CHECK(cloth.energy().total() < least + 1e-3);
-        least = std::min(least, cloth.energy().total());
+        CHECK(cloth.energy().total() < start + 1e-6);
       }
       const double lost = start - cloth.energy().total();
-      CHECK(lost > before + (rate > 0 ? 0.02 : -1));
+      CHECK(lost > before + 0.1);
       before = lost;
     }
   }
 }
 
-/// Two free bars that are one too many for the ends they join: no attempt succeeds, and the last
-/// is committed. Attempts that are taken back must leave the velocities to the next.
+/// A sheet so fast in itself that its first attempts are taken back. Rigid edges keep momentum, of
+/// which the decay takes its share once.
 TEST_CASE("attempts that are rejected have damped nothing") {
-  for (const Solver solver : {Solver::yarn, Solver::direct}) {
-    CAPTURE(name(solver));
-    SceneDescription scene = flying_sheet(10, {1, 2, 3}, {});
-    scene.constraints.push_back({0, 24, 0.5});  // nearer than its rows can be folded in a step
-    scene.velocities[12] = {60, 60, -60};
-    Cloth cloth = cloth_of(scene, {.max_iterations = 400, .solver = solver});
-    const Vec3 before = momentum(scene.masses, scene.velocities);
-    const StepReport report = step(cloth, 0.01);
-    REQUIRE(committed(report.status));
+  for (std::uint32_t seed = 0; seed < 10; ++seed) {
+    Random random(seed);
+    SceneDescription scene = flying_sheet(10, {}, {});
+    for (Vec3& v : scene.velocities) v = Vec3{10, 0, 0} + random.in_box(150);
+    Cloth cloth = cloth_of(
+        scene,
+        {.substeps = 1, .max_iterations = 400, .solver = Solver::direct, .scheme = Scheme::paper});
+    const StepReport report = step(cloth, 0.02);
     REQUIRE(report.halvings > 0);
-    // Bars keep the momentum; the guard may take from it, and the decay must do so once.
+    const Vec3 expected = std::exp(-0.2) * momentum(scene.masses, scene.velocities);
     const Vec3 after = momentum(scene.masses, velocities(cloth));
-    CHECK(length(after) <= std::exp(-0.1) * length(before) * (1 + 1e-5));
-    CHECK(length(after) > 0.2 * length(before));
+    CHECK(distance(after, expected) < 1e-5 * length(expected));
   }
 }
 
@@ -138,14 +136,14 @@ TEST_CASE("pins that are moved are not slowed down") {
     for (int k = 0; k < 10; ++k) {
       for (const std::uint32_t pin : scene.fixed) {
         const Vec3 at = cloth.position(pin);
-        REQUIRE(cloth.move_fixed(pin, {at.x, at.y, at.z + 0.01}));
+        REQUIRE(cloth.move_fixed(pin, {at.x - 0.01, at.y, at.z}));
       }
       REQUIRE(step(cloth, 0.01).status == Status::converged);
     }
     for (const std::uint32_t pin : scene.fixed) {
-      CHECK(cloth.position(pin).z == doctest::Approx(scene.positions[pin].z + 0.1));
+      CHECK(cloth.position(pin).x == doctest::Approx(scene.positions[pin].x - 0.1));
     }
-    CHECK(cloth.velocity(2 * 5).z > 0.5);  // the cloth follows at 1 m/s
+    CHECK(cloth.velocity(1 * 5 + 2).x < -0.7);  // the next row follows at 1 m/s
   }
 }
 
