@@ -162,6 +162,12 @@ Result<void> Cloth::set_gravity(Vec3 gravity) {
   return {};
 }
 
+Result<void> Cloth::set_wind(Vec3 wind) {
+  if (auto r = validate_wind(wind); !r) return r;
+  impl_->wind = to_internal(wind);
+  return {};
+}
+
 Result<void> Cloth::move_fixed(std::uint32_t particle, Vec3 position) {
   if (particle >= particle_count()) {
     return Error{"particle: no such particle, the scene has " + std::to_string(particle_count()) +

@@ -134,6 +134,12 @@ void Model::store_air(const SceneDescription& d) {
   for (const auto& [a, b, c] : d.air.triangles) {
     air.triangles.push_back({ordering.slot_of[a], ordering.slot_of[b], ordering.slot_of[c]});
   }
+  if (!has_air()) return;
+  air.at = make_lists(slots(), [&](auto&& add) {
+    for (std::uint32_t i = 0; i < air.triangles.size(); ++i) {
+      for (const std::uint32_t slot : air.triangles[i]) add(slot, i);
+    }
+  });
 }
 
 /// Inert constraints are not in the store: the other end is free.
@@ -244,9 +250,9 @@ std::size_t Model::bytes() const {
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bending.bytes() +
-         bytes_of(air.triangles) + bytes_if_made(reference_) + bytes_if_made(simd_) +
-         bytes_if_made(pulls_) + bytes_if_made(direct_) + bytes_if_made(yarns_) +
-         bytes_if_made(small_steps_);
+         bytes_of(air.triangles) + air.at.bytes() + bytes_if_made(reference_) +
+         bytes_if_made(simd_) + bytes_if_made(pulls_) + bytes_if_made(direct_) +
+         bytes_if_made(yarns_) + bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/lists.h"
 #include "engine/model/on_demand.h"
 #include "engine/model/unevenness.h"
 #include "engine/ordering/ordering.h"
@@ -58,6 +59,7 @@ struct BendingStore {
 /// Triangles that feel the air, between slots, and its coefficients (weft.h).
 struct AirStore {
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  Lists at;  // per slot: its triangles
   double density = 0, drag = 0, lift = 0;
   kernels::Vector wind{};
 };
@@ -95,7 +97,9 @@ class Model {
   std::size_t inert_constraints = 0;
 
   bool has_contacts() const { return !spheres.empty(); }
-  bool has_air() const { return !air.triangles.empty(); }
+  bool has_air() const {
+    return !air.triangles.empty() && air.density > 0 && (air.drag > 0 || air.lift > 0);
+  }
   /// Whether a constraint joins the two; slots.
   bool joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const;
   bool is_particle(std::size_t slot) const { return ordering.particle_at[slot] != kNoIndex; }

@@ -12,7 +12,7 @@ reference::Motion reference_motion(State& s) {
   m.particles = s.model->slots();
   m.inverse_mass = s.model->inverse_mass.data();
   m.gravity = s.gravity;
-  if (s.force.size() > 0) m.force = s.force.view();
+  if (s.forces().size() > 0) m.force = s.forces().view();
   m.position = s.position.view();
   m.velocity = s.velocity.view();
   m.predicted = s.predicted.view();
@@ -27,7 +27,7 @@ simd::Motion simd_motion(State& s) {
   m.inverse_mass = s.model->inverse_mass.data();
   m.mass = s.model->mass.data();
   m.gravity = s.gravity;
-  if (s.force.size() > 0) m.force = s.force.view();
+  if (s.forces().size() > 0) m.force = s.forces().view();
   m.position = s.position.view();
   m.velocity = s.velocity.view();
   m.solved = s.solved.view();

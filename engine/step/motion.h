@@ -8,7 +8,8 @@ namespace weft {
 
 /// Of a free particle, by gravity and forces.
 inline kernels::Vector acceleration(const State& s, std::size_t slot) {
-  return s.force.size() > 0 ? s.gravity + s.model->inverse_mass[slot] * s.force[slot] : s.gravity;
+  const kernels::Vectors& force = s.forces();
+  return force.size() > 0 ? s.gravity + s.model->inverse_mass[slot] * force[slot] : s.gravity;
 }
 /// What the reference's stages work on.
 reference::Motion reference_motion(State& s);

@@ -21,7 +21,7 @@ namespace {
 
 /// m/s^2, of gravity and forces: the mean magnitude, by mass.
 double mean_acceleration(const State& s) {
-  if (s.force.size() == 0) return length(s.gravity);
+  if (s.forces().size() == 0) return length(s.gravity);
   double sum = 0, mass = 0;
   for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
     if (s.model->inverse_mass[slot] == 0) continue;
@@ -78,7 +78,7 @@ class Frame {
   void begin(const FramePlan& plan) {
     plan_ = plan;
     const kernels::VectorsView force =
-        s_.force.size() > 0 ? s_.force.view() : kernels::VectorsView{};
+        s_.forces().size() > 0 ? s_.forces().view() : kernels::VectorsView{};
     if (s_.model->has_contacts()) s_.substep_positions = s_.position;
     solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, plan, team_);
   }

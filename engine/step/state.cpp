@@ -5,6 +5,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/isa.h"
+#include "engine/step/air.h"
 #include "engine/step/choose_solver.h"
 #include "engine/tuning.h"
 
@@ -19,6 +20,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   position = model->initial_position;
   velocity = model->initial_velocity;
   gravity = model->gravity;
+  wind = model->air.wind;
   for (kernels::Vectors* v :
        {&solved, &next_velocity, &step_start.position, &step_start.velocity}) {
     v->resize(model->slots());
@@ -26,6 +28,9 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   impulses.resize((model->slots() + kStretch - 1) / kStretch);
   contacts = make_contact_store(*model);
   if (settings.backend == Backend::reference) predicted.resize(model->slots());
+  if (is_resisted(*model)) total_force.resize(model->slots());
+  if (model->damping.motion > 0) velocity_before_decay.resize(model->slots());
+  if (model->has_air()) resistances.resize(model->air.triangles.size());
   make_solvers();
 }
 
@@ -82,6 +87,7 @@ void State::copy(const State& from) {
   velocity = from.velocity;
   force = std::move(its_force);
   gravity = from.gravity;
+  wind = from.wind;
   pins = std::move(its_pins);
   placed = !same || from.placed;
   lost_energy = same ? from.lost_energy : 0;
@@ -92,11 +98,12 @@ void State::copy(const State& from) {
 std::size_t State::bytes() const {
   std::size_t sum = 0;
   for (const kernels::Vectors* v :
-       {&position, &velocity, &force, &solved, &next_velocity, &step_start.position,
-        &step_start.velocity, &substep_positions, &predicted}) {
+       {&position, &velocity, &force, &total_force, &velocity_before_decay, &solved, &next_velocity,
+        &step_start.position, &step_start.velocity, &substep_positions, &predicted}) {
     sum += v->bytes();
   }
-  sum += contacts.bytes() + bytes_of(impulses) + pins.bytes() + measure->bytes();
+  sum += contacts.bytes() + bytes_of(impulses) + bytes_of(resistances) + pins.bytes() +
+         measure->bytes();
   sum += sizeof(Team::SharedState);
   if (sweeps) sum += sweeps->bytes();
   if (yarn) sum += yarn->bytes();

@@ -31,6 +31,12 @@
 
 namespace weft {
 
+/// Of the air at a corner of a triangle, kg/s (air.h).
+struct Resistance {
+  double rate = 0;
+  kernels::Vector spin{};
+};
+
 /// A state to return to.
 struct Checkpoint {
   kernels::Vectors position, velocity;
@@ -42,8 +48,11 @@ struct State {
   Settings settings;  // isa, solver, substeps and velocity_correction resolved
 
   kernels::Vectors position, velocity;
-  kernels::Vectors force;  // empty: none
-  kernels::Vector gravity;
+  kernels::Vectors force;                  // external; empty: none
+  kernels::Vectors velocity_before_decay;  // for an attempt that is rejected; with decay only
+  kernels::Vectors total_force;  // besides gravity (air.h); empty where velocities cause none
+  std::vector<Resistance> resistances;  // per triangle
+  kernels::Vector gravity, wind;
   kernels::Vectors solved;  // where the position loop works; the next positions
   kernels::Vectors next_velocity;
   Checkpoint step_start;
@@ -70,6 +79,9 @@ struct State {
   std::shared_ptr<Team::SharedState> team_state = Team::make_shared_state();
 
   State(std::shared_ptr<const Model> model, const Settings& settings);
+  /// What acts besides gravity; empty: nothing.
+  kernels::Vectors& forces() { return total_force.size() > 0 ? total_force : force; }
+  const kernels::Vectors& forces() const { return total_force.size() > 0 ? total_force : force; }
   /// Goes on from another state of the same model.
   void copy(const State& from);
   std::size_t bytes() const;

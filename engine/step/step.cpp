@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/parallel/team.h"
+#include "engine/step/air.h"
 #include "engine/step/exact_substep.h"
 #include "engine/step/plan.h"
 #include "engine/step/project.h"
@@ -122,15 +123,32 @@ class Step {
     if (!attempt.is_last && report_.iterations >= positions_.early_end) return Outcome::rejected;
     const Budget budget{positions_.left(attempt, report_.iterations),
                         velocities_.left(attempt, report_.velocity_iterations)};
-    const bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
+    bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
+    if (is_resisted(*s_.model)) {
+      timed(report_, Stage::predict, [&] { resist(h); });
+      is_predicted = false;
+    }
     const Trial trial = attempt.method == Method::by_small_steps
                             ? small_step(s_, attempt, h, budget, report_, team_)
                             : exact_substep(s_, attempt, h, budget, is_predicted, report_, team_);
     if (trial.outcome == Outcome::accepted)
       accept(trial);
-    else if (!attempt.is_last)
-      ++(attempt.scheme == Scheme::rattle ? report_.scheme_fallbacks : report_.halvings);
+    else
+      reject(attempt);
     return trial.outcome;
+  }
+
+  void resist(double h) {
+    find_resistance(s_, h, team_);
+    if (s_.model->damping.motion == 0) return;
+    s_.velocity_before_decay = s_.velocity;
+    decay(s_, h);
+  }
+
+  void reject(const Attempt& attempt) {
+    if (s_.model->damping.motion > 0) std::swap(s_.velocity, s_.velocity_before_decay);
+    if (!attempt.is_last)
+      ++(attempt.scheme == Scheme::rattle ? report_.scheme_fallbacks : report_.halvings);
   }
 
   void accept(const Trial& trial) {

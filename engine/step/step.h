@@ -2,6 +2,7 @@
 /// to bottom; what it calls are
 ///
 ///   plan           how many substeps, and the ordered list of attempts at each
+///   air            forces that depend on velocities, found once for each h
 ///   project        a start that violates the constraints
 ///   exact_substep  one substep by a prediction and a solver of constraints
 ///   small_step     a step, or a substep that solvers gave up, by small steps

@@ -140,13 +140,17 @@ struct Damping {
   double motion = 0;  ///< 1/s; velocities fall by exp(-motion t), whatever the step
 };
 
-/// Drag and lift on triangles of the cloth, from their velocities relative to the wind. A triangle
-/// of area A and unit normal n that moves through still air with velocity v feels the force
+/// Drag and lift on triangles of the cloth. With v the mean velocity of its corners relative to the
+/// wind, a triangle of area A and unit normal n feels the force
 ///
 ///     -1/2 density A |n . v| (drag v + lift (|v| n' - |n . v| v / |v|))
 ///
-/// n' = n or -n, whichever has n' . v >= 0. The first part is against v; the second is across it.
-/// Where the triangle moves along its normal, |force| = 1/2 density A drag |v|^2.
+/// n' = n or -n, whichever has n' . v >= 0. The first part is against v, the second across it;
+/// edge-on, and where v is 0, there is none. Each corner takes a third, of the force that is linear
+/// in its own velocity and sums to this (engine/step/air.h). A triangle that moves along its normal
+/// feels 1/2 density A drag |v|^2: of mass m it falls with v^2 = 2 m g / (density A drag) in the
+/// end. The force is found once a step with small_steps, else once a substep, and in a way that
+/// keeps it from making light cloth faster than the air, at any step.
 struct Air {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double density = 1.2;  ///< kg/m^3
@@ -445,10 +449,10 @@ class WEFT_API Cloth {
 
   /// A second cloth of the same model and settings, which continues bit for bit as this one does.
   Cloth clone() const;
-  /// Takes over from `from`, a cloth of the same Model: state, forces, gravity, pending pin moves,
-  /// and the solver's memory of its last steps. This cloth keeps its own settings. If solver,
-  /// scheme, backend, iterations, tolerance or contact_tolerance differ, that memory is dropped,
-  /// and positions out of tolerance are projected as if newly written.
+  /// Takes over from `from`, a cloth of the same Model: state, forces, gravity, wind, pending pin
+  /// moves, and the solver's memory of its last steps. This cloth keeps its own settings. If
+  /// solver, scheme, backend, iterations, tolerance or contact_tolerance differ, that memory is
+  /// dropped, and positions out of tolerance are projected as if newly written.
   Result<void> copy_state(const Cloth& from);
 
   /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
@@ -485,6 +489,8 @@ class WEFT_API Cloth {
   Result<void> write_forces(std::span<const Vec3> in);
   /// m/s^2, from the next step on.
   Result<void> set_gravity(Vec3 gravity);
+  /// m/s, of Air::wind, from the next step on.
+  Result<void> set_wind(Vec3 wind);
   /// Moves a fixed particle; position() returns the new place at once. It travels there in a
   /// straight line during the next step, and the cloth takes on its speed. If its velocity would
   /// change by more than 200 m/s^2 * dt from that of its last step, it jumps instead: it is placed

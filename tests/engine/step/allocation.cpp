@@ -109,6 +109,22 @@ TEST_CASE("nor does a warm step by small steps, nor without contacts the first")
   }
 }
 
+TEST_CASE("nor does a step in air, of motion that decays") {
+  for (const Solver solver :
+       {Solver::gauss_seidel, Solver::yarn, Solver::direct, Solver::small_steps}) {
+    CAPTURE(name(solver));
+    SceneDescription scene = scene_of("hang", 7);
+    for (std::uint32_t i = 0; i < 41; ++i) scene.air.triangles.push_back({i, i + 1, i + 7});
+    scene.air.drag = scene.air.lift = scene.damping.motion = 1;
+    Cloth cloth = cloth_of(scene, {.solver = solver});
+    const std::size_t before = allocations();
+    const auto report = cloth.step(0.01);
+    const std::size_t after = allocations();
+    CHECK(report);
+    CHECK(after == before);
+  }
+}
+
 TEST_CASE("without contacts even the first step allocates nothing") {
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));

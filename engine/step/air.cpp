@@ -1,0 +1,95 @@
+#include "engine/step/air.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace weft {
+namespace {
+
+using kernels::Vector;
+
+/// At a corner of a triangle, from twice its area vector and three times its velocity.
+Resistance resistance_of(const AirStore& air, Vector area2, Vector v3) {
+  const double flow = dot(area2, v3);
+  Resistance corner{.rate = air.density / 36 * air.drag * std::abs(flow)};
+  if (air.lift == 0) return corner;
+  const double size = std::sqrt(dot(area2, area2) * dot(v3, v3));
+  if (size > 0) corner.spin = (air.density / 36 * air.lift * (flow / size)) * cross(v3, area2);
+  return corner;
+}
+
+void find_resistances(State& s, std::size_t first, std::size_t last) {
+  const AirStore& air = s.model->air;
+  const kernels::VectorsView x = s.position.view(), v = s.velocity.view();
+  const Vector wind3 = 3.0 * s.wind;
+  for (std::size_t i = first; i < last; ++i) {
+    const auto [a, b, c] = air.triangles[i];
+    const Vector from = x[a], area2 = cross(x[b] - from, x[c] - from);
+    s.resistances[i] = resistance_of(air, area2, v[a] + v[b] + v[c] - wind3);
+  }
+}
+
+/// rate y + spin x y = load
+Vector solve(double rate, Vector spin, Vector load) {
+  const Vector turn = (1 / rate) * spin;
+  const double over = 1 / (rate * (1 + dot(turn, turn)));
+  return over * (load + dot(turn, load) * turn - cross(turn, load));
+}
+
+Resistance resistance_at(const State& s, std::size_t slot) {
+  Resistance sum;
+  for (const std::uint32_t i : s.model->air.at[slot]) {
+    sum.rate += s.resistances[i].rate;
+    sum.spin = sum.spin + s.resistances[i].spin;
+  }
+  return sum;
+}
+
+/// q = (1 - e^(-c h)) / (c h)
+double share_of_decay(double rate, double h) {
+  return rate > 0 ? -std::expm1(-rate * h) / (rate * h) : 1;
+}
+
+/// During h, of which forces act for the share q.
+Vector resisted_acceleration(const State& s, std::size_t slot, double q, double h) {
+  const Model& model = *s.model;
+  const double w = model.inverse_mass[slot];
+  const Vector lost = model.damping.motion * s.velocity[slot];
+  Vector load = s.gravity - lost;
+  if (s.force.size() > 0) load = load + w * s.force[slot];
+  if (!model.has_air()) return q * (load + lost);
+  const Resistance r = resistance_at(s, slot);
+  const Vector v = s.velocity[slot] - s.wind, spin = w * r.spin;
+  load = load - (w * r.rate) * v - cross(spin, v);
+  return q * (solve(1 + q * h * w * r.rate, (q * h) * spin, load) + lost);
+}
+
+}  // namespace
+
+bool is_resisted(const Model& model) { return model.has_air() || model.damping.motion > 0; }
+
+void find_resistance(State& s, double h, Team& team) {
+  const Model& model = *s.model;
+  if (model.has_air()) {
+    team.for_each_part(
+        model.air.triangles.size(), kStretch,
+        [&](std::size_t first, std::size_t last) { find_resistances(s, first, last); });
+  }
+  const double q = share_of_decay(model.damping.motion, h);
+  team.for_each_part(model.slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    for (std::size_t slot = first; slot < last; ++slot) {
+      if (model.inverse_mass[slot] == 0) continue;
+      const Vector a = resisted_acceleration(s, slot, q, h);
+      s.total_force.set(slot, model.mass[slot] * (a - s.gravity));
+    }
+  });
+}
+
+void decay(State& s, double h) {
+  const double left = std::exp(-s.model->damping.motion * h);
+  for (std::size_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (s.model->inverse_mass[slot] > 0) s.velocity.set(slot, left * s.velocity[slot]);
+  }
+}
+
+}  // namespace weft

@@ -1,0 +1,41 @@
+/// Forces that depend on velocities: of the air, and the decay of all motion.
+///
+/// They are found once where a time h begins and held during it: by small steps for a whole step,
+/// by the exact solvers for a substep. With v the mean velocity of its corners relative to the
+/// wind, a triangle of area A and unit normal n gives each corner, which moves with v_i, a third of
+///
+///     f(v_i) = -(R v_i + S x v_i)
+///     R = density / 2 drag A |n . v|
+///     S = density / 2 lift A (n . v) (v x n) / |v|
+///
+/// Their sum is weft.h's force at v. Drag is a rate, at which motion is lost, and lift is a spin,
+/// which turns it. Both are kept while the velocity changes: with R and S the sums over a
+/// particle's triangles and m its mass, and with c the rate of decay (Damping::motion), h begins
+/// with
+///
+///     v <- e^(-c h) v
+///
+/// and the acceleration during h is q (y + c v), v being the velocity before that, where
+///
+///     q = (1 - e^(-c h)) / (c h),    (1 + q h R / m) y + (q h S / m) x y
+///                                        = g + (external + f) / m - c v
+///
+/// A free particle's velocity changes by q h y in all: by nothing exactly where the forces balance,
+/// so that what falls reaches its terminal velocity at any h. Air at rest takes energy from it at
+/// any h, however light it is: this is the implicit Euler method of a linear force that opposes
+/// motion. Where constraints hold it against the air, R and S weaken and turn what else acts on it,
+/// by a share of the order of h (R + |S|) / m.
+#pragma once
+
+#include "engine/step/state.h"
+
+namespace weft {
+
+/// Whether velocities cause forces.
+bool is_resisted(const Model& model);
+/// State::total_force during h from here on. Only where velocities cause forces.
+void find_resistance(State& s, double h, Team& team);
+/// State::velocity, before h.
+void decay(State& s, double h);
+
+}  // namespace weft
