@@ -112,4 +112,13 @@ inline constexpr double kMostGain = 0.5;
 inline constexpr double kRattleGain = 0.1;
 inline constexpr double kEnergyRounding = 1e-9;
 
+// --------------------------------------------------------------------------------- meshes
+
+/// Steps of the iteration that makes a mesh bend alike in all directions. More take longer as a
+/// mesh is made into cloth, fewer leave it uneven.
+inline constexpr int kBendingSteps = 32;
+/// Where the mesh around a particle bends in some direction by more than this fraction too much or
+/// too little, elements are added. A smaller one makes it more even, and steps slower.
+inline constexpr double kBendingUneven = 0.1;
+
 }  // namespace weft::tuning
