@@ -205,4 +205,13 @@ inline constexpr double kFrontTime = 300;
 inline constexpr double kValueTime = 0.6;
 inline constexpr double kProductTime = 0.12;
 
+// --------------------------------------------------------------------------------- meshes
+
+/// Steps of the iteration that makes a mesh bend alike in all directions. More take longer as a
+/// mesh is made into cloth, fewer leave it uneven.
+inline constexpr int kBendingSteps = 32;
+/// Where the mesh around a particle bends in some direction by more than this fraction too much or
+/// too little, elements are added. A smaller one makes it more even, and steps slower.
+inline constexpr double kBendingUneven = 0.1;
+
 }  // namespace weft::tuning

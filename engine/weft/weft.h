@@ -1,4 +1,5 @@
-/// weft: a cloth simulation library. The whole public interface is this header.
+/// weft: a cloth simulation library. This header is the whole public interface of simulation;
+/// mesh.h beside it makes a SceneDescription of a mesh and a material.
 ///
 ///   describe -> build -> create -> step -> read
 ///

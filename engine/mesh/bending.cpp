@@ -1,0 +1,162 @@
+#include "engine/mesh/bending.h"
+
+#include <algorithm>
+#include <map>
+
+#include "engine/mesh/stencils.h"
+
+namespace weft::mesh {
+namespace {
+
+Point point(const Face& face, std::size_t corner) {
+  return {face.particles[corner], face.places[corner]};
+}
+
+std::size_t corner_of(const Face& face, std::uint32_t particle) {
+  const auto found = std::ranges::find(face.particles, particle);
+  return static_cast<std::size_t>(found - face.particles.begin());
+}
+
+class Builder {
+ public:
+  Builder(const std::vector<Face>& faces, const Edges& edges, double weld_distance)
+      : faces_(faces), edges_(edges), weld_distance_(weld_distance), extent_(extent(faces)) {}
+
+  Stencils build() {
+    for (const Edge& edge : edges_.all()) {
+      if (edge.is_inner() && edge.faces[0].face != edge.faces[1].face) add_edge(edge);
+    }
+    for (std::uint32_t f = 0; f < faces_.size(); ++f) {
+      if (faces_[f].is_quad()) add_twist(f);
+    }
+    return std::move(built_);
+  }
+
+ private:
+  const Face& face(const EdgeOfFace& of) const { return faces_[of.face]; }
+
+  /// Of a face's area, what is stored across this side of it.
+  double area_across(const EdgeOfFace& of) const {
+    const Face& f = face(of);
+    if (f.is_quad()) {
+      const bool has_opposite = edges_.at(of.face, (of.side + 2) % 4).is_inner();
+      return area(f) / (has_opposite ? 2 : 1);
+    }
+    int inner = 0;
+    for (std::size_t side = 0; side < 3; ++side) inner += edges_.at(of.face, side).is_inner();
+    return area(f) / inner;
+  }
+
+  void add_edge(const Edge& edge) {
+    const EdgeOfFace& one = edge.faces[0];
+    const EdgeOfFace& two = edge.faces[1];
+    if (face(one).is_quad() && face(two).is_quad()) {
+      add_crossing(edge, edge.a);
+      add_crossing(edge, edge.b);
+    } else {
+      add_hinges(edge, one, two);
+    }
+  }
+
+  bool is_one_place(Vec3 a, Vec3 b) const { return length(a - b) <= weld_distance_; }
+
+  /// The corner of a quad beside this one that is not on the edge.
+  static std::size_t beside(const Face& quad, std::size_t corner, std::size_t side) {
+    return corner == side ? quad.previous(corner) : quad.next(corner);
+  }
+
+  /// Half of what the edge stores, along the yarn that crosses it at one end. The same yarn crosses
+  /// the next edge at that end: both share an element.
+  void add_crossing(const Edge& edge, std::uint32_t end) {
+    const EdgeOfFace& one = edge.faces[0];
+    const EdgeOfFace& two = edge.faces[1];
+    const std::size_t i = beside(face(one), corner_of(face(one), end), one.side);
+    const std::size_t j = beside(face(two), corner_of(face(two), end), two.side);
+    const auto [least, most] = std::minmax(face(one).particles[i], face(two).particles[j]);
+    if (least == most) return;
+    const auto next = static_cast<std::uint32_t>(built_.stencils.size());
+    const auto [entry, is_new] = crossing_at_.try_emplace({least, end, most}, next);
+    if (is_new) built_.stencils.push_back(without_end(bend(edge, i, j), end));
+    const Stencil& stencil = built_.stencils[entry->second];
+    for (const EdgeOfFace& of : {one, two}) {
+      built_.contributions.push_back(
+          {entry->second, of.face, weight_in_grid(stencil, area_across(of) / 2)});
+    }
+  }
+
+  /// Corners of a face that are not on the side: one of a triangle, two of a quad.
+  static std::vector<std::size_t> far_corners(const Face& face, std::size_t side) {
+    if (!face.is_quad()) return {face.previous(side)};
+    return {(side + 2) % 4, (side + 3) % 4};
+  }
+
+  /// From each far corner of one face to each of the other, in equal parts.
+  void add_hinges(const Edge& edge, const EdgeOfFace& one, const EdgeOfFace& two) {
+    const auto far_one = far_corners(face(one), one.side);
+    const auto far_two = far_corners(face(two), two.side);
+    const double part = 1.0 / static_cast<double>(far_one.size() * far_two.size());
+    for (const std::size_t i : far_one) {
+      for (const std::size_t j : far_two) add_hinge(edge, one, i, two, j, part);
+    }
+  }
+
+  void add_hinge(const Edge& edge, const EdgeOfFace& one, std::size_t i, const EdgeOfFace& two,
+                 std::size_t j, double part) {
+    if (face(one).particles[i] == face(two).particles[j]) return;
+    const Stencil stencil = bend(edge, i, j);
+    const auto number = static_cast<std::uint32_t>(built_.stencils.size());
+    built_.stencils.push_back(stencil);
+    for (const EdgeOfFace& of : {one, two}) {
+      const double share = part * area_across(of);
+      const double weight =
+          face(of).is_quad() ? weight_in_grid(stencil, share) : weight_among_others(stencil, share);
+      built_.contributions.push_back({number, of.face, weight});
+    }
+  }
+
+  /// Across an inner edge, from one corner of its first face to one of its second.
+  Stencil bend(const Edge& edge, std::size_t i, std::size_t j) const {
+    const Face& one = face(edge.faces[0]);
+    const Face& two = face(edge.faces[1]);
+    const Point a = point(one, corner_of(one, edge.a)), b = point(one, corner_of(one, edge.b));
+    const Vec3 a_of_two = two.places[corner_of(two, edge.a)];
+    const Vec3 b_of_two = two.places[corner_of(two, edge.b)];
+    Stencil stencil = hinge(a, b, point(one, i), point(two, j), a_of_two, b_of_two);
+    if (is_one_place(a.place, a_of_two) && is_one_place(b.place, b_of_two)) {
+      const Vec3 sum =
+          weighted_sum(stencil.weights, {a.place, b.place, one.places[i], two.places[j]});
+      stencil.rest = rest_of(stencil, sum, extent_);
+    }
+    return stencil;
+  }
+
+  void add_twist(std::uint32_t number) {
+    const Face& quad = faces_[number];
+    const auto [one, two] = cut(quad);
+    const Point a = point(quad, one[0]), b = point(quad, one[2]);
+    const Point far_one = point(quad, one[1]), far_two = point(quad, two[1]);
+    Stencil stencil = hinge(a, b, far_one, far_two, a.place, b.place);
+    const Vec3 sum =
+        weighted_sum(stencil.weights, {a.place, b.place, far_one.place, far_two.place});
+    stencil.rest = rest_of(stencil, sum, extent_);
+    built_.contributions.push_back({static_cast<std::uint32_t>(built_.stencils.size()), number,
+                                    weight_in_grid(stencil, area(quad))});
+    built_.stencils.push_back(stencil);
+  }
+
+  const std::vector<Face>& faces_;
+  const Edges& edges_;
+  const double weld_distance_;
+  const double extent_;  ///< m, of the mesh
+  Stencils built_;
+  std::map<std::array<std::uint32_t, 3>, std::uint32_t> crossing_at_;
+};
+
+}  // namespace
+
+Stencils bending_stencils(const std::vector<Face>& faces, const Edges& edges,
+                          double weld_distance) {
+  return Builder(faces, edges, weld_distance).build();
+}
+
+}  // namespace weft::mesh

@@ -1,0 +1,150 @@
+#include <weft/mesh.h>
+
+#include <algorithm>
+#include <set>
+
+#include "engine/mesh/bending.h"
+#include "engine/mesh/calibration.h"
+#include "engine/mesh/delaunay.h"
+#include "engine/mesh/edges.h"
+#include "engine/mesh/faces.h"
+#include "engine/mesh/grid_recognition.h"
+#include "engine/mesh/masses.h"
+#include "engine/mesh/membrane.h"
+#include "engine/mesh/mesh_input.h"
+#include "engine/mesh/partition.h"
+#include "engine/mesh/rays.h"
+#include "engine/mesh/welding.h"
+#include "engine/model/validation.h"
+
+namespace weft {
+namespace {
+
+using namespace mesh;
+
+std::vector<std::uint32_t> pinned(const MeshDescription& mesh, const Welded& welded) {
+  std::set<std::uint32_t> particles;
+  for (const std::uint32_t vertex : mesh.pins) particles.insert(welded.particle_of_vertex[vertex]);
+  return {particles.begin(), particles.end()};
+}
+
+std::size_t pieces(const MeshDescription& mesh, const Welded& welded) {
+  Partition parts(welded.positions.size());
+  const auto particle = [&](std::uint32_t vertex) { return welded.particle_of_vertex[vertex]; };
+  for_each_face(mesh, [&](std::span<const std::uint32_t> face) {
+    for (const std::uint32_t vertex : face) parts.join(particle(face[0]), particle(vertex));
+  });
+  for (const auto& [a, b] : mesh.lines) parts.join(particle(a), particle(b));
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < welded.positions.size(); ++i) count += parts.first(i) == i;
+  return count;
+}
+
+MeshCounts count_all(const MeshDescription& mesh, const Welded& welded,
+                     const std::vector<Face>& faces, const Edges& edges) {
+  MeshCounts counts;
+  for (const Face& face : faces) ++(face.is_quad() ? counts.quads : counts.triangles);
+  for (const std::uint32_t particle : welded.particle_of_vertex) {
+    counts.unused_vertices += particle == kNoIndex;
+  }
+  counts.welded_vertices = mesh.positions.size() - counts.unused_vertices - welded.positions.size();
+  for (const Edge& edge : edges.all()) counts.non_manifold_edges += edge.faces.size() > 2;
+  counts.pieces = pieces(mesh, welded);
+  return counts;
+}
+
+std::vector<BendingElement> bending_of(const std::vector<Face>& faces, std::size_t particles,
+                                       const MeshDescription& mesh) {
+  if (!(mesh.material->bending > 0)) return {};
+  const std::vector<Face> bent = well_shaped(faces, mesh.weld_distance);
+  const Edges edges(bent);
+  Stencils stencils = bending_stencils(bent, edges, mesh.weld_distance);
+  Calibrated calibrated = calibrate(bent, stencils, particles);
+  if (!calibrated.uneven.empty()) {
+    add_rays(bent, edges, mesh.weld_distance, calibrated.uneven, stencils);
+    calibrated = calibrate(bent, stencils, particles);
+  }
+  std::vector<BendingElement> elements;
+  for (std::size_t i = 0; i < calibrated.weights.size(); ++i) {
+    const Stencil& s = stencils.stencils[i];
+    const double compliance = 1 / (mesh.material->bending * calibrated.weights[i]);
+    elements.push_back({s.particles, s.weights, s.rest, compliance});
+  }
+  return elements;
+}
+
+Air air_of(const std::vector<Face>& faces, const Material& material) {
+  Air air;
+  if (!(material.drag > 0 || material.lift > 0)) return air;
+  air.drag = material.drag;
+  air.lift = material.lift;
+  for (const Face& face : faces) {
+    const auto& p = face.particles;
+    if (!face.is_quad()) {
+      air.triangles.push_back({p[0], p[1], p[2]});
+      continue;
+    }
+    for (const auto& [i, j, k] : cut(face)) air.triangles.push_back({p[i], p[j], p[k]});
+  }
+  return air;
+}
+
+/// What is only in lines and in faces without area has no mass.
+Result<void> check_masses(const MeshDescription& mesh, const Welded& welded,
+                          const std::vector<double>& masses) {
+  for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+    const std::uint32_t particle = welded.particle_of_vertex[vertex];
+    if (particle == kNoIndex || masses[particle] > 0) continue;
+    return refuse(element("positions", vertex),
+                  "a material gives no mass to what is in no face with an area",
+                  text(mesh.positions[vertex]));
+  }
+  return {};
+}
+
+Result<void> add_material(const MeshDescription& mesh, const Welded& welded,
+                          const std::vector<Face>& faces, const Edges& edges,
+                          SceneDescription& scene) {
+  const Material& material = *mesh.material;
+  scene.masses = masses_of(faces, material.density, scene.positions.size());
+  if (auto r = check_masses(mesh, welded, scene.masses); !r) return r;
+  scene.constraints = elastic_constraints(mesh, welded, faces, edges);
+  scene.bending = bending_of(faces, scene.positions.size(), mesh);
+  scene.damping = {material.damping_stretch, material.damping_bending, material.damping_motion};
+  scene.air = air_of(faces, material);
+  return {};
+}
+
+void add_rigid_edges(const MeshDescription& mesh, const Welded& welded, SceneDescription& scene) {
+  const std::size_t count = scene.positions.size();
+  scene.masses.assign(count, mesh.mass / static_cast<double>(count));
+  scene.constraints = rigid_constraints(mesh, welded);
+}
+
+}  // namespace
+
+Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
+  if (auto r = check_input(mesh); !r) return Error{r.error()};
+  Welded welded = weld(mesh);
+  Faces found = faces_of(mesh, welded.particle_of_vertex);
+  const std::size_t recognised = recognise_grids(found.faces);
+  const Edges edges(found.faces);
+
+  MeshCloth cloth;
+  cloth.counts = count_all(mesh, welded, found.faces, edges);
+  cloth.counts.recognised_quads = recognised;
+  cloth.counts.degenerate_faces = found.degenerate;
+  SceneDescription& scene = cloth.scene;
+  scene.positions = welded.positions;
+  scene.fixed = pinned(mesh, welded);
+  if (!mesh.material) {
+    add_rigid_edges(mesh, welded, scene);
+  } else if (auto r = add_material(mesh, welded, found.faces, edges, scene); !r) {
+    return Error{r.error()};
+  }
+  if (scene.constraints.empty()) return Error{"corners: every edge of the mesh has length 0"};
+  cloth.particle_of_vertex = std::move(welded.particle_of_vertex);
+  return cloth;
+}
+
+}  // namespace weft

@@ -1,0 +1,16 @@
+/// Better shaped triangles over the same particles.
+#pragma once
+
+#include <vector>
+
+#include "engine/mesh/faces.h"
+
+namespace weft::mesh {
+
+/// The faces with edges between triangles flipped until the angles against each add up to half a
+/// turn at most, as seen with both triangles unfolded into a plane. How a mesh bends depends on the
+/// shape of its triangles, and which way a quad was cut says nothing of the cloth. Quads stay, and
+/// so do edges whose faces lie farther apart than weld_distance.
+std::vector<Face> well_shaped(std::vector<Face> faces, double weld_distance);
+
+}  // namespace weft::mesh

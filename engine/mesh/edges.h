@@ -1,0 +1,34 @@
+/// Which faces meet at an edge.
+#pragma once
+
+#include <vector>
+
+#include "engine/mesh/faces.h"
+
+namespace weft::mesh {
+
+struct EdgeOfFace {
+  std::uint32_t face = 0;
+  std::uint32_t side = 0;  ///< from this corner of the face to the next
+};
+
+struct Edge {
+  std::uint32_t a = 0, b = 0;  ///< particles, a < b
+  std::vector<EdgeOfFace> faces;
+  bool is_inner() const { return faces.size() == 2; }
+  bool is_border() const { return faces.size() == 1; }
+};
+
+/// In the order of the faces and their sides.
+class Edges {
+ public:
+  explicit Edges(const std::vector<Face>& faces);
+  const std::vector<Edge>& all() const { return edges_; }
+  const Edge& at(std::size_t face, std::size_t side) const { return edges_[of_[face][side]]; }
+
+ private:
+  std::vector<Edge> edges_;
+  std::vector<std::array<std::uint32_t, 4>> of_;  ///< number of each face's sides
+};
+
+}  // namespace weft::mesh

@@ -1,0 +1,183 @@
+#include "engine/mesh/faces.h"
+
+#include <algorithm>
+
+#include "engine/mesh/mesh_input.h"
+
+namespace weft::mesh {
+namespace {
+
+/// Heights below this fraction of the longest side are what rounding to single precision makes of
+/// three points on a line: such a face has no area.
+constexpr double kFlattest = 1e-6;
+
+double longest_side(const Face& face) {
+  double longest = 0;
+  for (std::size_t i = 0; i < face.size; ++i) {
+    longest = std::max(longest, length(face.places[face.next(i)] - face.places[i]));
+  }
+  return longest;
+}
+
+bool has_area(const Face& triangle) {
+  const double longest = longest_side(triangle);
+  return length(area_vector(triangle)) > kFlattest * longest * longest;
+}
+
+bool has_repeated_particle(const Face& face) {
+  for (std::size_t i = 0; i < face.size; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (face.particles[i] == face.particles[j]) return true;
+    }
+  }
+  return false;
+}
+
+/// Per corner: twice the area of the triangle at it, negative where the quad is concave.
+std::array<double, 4> turns(const Face& quad) {
+  const Vec3 normal = unit(area_vector(quad));
+  std::array<double, 4> turns{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 at_corner =
+        area_vector(quad.places[quad.previous(i)], quad.places[i], quad.places[quad.next(i)]);
+    turns[i] = dot(normal, at_corner);
+  }
+  return turns;
+}
+
+class Collector {
+ public:
+  void add(const Face& face) {
+    if (face.is_quad()) {
+      add_quad(face);
+    } else {
+      add_triangle(face);
+    }
+  }
+  void add_degenerate() { ++found_.degenerate; }
+  Faces take() { return std::move(found_); }
+
+ private:
+  void add_triangle(const Face& face) {
+    if (has_repeated_particle(face) || !has_area(face)) return add_degenerate();
+    found_.faces.push_back(face);
+  }
+
+  /// What is not convex is cut at its innermost corner.
+  void add_quad(const Face& quad) {
+    const auto at_corner = turns(quad);
+    const auto least = std::ranges::min_element(at_corner);
+    const double longest = longest_side(quad);
+    if (!has_repeated_particle(quad) && *least > kFlattest * longest * longest) {
+      found_.faces.push_back(quad);
+      return;
+    }
+    const auto i = static_cast<std::size_t>(least - at_corner.begin());
+    add_triangle(triangle_of(quad, {i, (i + 1) % 4, (i + 2) % 4}));
+    add_triangle(triangle_of(quad, {i, (i + 2) % 4, (i + 3) % 4}));
+  }
+
+  Faces found_;
+};
+
+/// Without corners that are the same particle as the one before.
+struct Polygon {
+  std::vector<std::uint32_t> particles;
+  std::vector<Vec3> places;
+};
+
+Polygon polygon_of(const MeshDescription& mesh,
+                   const std::vector<std::uint32_t>& particle_of_vertex,
+                   std::span<const std::uint32_t> corners) {
+  Polygon polygon;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::uint32_t before = corners[i > 0 ? i - 1 : corners.size() - 1];
+    const std::uint32_t particle = particle_of_vertex[corners[i]];
+    if (particle == particle_of_vertex[before]) continue;
+    polygon.particles.push_back(particle);
+    polygon.places.push_back(mesh.positions[corners[i]]);
+  }
+  return polygon;
+}
+
+Face face_of(const Polygon& polygon, std::span<const std::size_t> corners) {
+  Face face;
+  face.size = corners.size();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    face.particles[i] = polygon.particles[corners[i]];
+    face.places[i] = polygon.places[corners[i]];
+  }
+  return face;
+}
+
+}  // namespace
+
+Vec3 area_vector(const Face& face) {
+  const auto& p = face.places;
+  return face.is_quad() ? cross(p[2] - p[0], p[3] - p[1]) : area_vector(p[0], p[1], p[2]);
+}
+
+std::array<double, 4> corner_areas(const Face& face) {
+  std::array<double, 4> shares{};
+  if (!face.is_quad()) {
+    shares.fill(area(face) / 3);
+    shares[3] = 0;
+    return shares;
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t corners[] = {face.previous(i), i, face.next(i)};
+    const double size =
+        triangle_area(face.places[corners[0]], face.places[corners[1]], face.places[corners[2]]);
+    for (const std::size_t corner : corners) shares[corner] += size / 6;
+  }
+  return shares;
+}
+
+double area(const Face& face) {
+  if (!face.is_quad()) return length(area_vector(face)) / 2;
+  const auto shares = corner_areas(face);
+  return shares[0] + shares[1] + shares[2] + shares[3];
+}
+
+Face triangle_of(const Face& face, std::array<std::size_t, 3> corners) {
+  Face triangle;
+  triangle.size = 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    triangle.particles[i] = face.particles[corners[i]];
+    triangle.places[i] = face.places[corners[i]];
+  }
+  return triangle;
+}
+
+std::array<std::array<std::size_t, 3>, 2> cut(const Face& quad) {
+  const double first = length(quad.places[2] - quad.places[0]);
+  const double second = length(quad.places[3] - quad.places[1]);
+  if (first <= second) return {{{0, 1, 2}, {2, 3, 0}}};
+  return {{{1, 2, 3}, {3, 0, 1}}};
+}
+
+double extent(const std::vector<Face>& faces) {
+  double largest = 0;
+  for (const Face& face : faces) {
+    for (std::size_t i = 0; i < face.size; ++i) {
+      largest = std::max(largest, length(face.places[i] - faces[0].places[0]));
+    }
+  }
+  return largest;
+}
+
+Faces faces_of(const MeshDescription& mesh, const std::vector<std::uint32_t>& particle_of_vertex) {
+  Collector collector;
+  for_each_face(mesh, [&](std::span<const std::uint32_t> corners) {
+    const Polygon polygon = polygon_of(mesh, particle_of_vertex, corners);
+    const std::size_t size = polygon.particles.size();
+    if (size < 3) return collector.add_degenerate();
+    if (size == 4) return collector.add(face_of(polygon, std::array<std::size_t, 4>{0, 1, 2, 3}));
+    for (std::size_t i = 1; i + 1 < size; ++i) {
+      collector.add(face_of(polygon, std::array<std::size_t, 3>{0, i, i + 1}));
+    }
+  });
+  return collector.take();
+}
+
+}  // namespace weft::mesh

@@ -1,0 +1,50 @@
+/// Vectors, as meshes need them.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace weft::mesh {
+
+inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3 operator*(double s, Vec3 v) { return {s * v.x, s * v.y, s * v.z}; }
+inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 cross(Vec3 a, Vec3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length(Vec3 v) { return std::hypot(v.x, v.y, v.z); }
+/// Along v; nothing else where v is 0.
+inline Vec3 unit(Vec3 v) {
+  const double size = length(v);
+  return size > 0 ? (1 / size) * v : Vec3{};
+}
+
+/// Twice the area of the triangle, along its normal.
+inline Vec3 area_vector(Vec3 a, Vec3 b, Vec3 c) { return cross(b - a, c - a); }
+inline double triangle_area(Vec3 a, Vec3 b, Vec3 c) { return length(area_vector(a, b, c)) / 2; }
+
+/// Symmetric, of three dimensions.
+struct Tensor {
+  double xx = 0, yy = 0, zz = 0, yz = 0, zx = 0, xy = 0;
+};
+/// t + s v v^T
+inline Tensor plus_square(Tensor t, double s, Vec3 v) {
+  return {t.xx + s * v.x * v.x, t.yy + s * v.y * v.y, t.zz + s * v.z * v.z,
+          t.yz + s * v.y * v.z, t.zx + s * v.z * v.x, t.xy + s * v.x * v.y};
+}
+inline double trace(const Tensor& t) { return t.xx + t.yy + t.zz; }
+/// Of all nine elements.
+inline double sum_of_squares(const Tensor& t) {
+  return t.xx * t.xx + t.yy * t.yy + t.zz * t.zz + 2 * (t.yz * t.yz + t.zx * t.zx + t.xy * t.xy);
+}
+/// u^T t v
+inline double form(const Tensor& t, Vec3 u, Vec3 v) {
+  return t.xx * u.x * v.x + t.yy * u.y * v.y + t.zz * u.z * v.z + t.yz * (u.y * v.z + u.z * v.y) +
+         t.zx * (u.z * v.x + u.x * v.z) + t.xy * (u.x * v.y + u.y * v.x);
+}
+
+}  // namespace weft::mesh

@@ -1,0 +1,19 @@
+/// Constraints: what keeps a mesh from stretching.
+#pragma once
+
+#include <vector>
+
+#include "engine/mesh/edges.h"
+#include "engine/mesh/welding.h"
+
+namespace weft::mesh {
+
+/// Every edge of a face and every line, rigid; then diagonals, if they are asked for. Of two that
+/// join the same particles the first counts.
+std::vector<Constraint> rigid_constraints(const MeshDescription& mesh, const Welded& welded);
+
+/// Springs: edges in the order of the faces, then diagonals; then lines, which are rigid.
+std::vector<Constraint> elastic_constraints(const MeshDescription& mesh, const Welded& welded,
+                                            const std::vector<Face>& faces, const Edges& edges);
+
+}  // namespace weft::mesh

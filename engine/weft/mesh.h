@@ -1,0 +1,128 @@
+/// Meshes and materials: what a cloth is described by before it is particles and constraints.
+///
+///   weft::MeshDescription mesh = ...;                 // positions and faces, as a file has them
+///   mesh.material = weft::find_material("cotton").value();
+///   auto cloth = weft::cloth_from_mesh(mesh);         // welds, sews, derives springs and masses
+///   auto model = weft::build_model(cloth.value().scene);
+///
+/// This header stands beside weft.h and needs nothing else of weft. What it makes is a plain
+/// SceneDescription, which may be changed before a model is built.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace weft {
+
+// -------------------------------------------------------------------------------------- materials
+
+/// A cloth's own properties, whatever mesh describes it. Stiffnesses are forces per width: a strip
+/// of width b that is stretched by the fraction e pulls with warp b e.
+struct Material {
+  double density = 0;    ///< kg/m^2; > 0
+  double thickness = 0;  ///< m; at least 0. Nothing that cloth_from_mesh makes depends on it.
+  double warp = 0;       ///< N/m, of the yarns along the cloth; > 0
+  double weft = 0;       ///< N/m, of those across; > 0
+  double shear = 0;      ///< N/m, per radian of shear; at least 0
+  /// N m: a cylinder of curvature c, whatever its direction, stores bending c^2 / 2 per area.
+  double bending = 0;          ///< at least 0
+  double damping_stretch = 0;  ///< s, as Damping::stretch
+  double damping_bending = 0;  ///< s, as Damping::bending
+  double damping_motion = 0;   ///< 1/s, as Damping::motion
+  double drag = 0;             ///< as Air::drag
+  double lift = 0;             ///< as Air::lift
+};
+
+/// One line that names the field and the value that were refused.
+WEFT_API Result<void> check_material(const Material& material);
+
+struct NamedMaterial {
+  std::string_view name;
+  Material material;
+  std::string_view source;  ///< where the values come from
+};
+
+/// Common fabrics. Cloth of one name differs by a factor of two and more; these are examples.
+WEFT_API std::span<const NamedMaterial> materials();
+/// The error lists the names that there are.
+WEFT_API Result<Material> find_material(std::string_view name);
+
+// ----------------------------------------------------------------------------------------- meshes
+
+/// Which constraints only pull.
+/// none: all are distances.
+/// diagonals: those along both diagonals of four-sided faces.
+/// all: every one.
+enum class Ropes : std::uint8_t { none, diagonals, all };
+
+/// A surface in its shape at rest. Vertices become particles; what is in no face and no line does
+/// not.
+///
+/// Without a material every edge of a face becomes a rigid constraint at its length, faces in their
+/// order, and then every line. Diagonals join four-sided faces only where they are asked for.
+///
+/// With a material edges are springs, and faces bend:
+///  - In four-sided faces two families of edges are warp and weft, from face to face: opposite
+///  edges
+///    are of one family. In each connected part the warp is the family that runs more along y,
+///    where both do alike more along x. An edge carries the stiffness of half the width to its
+///    neighbours on both sides, diagonals carry shear.
+///  - Triangles have no yarns: their edges carry the mean of warp and weft, alike in all
+///  directions,
+///    with a Poisson ratio of 1/3 (Van Gelder, "Approximate Simulation of Elastic Membranes by
+///    Triangulated Spring Meshes", 1998). Pairs of right-angled triangles that make up a grid of
+///    near-rectangles are taken as the four-sided faces that they were cut from.
+///  - Faces of five and more corners are cut into triangles around the first; they should be
+///  convex.
+///  - Lines are threads that do not stretch, and have no mass of their own.
+///  - An edge of more than two faces stretches as the sum of them, and does not bend.
+///  - Faces without area are left out.
+struct MeshDescription {
+  std::vector<Vec3> positions;            ///< m, one per vertex
+  std::vector<std::uint32_t> corners;     ///< vertices, face after face, in order around each
+  std::vector<std::uint32_t> face_sizes;  ///< corners of each face, 3 or more; empty: triangles
+  std::vector<std::array<std::uint32_t, 2>> lines;  ///< two vertices each
+  std::vector<std::uint32_t> pins;                  ///< vertices whose particles are fixed
+  std::optional<Material> material;                 ///< none: rigid edges
+  double mass = 1;  ///< kg of the whole, shared equally; used without a material
+  /// m. Vertices as near as this become one particle, and so do those that a chain of such
+  /// vertices joins. 0: those at exactly equal positions, as files repeat them along seams of
+  /// texture coordinates.
+  double weld_distance = 0;
+  /// Pairs of vertices that are sewn together, wherever they lie: they become one particle, at the
+  /// mean of their positions. Lengths, areas and angles remain those of each face by itself; across
+  /// an edge whose faces lie apart the cloth is flat at rest.
+  std::vector<std::array<std::uint32_t, 2>> seams;
+  Ropes ropes = Ropes::none;
+};
+
+/// What was found in a mesh. Triangles and quads are those that are left when faces of more
+/// corners, concave ones and those without area are dealt with.
+struct MeshCounts {
+  std::size_t triangles = 0;
+  std::size_t quads = 0;               ///< four-sided faces, recognised ones too
+  std::size_t recognised_quads = 0;    ///< pairs of triangles that are cells of a grid
+  std::size_t welded_vertices = 0;     ///< that share the particle of an earlier vertex
+  std::size_t unused_vertices = 0;     ///< in no face and no line
+  std::size_t degenerate_faces = 0;    ///< without area, left out
+  std::size_t non_manifold_edges = 0;  ///< of more than two faces
+  std::size_t pieces = 0;              ///< that nothing joins to one another
+};
+
+struct MeshCloth {
+  SceneDescription scene;  ///< particles in the order of their first vertices
+  std::vector<std::uint32_t> particle_of_vertex;  ///< kNoIndex: none, in no face and no line
+  MeshCounts counts;
+};
+
+/// On error, one line that names the field, the index and the value, nothing is made.
+WEFT_API Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh);
+
+}  // namespace weft
