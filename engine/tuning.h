@@ -47,12 +47,13 @@ inline constexpr double kManyOut = 0.02;
 /// s. Energy that the motion loses may come back for about this time, since constraints are
 /// springs.
 inline constexpr double kSpringTime = 0.1;
-/// The largest number of visits of local passes in a substep, in units of all constraints.
-inline constexpr int kMostVisits = 1;
-/// A frame that is out of tolerance after its last substep goes on for at most so many rounds. Each
-/// is a sweep, and local passes of at most so many visits, in units of all constraints.
+/// The largest number of visits of local passes in a substep and in a round, in units of all
+/// constraints. Fewer leave more to later substeps; more are spent in vain on what is
+/// contradictory.
+inline constexpr int kMostVisits = 32;
+/// A frame that is out of tolerance after its last substep goes on for at most so many rounds of a
+/// sweep and local passes.
 inline constexpr int kMostRounds = 64;
-inline constexpr std::int64_t kMostRoundVisits = 32;
 /// Rounds of a frame, and parts of the paper's loop: then the constraints count as contradictory.
 inline constexpr Patience kRoundPatience{0.999, 16};
 

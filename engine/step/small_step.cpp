@@ -47,9 +47,8 @@ FramePlan plan_for(State& s, const SmallSteps& solver, const Attempt& attempt, d
     const double usual = std::min(tuning::kLongestSubstep,
                                   solver.substep_length(s.position.view(), mean_acceleration(s)));
     const double wanted = std::ceil(dt / usual) * attempt.parts;
-    // A substep is a sweep or two, and visits of local passes.
-    const int most =
-        std::min(tuning::kMostSubsteps, std::max(1, budget.positions / (2 + tuning::kMostVisits)));
+    // A substep is a sweep or two, and local passes that may always visit every constraint once.
+    const int most = std::min(tuning::kMostSubsteps, std::max(1, budget.positions / 3));
     plan.substeps = wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
     const double part = 2 * dt * attempt.parts / (plan.substeps * usual);
     if (part < 1) plan.omega *= part * part;
@@ -90,7 +89,7 @@ class Frame {
     for (int i = 0; i < std::max(1, s_.settings.iterations); ++i) sweep();
     if (to_tolerance && many_are_out()) sweep();
     if (s_.model->has_contacts()) find_contacts();
-    if (to_tolerance) count(solver_.repair(s_.contacts, most_visits(tuning::kMostVisits)));
+    if (to_tolerance) count(solver_.repair(s_.contacts, most_visits()));
     if (s_.model->has_contacts()) watch_crossings();
   }
 
@@ -135,7 +134,7 @@ class Frame {
   }
   void put_right() {
     sweep();
-    count(solver_.repair_everywhere(s_.contacts, most_visits(tuning::kMostRoundVisits)));
+    count(solver_.repair_everywhere(s_.contacts, most_visits()));
     read_positions();
   }
   void sweep() {
@@ -150,9 +149,9 @@ class Frame {
            tuning::kManyOut * static_cast<double>(edges_);
   }
 
-  std::int64_t most_visits(std::int64_t sweeps) const {
+  std::int64_t most_visits() const {
     const std::int64_t left = end_ - report_.iterations;
-    return std::max<std::int64_t>(1, std::min(sweeps, left)) * visits_of_an_iteration();
+    return std::clamp<std::int64_t>(left, 1, tuning::kMostVisits) * visits_of_an_iteration();
   }
   /// Passes visit contacts too, which may be many more than the constraints.
   std::int64_t visits_of_an_iteration() const {

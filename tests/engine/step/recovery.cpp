@@ -87,7 +87,7 @@ double most_gained(int size, double mass, int substeps, double dt) {
     iterations = std::max(iterations, step(cloth, dt).iterations);
     most = std::max(most, cloth.energy().total() - before);
   }
-  CHECK(iterations > 1000);  // sweeps
+  CHECK(iterations > 200);  // far more than direct solutions take: another method took over
   return most;
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("energy from what a start violates says nothing about halves") {
   }
 }
 
-TEST_CASE("where sweeps had to do, what they leave brings in little energy") {
+TEST_CASE("where other methods had to do, what they leave brings in little energy") {
   CHECK(most_gained(15, 1, 1, 0.06) < 1);
   CHECK(most_gained(10, 30, 2, 0.04) < 1);
 }
