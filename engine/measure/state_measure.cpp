@@ -56,6 +56,10 @@ double energy_of_bending(const Model& m, const kernels::Vectors& x) {
 
 }  // namespace
 
+double elastic_energy(const Model& m, const kernels::Vectors& x) {
+  return energy_of_springs(m, x) + energy_of_bending(m, x);
+}
+
 Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,
                       const kernels::Vectors& v) {
   Energy energy;
@@ -64,7 +68,7 @@ Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Ve
     energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
     energy.potential -= m.mass[i] * dot(gravity, x[i]);
   }
-  energy.elastic = energy_of_springs(m, x) + energy_of_bending(m, x);
+  energy.elastic = elastic_energy(m, x);
   return energy;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/measure/state_measure.h"
 #include "engine/step/motion.h"
 #include "engine/step/pin_work.h"
 #include "engine/tuning.h"
@@ -86,7 +87,8 @@ bool guard_energy(State& s, const kernels::ImpulseEnergy& impulses, bool is_susp
 
 void guard_springs(State& s, const kernels::ImpulseEnergy& change, double h) {
   const double stored = s.lost_energy * std::exp(-h / tuning::kSpringTime);
-  const double gain = gained_energy(s, change, h);
+  const double released = elastic_energy(*s.model, s.position) - elastic_energy(*s.model, s.solved);
+  const double gain = gained_energy(s, change, h) - released;
   take_energy(s, gain - stored, h);
   s.lost_energy = std::max(0.0, stored - gain);
 }
