@@ -28,8 +28,6 @@ Strain strain_over_all(const Model& m, const Vectors& x) {
 Strain measure_strain(const Model& m, const kernels::Vectors& x) { return strain_over_all(m, x); }
 Strain measure_strain(const Model& m, kernels::VectorsView x) { return strain_over_all(m, x); }
 
-namespace {
-
 /// C^2 / (2 compliance)
 double energy_of_springs(const Model& m, const kernels::Vectors& x) {
   const ConstraintStore& s = m.constraints;
@@ -54,12 +52,6 @@ double energy_of_bending(const Model& m, const kernels::Vectors& x) {
   return sum;
 }
 
-}  // namespace
-
-double elastic_energy(const Model& m, const kernels::Vectors& x) {
-  return energy_of_springs(m, x) + energy_of_bending(m, x);
-}
-
 Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,
                       const kernels::Vectors& v) {
   Energy energy;
@@ -68,7 +60,7 @@ Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Ve
     energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
     energy.potential -= m.mass[i] * dot(gravity, x[i]);
   }
-  energy.elastic = elastic_energy(m, x);
+  energy.elastic = energy_of_springs(m, x) + energy_of_bending(m, x);
   return energy;
 }
 

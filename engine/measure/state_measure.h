@@ -24,8 +24,8 @@ Strain measure_strain(const Model& model, const kernels::Vectors& position);
 Strain measure_strain(const Model& model, kernels::VectorsView position);
 Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
                       const kernels::Vectors& velocity);
-/// J, of springs and bending elements.
-double elastic_energy(const Model& model, const kernels::Vectors& position);
+double energy_of_springs(const Model& model, const kernels::Vectors& position);  // J
+double energy_of_bending(const Model& model, const kernels::Vectors& position);  // J
 /// Whether all components, and the squared distances between any two vectors, are finite.
 bool all_finite(const kernels::Vectors& vectors);
 /// The first slot of which that is not true, in x or v; a fixed one only if no free one is among

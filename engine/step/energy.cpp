@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/measure/state_measure.h"
 #include "engine/step/motion.h"
 #include "engine/step/pin_work.h"
 #include "engine/tuning.h"
@@ -85,9 +84,8 @@ bool guard_energy(State& s, const kernels::ImpulseEnergy& impulses, bool is_susp
   return gain <= allowed + energy_at_rest(s, h) || take_energy(s, gain, h);
 }
 
-void guard_springs(State& s, const kernels::ImpulseEnergy& change, double h) {
+void guard_springs(State& s, const kernels::ImpulseEnergy& change, double released, double h) {
   const double stored = s.lost_energy * std::exp(-h / tuning::kSpringTime);
-  const double released = elastic_energy(*s.model, s.position) - elastic_energy(*s.model, s.solved);
   const double gain = gained_energy(s, change, h) - released;
   take_energy(s, gain - stored, h);
   s.lost_energy = std::max(0.0, stored - gain);

@@ -6,6 +6,7 @@
 
 #include "engine/contacts/contacts.h"
 #include "engine/contacts/crossings.h"
+#include "engine/measure/state_measure.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/stall.h"
 #include "engine/step/energy.h"
@@ -72,7 +73,10 @@ class Frame {
         s_.force.size() > 0 ? s_.force.view() : kernels::VectorsView{};
     if (s_.model->has_contacts()) s_.substep_positions = s_.position;
     solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, plan, team_);
+    elastic_energy_ = elastic_energy(s_.position);
   }
+  /// J, since the beginning, by springs and bending elements.
+  double released() { return elastic_energy_ - elastic_energy(s_.solved); }
 
   void substep() {
     solver_.advance(team_);
@@ -116,6 +120,9 @@ class Frame {
   std::uint32_t passed_particle = kNoIndex;  // the description's number
 
  private:
+  double elastic_energy(const kernels::Vectors& x) {
+    return energy_of_springs(*s_.model, x) + solver_.bending_energy(team_);
+  }
   /// With a number of substeps that was given the time of a frame is to be bounded.
   int most_rounds() const {
     if (report_.iterations >= end_) return 0;
@@ -182,6 +189,7 @@ class Frame {
   const std::int64_t edges_;  // all constraints
   FramePlan plan_;
   int substeps_done_ = 0;
+  double elastic_energy_ = 0;  // J, in the beginning
 };
 
 }  // namespace
@@ -223,7 +231,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     trial.worsen(Status::passed_through);
   }
   timed(report, Stage::commit, [&] {
-    if (!fixed) guard_springs(s, change, h);
+    if (!fixed) guard_springs(s, change, frame.released(), h);
     if (s.pins.moving()) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
     s.small_steps->keep(team);
   });
