@@ -41,6 +41,14 @@ inline constexpr double kLeastLinks = 8;
 /// Substeps between two renewals of the base. Displacements are rounded to a 2^-24 part of what a
 /// particle moves in between.
 inline constexpr int kRenewal = 16;
+/// The bound on n h (n h + tau) W / compliance where bending elements are visited in every n-th
+/// substep (engine/solvers/small_steps/bending_pace.h), and the largest n. Fewer visits are
+/// cheaper; more are closer to the true stiffness.
+inline constexpr double kBendingPace = 0.05;
+inline constexpr int kLongestGroup = 8;
+/// The largest n h tau W / compliance that an element is damped with: beyond that its neighbours
+/// and it would take from their motion more than there is.
+inline constexpr double kMostBendingDamping = 0.2;
 /// If more than this share of all constraints is out of tolerance a substep sweeps once more, which
 /// is cheaper than local passes.
 inline constexpr double kManyOut = 0.02;

@@ -1,9 +1,15 @@
 /// A substep of small steps, all in, of a frame of sixteen, and its sweep alone: yarns of a woven
-/// sheet, single edges of an irregular mesh, and a braced sheet, which has both.
+/// sheet, single edges of an irregular mesh, and a braced sheet, which has both. And a visit of
+/// bending elements, of three particles along the rows and columns of a sheet, or of four over the
+/// pairs of its triangles.
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
 
 #include "engine/isa.h"
 #include "engine/model/model.h"
+#include "engine/solvers/small_steps/simd_bending.h"
 #include "engine/solvers/small_steps/simd_small_steps.h"
 #include "engine/tuning.h"
 #include "perf/benchmarks.h"
@@ -84,6 +90,56 @@ void run(benchmark::State& state, const Shared& shared, const Kind& kind, simd::
   count(state, {.items = edges, .bytes = bytes, .footprint = footprint}, shared.bandwidth);
 }
 
+/// Of a grid of size x size particles, each cell in two triangles.
+SceneDescription bending_sheet(int size, bool four) {
+  SceneDescription scene = scenes::make("hang", {.size = size}).value();
+  const auto n = static_cast<std::uint32_t>(size);
+  const auto add = [&](std::uint32_t from, std::array<std::uint32_t, 4> by,
+                       std::array<double, 4> weights) {
+    for (std::size_t k = 0; k < 4; ++k) by[k] = k == 3 && !four ? kNoIndex : from + by[k];
+    scene.bending.push_back({by, weights, 0, 1});
+  };
+  for (std::uint32_t row = 0; row + 2 < n; ++row) {
+    for (std::uint32_t column = 0; column + 2 < n; ++column) {
+      const std::uint32_t i = row * n + column;
+      if (four) {
+        add(i, {1, n, 0, n + 1}, {1, 1, -1, -1});
+        add(i, {n, n + 1, 1, 2 * n}, {1, 1, -1, -1});
+        add(i, {1, n + 1, n, 2}, {1, 1, -1, -1});
+      } else {
+        add(i, {0, 1, 2, 0}, {1, -2, 1, 0});
+        add(i, {0, n, 2 * n, 0}, {1, -2, 1, 0});
+      }
+    }
+  }
+  return scene;
+}
+
+void run_bending(benchmark::State& state, const Shared& shared, simd::Isa isa, int size,
+                 bool four) {
+  const auto model = build_model(bending_sheet(size, four)).value();
+  Team team{1};
+  SimdBending bending(*model, simd::table(isa));
+  kernels::AlignedVector<float> base(4 * model->slots()), u(4 * model->slots());
+  for (std::size_t i = 0; i < model->slots(); ++i) {
+    const kernels::Vector x = model->initial_position[i];
+    for (const auto& [axis, place] : {std::pair{0, x.x}, {1, x.y}, {2, x.z}})
+      base[4 * i + static_cast<std::size_t>(axis)] = static_cast<float>(place);
+  }
+  bending.measure_base(base.data(), team);
+  // Too long a substep for a visit to stand for several.
+  const FramePlan plan{.h = 1, .substeps = std::numeric_limits<int>::max()};
+  bending.begin(plan);
+  for (auto _ : state) bending.bend(u.data(), u.data(), plan.h, team);
+  const double footprint =
+      static_cast<double>(bending.bytes() + model->small_steps().bending.bytes());
+  count(state,
+        {.items = static_cast<double>(model->bending.size()),
+         .bytes = footprint,
+         .footprint = footprint},
+        shared.bandwidth);
+}
+
 }  // namespace
 
 void register_small_step_benchmarks(Shared& shared) {
@@ -97,6 +153,17 @@ void register_small_step_benchmarks(Shared& shared) {
             run(state, shared, kind, isa, size, all);
           });
         }
+      }
+    }
+  }
+  for (const bool four : {false, true}) {
+    for (const simd::Isa isa : supported_isas()) {
+      for (const int size : kSizes) {
+        const std::string name = std::string("small_step_bending/") + (four ? "four/" : "three/") +
+                                 name_of(isa) + '/' + std::to_string(size);
+        benchmark::RegisterBenchmark(name.c_str(), [=, &shared](benchmark::State& state) {
+          run_bending(state, shared, isa, size, four);
+        });
       }
     }
   }

@@ -28,8 +28,6 @@ Strain strain_over_all(const Model& m, const Vectors& x) {
 Strain measure_strain(const Model& m, const kernels::Vectors& x) { return strain_over_all(m, x); }
 Strain measure_strain(const Model& m, kernels::VectorsView x) { return strain_over_all(m, x); }
 
-namespace {
-
 /// C^2 / (2 compliance)
 double energy_of_springs(const Model& m, const kernels::Vectors& x, double give_per_mass) {
   const ConstraintStore& s = m.constraints;
@@ -53,12 +51,6 @@ double energy_of_bending(const Model& m, const kernels::Vectors& x) {
     sum += bent * bent / (2 * s.compliance[i]);
   }
   return sum;
-}
-
-}  // namespace
-
-double elastic_energy(const Model& m, const kernels::Vectors& x, double give_per_mass) {
-  return energy_of_springs(m, x, give_per_mass) + energy_of_bending(m, x);
 }
 
 Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,

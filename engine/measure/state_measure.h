@@ -24,14 +24,15 @@ Strain measure_strain(const Model& model, const kernels::Vectors& position);
 Strain measure_strain(const Model& model, kernels::VectorsView position);
 Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
                       const kernels::Vectors& velocity);
-/// J, of springs and bending elements. To a sweep a spring is softer than it is: of a substep of h
-/// and a relaxation omega give_per_mass is h^2 / omega, and a spring has the compliance
+/// J. To a sweep a spring is softer than it is: of a substep of h and a relaxation omega
+/// give_per_mass is h^2 / omega, and a spring has the compliance
 ///
 ///     compliance + give_per_mass (w_a + w_b)
 ///
 /// 0: its own. Without this what a solver leaves of a stiff spring's law would count as energy.
-double elastic_energy(const Model& model, const kernels::Vectors& position,
-                      double give_per_mass = 0);
+double energy_of_springs(const Model& model, const kernels::Vectors& position,
+                         double give_per_mass = 0);
+double energy_of_bending(const Model& model, const kernels::Vectors& position);  // J
 /// Whether all components, and the squared distances between any two vectors, are finite.
 bool all_finite(const kernels::Vectors& vectors);
 /// The first slot of which that is not true, in x or v; a fixed one only if no free one is among

@@ -6,6 +6,7 @@
 
 #include "engine/contacts/contacts.h"
 #include "engine/contacts/crossings.h"
+#include "engine/measure/state_measure.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/stall.h"
 #include "engine/step/energy.h"
@@ -80,7 +81,10 @@ class Frame {
         s_.forces().size() > 0 ? s_.forces().view() : kernels::VectorsView{};
     if (s_.model->has_contacts()) s_.substep_positions = s_.position;
     solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, plan, team_);
+    elastic_energy_ = elastic_energy(s_.position);
   }
+  /// J, since the beginning, by springs and bending elements.
+  double released() { return elastic_energy_ - elastic_energy(s_.solved); }
 
   void substep() {
     solver_.advance(team_);
@@ -127,6 +131,10 @@ class Frame {
   std::uint32_t passed_particle = kNoIndex;  // the description's number
 
  private:
+  double elastic_energy(const kernels::Vectors& x) {
+    return energy_of_springs(*s_.model, x, give_per_mass(s_, plan_)) +
+           solver_.bending_energy(team_);
+  }
   /// With a number of substeps that was given the time of a frame is to be bounded.
   int most_rounds() const {
     if (report_.iterations >= end_) return 0;
@@ -197,6 +205,7 @@ class Frame {
   const std::int64_t edges_;  // all constraints
   FramePlan plan_;
   int substeps_done_ = 0;
+  double elastic_energy_ = 0;  // J, in the beginning
 };
 
 }  // namespace
@@ -240,7 +249,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   timed(report, Stage::commit, [&] {
     const double lost_before = s.lost_energy;
     if (takes_over_in(s)) s.lost_energy = 0;
-    if (!fixed && !guard_springs(s, change, give_per_mass(s, plan), h) && !attempt.is_last) {
+    if (!fixed && !guard_springs(s, change, frame.released(), h) && !attempt.is_last) {
       s.lost_energy = lost_before;
       trial.outcome = Outcome::rejected;
       return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/simd/anticipate.h"
+#include "kernels/simd/bending.h"
 #include "kernels/simd/contacts.h"
 #include "kernels/simd/directions.h"
 #include "kernels/simd/fronts.h"
@@ -101,6 +102,9 @@ constexpr Table make_table() {
           .relax_ropes = relax_ropes,
           .relax_springs = relax_springs,
           .relax_rope_springs = relax_rope_springs,
+          .measure_bending = measure_bending,
+          .bend = bend,
+          .bending_energy = bending_energy,
           .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),
           .strain_run = strain_run,
           .strain_singles = strain_singles,

@@ -49,7 +49,11 @@ double ReferenceSmallSteps::law_error() {
 }
 
 ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& settings)
-    : model_(model), layout_(model.small_steps()), settings_(settings), passes_(model) {
+    : model_(model),
+      layout_(model.small_steps()),
+      settings_(settings),
+      passes_(model),
+      pace_(layout_.bending.stiffest, model.damping.bending) {
   for (auto* vectors : {&x_, &before_, &predicted_, &v_, &v_before_, &acceleration_, &past_.v,
                         &past_.v_before, &past_.moved}) {
     vectors->resize(model.slots());
@@ -73,6 +77,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   projects_ = plan.projects;
   is_begun_ = false;
   passes_.forget();
+  pace_.begin(plan);
   touched_.clear();
   if (plan.placed || h > tuning::kMostRatio * past_.h) past_.h = 0;
   last_ = 0;
@@ -105,6 +110,27 @@ void ReferenceSmallSteps::advance(Team&) {
     reference::advance(flight(), i, acceleration_[i], formula_.past, bh, last_);
   }
   last_ = bh;
+  bend();
+}
+
+void ReferenceSmallSteps::bend() {
+  const int n = pace_.next();
+  if (n == 0) return;
+  const reference::BendingVisit visit = pace_.visit(n, last_);
+  for (const std::uint32_t i : layout_.bending.element) {
+    if (i == kNoIndex) continue;
+    reference::bend(element(i), visit, model_.inverse_mass.data(), x_.view(), v_before_.view());
+  }
+}
+
+double ReferenceSmallSteps::bending_energy(Team&) {
+  const double resolved = pace_.resolved(SubstepFormula::of(settings_.scheme, 1).part * h_);
+  double sum = 0;
+  for (const std::uint32_t i : layout_.bending.element) {
+    if (i == kNoIndex) continue;
+    sum += reference::energy(element(i), resolved, model_.inverse_mass.data(), x_.view());
+  }
+  return sum;
 }
 
 void ReferenceSmallSteps::sweep(Team&) {

@@ -11,6 +11,7 @@
 #include "engine/contacts/contacts.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/bending_pace.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
@@ -37,6 +38,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
   double law_error() override;
   void read_positions(kernels::VectorsView x, Team& team) const override;
+  double bending_energy(Team& team) override;
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;
 
@@ -54,6 +56,11 @@ class ReferenceSmallSteps final : public SmallSteps {
   reference::SpringStep spring_step() const;
   reference::Flight flight();
   bool is_free(std::size_t slot) const { return model_.inverse_mass[slot] > 0; }
+  void bend();
+  reference::BendingElement element(std::uint32_t i) const {
+    const BendingStore& s = model_.bending;
+    return {s.slots[i], s.weights[i], s.rest[i], s.compliance[i]};
+  }
   void relax_chain(std::span<const std::uint32_t> slots, std::span<const std::uint32_t> links);
   void relax_edge(std::uint32_t constraint);
   void relax_spring(std::uint32_t constraint);
@@ -64,6 +71,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   const SmallStepsLayout& layout_;
   const Settings settings_;
   LocalPasses passes_;
+  BendingPace pace_;
   Past past_;
   reference::ChainSystem system_;
 

@@ -100,6 +100,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       settings_(settings),
       table_(table),
       passes_(model),
+      bending_(model, table),
       spans_(layout_.blocks.size()),
       base_step_(layout_.yarns.rows()),
       edges_out_(layout_.blocks.size()),
@@ -215,6 +216,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   projects_ = plan.projects;
   is_begun_ = false;
   passes_.forget();
+  bending_.begin(plan);
   touched_.clear();
   if (plan.placed || plan.h > tuning::kMostRatio * past_.h) past_.h = 0;
   split(x, plan.substeps, team);
@@ -232,6 +234,7 @@ void SmallStepsSolver::measure_base(Team& team) {
   team.for_each_share(layout_.blocks.size(), [&](std::size_t first, std::size_t last) {
     table_.measure_edges(layout_.blocks.data(), spans_.data(), base_.data(), first, last);
   });
+  bending_.measure_base(base_.data(), team);
 }
 
 void SmallStepsSolver::renew_base(Team& team) {
@@ -255,6 +258,7 @@ void SmallStepsSolver::advance(Team& team) {
     table_.advance(flight(), weights_, first, last);
   });
   weights_.rate = static_cast<float>(1 / (formula_.part * h_));
+  bending_.bend(u_.data(), v_before_.data(), formula_.part * h_, team);
 }
 
 void SmallStepsSolver::sweep(Team& team) {
@@ -424,6 +428,10 @@ void SmallStepsSolver::stop_at_contact(std::uint32_t slot) {
   }
 }
 
+double SmallStepsSolver::bending_energy(Team& team) {
+  return bending_.energy(u_.data(), SubstepFormula::of(settings_.scheme, 1).part * h_, team);
+}
+
 void SmallStepsSolver::settle(Team& team) {
   stop_at_contacts();
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -468,7 +476,7 @@ void SmallStepsSolver::take_past(const SmallSteps& from) {
 std::size_t SmallStepsSolver::bytes() const {
   return 11 * bytes_of(u_) + bytes_of(spans_) + bytes_of(base_step_) + bytes_of(scratch_) +
          bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) + bytes_of(multiplier_) +
-         passes_.bytes();
+         passes_.bytes() + bending_.bytes();
 }
 
 }  // namespace weft

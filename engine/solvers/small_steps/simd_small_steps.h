@@ -15,6 +15,7 @@
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/local_passes.h"
+#include "engine/solvers/small_steps/simd_bending.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "kernels/simd/table.h"
@@ -50,6 +51,7 @@ class SmallStepsSolver final : public SmallSteps {
   double law_error() override;
   /// Where the particles are; x: where they were when the frame began.
   void read_positions(kernels::VectorsView x, Team& team) const override;
+  double bending_energy(Team& team) override;
   /// After the last substep.
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;
@@ -88,6 +90,7 @@ class SmallStepsSolver final : public SmallSteps {
   const Settings settings_;
   const simd::Table& table_;
   LocalPasses passes_;
+  SimdBending bending_;
   SmallStepsPast past_;
 
   double h_ = 0, omega_ = 1;

@@ -117,7 +117,8 @@ double cell_of(std::span<const double> rests) {
 SmallStepsLayout make_small_steps_layout(const Model& model) {
   const ConstraintStore& store = model.constraints;
   SmallStepsLayout layout;
-  const bool only_distances = store.plain == store.size();
+  layout.bending = make_bending_layout(model);
+  const bool only_distances = store.plain == store.size() && layout.bending.empty();
   if (!store.has_springs()) {
     layout.yarns =
         make_yarn_layout(model, only_distances ? YarnMemory::woven_if_possible : YarnMemory::quads);
@@ -150,7 +151,7 @@ std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
 std::size_t SmallStepsLayout::bytes() const {
   return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(used) +
          bytes_of(springs) + bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) +
-         bytes_of(serial) + bytes_of(load.spans);
+         bytes_of(serial) + bending.bytes() + bytes_of(load.spans);
 }
 
 }  // namespace weft

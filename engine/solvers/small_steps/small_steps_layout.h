@@ -1,6 +1,7 @@
 /// What small steps (engine/solvers/small_steps/small_steps.h) need to know of a model: its
 /// constraints as blocks, in the order of a sweep, and where their particles stand.
 ///
+///   bending       elements of one colour each, before all constraints
 ///   yarn blocks   family by family, where the distance constraints make yarns; in woven rows where
 ///                 yarns are all there is, else in quads
 ///   edge blocks   kLanes constraints of one colour each: tile by tile, then between the tiles
@@ -15,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/solvers/small_steps/bending_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/solvers/yarn/yarn_layout.h"
 #include "kernels/simd/table.h"
@@ -47,6 +49,7 @@ struct SmallStepsLayout {
   std::vector<EdgeTile> tiles;
   std::uint32_t between_tiles = 0;  // first batch
   std::vector<std::uint32_t> serial;
+  BendingLayout bending;
 
   double cell = 0;         // that positions are split by
   std::size_t floats = 0;  // of an array of particles

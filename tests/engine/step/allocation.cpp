@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "tests/support/bending.h"
 #include "tests/support/clothes.h"
 #include "tests/support/counting_new.h"
 
@@ -122,6 +123,20 @@ TEST_CASE("nor does a step in air, of motion that decays") {
     const std::size_t after = allocations();
     CHECK(report);
     CHECK(after == before);
+  }
+}
+
+TEST_CASE("nor does a warm step with bending elements, nor the first") {
+  for (const Backend backend : kBackends) {
+    SceneDescription scene = with_rows(scene_of("corners", 9), 9, 1e-4);
+    scene.damping.bending = 0.01;
+    Cloth cloth = cloth_of(scene, on(backend, {.solver = Solver::small_steps}));
+    std::size_t failed = 0;
+    const std::size_t before = allocations();
+    for (int k = 0; k < 20; ++k) failed += !cloth.step(0.01);
+    const std::size_t after = allocations();
+    CHECK(failed == 0);
+    if (backend == Backend::simd) CHECK(after == before);
   }
 }
 

@@ -1,0 +1,126 @@
+#include "engine/solvers/small_steps/bending_layout.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "engine/bytes_of.h"
+#include "engine/model/model.h"
+
+namespace weft {
+namespace {
+
+using kernels::kLanes;
+
+constexpr std::size_t kInBlock[] = {0, 1, 3};  // particles whose weights a block holds
+
+float to_float(double number) {
+  return static_cast<float>(std::clamp<double>(number, std::numeric_limits<float>::min(),
+                                               std::numeric_limits<float>::max()));
+}
+
+class Builder {
+ public:
+  Builder(const Model& model, BendingLayout& layout)
+      : model_(model), store_(model.bending), layout_(layout) {}
+
+  void add_batches(bool four) {
+    std::vector<std::uint32_t> left = elements(four), batch, later;
+    for (; !left.empty(); left.swap(later)) {
+      batch.clear();
+      later.clear();
+      ++batches_;
+      for (const std::uint32_t i : left) (takes(i) ? batch : later).push_back(i);
+      add_batch(batch, four);
+    }
+  }
+
+ private:
+  bool has_four(std::uint32_t i) const { return store_.slots[i][3] != store_.slots[i][2]; }
+  std::size_t particles(std::uint32_t i) const { return has_four(i) ? 4 : 3; }
+  std::span<const std::uint32_t> slots(std::uint32_t i) const {
+    return std::span(store_.slots[i]).first(particles(i));
+  }
+  /// W, 1/kg
+  double inverse_mass(std::uint32_t i) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < particles(i); ++k) {
+      const double c = store_.weights[i][k];
+      sum += model_.inverse_mass[store_.slots[i][k]] * c * c;
+    }
+    return sum;
+  }
+  /// Those that can move, by their first slots, so that a batch goes through memory in one
+  /// direction.
+  std::vector<std::uint32_t> elements(bool four) const {
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < store_.size(); ++i) {
+      if (has_four(i) == four && inverse_mass(i) > 0) all.push_back(i);
+    }
+    std::ranges::stable_sort(all, {}, [&](std::uint32_t i) { return std::ranges::min(slots(i)); });
+    return all;
+  }
+  /// Whether no element of the present batch has a particle of it; then it is one of them.
+  bool takes(std::uint32_t i) {
+    for (const std::uint32_t slot : slots(i)) {
+      if (batch_of_[slot] == batches_) return false;
+    }
+    for (const std::uint32_t slot : slots(i)) batch_of_[slot] = batches_;
+    return true;
+  }
+  void add_batch(std::span<const std::uint32_t> batch, bool four) {
+    const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
+    for (std::size_t i = 0; i < batch.size(); i += kLanes) {
+      add_block(batch.subspan(i, std::min<std::size_t>(kLanes, batch.size() - i)));
+    }
+    layout_.batches.push_back({first, static_cast<std::uint32_t>(layout_.blocks.size()), four});
+  }
+  void add_block(std::span<const std::uint32_t> elements) {
+    simd::BendingBlock& block = layout_.blocks.emplace_back();
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      for (auto& slot : block.slot) slot[lane] = model_.spare_slots + lane;
+      block.softness[lane] = 1;
+      if (lane < elements.size()) fill(block, lane, elements[lane]);
+      const bool holds = lane < elements.size();
+      layout_.element.push_back(holds ? elements[lane] : kNoIndex);
+      layout_.stiffness.push_back(holds ? to_float(1 / store_.compliance[elements[lane]]) : 0);
+    }
+  }
+  void fill(simd::BendingBlock& block, std::uint32_t lane, std::uint32_t i) {
+    const double inverse = inverse_mass(i);
+    for (std::size_t k = 0; k < particles(i); ++k) {
+      const std::uint32_t slot = store_.slots[i][k];
+      const double w = model_.inverse_mass[slot];
+      block.slot[k][lane] = slot;
+      block.share[k][lane] = static_cast<float>(w * store_.weights[i][k] / inverse);
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      block.weight[k][lane] = static_cast<float>(store_.weights[i][kInBlock[k]]);
+    block.rest[lane] = static_cast<float>(store_.rest[i]);
+    block.softness[lane] = to_float(store_.compliance[i] / inverse);
+    layout_.stiffest = std::max(layout_.stiffest, inverse / store_.compliance[i]);
+    layout_.curved = layout_.curved || store_.rest[i] > 0;
+  }
+
+  const Model& model_;
+  const BendingStore& store_;
+  BendingLayout& layout_;
+  std::uint32_t batches_ = 0;
+  std::vector<std::uint32_t> batch_of_ = std::vector<std::uint32_t>(model_.slots());  // 1, 2, ...
+};
+
+}  // namespace
+
+BendingLayout make_bending_layout(const Model& model) {
+  BendingLayout layout;
+  if (model.bending.size() == 0) return layout;
+  Builder builder(model, layout);
+  for (const bool four : {false, true}) builder.add_batches(four);
+  return layout;
+}
+
+std::size_t BendingLayout::bytes() const {
+  return bytes_of(blocks) + bytes_of(element) + bytes_of(stiffness) + bytes_of(batches);
+}
+
+}  // namespace weft

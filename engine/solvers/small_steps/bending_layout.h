@@ -1,0 +1,34 @@
+/// Bending elements in the order in which small steps visit them: batch by batch, those of three
+/// particles first. No two elements of a batch share a particle.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+class Model;
+
+/// Blocks first ... last - 1.
+struct BendingBatch {
+  std::uint32_t first = 0, last = 0;
+  bool four = false;  // particles, not three
+};
+
+struct BendingLayout {
+  std::vector<simd::BendingBlock> blocks;
+  std::vector<std::uint32_t> element;  // per block and lane: in Model::bending, or kNoIndex
+  std::vector<float> stiffness;        // likewise, 1 / compliance, N/m; padding: 0
+  std::vector<BendingBatch> batches;
+  double stiffest = 0;  // 1/s^2, the largest of W / compliance (kernels/simd/bending.h)
+  bool curved = false;  // a rest is not 0
+
+  bool empty() const { return blocks.empty(); }
+  std::size_t bytes() const;
+};
+
+BendingLayout make_bending_layout(const Model& model);
+
+}  // namespace weft

@@ -1,0 +1,71 @@
+#include "engine/solvers/small_steps/simd_bending.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "engine/bytes_of.h"
+
+namespace weft {
+namespace {
+
+float to_float(double number) {
+  return static_cast<float>(std::min<double>(number, std::numeric_limits<float>::max()));
+}
+
+}  // namespace
+
+SimdBending::SimdBending(const Model& model, const simd::Table& table)
+    : layout_(model.small_steps().bending),
+      table_(table),
+      pace_(layout_.stiffest, model.damping.bending),
+      spans_(layout_.blocks.size()),
+      energies_(layout_.blocks.size()) {}
+
+template <class Work>
+void SimdBending::for_blocks(Team& team, Work&& work) const {
+  for (const BendingBatch& batch : layout_.batches) {
+    team.for_each_share(batch.last - batch.first, [&](std::size_t first, std::size_t last) {
+      work(batch.four, batch.first + first, batch.first + last);
+    });
+  }
+}
+
+simd::Bending SimdBending::arrays(float* u) const {
+  return {
+      .u = u, .blocks = layout_.blocks.data(), .spans = spans_.data(), .curved = layout_.curved};
+}
+
+void SimdBending::measure_base(const float* base, Team& team) {
+  for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
+    table_.measure_bending(layout_.blocks.data(), spans_.data(), base, four, first, last);
+  });
+}
+
+void SimdBending::bend(float* u, const float* v, double bh, Team& team) {
+  const int n = layout_.empty() ? 0 : pace_.next();
+  if (n == 0) return;
+  const reference::BendingVisit visit = pace_.visit(n, bh);
+  simd::Bending bending = arrays(u);
+  bending.v = v;
+  bending.own = to_float(visit.own);
+  bending.rate = to_float(visit.rate);
+  bending.damping = to_float(visit.damping);
+  bending.most = to_float(visit.most);
+  for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
+    table_.bend(bending, four, first, last);
+  });
+}
+
+double SimdBending::energy(float* u, double bh, Team& team) {
+  simd::Bending bending = arrays(u);
+  bending.resolved = to_float(pace_.resolved(bh));
+  for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
+    table_.bending_energy(bending, layout_.stiffness.data(), energies_.data(), four, first, last);
+  });
+  return std::accumulate(energies_.begin(), energies_.end(), 0.0);
+}
+
+std::size_t SimdBending::bytes() const { return bytes_of(spans_) + bytes_of(energies_); }
+
+}  // namespace weft

@@ -1,0 +1,37 @@
+/// The bending elements of small steps in lanes.
+#pragma once
+
+#include "engine/model/model.h"
+#include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/bending_pace.h"
+
+namespace weft {
+
+class SimdBending {
+ public:
+  SimdBending(const Model& model, const simd::Table& table);
+
+  void begin(const FramePlan& plan) { pace_.begin(plan); }
+  /// Of a new base.
+  void measure_base(const float* base, Team& team);
+  /// After the prediction of a substep whose positions move by bh^2 w f; v: the velocity in its
+  /// beginning.
+  void bend(float* u, const float* v, double bh, Team& team);
+  /// J, with positions at base + u, of substeps as above.
+  double energy(float* u, double bh, Team& team);
+  std::size_t bytes() const;
+
+ private:
+  simd::Bending arrays(float* u) const;
+  /// work(is of four, first, last) over the blocks, batch by batch.
+  template <class Work>
+  void for_blocks(Team& team, Work&& work) const;
+
+  const BendingLayout& layout_;
+  const simd::Table& table_;
+  BendingPace pace_;
+  kernels::AlignedVector<simd::EdgeSpans> spans_;  // d of the base
+  std::vector<double> energies_;                   // J, per block
+};
+
+}  // namespace weft
