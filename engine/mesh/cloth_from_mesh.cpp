@@ -142,7 +142,7 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
   } else if (auto r = add_material(mesh, welded, found.faces, edges, scene); !r) {
     return Error{r.error()};
   }
-  if (scene.constraints.empty()) return Error{"corners: every edge of the mesh has length 0"};
+  if (scene.constraints.empty()) return Error{"every edge of the mesh has length 0"};
   cloth.particle_of_vertex = std::move(welded.particle_of_vertex);
   return cloth;
 }

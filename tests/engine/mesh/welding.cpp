@@ -139,7 +139,7 @@ TEST_CASE("input that means nothing is refused by field, index and value") {
   CHECK(with([](auto& m) { m.corners = m.face_sizes = {}; }) ==
         "corners: the mesh has no face and no line");
   CHECK(with([](auto& m) { m.weld_distance = 10; }) ==
-        "corners: every edge of the mesh has length 0");
+        "every edge of the mesh has length 0");
 }
 
 }  // namespace
