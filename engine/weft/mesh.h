@@ -77,8 +77,8 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 /// half of warp or weft, shear falls short.)
 ///
 /// Triangles have no yarns: their edges carry k, the mean of warp and weft. Where they are
-/// equilateral that is k in all directions with a Poisson ratio of 1/3, and so 3/8 k of shear; where
-/// they are not, it is so in the mean over directions (Van Gelder, "Approximate Simulation of
+/// equilateral that is k in all directions with a Poisson ratio of 1/3, and so 3/8 k of shear;
+/// where they are not, it is so in the mean over directions (Van Gelder, "Approximate Simulation of
 /// Elastic Membranes by Triangulated Spring Meshes", 1998). Pairs of right-angled triangles that
 /// make up a grid of near-rectangles are taken as the four-sided faces that they were cut from.
 ///
