@@ -87,9 +87,6 @@ inline constexpr double kUnequalMasses = 1e4;
 inline constexpr std::size_t kLeastSlotsPerThread = 1000;
 /// A substep that is rejected is tried in up to 2^kMostDoublings parts.
 inline constexpr int kMostDoublings = 4;
-/// A frame of small steps that is rejected is tried in up to 2^kMostRefinements parts, of substeps
-/// that much shorter.
-inline constexpr int kMostRefinements = 2;
 /// The part of a doubling by which each step without a rejected attempt comes back to fewer, longer
 /// substeps.
 inline constexpr double kCoarsening = 0.125;

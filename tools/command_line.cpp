@@ -98,6 +98,15 @@ void Verb::repeated(const std::string& name, std::vector<std::string>& values,
   checked<std::string>(verb_.add_option(name, values, help))->allow_extra_args(false);
 }
 
+void Verb::option_or_flag(const std::string& name, std::optional<std::string>& value,
+                          const std::string& alone, const std::string& help) {
+  const auto take = [&value, alone](const CLI::results_t& given) {
+    value = given.empty() || given[0].empty() ? alone : given[0];
+    return true;
+  };
+  verb_.add_option(name, take, help)->expected(0, 1)->type_name("TEXT");
+}
+
 void Verb::flag(const std::string& name, bool& value, const std::string& help) {
   verb_.add_flag(name, value, help);
 }

@@ -33,6 +33,12 @@ void refuse(const std::string& place, std::string_view expected, const Json& fou
   throw Refused{fmt::format("{}: expected {}, not {}", place, expected, brief(found))};
 }
 
+std::string plain_message(const Json::exception& exception) {
+  const std::string_view text = exception.what();
+  const std::size_t bracket = text.find("] ");
+  return std::string(bracket == std::string_view::npos ? text : text.substr(bracket + 2));
+}
+
 double read_number(const Json& json, const std::string& place) {
   if (!json.is_number()) refuse(place, "a number", json);
   return json.get<double>();

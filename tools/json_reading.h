@@ -28,6 +28,9 @@ std::string in_quotes(const Json& key);
 /// "place: expected ..., not ..."
 [[noreturn]] void refuse(const std::string& place, std::string_view expected, const Json& found);
 
+/// "[json.exception.parse_error.101] parse error at line 2, ..." without the brackets.
+std::string plain_message(const Json::exception& exception);
+
 double read_number(const Json& json, const std::string& place);
 std::uint32_t read_index(const Json& json, const std::string& place);  // of a particle
 Vec3 read_vector(const Json& json, const std::string& place);

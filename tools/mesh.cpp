@@ -18,6 +18,17 @@ Mesh particle_mesh(const SceneDescription& scene, std::size_t count) {
 
 }  // namespace
 
+MeshDescription describe_mesh(std::vector<Vec3> vertices,
+                              const std::vector<std::vector<std::uint32_t>>& faces) {
+  MeshDescription description;
+  description.positions = std::move(vertices);
+  for (const auto& face : faces) {
+    description.corners.insert(description.corners.end(), face.begin(), face.end());
+    description.face_sizes.push_back(static_cast<std::uint32_t>(face.size()));
+  }
+  return description;
+}
+
 Mesh grid_mesh(const SceneDescription& scene, std::uint32_t size) {
   Mesh mesh = particle_mesh(scene, std::size_t{size} * size);
   for (std::uint32_t i = 0; i + 1 < size; ++i) {

@@ -2,7 +2,7 @@
 /// mesh keeps the numbering of the file that it came from, so that saved frames fit that file.
 #pragma once
 
-#include <weft/weft.h>
+#include <weft/mesh.h>
 
 #include <cstdint>
 #include <vector>
@@ -16,6 +16,10 @@ struct Mesh {
   std::vector<std::vector<std::uint32_t>> faces;  ///< vertex numbers, in order around the face
   std::vector<std::vector<std::uint32_t>> lines;  ///< vertex numbers along each line
 };
+
+/// Vertices and faces alone.
+MeshDescription describe_mesh(std::vector<Vec3> vertices,
+                              const std::vector<std::vector<std::uint32_t>>& faces);
 
 /// Size x size particles, particle (i, j) numbered i * size + j, as in the built-in scenes.
 Mesh grid_mesh(const SceneDescription& scene, std::uint32_t size);

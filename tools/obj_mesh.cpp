@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <span>
 #include <sstream>
-#include <tuple>
-#include <unordered_set>
 
 #include "tools/parse.h"
 #include "tools/pin_rule.h"
@@ -190,82 +187,25 @@ Result<Mesh> load_mesh(const std::string& text) {
   return mesh;
 }
 
-// --------------------------------------------------------------------------------------- welding
-
-std::vector<bool> used_vertices(const Mesh& mesh) {
-  std::vector<bool> used(mesh.vertices.size(), false);
-  for (const auto* parts : {&mesh.faces, &mesh.lines}) {
-    for (const auto& part : *parts) {
-      for (const std::uint32_t vertex : part) used[vertex] = true;
-    }
-  }
-  return used;
-}
-
-/// Numbers the particles in the order of their first vertices. Returns their positions.
-std::vector<Vec3> weld(Mesh& mesh) {
-  const std::vector<bool> used = used_vertices(mesh);
-  std::map<std::tuple<double, double, double>, std::uint32_t> particle_at;
-  std::vector<Vec3> positions;
-  mesh.particle_of_vertex.assign(mesh.vertices.size(), kNoIndex);
-  for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
-    if (!used[vertex]) continue;
-    const Vec3 v = mesh.vertices[vertex];
-    const auto next = static_cast<std::uint32_t>(positions.size());
-    const auto [entry, is_new] = particle_at.try_emplace({v.x, v.y, v.z}, next);
-    if (is_new) positions.push_back(v);
-    mesh.particle_of_vertex[vertex] = entry->second;
-  }
-  return positions;
-}
-
 // --------------------------------------------------------------------------------------- joining
-
-/// Adds constraints at their present lengths, the first of any two particles only.
-class Joiner {
- public:
-  Joiner(const Mesh& mesh, SceneDescription& scene) : mesh_(mesh), scene_(scene) {}
-
-  void join(std::uint32_t first_vertex, std::uint32_t second_vertex, ConstraintKind kind) {
-    const std::uint32_t a = mesh_.particle_of_vertex[first_vertex];
-    const std::uint32_t b = mesh_.particle_of_vertex[second_vertex];
-    if (a == b || !joined_.insert(std::uint64_t{std::min(a, b)} << 32 | std::max(a, b)).second) {
-      return;
-    }
-    const Vec3 p = scene_.positions[a];
-    const Vec3 q = scene_.positions[b];
-    scene_.constraints.push_back({a, b, std::hypot(p.x - q.x, p.y - q.y, p.z - q.z), kind});
-  }
-
- private:
-  const Mesh& mesh_;
-  SceneDescription& scene_;
-  std::unordered_set<std::uint64_t> joined_;
-};
-
-/// Ropes come last: an edge that some face already has stays a distance constraint.
-void add_constraints(const Mesh& mesh, bool rope_diagonals, SceneDescription& scene) {
-  Joiner joiner(mesh, scene);
-  for (const auto& face : mesh.faces) {
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      joiner.join(face[i], face[(i + 1) % face.size()], ConstraintKind::distance);
-    }
-  }
-  for (const auto& line : mesh.lines) {
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-      joiner.join(line[i], line[i + 1], ConstraintKind::distance);
-    }
-  }
-  if (!rope_diagonals) return;
-  for (const auto& face : mesh.faces) {
-    if (face.size() != 4) continue;
-    joiner.join(face[0], face[2], ConstraintKind::rope);
-    joiner.join(face[1], face[3], ConstraintKind::rope);
-  }
-}
 
 void scale_all(std::vector<Vec3>& points, double scale) {
   for (Vec3& point : points) point = {point.x * scale, point.y * scale, point.z * scale};
+}
+
+/// Pins are left out: their rules are in the file's coordinates.
+MeshDescription description_of(const Mesh& mesh, const ObjOptions& options) {
+  MeshDescription description = describe_mesh(mesh.vertices, mesh.faces);
+  scale_all(description.positions, options.scale);
+  for (const auto& line : mesh.lines) {
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      description.lines.push_back({line[i], line[i + 1]});
+    }
+  }
+  description.material = options.material;
+  description.mass = options.mass;
+  description.ropes = options.ropes;
+  return description;
 }
 
 Result<void> check_positive(std::string_view option, double value) {
@@ -320,17 +260,15 @@ Result<ObjScene> parse_obj(const std::string& text, const ObjOptions& options) {
 
   ObjScene scene;
   scene.mesh = std::move(loaded.value());
-  scene.description.positions = weld(scene.mesh);
+  auto cloth = cloth_from_mesh(description_of(scene.mesh, options));
+  if (!cloth) return Error{cloth.error()};
+  scene.mesh.particle_of_vertex = std::move(cloth.value().particle_of_vertex);
   auto fixed = pinned_particles(options.pin, scene.mesh);
   if (!fixed) return Error{fixed.error()};
+  scene.description = std::move(cloth.value().scene);
   scene.description.fixed = std::move(fixed.value());
-
+  scene.counts = cloth.value().counts;
   scale_all(scene.mesh.vertices, options.scale);
-  scale_all(scene.description.positions, options.scale);
-  const std::size_t count = scene.description.positions.size();
-  scene.description.masses.assign(count, options.mass / static_cast<double>(count));
-  add_constraints(scene.mesh, options.rope_diagonals, scene.description);
-  if (scene.description.constraints.empty()) return Error{"every edge of the mesh has length 0"};
   return scene;
 }
 

@@ -1,18 +1,17 @@
 /// Wavefront OBJ meshes: read as cloth, and written.
 ///
-/// Every edge of a face becomes a distance constraint at its length in the file, and so does every
-/// segment of an OBJ line element. Vertices at exactly equal positions are one particle (seams of
-/// texture coordinates or normals are exported as such copies); edges that vanish by this are
-/// dropped. Vertices in no face or line are kept for writing but are no particles. Any number of
-/// objects and groups may be in the file; together they are one cloth.
+/// What a file has becomes cloth as weft/mesh.h says. Vertices in no face or line are kept for
+/// writing but are no particles. Any number of objects and groups may be in the file; together they
+/// are one cloth.
 ///
 /// Written are the mesh as object "cloth" with the file's own numbering and faces, without
 /// materials and texture coordinates, and every sphere of the scene as an object
 /// "sphere_<particle>".
 #pragma once
 
-#include <weft/weft.h>
+#include <weft/mesh.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,14 +24,16 @@ struct ObjOptions {
   /// Which vertices are fixed, in the file's coordinates: "none", "top" (the topmost thousandth of
   /// the height), one comparison like "y>0.9" or "x<=-1", or vertex numbers from 0: "0,5,7-9".
   std::string pin = "none";
-  double mass = 1;              ///< kg, shared equally by all particles
-  double scale = 1;             ///< multiplies all coordinates
-  bool rope_diagonals = false;  ///< both diagonals of every four-sided face become ropes
+  double mass = 1;   ///< kg, shared equally by all particles; without a material
+  double scale = 1;  ///< multiplies all coordinates
+  Ropes ropes = Ropes::none;
+  std::optional<Material> material = std::nullopt;
 };
 
 struct ObjScene {
   SceneDescription description;
   Mesh mesh;
+  MeshCounts counts;
 };
 
 Result<ObjScene> parse_obj(const std::string& text, const ObjOptions& options);

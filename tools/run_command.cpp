@@ -123,6 +123,7 @@ Result<int> run_verb(const RunOptions& options) {
   auto prepared = prepare(options);
   if (!prepared) return Error{prepared.error()};
   auto& [source, settings, json] = prepared.value();
+  if (!source.note.empty()) print_message(fmt::format("weft: {}\n", source.note));
   const OrderlyInterrupt interrupt;
   auto outputs = Outputs::open(options.out, source);
   if (!outputs) return Error{outputs.error()};

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "tools/json_reading.h"
+#include "tools/scene_material.h"
 #include "tools/scene_moves.h"
 #include "tools/text_file.h"
 
@@ -33,14 +35,15 @@ double read_rest_length(const Json& json, const std::string& place) {
 }
 
 Constraint read_constraint(const Json& json, const std::string& place) {
-  if (!json.is_array() || json.size() < 2 || json.size() > 4) {
-    refuse(place, "[a, b, rest length, kind]", json);
+  if (!json.is_array() || json.size() < 2 || json.size() > 5) {
+    refuse(place, "[a, b, rest length, kind, compliance]", json);
   }
   Constraint constraint;
   constraint.a = read_index(json[0], place + "[0]");
   constraint.b = read_index(json[1], place + "[1]");
   constraint.rest_length = json.size() > 2 ? read_rest_length(json[2], place + "[2]") : kMeasured;
   if (json.size() > 3) constraint.kind = read_kind(json[3], place + "[3]");
+  if (json.size() > 4) constraint.compliance = read_number(json[4], place + "[4]");
   return constraint;
 }
 
@@ -78,6 +81,12 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.fixed = read_array(json, key, read_index);
   } else if (key == "constraints") {
     scene.constraints = read_array(json, key, read_constraint);
+  } else if (key == "bending") {
+    scene.bending = read_array(json, key, read_bending);
+  } else if (key == "damping") {
+    scene.damping = read_damping(json, key);
+  } else if (key == "air") {
+    scene.air = read_air(json, key);
   } else if (key == "spheres") {
     scene.spheres = read_array(json, key, read_index);
   } else if (key == "radii") {
@@ -104,27 +113,20 @@ SceneFile read_scene(const Json& json) {
   return {std::move(scene), std::move(moves)};
 }
 
-/// Of two values for one key the parser would drop one in silence. Only the keys of the scene
-/// itself and of what is in its arrays are looked at: other objects are refused anyway.
+/// Of two values for one key the parser would drop one in silence. Only keys of the scene itself,
+/// of what it has and of what is in its arrays are looked at: other objects are refused anyway.
 Json parse_once_each(std::string_view text) {
-  constexpr int kOfScene = 1, kOfEntry = 3;
-  std::set<std::string> of_scene, of_entry;
+  constexpr std::size_t kDepths = 4;
+  std::array<std::set<std::string>, kDepths> seen;
   return Json::parse(text, [&](int depth, Json::parse_event_t event, const Json& parsed) {
-    if (event == Json::parse_event_t::object_start && depth + 1 == kOfEntry) of_entry.clear();
-    if (event != Json::parse_event_t::key || (depth != kOfScene && depth != kOfEntry)) return true;
-    std::set<std::string>& seen = depth == kOfScene ? of_scene : of_entry;
-    if (!seen.insert(parsed.get<std::string>()).second) {
+    const auto at = static_cast<std::size_t>(depth);
+    if (event == Json::parse_event_t::object_start && at + 1 < kDepths) seen[at + 1].clear();
+    if (event != Json::parse_event_t::key || at >= kDepths) return true;
+    if (!seen[at].insert(parsed.get<std::string>()).second) {
       throw Refused{fmt::format("the key {} is given twice", in_quotes(parsed))};
     }
     return true;
   });
-}
-
-/// "[json.exception.parse_error.101] parse error at line 2, ..." without the brackets.
-std::string plain_message(const Json::exception& exception) {
-  const std::string_view text = exception.what();
-  const std::size_t bracket = text.find("] ");
-  return std::string(bracket == std::string_view::npos ? text : text.substr(bracket + 2));
 }
 
 // --------------------------------------------------------------------------------------- writing
@@ -133,7 +135,9 @@ std::string vector_row(const Vec3& v) { return Json{v.x, v.y, v.z}.dump(); }
 
 std::string constraint_row(const Constraint& constraint) {
   Json row{constraint.a, constraint.b, constraint.rest_length};
-  if (constraint.kind == ConstraintKind::rope) row.push_back("rope");
+  const bool is_rope = constraint.kind == ConstraintKind::rope;
+  if (is_rope || constraint.compliance > 0) row.push_back(is_rope ? "rope" : "distance");
+  if (constraint.compliance > 0) row.push_back(constraint.compliance);
   return row.dump();
 }
 
@@ -180,6 +184,11 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   add_numbers(text, "masses", scene.masses);
   add_numbers(text, "fixed", scene.fixed);
   add_rows(text, "constraints", scene.constraints, constraint_row);
+  add_rows(text, "bending", scene.bending, bending_row);
+  if (has_damping(scene.damping)) {
+    text += fmt::format(",\n\"damping\": {}", damping_text(scene.damping));
+  }
+  if (has_air(scene.air)) text += fmt::format(",\n\"air\": {}", air_text(scene.air));
   add_numbers(text, "spheres", scene.spheres);
   add_numbers(text, "radii", scene.radii);
   add_rows(text, "moves", moves, move_row);

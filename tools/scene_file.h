@@ -10,7 +10,19 @@
 ///     "fixed":       [0, 1],                      // optional; particle numbers from 0
 ///     "constraints": [[0, 1, 0.05],               // particles a, b, rest length
 ///                     [1, 2],                     // rest length measured from the positions
-///                     [0, 2, null, "rope"]],      // likewise; kind "distance" (default) or "rope"
+///                     [0, 2, null, "rope"],       // likewise; kind "distance" (default) or "rope"
+///                     [1, 3, 0.07, "rope", 1e-3]],  // a spring: its compliance, m/N
+///     "bending": [{                               // optional; three or four of both
+///       "particles":  [0, 1, 2],
+///       "weights":    [1, -2, 1],
+///       "rest":       0,                          // optional, this is the default
+///       "compliance": 1e-3
+///     }, ...],
+///     "damping": {"stretch": 1e-3, "bending": 1e-2, "motion": 0},  // optional, as each field is
+///     "air": {                                    // optional, as each field is
+///       "triangles": [[0, 1, 2], ...],
+///       "density": 1.2, "drag": 0, "lift": 0, "wind": [0, 0, 0]
+///     },
 ///     "spheres":     [400],                       // optional; particle numbers from 0
 ///     "radii":       [0, 0, ..., 0.15],           // with spheres: one per particle
 ///     "moves": [{                                 // optional

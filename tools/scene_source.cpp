@@ -52,8 +52,9 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--pin", options.pin.has_value(), kObj},
       {"--mass", options.mass.has_value(), kObj},
       {"--scale", options.scale.has_value(), kObj},
-      {"--ropes", options.ropes, kMeshes},
+      {"--ropes", options.ropes.has_value(), kMeshes},
       {"--diagonals", options.diagonals, kGrids},
+      {given_option(options.material), is_given(options.material), kMeshes},
   };
   for (const Given& given : all) {
     if (!given.is_given || std::ranges::find(kinds, given.kind) != kinds.end()) continue;
@@ -71,6 +72,49 @@ Mesh mesh_of(std::string_view name, int size, const SceneDescription& scene) {
   return grid_mesh(scene, static_cast<std::uint32_t>(size));
 }
 
+/// What --ropes says, and what it says alone.
+Result<Ropes> ropes_of(const std::optional<std::string>& given, Ropes alone) {
+  if (!given) return Ropes::none;
+  if (given->empty()) return alone;
+  if (*given == "all") return Ropes::all;
+  if (*given == "diagonals") return Ropes::diagonals;
+  return Error{fmt::format("--ropes: '{}' is not one of all, diagonals", *given)};
+}
+
+/// What the options say of cloth, for a mesh.
+struct ClothOptions {
+  Ropes ropes = Ropes::none;
+  std::optional<Material> material;
+  Vec3 wind;
+};
+Result<ClothOptions> cloth_of(const SceneOptions& options, Ropes alone) {
+  const auto ropes = ropes_of(options.ropes, alone);
+  if (!ropes) return Error{ropes.error()};
+  const auto material = material_of(options.material);
+  if (!material) return Error{material.error()};
+  const auto wind = wind_of(options.material);
+  if (!wind) return Error{wind.error()};
+  return ClothOptions{ropes.value(), material.value(), wind.value()};
+}
+
+/// The same mesh and pins as cloth_from_mesh has them: a point that holes leave in no face is no
+/// particle then.
+Result<SceneSource> cape_of(const SceneSource& cape, const ClothOptions& cloth) {
+  MeshDescription description = describe_mesh(cape.mesh.vertices, cape.mesh.faces);
+  description.ropes = cloth.ropes;
+  description.material = cloth.material;
+  auto made = cloth_from_mesh(description);
+  if (!made) return Error{made.error()};
+  SceneSource source{cape.name, std::move(made.value().scene), cape.mesh};
+  source.mesh.particle_of_vertex = std::move(made.value().particle_of_vertex);
+  for (const std::uint32_t pin : cape.description.fixed) {
+    const std::uint32_t particle = source.mesh.particle_of_vertex[pin];
+    if (particle != kNoIndex) source.description.fixed.push_back(particle);
+  }
+  source.description.air.wind = cloth.wind;
+  return source;
+}
+
 Result<SceneSource> load_built_in(const SceneOptions& options) {
   const std::string_view of_cells = is_grid(options.scene) ? kGrids : options.scene;
   const std::string_view of_ropes = options.scene == kCape ? kMeshes : options.scene;
@@ -83,11 +127,15 @@ Result<SceneSource> load_built_in(const SceneOptions& options) {
   values.sphere_mass = options.sphere_mass.value_or(values.sphere_mass);
   values.end_mass = options.end_mass.value_or(values.end_mass);
   values.diagonals = options.diagonals;
-  values.ropes = options.ropes;
+  const auto cloth = cloth_of(options, Ropes::all);
+  if (!cloth) return Error{cloth.error()};
+  values.ropes = cloth.value().ropes == Ropes::all;
   auto scene = scenes::make(options.scene, values);
   if (!scene) return Error{scene.error()};
   Mesh mesh = mesh_of(options.scene, values.size, scene.value());
-  return SceneSource{options.scene, std::move(scene.value()), std::move(mesh)};
+  SceneSource source{options.scene, std::move(scene.value()), std::move(mesh)};
+  const bool is_remade = cloth.value().material || cloth.value().ropes == Ropes::diagonals;
+  return is_remade ? cape_of(source, cloth.value()) : std::move(source);
 }
 
 Result<SceneSource> load_scene_file(const SceneOptions& options) {
@@ -99,6 +147,15 @@ Result<SceneSource> load_scene_file(const SceneOptions& options) {
   return SceneSource{options.scene, std::move(description), std::move(mesh), std::move(moves)};
 }
 
+/// Of a mesh whose edges are rigid and enclose triangles, more of them than quads.
+std::string note_of(const MeshCounts& counts, const ObjOptions& options) {
+  const std::size_t triangles = counts.triangles + 2 * counts.recognised_quads;
+  const std::size_t quads = counts.quads - counts.recognised_quads;
+  if (options.material || options.ropes == Ropes::all || triangles <= quads) return {};
+  return "triangles of rigid edges lock, so that the cloth hardly folds: ask for --material, or "
+         "--ropes all";
+}
+
 Result<SceneSource> load_obj(const SceneOptions& options) {
   const std::string_view kinds[] = {kObj, kMeshes};
   if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
@@ -106,11 +163,20 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   values.pin = options.pin.value_or(values.pin);
   values.mass = options.mass.value_or(values.mass);
   values.scale = options.scale.value_or(values.scale);
-  values.rope_diagonals = options.ropes;
+  const auto cloth = cloth_of(options, Ropes::diagonals);
+  if (!cloth) return Error{cloth.error()};
+  values.ropes = cloth.value().ropes;
+  values.material = cloth.value().material;
+  if (options.mass && values.material) return Error{"--mass: a material has a density instead"};
   auto scene = read_obj_file(options.scene, values);
   if (!scene) return Error{scene.error()};
   ObjScene& obj = scene.value();
-  return SceneSource{options.scene, std::move(obj.description), std::move(obj.mesh)};
+  obj.description.air.wind = cloth.value().wind;
+  return SceneSource{options.scene,
+                     std::move(obj.description),
+                     std::move(obj.mesh),
+                     {},
+                     note_of(obj.counts, values)};
 }
 
 }  // namespace
@@ -128,8 +194,10 @@ void add_scene_options(Verb verb, SceneOptions& options) {
               "coordinates like 'y>0.9' or 'x<=-1', or vertex numbers from 0 like 0,5,7-9");
   verb.option("--mass", options.mass, ".obj: kg of the whole mesh (default 1)");
   verb.option("--scale", options.scale, ".obj: multiplies all coordinates (default 1)");
-  verb.flag("--ropes", options.ropes,
-            ".obj: both diagonals of four-sided faces become ropes; cape: all edges do");
+  verb.option_or_flag("--ropes", options.ropes, "",
+                      ".obj and cape: what only pulls, all or diagonals (of four-sided faces; "
+                      "without a material only ropes join them); alone: cape all, .obj diagonals");
+  add_material_options(verb, options.material);
   verb.flag("--diagonals", options.diagonals,
             "built-in scenes but cape and chain: both diagonals of every cell become ropes");
 }

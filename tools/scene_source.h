@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/command_line.h"
+#include "tools/material_options.h"
 #include "tools/mesh.h"
 #include "tools/pin_moves.h"
 
@@ -23,7 +24,8 @@ struct SceneOptions {
   std::optional<std::string> pin;
   std::optional<double> mass;
   std::optional<double> scale;
-  bool ropes = false;
+  std::optional<std::string> ropes;
+  MaterialOptions material;
   bool diagonals = false;
 };
 
@@ -34,6 +36,7 @@ struct SceneSource {
   SceneDescription description;
   Mesh mesh;
   std::vector<PinMove> moves = {};
+  std::string note = {};  ///< one line for whoever runs it, or empty
 };
 
 Result<SceneSource> load_scene(const SceneOptions& options);

@@ -61,7 +61,7 @@ Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Ve
     energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
     energy.potential -= m.mass[i] * dot(gravity, x[i]);
   }
-  energy.elastic = elastic_energy(m, x);
+  energy.elastic = energy_of_springs(m, x) + energy_of_bending(m, x);
   return energy;
 }
 

@@ -32,9 +32,14 @@ struct Entry {
   double xx = 0, yy = 0, xy = 0;
   double weight = 0;
 
-  double energy(const Directions& of, std::size_t direction) const {
-    const double d = of.cc[direction] * xx + of.ss[direction] * yy + of.sc2[direction] * xy;
-    return weight * d * d;
+  /// At the curvature 1, by direction.
+  PerDirection energies(const Directions& of) const {
+    PerDirection values;
+    for (std::size_t i = 0; i < kDirections; ++i) {
+      const double d = of.cc[i] * xx + of.ss[i] * yy + of.sc2[i] * xy;
+      values[i] = weight * d * d;
+    }
+    return values;
   }
 };
 
@@ -123,23 +128,30 @@ System system_of(const std::vector<Face>& faces, const Stencils& stencils, std::
   return system;
 }
 
-/// One step of the iteration.
-void improve(const System& system, const Directions& directions, std::vector<double>& factors) {
-  std::vector<double> wanted(factors.size(), 0), stored(factors.size(), 0);
+PerDirection stored_in(const System& system, const Patch& patch, const Directions& directions,
+                       const std::vector<double>& factors) {
+  PerDirection sums{};
+  for (std::size_t e = patch.first; e < patch.last; ++e) {
+    const Entry& entry = system.entries[e];
+    const PerDirection energies = entry.energies(directions);
+    const double factor = factors[entry.stencil];
+    for (std::size_t i = 0; i < kDirections; ++i) sums[i] += factor * energies[i];
+  }
+  return sums;
+}
+
+/// One step of the iteration. stored: the sum of each element's energies over all patches.
+void improve(const System& system, const Directions& directions, const std::vector<double>& stored,
+             std::vector<double>& factors) {
+  std::vector<double> wanted(factors.size(), 0);
   for (const Patch& patch : system.patches) {
-    for (std::size_t i = 0; i < kDirections; ++i) {
+    PerDirection ratios = stored_in(system, patch, directions, factors);
+    for (double& ratio : ratios) ratio = ratio > 0 ? patch.area / ratio : 0;
+    for (std::size_t e = patch.first; e < patch.last; ++e) {
+      const PerDirection energies = system.entries[e].energies(directions);
       double sum = 0;
-      for (std::size_t e = patch.first; e < patch.last; ++e) {
-        const Entry& entry = system.entries[e];
-        sum += factors[entry.stencil] * entry.energy(directions, i);
-      }
-      if (!(sum > 0)) continue;
-      for (std::size_t e = patch.first; e < patch.last; ++e) {
-        const Entry& entry = system.entries[e];
-        const double energy = entry.energy(directions, i);
-        wanted[entry.stencil] += energy * patch.area / sum;
-        stored[entry.stencil] += energy;
-      }
+      for (std::size_t i = 0; i < kDirections; ++i) sum += energies[i] * ratios[i];
+      wanted[system.entries[e].stencil] += sum;
     }
   }
   for (std::size_t s = 0; s < factors.size(); ++s) {
@@ -147,17 +159,18 @@ void improve(const System& system, const Directions& directions, std::vector<dou
   }
 }
 
-bool is_uneven(const System& system, const Patch& patch, const Directions& directions,
-               const std::vector<double>& factors) {
-  for (std::size_t i = 0; i < kDirections; ++i) {
-    double sum = 0;
-    for (std::size_t e = patch.first; e < patch.last; ++e) {
-      const Entry& entry = system.entries[e];
-      sum += factors[entry.stencil] * entry.energy(directions, i);
-    }
-    if (std::abs(sum - patch.area) > tuning::kBendingUneven * patch.area) return true;
+std::vector<double> sums_of_energies(const System& system, const Directions& directions,
+                                     std::size_t stencils) {
+  std::vector<double> sums(stencils, 0);
+  for (const Entry& entry : system.entries) {
+    for (const double energy : entry.energies(directions)) sums[entry.stencil] += energy;
   }
-  return false;
+  return sums;
+}
+
+bool is_uneven(const PerDirection& sums, double area) {
+  return std::ranges::any_of(
+      sums, [area](double sum) { return std::abs(sum - area) > tuning::kBendingUneven * area; });
 }
 
 }  // namespace
@@ -167,7 +180,8 @@ Calibrated calibrate(const std::vector<Face>& faces, const Stencils& stencils,
   const System system = system_of(faces, stencils, particles);
   const Directions directions;
   std::vector<double> factors(stencils.stencils.size(), 1);
-  for (int i = 0; i < tuning::kBendingSteps; ++i) improve(system, directions, factors);
+  const auto stored = sums_of_energies(system, directions, factors.size());
+  for (int i = 0; i < tuning::kBendingSteps; ++i) improve(system, directions, stored, factors);
 
   Calibrated result;
   result.weights.assign(factors.size(), 0);
@@ -175,7 +189,8 @@ Calibrated calibrate(const std::vector<Face>& faces, const Stencils& stencils,
     result.weights[part.stencil] += factors[part.stencil] * part.weight;
   }
   for (const Patch& patch : system.patches) {
-    if (is_uneven(system, patch, directions, factors)) result.uneven.push_back(patch.particle);
+    const PerDirection sums = stored_in(system, patch, directions, factors);
+    if (is_uneven(sums, patch.area)) result.uneven.push_back(patch.particle);
   }
   return result;
 }

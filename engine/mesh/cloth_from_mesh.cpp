@@ -53,6 +53,18 @@ MeshCounts count_all(const MeshDescription& mesh, const Welded& welded,
   return counts;
 }
 
+/// With weights of a size that does not depend on that of the mesh, that of 1, -2, 1: d is a
+/// length.
+BendingElement element_of(const Stencil& stencil, double stiffness) {
+  double size = 0;
+  for (const double weight : stencil.weights) size += std::abs(weight);
+  const double scale = 4 / size;
+  BendingElement element{stencil.particles, stencil.weights, scale * stencil.rest,
+                         scale * scale / stiffness};
+  for (double& weight : element.weights) weight *= scale;
+  return element;
+}
+
 std::vector<BendingElement> bending_of(const std::vector<Face>& faces, std::size_t particles,
                                        const MeshDescription& mesh) {
   if (!(mesh.material->bending > 0)) return {};
@@ -66,9 +78,8 @@ std::vector<BendingElement> bending_of(const std::vector<Face>& faces, std::size
   }
   std::vector<BendingElement> elements;
   for (std::size_t i = 0; i < calibrated.weights.size(); ++i) {
-    const Stencil& s = stencils.stencils[i];
-    const double compliance = 1 / (mesh.material->bending * calibrated.weights[i]);
-    elements.push_back({s.particles, s.weights, s.rest, compliance});
+    elements.push_back(
+        element_of(stencils.stencils[i], mesh.material->bending * calibrated.weights[i]));
   }
   return elements;
 }
@@ -142,7 +153,7 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
   } else if (auto r = add_material(mesh, welded, found.faces, edges, scene); !r) {
     return Error{r.error()};
   }
-  if (scene.constraints.empty()) return Error{"corners: every edge of the mesh has length 0"};
+  if (scene.constraints.empty()) return Error{"every edge of the mesh has length 0"};
   cloth.particle_of_vertex = std::move(welded.particle_of_vertex);
   return cloth;
 }

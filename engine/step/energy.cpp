@@ -85,12 +85,11 @@ bool guard_energy(State& s, const kernels::ImpulseEnergy& impulses, bool is_susp
   return gain <= allowed + energy_at_rest(s, h) || take_energy(s, gain, h);
 }
 
-bool guard_springs(State& s, const kernels::ImpulseEnergy& change, double released, double h) {
+void guard_springs(State& s, const kernels::ImpulseEnergy& change, double released, double h) {
   const double stored = s.lost_energy * std::exp(-h / tuning::kSpringTime);
   const double gain = gained_energy(s, change, h) - released;
-  const bool is_kept = take_energy(s, gain - stored, h);
+  take_energy(s, gain - stored, h);
   s.lost_energy = std::max(0.0, stored - gain);
-  return is_kept;
 }
 
 }  // namespace weft

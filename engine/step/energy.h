@@ -44,8 +44,8 @@ bool guard_energy(State& s, const kernels::ImpulseEnergy& impulses, bool is_susp
 /// The guard of small steps. Constraints are springs here: energy that was lost shortly before
 /// (State::lost_energy) is stored in them, and may come back; and rounding takes it as often as it
 /// gives it. What springs and bending elements have released (J) is no gain. Cheap if no pins are
-/// under way. Returns whether there was so much energy in the velocities.
-bool guard_springs(State& s, const kernels::ImpulseEnergy& change, double released, double h);
+/// under way.
+void guard_springs(State& s, const kernels::ImpulseEnergy& change, double released, double h);
 
 // Its parts:
 /// J, beyond the work of moved pins.

@@ -106,12 +106,7 @@ void add(Plan& plan, const Attempt& attempt) { plan.attempts[plan.count++] = att
 void list_attempts(const State& s, Plan& plan) {
   const Settings& settings = s.settings;
   if (settings.solver == Solver::small_steps) {
-    const bool may_refine = settings.substeps == kAutomaticSubsteps && settings.iterations == 0;
-    const int most = may_refine ? tuning::kMostRefinements : 0;
-    const auto first = static_cast<int>(std::lround(s.refinement));
-    for (int i = std::min(first, most); i <= most; ++i) {
-      add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme, .parts = 1 << i});
-    }
+    add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme});
   } else {
     const bool fixed = settings.iterations > 0;
     if (settings.scheme == Scheme::rattle) add(plan, {.scheme = Scheme::rattle});

@@ -14,8 +14,7 @@
 /// Small steps, sweeps and the direct solver behind yarns do all that is left of the substep.
 ///
 /// The paper's loop (gauss_seidel) and a fixed number of iterations have nothing but the scheme
-/// that was asked for and, behind rattle, the paper's. A step by small steps is done in one part
-/// or, where that is rejected, in two and in four, of substeps that much shorter.
+/// that was asked for and, behind rattle, the paper's. A step by small steps is one attempt.
 #pragma once
 
 #include <array>

@@ -38,8 +38,7 @@ bool takes_over_in(const State& s) { return s.settings.solver != Solver::small_s
 /// past, and no energy in springs. In a step that is far shorter than that corrections are smaller:
 /// a sweep is a spring of stiffness omega / h^2, and a spring that keeps its stiffness releases
 /// nothing of what it holds.
-FramePlan plan_for(State& s, const SmallSteps& solver, const Attempt& attempt, double dt,
-                   const Budget& budget) {
+FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& budget) {
   const bool takes_over = takes_over_in(s);
   FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed || takes_over};
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
@@ -47,11 +46,11 @@ FramePlan plan_for(State& s, const SmallSteps& solver, const Attempt& attempt, d
   } else {
     const double usual = std::min(tuning::kLongestSubstep,
                                   solver.substep_length(s.position.view(), mean_acceleration(s)));
-    const double wanted = std::ceil(dt / usual) * attempt.parts;
+    const double wanted = std::ceil(dt / usual);
     // A substep is a sweep or two, and local passes that may always visit every constraint once.
     const int most = std::min(tuning::kMostSubsteps, std::max(1, budget.positions / 3));
     plan.substeps = wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
-    const double part = 2 * dt * attempt.parts / (plan.substeps * usual);
+    const double part = 2 * dt / (plan.substeps * usual);
     if (part < 1) plan.omega *= part * part;
   }
   plan.h = dt / plan.substeps;
@@ -217,7 +216,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   Frame frame(s, budget, report, team);
   FramePlan plan;
   timed(report, Stage::predict, [&] {
-    plan = plan_for(s, *s.small_steps, attempt, h, budget);
+    plan = plan_for(s, *s.small_steps, h, budget);
     frame.begin(plan);
   });
   timed(report, Stage::solve_positions, [&] {
@@ -247,13 +246,8 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     trial.worsen(Status::passed_through);
   }
   timed(report, Stage::commit, [&] {
-    const double lost_before = s.lost_energy;
     if (takes_over_in(s)) s.lost_energy = 0;
-    if (!fixed && !guard_springs(s, change, frame.released(), h) && !attempt.is_last) {
-      s.lost_energy = lost_before;
-      trial.outcome = Outcome::rejected;
-      return;
-    }
+    if (!fixed) guard_springs(s, change, frame.released(), h);
     if (s.pins.moving()) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
     s.small_steps->keep(team);
   });

@@ -69,21 +69,22 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 /// order, and then every line. Diagonals join four-sided faces only where they are asked for.
 ///
 /// With a material edges are springs, and faces bend:
-///  - In four-sided faces two families of edges are warp and weft, from face to face: opposite
-///  edges
-///    are of one family. In each connected part the warp is the family that runs more along y,
-///    where both do alike more along x. An edge carries the stiffness of half the width to its
-///    neighbours on both sides, diagonals carry shear.
-///  - Triangles have no yarns: their edges carry the mean of warp and weft, alike in all
-///  directions,
-///    with a Poisson ratio of 1/3 (Van Gelder, "Approximate Simulation of Elastic Membranes by
-///    Triangulated Spring Meshes", 1998). Pairs of right-angled triangles that make up a grid of
-///    near-rectangles are taken as the four-sided faces that they were cut from.
-///  - Faces of five and more corners are cut into triangles around the first; they should be
-///  convex.
-///  - Lines are threads that do not stretch, and have no mass of their own.
-///  - An edge of more than two faces stretches as the sum of them, and does not bend.
-///  - Faces without area are left out.
+///
+/// In four-sided faces two families of edges are warp and weft, from face to face: opposite edges
+/// are of one family. In each connected part the warp is the family that runs more along y; where
+/// both do alike, more along x. An edge carries the stiffness of half the width to its neighbours
+/// on both sides, diagonals carry shear. (In cells so narrow that diagonals would carry more than
+/// half of warp or weft, shear falls short.)
+///
+/// Triangles have no yarns: their edges carry k, the mean of warp and weft. Where they are
+/// equilateral that is k in all directions with a Poisson ratio of 1/3, and so 3/8 k of shear;
+/// where they are not, it is so in the mean over directions (Van Gelder, "Approximate Simulation of
+/// Elastic Membranes by Triangulated Spring Meshes", 1998). Pairs of right-angled triangles that
+/// make up a grid of near-rectangles are taken as the four-sided faces that they were cut from.
+///
+/// Faces of five and more corners are cut into triangles around the first; they should be convex.
+/// Lines are threads that do not stretch, and have no mass of their own. An edge of more than two
+/// faces stretches as the sum of them, and does not bend. Faces without area are left out.
 struct MeshDescription {
   std::vector<Vec3> positions;            ///< m, one per vertex
   std::vector<std::uint32_t> corners;     ///< vertices, face after face, in order around each

@@ -74,7 +74,7 @@ TEST_CASE("edges keep their length in the file, and the mass is shared") {
 TEST_CASE("diagonals of four-sided faces become ropes when asked for") {
   const ObjScene plain = parse(kTwoSquares);
   CHECK(count(plain.description, ConstraintKind::rope) == 0);
-  const ObjScene ropes = parse(kTwoSquares, {.rope_diagonals = true});
+  const ObjScene ropes = parse(kTwoSquares, {.ropes = Ropes::diagonals});
   CHECK(count(ropes.description, ConstraintKind::rope) == 4);
   CHECK(count(ropes.description, ConstraintKind::distance) == 7);
   CHECK(build_model(ropes.description));
@@ -82,9 +82,29 @@ TEST_CASE("diagonals of four-sided faces become ropes when asked for") {
 
 TEST_CASE("a diagonal that is an edge of another face stays a distance") {
   const std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 2\nf 1 2 3 4\nf 1 3 5\n";
-  const ObjScene scene = parse(text, {.rope_diagonals = true});
+  const ObjScene scene = parse(text, {.ropes = Ropes::diagonals});
   CHECK(count(scene.description, ConstraintKind::rope) == 1);
   CHECK(build_model(scene.description));
+}
+
+TEST_CASE("all edges and lines become ropes when asked for") {
+  const ObjScene ropes = parse(std::string(kTwoSquares) + "l 1 7\n", {.ropes = Ropes::all});
+  CHECK(count(ropes.description, ConstraintKind::rope) == 8);
+  CHECK(count(ropes.description, ConstraintKind::distance) == 0);
+}
+
+TEST_CASE("of a material edges are springs at the scale that is asked for") {
+  const ObjScene scene =
+      parse(kTwoSquares, {.pin = "y>0.9", .scale = 0.5, .material = find_material("wool").value()});
+  CHECK(scene.description.constraints.size() == 7 + 4);
+  for (const Constraint& constraint : scene.description.constraints) {
+    CHECK(constraint.compliance > 0);
+  }
+  double mass = 0;
+  for (const double m : scene.description.masses) mass += m;
+  CHECK(mass == doctest::Approx(2 * 0.25 * find_material("wool").value().density));
+  CHECK(scene.description.fixed.size() == 3);
+  CHECK(scene.counts.quads == 2);
 }
 
 TEST_CASE("polygons are joined along their border only, lines along their segments") {
@@ -259,7 +279,7 @@ TEST_CASE("only four-sided faces have diagonals") {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\n";
   for (const std::string face : {"f 1 2 3\n", "f 1 2 3 4 5\n"}) {
     CAPTURE(face);
-    const ObjScene scene = parse(vertices + face, {.rope_diagonals = true});
+    const ObjScene scene = parse(vertices + face, {.ropes = Ropes::diagonals});
     CHECK(count(scene.description, ConstraintKind::rope) == 0);
   }
 }

@@ -22,7 +22,26 @@ bool same(const std::vector<Value>& a, const std::vector<Value>& b) {
                     [](const Value& x, const Value& y) { return same(x, y); });
 }
 
+void check_same_material(const SceneDescription& a, const SceneDescription& b) {
+  REQUIRE(a.bending.size() == b.bending.size());
+  for (std::size_t i = 0; i < a.bending.size(); ++i) {
+    CHECK(a.bending[i].particles == b.bending[i].particles);
+    CHECK(a.bending[i].weights == b.bending[i].weights);
+    CHECK(a.bending[i].rest == b.bending[i].rest);
+    CHECK(a.bending[i].compliance == b.bending[i].compliance);
+  }
+  CHECK(a.damping.stretch == b.damping.stretch);
+  CHECK(a.damping.bending == b.damping.bending);
+  CHECK(a.damping.motion == b.damping.motion);
+  CHECK(a.air.triangles == b.air.triangles);
+  CHECK(a.air.density == b.air.density);
+  CHECK(a.air.drag == b.air.drag);
+  CHECK(a.air.lift == b.air.lift);
+  CHECK(same(a.air.wind, b.air.wind));
+}
+
 void check_same(const SceneDescription& a, const SceneDescription& b) {
+  check_same_material(a, b);
   CHECK(same(a.gravity, b.gravity));
   CHECK(same(a.positions, b.positions));
   CHECK(same(a.velocities, b.velocities));
@@ -65,6 +84,58 @@ TEST_CASE("velocities and ropes survive writing and reading") {
   const auto again = parse_scene(scene_text(scene));
   REQUIRE(again);
   check_same(scene, again.value().description);
+}
+
+TEST_CASE("a material survives writing and reading to the last bit") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  scene.masses = {1, 1, 1, 1};
+  scene.constraints = {{0, 1, 0.7, ConstraintKind::distance, 1.0 / 3},
+                       {1, 2, 0.9, ConstraintKind::rope, 1e-7},
+                       {2, 3, 0.9, ConstraintKind::rope}};
+  scene.bending = {{{0, 1, 2, kNoIndex}, {1, -2.0 / 3, -1.0 / 3, 0}, 0, 1e-9},
+                   {{3, 0, 1, 2}, {1, -1, 1.0 / 3, -1.0 / 3}, 1.0 / 7, 3e5}};
+  scene.damping = {1.0 / 3, 0, 4e-5};
+  scene.air = {{{0, 1, 2}, {3, 2, 1}}, 1.3, 1.0 / 7, 0.1, {1e-300, -2, 1.0 / 3}};
+  const auto again = parse_scene(scene_text(scene));
+  REQUIRE_MESSAGE(again, again.error());
+  check_same(scene, again.value().description);
+}
+
+TEST_CASE("of a material everything but particles, weights and compliance may be left out") {
+  const auto scene = parse_scene(R"({"positions": [[0,0,0],[3,4,0],[1,1,1]], "total_mass": 3,
+      "bending": [{"weights": [1,-2,1], "compliance": 2, "particles": [0,1,2]}],
+      "damping": {"bending": 3}, "air": {"wind": [1,2,3]}})");
+  REQUIRE_MESSAGE(scene, scene.error());
+  const SceneDescription& read = scene.value().description;
+  REQUIRE(read.bending.size() == 1);
+  CHECK(read.bending[0].particles == std::array<std::uint32_t, 4>{0, 1, 2, kNoIndex});
+  CHECK(read.bending[0].rest == 0);
+  CHECK(read.damping.bending == 3);
+  CHECK(read.damping.stretch == 0);
+  CHECK(read.air.density == 1.2);
+  CHECK(read.air.wind.z == 3);
+}
+
+TEST_CASE("errors of a material name their place") {
+  CHECK(error_with(R"("constraints": [[0,1,1,"rope","soft"]])") ==
+        R"(constraints[0][4]: expected a number, not "soft")");
+  CHECK(error_with(R"("bending": [{"particles": [0,1]}])") ==
+        "bending[0]: the key 'weights' is missing");
+  CHECK(error_with(R"("bending": [{"particles": [0,1], "weights": [0,1], "compliance": 1}])") ==
+        "bending[0].particles: expected three or four, not [0,1]");
+  CHECK(error_with(R"("bending": [{"particles": [0,1,2], "weights": [0,1], "compliance": 1}])") ==
+        "bending[0].weights: expected as many as particles, not [0,1]");
+  CHECK(error_with(R"("bending": [{"stiffness": 1}])") == "bending[0]: unknown key 'stiffness'");
+  CHECK(error_with(R"("damping": {"stretch": "x"})") ==
+        R"(damping.stretch: expected a number, not "x")");
+  CHECK(error_with(R"("damping": {"strain": 1})") == "damping: unknown key 'strain'");
+  CHECK(error_with(R"("damping": 1)") == "damping: expected an object, not 1");
+  CHECK(error_with(R"("damping": {"stretch": 1, "stretch": 2})") ==
+        "the key 'stretch' is given twice");
+  CHECK(error_with(R"("air": {"triangles": [[0,1]]})") ==
+        "air.triangles[0]: expected [a, b, c], not [0,1]");
+  CHECK(error_with(R"("air": {"wind": 3})") == "air.wind: expected [x, y, z], not 3");
 }
 
 TEST_CASE("a run goes on from its last state as if it had not stopped") {
@@ -115,9 +186,10 @@ TEST_CASE("errors name the place in the file") {
         "fixed[0]: expected a particle number, not 4294967295");
   CHECK(error_with(R"("fixed": [0.5])") == "fixed[0]: expected a particle number, not 0.5");
   CHECK(error_with(R"("constraints": [[0,1],[1]])") ==
-        "constraints[1]: expected [a, b, rest length, kind], not [1]");
-  CHECK(error_with(R"("constraints": [[0,1,1,"rope",0]])") ==
-        R"(constraints[0]: expected [a, b, rest length, kind], not [0,1,1,"rope",0])");
+        "constraints[1]: expected [a, b, rest length, kind, compliance], not [1]");
+  CHECK(
+      error_with(R"("constraints": [[0,1,1,"rope",0,0]])") ==
+      R"(constraints[0]: expected [a, b, rest length, kind, compliance], not [0,1,1,"rope",0,0])");
   CHECK(error_with(R"("constraints": [[0,1,-2]])") ==
         "constraints[0][2]: expected a length above 0, not -2");
   CHECK(error_with(R"("constraints": [[0,1,1,"spring"]])") ==

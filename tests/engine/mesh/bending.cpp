@@ -226,6 +226,23 @@ TEST_CASE("a mesh that is curved at rest stores nothing there, and as much when 
   }
 }
 
+TEST_CASE("weights are those of 1, -2, 1, whatever the size of the mesh") {
+  for (const double size : {0.01, 1.0, 30.0}) {
+    MeshDescription mesh = equilateral_triangles(5);
+    for (Vec3& p : mesh.positions) p = {size * p.x, size * p.y, 0};
+    mesh.material = plain_material();
+    for (const BendingElement& element : made(mesh).scene.bending) {
+      double sum = 0, sizes = 0;
+      for (const double weight : element.weights) {
+        sum += weight;
+        sizes += std::abs(weight);
+      }
+      CHECK(sizes == doctest::Approx(4));
+      CHECK(std::abs(sum) < 1e-12);
+    }
+  }
+}
+
 TEST_CASE("without bending stiffness there are no elements") {
   MeshDescription mesh = quads(4);
   mesh.material = plain_material();

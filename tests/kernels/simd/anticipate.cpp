@@ -205,7 +205,7 @@ bool meet(const Ordering& ordering, std::size_t c, std::size_t j) {
 /// Of constraint c alone, whose error is 1, when none that it meets has changed and all others have
 /// diverged.
 float change_among_diverged(Workbench& bench, const simd::Table& table, std::size_t c) {
-  const simd::Relaxation r = bench.relaxation(bench.pieces.front().singles);
+  const simd::BlockRelaxation r = bench.relaxation(bench.pieces.front().singles);
   const simd::Anticipation p = bench.anticipation(0);
   renew(bench, table, r);
   r.blocks[c / kLanes].e0[c % kLanes] = 1;

@@ -1,0 +1,128 @@
+#include "tools/scene_material.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+
+#include "tools/json_reading.h"
+
+namespace weft::tools {
+namespace {
+
+std::string within(const std::string& place, std::string_view key) {
+  return fmt::format("{}.{}", place, key);
+}
+
+void check_keys(const Json& json, const std::string& place,
+                std::initializer_list<std::string_view> known) {
+  if (!json.is_object()) refuse(place, "an object", json);
+  for (const auto& [key, value] : json.items()) {
+    if (std::ranges::find(known, std::string_view(key)) != known.end()) continue;
+    throw Refused{fmt::format("{}: unknown key {}", place, in_quotes(key))};
+  }
+}
+
+void check_given(const Json& json, const std::string& place,
+                 std::initializer_list<std::string_view> needed) {
+  for (const std::string_view key : needed) {
+    if (json.contains(key)) continue;
+    throw Refused{fmt::format("{}: the key '{}' is missing", place, key)};
+  }
+}
+
+/// What is left out keeps its value.
+void read_if_given(const Json& json, const std::string& place, const char* key, double& value) {
+  if (json.contains(key)) value = read_number(json[key], within(place, key));
+}
+
+std::array<std::uint32_t, 3> read_triangle(const Json& json, const std::string& place) {
+  if (!json.is_array() || json.size() != 3) refuse(place, "[a, b, c]", json);
+  const auto corner = [&](std::size_t i) {
+    return read_index(json[i], fmt::format("{}[{}]", place, i));
+  };
+  return {corner(0), corner(1), corner(2)};
+}
+
+}  // namespace
+
+BendingElement read_bending(const Json& json, const std::string& place) {
+  check_keys(json, place, {"particles", "weights", "rest", "compliance"});
+  check_given(json, place, {"particles", "weights", "compliance"});
+  const auto particles = read_array(json["particles"], within(place, "particles"), read_index);
+  const auto weights = read_array(json["weights"], within(place, "weights"), read_number);
+  if (particles.size() != 3 && particles.size() != 4) {
+    refuse(within(place, "particles"), "three or four", json["particles"]);
+  }
+  if (weights.size() != particles.size()) {
+    refuse(within(place, "weights"), "as many as particles", json["weights"]);
+  }
+  BendingElement element;
+  element.particles[3] = kNoIndex;
+  std::ranges::copy(particles, element.particles.begin());
+  std::ranges::copy(weights, element.weights.begin());
+  read_if_given(json, place, "rest", element.rest);
+  read_if_given(json, place, "compliance", element.compliance);
+  return element;
+}
+
+Damping read_damping(const Json& json, const std::string& place) {
+  check_keys(json, place, {"stretch", "bending", "motion"});
+  Damping damping;
+  read_if_given(json, place, "stretch", damping.stretch);
+  read_if_given(json, place, "bending", damping.bending);
+  read_if_given(json, place, "motion", damping.motion);
+  return damping;
+}
+
+Air read_air(const Json& json, const std::string& place) {
+  check_keys(json, place, {"triangles", "density", "drag", "lift", "wind"});
+  Air air;
+  if (json.contains("triangles")) {
+    air.triangles = read_array(json["triangles"], within(place, "triangles"), read_triangle);
+  }
+  read_if_given(json, place, "density", air.density);
+  read_if_given(json, place, "drag", air.drag);
+  read_if_given(json, place, "lift", air.lift);
+  if (json.contains("wind")) air.wind = read_vector(json["wind"], within(place, "wind"));
+  return air;
+}
+
+std::string bending_row(const BendingElement& element) {
+  const std::ptrdiff_t size = element.particles[3] == kNoIndex ? 3 : 4;
+  const auto first = [size](const auto& values) {
+    return Json(std::vector(values.begin(), values.begin() + size));
+  };
+  Json row{{"particles", first(element.particles)}, {"weights", first(element.weights)}};
+  if (element.rest > 0) row["rest"] = element.rest;
+  row["compliance"] = element.compliance;
+  return row.dump();
+}
+
+bool has_damping(const Damping& damping) {
+  return damping.stretch > 0 || damping.bending > 0 || damping.motion > 0;
+}
+
+bool has_air(const Air& air) {
+  const Air plain;
+  return !air.triangles.empty() || air.density != plain.density || air.drag > 0 || air.lift > 0 ||
+         air.wind.x != 0 || air.wind.y != 0 || air.wind.z != 0;
+}
+
+std::string damping_text(const Damping& damping) {
+  return Json{
+      {"stretch", damping.stretch}, {"bending", damping.bending}, {"motion", damping.motion}}
+      .dump();
+}
+
+std::string air_text(const Air& air) {
+  return Json{{"triangles", air.triangles},
+              {"density", air.density},
+              {"drag", air.drag},
+              {"lift", air.lift},
+              {"wind", Json{air.wind.x, air.wind.y, air.wind.z}}}
+      .dump();
+}
+
+}  // namespace weft::tools

@@ -1,0 +1,24 @@
+/// What a scene file says of a material: bending elements, damping and air.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <string>
+
+#include "tools/json_output.h"
+
+namespace weft::tools {
+
+/// These throw Refused (json_reading.h).
+BendingElement read_bending(const Json& json, const std::string& place);
+Damping read_damping(const Json& json, const std::string& place);
+Air read_air(const Json& json, const std::string& place);
+
+std::string bending_row(const BendingElement& element);
+/// Whether they differ from what a description has by itself.
+bool has_damping(const Damping& damping);
+bool has_air(const Air& air);
+std::string damping_text(const Damping& damping);
+std::string air_text(const Air& air);
+
+}  // namespace weft::tools
