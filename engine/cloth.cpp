@@ -189,7 +189,8 @@ double Cloth::max_penetration() const {
                                impl_->contacts);
 }
 Energy Cloth::energy() const {
-  return measure_energy(*impl_->model, impl_->gravity, impl_->position, impl_->velocity);
+  return measure_energy(*impl_->model, impl_->gravity, impl_->position, impl_->velocity,
+                        impl_->give_per_mass);
 }
 
 std::uint64_t Cloth::state_hash() const {

@@ -81,6 +81,22 @@ Json substeps(const RunReport& report) {
   return mean(report.summary.substeps, report.summary.frames);
 }
 
+/// Of rigid constraints the error is their strain.
+std::string_view error_name(const RunSummary& summary) {
+  return summary.model.compliant > 0 ? "error of the law" : "strain";
+}
+
+std::string material_text(const ModelInfo& model) {
+  std::string text;
+  const auto add = [&](std::size_t count, std::string_view what) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, what);
+  };
+  add(model.compliant, "spring");
+  add(model.bending_elements, "bending element");
+  add(model.air_triangles, "air triangle");
+  return text;
+}
+
 }  // namespace
 
 Json to_json(const RunReport& report) {
@@ -90,6 +106,9 @@ Json to_json(const RunReport& report) {
       {"scene", report.scene},
       {"particles", summary.model.particles},
       {"constraints", summary.model.constraints},
+      {"springs", summary.model.compliant},
+      {"bending_elements", summary.model.bending_elements},
+      {"air_triangles", summary.model.air_triangles},
       {"spheres", summary.model.spheres},
       {"solver", name(settings.solver)},
       {"solver_used", name(summary.solver)},
@@ -110,6 +129,8 @@ Json to_json(const RunReport& report) {
       {"ms_per_frame", 1e3 * summary.seconds_per_frame()},
       {"max_ms_per_frame", 1e3 * summary.longest_step_seconds},
       {"real_time_factor", real_time_factor(report)},
+      {"rejected", summary.halvings + summary.scheme_fallbacks},
+      {"max_error", summary.max_error},
       {"max_strain", summary.max_strain},
       {"mean_max_strain", summary.mean_max_strain},
       {"rms_strain", summary.rms_strain},
@@ -144,6 +165,8 @@ std::string to_table(const RunReport& report) {
       fmt::format("{}: {}, {}, {}", report.scene, counted(summary.model.particles, "particle"),
                   counted(summary.model.constraints, "constraint"),
                   counted(summary.model.spheres, "sphere")));
+  if (const auto material = material_text(summary.model); !material.empty())
+    row("material", material);
   row("solver", fmt::format("{}, scheme {}, backend {}, {}", solver_text(report),
                             name(summary.scheme), name(settings.backend), goal_text(settings)));
   if (summary.scheme == Scheme::rattle) {
@@ -157,11 +180,12 @@ std::string to_table(const RunReport& report) {
   row("frames", fmt::format("{} of {} s{}, status {}", summary.frames, report.plan.dt, in_substeps,
                             name(summary.status)));
   row("time",
-      fmt::format("{:.4g} ms per frame, {:.3g} the longest, {} times real time, at max strain {}",
+      fmt::format("{:.4g} ms per frame, {:.3g} the longest, {} times real time, at max {} {}",
                   1e3 * summary.seconds_per_frame(), 1e3 * summary.longest_step_seconds,
-                  factor_text(real_time_factor(report)), measured_percent(summary.max_strain)));
-  row("stages", fmt::format("{} ms at max strain {}", stages_text(summary),
-                            measured_percent(summary.max_strain)));
+                  factor_text(real_time_factor(report)), error_name(summary),
+                  measured_percent(summary.max_error)));
+  row("stages", fmt::format("{} ms at max {} {}", stages_text(summary), error_name(summary),
+                            measured_percent(summary.max_error)));
   row("strain",
       fmt::format("max {}, mean of the frames' max {}, rms {}",
                   measured_percent(summary.max_strain), measured_percent(summary.mean_max_strain),

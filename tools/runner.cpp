@@ -36,6 +36,7 @@ void look_for_miss(RunSummary& summary, const StepReport& report) {
   if (summary.first_miss || is_reached(report.status)) return;
   summary.first_miss = {.frame = summary.frames,
                         .status = report.status,
+                        .max_error = report.max_error,
                         .max_strain = report.max_strain,
                         .max_penetration = report.max_penetration,
                         .constraint = report.worst_constraint,
@@ -54,6 +55,7 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.corrections += report.corrections;
   summary.scheme_fallbacks += report.scheme_fallbacks;
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
+  summary.max_error = std::max(summary.max_error, report.max_error);
   summary.pin_work += report.pin_work;
   summary.solver_seconds = 0;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {

@@ -41,6 +41,7 @@ using FrameCallback = std::function<void(int frame, const Cloth&, const StepRepo
 struct Miss {
   int frame = 0;  ///< from 1
   Status status = Status::converged;
+  double max_error = 0;  ///< of the laws
   double max_strain = 0;
   double max_penetration = 0;                ///< m
   std::uint32_t constraint = kNoIndex;       ///< with max_strain
@@ -82,6 +83,7 @@ struct RunSummary {
   std::int64_t scheme_fallbacks = 0;
   int max_contacts = 0;  ///< most pairs watched in one frame
 
+  double max_error = 0;        ///< of the constraints' laws, over all frames (StepReport)
   double max_strain = 0;       ///< over all frames and constraints
   double mean_max_strain = 0;  ///< mean over the frames of each frame's largest strain
   double rms_strain = 0;       ///< over all frames and constraints

@@ -41,27 +41,31 @@ double energy_of_springs(const Model& m, const kernels::Vectors& x, double give_
   return sum;
 }
 
-double energy_of_bending(const Model& m, const kernels::Vectors& x) {
+double energy_of_bending(const Model& m, const kernels::Vectors& x, double give_per_mass) {
   const BendingStore& s = m.bending;
   double sum = 0;
   for (std::size_t i = 0; i < s.size(); ++i) {
     kernels::Vector d{0, 0, 0};
-    for (std::size_t k = 0; k < 4; ++k) d = d + s.weights[i][k] * x[s.slots[i][k]];
+    double inverse_mass = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      d = d + s.weights[i][k] * x[s.slots[i][k]];
+      inverse_mass += m.inverse_mass[s.slots[i][k]] * s.weights[i][k] * s.weights[i][k];
+    }
     const double bent = length(d) - s.rest[i];
-    sum += bent * bent / (2 * s.compliance[i]);
+    sum += bent * bent / (2 * (s.compliance[i] + give_per_mass * inverse_mass));
   }
   return sum;
 }
 
 Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,
-                      const kernels::Vectors& v) {
+                      const kernels::Vectors& v, double give_per_mass) {
   Energy energy;
   for (std::size_t i = 0; i < m.slots(); ++i) {
     if (m.inverse_mass[i] == 0) continue;
     energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
     energy.potential -= m.mass[i] * dot(gravity, x[i]);
   }
-  energy.elastic = energy_of_springs(m, x) + energy_of_bending(m, x);
+  energy.elastic = energy_of_springs(m, x, give_per_mass) + energy_of_bending(m, x, give_per_mass);
   return energy;
 }
 

@@ -22,8 +22,9 @@ double strain_of(const Model& model, const Vectors& position, std::size_t constr
 /// Over all active constraints.
 Strain measure_strain(const Model& model, const kernels::Vectors& position);
 Strain measure_strain(const Model& model, kernels::VectorsView position);
+/// give_per_mass: of the springs, below.
 Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
-                      const kernels::Vectors& velocity);
+                      const kernels::Vectors& velocity, double give_per_mass = 0);
 /// J. To a sweep a spring is softer than it is: of a substep of h and a relaxation omega
 /// give_per_mass is h^2 / omega, and a spring has the compliance
 ///
@@ -32,7 +33,8 @@ Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels
 /// 0: its own. Without this what a solver leaves of a stiff spring's law would count as energy.
 double energy_of_springs(const Model& model, const kernels::Vectors& position,
                          double give_per_mass = 0);
-double energy_of_bending(const Model& model, const kernels::Vectors& position);  // J
+double energy_of_bending(const Model& model, const kernels::Vectors& position,
+                         double give_per_mass = 0);
 /// Whether all components, and the squared distances between any two vectors, are finite.
 bool all_finite(const kernels::Vectors& vectors);
 /// The first slot of which that is not true, in x or v; a fixed one only if no free one is among

@@ -21,7 +21,7 @@ Material material(double density, double thickness, double warp, double weft, do
           .weft = weft,
           .shear = shear,
           .bending = bending,
-          .damping_stretch = 1e-3,
+          .damping_stretch = 1e-4,
           .damping_bending = 1e-2,
           .damping_motion = 0,
           .drag = kPlate,

@@ -433,7 +433,8 @@ struct Strain {
 struct Energy {
   double kinetic = 0;    ///< J
   double potential = 0;  ///< J, of gravity, zero at the origin
-  double elastic = 0;    ///< J, of springs and bending elements
+  double elastic = 0;  ///< J, of springs and bending elements, no stiffer than the substeps of the
+                       ///< last step can tell: what these leave of a law is no energy
   double total() const { return kinetic + potential + elastic; }
 };
 

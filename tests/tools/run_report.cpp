@@ -35,6 +35,7 @@ RunReport report() {
   summary.corrections = 103;
   summary.scheme_fallbacks = 8;
   summary.max_contacts = 19;
+  summary.max_error = 0.25;
   summary.max_strain = 0.125;
   summary.mean_max_strain = 0.03125;
   summary.rms_strain = 0.015625;
@@ -48,6 +49,9 @@ RunReport report() {
   summary.bytes = 1600;
   summary.model.particles = 16;
   summary.model.constraints = 10;
+  summary.model.compliant = 21;
+  summary.model.bending_elements = 23;
+  summary.model.air_triangles = 29;
   summary.model.spheres = 17;
   return report;
 }
@@ -55,6 +59,8 @@ RunReport report() {
 TEST_CASE("the JSON has every figure, per frame where its name says so") {
   const Json expected = Json::parse(R"({
     "scene": "somewhere", "particles": 16, "constraints": 10, "spheres": 17,
+    "springs": 21, "bending_elements": 23, "air_triangles": 29, "rejected": 15,
+    "max_error": 0.25,
     "solver": "auto", "solver_used": "yarn", "scheme": "paper", "scheme_fallbacks": 8,
     "backend": "simd", "anticipate_products": false, "isa": "avx2", "threads": 3,
     "dt": 0.5, "steps": 4, "frames": 4, "substeps": 5.5, "halvings": 7,
@@ -83,12 +89,14 @@ TEST_CASE("the table has every figure too") {
   in_all.summary.scheme = Scheme::rattle;
   CHECK(to_table(in_all) ==
         "scene     somewhere: 16 particles, 10 constraints, 17 spheres\n"
+        "material  21 springs, 23 bending elements, 29 air triangles\n"
         "solver    auto (yarn), scheme rattle, backend simd, tolerance 6.25 %\n"
         "scheme    8 of 22 substeps left to scheme paper\n"
         "frames    4 of 0.5 s in 5.5 substeps each, status infeasible\n"
-        "time      250 ms per frame, 500 the longest, 2 times real time, at max strain 12.5 %\n"
+        "time      250 ms per frame, 500 the longest, 2 times real time, at max error of the law "
+        "25 %\n"
         "stages    predict 31.2, find_contacts 93.8, solve_positions 156, commit 219, "
-        "correct_velocities 281, report 344 ms at max strain 12.5 %\n"
+        "correct_velocities 281, report 344 ms at max error of the law 25 %\n"
         "strain    max 12.5 %, mean of the frames' max 3.12 %, rms 1.56 %\n"
         "contacts  0.75 m deepest penetration\n"
         "work      5 iterations and 9 direction updates per step, 101 visits, 103 corrections\n"
@@ -100,6 +108,14 @@ TEST_CASE("a table tells of the work of pins where they did some") {
   RunReport at_rest = report();
   at_rest.summary.pin_work = 0;
   CHECK(to_table(at_rest).find("J to -2.5 J, largest gain 0.25 J\n") != std::string::npos);
+}
+
+TEST_CASE("a table of rigid cloth is about strain, and says nothing of a material") {
+  RunReport rigid = report();
+  rigid.summary.model.compliant = rigid.summary.model.bending_elements = 0;
+  rigid.summary.model.air_triangles = 0;
+  CHECK(to_table(rigid).find("at max strain 25 %") != std::string::npos);
+  CHECK(to_table(rigid).find("material") == std::string::npos);
 }
 
 TEST_CASE("factors have three digits, and all of those before the point") {
