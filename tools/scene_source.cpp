@@ -36,6 +36,7 @@ constexpr std::string_view kCape = "cape";
 constexpr std::string_view kGrids = "built-in grids";
 constexpr std::string_view kObj = ".obj meshes";
 constexpr std::string_view kMeshes = ".obj meshes and cape";
+constexpr std::string_view kMaterials = ".obj meshes, cape, flag and drape";
 
 /// Refuses what was given but belongs to another kind of scene.
 Result<void> check_options(const SceneOptions& options, std::span<const std::string_view> kinds) {
@@ -54,7 +55,7 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--scale", options.scale.has_value(), kObj},
       {"--ropes", options.ropes.has_value(), kMeshes},
       {"--diagonals", options.diagonals, kGrids},
-      {given_option(options.material), is_given(options.material), kMeshes},
+      {given_option(options.material), is_given(options.material), kMaterials},
   };
   for (const Given& given : all) {
     if (!given.is_given || std::ranges::find(kinds, given.kind) != kinds.end()) continue;
@@ -64,7 +65,12 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
   return {};
 }
 
-bool is_grid(std::string_view name) { return name != kCape && name != kChain; }
+bool is_of_material(std::string_view name) { return name == "flag" || name == "drape"; }
+
+/// Rigid and woven, with cells that ropes may brace.
+bool is_grid(std::string_view name) {
+  return name != kCape && name != kChain && !is_of_material(name);
+}
 
 Mesh mesh_of(std::string_view name, int size, const SceneDescription& scene) {
   if (name == kChain) return line_mesh(scene);
@@ -118,7 +124,9 @@ Result<SceneSource> cape_of(const SceneSource& cape, const ClothOptions& cloth) 
 Result<SceneSource> load_built_in(const SceneOptions& options) {
   const std::string_view of_cells = is_grid(options.scene) ? kGrids : options.scene;
   const std::string_view of_ropes = options.scene == kCape ? kMeshes : options.scene;
-  const std::string_view kinds[] = {kBuiltIn, options.scene, of_cells, of_ropes};
+  const bool may_have_material = options.scene == kCape || is_of_material(options.scene);
+  const std::string_view kinds[] = {kBuiltIn, options.scene, of_cells, of_ropes,
+                                    may_have_material ? kMaterials : options.scene};
   if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
   scenes::Options values;
   if (options.scene == "corners") values.size = kDefaultCornersSize;
@@ -130,10 +138,15 @@ Result<SceneSource> load_built_in(const SceneOptions& options) {
   const auto cloth = cloth_of(options, Ropes::all);
   if (!cloth) return Error{cloth.error()};
   values.ropes = cloth.value().ropes == Ropes::all;
+  values.material = cloth.value().material;
   auto scene = scenes::make(options.scene, values);
   if (!scene) return Error{scene.error()};
   Mesh mesh = mesh_of(options.scene, values.size, scene.value());
   SceneSource source{options.scene, std::move(scene.value()), std::move(mesh)};
+  if (is_of_material(options.scene)) {
+    if (options.material.wind) source.description.air.wind = cloth.value().wind;
+    return source;
+  }
   const bool is_remade = cloth.value().material || cloth.value().ropes == Ropes::diagonals;
   return is_remade ? cape_of(source, cloth.value()) : std::move(source);
 }
@@ -157,7 +170,7 @@ std::string note_of(const MeshCounts& counts, const ObjOptions& options) {
 }
 
 Result<SceneSource> load_obj(const SceneOptions& options) {
-  const std::string_view kinds[] = {kObj, kMeshes};
+  const std::string_view kinds[] = {kObj, kMeshes, kMaterials};
   if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
   ObjOptions values;
   values.pin = options.pin.value_or(values.pin);

@@ -39,7 +39,7 @@ TEST_CASE("the list names what make() makes") {
     CHECK(!scene.summary.empty());
     names += std::string(scene.name) + " ";
   }
-  CHECK(names == "hang hang_sphere sphere_drop corners banner four_pins cape chain ");
+  CHECK(names == "hang hang_sphere sphere_drop corners banner four_pins cape chain flag drape ");
 }
 
 void check_at_rest(const SceneDescription& scene) {
@@ -57,13 +57,15 @@ TEST_CASE("every edge of every scene starts at its rest length, and every model 
       const SceneDescription description = made(scene.name, {.size = size});
       check_at_rest(description);
       const double rest = scene.name == "chain" ? 0.01 : 1.0 / (size - 1);
+      const bool is_mesh = scene.name == "cape" || scene.name == "flag" || scene.name == "drape";
       for (const Constraint& c : description.constraints) {
-        REQUIRE((c.rest_length == rest || scene.name == "cape"));
+        REQUIRE((c.rest_length == rest || is_mesh));
         REQUIRE(c.kind == ConstraintKind::distance);
       }
       CHECK(description.velocities.empty());
       CHECK(description.gravity.y == -10);
-      CHECK(describe(*model_of(description)).inert_constraints == 0);
+      const bool joins_pins = scene.name == "flag";  // a mesh keeps the edges of its pole
+      if (!joins_pins) CHECK(describe(*model_of(description)).inert_constraints == 0);
     }
   }
 }
@@ -197,6 +199,41 @@ TEST_CASE(
       CHECK(describe(*model_of(scene)).inert_constraints == 0);  // nor twice between any two
     }
   }
+}
+
+TEST_CASE("flag and drape are of a material, which may be another") {
+  const Material cotton = find_material("cotton").value(), silk = find_material("silk").value();
+  for (const std::string_view name : {"flag", "drape"}) {
+    CAPTURE(std::string(name));
+    const SceneDescription scene = made(name, {.size = 11});
+    CHECK(cloth_mass(scene, 11) == doctest::Approx(cotton.density));
+    const ModelInfo info = describe(*model_of(scene));
+    CHECK(info.compliant == info.constraints);
+    CHECK(!scene.bending.empty());
+    CHECK(scene.air.triangles.size() == 2 * 10 * 10);
+    CHECK(cloth_mass(made(name, {.size = 11, .material = silk}), 11) ==
+          doctest::Approx(silk.density));
+  }
+  CHECK(made("flag", {.size = 11}).air.wind.x == 8);
+  CHECK(made("flag", {.size = 11}).fixed.size() == 11);
+  CHECK(made("drape", {.size = 11}).spheres == std::vector<std::uint32_t>{121});
+}
+
+TEST_CASE("a flag flies, and a sheet comes to hang over its sphere") {
+  Cloth flag = cloth_of(made("flag", {.size = 11}), {});
+  Cloth drape = cloth_of(made("drape", {.size = 11}), {});
+  for (int frame = 0; frame < 60; ++frame) {
+    for (Cloth* cloth : {&flag, &drape}) {
+      const StepReport report = step(*cloth, 1. / 60);
+      REQUIRE(report.status == Status::converged);
+      REQUIRE(report.max_error <= 0.01);
+      REQUIRE(report.max_penetration <= 1e-4);
+    }
+  }
+  CHECK(flag.position(120).x > 0.5);
+  CHECK(flag.position(120).z > 0.05);
+  CHECK(drape.position(60).y > -0.02);  // on top of the sphere
+  CHECK(drape.position(0).y < -0.2);    // a corner
 }
 
 TEST_CASE("of diagonals those between two fixed particles are left out") {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tools/scenes/irregular_mesh.h"
+#include "tools/scenes/material_scenes.h"
 
 namespace weft::scenes {
 namespace {
@@ -312,6 +313,22 @@ Result<SceneDescription> make_chain(const Options& options) {
   return scene;
 }
 
+// -------------------------------------------------------------------------------- materials
+
+Material material_of(const Options& options) {
+  return options.material ? *options.material : find_material("cotton").value();
+}
+
+Result<SceneDescription> make_flag(const Options& options) {
+  if (const auto size = check_size("flag", options.size, 2); !size) return Error{size.error()};
+  return flag_of(options.size, material_of(options));
+}
+
+Result<SceneDescription> make_drape(const Options& options) {
+  if (const auto size = check_size("drape", options.size, 2); !size) return Error{size.error()};
+  return drape_of(options.size, material_of(options));
+}
+
 // -------------------------------------------------------------------------------------- names
 
 struct Entry {
@@ -319,7 +336,7 @@ struct Entry {
   Result<SceneDescription> (*make)(const Options&);
 };
 
-constexpr std::array<Entry, 8> kEntries{{
+constexpr std::array<Entry, 10> kEntries{{
     {{"hang", "a sheet with one fixed side swings down"}, make_hang},
     {{"hang_sphere", "the same, swinging into a fixed sphere"}, make_hang_sphere},
     {{"sphere_drop", "a heavy sphere drops into a sagging sheet"}, make_sphere_drop},
@@ -328,6 +345,8 @@ constexpr std::array<Entry, 8> kEntries{{
     {{"four_pins", "a level sheet sinks between its four fixed corners"}, make_four_pins},
     {{"cape", "an irregular mesh hangs from an uneven seam"}, make_cape},
     {{"chain", "a line of particles with a heavy end"}, make_chain},
+    {{"flag", "a sheet of cotton flies from a pole"}, make_flag},
+    {{"drape", "a sheet of cotton falls over a fixed sphere"}, make_drape},
 }};
 
 constexpr auto kList = [] {

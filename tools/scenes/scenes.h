@@ -1,5 +1,5 @@
-/// The built-in scenes: the paper's three, three hard ones, and two that are like a game's. Exact
-/// definitions, SI units.
+/// The built-in scenes: the paper's three, three hard ones, two that are like a game's, and two of
+/// a material. Exact definitions, SI units.
 ///
 /// Cloth scenes are N x N particles over 1 m x 1 m, particle (i, j) has the number i * N + j,
 /// spacing L = 1/(N-1), total mass 1 kg, gravity (0, -10, 0); constraints join grid neighbours
@@ -23,10 +23,15 @@
 ///              x < 0.01, 210 particles).
 /// chain        Particles of 1 kg in a line along x, 0.01 apart; the first is fixed, the last has
 ///              end_mass.
+/// flag         (i, j) at (i L, -j L, 0), of cotton or of Options::material, with the masses of its
+///              density; the column i = 0 is fixed, in a wind of (8, 0, 2) m/s.
+/// drape        (i, j) at (i L, 0, j L), of the same, 1 cm above a fixed sphere of radius 0.3 below
+///              the middle of the sheet.
 #pragma once
 
-#include <weft/weft.h>
+#include <weft/mesh.h>
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -39,6 +44,7 @@ struct Options {
   double end_mass = 1;     ///< chain, kg of the last particle
   bool diagonals = false;  ///< all but cape and chain: both diagonals of every cell become ropes
   bool ropes = false;      ///< cape: every edge is a rope
+  std::optional<Material> material = std::nullopt;  ///< flag and drape; none: cotton
 };
 
 struct BuiltIn {
@@ -46,7 +52,7 @@ struct BuiltIn {
   std::string_view summary;
 };
 
-/// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain.
+/// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain, flag, drape.
 std::span<const BuiltIn> list();
 
 /// An unknown name or an option out of range is an error.
