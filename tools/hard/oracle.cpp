@@ -41,16 +41,28 @@ bool all_finite(const Snapshot& state) {
          std::ranges::all_of(state.velocities, finite);
 }
 
-double max_strain(const SceneDescription& scene, const Snapshot& state) {
+namespace {
+
+double strain_over(const SceneDescription& scene, const Snapshot& state, bool springs_too) {
   const std::vector<bool> fixed = fixed_particles(scene);
   double most = 0;
   for (const Constraint& c : scene.constraints) {
     if (fixed[c.a] && fixed[c.b]) continue;
+    if (c.compliance > 0 && !springs_too) continue;
     const double stretch =
         (length(state.positions[c.a] - state.positions[c.b]) - c.rest_length) / c.rest_length;
     most = std::max(most, c.kind == ConstraintKind::rope ? stretch : std::abs(stretch));
   }
   return most;
+}
+
+}  // namespace
+
+double max_rigid_strain(const SceneDescription& scene, const Snapshot& state) {
+  return strain_over(scene, state, false);
+}
+double max_strain(const SceneDescription& scene, const Snapshot& state) {
+  return strain_over(scene, state, true);
 }
 
 double max_penetration(const SceneDescription& scene, const Snapshot& state) {

@@ -16,6 +16,8 @@ Snapshot snapshot(const Cloth& cloth);
 bool all_finite(const Snapshot& state);
 /// Largest | |a-b| - rest | / rest, a slack rope's being 0; without constraints between two fixed
 /// particles.
+/// Springs may be strained: they are left out here.
+double max_rigid_strain(const SceneDescription& scene, const Snapshot& state);
 double max_strain(const SceneDescription& scene, const Snapshot& state);
 /// m, the deepest overlap of a sphere with anything that it may touch.
 double max_penetration(const SceneDescription& scene, const Snapshot& state);

@@ -10,7 +10,7 @@ std::vector<Case> all_cases() {
   std::vector<Case> all;
   for (const auto& cases :
        {mass_cases(), infeasible_cases(), start_cases(), step_cases(), place_cases(),
-        motion_cases(), length_cases(), graph_cases(), input_cases()}) {
+        motion_cases(), length_cases(), graph_cases(), material_cases(), input_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

@@ -18,6 +18,7 @@ std::vector<Case> place_cases();
 std::vector<Case> motion_cases();
 std::vector<Case> length_cases();
 std::vector<Case> graph_cases();
+std::vector<Case> material_cases();
 std::vector<Case> input_cases();
 
 std::vector<Case> all_cases();
