@@ -232,8 +232,10 @@ TEST_CASE("a flag flies, and a sheet comes to hang over its sphere") {
   }
   CHECK(flag.position(120).x > 0.5);
   CHECK(flag.position(120).z > 0.05);
-  CHECK(drape.position(60).y > -0.02);  // on top of the sphere
-  CHECK(drape.position(0).y < -0.2);    // a corner
+  const double height = distance(drape.position(60), {0.5, -0.31, 0.5});
+  CHECK(height > 0.2999);  // on the sphere, wherever it slides to
+  CHECK(height < 0.33);
+  CHECK(drape.position(0).y < -0.2);  // a corner
 }
 
 TEST_CASE("of diagonals those between two fixed particles are left out") {

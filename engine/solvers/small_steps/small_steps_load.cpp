@@ -105,13 +105,14 @@ class Levels {
   std::vector<bool> reached_, held_;
 };
 
-/// Along constraints from the nearest pin, nearest by their number, to the farthest particle.
+/// Along constraints from the nearest of some particles, nearest by their number, to the farthest.
 struct Way {
   double constraints = 0;
   double length = 0;  // m
+  std::uint32_t end = kNoIndex;
 };
 
-Way longest_way(const Model& model) {
+Way longest_way(const Model& model, std::span<const std::uint32_t> from) {
   const ConstraintStore& s = model.constraints;
   const Lists at = make_lists(model.slots(), [&](auto&& add) {
     for (std::uint32_t c = 0; c < s.size(); ++c) {
@@ -121,14 +122,14 @@ Way longest_way(const Model& model) {
   });
   std::vector<Way> way(model.slots(), {-1, 0});
   std::vector<std::uint32_t> queue;
-  for (const std::uint32_t slot : model.pins) {
+  for (const std::uint32_t slot : from) {
     way[slot] = {};
     queue.push_back(slot);
   }
   Way longest;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const Way here = way[queue[i]];
-    longest = {here.constraints, std::max(longest.length, here.length)};
+    longest = {here.constraints, std::max(longest.length, here.length), queue[i]};
     for (const std::uint32_t c : at[queue[i]]) {
       const std::uint32_t other = s.a[c] == queue[i] ? s.b[c] : s.a[c];
       if (way[other].constraints >= 0) continue;
@@ -139,14 +140,26 @@ Way longest_way(const Model& model) {
   return longest;
 }
 
+/// From where the cloth is held to what is farthest from there. Where no pin holds it, it may come
+/// to lie on a sphere by its middle: half of the way across, which two searches find (of several
+/// pieces, across the one of the first constraint).
+Way way_that_hangs(const Model& model) {
+  if (!model.holds.empty() || model.constraints.size() == 0 || !model.has_contacts())
+    return longest_way(model, model.pins);
+  const Way out = longest_way(model, std::span(model.constraints.a).first(1));
+  const Way across = longest_way(model, std::span(&out.end, 1));
+  return {across.constraints / 2, across.length / 2};
+}
+
 }  // namespace
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;
   const Blocks blocks = find_blocks(model, layout);
-  const Way way = longest_way(model);
+  const Way way = way_that_hangs(model);
   load.particles = Levels(model, blocks).carried();
-  if (!layout.blocks.empty()) load.particles = std::max(load.particles, way.constraints - 1);
+  const bool is_by_ways = !layout.blocks.empty() || model.holds.empty();
+  if (is_by_ways) load.particles = std::max(load.particles, way.constraints - 1);
   load.reach = way.length;
   for (const double rest : model.constraints.rest_length) load.mean_length += rest;
   load.mean_length /= static_cast<double>(std::max<std::size_t>(1, model.constraints.size()));

@@ -15,7 +15,8 @@
 /// and the particle that is farthest from all pins, if that is larger. One is subtracted, since a
 /// block carries its own particles, and (1 - omega) / 2 is added for what a relaxed sweep leaves of
 /// those. Where single constraints are blocks the load may run through them one by one, also beside
-/// yarns: there the way to the pin is counted in constraints.
+/// yarns: there the way to the pin is counted in constraints. Cloth without pins, in a scene of
+/// spheres, may come to hang over one: its way is half of that across it.
 ///
 /// A yarn between two pins whose length exceeds their distance by the share s sags with the slope
 /// sqrt(6 s). Its tension is its load divided by that slope, where the slope is below 1.
@@ -49,7 +50,7 @@ struct SmallStepsLoad {
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
 
-/// s; infinite where nothing hangs on a pin.
+/// s; infinite where nothing hangs on a pin, or could come to hang over a sphere.
 double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double acceleration,
                       double tolerance);
 

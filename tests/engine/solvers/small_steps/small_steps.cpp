@@ -272,5 +272,26 @@ TEST_CASE("small steps take their own schemes and no velocity loop, and say so")
         "scheme: is for solver small_steps, not yarn (bdf2)");
 }
 
+TEST_CASE("cloth that no pin holds has the load of what may hang over a sphere") {
+  SceneDescription scene = make("hang_sphere", {.size = 21});
+  const std::uint32_t sphere = scene.spheres[0];
+  const auto load_of = [](const SceneDescription& described) {
+    const auto model = model_of(described);
+    return model->small_steps().load;
+  };
+  const double pinned = load_of(scene).particles;
+  scene.fixed = {sphere};
+  const SmallStepsLoad over_sphere = load_of(scene);
+  // Across a grid of 20 x 20 cells it is 40 constraints from corner to corner.
+  CHECK(over_sphere.particles == 20 - 1);
+  CHECK(over_sphere.reach == doctest::Approx(1));
+  CHECK(pinned > 0);
+  scene.spheres.clear();
+  scene.radii.clear();
+  const SmallStepsLoad free = load_of(scene);
+  CHECK(free.particles <= 0);
+  CHECK(free.reach == 0);
+}
+
 }  // namespace
 }  // namespace weft::test
