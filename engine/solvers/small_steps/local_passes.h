@@ -16,7 +16,7 @@
 #include "engine/contacts/contacts.h"
 #include "engine/lists.h"
 #include "engine/model/model.h"
-#include "kernels/reference/small_steps.h"
+#include "engine/solvers/small_steps/laws.h"
 
 namespace weft {
 
@@ -31,58 +31,8 @@ struct LocalLimits {
   double contact_tolerance = 0;  // m
   double omega = 1;
   std::int64_t most_visits = 0;
-  reference::SpringStep springs{};
-  bool projects = false;  // springs are left as they are
+  LawStep laws{};  // with springs
 };
-
-/// A constraint as its law sees it.
-struct LawVisit {
-  reference::ConstraintLaw law;
-  kernels::Vector d{};  // from b to a
-  double length = 0, residual = 0, multiplier = 0;
-  double violation() const { return law.violation(residual, multiplier); }
-};
-
-/// points: see LocalPasses::run.
-template <class Points>
-LawVisit visit_law(const ConstraintStore& s, Points& points, const reference::SpringStep& step,
-                   std::uint32_t c) {
-  LawVisit visit{.law = step.law(s.compliance[c], c >= s.bilateral),
-                 .d = points.difference(s.a[c], s.b[c])};
-  visit.length = kernels::length(visit.d);
-  visit.multiplier = points.multiplier(c);
-  const bool is_damped = visit.law.damping > 0;
-  const double change =
-      is_damped ? visit.length - kernels::length(points.start_difference(s.a[c], s.b[c])) : 0;
-  visit.residual = visit.law.residual(visit.length - s.rest_length[c], change, visit.multiplier);
-  return visit;
-}
-
-/// The largest violation of all laws, over rest_length.
-template <class Points>
-double largest_violation(const ConstraintStore& s, Points& points,
-                         const reference::SpringStep& step, bool projects) {
-  double most = 0;
-  for (std::uint32_t c = 0; c < s.size(); ++c) {
-    if (projects && s.compliance[c] > 0) continue;
-    const double violation = visit_law(s, points, step, c).violation();
-    most = std::max(most, std::abs(violation) / s.rest_length[c]);
-  }
-  return most;
-}
-
-/// Applies the impulse that this constraint alone asks for, relaxed.
-template <class Points>
-void apply_law(const Model& model, Points& points, const LawVisit& visit, double omega,
-               std::uint32_t c) {
-  const ConstraintStore& s = model.constraints;
-  const double impulse =
-      visit.law.impulse(visit.residual, visit.multiplier, 1 / s.effective_mass[c], omega);
-  const kernels::Vector by = impulse * kernels::direction(visit.d, visit.length);
-  points.set_multiplier(c, visit.multiplier + impulse);
-  points.move(s.a[c], -model.inverse_mass[s.a[c]] * by);
-  points.move(s.b[c], model.inverse_mass[s.b[c]] * by);
-}
 
 class LocalPasses {
  public:
@@ -98,8 +48,7 @@ class LocalPasses {
   void forget();
 
   /// points: difference(a, b), the vector from slot b to slot a; move(slot, by), of a constraint;
-  /// push(slot, by), of a contact. With springs: multiplier(constraint), set_multiplier(constraint,
-  /// to), and start_difference(a, b), of where they were when the substep began.
+  /// push(slot, by), of a contact. With springs also what laws.h asks of them.
   template <class Points>
   LocalWork run(Points& points, const ContactStore& contacts, const LocalLimits& limits);
   std::size_t bytes() const;
@@ -155,8 +104,8 @@ bool LocalPasses::relax(Points& points, std::uint32_t c, const LocalLimits& limi
 template <class Points>
 bool LocalPasses::relax_by_law(Points& points, std::uint32_t c, const LocalLimits& limits) {
   const ConstraintStore& s = model_.constraints;
-  if (limits.projects && s.compliance[c] > 0) return false;
-  const LawVisit visit = visit_law(s, points, limits.springs, c);
+  if (!limits.laws.is_kept(s, c)) return false;
+  const LawVisit visit = visit_law(s, points, limits.laws.springs, c);
   if (!(std::abs(visit.violation()) > limits.tolerance * s.rest_length[c])) return false;
   apply_law(model_, points, visit, limits.omega, c);
   look_at(s.a[c]);

@@ -38,14 +38,14 @@ ReferenceSmallSteps::Points ReferenceSmallSteps::points() {
   return {x_.view(), predicted_.view(), before_.view(), 1 - formula_.part, touched_, multiplier_};
 }
 
-reference::SpringStep ReferenceSmallSteps::spring_step() const {
+LawStep ReferenceSmallSteps::law_step() const {
   const double bh = formula_.part * h_;
-  return {1 / (bh * bh), model_.damping.stretch / h_};
+  return {{1 / (bh * bh), model_.damping.stretch / h_}, projects_};
 }
 
 double ReferenceSmallSteps::law_error() {
   Points points = this->points();
-  return largest_violation(model_.constraints, points, spring_step(), projects_);
+  return largest_violation(model_.constraints, points, law_step());
 }
 
 ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& settings)
@@ -184,21 +184,11 @@ void ReferenceSmallSteps::relax_edge(std::uint32_t c) {
   x_.view().add(b, (model_.inverse_mass[b] * impulse) * d);
 }
 
-/// What a constraint breaks of its law is judged by the multiplier of the visit before, in the last
-/// substep too; the multiplier of a substep begins at zero.
 void ReferenceSmallSteps::relax_spring(std::uint32_t c) {
-  const ConstraintStore& s = model_.constraints;
-  if (projects_ && s.compliance[c] > 0) return;
   Points points = this->points();
   points.share = 0;
-  LawVisit visit = visit_law(s, points, spring_step(), c);
-  if (std::abs(visit.violation()) > tuning::kLocalShare * settings_.tolerance * s.rest_length[c])
-    out_.push_back(c);
-  if (!is_begun_) {
-    visit.residual += visit.law.softness * visit.multiplier;
-    visit.multiplier = 0;
-  }
-  apply_law(model_, points, visit, omega_, c);
+  const double tolerance = tuning::kLocalShare * settings_.tolerance;
+  if (sweep_law(model_, points, law_step(), !is_begun_, omega_, tolerance, c)) out_.push_back(c);
 }
 
 LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
@@ -207,8 +197,7 @@ LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
                            .omega = tuning::kOmega,
                            .most_visits = most_visits,
-                           .springs = spring_step(),
-                           .projects = projects_};
+                           .laws = law_step()};
   return passes_.run(points, contacts, limits);
 }
 

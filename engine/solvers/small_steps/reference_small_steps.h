@@ -53,7 +53,7 @@ class ReferenceSmallSteps final : public SmallSteps {
  private:
   struct Points;
   Points points();
-  reference::SpringStep spring_step() const;
+  LawStep law_step() const;
   reference::Flight flight();
   bool is_free(std::size_t slot) const { return model_.inverse_mass[slot] > 0; }
   void bend();

@@ -83,14 +83,14 @@ SmallStepsSolver::Points SmallStepsSolver::points(double share) {
           multiplier_.data()};
 }
 
-reference::SpringStep SmallStepsSolver::spring_step() const {
+LawStep SmallStepsSolver::law_step() const {
   const double bh = formula_.part * h_;
-  return {1 / (bh * bh), model_.damping.stretch / h_};
+  return {{1 / (bh * bh), model_.damping.stretch / h_}, projects_};
 }
 
 double SmallStepsSolver::law_error() {
   Points points = this->points(0);
-  return largest_violation(model_.constraints, points, spring_step(), projects_);
+  return largest_violation(model_.constraints, points, law_step());
 }
 
 SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
@@ -299,7 +299,7 @@ void SmallStepsSolver::sweep_batch(const EdgeBatch& batch, std::uint32_t first,
       edges_out_.data(), static_cast<float>(omega_), squared_tolerance(settings_)};
   if (layout_.springs.empty())
     return (batch.rope ? table_.relax_ropes : table_.relax_distances)(relaxation, first, last);
-  const reference::SpringStep step = spring_step();
+  const reference::SpringStep step = law_step().springs;
   const simd::SpringRelaxation springs{
       .edges = relaxation,
       .springs = layout_.springs.data(),
@@ -343,18 +343,11 @@ void SmallStepsSolver::sweep_serial() {
 }
 
 void SmallStepsSolver::sweep_serial_springs() {
-  const ConstraintStore& s = model_.constraints;
   Points points = this->points(0);
+  const double tolerance = tuning::kLocalShare * settings_.tolerance;
   for (const std::uint32_t c : layout_.serial) {
-    if (projects_ && s.compliance[c] > 0) continue;
-    LawVisit visit = visit_law(s, points, spring_step(), c);
-    if (std::abs(visit.violation()) > tuning::kLocalShare * settings_.tolerance * s.rest_length[c])
+    if (sweep_law(model_, points, law_step(), !is_begun_, omega_, tolerance, c))
       passes_.look_near(c);
-    if (!is_begun_) {
-      visit.residual += visit.law.softness * visit.multiplier;
-      visit.multiplier = 0;
-    }
-    apply_law(model_, points, visit, omega_, c);
   }
 }
 
@@ -389,8 +382,7 @@ LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
                            .omega = tuning::kOmega,
                            .most_visits = most_visits,
-                           .springs = spring_step(),
-                           .projects = projects_};
+                           .laws = law_step()};
   return passes_.run(points, contacts, limits);
 }
 

@@ -65,7 +65,7 @@ class SmallStepsSolver final : public SmallSteps {
  private:
   struct Points;
   Points points(double share);
-  reference::SpringStep spring_step() const;
+  LawStep law_step() const;
   simd::Flight flight();
   simd::Yarns yarns();
   void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
