@@ -1,0 +1,235 @@
+/// A cloth that moves, and what each of its steps reports. Part of weft.h.
+#pragma once
+
+#include <weft/result.h>
+#include <weft/scene.h>
+#include <weft/settings.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace weft {
+
+/// fixed_iterations: Settings::iterations were done; the error is what the report says.
+/// iteration_limit: max_iterations were done, or with small_steps all rounds, and some constraint
+/// is
+///   still out of tolerance. The state is committed.
+/// infeasible: some constraint is out of tolerance and tens of thousands of iterations
+///   (small_steps: sixteen rounds of a sweep and local passes) hardly reduce the error: constraints
+///   contradict each other (a chain whose ends are too far apart), masses differ by far, or nothing
+///   leads from the start to where they agree (a sheet of triangles whose pins turned by a right
+///   angle in one step). The state is committed, with the error spread over the constraints.
+/// passed_through: a particle went through a sphere within a substep (tunnelling): no contact was
+///   found in time, or one pushed it out on the far side. The state is committed; shorter steps
+///   would have held it.
+/// non_finite_input: even without constraints, the positions, velocities, forces and dt lead to
+///   numbers that are not finite. The state is unchanged.
+/// non_finite: a position or velocity would have become NaN or infinite (yarns hold positions as
+///   floats: none may be beyond 3e38 m). The state is unchanged.
+enum class Status : std::uint8_t {
+  converged,
+  fixed_iterations,
+  iteration_limit,
+  infeasible,
+  passed_through,
+  non_finite_input,
+  non_finite
+};
+
+/// Whether a step with this status changed the state.
+constexpr bool committed(Status status) { return status < Status::non_finite_input; }
+
+/// The stages of a step, in order.
+enum class Stage : std::uint8_t {
+  predict,  ///< also chooses the number of automatic substeps; small_steps: what begins a step
+  find_contacts,
+  solve_positions,  ///< small_steps: its substeps, all of them
+  commit,
+  correct_velocities,
+  report
+};
+inline constexpr std::size_t kStageCount = 6;
+
+WEFT_API std::string_view name(Status);
+WEFT_API std::string_view name(Stage);
+
+/// What one step did and what it reached. Counts and seconds are summed over the substeps; status
+/// is the worst of them; errors are those at the end.
+struct StepReport {
+  Status status = Status::converged;
+  int substeps = 0;                      ///< done; 0 where nothing is committed
+  int halvings = 0;                      ///< attempts at a substep that were rejected (Solver)
+  std::int64_t iterations = 0;           ///< passes over the position constraints; yarn: sweeps and
+                                         ///< conjugate gradient iterations; direct: solves;
+                                         ///< small_steps: local passes by their visits
+  std::int64_t direction_updates = 0;    ///< renewals of the constraint directions
+  std::int64_t velocity_iterations = 0;  ///< passes of the velocity loop; direct: solves
+  std::int64_t visits = 0;               ///< constraints whose error was looked at, both loops
+  std::int64_t corrections = 0;          ///< impulses applied, both loops
+  int scheme_fallbacks = 0;              ///< attempts that scheme rattle left to the paper's
+  int contacts = 0;                      ///< candidate pairs, near enough to be watched
+  double max_strain = 0;                 ///< over all constraints, recomputed from the positions
+  double rms_strain = 0;
+  /// What is left of the constraints' laws, the largest, as a fraction of rest_length: of rigid
+  /// constraints the strain, of springs | |a-b| - rest_length - compliance f | / rest_length with
+  /// the tension f that the solver applied in the last substep. This is what `tolerance` bounds.
+  double max_error = 0;
+  std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
+  double max_penetration = 0;                 ///< m, 0 without contacts
+  double max_anchor_error = 0;  ///< m, by which an anchor's limits are exceeded; 0 without anchors
+  /// m/s, the distance that this step is estimated to have added between a particle and its true
+  /// motion, over dt, the largest. Of small_steps; 0 by other solvers.
+  double motion_error = 0;
+  /// J, by which kinetic, potential and elastic energy fell in this step, work of moved pins added
+  /// before. Damping and air take energy on purpose; what is left is the scheme's.
+  double energy_lost = 0;
+  double pin_work = 0;  ///< J, work that moved pins did in this step: exact where they move as one
+                        ///< rigid body, else that of the rigid motion nearest to theirs. Jumps do
+                        ///< none. Impulses of fixed spheres count as if they were the pins' own;
+                        ///< what moved spheres do is not in it.
+  std::uint32_t failed_particle = kNoIndex;  ///< non_finite, non_finite_input: one of those
+  std::uint32_t passed_particle = kNoIndex;  ///< passed_through: one that did
+  std::array<double, kStageCount> stage_seconds{};
+};
+
+struct Strain {
+  double max = 0;
+  double rms = 0;
+  std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
+};
+
+struct Energy {
+  double kinetic = 0;    ///< J
+  double potential = 0;  ///< J, of gravity, zero at the origin
+  double elastic = 0;  ///< J, of springs and bending elements, no stiffer than the substeps of the
+                       ///< last step can tell: what these leave of a law is no energy
+  double total() const { return kinetic + potential + elastic; }
+};
+
+/// A new value of one particle or constraint, by its number in the description.
+struct ChangedValue {
+  std::uint32_t index = 0;
+  double value = 0;
+};
+
+/// What becomes different while a cloth moves; what is not listed stays as it is.
+struct Changes {
+  std::vector<std::uint32_t> fix;      ///< particles: fixed where they are, at rest
+  std::vector<std::uint32_t> release;  ///< fixed particles: free, at the speed of their last move
+  std::vector<ChangedValue> masses;    ///< kg, of particles
+  std::vector<ChangedValue> rest_lengths;  ///< m, of constraints
+  std::vector<ChangedValue> compliances;   ///< m/N, of constraints
+};
+
+/// x -> about + R (x - about) + translation; R turns by |rotation| rad about the axis `rotation`.
+struct RigidMotion {
+  Vec3 translation;  ///< m
+  Vec3 rotation;     ///< rad
+  Vec3 about;        ///< m
+};
+
+/// One moving cloth: the state of a Model and the workspace of its solver. Particle numbers are
+/// those of the description; position() and velocity() demand particle < particle_count(). A cloth
+/// that was moved from can only be assigned to or destroyed.
+class WEFT_API Cloth {
+ public:
+  /// Checks the settings. The state starts as described.
+  static Result<Cloth> create(std::shared_ptr<const Model> model, const Settings& settings);
+  Cloth(Cloth&&) noexcept;
+  Cloth& operator=(Cloth&&) noexcept;
+  ~Cloth();
+
+  /// A second cloth of the same model and settings, which continues bit for bit as this one does.
+  Cloth clone() const;
+  /// Takes over from `from`, a cloth of the same Model: state, forces, gravity, wind, pending pin
+  /// moves, and the solver's memory of its last steps. This cloth keeps its own settings. If
+  /// solver, scheme, backend, iterations, tolerance or contact_tolerance differ, that memory is
+  /// dropped, and positions out of tolerance are projected as if newly written.
+  Result<void> copy_state(const Cloth& from);
+
+  /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
+  /// is thrown and the state is unchanged. An error means that dt was refused. Meant for frames of
+  /// 0.1 ms to 0.1 s: in shorter ones the rounding of yarns' floats shows up as velocity, and slows
+  /// motion (rattle and velocity_correction undo that, direct works in double); the cost of longer
+  /// ones is limited by 256 automatic substeps and max_iterations. Before a step of less than an
+  /// eighth of the last one, positions are projected onto the constraints, velocities unchanged
+  /// (yarn, direct): what the last one left within tolerance would become speed.
+  Result<StepReport> step(double dt);
+
+  std::size_t particle_count() const;
+  const std::shared_ptr<const Model>& model() const;
+  const Settings& settings() const;  ///< isa, solver, substeps, velocity_correction: what is used
+
+  Vec3 position(std::uint32_t particle) const;
+  /// m/s; always 0 for fixed particles, even while move_fixed() moves them. With scheme paper and
+  /// no velocity correction, a particle that hangs at rest reports g h / 2 (h: the substep), which
+  /// the next substep cancels.
+  Vec3 velocity(std::uint32_t particle) const;
+  /// Copies one Vec3 per particle; out.size() must be particle_count() (else nothing is copied).
+  Result<void> read_positions(std::span<Vec3> out) const;
+  Result<void> read_velocities(std::span<Vec3> out) const;
+  /// Packed x y z floats for a vertex buffer; out.size() must be 3 * particle_count().
+  Result<void> read_positions(std::span<float> out) const;
+
+  /// Replace the state; finite values, one per particle. Initial or written positions that are out
+  /// of tolerance are projected onto the constraints as the next step begins, velocities unchanged
+  /// (not with Settings::iterations). Fixed particles that moved in the last step are at rest after
+  /// write_velocities, not after write_positions.
+  Result<void> write_positions(std::span<const Vec3> in);
+  Result<void> write_velocities(std::span<const Vec3> in);
+  /// External forces in N besides gravity, kept until replaced. Empty: none.
+  Result<void> write_forces(std::span<const Vec3> in);
+  /// m/s^2, from the next step on.
+  Result<void> set_gravity(Vec3 gravity);
+  /// m/s, of Air::wind, from the next step on.
+  Result<void> set_wind(Vec3 wind);
+  /// Moves a fixed particle; position() returns the new place at once. It travels there in a
+  /// straight line during the next step, however far that is, and the cloth takes on its speed. The
+  /// last move before a step counts; write_positions cancels all. A fixed particle that is not
+  /// moved before a step stands still in it: where steps are shorter than the frames of an
+  /// animation, interpolate.
+  Result<void> move_fixed(std::uint32_t particle, Vec3 position);
+  /// Puts a fixed particle down somewhere else, without a way between: it is there before the next
+  /// step begins, and the cloth is projected after it, velocities unchanged (with
+  /// Settings::iterations nothing is projected: the jump becomes speed). What a sphere jumped over
+  /// is not passed_through.
+  Result<void> place_fixed(std::uint32_t particle, Vec3 position);
+  /// Moves the points of all anchors, in the order of the description: they travel there in
+  /// straight lines during the next step. normals: one per anchor, of length 1; empty: as they are.
+  Result<void> move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals = {});
+
+  /// Takes the whole cloth along by the share of a rigid motion, 0 to 1, without its feeling so:
+  /// positions, fixed particles, anchors, and what the solver remembers move and turn, velocities
+  /// turn and gain nothing. With share 1 this is a teleport. With share 1 - s before each step, s
+  /// from 0 to 1, it scales by s the inertia that the cloth feels of a frame which moves so, a
+  /// character's root for example: then move_fixed what the frame carries to where it really is.
+  Result<void> carry(const RigidMotion& motion, double share = 1);
+
+  /// Changes what was described, at once or, on an error, not at all. Positions, velocities and the
+  /// solver's memory stay; model() is another one from then on. Constraints that are longer or
+  /// shorter than they may be are put right as the next step begins, velocities unchanged.
+  Result<void> change(const Changes& changes);
+
+  /// Recomputed from the positions by this thread alone. The last step's is in its report already,
+  /// and may differ in the last bits.
+  Strain strain() const;
+  /// m, over all pairs of a sphere and a particle or sphere, but for two fixed ones; 0 without
+  /// spheres.
+  double max_penetration() const;
+  Energy energy() const;  ///< of the particles that are not fixed
+  /// FNV-1a over the bits of all positions and velocities, in the description's order.
+  std::uint64_t state_hash() const;
+  std::size_t bytes() const;  ///< held by this cloth, the shared model not included
+
+ private:
+  struct Impl;
+  explicit Cloth(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace weft
