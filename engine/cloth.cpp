@@ -127,7 +127,6 @@ Result<void> Cloth::write_positions(std::span<const Vec3> in) {
   impl_->pins.put_down(impl_->position);
   impl_->placed = true;
   impl_->lost_energy = 0;
-  impl_->last_dt = 0;
   impl_->refinement = 0;
   return {};
 }

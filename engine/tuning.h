@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 namespace weft::tuning {
 
@@ -30,10 +29,7 @@ inline constexpr double kLongestSubstep = 0.005;
 /// A substep is no longer than this part of the time in which a falling particle passes the length
 /// of a constraint. In about that time a fold that runs through a yarn turns a constraint over.
 inline constexpr double kPassing = 0.7;
-/// A substep that is more than this many times as long as the last one starts without a past: it
-/// would extrapolate a change of velocity that is noise on its scale.
-inline constexpr double kMostRatio = 4;
-/// The largest number of substeps of a frame.
+/// The largest automatic number of substeps of a step.
 inline constexpr int kMostSubsteps = 1024;
 /// Yarns are blocks if they have this many constraints on average. Random triangles make yarns of 3
 /// or 4, a woven sheet of n x n particles makes yarns of n - 1.
@@ -70,14 +66,11 @@ inline constexpr Patience kRoundPatience{0.999, 16};
 /// The largest share of constraints that close a loop in chains, trees and bridges. Of a bridge a
 /// third do, of a grid half.
 inline constexpr double kChainLoops = 0.4;
-/// Ropes to a distance constraint, beyond which a chain is one of ropes.
-inline constexpr double kRopesEach = 1. / 3;
-/// The tightest tolerance, and the largest ratio of masses, at which small steps are chosen.
+/// The tightest tolerance at which small steps are chosen.
 inline constexpr double kLeastTolerance = 1e-3;
+/// Ratios of masses: up to the first small steps are chosen, and the direct solver keeps to
+/// Newton's method; from the second on the direct solver stands by behind yarns.
 inline constexpr double kNearlyEqualMasses = 100;
-/// The ratio of masses from which on the direct solver is chosen, and the one from which on it
-/// stands by behind yarns.
-inline constexpr double kExtremeMasses = 1e6;
 inline constexpr double kUnequalMasses = 1e4;
 
 // -------------------------------------------------------------------------------- the control
@@ -96,22 +89,15 @@ struct Bend {
   double most;
   double longest;
 };
-inline constexpr Bend kYarnBend{0.06, 3};
-inline constexpr Bend kUsualBend{0.04, std::numeric_limits<double>::infinity()};
+inline constexpr Bend kUsualBend{0.06, 3};
 /// Scheme rattle must resolve the motion: with half as many substeps half of them fall back.
 inline constexpr Bend kRattleBend{0.01, 1.5};
 /// 1/rad, by which an angular frequency times the substep is less than 1, and the ratio of masses
 /// from which on a load decides about substeps.
 inline constexpr double kLoad = 0.7;
 inline constexpr double kLeastLoad = 1000;
-/// The largest automatic number of substeps of a step by a prediction and a solver.
-inline constexpr int kMostExactSubsteps = 256;
 /// Iterations of a step for each automatic substep by yarns, at least.
 inline constexpr int kLeastIterations = 8;
-/// A step is far shorter than the last one below this share of its length, and then the strain that
-/// is left before it is at least this share of the usual.
-inline constexpr double kFarShorter = 0.125;
-inline constexpr double kLeastShare = 0.01;
 /// Passes of the paper's loop between two looks at the true errors: more than steps that go well
 /// ever need.
 inline constexpr int kPassesBetweenLooks = 4096;
@@ -157,10 +143,10 @@ inline constexpr double kForcing = 0.2;
 inline constexpr int kMostSystemIterations = 300;
 /// Velocities that are to be exact are brought to this share of their error.
 inline constexpr double kExactVelocity = 0.01;
-/// Measurements of the error; with scheme rattle, which another scheme can replace; of velocities.
+/// Measurements of the error; and of what others can do instead: errors by scheme rattle, and
+/// velocities.
 inline constexpr Patience kYarnPatience{0.7, 20};
-inline constexpr Patience kRattlePatience{0.9, 4};
-inline constexpr Patience kVelocityPatience{0.7, 3};
+inline constexpr Patience kShortPatience{0.9, 4};
 /// Iterations of a linear system. If it stalls with more than the share kFarBelow of its first
 /// residual, its errors contradict each other, and nothing is moved.
 inline constexpr Patience kSystemPatience{0.95, 60};
@@ -184,10 +170,8 @@ inline constexpr double kDirectGoal = 1e-5;
 /// In units of the tolerance: smaller errors are not solved for. Larger ones within the tolerance
 /// are, once, or they would grow until a later step had to remove them in one blow.
 inline constexpr double kNegligibleError = 1e-6;
-/// An attempt ends after this many solves, or if more than kMostStaleSolves in a row have not
-/// halved the least error before them. Two or three solves are usual.
-inline constexpr int kMostSolves = 60;
-inline constexpr int kMostStaleSolves = 4;
+/// Solves. Two or three are usual.
+inline constexpr Patience kDirectPatience{0.85, 4};
 /// The imbalance that does not count, in units of the tolerance; and the largest share of a motion
 /// that impulses may leave unexplained, beyond which it gains energy. Less rejects sheets that whip
 /// about in long steps.
@@ -200,9 +184,8 @@ inline constexpr std::size_t kMostBodies = 16;
 /// Compliance of a constraint at a body, as a share of the inverse masses of its ends. It replaces
 /// what is singular; its error is left to the next solve.
 inline constexpr double kBodyCompliance = 1e-8;
-/// The ratio of masses from which on the method with geometric stiffness is tried. It takes at most
-/// kMostStiffSolves solves, and fewer where the values of all factors would exceed kMostStiffWork.
-inline constexpr double kStiffRatio = 100;
+/// The method with geometric stiffness takes at most kMostStiffSolves solves, and fewer where the
+/// values of all factors would exceed kMostStiffWork.
 inline constexpr std::size_t kMostStiffSolves = 20000;
 inline constexpr std::size_t kMostStiffWork = 100000000;
 /// ns: the estimated times of a front, of a value that is assembled or passed on, and of a product.

@@ -23,7 +23,6 @@ struct PositionTask {
   double h = 0;                // s, of the substep
   bool along_start = false;    // impulses act along the directions at `start` (scheme rattle)
   bool first_round = true;     // contacts were found anew: accumulated impulses begin at 0
-  double share = 1;            // of the strain that the solver usually leaves: what it may leave
   int max_iterations = 1;
 };
 

@@ -26,10 +26,8 @@ bool is_a_chain(const Model& model) {
   return all - static_cast<double>(joined_particles(model)) <= tuning::kChainLoops * all;
 }
 
-bool is_of_ropes(const ConstraintStore& constraints) {
-  const std::size_t ropes = constraints.size() - constraints.bilateral;
-  return static_cast<double>(ropes) >
-         tuning::kRopesEach * static_cast<double>(constraints.bilateral);
+bool has_ropes(const ConstraintStore& constraints) {
+  return constraints.size() > constraints.bilateral;
 }
 
 std::size_t free_spheres(const Model& model) {
@@ -51,9 +49,7 @@ Solver solver_for(const Model& model, const Settings& settings) {
   const bool chain = is_a_chain(model);
   if (!chain && takes_small_steps(model, settings)) return Solver::small_steps;
   const bool few_bodies = free_spheres(model) <= tuning::kMostBodies;
-  const bool direct =
-      (chain && is_of_ropes(model.constraints)) || model.uneven.ratio >= tuning::kExtremeMasses;
-  return direct && few_bodies ? Solver::direct : Solver::yarn;
+  return chain && has_ropes(model.constraints) && few_bodies ? Solver::direct : Solver::yarn;
 }
 
 /// Small steps alone solve springs and bending.

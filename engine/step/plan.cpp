@@ -22,9 +22,8 @@ namespace {
 /// substeps, the largest of all constraints. What an edge turns by, all those behind it on its yarn
 /// are swung by: a yarn of many edges wants less.
 double bend_after_motion(State& s, Team& team) {
-  const tuning::Bend& may = s.settings.scheme == Scheme::rattle ? tuning::kRattleBend
-                            : s.yarn                            ? tuning::kYarnBend
-                                                                : tuning::kUsualBend;
+  const tuning::Bend& may =
+      s.settings.scheme == Scheme::rattle ? tuning::kRattleBend : tuning::kUsualBend;
   const auto share = [&](double strain, std::size_t particles_of_yarn) {
     return std::max(strain / may.most,
                     strain * static_cast<double>(particles_of_yarn) / may.longest);
@@ -87,9 +86,8 @@ double substeps_for_load(State& s, double dt) {
 /// A substep by yarns costs as much as some iterations besides its own: with fewer of them to each,
 /// max_iterations would not bound the time of a step.
 int most_substeps(const State& s) {
-  if (!s.yarn) return tuning::kMostExactSubsteps;
-  return std::clamp(s.settings.max_iterations / tuning::kLeastIterations, 1,
-                    tuning::kMostExactSubsteps);
+  if (!s.yarn) return tuning::kMostSubsteps;
+  return std::clamp(s.settings.max_iterations / tuning::kLeastIterations, 1, tuning::kMostSubsteps);
 }
 
 int substeps_wanted(State& s, double dt, Team& team) {

@@ -13,19 +13,6 @@
 namespace weft {
 namespace {
 
-bool is_exact(const State& s) {
-  return s.settings.solver == Solver::yarn || s.settings.solver == Solver::direct;
-}
-
-bool follows_a_far_longer_step(const State& s, double dt) {
-  return is_exact(s) && dt < tuning::kFarShorter * s.last_dt;
-}
-
-/// Of the strain that the solver usually leaves: what may be left before a step of dt.
-double share_before(const State& s, double dt) {
-  return follows_a_far_longer_step(s, dt) ? std::max(tuning::kLeastShare, dt / s.last_dt) : 1;
-}
-
 /// Springs that are out of shape are no error.
 double largest_rigid_strain(const State& s) {
   const ConstraintStore& store = s.model->constraints;
@@ -45,9 +32,8 @@ bool is_out_of_tolerance(State& s, Team& team) {
 
 }  // namespace
 
-bool needs_projection(State& s, double dt, bool jumped, Team& team) {
+bool needs_projection(State& s, bool jumped, Team& team) {
   if (s.settings.iterations > 0) return false;
-  if (follows_a_far_longer_step(s, dt)) return true;
   return (s.placed || jumped) && is_out_of_tolerance(s, team);
 }
 
@@ -65,7 +51,6 @@ void project(State& s, double dt, StepReport& report, Team& team) {
                             .start = s.position.view(),
                             .contacts = s.contacts,
                             .h = dt,
-                            .share = share_before(s, dt),
                             .max_iterations = s.small_steps ? std::max(1, most / 2) : most};
     const auto result = solve_positions(s, *s.solver, task, report, team);
     if (!result.converged && s.small_steps) {

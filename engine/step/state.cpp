@@ -92,7 +92,6 @@ void State::copy(const State& from) {
   placed = !same || from.placed;
   lost_energy = same ? from.lost_energy : 0;
   give_per_mass = same ? from.give_per_mass : 0;
-  last_dt = same ? from.last_dt : 0;
   refinement = same ? from.refinement : 0;
 }
 

@@ -62,7 +62,6 @@ struct State {
   bool placed = true;        // positions were given, not stepped to: they may violate constraints
   double lost_energy = 0;    // J, lately (energy.h)
   double give_per_mass = 0;  // s^2, of springs in the last step (measure/state_measure.h)
-  double last_dt = 0;        // of the last step; 0: none yet, or it did not converge
   double refinement = 0;     // where the next step's list of attempts begins: log2 of the parts
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots

@@ -77,7 +77,7 @@ class Step {
 
   /// Returns whether all of dt was done.
   bool run(double dt, bool jumped) {
-    if (needs_projection(s_, dt, jumped, team_)) {
+    if (needs_projection(s_, jumped, team_)) {
       transaction_.begin();
       project(s_, dt, report_, team_);
     }
@@ -87,7 +87,6 @@ class Step {
     }
     transaction_.commit();
     s_.placed = false;
-    s_.last_dt = report_.status == Status::converged ? dt : 0;
     const double needed = report_.halvings > 0 ? std::log2(parts_ / plan_.substeps) : 0;
     s_.refinement = std::max(needed, s_.refinement - tuning::kCoarsening);
     return true;

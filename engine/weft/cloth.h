@@ -156,9 +156,7 @@ class WEFT_API Cloth {
   /// is thrown and the state is unchanged. An error means that dt was refused. Meant for frames of
   /// 0.1 ms to 0.1 s: in shorter ones the rounding of yarns' floats shows up as velocity, and slows
   /// motion (rattle and velocity_correction undo that, direct works in double); the cost of longer
-  /// ones is limited by 256 automatic substeps and max_iterations. Before a step of less than an
-  /// eighth of the last one, positions are projected onto the constraints, velocities unchanged
-  /// (yarn, direct): what the last one left within tolerance would become speed.
+  /// ones is limited by 1024 automatic substeps and max_iterations.
   Result<StepReport> step(double dt);
 
   std::size_t particle_count() const;

@@ -30,7 +30,7 @@ namespace weft {
 ///   It alone solves springs (Constraint::compliance) and bending.
 /// automatic: by what the cloth is. small_steps for cloth, woven or a mesh, and for all springs.
 /// direct for chains of
-///   ropes, trees and bridges of them, and where masses are extremely unequal. yarn for all else:
+///   ropes, trees and bridges of them. yarn for all else:
 ///   cloth at a tolerance that small steps could not afford, with unequal masses or free spheres,
 ///   with scheme paper or rattle, or with velocity_correction. gauss_seidel on the reference
 ///   backend and with `iterations`. The thresholds are not part of the interface.

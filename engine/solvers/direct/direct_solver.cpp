@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/solvers/direct/direct_impulses.h"
 #include "engine/solvers/direct/direct_measure.h"
+#include "engine/solvers/stall.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -19,25 +19,6 @@ void copy(VectorsView from, VectorsView to, std::size_t n) {
   std::copy_n(from.y, n, to.y);
   std::copy_n(from.z, n, to.z);
 }
-
-/// Follows the largest error from solve to solve.
-class Progress {
- public:
-  /// Whether to go on after a measurement of the error `worst`.
-  bool goes_on(double worst) {
-    if (!std::isfinite(worst) || ++solves_ > tuning::kMostSolves) return false;
-    if (worst < 0.5 * best_) {
-      best_ = worst;
-      stale_ = 0;
-      return true;
-    }
-    return ++stale_ <= tuning::kMostStaleSolves;
-  }
-
- private:
-  double best_ = std::numeric_limits<double>::infinity();
-  int solves_ = 0, stale_ = 0;
-};
 
 }  // namespace
 
@@ -87,7 +68,7 @@ LoopResult DirectSolver::solve_from_start(const PositionTask& task) {
 /// Newton's method from x; with directions at `start`, the simplified Newton method.
 DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const ContactStore& contacts,
                                     int max_iterations, LoopResult& result) {
-  Progress progress;
+  Stall stall(tuning::kDirectPatience);
   const double goal = std::min(1.0, tuning::kDirectGoal / settings_.tolerance);
   bool solved = false;
   for (;;) {
@@ -96,7 +77,7 @@ DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const Cont
     if (worst <= tuning::kNegligibleError || (solved && worst <= goal))
       return DirectOutcome::converged;
     const bool within = worst <= 1;
-    if (!progress.goes_on(worst)) {
+    if (!std::isfinite(worst) || stall.has_stalled(worst)) {
       return within && start.x != nullptr ? DirectOutcome::converged : DirectOutcome::failed;
     }
     if (result.iterations >= max_iterations) {
@@ -147,14 +128,14 @@ DirectOutcome DirectSolver::iterate_velocities(VectorsView x, VectorsView v,
                                                const ContactStore& contacts, bool exact,
                                                int max_iterations, LoopResult& result) {
   const bool fixed = settings_.iterations > 0;
-  Progress progress;
+  Stall stall(tuning::kDirectPatience);
   for (;;) {
     const double worst = measure_velocities(system_, x, v, contacts);
     result.visits += system_.count();
     const bool wanted = exact && result.iterations == 0 && worst > tuning::kNegligibleError;
     if (!fixed && worst <= 1 && !wanted) return DirectOutcome::converged;
     if (fixed && result.iterations == settings_.iterations) return DirectOutcome::exhausted;
-    if (!fixed && !progress.goes_on(worst)) return DirectOutcome::failed;
+    if (!fixed && (!std::isfinite(worst) || stall.has_stalled(worst))) return DirectOutcome::failed;
     if (!fixed && result.iterations >= max_iterations) return DirectOutcome::exhausted;
     if (!solve(v, result)) return DirectOutcome::failed;
   }

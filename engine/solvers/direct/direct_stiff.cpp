@@ -37,7 +37,7 @@ int most_solves(const DirectLayout& layout) {
 }  // namespace
 
 DirectStiff::DirectStiff(const Model& model) {
-  if (model.uneven.ratio < tuning::kStiffRatio || !model.direct().bodies.empty() ||
+  if (model.uneven.ratio < tuning::kNearlyEqualMasses || !model.direct().bodies.empty() ||
       model.has_contacts())
     return;
   soft_.resize(model.slots());

@@ -79,7 +79,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   passes_.forget();
   pace_.begin(plan);
   touched_.clear();
-  if (plan.placed || h > tuning::kMostRatio * past_.h) past_.h = 0;
+  if (plan.placed || h > SubstepFormula::kLargestRatio * past_.h) past_.h = 0;
   last_ = 0;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     const double w = model_.inverse_mass[i];

@@ -218,7 +218,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   passes_.forget();
   bending_.begin(plan);
   touched_.clear();
-  if (plan.placed || plan.h > tuning::kMostRatio * past_.h) past_.h = 0;
+  if (plan.placed || plan.h > SubstepFormula::kLargestRatio * past_.h) past_.h = 0;
   split(x, plan.substeps, team);
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());

@@ -22,6 +22,9 @@ struct Table;
 
 /// BDF2 with the step before, or the first-order method (kernels/simd/small_steps.h).
 struct SubstepFormula {
+  /// 1 + sqrt(2): a substep that is more than so many times as long as the last one starts without
+  /// a past, for from there on the variable-step method is not zero-stable (Grigorieff 1983).
+  static constexpr double kLargestRatio = 2.414;
   double past = 0;  // c
   double part = 1;  // b
   static SubstepFormula of(Scheme scheme, double ratio) {

@@ -148,7 +148,7 @@ kernels::LoopResult YarnSolver::correct_velocities(const VelocityTask& task, Tea
   split(task.v, 0, team);
   const double tolerated = tuning::kSystemShare * settings_.velocity_tolerance;
   double goal = tolerated;
-  Stall stall(tuning::kVelocityPatience);
+  Stall stall(tuning::kShortPatience);
   for (bool solved = false;; solved = true) {
     const double worst = read_velocities(team);
     if (task.exact && !solved) goal = std::min(goal, tuning::kExactVelocity * worst);
@@ -201,9 +201,9 @@ void YarnSolver::begin(const PositionTask& task, Team& team) {
 /// With scheme rattle every block is solved once in a sweep: along the directions at the start
 /// further solves do not converge, and what a block that is left alone keeps appears as a gain of
 /// energy.
-YarnSolver::Aim YarnSolver::aim(double share) const {
+YarnSolver::Aim YarnSolver::aim() const {
   const bool rattle = settings_.scheme == Scheme::rattle;
-  const double wanted = spans_.holds() ? spans_.may_leave() : share * usual_;
+  const double wanted = spans_.holds() ? spans_.may_leave() : usual_;
   const double goal = rattle && !spans_.holds() ? std::min(wanted, tuning::kRattleGoal) : wanted;
   const double left = spans_.holds() ? spans_.solver_may_leave() : goal;
   const double block = tuning::kBlockShare * left;
@@ -231,8 +231,8 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
   begin(task, team);
   if (settings_.iterations > 0) return sweep_so_often(x, settings_.iterations, team);
   kernels::LoopResult result;
-  const Aim aim = this->aim(task.share);
-  Stall stall(from_start_ ? tuning::kRattlePatience : tuning::kYarnPatience);
+  const Aim aim = this->aim();
+  Stall stall(from_start_ ? tuning::kShortPatience : tuning::kYarnPatience);
   const auto look = [&] {
     const double strain = measure_.max_strain(
         x, team, [&](std::size_t first, std::size_t last) { join(x, first, last); });

@@ -72,7 +72,7 @@ class YarnSolver final : public ConstraintSolver {
     double block;   // a block with more is solved again at once
   };
   simd::Yarns yarns();
-  Aim aim(double share) const;
+  Aim aim() const;
   bool may_take_newton(const ContactStore& contacts) const;
   void begin(const PositionTask& task, Team& team);
   /// Sets base and u to the positions x.

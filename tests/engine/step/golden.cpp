@@ -50,7 +50,7 @@ constexpr Golden kGolden[] = {
     {Way::exact, "sphere_drop", 21, 40, false, 0x21e8b637d6e4e5b7},
     {Way::exact, "corners", 41, 20, false, 0x1287a0fb7e6335fc},
     {Way::exact, "banner", 21, 20, false, 0xa0eb7f2b5b9d5a74},
-    {Way::exact, "ropes", 33, 10, true, 0x114a6faad8f62392},
+    {Way::exact, "ropes", 33, 10, true, 0xa949244dd37813dc},
     {Way::exact, "random", 33, 10, false, 0xc6766fc95781ffdf},
     {Way::exact, "hub", 17, 6, true, 0x439aea5723cae410},
     {Way::automatic, "hang", 20, 40, false, 0xe2c986d3f98221cd},

@@ -354,7 +354,6 @@ TEST_CASE("a step that is refused leaves moved pins and written positions as the
   CHECK(length(cloth.velocity(1)) < 2);
 }
 
-// The steps before would have the start of one that is far shorter projected.
 TEST_CASE("a cloth that is put back where it began goes on like a new one, in a short step too") {
   SceneDescription scene = scene_of("hang", 12);
   for (Vec3& p : scene.positions) p.x *= 1.004;  // within tolerance

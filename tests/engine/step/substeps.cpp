@@ -48,9 +48,9 @@ void check_equal(const StepReport& report, const StepReport& expected) {
   CHECK(report.max_penetration == expected.max_penetration);
 }
 
-TEST_CASE("automatic substeps end at 256 a step") {
+TEST_CASE("automatic substeps end at 1024 a step") {
   Cloth cloth = cloth_of(scene_of("hang", 5), {});
-  CHECK(step(cloth, 100).substeps == 256);
+  CHECK(step(cloth, 100).substeps == 1024);
 }
 
 TEST_CASE("automatic substeps by yarns leave each at least eight of the step's iterations") {
