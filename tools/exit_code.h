@@ -6,7 +6,7 @@
 namespace weft::tools {
 
 inline constexpr int kDone = 0;
-inline constexpr int kCaseFailed = 1;       ///< a hard case
+inline constexpr int kCaseFailed = 1;       ///< a hard case, or a closed form
 inline constexpr int kRefused = 2;          ///< something given was refused
 inline constexpr int kMissedTolerance = 3;  ///< some step did not reach its tolerance
 

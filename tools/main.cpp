@@ -1,5 +1,6 @@
 /// The `weft` program. Its exit codes: exit_code.h.
 #include "tools/command_line.h"
+#include "tools/forms_command.h"
 #include "tools/hard_command.h"
 #include "tools/interrupt.h"
 #include "tools/paper_command.h"
@@ -19,5 +20,6 @@ int main(int argc, char** argv) {
   add_paper_command(line);
   add_hard_command(line);
   add_precision_command(line);
+  add_forms_command(line);
   return line.run(argc, argv);
 }

@@ -50,11 +50,11 @@ double share_of_decay(double rate, double h) {
   return rate > 0 ? -std::expm1(-rate * h) / (rate * h) : 1;
 }
 
-/// During h, of which forces act for the share q.
-Vector resisted_acceleration(const State& s, std::size_t slot, double q, double h) {
+/// During h, of which forces act for the share q, with the rate of decay c.
+Vector resisted_acceleration(const State& s, std::size_t slot, double c, double q, double h) {
   const Model& model = *s.model;
   const double w = model.inverse_mass[slot];
-  const Vector lost = model.damping.motion * s.velocity[slot];
+  const Vector lost = c * s.velocity[slot];
   Vector load = s.gravity - lost;
   if (s.force.size() > 0) load = load + w * s.force[slot];
   if (!model.has_air()) return q * (load + lost);
@@ -68,18 +68,18 @@ Vector resisted_acceleration(const State& s, std::size_t slot, double q, double 
 
 bool is_resisted(const Model& model) { return model.has_air() || model.damping.motion > 0; }
 
-void find_resistance(State& s, double h, Team& team) {
+void find_resistance(State& s, double c, double h, Team& team) {
   const Model& model = *s.model;
   if (model.has_air()) {
     team.for_each_part(
         model.air.triangles.size(), kStretch,
         [&](std::size_t first, std::size_t last) { find_resistances(s, first, last); });
   }
-  const double q = share_of_decay(model.damping.motion, h);
+  const double q = share_of_decay(c, h);
   team.for_each_part(model.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     for (std::size_t slot = first; slot < last; ++slot) {
       if (model.inverse_mass[slot] == 0) continue;
-      const Vector a = resisted_acceleration(s, slot, q, h);
+      const Vector a = resisted_acceleration(s, slot, c, q, h);
       s.total_force.set(slot, model.mass[slot] * (a - s.gravity));
     }
   });

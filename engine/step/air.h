@@ -1,4 +1,5 @@
-/// Forces that depend on velocities: of the air, and the decay of all motion.
+/// Forces that depend on velocities: of the air, and the decay of all motion. In small steps motion
+/// decays by itself (solvers/small_steps/small_steps.h): to them c is 0 here.
 ///
 /// They are found once where a time h begins and held during it: by small steps for a whole step,
 /// by the exact solvers for a substep. With v the mean velocity of its corners relative to the
@@ -33,8 +34,9 @@ namespace weft {
 
 /// Whether velocities cause forces.
 bool is_resisted(const Model& model);
-/// State::total_force during h from here on. Only where velocities cause forces.
-void find_resistance(State& s, double h, Team& team);
+/// State::total_force during h from here on, with the rate of decay c. Only where velocities cause
+/// forces.
+void find_resistance(State& s, double c, double h, Team& team);
 /// State::velocity, before h.
 void decay(State& s, double h);
 

@@ -124,7 +124,7 @@ class Step {
                         velocities_.left(attempt, report_.velocity_iterations)};
     bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
     if (is_resisted(*s_.model)) {
-      timed(report_, Stage::predict, [&] { resist(h); });
+      timed(report_, Stage::predict, [&] { resist(attempt, h); });
       is_predicted = false;
     }
     const Trial trial = attempt.method == Method::by_small_steps
@@ -137,15 +137,19 @@ class Step {
     return trial.outcome;
   }
 
-  void resist(double h) {
-    find_resistance(s_, h, team_);
-    if (s_.model->damping.motion == 0) return;
+  bool decays_before(const Attempt& attempt) const {
+    return s_.model->damping.motion > 0 && attempt.method != Method::by_small_steps;
+  }
+  void resist(const Attempt& attempt, double h) {
+    const bool decays = decays_before(attempt);
+    find_resistance(s_, decays ? s_.model->damping.motion : 0, h, team_);
+    if (!decays) return;
     s_.velocity_before_decay = s_.velocity;
     decay(s_, h);
   }
 
   void reject(const Attempt& attempt) {
-    if (s_.model->damping.motion > 0) std::swap(s_.velocity, s_.velocity_before_decay);
+    if (decays_before(attempt)) std::swap(s_.velocity, s_.velocity_before_decay);
     if (!attempt.is_last)
       ++(attempt.scheme == Scheme::rattle ? report_.scheme_fallbacks : report_.halvings);
   }

@@ -21,17 +21,17 @@ struct Flight {
 /// velocity):
 ///
 ///     v  += (x - x*) / last                        settled
-///     v*  = v + c (v - v_before) + b h a
+///     v*  = v + c (v - v_before) + push a                 push = b h; where motion decays less
 ///     x*  = x + c (x - x_before) + b h v*
 inline void settle(const Flight& f, std::size_t i, double last) {
   if (last > 0) f.v.set(i, f.v[i] + (1 / last) * (f.x[i] - f.predicted[i]));
   f.predicted.set(i, f.x[i]);
 }
 inline void advance(const Flight& f, std::size_t i, kernels::Vector a, double c, double bh,
-                    double last) {
+                    double push, double last) {
   settle(f, i, last);
   const kernels::Vector x = f.x[i], v = f.v[i];
-  const kernels::Vector v_next = v + c * (v - f.v_before[i]) + bh * a;
+  const kernels::Vector v_next = v + c * (v - f.v_before[i]) + push * a;
   const kernels::Vector x_next = x + c * (x - f.before[i]) + bh * v_next;
   f.before.set(i, x);
   f.v_before.set(i, v);

@@ -9,7 +9,8 @@
 ///     x* = x + c (x - x_before) + b h v*
 ///     c = r^2 / (1 + 2 r),   b = (1 + r) / (1 + 2 r)
 ///
-/// and with c = 0, b = 1 the implicit Euler method.
+/// and with c = 0, b = 1 the implicit Euler method. (Where motion decays a acts for a share of b h:
+/// engine/solvers/small_steps/small_steps.h.)
 #pragma once
 
 #include "kernels/simd/integrate.h"
@@ -33,12 +34,12 @@ template <class Work>
 void advance(const Flight& flight, const SubstepWeights& weights, std::size_t first,
              std::size_t last) {
   const Flight f = flight;  // Stores could be to what references lead to.
-  const Floats rate(weights.rate), c(weights.past), bh(weights.step);
+  const Floats rate(weights.rate), c(weights.past), bh(weights.step), push(weights.push);
   for_floats(
       first, last, [&](std::size_t i) __attribute__((always_inline)) {
         const Floats x = load(f.u + i), v = settled(f, i, rate);
         const Floats v_next =
-            fused(bh, load(f.acceleration + i), fused(c, v - load(f.v_before + i), v));
+            fused(push, load(f.acceleration + i), fused(c, v - load(f.v_before + i), v));
         const Floats x_next = fused(bh, v_next, fused(c, x - load(f.u_before + i), x));
         x.store_unaligned(f.u_before + i);
         v.store_unaligned(f.v_before + i);

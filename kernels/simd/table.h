@@ -229,6 +229,7 @@ struct Past {
 struct SubstepWeights {
   float past = 0;  // c, of what the last substep changed
   float step = 0;  // b h
+  float push = 0;  // b h, of which accelerations act for a share where motion decays
   float rate = 0;  // 1 / (b h) of the last substep
 };
 

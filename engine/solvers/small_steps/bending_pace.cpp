@@ -23,9 +23,9 @@ int BendingPace::next() {
   return done_++ == first + size / 2 ? size : 0;
 }
 
-reference::BendingVisit BendingPace::visit(int n, double bh) const {
+reference::BendingVisit BendingPace::visit(int n, double give) const {
   return {.own = 1 / omega_,
-          .rate = 1 / (n * bh * bh),
+          .rate = 1 / (n * give),
           .damping = damping_,
           .most = tuning::kMostBendingDamping / (n * h_)};
 }

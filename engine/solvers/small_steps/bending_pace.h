@@ -24,8 +24,8 @@ class BendingPace {
   void begin(const FramePlan& plan);
   /// n of the visit in the next substep; 0: there is none.
   int next();
-  /// With positions that move by bh^2 w f.
-  reference::BendingVisit visit(int n, double bh) const;
+  /// With positions that move by give w f.
+  reference::BendingVisit visit(int n, double give) const;
   /// 1/s^2. A visit in each substep is a spring of the compliance W (1 / omega - 1/2) (b h)^2 at
   /// least: an element has no more energy than that lets it have. Returns W over this compliance.
   double resolved(double bh) const { return 1 / ((1 / omega_ - 0.5) * bh * bh); }

@@ -39,8 +39,7 @@ ReferenceSmallSteps::Points ReferenceSmallSteps::points() {
 }
 
 LawStep ReferenceSmallSteps::law_step() const {
-  const double bh = formula_.part * h_;
-  return {{1 / (bh * bh), model_.damping.stretch / h_}, projects_};
+  return {{1 / formula_.give(h_), model_.damping.stretch / h_}, projects_};
 }
 
 double ReferenceSmallSteps::law_error() {
@@ -81,6 +80,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   touched_.clear();
   if (plan.placed || h > SubstepFormula::kLargestRatio * past_.h) past_.h = 0;
   last_ = 0;
+  const double push = h * decaying_share();
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     const double w = model_.inverse_mass[i];
     const Vector a = w == 0               ? Vector{0, 0, 0}
@@ -90,7 +90,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     x_.set(i, x[i]);
     v_.set(i, v[i]);
     if (past_.h == 0) {
-      v_before_.set(i, v[i] - h * a);
+      v_before_.set(i, v[i] - push * a);
       before_.set(i, x[i] - h * v[i] + (0.5 * h * h) * a);
       continue;
     }
@@ -98,25 +98,47 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     v_before_.set(i, past_.v_before[i] + jump);
     before_.set(i, x[i] - (past_.moved[i] + past_.h * jump));
   }
-  next_formula_ = SubstepFormula::of(settings_.scheme, past_.h > 0 ? h / past_.h : 1);
+  next_formula_ = formula_after(past_.h > 0 ? past_.h : h);
 }
 
 void ReferenceSmallSteps::advance(Team&) {
   stop_at_contacts();
   is_begun_ = false;
-  formula_ = std::exchange(next_formula_, SubstepFormula::of(settings_.scheme, 1));
+  formula_ = std::exchange(next_formula_, formula_after(h_));
+  if (formula_.left < 1) decay();
   const double bh = formula_.part * h_;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
-    reference::advance(flight(), i, acceleration_[i], formula_.past, bh, last_);
+    reference::advance(flight(), i, acceleration_[i], formula_.past, bh, bh * formula_.share,
+                       last_);
   }
   last_ = bh;
   bend();
 }
 
+SubstepFormula ReferenceSmallSteps::formula_after(double h_before) const {
+  return SubstepFormula::of(settings_.scheme, h_ / h_before)
+      .with_decay(model_.damping.motion, h_, h_before);
+}
+
+/// Of h, in which accelerations act in a flight.
+double ReferenceSmallSteps::decaying_share() const {
+  return SubstepFormula{}.with_decay(model_.damping.motion, h_, h_).share;
+}
+
+/// Of all velocities but those of pins.
+void ReferenceSmallSteps::decay() {
+  settle_velocities();
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    if (!is_free(i)) continue;
+    v_.set(i, formula_.left * v_[i]);
+    v_before_.set(i, formula_.left * v_before_[i]);
+  }
+}
+
 void ReferenceSmallSteps::bend() {
   const int n = pace_.next();
   if (n == 0) return;
-  const reference::BendingVisit visit = pace_.visit(n, last_);
+  const reference::BendingVisit visit = pace_.visit(n, formula_.give(h_));
   for (const std::uint32_t i : layout_.bending.element) {
     if (i == kNoIndex) continue;
     reference::bend(element(i), visit, model_.inverse_mass.data(), x_.view(), v_before_.view());
@@ -221,7 +243,7 @@ void ReferenceSmallSteps::stop_at_contacts() {
     const Vector a = acceleration_[i], v = (1 / h_) * (x_[i] - before_[i]);
     predicted_.set(i, x_[i]);
     v_.set(i, v);
-    v_before_.set(i, v - h_ * a);
+    v_before_.set(i, v - h_ * decaying_share() * a);
     before_.set(i, x_[i] - h_ * v + (0.5 * h_ * h_) * a);
   }
   touched_.clear();
@@ -235,6 +257,10 @@ void ReferenceSmallSteps::read_positions(kernels::VectorsView x, Team&) const {
 
 void ReferenceSmallSteps::settle(Team&) {
   stop_at_contacts();
+  settle_velocities();
+}
+
+void ReferenceSmallSteps::settle_velocities() {
   for (std::size_t i = 0; i < model_.slots(); ++i) reference::settle(flight(), i, last_);
   last_ = 0;
 }

@@ -56,6 +56,11 @@ class ReferenceSmallSteps final : public SmallSteps {
   LawStep law_step() const;
   reference::Flight flight();
   bool is_free(std::size_t slot) const { return model_.inverse_mass[slot] > 0; }
+  /// Of a substep of h_ after one of h_before.
+  SubstepFormula formula_after(double h_before) const;
+  double decaying_share() const;
+  void decay();
+  void settle_velocities();
   void bend();
   reference::BendingElement element(std::uint32_t i) const {
     const BendingStore& s = model_.bending;

@@ -42,10 +42,10 @@ void SimdBending::measure_base(const float* base, Team& team) {
   });
 }
 
-void SimdBending::bend(float* u, const float* v, double bh, Team& team) {
+void SimdBending::bend(float* u, const float* v, double give, Team& team) {
   const int n = layout_.empty() ? 0 : pace_.next();
   if (n == 0) return;
-  const reference::BendingVisit visit = pace_.visit(n, bh);
+  const reference::BendingVisit visit = pace_.visit(n, give);
   simd::Bending bending = arrays(u);
   bending.v = v;
   bending.own = to_float(visit.own);

@@ -14,10 +14,10 @@ class SimdBending {
   void begin(const FramePlan& plan) { pace_.begin(plan); }
   /// Of a new base.
   void measure_base(const float* base, Team& team);
-  /// After the prediction of a substep whose positions move by bh^2 w f; v: the velocity in its
+  /// After the prediction of a substep whose positions move by give w f; v: the velocity in its
   /// beginning.
-  void bend(float* u, const float* v, double bh, Team& team);
-  /// J, with positions at base + u, of substeps as above.
+  void bend(float* u, const float* v, double give, Team& team);
+  /// J, with positions at base + u, of substeps of b h.
   double energy(float* u, double bh, Team& team);
   std::size_t bytes() const;
 

@@ -84,8 +84,7 @@ SmallStepsSolver::Points SmallStepsSolver::points(double share) {
 }
 
 LawStep SmallStepsSolver::law_step() const {
-  const double bh = formula_.part * h_;
-  return {{1 / (bh * bh), model_.damping.stretch / h_}, projects_};
+  return {{1 / formula_.give(h_), model_.damping.stretch / h_}, projects_};
 }
 
 double SmallStepsSolver::law_error() {
@@ -169,9 +168,9 @@ void SmallStepsSolver::write_acceleration(kernels::Vector gravity, kernels::Vect
 /// Without a past the particles are taken to have been in free flight.
 void SmallStepsSolver::begin_past(Team& team) {
   if (past_.h == 0) {
-    const auto h = static_cast<float>(h_);
+    const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
     for (std::size_t i = 0; i < layout_.floats; ++i) {
-      v_before_[i] = v_[i] - h * acceleration_[i];
+      v_before_[i] = v_[i] - push * acceleration_[i];
       u_before_[i] = u_[i] - h * v_[i] + 0.5f * h * h * acceleration_[i];
       predicted_[i] = u_[i];
     }
@@ -225,7 +224,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   });
   write_acceleration(gravity, force);
   begin_past(team);
-  next_formula_ = SubstepFormula::of(settings_.scheme, past_.h > 0 ? h_ / past_.h : 1);
+  next_formula_ = formula_after(past_.h > 0 ? past_.h : h_);
   weights_.rate = 0;
 }
 
@@ -251,14 +250,46 @@ void SmallStepsSolver::advance(Team& team) {
     since_renewal_ = 1;
     renew_base(team);
   }
-  formula_ = std::exchange(next_formula_, SubstepFormula::of(settings_.scheme, 1));
+  formula_ = std::exchange(next_formula_, formula_after(h_));
+  if (formula_.left < 1) decay(team);
   weights_.past = static_cast<float>(formula_.past);
   weights_.step = static_cast<float>(formula_.part * h_);
+  weights_.push = static_cast<float>(formula_.part * h_ * formula_.share);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     table_.advance(flight(), weights_, first, last);
   });
   weights_.rate = static_cast<float>(1 / (formula_.part * h_));
-  bending_.bend(u_.data(), v_before_.data(), formula_.part * h_, team);
+  bending_.bend(u_.data(), v_before_.data(), formula_.give(h_), team);
+}
+
+SubstepFormula SmallStepsSolver::formula_after(double h_before) const {
+  return SubstepFormula::of(settings_.scheme, h_ / h_before)
+      .with_decay(model_.damping.motion, h_, h_before);
+}
+
+/// Of h, in which accelerations act in a flight.
+double SmallStepsSolver::decaying_share() const {
+  return SubstepFormula{}.with_decay(model_.damping.motion, h_, h_).share;
+}
+
+/// Of all velocities but those of pins.
+void SmallStepsSolver::decay(Team& team) {
+  settle_velocities(team);
+  const auto left = static_cast<float>(formula_.left);
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      v_[i] *= left;
+      v_before_[i] *= left;
+    }
+  });
+  const YarnPlaces& places = layout_.places();
+  for (const std::uint32_t pin : model_.pins) {
+    std::size_t at = places.of(pin);
+    for (int axis = 0; axis < 3; ++axis, at += places.stride) {
+      v_[at] /= left;
+      v_before_[at] /= left;
+    }
+  }
 }
 
 void SmallStepsSolver::sweep(Team& team) {
@@ -409,13 +440,13 @@ void SmallStepsSolver::stop_at_contacts() {
 
 void SmallStepsSolver::stop_at_contact(std::uint32_t slot) {
   if (model_.inverse_mass[slot] == 0) return;
-  const auto h = static_cast<float>(h_);
+  const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
   std::size_t at = layout_.places().of(slot);
   for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
     const float a = acceleration_[at], v = (u_[at] - u_before_[at]) / h;
     predicted_[at] = u_[at];
     v_[at] = v;
-    v_before_[at] = v - h * a;
+    v_before_[at] = v - push * a;
     u_before_[at] = u_[at] - h * v + 0.5f * h * h * a;
   }
 }
@@ -426,6 +457,10 @@ double SmallStepsSolver::bending_energy(Team& team) {
 
 void SmallStepsSolver::settle(Team& team) {
   stop_at_contacts();
+  settle_velocities(team);
+}
+
+void SmallStepsSolver::settle_velocities(Team& team) {
   for_floats(team, [&](std::size_t first, std::size_t last) {
     table_.settle(flight(), weights_.rate, first, last);
   });

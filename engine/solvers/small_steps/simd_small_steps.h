@@ -70,6 +70,11 @@ class SmallStepsSolver final : public SmallSteps {
   simd::Yarns yarns();
   void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
   void begin_past(Team& team);
+  /// Of a substep of h_ after one of h_before.
+  SubstepFormula formula_after(double h_before) const;
+  double decaying_share() const;
+  void decay(Team& team);
+  void settle_velocities(Team& team);
   void split(kernels::VectorsView x, int substeps, Team& team);
   void measure_base(Team& team);
   void renew_base(Team& team);

@@ -5,6 +5,7 @@
 
 #include <weft/weft.h>
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 
@@ -21,16 +22,31 @@ struct Table;
 }
 
 /// BDF2 with the step before, or the first-order method (kernels/simd/small_steps.h).
+///
+/// Where motion decays by the rate r (Damping::motion) a substep begins with v <- left v, and with
+/// the same for v_before; that of the next substep is the v of this one after that. left is e^(-r
+/// h). Accelerations and the impulses of constraints act for the same share of b h, so that what
+/// hangs at rest is stretched and bent by its whole weight; and the share is that with which what
+/// falls keeps the velocity a / r.
 struct SubstepFormula {
   /// 1 + sqrt(2): a substep that is more than so many times as long as the last one starts without
   /// a past, for from there on the variable-step method is not zero-stable (Grigorieff 1983).
   static constexpr double kLargestRatio = 2.414;
-  double past = 0;  // c
-  double part = 1;  // b
+  double past = 0;   // c
+  double part = 1;   // b
+  double left = 1;   // of velocities
+  double share = 1;  // of b h, in which accelerations act
   static SubstepFormula of(Scheme scheme, double ratio) {
     if (scheme != Scheme::bdf2) return {};
     return {ratio * ratio / (1 + 2 * ratio), (1 + ratio) / (1 + 2 * ratio)};
   }
+  SubstepFormula with_decay(double rate, double h, double h_before) const {
+    if (rate == 0) return *this;
+    const double lost = -std::expm1(-rate * h), lost_before = -std::expm1(-rate * h_before);
+    return {past, part, 1 - lost, (lost - past * (1 - lost) * lost_before) / (rate * part * h)};
+  }
+  /// (b h)^2 over the mass is what a constant force moves a particle by.
+  double give(double h) const { return part * h * (part * h) * share; }
 };
 
 /// What a step is done in.

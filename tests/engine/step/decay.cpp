@@ -67,6 +67,26 @@ TEST_CASE("what falls reaches g / c, whatever the step") {
   }
 }
 
+TEST_CASE("what hangs on a spring comes to rest under its whole weight") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0, -1, 0}};
+  scene.masses = {1, 0.2};
+  scene.fixed = {0};
+  scene.constraints = {{0, 1, 1, ConstraintKind::distance, 0.01}};  // 2 cm under 2 N
+  for (const Backend backend : kBackends) {
+    for (const Scheme scheme : {Scheme::implicit, Scheme::bdf2}) {
+      for (const double rate : {1., 20., 200.}) {
+        CAPTURE(name(scheme));
+        CAPTURE(rate);
+        scene.damping.motion = rate;
+        Cloth cloth = cloth_of(scene, {.tolerance = 1e-6, .scheme = scheme, .backend = backend});
+        run(cloth, 1. / 60, rate == 1 ? 1200 : 120);
+        CHECK(-1 - cloth.position(1).y == doctest::Approx(0.02).epsilon(1e-3));
+      }
+    }
+  }
+}
+
 TEST_CASE("a sheet that swings loses energy, the faster the larger the rate") {
   for (const Solver solver : kSolvers) {
     CAPTURE(name(solver));

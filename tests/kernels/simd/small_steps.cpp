@@ -64,19 +64,20 @@ struct ReferenceFlight {
 
 TEST_CASE("advance and settle are the formulas in double, rounded") {
   const double ratio = 1.3, c = ratio * ratio / (1 + 2 * ratio);
-  const double bh = (1 + ratio) / (1 + 2 * ratio) * kH, last = 0.8 * kH;
+  const double bh = (1 + ratio) / (1 + 2 * ratio) * kH, push = 0.9 * bh, last = 0.8 * kH;
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
     const simd::Table& table = simd::table(isa);
     const Flying start;
     Flying f, settled;
     table.advance(f.flight(),
-                  {static_cast<float>(c), static_cast<float>(bh), static_cast<float>(1 / last)}, 0,
-                  kCount);
+                  {static_cast<float>(c), static_cast<float>(bh), static_cast<float>(push),
+                   static_cast<float>(1 / last)},
+                  0, kCount);
     table.settle(settled.flight(), static_cast<float>(1 / last), 0, kCount);
     for (std::size_t i = 0; i < kCount; ++i) {
       ReferenceFlight expected(start, i), still(start, i);
-      reference::advance(expected.flight, 0, {at(start.a, i), 0, 0}, c, bh, last);
+      reference::advance(expected.flight, 0, {at(start.a, i), 0, 0}, c, bh, push, last);
       reference::settle(still.flight, 0, last);
       CHECK(std::abs(at(f.u, i) - expected.flight.x.x[0]) < 3e-9);
       CHECK(f.predicted[i] == f.u[i]);
@@ -96,7 +97,8 @@ TEST_CASE("what is not moved stays to the last bit: the spare float of a quad, a
     for (auto* array : {&f.v, &f.v_before, &f.a}) std::ranges::fill(*array, 0.f);
     f.before = f.predicted = f.u;
     const auto u = f.u;
-    for (int k = 0; k < 100; ++k) table.advance(f.flight(), {1.f / 3, 7e-4f, 1500}, 0, kCount);
+    for (int k = 0; k < 100; ++k)
+      table.advance(f.flight(), {1.f / 3, 7e-4f, 7e-4f, 1500}, 0, kCount);
     CHECK(f.u == u);
   }
 }
