@@ -216,6 +216,10 @@ const SimdLayout& Model::simd() const {
   return simd_.get([this] { return make_simd_layout(*this); });
 }
 
+const ChunkNeighbours& Model::chunk_neighbours() const {
+  return chunk_neighbours_.get([this] { return find_chunk_neighbours(simd()); });
+}
+
 const DirectLayout& Model::direct() const {
   return direct_.get([this] { return make_direct_layout(*this); });
 }
@@ -251,8 +255,8 @@ std::size_t Model::bytes() const {
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bending.bytes() +
          bytes_of(air.triangles) + air.at.bytes() + bytes_if_made(reference_) +
-         bytes_if_made(simd_) + bytes_if_made(pulls_) + bytes_if_made(direct_) +
-         bytes_if_made(yarns_) + bytes_if_made(small_steps_);
+         bytes_if_made(simd_) + bytes_if_made(chunk_neighbours_) + bytes_if_made(pulls_) +
+         bytes_if_made(direct_) + bytes_if_made(yarns_) + bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

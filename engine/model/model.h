@@ -108,6 +108,7 @@ class Model {
   /// What each backend or solver needs besides; made when first asked for, by whichever thread.
   const ReferenceLayout& reference() const;
   const SimdLayout& simd() const;
+  const ChunkNeighbours& chunk_neighbours() const;
   const PullLayout& pulls() const;
   const DirectLayout& direct() const;
   const YarnLayout& yarns() const;
@@ -130,6 +131,7 @@ class Model {
   std::vector<std::uint64_t> joined_;  // a sphere, and who is joined to it, in order
   OnDemand<ReferenceLayout> reference_;
   OnDemand<SimdLayout> simd_;
+  OnDemand<ChunkNeighbours> chunk_neighbours_;
   OnDemand<PullLayout> pulls_;
   OnDemand<DirectLayout> direct_;
   OnDemand<YarnLayout> yarns_;
