@@ -45,10 +45,10 @@ bool is_out_of_tolerance(State& s, Team& team) {
 
 }  // namespace
 
-bool needs_projection(State& s, double dt, bool jumped, Team& team) {
+bool needs_projection(State& s, double dt, Team& team) {
   if (s.settings.iterations > 0) return false;
   if (follows_a_far_longer_step(s, dt)) return true;
-  return (s.placed || jumped) && is_out_of_tolerance(s, team);
+  return (s.placed || s.displaced) && is_out_of_tolerance(s, team);
 }
 
 void project(State& s, double dt, StepReport& report, Team& team) {

@@ -5,11 +5,12 @@
 
 namespace weft {
 
-/// Whether the start is out of tolerance because positions were given, or pins have jumped; or
-/// because it comes from a step that was far longer than dt: what that left within tolerance, an
-/// error e, would come back as speed, e / dt. The paper's loop leaves errors of up to the tolerance
-/// in every step, and small steps release them slowly: for these a far shorter step is none.
-bool needs_projection(State& s, double dt, bool jumped, Team& team);
+/// Whether the start is out of tolerance because positions were given, pins were put down, or the
+/// model has changed; or because it comes from a step that was far longer than dt: what that left
+/// within tolerance, an error e, would come back as speed, e / dt. The paper's loop leaves errors
+/// of up to the tolerance in every step, and small steps release them slowly: for these a far
+/// shorter step is none.
+bool needs_projection(State& s, double dt, Team& team);
 
 /// Moves the positions onto the constraints and leaves the velocities. What cannot be put right
 /// with half of the iterations that a step may take is left to the step, and to its status. Small

@@ -58,6 +58,7 @@ class SmallStepsSolver final : public SmallSteps {
   /// The frame becomes the past of the next one. Without this the one before stays.
   void keep(Team& team) override;
   void take_past(const SmallSteps& from) override;
+  void go_on_from(const SmallSteps& from, kernels::VectorsView v, kernels::Vector gravity) override;
   void forget_past() override { past_.h = 0; }
 
   std::size_t bytes() const override;
@@ -70,6 +71,7 @@ class SmallStepsSolver final : public SmallSteps {
   simd::Yarns yarns();
   void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
   void begin_past(Team& team);
+  void write_past(std::uint32_t slot, const ParticlePast& past);
   void split(kernels::VectorsView x, int substeps, Team& team);
   void measure_base(Team& team);
   void renew_base(Team& team);
@@ -92,6 +94,8 @@ class SmallStepsSolver final : public SmallSteps {
   LocalPasses passes_;
   SimdBending bending_;
   SmallStepsPast past_;
+
+  bool has_past_ = false;  // past_ is that of the present frame
 
   double h_ = 0, omega_ = 1;
   simd::SubstepWeights weights_;
