@@ -5,7 +5,9 @@
 #include "engine/contacts/contacts.h"
 #include "engine/isa.h"
 #include "engine/measure/state_measure.h"
+#include "engine/model/change.h"
 #include "engine/model/validate.h"
+#include "engine/model/validation.h"
 #include "engine/step/choose_solver.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"
@@ -40,11 +42,46 @@ void hash_bits(std::uint64_t& hash, const Model& model, const kernels::Vectors& 
   }
 }
 
+bool is_empty(const Changes& changes) {
+  return changes.fix.empty() && changes.release.empty() && changes.masses.empty() &&
+         changes.rest_lengths.empty() && changes.compliances.empty();
+}
+
+/// What is used for a model: asked is valid in itself, and its isa is chosen.
+Result<Settings> resolve(const Settings& asked, const Model& model) {
+  if (asked.backend == Backend::simd) {
+    if (auto valid = validate_for_lanes(asked, model); !valid) return Error{valid.error()};
+  }
+  Settings resolved = asked;
+  resolved.velocity_correction |= asked.scheme == Scheme::rattle;
+  choose_solver(model, resolved);
+  if (auto valid = validate_for_solver(resolved, model); !valid) return Error{valid.error()};
+  return resolved;
+}
+
 }  // namespace
 
 struct Cloth::Impl : State {
-  using State::State;
+  const Settings asked;
+
+  Impl(std::shared_ptr<const Model> shared, const Settings& wanted, const Settings& resolved)
+      : State(std::move(shared), resolved), asked(wanted) {}
+  /// A new state of the model by what is asked for of this one.
+  Result<std::unique_ptr<Impl>> of(const std::shared_ptr<const Model>& other) const {
+    auto resolved = resolve(asked, *other);
+    if (!resolved) return Error{resolved.error()};
+    return std::make_unique<Impl>(other, asked, resolved.value());
+  }
   std::uint32_t slot(std::uint32_t particle) const { return model->ordering.slot_of[particle]; }
+  /// Of a fixed particle that is to be moved.
+  Result<std::uint32_t> pin_slot(std::uint32_t particle, Vec3 to) const {
+    if (auto r = validate_particle("particle", particle, model->particles); !r)
+      return Error{r.error()};
+    if (model->inverse_mass[slot(particle)] != 0)
+      return refuse("particle", "is not fixed", std::to_string(particle));
+    if (auto r = validate_vector("position", particle, to); !r) return Error{r.error()};
+    return slot(particle);
+  }
 };
 
 Cloth::Cloth(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -57,31 +94,42 @@ Result<Cloth> Cloth::create(std::shared_ptr<const Model> model, const Settings& 
   if (auto valid = validate(settings); !valid) return Error{valid.error()};
   auto isa = resolve(settings.isa);
   if (!isa) return Error{isa.error()};
-  if (settings.backend == Backend::simd) {
-    if (auto valid = validate_for_lanes(settings, *model); !valid) {
-      return Error{valid.error()};
-    }
-  }
-  Settings resolved = settings;
-  resolved.isa = isa.value();
-  resolved.velocity_correction |= settings.scheme == Scheme::rattle;
-  choose_solver(*model, resolved);
-  if (auto valid = validate_for_solver(resolved, *model); !valid) return Error{valid.error()};
-  return Cloth(std::make_unique<Impl>(std::move(model), resolved));
+  Settings asked = settings;
+  asked.isa = isa.value();
+  auto resolved = resolve(asked, *model);
+  if (!resolved) return Error{resolved.error()};
+  return Cloth(std::make_unique<Impl>(std::move(model), asked, resolved.value()));
 }
 
 Cloth Cloth::clone() const {
-  Cloth copy(std::make_unique<Impl>(impl_->model, impl_->settings));
+  Cloth copy(std::make_unique<Impl>(impl_->model, impl_->asked, impl_->settings));
   copy.impl_->copy(*impl_);
   return copy;
 }
 
 Result<void> Cloth::copy_state(const Cloth& from) {
-  if (from.impl_->model != impl_->model) {
+  if (from.impl_->model == impl_->model) {
+    impl_->copy(*from.impl_);
+    return {};
+  }
+  if (!are_related(*from.impl_->model, *impl_->model)) {
     return Error{"from: is a cloth of another model (" + std::to_string(from.particle_count()) +
                  " particles)"};
   }
-  impl_->copy(*from.impl_);
+  auto changed = impl_->of(from.impl_->model);
+  if (!changed) return Error{changed.error()};
+  changed.value()->copy(*from.impl_);
+  impl_ = std::move(changed).value();
+  return {};
+}
+
+Result<void> Cloth::change(const Changes& changes) {
+  if (auto valid = validate(changes, *impl_->model); !valid) return valid;
+  if (is_empty(changes)) return {};
+  auto changed = impl_->of(weft::changed(*impl_->model, changes));
+  if (!changed) return Error{changed.error()};
+  changed.value()->go_on_from(*impl_);
+  impl_ = std::move(changed).value();
   return {};
 }
 
@@ -168,17 +216,19 @@ Result<void> Cloth::set_wind(Vec3 wind) {
 }
 
 Result<void> Cloth::move_fixed(std::uint32_t particle, Vec3 position) {
-  if (particle >= particle_count()) {
-    return Error{"particle: no such particle, the scene has " + std::to_string(particle_count()) +
-                 " (" + std::to_string(particle) + ")"};
-  }
-  const std::uint32_t slot = impl_->slot(particle);
-  if (impl_->model->inverse_mass[slot] != 0) {
-    return Error{"particle: is not fixed (" + std::to_string(particle) + ")"};
-  }
-  if (auto r = validate_vector("position", particle, position); !r) return r;
+  const auto slot = impl_->pin_slot(particle, position);
+  if (!slot) return Error{slot.error()};
   impl_->pins.watch(*impl_->model, impl_->position);
-  impl_->position.set(slot, to_internal(position));
+  impl_->position.set(slot.value(), to_internal(position));
+  return {};
+}
+
+Result<void> Cloth::place_fixed(std::uint32_t particle, Vec3 position) {
+  const auto slot = impl_->pin_slot(particle, position);
+  if (!slot) return Error{slot.error()};
+  impl_->pins.put_down(slot.value(), to_internal(position));
+  impl_->position.set(slot.value(), to_internal(position));
+  impl_->displaced = true;
   return {};
 }
 

@@ -79,14 +79,20 @@ MovedPins::MovedPins(std::span<const PinMove> moves, const Cloth& cloth) : moves
   }
 }
 
+Result<void> MovedPins::place(Cloth& cloth) const { return put(cloth, 0, &Cloth::place_fixed); }
+
 Result<void> MovedPins::send(Cloth& cloth, double time) const {
+  return put(cloth, time, &Cloth::move_fixed);
+}
+
+Result<void> MovedPins::put(Cloth& cloth, double time, Put how) const {
   for (std::size_t m = 0; m < moves_.size(); ++m) {
     const PinMove& move = moves_[m];
     const Pose now = pose_at(move, time);
     for (std::size_t k = 0; k < move.particles.size(); ++k) {
-      const Vec3 to = place(move, now, from_[m][k]);
+      const Vec3 to = tools::place(move, now, from_[m][k]);
       if (to == cloth.position(move.particles[k])) continue;
-      if (auto sent = cloth.move_fixed(move.particles[k], to); !sent) return sent;
+      if (auto done = (cloth.*how)(move.particles[k], to); !done) return done;
     }
   }
   return {};

@@ -34,11 +34,16 @@ Vec3 place_at(const PinMove& move, double time, Vec3 without);
 class MovedPins {
  public:
   MovedPins(std::span<const PinMove> moves, const Cloth& cloth);
+  /// Puts those that do not stand where they are at time 0 down there, with Cloth::place_fixed.
+  Result<void> place(Cloth& cloth) const;
   /// Sends those whose place changes to where they are at `time`, with Cloth::move_fixed. Its error
   /// is that of the first that is refused.
   Result<void> send(Cloth& cloth, double time) const;
 
  private:
+  using Put = Result<void> (Cloth::*)(std::uint32_t particle, Vec3 position);
+  Result<void> put(Cloth& cloth, double time, Put how) const;
+
   std::span<const PinMove> moves_;
   std::vector<std::vector<Vec3>> from_;  // of each move, of each particle
 };

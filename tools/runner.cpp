@@ -102,6 +102,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   Cloth& cloth = created.value();
 
   const MovedPins pins(plan.moves, cloth);
+  if (auto placed = pins.place(cloth); !placed) return Error{placed.error()};
   RunSummary summary;
   Errors errors;
   summary.energy_start = cloth.energy().total();

@@ -37,8 +37,8 @@
 ///   }
 ///
 /// Between two times translations and rotation vectors are linear; before the first and after the
-/// last pins stand still. Where the first pose differs from "positions" they jump to it in the
-/// first frame.
+/// last pins stand still. Where the pose at time 0 differs from "positions" they are placed in it
+/// before the first frame, and the cloth follows without becoming fast.
 ///
 /// (Comments are not allowed in a real file.) Unknown keys are refused, and keys that are given
 /// twice. An error names the place in the file, like "constraints[3][2]". Numbers survive writing

@@ -13,6 +13,8 @@ std::size_t bytes_if_made(const OnDemand<Layout>& layout) {
   return layout.if_made() != nullptr ? layout.if_made()->bytes() : 0;
 }
 
+std::size_t bytes_of_bits(const std::vector<bool>& bits) { return bits.capacity() / 8; }
+
 std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
 
 }  // namespace
@@ -38,9 +40,11 @@ struct Model::Draft {
   bool is_at_hub(const Constraint& c) const { return hub[c.a] || hub[c.b]; }
 };
 
-Model::Model(const SceneDescription& description) : particles(description.positions.size()) {
+Model::Model(const SceneDescription& description, const Model* like)
+    : particles(description.positions.size()),
+      origin(like != nullptr ? like->origin : std::make_shared<const int>(0)) {
   Draft draft(description);
-  order_particles(draft);
+  order_particles(draft, like);
   store_particles(draft);
   store_constraints(draft);
   store_bending(description);
@@ -54,15 +58,24 @@ Model::Model(const SceneDescription& description) : particles(description.positi
   find_joined();
 }
 
-/// Constraints at hubs take no part: they are solved one after the other anyway.
-void Model::order_particles(Draft& draft) {
+/// Constraints at hubs take no part: they are solved one after the other anyway. The ordering
+/// depends on positions and links alone: where the same constraints are inert it is the same.
+void Model::order_particles(Draft& draft, const Model* like) {
   const SceneDescription& d = draft.description;
   std::vector<Link> links;
   for (std::uint32_t i = 0; i < d.constraints.size(); ++i) {
     const Constraint& c = d.constraints[i];
+    if (draft.is_inert(c)) inert.constraints.push_back({i, c});
     if (draft.is_inert(c) || draft.is_at_hub(c)) continue;
     links.push_back({c.a, c.b, c.kind});
     draft.described_link.push_back(i);
+  }
+  const auto described = [](const auto& entry) { return entry.described; };
+  if (like != nullptr &&
+      std::ranges::equal(like->inert.constraints, inert.constraints, {}, described, described)) {
+    ordering = like->ordering;
+    spare_slots = like->spare_slots;
+    return;
   }
   ordering = order(d.positions, links);
   spare_slots = static_cast<std::uint32_t>(ordering.slots());
@@ -105,20 +118,23 @@ void Model::store_constraints(const Draft& draft) {
   constraints.bilateral = constraints.size();
   store_batches(draft, ConstraintKind::rope);
   store_hubs(draft, ConstraintKind::rope);
-  inert_constraints = draft.description.constraints.size() - constraints.size();
   if (std::ranges::all_of(constraints.compliance, [](double c) { return c == 0; })) {
     constraints.compliance = {};
   }
 }
 
 void Model::store_bending(const SceneDescription& d) {
-  for (const BendingElement& element : d.bending) {
+  for (std::uint32_t k = 0; k < d.bending.size(); ++k) {
+    const BendingElement& element = d.bending[k];
     std::array<std::uint32_t, 4> slots{};
     for (std::size_t i = 0; i < 4; ++i) {
       const std::uint32_t particle = element.particles[i];
       slots[i] = particle == kNoIndex ? slots[2] : ordering.slot_of[particle];
     }
-    if (std::ranges::all_of(slots, [&](std::uint32_t s) { return inverse_mass[s] == 0; })) continue;
+    if (std::ranges::all_of(slots, [&](std::uint32_t s) { return inverse_mass[s] == 0; })) {
+      inert.bending.push_back({k, element});
+      continue;
+    }
     bending.slots.push_back(slots);
     bending.weights.push_back(element.weights);
     bending.rest.push_back(element.rest);
@@ -201,6 +217,7 @@ void Model::append(const Constraint& c, std::uint32_t described, std::uint32_t a
   s.effective_mass.push_back(1 / (inverse_mass[a] + inverse_mass[b]));
   s.compliance.push_back(c.compliance);
   s.colour.push_back(kNoIndex);
+  s.turned.push_back(ordering.particle_at[a] != c.a);
   s.described.push_back(described);
   s.slot.push_back(kNoIndex);
 }
@@ -214,6 +231,10 @@ const PullLayout& Model::pulls() const {
 }
 const SimdLayout& Model::simd() const {
   return simd_.get([this] { return make_simd_layout(*this); });
+}
+
+const ChunkNeighbours& Model::chunk_neighbours() const {
+  return chunk_neighbours_.get([this] { return find_chunk_neighbours(simd()); });
 }
 
 const DirectLayout& Model::direct() const {
@@ -242,17 +263,19 @@ std::size_t BendingStore::bytes() const {
 std::size_t ConstraintStore::bytes() const {
   return bytes_of(a) + bytes_of(b) + bytes_of(rest_length) + bytes_of(effective_mass) +
          bytes_of(compliance) + bytes_of(colour) + bytes_of(described) + bytes_of(slot) +
-         bytes_of(hub_distances) + bytes_of(hub_ropes);
+         bytes_of(hub_distances) + bytes_of(hub_ropes) + bytes_of_bits(turned);
 }
+
+std::size_t InertStore::bytes() const { return bytes_of(constraints) + bytes_of(bending); }
 
 std::size_t Model::bytes() const {
   return initial_position.bytes() + initial_velocity.bytes() + bytes_of(mass) +
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bending.bytes() +
-         bytes_of(air.triangles) + air.at.bytes() + bytes_if_made(reference_) +
-         bytes_if_made(simd_) + bytes_if_made(pulls_) + bytes_if_made(direct_) +
-         bytes_if_made(yarns_) + bytes_if_made(small_steps_);
+         inert.bytes() + bytes_of(air.triangles) + air.at.bytes() + bytes_if_made(reference_) +
+         bytes_if_made(simd_) + bytes_if_made(chunk_neighbours_) + bytes_if_made(pulls_) +
+         bytes_if_made(direct_) + bytes_if_made(yarns_) + bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {
@@ -264,7 +287,7 @@ ModelInfo describe(const Model& model) {
   const ConstraintStore& s = model.constraints;
   return {.particles = model.particles,
           .constraints = s.size(),
-          .inert_constraints = model.inert_constraints,
+          .inert_constraints = model.inert.constraints.size(),
           .ropes = s.size() - s.bilateral,
           .compliant = static_cast<std::size_t>(
               std::ranges::count_if(s.compliance, [](double c) { return c > 0; })),

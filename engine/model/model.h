@@ -1,4 +1,5 @@
-/// The immutable part of a cloth: who is joined to whom and how. Shared by any number of Cloths.
+/// The immutable part of a cloth: who is joined to whom and how. Shared by any number of Cloths;
+/// one that is changed goes on with another model (engine/model/change.h).
 ///
 /// Inside the engine particles are numbered by slot (engine/ordering/ordering.h); the description's
 /// numbers appear only at the interface.
@@ -8,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "engine/lists.h"
@@ -41,6 +43,7 @@ struct ConstraintStore {
   std::vector<std::uint32_t> described;           // index in the description
   std::vector<std::uint32_t> slot;                // constraint slot; kNoIndex: at a hub
   std::vector<std::uint32_t> hub_distances, hub_ropes;
+  std::vector<bool> turned;  // a is the description's b
   std::size_t size() const { return a.size(); }
   bool has_springs() const { return !compliance.empty(); }
   std::size_t bytes() const;
@@ -64,12 +67,27 @@ struct AirStore {
   kernels::Vector wind{};
 };
 
+/// What lies between fixed particles alone and waits for one of them to be released: numbers and
+/// text of the description, in its order.
+struct InertStore {
+  template <class T>
+  struct Entry {
+    std::uint32_t described = 0;
+    T entry;
+  };
+  std::vector<Entry<Constraint>> constraints;
+  std::vector<Entry<BendingElement>> bending;
+  std::size_t bytes() const;
+};
+
 /// Of the first `count` constraints, between slots.
 std::vector<Link> links_of(const ConstraintStore& store, std::size_t count);
 
 class Model {
  public:
-  explicit Model(const SceneDescription& description);  // must be valid
+  /// The description must be valid. like: a model of the same particles and constraints, which
+  /// differ in numbers at most; it saves work.
+  explicit Model(const SceneDescription& description, const Model* like = nullptr);
 
   std::size_t particles = 0;  // described
   Ordering ordering;
@@ -94,7 +112,9 @@ class Model {
   Damping damping;
   Unevenness uneven;
   double heaviest_sphere = 0;  // kg, of the free ones
-  std::size_t inert_constraints = 0;
+  InertStore inert;
+  /// One object for a model and all that changes (engine/model/change.h) make of it.
+  std::shared_ptr<const int> origin;
 
   bool has_contacts() const { return !spheres.empty(); }
   bool has_air() const {
@@ -108,6 +128,7 @@ class Model {
   /// What each backend or solver needs besides; made when first asked for, by whichever thread.
   const ReferenceLayout& reference() const;
   const SimdLayout& simd() const;
+  const ChunkNeighbours& chunk_neighbours() const;
   const PullLayout& pulls() const;
   const DirectLayout& direct() const;
   const YarnLayout& yarns() const;
@@ -115,7 +136,7 @@ class Model {
 
  private:
   struct Draft;
-  void order_particles(Draft& draft);
+  void order_particles(Draft& draft, const Model* like);
   void store_particles(const Draft& draft);
   void store_constraints(const Draft& draft);
   void store_batches(const Draft& draft, ConstraintKind kind);
@@ -130,6 +151,7 @@ class Model {
   std::vector<std::uint64_t> joined_;  // a sphere, and who is joined to it, in order
   OnDemand<ReferenceLayout> reference_;
   OnDemand<SimdLayout> simd_;
+  OnDemand<ChunkNeighbours> chunk_neighbours_;
   OnDemand<PullLayout> pulls_;
   OnDemand<DirectLayout> direct_;
   OnDemand<YarnLayout> yarns_;

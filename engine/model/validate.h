@@ -9,6 +9,7 @@ class Model;
 
 Result<void> validate(const SceneDescription& description);
 Result<void> validate(const Settings& settings);
+Result<void> validate(const Changes& changes, const Model& model);
 /// For the simd backend: whether floats can square lengths and the tolerances that are used.
 Result<void> validate_for_lanes(const Settings& settings, const Model& model);
 /// Whether the solver that was chosen knows all that the model has.

@@ -1,5 +1,6 @@
 #include "engine/step/pins.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace weft {
@@ -10,8 +11,7 @@ using kernels::Vectors;
 void Pins::watch(const Model& model, const Vectors& position) {
   if (pins_.empty()) {
     std::vector<Pin> pins;  // all of them or, where memory runs out, none
-    for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
-      if (!model.is_particle(slot) || model.inverse_mass[slot] != 0) continue;
+    for (const std::uint32_t slot : model.pins) {
       pins.push_back({.slot = slot, .from = position[slot]});
     }
     pins_ = std::move(pins);
@@ -19,28 +19,47 @@ void Pins::watch(const Model& model, const Vectors& position) {
   moving_ = true;
 }
 
+std::size_t Pins::index_of(std::uint32_t slot) const {
+  const auto found = std::ranges::lower_bound(pins_, slot, {}, &Pin::slot);
+  const bool is_there = found != pins_.end() && found->slot == slot;
+  return is_there ? static_cast<std::size_t>(found - pins_.begin()) : pins_.size();
+}
+
 void Pins::put_down(const Vectors& position) {
   for (Pin& pin : pins_) pin.from = position[pin.slot];
+}
+
+void Pins::put_down(std::uint32_t slot, Vector position) {
+  const std::size_t i = index_of(slot);
+  if (i < pins_.size()) pins_[i].from = position;
 }
 
 void Pins::rest() {
   for (Pin& pin : pins_) pin.last = {0, 0, 0};
 }
 
-bool Pins::depart(double dt, Vectors& position, Vectors& velocity) {
-  if (!moving_) return false;
-  bool jumped = false;
+void Pins::go_on_from(const Pins& from, const Model& its_model, const Model& model,
+                      const Vectors& position) {
+  if (from.pins_.empty()) return;
+  watch(model, position);
+  moving_ = from.moving_;
+  for (Pin& pin : pins_) {
+    const std::uint32_t particle = model.ordering.particle_at[pin.slot];
+    const std::size_t i = from.index_of(its_model.ordering.slot_of[particle]);
+    if (i == from.pins_.size()) continue;
+    pin.from = from.pins_[i].from;
+    pin.last = from.pins_[i].last;
+  }
+}
+
+void Pins::depart(double dt, Vectors& position, Vectors& velocity) {
+  if (!moving_) return;
   for (Pin& pin : pins_) {
     pin.to = position[pin.slot];
     pin.speed = (1 / dt) * (pin.to - pin.from);
-    if (length(pin.speed - pin.last) > kMostAcceleration * dt) {
-      jumped = true;
-      continue;
-    }
     position.set(pin.slot, pin.from);
     velocity.set(pin.slot, pin.speed);
   }
-  return jumped;
 }
 
 void Pins::stop(bool arrived, Vectors& position, Vectors& velocity) {
@@ -54,6 +73,11 @@ void Pins::stop(bool arrived, Vectors& position, Vectors& velocity) {
     pin.last = pin.speed;
     moving_ |= length(pin.speed) > 0;
   }
+}
+
+Vector Pins::last_velocity(std::uint32_t slot) const {
+  const std::size_t i = index_of(slot);
+  return i < pins_.size() ? pins_[i].last : Vector{0, 0, 0};
 }
 
 std::size_t Pins::bytes() const { return pins_.capacity() * sizeof(Pin); }

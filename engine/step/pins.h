@@ -1,12 +1,10 @@
 /// Fixed particles that the caller moves (Cloth::move_fixed).
 ///
 /// A pin travels in a straight line through the whole of the next step: it has a velocity while
-/// that lasts, the prediction moves it, and the velocity loop takes it along. Only a move that no
-/// motion explains is a jump: one that takes more acceleration, from the pin's last move to this
-/// one, than kMostAcceleration. Such a pin is put down before the step, and the cloth follows
-/// without gaining velocity, as after write_positions.
+/// that lasts, the prediction moves it, and the velocity loop takes it along.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,21 +15,26 @@ namespace weft {
 
 class Pins {
  public:
-  static constexpr double kMostAcceleration = 200;  // m/s^2
-
   /// Before the first of some moves: remembers where the pins stand.
   void watch(const Model& model, const kernels::Vectors& position);
   /// All positions were replaced: nobody travels, but who moved may go on at the same speed.
   void put_down(const kernels::Vectors& position);
-  /// All velocities were replaced: the next move is from rest.
+  /// That of this pin was replaced: it does not travel there.
+  void put_down(std::uint32_t slot, kernels::Vector position);
+  /// All velocities were replaced: nobody has moved.
   void rest();
+  /// Goes on from those of another model of the same particles; position: in the new slots.
+  void go_on_from(const Pins& from, const Model& its_model, const Model& model,
+                  const kernels::Vectors& position);
 
-  /// Those that travel start where they were, with their velocities. Whether some jumped.
-  bool depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);
+  /// Those that travel start where they were, with their velocities.
+  void depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);
   /// After depart: everyone is where the caller wants them, at rest; arrived: the step was done.
   void stop(bool arrived, kernels::Vectors& position, kernels::Vectors& velocity);
   /// Whether one has moved in this step or in the last: if not, nobody is under way.
   bool moving() const { return moving_; }
+  /// In the last step.
+  kernels::Vector last_velocity(std::uint32_t slot) const;
   std::size_t bytes() const;
 
  private:
@@ -40,7 +43,10 @@ class Pins {
     kernels::Vector from{}, to{};
     kernels::Vector last{}, speed{};  // of the last move and of this one
   };
-  std::vector<Pin> pins_;  // empty until one is moved
+  /// In pins_; its size if none is watched there.
+  std::size_t index_of(std::uint32_t slot) const;
+
+  std::vector<Pin> pins_;  // by slots; empty until one is moved
   bool moving_ = false;    // see moving()
 };
 

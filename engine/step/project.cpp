@@ -32,9 +32,9 @@ bool is_out_of_tolerance(State& s, Team& team) {
 
 }  // namespace
 
-bool needs_projection(State& s, bool jumped, Team& team) {
+bool needs_projection(State& s, Team& team) {
   if (s.settings.iterations > 0) return false;
-  return (s.placed || jumped) && is_out_of_tolerance(s, team);
+  return (s.placed || s.displaced) && is_out_of_tolerance(s, team);
 }
 
 void project(State& s, double dt, StepReport& report, Team& team) {

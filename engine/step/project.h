@@ -5,8 +5,9 @@
 
 namespace weft {
 
-/// Whether the start is out of tolerance, because positions were given or pins have jumped.
-bool needs_projection(State& s, bool jumped, Team& team);
+/// Whether the start is out of tolerance, because positions were given, pins were put down, or the
+/// model has changed.
+bool needs_projection(State& s, Team& team);
 
 /// Moves the positions onto the constraints and leaves the velocities. What cannot be put right
 /// with half of the iterations that a step may take is left to the step, and to its status. Small

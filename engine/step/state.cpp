@@ -5,6 +5,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/isa.h"
+#include "engine/model/change.h"
 #include "engine/step/air.h"
 #include "engine/step/choose_solver.h"
 #include "engine/tuning.h"
@@ -86,13 +87,39 @@ void State::copy(const State& from) {
   position = from.position;
   velocity = from.velocity;
   force = std::move(its_force);
+  pins = std::move(its_pins);
+  copy_scalars(from, same);
+}
+
+void State::copy_scalars(const State& from, bool same) {
   gravity = from.gravity;
   wind = from.wind;
-  pins = std::move(its_pins);
   placed = !same || from.placed;
+  displaced = from.displaced;
   lost_energy = same ? from.lost_energy : 0;
   give_per_mass = same ? from.give_per_mass : 0;
   refinement = same ? from.refinement : 0;
+}
+
+void State::go_on_from(const State& from) {
+  const Model& its_model = *from.model;
+  if (from.force.size() > 0) force.resize(model->slots());
+  bool same_masses = true;
+  for_each_particle(*model, its_model, [&](std::uint32_t slot, std::uint32_t its_slot) {
+    position.set(slot, from.position[its_slot]);
+    velocity.set(slot, from.velocity[its_slot]);
+    if (force.size() > 0) force.set(slot, from.force[its_slot]);
+    same_masses = same_masses && model->inverse_mass[slot] == its_model.inverse_mass[its_slot];
+    const bool is_free = model->inverse_mass[slot] > 0;
+    if (is_free == (its_model.inverse_mass[its_slot] > 0)) return;
+    velocity.set(slot, is_free ? from.pins.last_velocity(its_slot) : kernels::Vector{0, 0, 0});
+  });
+  pins.go_on_from(from.pins, its_model, *model, position);
+  const bool same = alike(settings, from.settings);
+  copy_scalars(from, same);
+  displaced = true;
+  if (!same_masses) lost_energy = 0;  // what was lost was energy of others
+  if (same && small_steps) small_steps->go_on_from(*from.small_steps, velocity.view(), gravity);
 }
 
 std::size_t State::bytes() const {

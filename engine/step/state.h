@@ -60,6 +60,7 @@ struct State {
   ContactStore contacts;
   Pins pins;
   bool placed = true;        // positions were given, not stepped to: they may violate constraints
+  bool displaced = false;    // they may, though stepped to: a pin was put down, the model changed
   double lost_energy = 0;    // J, lately (energy.h)
   double give_per_mass = 0;  // s^2, of springs in the last step (measure/state_measure.h)
   double refinement = 0;     // where the next step's list of attempts begins: log2 of the parts
@@ -84,10 +85,14 @@ struct State {
   const kernels::Vectors& forces() const { return total_force.size() > 0 ? total_force : force; }
   /// Goes on from another state of the same model.
   void copy(const State& from);
+  /// Goes on from one of another model of the same particles. Of those that the models do not
+  /// agree on, fixed ones are at rest, and free ones have the speed of their last move.
+  void go_on_from(const State& from);
   std::size_t bytes() const;
 
  private:
   void make_solvers();
+  void copy_scalars(const State& from, bool same);
 };
 
 }  // namespace weft

@@ -56,17 +56,15 @@ class Transaction {
 /// The pins under way: whatever becomes of the step, they stand in the end where they were sent.
 class Travel {
  public:
-  Travel(State& s, double dt) : s_(s), jumped_(s.pins.depart(dt, s.position, s.velocity)) {}
+  Travel(State& s, double dt) : s_(s) { s.pins.depart(dt, s.position, s.velocity); }
   ~Travel() { s_.pins.stop(arrived_, s_.position, s_.velocity); }
   Travel(const Travel&) = delete;
   Travel& operator=(const Travel&) = delete;
 
-  bool jumped() const { return jumped_; }
   void arrive() { arrived_ = true; }
 
  private:
   State& s_;
-  const bool jumped_;
   bool arrived_ = false;
 };
 
@@ -76,8 +74,8 @@ class Step {
       : s_(s), report_(report), team_(team), transaction_(s) {}
 
   /// Returns whether all of dt was done.
-  bool run(double dt, bool jumped) {
-    if (needs_projection(s_, jumped, team_)) {
+  bool run(double dt) {
+    if (needs_projection(s_, team_)) {
       transaction_.begin();
       project(s_, dt, report_, team_);
     }
@@ -86,7 +84,7 @@ class Step {
       if (!do_substep(dt / plan_.substeps, left)) return false;
     }
     transaction_.commit();
-    s_.placed = false;
+    s_.placed = s_.displaced = false;
     const double needed = report_.halvings > 0 ? std::log2(parts_ / plan_.substeps) : 0;
     s_.refinement = std::max(needed, s_.refinement - tuning::kCoarsening);
     return true;
@@ -196,7 +194,7 @@ StepReport step(State& s, double dt) {
   bool done = false;
   {
     Travel travel(s, dt);
-    done = Step(s, report, team).run(dt, travel.jumped());
+    done = Step(s, report, team).run(dt);
     if (done) travel.arrive();
   }
   // Small steps have measured what they committed.

@@ -119,11 +119,11 @@ struct ChangedValue {
 
 /// What becomes different while a cloth moves; what is not listed stays as it is.
 struct Changes {
-  std::vector<std::uint32_t> fix;      ///< particles: fixed where they are, at rest
-  std::vector<std::uint32_t> release;  ///< fixed particles: free, at the speed of their last move
-  std::vector<ChangedValue> masses;    ///< kg, of particles
-  std::vector<ChangedValue> rest_lengths;  ///< m, of constraints
-  std::vector<ChangedValue> compliances;   ///< m/N, of constraints
+  std::vector<std::uint32_t> fix = {};      ///< particles: fixed where they are, at rest
+  std::vector<std::uint32_t> release = {};  ///< fixed ones: free, at the speed of their last move
+  std::vector<ChangedValue> masses = {};    ///< kg, of particles
+  std::vector<ChangedValue> rest_lengths = {};  ///< m, of constraints
+  std::vector<ChangedValue> compliances = {};   ///< m/N, of constraints
 };
 
 /// x -> about + R (x - about) + translation; R turns by |rotation| rad about the axis `rotation`.
@@ -146,8 +146,9 @@ class WEFT_API Cloth {
 
   /// A second cloth of the same model and settings, which continues bit for bit as this one does.
   Cloth clone() const;
-  /// Takes over from `from`, a cloth of the same Model: state, forces, gravity, wind, pending pin
-  /// moves, and the solver's memory of its last steps. This cloth keeps its own settings. If
+  /// Takes over from `from`, a cloth of the same Model or of one that changes made of the same:
+  /// that model, state, forces, gravity, wind, pending pin moves, and the solver's memory of its
+  /// last steps. This cloth keeps its own settings, and refuses what they do not go with. If
   /// solver, scheme, backend, iterations, tolerance or contact_tolerance differ, that memory is
   /// dropped, and positions out of tolerance are projected as if newly written.
   Result<void> copy_state(const Cloth& from);
@@ -208,9 +209,20 @@ class WEFT_API Cloth {
   /// character's root for example: then move_fixed what the frame carries to where it really is.
   Result<void> carry(const RigidMotion& motion, double share = 1);
 
-  /// Changes what was described, at once or, on an error, not at all. Positions, velocities and the
-  /// solver's memory stay; model() is another one from then on. Constraints that are longer or
-  /// shorter than they may be are put right as the next step begins, velocities unchanged.
+  /// Changes what was described: all of it or, on an error and where memory runs out, nothing.
+  /// model() is another one from then on, as build_model makes it of the changed description; other
+  /// cloths of the old one keep that. Numbers stay the same. So do positions, velocities but of
+  /// those that are fixed and released, what solvers remember, and the settings that were asked
+  /// for: Solver::automatic is chosen anew, and where another one is chosen nothing is remembered.
+  ///
+  /// Constraints that are longer or shorter than they may be then, those between two pins that wait
+  /// for one to be released too, are put right as the next step begins, velocities unchanged. No
+  /// energy is gained by what is let go under tension. A released particle starts at the speed
+  /// that move_fixed gave it in the last step.
+  ///
+  /// It takes about as long as to build a model and create a cloth, whatever is changed: less than
+  /// a step of fabrics, one or two of other meshes, three to fifteen of a woven sheet, whose steps
+  /// are the cheapest. Make all changes of a frame in one call.
   Result<void> change(const Changes& changes);
 
   /// Recomputed from the positions by this thread alone. The last step's is in its report already,

@@ -98,7 +98,8 @@ struct Anchor {
 
 /// What is simulated. Lengths in m, masses in kg, times in s.
 /// At most one constraint may join the same two particles. A constraint between two fixed particles
-/// is legal but inert: nothing can move it, so it is neither solved nor measured.
+/// is legal but inert: nothing can move it, so it is neither solved nor measured until one of them
+/// is released (Cloth::change).
 struct SceneDescription {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;      ///< empty: at rest; else one per particle
@@ -121,7 +122,7 @@ struct SceneDescription {
   std::vector<double> radii;
 };
 
-/// Topology, colours, rest lengths, masses: all that does not change while the cloth moves.
+/// Topology, colours, rest lengths, masses: all that does not change from step to step.
 class Model;
 
 /// Checks the description and prepares it. On error nothing is built.

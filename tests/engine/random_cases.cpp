@@ -161,6 +161,46 @@ TEST_CASE("random cases: the state is finite, the report true, and what converge
   });
 }
 
+// ------------------------------------------------------------------------------- changes
+
+Changes random_changes(const RandomCase& c) {
+  Random random(c.seed);
+  const SceneDescription& scene = c.scene;
+  Changes changes;
+  for (std::uint32_t i = 0; i < scene.positions.size(); ++i) {
+    const bool is_fixed = std::ranges::count(scene.fixed, i) > 0;
+    if (is_fixed && random.below(2) == 0) changes.release.push_back(i);
+    if (!is_fixed && random.below(8) == 0) changes.fix.push_back(i);
+    if (random.below(8) == 0)
+      changes.masses.push_back({i, random.between(0.5, 2) * scene.masses[i]});
+  }
+  for (std::uint32_t i = 0; i < scene.constraints.size(); ++i) {
+    if (random.below(8) != 0) continue;
+    changes.rest_lengths.push_back(
+        {i, random.between(0.9, 1.1) * scene.constraints[i].rest_length});
+  }
+  return changes;
+}
+
+TEST_CASE("random cases: a cloth that is changed is one of the changed description, bit for bit") {
+  for_each_case(1000, random_case, [](const RandomCase& c) {
+    INFO(text(c));
+    RandomCase changed = c;
+    changed.scene = with(c.scene, random_changes(c));
+    if (!c.scene.velocities.empty()) {
+      for (const std::uint32_t i : c.scene.fixed) changed.scene.velocities[i] = {};  // it stood
+    }
+    Cloth cloth = start(c, c.settings), built = start(changed, c.settings);
+    REQUIRE(cloth.change(random_changes(c)));
+    for (int k = 0; k < c.steps; ++k) {
+      move_pins(changed, k, cloth);
+      move_pins(changed, k, built);
+      CHECK(step(cloth, c.dt).status == step(built, c.dt).status);
+    }
+    CHECK(cloth.state_hash() == built.state_hash());
+  });
+}
+
 // ------------------------------------------------------------------------------- the same bits
 
 std::uint64_t hash_after(const RandomCase& c, const Settings& settings) {

@@ -29,6 +29,16 @@ Cloth cloth_of(const SceneDescription& scene, const Settings& settings) {
   return std::move(cloth.value());
 }
 
+SceneDescription with(SceneDescription scene, const Changes& changes) {
+  for (const std::uint32_t i : changes.release) std::erase(scene.fixed, i);
+  for (const std::uint32_t i : changes.fix) scene.fixed.push_back(i);
+  for (const ChangedValue& c : changes.masses) scene.masses[c.index] = c.value;
+  for (const ChangedValue& c : changes.rest_lengths)
+    scene.constraints[c.index].rest_length = c.value;
+  for (const ChangedValue& c : changes.compliances) scene.constraints[c.index].compliance = c.value;
+  return scene;
+}
+
 StepReport step(Cloth& cloth, double dt) {
   auto report = cloth.step(dt);
   REQUIRE_MESSAGE(report, report.error());

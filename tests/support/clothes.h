@@ -16,6 +16,8 @@ namespace weft::test {
 SceneDescription scene_of(std::string_view name, int size);
 std::shared_ptr<const Model> model_of(const SceneDescription& scene);
 Cloth cloth_of(const SceneDescription& scene, const Settings& settings);
+/// The description that is changed so.
+SceneDescription with(SceneDescription scene, const Changes& changes);
 StepReport step(Cloth& cloth, double dt);
 void run(Cloth& cloth, double dt, int steps);
 

@@ -90,6 +90,23 @@ TEST_CASE("pins are sent where their moves have them, each by its own") {
   }
 }
 
+TEST_CASE("who does not stand in the first pose is placed there, and moves no cloth by that") {
+  const std::vector<PinMove> moves{
+      {.particles = {1}, .times = {0, 1}, .translations = {{0, 2, 0}, {0, 3, 0}}},
+      {.particles = {0}, .times = {-1, 1}, .translations = {{0, 0, 0}, {0, 1, 0}}}};
+  Cloth cloth = cloth_of(two_lines());
+  REQUIRE(cloth.set_gravity({0, 0, 0}));
+  const MovedPins pins(moves, cloth);
+  REQUIRE(pins.place(cloth));
+  CHECK(distance(cloth.position(1), {1, 2, 0}) == 0);
+  CHECK(distance(cloth.position(0), {0, 0.5, 0}) == 0);
+  const auto report = cloth.step(0.01);
+  REQUIRE(report);
+  CHECK(report.value().pin_work == 0);
+  CHECK(distance(cloth.velocity(2), {}) < 1e-3);
+  CHECK(distance(cloth.velocity(3), {}) < 1e-3);
+}
+
 TEST_CASE("what does not move is not sent") {
   const std::vector<PinMove> moves{{.particles = {0, 1},
                                     .times = {0, 1},

@@ -48,7 +48,7 @@ Outcome run_teleports(const Setup& setup) {
   trial.before_step = [start, fixed = trial.scene.fixed](Cloth& cloth, int step) {
     if (step % 20 != 10) return;
     const Vec3 jump{step % 40 == 10 ? 0.5 : 0, 0.3, -0.2};
-    for (const std::uint32_t p : fixed) (void)cloth.move_fixed(p, start[p] + jump);
+    for (const std::uint32_t p : fixed) (void)cloth.place_fixed(p, start[p] + jump);
   };
   return strain_outcome(trial, kAnyEnergy);
 }
@@ -62,6 +62,23 @@ Outcome run_release(const Setup& setup) {
   trial.scene.positions = taut.end.positions;
   trial.scene.velocities = taut.end.velocities;
   trial.scene.fixed.pop_back();
+  return strain_outcome(trial, 1e-3);
+}
+
+/// A sheet between four corners: one of them is let go under tension, and the sheet caught again by
+/// a particle of its side.
+Outcome run_let_go(const Setup& setup) {
+  constexpr int kSize = 11;
+  Trial trial{sheet("four_pins", kSize), setup.settings(kStrain)};
+  trial.steps = setup.steps(240, 60);
+  const std::uint32_t corner = trial.scene.fixed.back();
+  const std::uint32_t side = corner - kSize / 2;
+  trial.scene.fixed.pop_back();  // what is not fixed in the end has an energy
+  trial.before_step = [=, last = trial.steps](Cloth& cloth, int step) {
+    if (step == 0) (void)cloth.change({.fix = {corner}});
+    if (step == last / 3) (void)cloth.change({.release = {corner}});
+    if (step == 2 * last / 3) (void)cloth.change({.fix = {side}});
+  };
   return strain_outcome(trial, 1e-3);
 }
 
@@ -179,6 +196,7 @@ std::vector<Case> motion_cases() {
       {"twist_ten_turns", "strain in the end", kStrain, run_twist},
       {"pins_teleport", "max strain", kStrain, run_teleports},
       {"pin_released", "max strain", kStrain, run_release},
+      {"pin_released_under_tension", "max strain", kStrain, run_let_go, hangs_taut},
       {"banner", "max strain", kStrain, [](const Setup& setup) { return run_banner(setup, 1); },
        hangs_taut},
       {"banner_too_narrow", "max strain", kStrain,

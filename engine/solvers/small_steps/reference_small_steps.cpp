@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/model/change.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/tuning.h"
 
@@ -78,7 +79,8 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   passes_.forget();
   pace_.begin(plan);
   touched_.clear();
-  if (plan.placed || h > SubstepFormula::kLargestRatio * past_.h) past_.h = 0;
+  has_past_ = !plan.placed && h <= SubstepFormula::kLargestRatio * past_.h;
+  if (!has_past_ && !plan.projects) past_.h = 0;
   last_ = 0;
   const double push = h * decaying_share();
   for (std::size_t i = 0; i < model_.slots(); ++i) {
@@ -89,7 +91,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     acceleration_.set(i, a);
     x_.set(i, x[i]);
     v_.set(i, v[i]);
-    if (past_.h == 0) {
+    if (!has_past_) {
       v_before_.set(i, v[i] - push * a);
       before_.set(i, x[i] - h * v[i] + (0.5 * h * h) * a);
       continue;
@@ -98,7 +100,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     v_before_.set(i, past_.v_before[i] + jump);
     before_.set(i, x[i] - (past_.moved[i] + past_.h * jump));
   }
-  next_formula_ = formula_after(past_.h > 0 ? past_.h : h);
+  next_formula_ = formula_after(has_past_ ? past_.h : h);
 }
 
 void ReferenceSmallSteps::advance(Team&) {
@@ -274,6 +276,25 @@ void ReferenceSmallSteps::keep(Team&) {
   past_.v = v_;
   past_.v_before = v_before_;
   for (std::size_t i = 0; i < model_.slots(); ++i) past_.moved.set(i, x_[i] - before_[i]);
+}
+
+void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsView v,
+                                     Vector gravity) {
+  const auto& other = static_cast<const ReferenceSmallSteps&>(from);
+  past_.h = other.past_.h;
+  for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
+    const Past& its = other.past_;
+    ParticlePast past{its.v[its_slot], its.v_before[its_slot], its.moved[its_slot]};
+    if (is_free(slot) != other.is_free(its_slot))
+      past = is_free(slot) ? ParticlePast::flight(v[slot], gravity, past_.h) : ParticlePast{};
+    past_.v.set(slot, past.v);
+    past_.v_before.set(slot, past.v_before);
+    past_.moved.set(slot, past.moved);
+  });
+  if (multiplier_.empty() || other.multiplier_.empty()) return;
+  for_each_constraint(model_, other.model_, [&](std::uint32_t c, std::uint32_t its_c) {
+    multiplier_[c] = other.multiplier_[its_c];
+  });
 }
 
 std::size_t ReferenceSmallSteps::bytes() const {

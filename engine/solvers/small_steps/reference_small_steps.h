@@ -47,6 +47,7 @@ class ReferenceSmallSteps final : public SmallSteps {
     past_ = static_cast<const ReferenceSmallSteps&>(from).past_;
     multiplier_ = static_cast<const ReferenceSmallSteps&>(from).multiplier_;
   }
+  void go_on_from(const SmallSteps& from, kernels::VectorsView v, kernels::Vector gravity) override;
   void forget_past() override { past_.h = 0; }
   std::size_t bytes() const override;
 
@@ -80,6 +81,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   Past past_;
   reference::ChainSystem system_;
 
+  bool has_past_ = false;  // past_ is that of the present frame
   double h_ = 0, omega_ = 1;
   double last_ = 0;  // b h of the last substep
   SubstepFormula formula_, next_formula_;

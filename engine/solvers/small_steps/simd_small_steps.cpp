@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/model/change.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/tuning.h"
 
@@ -167,7 +168,7 @@ void SmallStepsSolver::write_acceleration(kernels::Vector gravity, kernels::Vect
 
 /// Without a past the particles are taken to have been in free flight.
 void SmallStepsSolver::begin_past(Team& team) {
-  if (past_.h == 0) {
+  if (!has_past_) {
     const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
     for (std::size_t i = 0; i < layout_.floats; ++i) {
       v_before_[i] = v_[i] - push * acceleration_[i];
@@ -191,7 +192,7 @@ void SmallStepsSolver::split(kernels::VectorsView x, int substeps, Team& team) {
     moved_ = true;
   }
   const YarnPlaces& places = layout_.places();
-  const bool stays = past_.h > 0 && past_.since_renewal + substeps <= tuning::kRenewal;
+  const bool stays = has_past_ && past_.since_renewal + substeps <= tuning::kRenewal;
   since_renewal_ = stays ? past_.since_renewal : 0;
   if (!stays) {
     base_.swap(past_.base);
@@ -217,14 +218,15 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   passes_.forget();
   bending_.begin(plan);
   touched_.clear();
-  if (plan.placed || plan.h > SubstepFormula::kLargestRatio * past_.h) past_.h = 0;
+  has_past_ = !plan.placed && plan.h <= SubstepFormula::kLargestRatio * past_.h;
+  if (!has_past_ && !plan.projects) past_.h = 0;
   split(x, plan.substeps, team);
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());
   });
   write_acceleration(gravity, force);
   begin_past(team);
-  next_formula_ = formula_after(past_.h > 0 ? past_.h : h_);
+  next_formula_ = formula_after(has_past_ ? past_.h : h_);
   weights_.rate = 0;
 }
 
@@ -498,6 +500,48 @@ void SmallStepsSolver::take_past(const SmallSteps& from) {
   multiplier_ = other.multiplier_;
   is_new_ = false;
   moved_ = true;
+}
+
+/// Floats are carried to other places as they are. A base of other cells is of no use.
+void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v,
+                                  kernels::Vector gravity) {
+  const auto& other = static_cast<const SmallStepsSolver&>(from);
+  const SmallStepsPast& its = other.past_;
+  const auto& its_base = other.is_new_ ? its.base : other.base_;
+  past_.h = its.h;
+  past_.since_renewal = layout_.cell == other.layout_.cell ? its.since_renewal : tuning::kRenewal;
+  const YarnPlaces &places = layout_.places(), &its_places = other.layout_.places();
+  for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
+    std::size_t to = places.of(slot), at = its_places.of(its_slot);
+    for (int axis = 0; axis < 3; ++axis, to += places.stride, at += its_places.stride) {
+      base_[to] = past_.base[to] = its_base[at];
+      past_.v[to] = its.v[at];
+      past_.v_before[to] = its.v_before[at];
+      past_.moved[to] = its.moved[at];
+    }
+    const bool is_free = model_.inverse_mass[slot] > 0;
+    if (is_free == (other.model_.inverse_mass[its_slot] > 0)) return;
+    write_past(slot, is_free ? ParticlePast::flight(v[slot], gravity, past_.h) : ParticlePast{});
+  });
+  if (multiplier_.empty() || other.multiplier_.empty()) return;
+  for_each_constraint(model_, other.model_, [&](std::uint32_t c, std::uint32_t its_c) {
+    multiplier_[layout_.multiplier_place[c]] =
+        other.multiplier_[other.layout_.multiplier_place[its_c]];
+  });
+}
+
+void SmallStepsSolver::write_past(std::uint32_t slot, const ParticlePast& past) {
+  const YarnPlaces& places = layout_.places();
+  const auto write = [&](auto& to, kernels::Vector vector) {
+    std::size_t at = places.of(slot);
+    for (const double component : {vector.x, vector.y, vector.z}) {
+      to[at] = static_cast<float>(component);
+      at += places.stride;
+    }
+  };
+  write(past_.v, past.v);
+  write(past_.v_before, past.v_before);
+  write(past_.moved, past.moved);
 }
 
 std::size_t SmallStepsSolver::bytes() const {

@@ -58,6 +58,7 @@ class SmallStepsSolver final : public SmallSteps {
   /// The frame becomes the past of the next one. Without this the one before stays.
   void keep(Team& team) override;
   void take_past(const SmallSteps& from) override;
+  void go_on_from(const SmallSteps& from, kernels::VectorsView v, kernels::Vector gravity) override;
   void forget_past() override { past_.h = 0; }
 
   std::size_t bytes() const override;
@@ -75,6 +76,7 @@ class SmallStepsSolver final : public SmallSteps {
   double decaying_share() const;
   void decay(Team& team);
   void settle_velocities(Team& team);
+  void write_past(std::uint32_t slot, const ParticlePast& past);
   void split(kernels::VectorsView x, int substeps, Team& team);
   void measure_base(Team& team);
   void renew_base(Team& team);
@@ -97,6 +99,8 @@ class SmallStepsSolver final : public SmallSteps {
   LocalPasses passes_;
   SimdBending bending_;
   SmallStepsPast past_;
+
+  bool has_past_ = false;  // past_ is that of the present frame
 
   double h_ = 0, omega_ = 1;
   simd::SubstepWeights weights_;

@@ -49,13 +49,22 @@ struct SubstepFormula {
   double give(double h) const { return part * h * (part * h) * share; }
 };
 
+/// What of a particle's flight the next substep needs to know.
+struct ParticlePast {
+  kernels::Vector v{}, v_before{}, moved{};  // moved: in the last substep
+  /// A free flight that leads to v, through a substep of h.
+  static ParticlePast flight(kernels::Vector v, kernels::Vector gravity, double h) {
+    return {v, v - h * gravity, h * v - (0.5 * h * h) * gravity};
+  }
+};
+
 /// What a step is done in.
 struct FramePlan {
   double h = 0;  // s, of a substep
   int substeps = 1;
   double omega = 1;       // of a sweep
   bool placed = false;    // positions are not where the last step ended: nothing is known of a past
-  bool projects = false;  // no time passes: springs are left as they are
+  bool projects = false;  // no time passes: springs are left as they are, and the past is kept
 };
 
 class SmallSteps {
@@ -90,6 +99,10 @@ class SmallSteps {
   virtual void keep(Team& team) = 0;
   /// Goes on where another one of the same kind is.
   virtual void take_past(const SmallSteps& from) = 0;
+  /// The same from one of another model of the same particles. Those that only one model has fixed
+  /// begin with a past of their own: a free flight that leads to v, or rest.
+  virtual void go_on_from(const SmallSteps& from, kernels::VectorsView v,
+                          kernels::Vector gravity) = 0;
   virtual void forget_past() = 0;
   virtual std::size_t bytes() const = 0;
 };

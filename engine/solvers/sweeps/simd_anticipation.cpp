@@ -107,7 +107,7 @@ void SimdLoop::renew_products() {
     for (std::size_t i = first; i < last; ++i) {
       const auto is_new = [&](std::uint32_t chunk) { return s_.changed_[chunk] != 0; };
       if (layout_.chunks[i].rope) continue;
-      if (!marks() || std::ranges::any_of(layout_.neighbours[i], is_new)) renew_products(i);
+      if (!marks() || std::ranges::any_of(neighbours_.of[i], is_new)) renew_products(i);
     }
   });
 }

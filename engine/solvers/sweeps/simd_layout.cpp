@@ -99,25 +99,6 @@ void for_each_slot(const SimdLayout& layout, const Chunk& chunk, Visit&& visit) 
   }
 }
 
-void list_neighbours(SimdLayout& layout) {
-  layout.chunks_at = make_lists(layout.slots, [&](auto&& add) {
-    for (std::uint32_t i = 0; i < layout.chunks.size(); ++i) {
-      for_each_slot(layout, layout.chunks[i], [&](std::uint32_t s) { add(s, i); });
-    }
-  });
-  std::vector<std::uint32_t> list;
-  for (std::uint32_t i = 0; i < layout.chunks.size(); ++i) {
-    list.assign(1, i);
-    for_each_slot(layout, layout.chunks[i], [&](std::uint32_t s) {
-      const auto chunks = layout.chunks_at[s];
-      list.insert(list.end(), chunks.begin(), chunks.end());
-    });
-    std::ranges::sort(list);
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    layout.neighbours.push_back(list);
-  }
-}
-
 void place(SimdLayout& layout, std::uint32_t slot, std::uint32_t constraint,
            const ConstraintStore& store, const kernels::AlignedVector<double>& inverse_mass) {
   const std::uint32_t a = store.a[constraint], b = store.b[constraint];
@@ -165,15 +146,35 @@ SimdLayout make_simd_layout(const Model& model) {
   }
   cut_batches(ordering, layout);
   find_seams(ordering, layout);
-  list_neighbours(layout);
   return layout;
+}
+
+ChunkNeighbours find_chunk_neighbours(const SimdLayout& layout) {
+  ChunkNeighbours neighbours;
+  neighbours.at = make_lists(layout.slots, [&](auto&& add) {
+    for (std::uint32_t i = 0; i < layout.chunks.size(); ++i) {
+      for_each_slot(layout, layout.chunks[i], [&](std::uint32_t s) { add(s, i); });
+    }
+  });
+  std::vector<std::uint32_t> list;
+  for (std::uint32_t i = 0; i < layout.chunks.size(); ++i) {
+    list.assign(1, i);
+    for_each_slot(layout, layout.chunks[i], [&](std::uint32_t s) {
+      const auto chunks = neighbours.at[s];
+      list.insert(list.end(), chunks.begin(), chunks.end());
+    });
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    neighbours.of.push_back(list);
+  }
+  return neighbours;
 }
 
 std::size_t SimdLayout::bytes() const {
   return bytes_of(chunks) + bytes_of(runs) + bytes_of(batch_chunks) + bytes_of(batch_singles) +
-         bytes_of(seams) + bytes_of(seams_at) + neighbours.bytes() + chunks_at.bytes() +
-         bytes_of(a) + bytes_of(b) + bytes_of(constraint_at) + bytes_of(rest_length) +
-         bytes_of(inverse_square) + bytes_of(share_a) + bytes_of(share_b);
+         bytes_of(seams) + bytes_of(seams_at) + bytes_of(a) + bytes_of(b) +
+         bytes_of(constraint_at) + bytes_of(rest_length) + bytes_of(inverse_square) +
+         bytes_of(share_a) + bytes_of(share_b);
 }
 
 }  // namespace weft

@@ -44,8 +44,6 @@ struct SimdLayout {
   std::vector<Seam> seams;                   // by the last tile that they need; those of tile i are
   std::vector<std::uint32_t> seams_at;  // [i] ... [i + 1] - 1, of padding [number of tiles] ...
   bool seams_join_neighbours = true;    // or further tiles
-  Lists neighbours;                     // chunks that share a slot with chunk i, and i itself
-  Lists chunks_at;                      // slot -> chunks
 
   std::size_t slots = 0;
   std::uint32_t hub_first = 0, hub_ropes = 0, hub_last = 0;  // constraint slots, not padded
@@ -61,5 +59,15 @@ struct SimdLayout {
 };
 
 SimdLayout make_simd_layout(const Model& model);
+
+/// What sweeps that skip need to know besides.
+struct ChunkNeighbours {
+  Lists of;  // chunks that share a slot with chunk i, and i itself
+  Lists at;  // slot -> chunks
+
+  std::size_t bytes() const { return of.bytes() + at.bytes(); }
+};
+
+ChunkNeighbours find_chunk_neighbours(const SimdLayout& layout);
 
 }  // namespace weft

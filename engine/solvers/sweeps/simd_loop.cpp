@@ -13,6 +13,7 @@ SimdLoop::SimdLoop(SimdSolver& solver, ScaledConstraints& constraints, const Unk
                    Team& team)
     : s_(solver),
       layout_(solver.layout_),
+      neighbours_(solver.neighbours_),
       table_(solver.table_),
       unknowns_(unknowns),
       r_(solver.relaxation(constraints)),
@@ -323,14 +324,14 @@ void SimdLoop::mark(std::size_t chunk) {
 }
 
 void SimdLoop::mark_neighbours(std::size_t chunk) {
-  for (const std::uint32_t i : layout_.neighbours[chunk]) mark(i);
+  for (const std::uint32_t i : neighbours_.of[chunk]) mark(i);
 }
 
 void SimdLoop::mark_slots(const std::uint32_t* slots, std::size_t first, std::size_t last) {
   for (std::size_t c = first; c < last; ++c) {
     if (masks()) s_.mask_[slots[c]] = ~std::uint64_t{0};
     if (!marks()) continue;
-    for (const std::uint32_t i : layout_.chunks_at[slots[c]]) mark(i);
+    for (const std::uint32_t i : neighbours_.at[slots[c]]) mark(i);
   }
 }
 

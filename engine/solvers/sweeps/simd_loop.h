@@ -84,6 +84,7 @@ class SimdLoop {
 
   SimdSolver& s_;
   const SimdLayout& layout_;
+  const ChunkNeighbours& neighbours_;
   const simd::Table& table_;
   Unknowns unknowns_;
   simd::BlockRelaxation r_, contacts_;

@@ -37,7 +37,11 @@ std::size_t ContactLanes::bytes() const {
 }
 
 SimdSolver::SimdSolver(const Model& model, const Settings& settings, const simd::Table& table)
-    : model_(model), layout_(model.simd()), settings_(settings), table_(table) {
+    : model_(model),
+      layout_(model.simd()),
+      neighbours_(model.chunk_neighbours()),
+      settings_(settings),
+      table_(table) {
   const std::size_t size = layout_.constraint_slots;
   allocate_displacements();
   // With a fixed number of iterations errors are measured in rest lengths and nothing is tolerated.

@@ -89,6 +89,7 @@ class SimdSolver {
 
   const Model& model_;
   const SimdLayout& layout_;
+  const ChunkNeighbours& neighbours_;
   const Settings settings_;
   const simd::Table& table_;
 

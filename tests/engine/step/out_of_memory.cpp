@@ -100,6 +100,34 @@ TEST_CASE("a fixed particle that found no memory has not moved, and travels the 
   CHECK(cloth.state_hash() == untouched.state_hash());
 }
 
+TEST_CASE("a change that found no memory is none at all, and can be made the next time") {
+  const SceneDescription scene = scene_of("hang", 7);
+  Cloth cloth = cloth_of(scene, {});
+  run(cloth, 0.01, 5);
+  Cloth untouched = cloth.clone();
+  const Changes changes{
+      .fix = {24}, .release = {scene.fixed[0]}, .masses = {{30, 0.02}}, .compliances = {{5, 1e-3}}};
+  const auto model = cloth.model();
+  const std::uint64_t before = cloth.state_hash();
+  const auto finds_memory = [&](std::size_t granted) {
+    try {
+      const FailingAllocations failing(granted);
+      return static_cast<bool>(cloth.change(changes));
+    } catch (const std::bad_alloc&) {
+      return false;
+    }
+  };
+  std::size_t granted = 0;
+  for (; !finds_memory(granted); granted += 3) {
+    REQUIRE(cloth.state_hash() == before);
+    REQUIRE(cloth.model() == model);
+  }
+  CHECK(granted > 100);
+  REQUIRE(untouched.change(changes));
+  for (Cloth* each : {&cloth, &untouched}) run(*each, 0.01, 3);
+  CHECK(cloth.state_hash() == untouched.state_hash());
+}
+
 TEST_CASE("forces that found no memory are not half there") {
   Cloth cloth = cloth_of(scene_of("hang", 5), {});
   const std::vector<Vec3> forces(cloth.particle_count(), Vec3{1, 0, 0});

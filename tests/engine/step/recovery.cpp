@@ -240,7 +240,7 @@ double iterations_after_throws(Scheme scheme) {
   Cloth cloth = cloth_of(scene, {.scheme = scheme});
   const auto throw_pins = [&](double by) {
     for (const std::uint32_t pin : scene.fixed) {
-      REQUIRE(cloth.move_fixed(pin, scene.positions[pin] + Vec3{0.7 * by, by, 0}));
+      REQUIRE(cloth.place_fixed(pin, scene.positions[pin] + Vec3{0.7 * by, by, 0}));
     }
   };
   for (int k = 0; k < 30; ++k) step(cloth, 1.0 / 60);
@@ -345,8 +345,6 @@ TEST_CASE("capes that are carried along hang as those at rest do, at no higher p
       CAPTURE(speed);
       for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 0, 1}}) {
         const Motion motion = carried_at(scene, speed * direction, scheme);
-        const bool jumps = scheme == Scheme::automatic && speed > 5;  // a wreck is dear
-        if (jumps) continue;
         apart += mean_distance(motion.frames.back(), at_rest.frames.back()) / 6;
         CHECK(motion.iterations < 5 * at_rest.iterations);  // 170 times
       }

@@ -1,0 +1,118 @@
+#include "engine/model/change.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace weft {
+namespace {
+
+using kernels::Vector;
+
+Vec3 to_public(Vector v) { return {v.x, v.y, v.z}; }
+
+class Describer {
+ public:
+  explicit Describer(const Model& model) : model_(model) {}
+
+  SceneDescription description() && {
+    describe_particles();
+    describe_constraints();
+    describe_bending();
+    describe_air();
+    description_.damping = model_.damping;
+    description_.gravity = to_public(model_.gravity);
+    return std::move(description_);
+  }
+
+ private:
+  std::uint32_t particle(std::uint32_t slot) const { return model_.ordering.particle_at[slot]; }
+  std::vector<std::uint32_t> particles(const std::vector<std::uint32_t>& slots) const {
+    std::vector<std::uint32_t> list;
+    for (const std::uint32_t slot : slots) list.push_back(particle(slot));
+    return list;
+  }
+
+  void describe_particles() {
+    for (const std::uint32_t slot : model_.ordering.slot_of) {
+      description_.positions.push_back(to_public(model_.initial_position[slot]));
+      description_.velocities.push_back(to_public(model_.initial_velocity[slot]));
+      description_.masses.push_back(model_.mass[slot]);
+      if (model_.has_contacts()) description_.radii.push_back(model_.radius[slot]);
+    }
+    description_.fixed = particles(model_.pins);
+    description_.spheres = particles(model_.spheres);
+  }
+
+  void describe_constraints() {
+    const ConstraintStore& s = model_.constraints;
+    const InertStore& inert = model_.inert;
+    description_.constraints.resize(s.size() + inert.constraints.size());
+    for (std::uint32_t c = 0; c < s.size(); ++c) {
+      Constraint& to = description_.constraints[s.described[c]];
+      to = {.a = particle(s.a[c]),
+            .b = particle(s.b[c]),
+            .rest_length = s.rest_length[c],
+            .kind = c < s.bilateral ? ConstraintKind::distance : ConstraintKind::rope,
+            .compliance = s.has_springs() ? s.compliance[c] : 0};
+      if (s.turned[c]) std::swap(to.a, to.b);
+    }
+    for (const auto& [described, c] : inert.constraints) description_.constraints[described] = c;
+  }
+
+  BendingElement element(std::size_t i) const {
+    const BendingStore& s = model_.bending;
+    BendingElement element{
+        .weights = s.weights[i], .rest = s.rest[i], .compliance = s.compliance[i]};
+    const bool has_three = s.slots[i][3] == s.slots[i][2];
+    for (std::size_t k = 0; k < 4; ++k) {
+      element.particles[k] = k == 3 && has_three ? kNoIndex : particle(s.slots[i][k]);
+    }
+    return element;
+  }
+  void describe_bending() {
+    const auto& inert = model_.inert.bending;
+    auto next = inert.begin();
+    std::size_t active = 0;
+    for (std::uint32_t i = 0; i < model_.bending.size() + inert.size(); ++i) {
+      const bool is_inert = next != inert.end() && next->described == i;
+      description_.bending.push_back(is_inert ? (next++)->entry : element(active++));
+    }
+  }
+
+  void describe_air() {
+    const AirStore& air = model_.air;
+    Air& to = description_.air;
+    for (const auto& [a, b, c] : air.triangles) {
+      to.triangles.push_back({particle(a), particle(b), particle(c)});
+    }
+    to.density = air.density;
+    to.drag = air.drag;
+    to.lift = air.lift;
+    to.wind = to_public(air.wind);
+  }
+
+  const Model& model_;
+  SceneDescription description_;
+};
+
+void apply(const Changes& changes, SceneDescription& d) {
+  for (const ChangedValue& c : changes.masses) d.masses[c.index] = c.value;
+  for (const ChangedValue& c : changes.rest_lengths) d.constraints[c.index].rest_length = c.value;
+  for (const ChangedValue& c : changes.compliances) d.constraints[c.index].compliance = c.value;
+  std::vector<std::uint8_t> released(d.positions.size());
+  for (const std::uint32_t i : changes.release) released[i] = 1;
+  std::erase_if(d.fixed, [&](std::uint32_t i) { return released[i] != 0; });
+  d.fixed.insert(d.fixed.end(), changes.fix.begin(), changes.fix.end());
+}
+
+}  // namespace
+
+SceneDescription description_of(const Model& model) { return Describer(model).description(); }
+
+std::shared_ptr<const Model> changed(const Model& model, const Changes& changes) {
+  SceneDescription description = description_of(model);
+  apply(changes, description);
+  return std::make_shared<Model>(description, &model);
+}
+
+}  // namespace weft
