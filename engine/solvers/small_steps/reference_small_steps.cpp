@@ -77,6 +77,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   projects_ = plan.projects;
   is_begun_ = false;
   passes_.forget();
+  departures_.begin();
   pace_.begin(plan);
   touched_.clear();
   if (plan.placed || h > tuning::kMostRatio * past_.h) past_.h = 0;
@@ -101,8 +102,20 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   next_formula_ = SubstepFormula::of(settings_.scheme, past_.h > 0 ? h / past_.h : 1);
 }
 
+/// Of the last substep, if there was one.
+void ReferenceSmallSteps::measure_departure() {
+  if (last_ == 0) return;
+  double largest = 0;
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    const Vector d = reference::departure(flight(), i, acceleration_[i], formula_.slope, last_);
+    largest = std::max({largest, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  }
+  departures_.add(largest, formula_.error_share);
+}
+
 void ReferenceSmallSteps::advance(Team&) {
   stop_at_contacts();
+  if (settings_.motion_tolerance > 0) measure_departure();
   is_begun_ = false;
   formula_ = std::exchange(next_formula_, SubstepFormula::of(settings_.scheme, 1));
   const double bh = formula_.part * h_;
@@ -235,6 +248,7 @@ void ReferenceSmallSteps::read_positions(kernels::VectorsView x, Team&) const {
 
 void ReferenceSmallSteps::settle(Team&) {
   stop_at_contacts();
+  measure_departure();
   for (std::size_t i = 0; i < model_.slots(); ++i) reference::settle(flight(), i, last_);
   last_ = 0;
 }

@@ -22,12 +22,31 @@ struct Table;
 
 /// BDF2 with the step before, or the first-order method (kernels/simd/small_steps.h).
 struct SubstepFormula {
-  double past = 0;  // c
-  double part = 1;  // b
+  double past = 0;              // c
+  double part = 1;              // b
+  double slope = 0;             // r / c, of its departure (reference::departure())
+  double error_share = 1. / 2;  // of h times the departure: its local error
   static SubstepFormula of(Scheme scheme, double ratio) {
     if (scheme != Scheme::bdf2) return {};
-    return {ratio * ratio / (1 + 2 * ratio), (1 + ratio) / (1 + 2 * ratio)};
+    return {ratio * ratio / (1 + 2 * ratio), (1 + ratio) / (1 + 2 * ratio), 2 + 1 / ratio, 1. / 3};
   }
+};
+
+/// The largest component of the departures of each substep of a frame, and the error that they
+/// stand for.
+class Departures {
+ public:
+  void begin() { sum_ = count_ = 0; }
+  void add(double largest, double error_share) {
+    sum_ += error_share * largest;
+    ++count_;
+  }
+  /// m/s
+  double mean_error() const { return count_ > 0 ? sum_ / count_ : 0; }
+
+ private:
+  double sum_ = 0;
+  double count_ = 0;
 };
 
 /// What a step is done in.
@@ -67,6 +86,12 @@ class SmallSteps {
   /// After the last substep.
   virtual void settle(Team& team) = 0;
   virtual void read_velocities(kernels::VectorsView v, Team& team) const = 0;
+  /// m/s, the largest local error of each substep of the frame, over its length: their mean with a
+  /// motion_tolerance, without one that of the last substep. (The largest component of an error
+  /// stands for its length.)
+  virtual double motion_error() const = 0;
+  /// m/s, how much of that rounding alone may make of substeps of h.
+  virtual double rounding_error(double h) const = 0;
   /// The frame becomes the past of the next one. Without this the one before stays.
   virtual void keep(Team& team) = 0;
   /// Goes on where another one of the same kind is.
