@@ -31,6 +31,13 @@ inline constexpr double kLongestSubstep = 0.005;
 inline constexpr double kPassing = 0.7;
 /// The largest automatic number of substeps of a step.
 inline constexpr int kMostSubsteps = 1024;
+/// Of the error of motion that is asked for: in frames whose error is below this share of it the
+/// next ones have fewer substeps. A larger share changes their number more often, a smaller one
+/// pays for more than was asked for.
+inline constexpr double kMotionSpare = 0.3;
+/// More substeps are of use for the motion while its error is this many times what rounding makes
+/// of it.
+inline constexpr double kOverRounding = 4;
 /// Yarns are blocks if they have this many constraints on average. Random triangles make yarns of 3
 /// or 4, a woven sheet of n x n particles makes yarns of n - 1.
 inline constexpr double kLeastLinks = 8;

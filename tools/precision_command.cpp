@@ -15,6 +15,7 @@
 #include "tools/pending_file.h"
 #include "tools/plotting.h"
 #include "tools/precision/bullet.h"
+#include "tools/precision/motion.h"
 #include "tools/precision/results.h"
 #include "tools/precision/results_json.h"
 #include "tools/precision/results_tables.h"
@@ -32,8 +33,9 @@ struct PrecisionOptions : StudyOptions {
   std::optional<std::string> scene;
   std::optional<int> size;
   std::optional<int> threads;  // charts: 1; cost against size: all
+  std::optional<std::string> material;
 
-  bool names_scene() const { return scene || size; }
+  bool names_scene() const { return scene || size || material; }
 };
 
 /// `corners` has a middle row, and `four_pins` a middle, so their sizes are odd.
@@ -44,10 +46,11 @@ int default_size(const std::string& scene, bool quick) {
 
 Result<std::vector<Task>> tasks_of(const PrecisionOptions& options) {
   std::vector<std::string> scenes{"hang", "corners", "cape", "four_pins"};
-  if (options.names_scene()) scenes = {options.scene.value_or("hang")};
+  if (options.names_scene()) scenes = {options.scene.value_or(options.material ? "cape" : "hang")};
   std::vector<Task> tasks;
   for (const std::string& scene : scenes) {
-    auto task = make_task(scene, options.size.value_or(default_size(scene, options.quick)));
+    auto task = make_task(scene, options.size.value_or(default_size(scene, options.quick)),
+                          options.material.value_or(""));
     if (!task) return Error{task.error()};
     if (!task.value().description.spheres.empty()) {
       return Error{
@@ -77,7 +80,7 @@ Result<Chart> measure_chart(Task task, const PrecisionOptions& options, TaskLine
   if (const auto done = add_reference(task, reference_parts(options.quick)); !done) {
     return Error{scene + ": " + done.error()};
   }
-  Chart chart{std::move(task), {}, effort.seconds_limit, {}};
+  Chart chart{std::move(task), {}, {}, effort.seconds_limit, {}};
   line.next(scene + " weft");
   for (const Curve& curve : weft_curves(chart.task, options.quick)) {
     auto points = sweep(chart.task, curve, effort,
@@ -86,7 +89,11 @@ Result<Chart> measure_chart(Task task, const PrecisionOptions& options, TaskLine
     for (Point& point : points.value()) chart.points.push_back(std::move(point));
     note_aims(chart, curve);
   }
+  auto motion = measure_motion(chart.task, options.quick, watch);
+  if (!motion) return Error{motion.error()};
+  chart.motion = std::move(motion.value());
   line.next(scene + " Bullet");
+  if (chart.task.has_material()) return chart;  // it has no such springs
   for (Point& point : sweep_bullet(chart.task, effort, options.quick, watch)) {
     chart.points.push_back(std::move(point));
     chart.tightest["bullet"] = kBulletTightest;
@@ -174,6 +181,9 @@ void add_precision_command(CommandLine& line) {
               "reference solution has not");
   verb.option("--size", options->size,
               "N of the scene (default 40, corners and four_pins 41; quick 20, 21)");
+  verb.option("--material", options->material,
+              "of a cape (default) or a flag: a name or a .json file, as of weft run; its true "
+              "motion is that of very many small steps");
   add_study_options(verb, *options, "write CSV, JSON, tables and the charts into a folder",
                     "few settings on small scenes: about a minute");
   verb.within(1, kMaxThreads, "--threads", options->threads,

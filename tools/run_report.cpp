@@ -70,9 +70,11 @@ std::string solver_text(const RunReport& report) {
 }
 
 std::string goal_text(const Settings& settings) {
-  return settings.iterations > 0
-             ? fmt::format("{} per substep", counted(settings.iterations, "iteration"))
-             : fmt::format("tolerance {}", percent(settings.tolerance));
+  if (settings.iterations > 0)
+    return fmt::format("{} per substep", counted(settings.iterations, "iteration"));
+  const std::string strain = fmt::format("tolerance {}", percent(settings.tolerance));
+  if (settings.motion_tolerance == 0) return strain;
+  return fmt::format("{} and {:g} m/s", strain, settings.motion_tolerance);
 }
 
 /// Of a frame: as asked for, or the mean of those chosen.
@@ -146,6 +148,10 @@ Json to_json(const RunReport& report) {
       {"energy_end", summary.energy_end},
       {"pin_work", summary.pin_work},
       {"energy_gain", summary.energy_gain},
+      {"energy_lost", summary.energy_lost},
+      {"motion_tolerance", settings.motion_tolerance},
+      {"motion_error", summary.mean_motion_error},
+      {"max_motion_error", summary.max_motion_error},
       {"lowest_y", summary.lowest_y},
       {"state_hash", fmt::format("{:016x}", summary.state_hash)},
       {"bytes_per_particle", bytes_per_particle(summary)},
@@ -199,8 +205,13 @@ std::string to_table(const RunReport& report) {
                   counted(summary.visits, "visit"), counted(summary.corrections, "correction")));
   const auto by_pins =
       summary.pin_work != 0 ? fmt::format(", {:.6g} J by moved pins", summary.pin_work) : "";
-  row("energy", fmt::format("{:.6g} J to {:.6g} J{}, largest gain {:.3g} J", summary.energy_start,
-                            summary.energy_end, by_pins, summary.energy_gain));
+  row("energy", fmt::format("{:.6g} J to {:.6g} J{}, largest gain {:.3g} J, {:.3g} J lost",
+                            summary.energy_start, summary.energy_end, by_pins, summary.energy_gain,
+                            summary.energy_lost));
+  if (summary.solver == Solver::small_steps) {
+    row("motion", fmt::format("{:.3g} m/s away from the true one by estimate, {:.3g} at most",
+                              summary.mean_motion_error, summary.max_motion_error));
+  }
   row("state", fmt::format("{:016x}, lowest y {:.6g} m", summary.state_hash, summary.lowest_y));
   return text;
 }

@@ -57,6 +57,9 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
   summary.max_error = std::max(summary.max_error, report.max_error);
   summary.pin_work += report.pin_work;
+  summary.energy_lost += report.energy_lost;
+  summary.max_motion_error = std::max(summary.max_motion_error, report.motion_error);
+  summary.mean_motion_error += (report.motion_error - summary.mean_motion_error) / summary.frames;
   summary.solver_seconds = 0;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     summary.stage_seconds[stage] += report.stage_seconds[stage];

@@ -96,7 +96,10 @@ struct RunSummary {
   /// (By scheme paper what hangs and sinks at u seems to have m u g h / 2 too much meanwhile: its
   /// velocities are those of Cloth::velocity().)
   double energy_gain = 0;
-  double lowest_y = 0;  ///< m, over all frames and particles
+  double energy_lost = 0;        ///< J, over all frames (StepReport)
+  double max_motion_error = 0;   ///< m/s, over all frames (StepReport)
+  double mean_motion_error = 0;  ///< m/s, mean over the frames
+  double lowest_y = 0;           ///< m, over all frames and particles
 
   std::uint64_t state_hash = 0;  ///< of the last frame
   std::size_t bytes = 0;         ///< of the cloth and its model

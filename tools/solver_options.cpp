@@ -55,6 +55,9 @@ void add_solver_options(Verb verb, SolverOptions& options) {
               "m of penetration left (default 1e-4)");
   verb.option("--velocity-tolerance", settings.velocity_tolerance,
               "m/s left along a constraint (default 0.01)");
+  verb.option("--motion-tolerance", settings.motion_tolerance,
+              "m/s by which particles may come to differ from the true motion, held by the number "
+              "of substeps, small_steps (default 0: not asked for)");
   verb.option("--impulse-limit", settings.impulse_limit,
               "--backend reference: N s, largest impulse of one correction (default 0: no limit)");
   verb.option("--solver", options.solver,

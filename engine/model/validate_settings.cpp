@@ -51,6 +51,27 @@ Result<void> validate_products(const Settings& s) {
   return {};
 }
 
+/// The number of substeps holds it, and small steps alone know their error of motion.
+Result<void> validate_motion_tolerance(const Settings& s) {
+  const auto refuse_it = [&](std::string_view what) {
+    return refuse("motion_tolerance", what, number(s.motion_tolerance));
+  };
+  if (!std::isfinite(s.motion_tolerance) || s.motion_tolerance < 0)
+    return refuse_it("must be finite and at least 0");
+  if (s.motion_tolerance == 0) return {};
+  constexpr double kLeastOfFloats = 1e-5;  // beside what rounding moves
+  if (s.backend == Backend::simd && s.motion_tolerance < kLeastOfFloats)
+    return refuse_it("must be 0 or at least 1e-5 m/s on the simd backend");
+  if (s.solver != Solver::small_steps && s.solver != Solver::automatic)
+    return refuse_it("is for solver small_steps, not " + std::string(name(s.solver)));
+  if (s.scheme != Scheme::automatic && !is_of_small_steps(s.scheme))
+    return refuse_it("is for schemes implicit and bdf2, not " + std::string(name(s.scheme)));
+  if (s.velocity_correction) return refuse_it("does not go with velocity_correction");
+  if (s.substeps != kAutomaticSubsteps) return refuse_it("needs automatic substeps");
+  if (s.iterations > 0) return refuse_it("does not go with iterations");
+  return {};
+}
+
 }  // namespace
 
 Result<void> validate(const Settings& s) {
@@ -79,6 +100,7 @@ Result<void> validate(const Settings& s) {
     return refuse("solver", "yarn is for the simd backend", std::string(name(s.backend)));
   }
   if (auto r = validate_scheme(s); !r) return r;
+  if (auto r = validate_motion_tolerance(s); !r) return r;
   if (s.threads < 0 || s.threads > kMaxThreads) {
     return refuse("threads", "must be from 0 to " + std::to_string(kMaxThreads),
                   std::to_string(s.threads));

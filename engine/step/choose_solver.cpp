@@ -69,12 +69,13 @@ Scheme scheme_of(const Settings& settings) {
 }
 
 /// The reference backend, and a count of iterations in place of a tolerance, are about the paper's
-/// loop.
+/// loop. The motion is held by small steps alone, at any tolerance.
 void choose_solver(const Model& model, Settings& settings) {
   const bool fixed = settings.iterations > 0;
   const bool paper = settings.backend == Backend::reference || fixed;
   if (settings.solver == Solver::automatic) {
-    if (is_of_small_steps(settings.scheme) || has_material(model))
+    const bool asks_for_motion = settings.motion_tolerance > 0;
+    if (is_of_small_steps(settings.scheme) || has_material(model) || asks_for_motion)
       settings.solver = Solver::small_steps;
     else
       settings.solver = paper ? Solver::gauss_seidel : solver_for(model, settings);

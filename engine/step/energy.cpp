@@ -29,12 +29,18 @@ double twice_kinetic(const State& s, const PinMotion& pins) {
   return sum;
 }
 
-void slow_down(State& s, const PinMotion& pins, double factor) {
+/// Returns by how much sum m |v'|^2 falls.
+double slow_down(State& s, const PinMotion& pins, double factor) {
+  double fall = 0;
   for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
-    if (s.model->inverse_mass[slot] == 0) continue;
-    const Vector u = pins.at(middle(s, slot));
-    s.next_velocity.set(slot, u + factor * (s.next_velocity[slot] - u));
+    const double w = s.model->inverse_mass[slot];
+    if (w == 0) continue;
+    const Vector u = pins.at(middle(s, slot)), v = s.next_velocity[slot];
+    const Vector slowed = u + factor * (v - u);
+    fall += (dot(v, v) - dot(slowed, slowed)) / w;
+    s.next_velocity.set(slot, slowed);
   }
+  return fall;
 }
 
 /// J, of what hangs at rest and by scheme paper has the velocity h a / 2.
@@ -68,27 +74,27 @@ double gained_energy(const State& s, const kernels::ImpulseEnergy& change, doubl
   return gain;
 }
 
-bool take_energy(State& s, double gain, double h) {
+bool take_energy(State& s, double gain, double h, kernels::ImpulseEnergy& change) {
   if (!(gain > 0)) return true;
   const PinMotion pins = s.pins.moving() ? motion_of_pins(s, h) : PinMotion{};
   const double kinetic = 0.5 * twice_kinetic(s, pins);
-  slow_down(s, pins, gain < kinetic ? std::sqrt(1 - gain / kinetic) : 0);
+  change.gain -= slow_down(s, pins, gain < kinetic ? std::sqrt(1 - gain / kinetic) : 0);
   return gain <= kinetic;
 }
 
-bool guard_energy(State& s, const kernels::ImpulseEnergy& impulses, bool is_suspect, double h) {
+bool guard_energy(State& s, kernels::ImpulseEnergy& impulses, bool is_suspect, double h) {
   if (impulses.gain <= 0) return true;
   const double worth = is_suspect ? 0 : tuning::kMostGain * impulses.first;
   const double allowed = 0.5 * (worth + tuning::kEnergyRounding * impulses.energy);
   if (0.5 * impulses.gain <= allowed) return true;
   const double gain = gained_energy(s, impulses, h);
-  return gain <= allowed + energy_at_rest(s, h) || take_energy(s, gain, h);
+  return gain <= allowed + energy_at_rest(s, h) || take_energy(s, gain, h, impulses);
 }
 
-void guard_springs(State& s, const kernels::ImpulseEnergy& change, double released, double h) {
+void guard_springs(State& s, kernels::ImpulseEnergy& change, double released, double h) {
   const double stored = s.lost_energy * std::exp(-h / tuning::kSpringTime);
   const double gain = gained_energy(s, change, h) - released;
-  take_energy(s, gain - stored, h);
+  take_energy(s, gain - stored, h, change);
   s.lost_energy = std::max(0.0, stored - gain);
 }
 

@@ -38,19 +38,19 @@ bool gains_energy(const State& s, const kernels::ImpulseEnergy& impulses, double
 /// long as it gains less than a share of what its impulses are worth it is left alone, unless it is
 /// suspect: other attempts were rejected. Returns whether there was so much energy in the
 /// velocities: a substep that has lifted its particles by more is in a wrong place. Cheap where
-/// nothing is gained.
-bool guard_energy(State& s, const kernels::ImpulseEnergy& impulses, bool is_suspect, double h);
+/// nothing is gained. What is taken is no longer in impulses.gain.
+bool guard_energy(State& s, kernels::ImpulseEnergy& impulses, bool is_suspect, double h);
 
 /// The guard of small steps. Constraints are springs here: energy that was lost shortly before
 /// (State::lost_energy) is stored in them, and may come back; and rounding takes it as often as it
 /// gives it. What springs and bending elements have released (J) is no gain. Cheap if no pins are
-/// under way.
-void guard_springs(State& s, const kernels::ImpulseEnergy& change, double released, double h);
+/// under way. What is taken is no longer in change.gain.
+void guard_springs(State& s, kernels::ImpulseEnergy& change, double released, double h);
 
 // Its parts:
 /// J, beyond the work of moved pins.
 double gained_energy(const State& s, const kernels::ImpulseEnergy& change, double h);
-/// Returns whether there was so much in the velocities.
-bool take_energy(State& s, double gain, double h);
+/// Returns whether there was so much in the velocities. change.gain falls by what is taken.
+bool take_energy(State& s, double gain, double h, kernels::ImpulseEnergy& change);
 
 }  // namespace weft

@@ -87,6 +87,7 @@ class ExactSubstep {
     if (trial_.outcome != Outcome::accepted) return trial_;
     watch_energy();
     if (s_.pins.moving()) trial_.pin_work = work_of(motion_of_pins(s_, h_), s_, h_);
+    if (needs_energy()) trial_.energy_lost = trial_.pin_work - 0.5 * impulses_.gain;
     watch_crossings();
     if (is_fixed()) trial_.status = std::max(trial_.status, Status::fixed_iterations);
     return trial_;

@@ -34,6 +34,29 @@ double mean_acceleration(const State& s) {
 
 bool takes_over_in(const State& s) { return s.settings.solver != Solver::small_steps; }
 
+/// A substep is a sweep or two, and local passes that may always visit every constraint once.
+int most_substeps(const Budget& budget) {
+  return std::min(tuning::kMostSubsteps, std::max(1, budget.positions / 3));
+}
+
+/// s, of substeps that hold the motion tolerance where the acceleration a sets in and ends again
+/// within dt: the departures of a frame are then 2 a h together, or by first order a h each.
+double length_for_onset(const State& s, double a, double dt) {
+  const double share = SubstepFormula::of(s.settings.scheme, 1).error_share;
+  const double length = s.settings.motion_tolerance / (share * a);
+  return s.settings.scheme == Scheme::bdf2 ? std::sqrt(0.5 * length * dt) : length;
+}
+
+/// s, of the longest substep that the strain tolerance and the motion tolerance allow. What a frame
+/// will be like is not known: State::refinement says what the last ones were.
+double usual_length(State& s, const SmallSteps& solver, double dt) {
+  const double a = mean_acceleration(s);
+  const double length =
+      std::min(tuning::kLongestSubstep, solver.substep_length(s.position.view(), a));
+  if (s.settings.motion_tolerance == 0) return length;
+  return std::min(length, length_for_onset(s, a, dt)) * std::exp2(-s.refinement);
+}
+
 /// Substeps are about as long as the load allows. Whoever takes over from another solver has no
 /// past, and no energy in springs. In a step that is far shorter than that corrections are smaller:
 /// a sweep is a spring of stiffness omega / h^2, and a spring that keeps its stiffness releases
@@ -44,11 +67,9 @@ FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& 
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
     plan.substeps = s.settings.substeps;
   } else {
-    const double usual = std::min(tuning::kLongestSubstep,
-                                  solver.substep_length(s.position.view(), mean_acceleration(s)));
+    const double usual = usual_length(s, solver, dt);
     const double wanted = std::ceil(dt / usual);
-    // A substep is a sweep or two, and local passes that may always visit every constraint once.
-    const int most = std::min(tuning::kMostSubsteps, std::max(1, budget.positions / 3));
+    const int most = most_substeps(budget);
     plan.substeps = wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
     const double part = 2 * dt / (plan.substeps * usual);
     if (part < 1) plan.omega *= part * part;
@@ -61,6 +82,18 @@ FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& 
 double give_per_mass(const State& s, const FramePlan& plan) {
   const double bh = SubstepFormula::of(s.settings.scheme, 1).part * plan.h;
   return bh * bh / plan.omega;
+}
+
+/// The logarithm to base 2 of how many times shorter substeps are to be than is known beforehand.
+/// Seldom changed, in levels of a half: by BDF2 one halves the error.
+double next_refinement(const State& s, const FramePlan& plan, double error, const Budget& budget) {
+  constexpr double kLevel = 0.5;
+  const double asked = s.settings.motion_tolerance;
+  const bool can_fall = plan.substeps < most_substeps(budget) &&
+                        error > tuning::kOverRounding * s.small_steps->rounding_error(plan.h);
+  if (error > asked && can_fall) return s.refinement + kLevel;
+  const bool is_small = error < tuning::kMotionSpare * asked;
+  return is_small ? std::max(0.0, s.refinement - kLevel) : s.refinement;
 }
 
 /// The frame that is being done.
@@ -248,8 +281,13 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   timed(report, Stage::commit, [&] {
     if (takes_over_in(s)) s.lost_energy = 0;
     s.give_per_mass = give_per_mass(s, plan);
-    if (!fixed) guard_springs(s, change, frame.released(), h);
+    const double released = frame.released();
+    if (!fixed) guard_springs(s, change, released, h);
     if (s.pins.moving()) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
+    trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;
+    if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
+    if (s.settings.motion_tolerance > 0)
+      trial.refinement = next_refinement(s, plan, trial.motion_error, budget);
     s.small_steps->keep(team);
   });
   return trial;

@@ -85,8 +85,7 @@ class Step {
     }
     transaction_.commit();
     s_.placed = s_.displaced = false;
-    const double needed = report_.halvings > 0 ? std::log2(parts_ / plan_.substeps) : 0;
-    s_.refinement = std::max(needed, s_.refinement - tuning::kCoarsening);
+    s_.refinement = next_refinement();
     return true;
   }
 
@@ -114,6 +113,12 @@ class Step {
       }
     }
     return true;
+  }
+
+  double next_refinement() const {
+    if (s_.settings.motion_tolerance > 0) return refinement_;
+    const double needed = report_.halvings > 0 ? std::log2(parts_ / plan_.substeps) : 0;
+    return std::max(needed, s_.refinement - tuning::kCoarsening);
   }
 
   Outcome try_attempt(const Attempt& attempt, double h) {
@@ -158,6 +163,9 @@ class Step {
     worsen(report_, trial.status);
     report_.substeps += trial.substeps;
     report_.pin_work += trial.pin_work;
+    report_.energy_lost += trial.energy_lost;
+    report_.motion_error += trial.motion_error;
+    refinement_ = trial.refinement;
     if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
   }
 
@@ -183,6 +191,7 @@ class Step {
   Transaction transaction_;
   Plan plan_;
   double parts_ = 0;              // done
+  double refinement_ = 0;         // that small steps want next
   Share positions_, velocities_;  // of the iterations, for the present substep
 };
 

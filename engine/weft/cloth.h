@@ -82,11 +82,11 @@ struct StepReport {
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
   double max_penetration = 0;                 ///< m, 0 without contacts
   double max_anchor_error = 0;  ///< m, by which an anchor's limits are exceeded; 0 without anchors
-  /// m/s, the distance that this step is estimated to have added between a particle and its true
-  /// motion, over dt, the largest. Of small_steps; 0 by other solvers.
+  /// m/s, by which this step is estimated to lead a particle away from its true motion, at most:
+  /// of small_steps (by the last substep alone without a motion_tolerance); by other solvers 0.
   double motion_error = 0;
-  /// J, by which kinetic, potential and elastic energy fell in this step, work of moved pins added
-  /// before. Damping and air take energy on purpose; what is left is the scheme's.
+  /// J, by which kinetic, potential and elastic energy fell, beyond the work of moved pins, forces,
+  /// air and Damping::motion: by the scheme, damped springs and contacts. 0 by gauss_seidel.
   double energy_lost = 0;
   double pin_work = 0;  ///< J, work that moved pins did in this step: exact where they move as one
                         ///< rigid body, else that of the rigid motion nearest to theirs. Jumps do

@@ -104,10 +104,10 @@ struct Settings {
   int max_iterations = 1'000'000;
   double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
-  /// m/s, metres per second of motion by which particles may come to differ from the true motion;
-  /// 0: not asked for. Held by the number of substeps, so small_steps with automatic substeps only;
-  /// what each step is estimated to have added stands in its report (StepReport::motion_error)
-  /// whether it is asked for or not.
+  /// m/s, by which particles may come away from their true motion; 0: not asked for. Of small_steps
+  /// alone, which automatic then chooses at any tolerance, and not with `substeps`, `iterations` or
+  /// velocity_correction. Held by the number of substeps, up to 1024, as far as rounding allows;
+  /// StepReport::motion_error tells. What contacts do, and chaos, is not in that estimate.
   double motion_tolerance = 0;
   double impulse_limit = 0;  ///< N s, the largest impulse of one correction; 0: no limit;
                              ///< gauss_seidel on the reference backend only

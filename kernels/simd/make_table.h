@@ -92,6 +92,7 @@ constexpr Table make_table() {
           .yarn_finish = as_wide_as_block<yarn_finish, &Table::yarn_finish>(),
           .yarn_add = yarn_add,
           .advance = advance,
+          .advance_measured = advance_measured,
           .settle = settle,
           .resume = resume,
           .keep_past = keep_past,

@@ -13,6 +13,8 @@
 /// engine/solvers/small_steps/small_steps.h.)
 #pragma once
 
+#include <algorithm>
+
 #include "kernels/simd/integrate.h"
 #include "kernels/simd/quads.h"
 #include "kernels/simd/split.h"
@@ -31,13 +33,38 @@ template <class Work>
   return fused(load(f.u + i) - load(f.predicted + i), rate, load(f.v + i));
 }
 
-void advance(const Flight& flight, const SubstepWeights& weights, std::size_t first,
-             std::size_t last) {
+/// The largest departure of floats that are settled one after the other.
+class Departure {
+ public:
+  explicit Departure(const LastSubstep& last) : step_(last.step), slope_(last.slope) {}
+
+  /// f.v: still predicted.
+  [[gnu::always_inline]] void add(const Flight& f, std::size_t i, Floats v) {
+    const Floats v_before = load(f.v_before + i), predicted = load(f.v + i);
+    const Floats led_to = fused_from(step_, load(f.acceleration + i), predicted - v_before);
+    largest_ = xsimd::max(largest_, xsimd::abs(fused_from(slope_, led_to, v - v_before)));
+  }
+  float largest() const {
+    alignas(64) float lanes[kFloats];
+    largest_.store_aligned(lanes);
+    return *std::max_element(lanes, lanes + kFloats);
+  }
+
+ private:
+  const Floats step_, slope_;
+  Floats largest_ = Floats(0.f);
+};
+
+template <bool kMeasures>
+[[gnu::always_inline]] inline float advance(const Flight& flight, const SubstepWeights& weights,
+                                            std::size_t first, std::size_t last) {
   const Flight f = flight;  // Stores could be to what references lead to.
-  const Floats rate(weights.rate), c(weights.past), bh(weights.step), push(weights.push);
+  const Floats rate(weights.last.rate), c(weights.past), bh(weights.step), push(weights.push);
+  Departure departure(weights.last);
   for_floats(
       first, last, [&](std::size_t i) __attribute__((always_inline)) {
         const Floats x = load(f.u + i), v = settled(f, i, rate);
+        if constexpr (kMeasures) departure.add(f, i, v);
         const Floats v_next =
             fused(push, load(f.acceleration + i), fused(c, v - load(f.v_before + i), v));
         const Floats x_next = fused(bh, v_next, fused(c, x - load(f.u_before + i), x));
@@ -47,15 +74,30 @@ void advance(const Flight& flight, const SubstepWeights& weights, std::size_t fi
         x_next.store_unaligned(f.predicted + i);
         x_next.store_unaligned(f.u + i);
       });
+  return departure.largest();
 }
 
-void settle(const Flight& flight, float rate, std::size_t first, std::size_t last) {
+void advance(const Flight& flight, const SubstepWeights& weights, std::size_t first,
+             std::size_t last) {
+  advance<false>(flight, weights, first, last);
+}
+float advance_measured(const Flight& flight, const SubstepWeights& weights, std::size_t first,
+                       std::size_t last) {
+  return advance<true>(flight, weights, first, last);
+}
+
+float settle(const Flight& flight, const LastSubstep& substep, std::size_t first,
+             std::size_t last) {
   const Flight f = flight;
+  Departure departure(substep);
   for_floats(
       first, last, [&](std::size_t i) __attribute__((always_inline)) {
-        settled(f, i, Floats(rate)).store_unaligned(f.v + i);
+        const Floats v = settled(f, i, Floats(substep.rate));
+        departure.add(f, i, v);
+        v.store_unaligned(f.v + i);
         load(f.u + i).store_unaligned(f.predicted + i);
       });
+  return departure.largest();
 }
 
 /// A change of velocity from outside between two frames changes the velocity a substep ago alike.

@@ -226,11 +226,18 @@ struct Past {
   float* moved = nullptr;  // u - u_before
 };
 
+/// The substep that has been solved: what its velocity follows from, and its departure.
+struct LastSubstep {
+  float step = 0;   // b h, of which accelerations acted for a share where motion decays
+  float rate = 0;   // 1 / (b h); 0: there was none in this frame, and v is the velocity
+  float slope = 0;  // r / c; 0 where c is
+};
+
 struct SubstepWeights {
   float past = 0;  // c, of what the last substep changed
   float step = 0;  // b h
   float push = 0;  // b h, of which accelerations act for a share where motion decays
-  float rate = 0;  // 1 / (b h) of the last substep
+  LastSubstep last;
 };
 
 /// Edges that small steps relax one by one, in blocks of kLanes; particles in quads. Padding has
@@ -446,8 +453,11 @@ struct Table {
 
   // Small steps (small_steps.h), of the floats first ... last - 1, multiples of kLanes.
   void (*advance)(const Flight&, const SubstepWeights&, std::size_t first, std::size_t last);
-  /// v becomes the velocity, predicted u.
-  void (*settle)(const Flight&, float rate, std::size_t first, std::size_t last);
+  /// Returns the largest component of the departure of the last substep (reference::departure()).
+  float (*advance_measured)(const Flight&, const SubstepWeights&, std::size_t first,
+                            std::size_t last);
+  /// v becomes the velocity, predicted u; returns the same.
+  float (*settle)(const Flight&, const LastSubstep&, std::size_t first, std::size_t last);
   /// Begins a frame at u with the velocities v, which need not be the past's; h: of its last
   /// substep.
   void (*resume)(const Flight&, const Past&, float h, std::size_t first, std::size_t last);

@@ -44,6 +44,9 @@ RunReport report() {
   summary.energy_end = -2.5;
   summary.pin_work = 0.875;
   summary.energy_gain = 0.25;
+  summary.energy_lost = 0.4375;
+  summary.mean_motion_error = 0.0078125;
+  summary.max_motion_error = 0.046875;
   summary.lowest_y = -0.375;
   summary.state_hash = 0x0123456789abcdef;
   summary.bytes = 1600;
@@ -71,6 +74,8 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
     "iterations_per_step": 5, "velocity_iterations_per_step": 3, "direction_updates_per_step": 9,
     "visits": 101, "corrections": 103, "ns_per_constraint_iteration": 3125000,
     "energy_start": -1.5, "energy_end": -2.5, "pin_work": 0.875, "energy_gain": 0.25,
+    "energy_lost": 0.4375, "motion_tolerance": 0, "motion_error": 0.0078125,
+    "max_motion_error": 0.046875,
     "lowest_y": -0.375, "state_hash": "0123456789abcdef", "bytes_per_particle": 100,
     "stages": {"predict": 31.25, "find_contacts": 93.75, "solve_positions": 156.25,
                "commit": 218.75, "correct_velocities": 281.25, "report": 343.75}})");
@@ -100,14 +105,26 @@ TEST_CASE("the table has every figure too") {
         "strain    max 12.5 %, mean of the frames' max 3.12 %, rms 1.56 %\n"
         "contacts  0.75 m deepest penetration\n"
         "work      5 iterations and 9 direction updates per step, 101 visits, 103 corrections\n"
-        "energy    -1.5 J to -2.5 J, 0.875 J by moved pins, largest gain 0.25 J\n"
+        "energy    -1.5 J to -2.5 J, 0.875 J by moved pins, largest gain 0.25 J, "
+        "0.438 J lost\n"
         "state     0123456789abcdef, lowest y -0.375 m\n");
 }
 
 TEST_CASE("a table tells of the work of pins where they did some") {
   RunReport at_rest = report();
   at_rest.summary.pin_work = 0;
-  CHECK(to_table(at_rest).find("J to -2.5 J, largest gain 0.25 J\n") != std::string::npos);
+  CHECK(to_table(at_rest).find("J to -2.5 J, largest gain 0.25 J, ") != std::string::npos);
+}
+
+TEST_CASE("a table tells of the motion where small steps estimated its error") {
+  RunReport of_small_steps = report();
+  CHECK(to_table(of_small_steps).find("motion") == std::string::npos);
+  of_small_steps.summary.solver = Solver::small_steps;
+  of_small_steps.settings.motion_tolerance = 0.0625;
+  CHECK(to_table(of_small_steps).find("tolerance 6.25 % and 0.0625 m/s\n") != std::string::npos);
+  CHECK(to_table(of_small_steps)
+            .find("motion    0.00781 m/s away from the true one by estimate, 0.0469 at most\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("a table of rigid cloth is about strain, and says nothing of a material") {

@@ -140,6 +140,7 @@ Result<void> check(const SceneDescription& scene) {
   if (!scene.spheres.empty()) return Error{"the reference solution knows no contacts"};
   for (const Constraint& c : scene.constraints) {
     if (c.kind == ConstraintKind::rope) return Error{"the reference solution knows no ropes"};
+    if (c.compliance > 0) return Error{"the reference solution knows no springs"};
   }
   return {};
 }

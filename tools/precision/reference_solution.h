@@ -2,7 +2,7 @@
 /// factors, and nothing of weft's solvers or kernels.
 ///
 /// Known here: distance constraints, fixed particles that stay where they are, gravity. A scene
-/// with ropes or spheres is refused.
+/// with ropes, springs or spheres is refused.
 #pragma once
 
 #include <weft/weft.h>

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/precision/motion.h"
 #include "tools/precision/order.h"
 #include "tools/precision/sizes.h"
 #include "tools/precision/sweep.h"
@@ -18,6 +19,7 @@ namespace weft::tools::precision {
 struct Chart {
   Task task;
   std::vector<Point> points;
+  std::vector<MotionPoint> motion;                ///< asked for and got
   double seconds_limit = Effort{}.seconds_limit;  ///< that a run was cut at
   std::map<std::string, double> tightest;         ///< strain that a contender's sweep aims at
 

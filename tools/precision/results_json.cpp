@@ -78,6 +78,22 @@ Json cheapest_json(const Study& study) {
   return json;
 }
 
+Json motion_json(const Study& study) {
+  Json json = Json::array();
+  for (const Chart& chart : study.charts) {
+    for (const MotionPoint& point : chart.motion) {
+      json.push_back({{"scene", chart.task.scene},
+                      {"size", chart.task.size},
+                      {"asked", point.asked},
+                      {"got", point.got},
+                      {"estimated", point.estimated},
+                      {"substeps", point.substeps},
+                      {"ms_per_frame", point.ms_per_frame}});
+    }
+  }
+  return json;
+}
+
 Json sizes_json(const SizeStudy& study) {
   Json json{{"scene", study.scene},
             {"tolerance", study.tolerance},
@@ -124,6 +140,7 @@ Json to_json(const Study& study) {
   json["bullet"] = study.bullet.empty() ? "not built in" : study.bullet;
   json["scenes"] = scenes_json(study);
   json["cheapest"] = cheapest_json(study);
+  json["motion"] = motion_json(study);
   if (study.sizes) json["sizes"] = sizes_json(*study.sizes);
   json["quick"] = study.quick;
   return json;

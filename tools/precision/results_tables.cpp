@@ -158,6 +158,26 @@ void write_failures(Text out, const Chart& chart) {
   fmt::format_to(out, "\n");
 }
 
+/// The largest distance from the true motion over time, beside what was asked for.
+void write_motion(Text out, const Chart& chart) {
+  if (chart.motion.empty()) return;
+  fmt::format_to(
+      out,
+      "{}, size {}: motion_tolerance and the largest distance from the true motion after "
+      "{:g} s, over that time\n{:>14}{:>14}{:>14}{:>10}{:>10}{:>14}\n",
+      chart.task.scene, chart.task.size, kFrame * kReferenceFrame, "asked, mm/s", "got",
+      "estimated", "got/asked", "substeps", "ms per frame");
+  for (const MotionPoint& point : chart.motion) {
+    const bool any = point.asked > 0;
+    fmt::format_to(out, "{:>14}{:14.3g}{:14.3g}{:>10}{:10.3g}{:14.3g}\n",
+                   any ? fmt::format("{:g}", 1000 * point.asked) : "-", 1000 * point.got,
+                   1000 * point.estimated,
+                   any ? fmt::format("{:.2f}", point.got / point.asked) : "-", point.substeps,
+                   point.ms_per_frame);
+  }
+  fmt::format_to(out, "\n");
+}
+
 /// Of all orders of a scene, the longest first.
 std::vector<double> steps_of(std::span<const Order> orders) {
   std::set<double, std::greater<>> steps;
@@ -276,6 +296,7 @@ std::string to_text(const Study& study) {
   for (const Chart& chart : study.charts) {
     write_cheapest(out, chart);
     write_failures(out, chart);
+    write_motion(out, chart);
   }
   write_orders(out, study.orders);
   if (study.sizes) write_sizes(out, *study.sizes);

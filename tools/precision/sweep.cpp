@@ -62,6 +62,7 @@ std::vector<Row> rows_of(const Task& task, Settings base, const KnobSet& knobs) 
       row.back().tolerance = tolerance;
     }
   }
+  if (!is_known(task, base)) return rows;
   for (const int substeps : knobs.many_substeps) {
     Row& row = rows.emplace_back();
     for (const int iterations : knobs.iterations) {
@@ -96,7 +97,8 @@ Outcome outcome_of(const Task& task, const RunSummary& summary) {
   Outcome outcome;
   outcome.frames = summary.frames;
   outcome.ms_per_frame = 1000 * seconds_of(task, summary) / std::max(summary.frames, 1);
-  outcome.max_strain = summary.max_strain;
+  outcome.max_strain = task.has_material() ? summary.max_error : summary.max_strain;
+  outcome.motion_error = summary.mean_motion_error;
   outcome.mean_max_strain = summary.mean_max_strain;
   outcome.energy_gain = summary.energy_gain;
   outcome.substeps = static_cast<double>(summary.substeps) / std::max(summary.frames, 1);

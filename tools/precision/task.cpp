@@ -5,15 +5,36 @@
 #include <utility>
 
 #include "tools/precision/reference_solution.h"
+#include "tools/scene_source.h"
 #include "tools/scenes/scenes.h"
 
 namespace weft::tools::precision {
 
-Result<Task> make_task(const std::string& scene, int size) {
+namespace {
+
+Result<SceneDescription> describe_scene(const std::string& scene, int size,
+                                        const std::string& material) {
+  if (!material.empty()) {
+    SceneOptions options;
+    options.scene = scene;
+    options.size = size;
+    options.material.material = material;
+    auto source = load_scene(options);
+    if (!source) return Error{source.error()};
+    return std::move(source.value().description);
+  }
   scenes::Options options;
   options.size = size;
   options.ropes = scene == "cape";
-  auto description = scenes::make(scene, options);
+  return scenes::make(scene, options);
+}
+
+}  // namespace
+
+bool Task::has_material() const { return describe(*model).compliant > 0; }
+
+Result<Task> make_task(const std::string& scene, int size, const std::string& material) {
+  auto description = describe_scene(scene, size, material);
   if (!description) return Error{description.error()};
   auto model = build_model(description.value());
   if (!model) return Error{model.error()};

@@ -27,18 +27,20 @@ struct Task {
   double reference_error = 0;   ///< m, how far off they are themselves, estimated
 
   bool is_line() const { return scene == "chain"; }
+  bool has_material() const;
 };
 
-/// The cape is one of ropes. Without the reference. An error too if weft refuses plain settings:
-/// WEFT_ISA names no instruction set of this machine.
-Result<Task> make_task(const std::string& scene, int size);
+/// The cape is one of ropes or, like the flag, of a material (--material of `weft run`; empty:
+/// none). Without the reference. An error too if weft refuses plain settings: WEFT_ISA names no
+/// instruction set of this machine.
+Result<Task> make_task(const std::string& scene, int size, const std::string& material = {});
 
 /// Computes the reference with steps of kFrame / parts and half of that. The second is kept, and a
 /// third of the difference is its error, since the order is two. Of a scene that the reference
-/// solution does not know or cannot move, with ropes or with yarns straight between two pins, small
-/// steps compute it, 32 times as many: its error is then the whole difference, as of a method of
-/// first order, since ropes become taut from step to step, and what is straight sags by the root of
-/// its strain.
+/// solution does not know or cannot move, with ropes, springs or with yarns straight between two
+/// pins, small steps compute it, 32 times as many: its error is then the whole difference, as of a
+/// method of first order, since ropes become taut from step to step, and what is straight sags by
+/// the root of its strain.
 Result<void> add_reference(Task& task, int parts);
 
 /// A tolerance, or a fixed number of iterations. 0 substeps: automatic.
@@ -52,8 +54,9 @@ struct Outcome {
   std::string status;  ///< weft's name of it, or out_of_time
   int frames = 0;
   double ms_per_frame = 0;     ///< one thread, and Bullet: processor time, else wall time
-  double max_strain = 0;       ///< over all frames and constraints
+  double max_strain = 0;       ///< over all frames and constraints; of springs what is left of laws
   double mean_max_strain = 0;  ///< mean over the frames
+  double motion_error = 0;     ///< m/s, as it is estimated, mean over the frames
   double energy_gain = 0;      ///< J
   double substeps = 0;         ///< per frame, mean
   std::optional<double> trajectory_error{};  ///< m

@@ -77,6 +77,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   projects_ = plan.projects;
   is_begun_ = false;
   passes_.forget();
+  departures_.begin();
   pace_.begin(plan);
   touched_.clear();
   has_past_ = !plan.placed && h <= SubstepFormula::kLargestRatio * past_.h;
@@ -103,8 +104,21 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   next_formula_ = formula_after(has_past_ ? past_.h : h);
 }
 
+/// Of the last substep, if there was one.
+void ReferenceSmallSteps::measure_departure() {
+  if (last_ == 0) return;
+  double largest = 0;
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    const Vector a = formula_.share * acceleration_[i];
+    const Vector d = reference::departure(flight(), i, a, formula_.slope, last_);
+    largest = std::max({largest, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  }
+  departures_.add(largest, formula_.error_share);
+}
+
 void ReferenceSmallSteps::advance(Team&) {
   stop_at_contacts();
+  if (settings_.motion_tolerance > 0) measure_departure();
   is_begun_ = false;
   formula_ = std::exchange(next_formula_, formula_after(h_));
   if (formula_.left < 1) decay();
@@ -259,6 +273,7 @@ void ReferenceSmallSteps::read_positions(kernels::VectorsView x, Team&) const {
 
 void ReferenceSmallSteps::settle(Team&) {
   stop_at_contacts();
+  measure_departure();
   settle_velocities();
 }
 

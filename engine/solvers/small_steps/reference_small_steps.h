@@ -41,6 +41,8 @@ class ReferenceSmallSteps final : public SmallSteps {
   double bending_energy(Team& team) override;
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;
+  double motion_error() const override { return departures_.mean_error(); }
+  double rounding_error(double) const override { return 0; }
 
   void keep(Team& team) override;
   void take_past(const SmallSteps& from) override {
@@ -63,6 +65,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   void decay();
   void settle_velocities();
   void bend();
+  void measure_departure();
   reference::BendingElement element(std::uint32_t i) const {
     const BendingStore& s = model_.bending;
     return {s.slots[i], s.weights[i], s.rest[i], s.compliance[i]};
@@ -85,6 +88,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   double h_ = 0, omega_ = 1;
   double last_ = 0;  // b h of the last substep
   SubstepFormula formula_, next_formula_;
+  Departures departures_;
   kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_;
   std::vector<std::uint32_t> out_;  // constraints that a sweep found out of tolerance
   std::vector<std::uint32_t> touched_;

@@ -55,6 +55,8 @@ class SmallStepsSolver final : public SmallSteps {
   /// After the last substep.
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;
+  double motion_error() const override { return departures_.mean_error(); }
+  double rounding_error(double h) const override;
   /// The frame becomes the past of the next one. Without this the one before stays.
   void keep(Team& team) override;
   void take_past(const SmallSteps& from) override;
@@ -74,8 +76,8 @@ class SmallStepsSolver final : public SmallSteps {
   /// Of a substep of h_ after one of h_before.
   SubstepFormula formula_after(double h_before) const;
   double decaying_share() const;
-  void decay(Team& team);
-  void settle_velocities(Team& team);
+  void decay(double to, Team& team);
+  void settle_velocities(bool measures, Team& team);
   void write_past(std::uint32_t slot, const ParticlePast& past);
   void split(kernels::VectorsView x, int substeps, Team& team);
   void measure_base(Team& team);
@@ -91,6 +93,8 @@ class SmallStepsSolver final : public SmallSteps {
   void stop_at_contact(std::uint32_t slot);
   template <class Work>
   void for_floats(Team& team, Work&& work);
+  template <class Work>
+  void settle_floats(Team& team, Work&& work);
 
   const Model& model_;
   const SmallStepsLayout& layout_;
@@ -104,6 +108,7 @@ class SmallStepsSolver final : public SmallSteps {
 
   double h_ = 0, omega_ = 1;
   simd::SubstepWeights weights_;
+  Departures departures_;
   SubstepFormula formula_, next_formula_;  // of the present substep, and of the next
   int since_renewal_ = 0;
   kernels::Vector gravity_{};
@@ -118,6 +123,7 @@ class SmallStepsSolver final : public SmallSteps {
   std::vector<std::uint16_t> edges_out_;                   // per edge block, a bit per lane
   std::vector<std::uint32_t> yarns_out_;                   // per row of yarns, likewise
   std::vector<std::uint32_t> touched_;                     // slots that contacts have pushed
+  std::vector<float> departure_;                           // the largest, per part of the floats
   kernels::AlignedVector<float> multiplier_;               // in places of the layout
   bool is_begun_ = false;                                  // the substep has been swept
   bool projects_ = false;

@@ -32,18 +32,23 @@ struct SubstepFormula {
   /// 1 + sqrt(2): a substep that is more than so many times as long as the last one starts without
   /// a past, for from there on the variable-step method is not zero-stable (Grigorieff 1983).
   static constexpr double kLargestRatio = 2.414;
-  double past = 0;   // c
-  double part = 1;   // b
-  double left = 1;   // of velocities
-  double share = 1;  // of b h, in which accelerations act
+  double past = 0;              // c
+  double part = 1;              // b
+  double slope = 0;             // r / c, of its departure (reference::departure())
+  double error_share = 1. / 2;  // of h times the departure: its local error
+  double left = 1;              // of velocities
+  double share = 1;             // of b h, in which accelerations act
   static SubstepFormula of(Scheme scheme, double ratio) {
     if (scheme != Scheme::bdf2) return {};
-    return {ratio * ratio / (1 + 2 * ratio), (1 + ratio) / (1 + 2 * ratio)};
+    return {ratio * ratio / (1 + 2 * ratio), (1 + ratio) / (1 + 2 * ratio), 2 + 1 / ratio, 1. / 3};
   }
   SubstepFormula with_decay(double rate, double h, double h_before) const {
     if (rate == 0) return *this;
     const double lost = -std::expm1(-rate * h), lost_before = -std::expm1(-rate * h_before);
-    return {past, part, 1 - lost, (lost - past * (1 - lost) * lost_before) / (rate * part * h)};
+    SubstepFormula decaying = *this;
+    decaying.left = 1 - lost;
+    decaying.share = (lost - past * (1 - lost) * lost_before) / (rate * part * h);
+    return decaying;
   }
   /// (b h)^2 over the mass is what a constant force moves a particle by.
   double give(double h) const { return part * h * (part * h) * share; }
@@ -56,6 +61,23 @@ struct ParticlePast {
   static ParticlePast flight(kernels::Vector v, kernels::Vector gravity, double h) {
     return {v, v - h * gravity, h * v - (0.5 * h * h) * gravity};
   }
+};
+
+/// The largest component of the departures of each substep of a frame, and the error that they
+/// stand for.
+class Departures {
+ public:
+  void begin() { sum_ = count_ = 0; }
+  void add(double largest, double error_share) {
+    sum_ += error_share * largest;
+    ++count_;
+  }
+  /// m/s
+  double mean_error() const { return count_ > 0 ? sum_ / count_ : 0; }
+
+ private:
+  double sum_ = 0;
+  double count_ = 0;
 };
 
 /// What a step is done in.
@@ -95,6 +117,12 @@ class SmallSteps {
   /// After the last substep.
   virtual void settle(Team& team) = 0;
   virtual void read_velocities(kernels::VectorsView v, Team& team) const = 0;
+  /// m/s, the largest local error of each substep of the frame, over its length: their mean with a
+  /// motion_tolerance, without one that of the last substep. (The largest component of an error
+  /// stands for its length.)
+  virtual double motion_error() const = 0;
+  /// m/s, how much of that rounding alone may make of substeps of h.
+  virtual double rounding_error(double h) const = 0;
   /// The frame becomes the past of the next one. Without this the one before stays.
   virtual void keep(Team& team) = 0;
   /// Goes on where another one of the same kind is.

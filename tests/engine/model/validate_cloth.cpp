@@ -48,6 +48,27 @@ TEST_CASE("tolerances must be finite and positive") {
   }
 }
 
+TEST_CASE("a tolerance of the motion is for small steps, whose number is not given") {
+  const auto spoil = [](auto Settings::*field, auto value) {
+    return [=](Settings& s) {
+      s.motion_tolerance = 0.125;
+      s.*field = value;
+    };
+  };
+  for (const double value : {-0.25, kNan, kInfinity, 1e-6})
+    check_setting([=](auto& s) { s.motion_tolerance = value; }, {"motion_tolerance"});
+  for (const Solver solver : {Solver::gauss_seidel, Solver::direct, Solver::yarn}) {
+    check_setting(spoil(&Settings::solver, solver),
+                  {"motion_tolerance", "0.125", name(solver).data()});
+  }
+  for (const Scheme scheme : {Scheme::paper, Scheme::rattle})
+    check_setting(spoil(&Settings::scheme, scheme), {"motion_tolerance", name(scheme).data()});
+  check_setting(spoil(&Settings::velocity_correction, true),
+                {"motion_tolerance", "velocity_correction"});
+  check_setting(spoil(&Settings::substeps, 4), {"motion_tolerance", "automatic substeps"});
+  check_setting(spoil(&Settings::iterations, 4), {"motion_tolerance", "iterations"});
+}
+
 // In floats an error of 1e-40 m over 1e-40 m is not a number, and nothing would be out of
 // tolerance.
 TEST_CASE("the simd backend refuses what floats cannot square") {

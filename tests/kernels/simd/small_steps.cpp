@@ -70,13 +70,21 @@ TEST_CASE("advance and settle are the formulas in double, rounded") {
     const simd::Table& table = simd::table(isa);
     const Flying start;
     Flying f, settled;
-    table.advance(f.flight(),
-                  {static_cast<float>(c), static_cast<float>(bh), static_cast<float>(push),
-                   static_cast<float>(1 / last)},
-                  0, kCount);
-    table.settle(settled.flight(), static_cast<float>(1 / last), 0, kCount);
+    const simd::LastSubstep substep{static_cast<float>(last), static_cast<float>(1 / last), 2.5f};
+    const simd::SubstepWeights weights{static_cast<float>(c), static_cast<float>(bh),
+                                       static_cast<float>(push), substep};
+    table.advance(f.flight(), weights, 0, kCount);
+    const float of_settle = table.settle(settled.flight(), substep, 0, kCount);
+    Flying measured;
+    const float of_advance = table.advance_measured(measured.flight(), weights, 0, kCount);
+    CHECK(measured.u == f.u);
+    CHECK(measured.v == f.v);
+    CHECK(of_advance == of_settle);
+    double departure = 0;
     for (std::size_t i = 0; i < kCount; ++i) {
       ReferenceFlight expected(start, i), still(start, i);
+      const Vector by = reference::departure(still.flight, 0, {at(start.a, i), 0, 0}, 2.5, last);
+      departure = std::max(departure, std::abs(by.x));
       reference::advance(expected.flight, 0, {at(start.a, i), 0, 0}, c, bh, push, last);
       reference::settle(still.flight, 0, last);
       CHECK(std::abs(at(f.u, i) - expected.flight.x.x[0]) < 3e-9);
@@ -87,6 +95,8 @@ TEST_CASE("advance and settle are the formulas in double, rounded") {
       CHECK(std::abs(at(settled.v, i) - still.flight.v.x[0]) < 1e-6);
       CHECK(settled.predicted[i] == start.u[i]);
     }
+    CHECK(departure > 1);
+    CHECK(static_cast<double>(of_settle) == doctest::Approx(departure).epsilon(1e-6));
   }
 }
 
@@ -98,7 +108,7 @@ TEST_CASE("what is not moved stays to the last bit: the spare float of a quad, a
     f.before = f.predicted = f.u;
     const auto u = f.u;
     for (int k = 0; k < 100; ++k)
-      table.advance(f.flight(), {1.f / 3, 7e-4f, 7e-4f, 1500}, 0, kCount);
+      table.advance(f.flight(), {1.f / 3, 7e-4f, 7e-4f, {7e-4f, 1500, 3}}, 0, kCount);
     CHECK(f.u == u);
   }
 }
