@@ -51,6 +51,10 @@ Result<void> validate_products(const Settings& s) {
   return {};
 }
 
+bool takes_springs(const Settings& s) {
+  return s.solver == Solver::gauss_seidel && s.backend == Backend::reference;
+}
+
 }  // namespace
 
 Result<void> validate(const Settings& s) {
@@ -87,14 +91,24 @@ Result<void> validate(const Settings& s) {
 }
 
 Result<void> validate_for_solver(const Settings& s, const Model& model) {
-  if (s.solver == Solver::small_steps) return {};
+  const bool springs = model.constraints.has_springs();
+  if (springs && s.scheme == Scheme::rattle) {
+    return refuse("scheme", "takes no constraints with a compliance", "rattle");
+  }
+  if (springs && s.velocity_correction) {
+    return refuse("velocity_correction", "takes no constraints with a compliance", "on");
+  }
+  if (springs && s.anticipate_products) {
+    return refuse("anticipate_products", "takes no constraints with a compliance", "on");
+  }
+  if (s.solver == Solver::small_steps) return validate_scheme(s);
   const auto refuse_solver = [&](std::string_view what) {
     return refuse("solver", what, std::string(name(s.solver)));
   };
-  if (model.constraints.has_springs()) {
+  if (springs && !takes_springs(s)) {
     return refuse_solver("a compliance is for small_steps, not this one");
   }
-  if (model.bending.size() > 0) return refuse_solver("bending is for small_steps, not this one");
+  if (model.bending.size() > 0) return refuse_solver("bending: is solved by small_steps only");
   return {};
 }
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "engine/contacts/contacts.h"
+#include "engine/measure/spring_laws.h"
 #include "engine/parallel/team.h"
 #include "kernels/loop.h"
 #include "kernels/vectors.h"
@@ -25,6 +26,8 @@ struct PositionTask {
   bool first_round = true;     // contacts were found anew: accumulated impulses begin at 0
   double share = 1;            // of the strain that the solver usually leaves: what it may leave
   int max_iterations = 1;
+  SpringLaws* laws = nullptr;  // of a model with springs: in place of the lengths and tolerances of
+                               // the model; the solver writes the multipliers
 };
 
 /// Velocities that are to be brought within the velocity tolerance, at the positions x.
