@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/bytes_of.h"
 
 namespace weft {
+namespace {
+
+/// Softness over w_a + w_b. A spring of more moves nothing by more than doubles round.
+constexpr double kSoftest = 1e20;
+
+}  // namespace
 
 SpringLaws::SpringLaws(const ConstraintStore& constraints) {
   for (auto* values : {&target, &softness, &tolerance, &multiplier}) {
@@ -16,32 +21,20 @@ SpringLaws::SpringLaws(const ConstraintStore& constraints) {
 
 void SpringLaws::begin(const Model& model, kernels::VectorsView start, double h, double share) {
   const ConstraintStore& s = model.constraints;
-  const double damping = model.damping.stretch / h;
+  const double damping = h > 0 ? model.damping.stretch / h : 0;
   for (std::size_t c = 0; c < s.size(); ++c) {
     target[c] = s.rest_length[c];
-    softness[c] = std::min(s.compliance[c] / (h * h), kernels::kMost);
+    softness[c] = 0;
     tolerance[c] = share * s.rest_length[c];
     multiplier[c] = 0;
-    if (damping == 0 || s.compliance[c] == 0) continue;
+    if (s.compliance[c] == 0) continue;
+    softness[c] = std::min(s.compliance[c] / (h * h), kSoftest / s.effective_mass[c]);
+    if (damping == 0) continue;
     const double stretch = length(start[s.a[c]] - start[s.b[c]]) - s.rest_length[c];
     target[c] += damping / (1 + damping) * stretch;
     softness[c] /= 1 + damping;
     tolerance[c] /= 1 + damping;
   }
-}
-
-void SpringLaws::begin_projection(const Model& model, double share) {
-  const ConstraintStore& s = model.constraints;
-  for (std::size_t c = 0; c < s.size(); ++c) {
-    target[c] = s.rest_length[c];
-    softness[c] = multiplier[c] = 0;
-    tolerance[c] =
-        s.compliance[c] == 0 ? share * s.rest_length[c] : std::numeric_limits<double>::infinity();
-  }
-}
-
-bool SpringLaws::takes_part(std::size_t constraint) const {
-  return tolerance[constraint] < std::numeric_limits<double>::infinity();
 }
 
 std::size_t SpringLaws::bytes() const {

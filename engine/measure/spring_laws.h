@@ -12,6 +12,8 @@
 ///     softness = compliance / (h^2 (1 + damping))
 ///
 /// and so is its tolerance divided. A rigid constraint has softness 0, and its own length.
+///
+/// Where no time passes, h = 0, springs are infinitely soft: a projection leaves them as they are.
 #pragma once
 
 #include <vector>
@@ -24,16 +26,14 @@ namespace weft {
 struct SpringLaws {
   explicit SpringLaws(const ConstraintStore& constraints);
 
-  /// For a substep of h that begins at `start`, held to `tolerance` times rest_length.
+  /// For a substep of h that begins at `start`, held to `tolerance` times rest_length. h = 0: for a
+  /// projection.
   void begin(const Model& model, kernels::VectorsView start, double h, double tolerance);
-  /// No time passes: springs are left as they are.
-  void begin_projection(const Model& model, double tolerance);
-  bool takes_part(std::size_t constraint) const;
   std::size_t bytes() const;
 
   kernels::AlignedVector<double> target;      // m
   kernels::AlignedVector<double> softness;    // 1/kg
-  kernels::AlignedVector<double> tolerance;   // m; infinite: does not take part
+  kernels::AlignedVector<double> tolerance;   // m
   kernels::AlignedVector<double> multiplier;  // kg m, of springs; solvers write it
 };
 

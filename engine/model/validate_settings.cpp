@@ -51,10 +51,6 @@ Result<void> validate_products(const Settings& s) {
   return {};
 }
 
-bool takes_springs(const Settings& s) {
-  return s.solver == Solver::gauss_seidel && s.backend == Backend::reference;
-}
-
 }  // namespace
 
 Result<void> validate(const Settings& s) {
@@ -102,14 +98,11 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
     return refuse("anticipate_products", "takes no constraints with a compliance", "on");
   }
   if (s.solver == Solver::small_steps) return validate_scheme(s);
-  const auto refuse_solver = [&](std::string_view what) {
-    return refuse("solver", what, std::string(name(s.solver)));
-  };
-  if (springs && !takes_springs(s)) {
-    return refuse_solver("a compliance is for small_steps, not this one");
+  if (springs && s.solver == Solver::yarn) {
+    return refuse("solver", "takes no constraints with a compliance", "yarn");
   }
-  if (model.bending.size() > 0) return refuse_solver("bending: is solved by small_steps only");
-  return {};
+  if (model.bending.size() == 0) return {};
+  return refuse("solver", "bending is solved by small_steps only", std::string(name(s.solver)));
 }
 
 Result<void> validate_for_lanes(const Settings& s, const Model& model) {

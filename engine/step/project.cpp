@@ -61,7 +61,7 @@ void project(State& s, double dt, StepReport& report, Team& team) {
   find_contacts(s, report);
   timed(report, Stage::solve_positions, [&] {
     if (s.settings.solver == Solver::small_steps) return by_small_steps();
-    if (s.laws) s.laws->begin_projection(*s.model, s.settings.tolerance);
+    if (s.laws) s.laws->begin(*s.model, s.position.view(), 0, s.settings.tolerance);
     const PositionTask task{.x = s.solved.view(),
                             .start = s.position.view(),
                             .contacts = s.contacts,

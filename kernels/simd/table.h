@@ -63,7 +63,10 @@ struct alignas(64) ConstraintBlock {
 struct BlockRelaxation {
   Displacements u;
   ConstraintBlock* blocks = nullptr;
-  float* impulse = nullptr;          // ropes, contacts: sum of corrections, >= 0 and <= 0
+  float* impulse = nullptr;          // ropes, contacts: sum of corrections, >= 0 and <= 0;
+                                     // springs: since directions were renewed
+  const float* yield = nullptr;      // springs (relax_springs.h), per constraint
+  const float* held = nullptr;       // springs: sum of corrections before that
   const std::uint32_t* a = nullptr;  // constraint -> slot, for singles
   const std::uint32_t* b = nullptr;
   std::uint64_t* mask = nullptr;  // skipping by masks: per slot, bit = colour
@@ -370,6 +373,12 @@ struct Table {
   std::uint32_t (*relax_serial)(const BlockRelaxation&, std::uint32_t first, std::uint32_t last);
   std::uint32_t (*relax_rope_serial)(const BlockRelaxation&, std::uint32_t first,
                                      std::uint32_t last);
+  /// All of these where constraints may be springs.
+  std::uint32_t (*relax_spring_run)(const BlockRelaxation&, const Run&, bool rope);
+  std::uint32_t (*relax_spring_singles)(const BlockRelaxation&, std::uint32_t first,
+                                        std::uint32_t last, bool rope);
+  std::uint32_t (*relax_spring_serial)(const BlockRelaxation&, std::uint32_t first,
+                                       std::uint32_t last, bool rope);
   /// Contacts of one sphere, the slot a[first]; see contacts.h for their gains.
   std::uint32_t (*relax_contacts)(const BlockRelaxation&, std::uint32_t first, std::uint32_t last);
   /// The same with the paper's masks (4.3): lanes whose bit is clear at both ends are passed over,

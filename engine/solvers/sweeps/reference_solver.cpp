@@ -72,7 +72,7 @@ void ReferenceSolver::place_contacts(const ContactStore& contacts) {
   }
 }
 
-/// With a fixed number of iterations nothing is tolerated, and nothing projected.
+/// With a fixed number of iterations nothing is tolerated.
 void ReferenceSolver::take_laws(const SpringLaws& laws) {
   for (std::size_t c = 0; c < model_.constraints.size(); ++c) {
     target_[c] = laws.target[c];

@@ -22,10 +22,10 @@ Sweeps::Sweeps(const Model& model, const Settings& settings, const simd::Table& 
 LoopResult Sweeps::sweep(const PositionTask& task, bool first, const LoopLimits& limits,
                          Team& team) {
   const kernels::VectorsView directions = task.along_start ? task.start : kernels::VectorsView{};
-  return reference_
-             ? reference_->solve_positions(task.x, directions, task.h, task.contacts, task.laws,
-                                           first, limits)
-             : simd_->solve_positions(task.x, directions, task.contacts, first, limits, team);
+  return reference_ ? reference_->solve_positions(task.x, directions, task.h, task.contacts,
+                                                  task.laws, first, limits)
+                    : simd_->solve_positions(task.x, directions, task.contacts, task.laws, first,
+                                             limits, team);
 }
 
 /// The last of the passes may have put right what no other was left to find so.

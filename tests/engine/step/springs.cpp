@@ -22,7 +22,9 @@ struct Way {
   Solver solver;
   Backend backend;
 };
-constexpr Way kWays[] = {{"gauss_seidel, reference", Solver::gauss_seidel, Backend::reference}};
+constexpr Way kWays[] = {{"gauss_seidel, reference", Solver::gauss_seidel, Backend::reference},
+                         {"direct", Solver::direct, Backend::simd},
+                         {"gauss_seidel, simd", Solver::gauss_seidel, Backend::simd}};
 
 Settings settings_of(const Way& way, double tolerance) {
   Settings settings;
