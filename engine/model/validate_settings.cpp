@@ -98,9 +98,6 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
     return refuse("anticipate_products", "takes no constraints with a compliance", "on");
   }
   if (s.solver == Solver::small_steps) return validate_scheme(s);
-  if (springs && s.solver == Solver::yarn) {
-    return refuse("solver", "takes no constraints with a compliance", "yarn");
-  }
   if (model.bending.size() == 0) return {};
   return refuse("solver", "bending is solved by small_steps only", std::string(name(s.solver)));
 }

@@ -47,7 +47,7 @@ double bend_after_motion(State& s, Team& team) {
     return std::max(strain / may.most,
                     strain * static_cast<double>(particles_of_yarn) / may.longest);
   };
-  if (s.laws) return share(largest_change(s), 0);
+  if (s.laws) return share(largest_change(s), s.yarn ? s.yarn->longest() : 0);
   const auto x = s.solved.view();
   const std::size_t longest = s.yarn ? s.yarn->longest() : 0;
   const double most = share(s.measure->max_strain(x, team), longest);

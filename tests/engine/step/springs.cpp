@@ -24,7 +24,8 @@ struct Way {
 };
 constexpr Way kWays[] = {{"gauss_seidel, reference", Solver::gauss_seidel, Backend::reference},
                          {"direct", Solver::direct, Backend::simd},
-                         {"gauss_seidel, simd", Solver::gauss_seidel, Backend::simd}};
+                         {"gauss_seidel, simd", Solver::gauss_seidel, Backend::simd},
+                         {"yarn", Solver::yarn, Backend::simd}};
 
 Settings settings_of(const Way& way, double tolerance) {
   Settings settings;
