@@ -103,7 +103,7 @@ void multiply(const simd::Table& table, Loom& loom) {
     table.yarn_push_first(loom.yarns(), block, 0, t, scratch);
   });
   for_each_block(loom, 0, first, [&](const simd::YarnBlock& block) {
-    table.yarn_eliminate(loom.yarns(), block, t, false, scratch);
+    table.yarn_eliminate(loom.yarns(), block, t, simd::YarnElimination::changes, scratch);
   });
   for_each_block(loom, first, all, [&](const simd::YarnBlock& block) {
     benchmark::DoNotOptimize(table.yarn_pull(loom.yarns(), block, t, scratch));

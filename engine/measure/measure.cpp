@@ -26,8 +26,11 @@ double Measure::penetration(kernels::VectorsView x, ContactStore& contacts) cons
   return model_.has_contacts() ? max_penetration(model_, table_, x, contacts) : 0;
 }
 
-double Measure::error(kernels::VectorsView x, ContactStore& contacts, Team& team) {
-  return std::max(max_strain(x, team) / tolerance_, penetration(x, contacts) / contact_tolerance_);
+double Measure::error(kernels::VectorsView x, const SpringLaws* laws, ContactStore& contacts,
+                      Team& team) {
+  const double of_lengths = laws != nullptr ? largest_violation(*laws, model_.constraints, x)
+                                            : max_strain(x, team) / tolerance_;
+  return std::max(of_lengths, penetration(x, contacts) / contact_tolerance_);
 }
 
 std::size_t Measure::bytes() const { return lanes_ ? lanes_->bytes() : 0; }

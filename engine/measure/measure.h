@@ -7,6 +7,7 @@
 
 #include "engine/contacts/contacts.h"
 #include "engine/measure/simd_measure.h"
+#include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "kernels/simd/table.h"
@@ -22,8 +23,9 @@ class Measure {
   double max_strain(kernels::VectorsView x, Team& team);
   /// m; the search writes into the scratch of the store.
   double penetration(kernels::VectorsView x, ContactStore& contacts) const;
-  /// The larger of the largest strain and the deepest penetration, each in its tolerance.
-  double error(kernels::VectorsView x, ContactStore& contacts, Team& team);
+  /// The larger of the largest strain and the deepest penetration, each in its tolerance. With
+  /// laws, what is left of them counts in place of the strain.
+  double error(kernels::VectorsView x, const SpringLaws* laws, ContactStore& contacts, Team& team);
   /// Of the simd backend.
   SimdMeasure& lanes() { return *lanes_; }
   std::size_t bytes() const;

@@ -109,15 +109,19 @@ Result<void> validate(const Settings& s) {
 }
 
 Result<void> validate_for_solver(const Settings& s, const Model& model) {
-  if (s.solver == Solver::small_steps) return {};
-  const auto refuse_solver = [&](std::string_view what) {
-    return refuse("solver", what, std::string(name(s.solver)));
-  };
-  if (model.constraints.has_springs()) {
-    return refuse_solver("a compliance is for small_steps, not this one");
+  const bool springs = model.constraints.has_springs();
+  if (springs && s.scheme == Scheme::rattle) {
+    return refuse("scheme", "takes no constraints with a compliance", "rattle");
   }
-  if (model.bending.size() > 0) return refuse_solver("bending is for small_steps, not this one");
-  return {};
+  if (springs && s.velocity_correction) {
+    return refuse("velocity_correction", "takes no constraints with a compliance", "on");
+  }
+  if (springs && s.anticipate_products) {
+    return refuse("anticipate_products", "takes no constraints with a compliance", "on");
+  }
+  if (s.solver == Solver::small_steps) return validate_scheme(s);
+  if (model.bending.size() == 0) return {};
+  return refuse("solver", "bending is solved by small_steps only", std::string(name(s.solver)));
 }
 
 Result<void> validate_for_lanes(const Settings& s, const Model& model) {

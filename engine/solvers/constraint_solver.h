@@ -9,6 +9,7 @@
 #pragma once
 
 #include "engine/contacts/contacts.h"
+#include "engine/measure/spring_laws.h"
 #include "engine/parallel/team.h"
 #include "kernels/loop.h"
 #include "kernels/vectors.h"
@@ -24,6 +25,8 @@ struct PositionTask {
   bool along_start = false;    // impulses act along the directions at `start` (scheme rattle)
   bool first_round = true;     // contacts were found anew: accumulated impulses begin at 0
   int max_iterations = 1;
+  SpringLaws* laws = nullptr;  // of a model with springs: in place of the lengths and tolerances of
+                               // the model; the solver writes the multipliers
 };
 
 /// Velocities that are to be brought within the velocity tolerance, at the positions x.

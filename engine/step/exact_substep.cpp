@@ -43,6 +43,10 @@ kernels::LoopResult solve_positions(State& s, ConstraintSolver& solver, Position
   return sum;
 }
 
+void find_elastic_energy(State& s, double h) {
+  s.elastic_energy = energy_of_springs(*s.model, s.position, h * h);
+}
+
 Status correct_velocities(State& s, ConstraintSolver& solver, bool exact, const Budget& budget,
                           StepReport& report, Team& team) {
   VelocityTask task{.x = s.solved.view(),
@@ -85,11 +89,13 @@ class ExactSubstep {
       timed(report_, Stage::correct_velocities, [&] { correct_velocities(); });
     }
     if (trial_.outcome != Outcome::accepted) return trial_;
+    if (s_.laws) release_energy();
     watch_energy();
     if (s_.pins.moving()) trial_.pin_work = work_of(motion_of_pins(s_, h_), s_, h_);
     if (needs_energy()) trial_.energy_lost = trial_.pin_work - 0.5 * impulses_.gain;
     watch_crossings();
     if (is_fixed()) trial_.status = std::max(trial_.status, Status::fixed_iterations);
+    if (s_.laws && trial_.outcome == Outcome::accepted) keep_springs();
     return trial_;
   }
 
@@ -102,12 +108,14 @@ class ExactSubstep {
   }
 
   void solve_positions() {
+    if (s_.laws) s_.laws->begin(*s_.model, s_.position.view(), h_, s_.settings.tolerance);
     const PositionTask task{.x = s_.solved.view(),
                             .start = s_.position.view(),
                             .contacts = s_.contacts,
                             .h = h_,
                             .along_start = is_by_rattle(),
-                            .max_iterations = budget_.positions};
+                            .max_iterations = budget_.positions,
+                            .laws = s_.laws ? &*s_.laws : nullptr};
     auto result = weft::solve_positions(s_, solver(), task, report_, team_);
     if (is_fixed()) {
       // A fixed number that the direct solver cannot do, since the system has no solution.
@@ -144,6 +152,19 @@ class ExactSubstep {
     return is_by_rattle() || s_.settings.solver != Solver::gauss_seidel || !is_solved_;
   }
 
+  /// What springs have released is no gain.
+  void release_energy() {
+    elastic_energy_ = energy_of_tensions(*s_.laws, s_.model->constraints, h_);
+    impulses_.gain -= 2 * (s_.elastic_energy - elastic_energy_);
+  }
+
+  void keep_springs() {
+    s_.elastic_energy = elastic_energy_;
+    s_.give_per_mass = h_ * h_;
+    report_.max_error = s_.settings.tolerance *
+                        largest_violation(*s_.laws, s_.model->constraints, s_.solved.view());
+  }
+
   void watch_energy() {
     if (!needs_energy()) return;
     if (is_by_rattle() && !attempt_.is_last) {
@@ -175,6 +196,7 @@ class ExactSubstep {
   Trial trial_;
   bool is_solved_ = true;
   kernels::ImpulseEnergy impulses_;
+  double elastic_energy_ = 0;  // J, of springs in the end
 };
 
 }  // namespace

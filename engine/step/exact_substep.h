@@ -22,6 +22,9 @@ kernels::LoopResult solve_positions(State& s, ConstraintSolver& solver, Position
 Status correct_velocities(State& s, ConstraintSolver& solver, bool exact, const Budget& budget,
                           StepReport& report, Team& team);
 
+/// elastic_energy, of positions that no substep has led to: as a substep of h resolves it.
+void find_elastic_energy(State& s, double h);
+
 /// Lists who may touch whom at solved.
 void find_contacts(State& s, StepReport& report);
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/contacts/contacts.h"
+#include "engine/measure/state_measure.h"
 #include "engine/step/air.h"
 #include "engine/step/motion.h"
 #include "engine/step/reporting.h"
@@ -13,6 +14,23 @@
 
 namespace weft {
 namespace {
+
+/// The largest strain of rigid constraints, and by which springs become longer or shorter: these
+/// need not have their lengths of rest.
+double largest_change(const State& s) {
+  const ConstraintStore& store = s.model->constraints;
+  double most = 0;
+  for (std::size_t c = 0; c < store.size(); ++c) {
+    const auto length_in = [&](const kernels::Vectors& x) {
+      return length(x[store.a[c]] - x[store.b[c]]) / store.rest_length[c];
+    };
+    const double change = store.compliance[c] == 0
+                              ? strain_of(*s.model, s.solved, c)
+                              : std::abs(length_in(s.solved) - length_in(s.position));
+    most = std::max(most, change);
+  }
+  return most;
+}
 
 /// The strain after a step without constraints grows with the square of the step, so that the
 /// motion wants
@@ -28,6 +46,7 @@ double bend_after_motion(State& s, Team& team) {
     return std::max(strain / may.most,
                     strain * static_cast<double>(particles_of_yarn) / may.longest);
   };
+  if (s.laws) return share(largest_change(s), s.yarn ? s.yarn->longest() : 0);
   const auto x = s.solved.view();
   const std::size_t longest = s.yarn ? s.yarn->longest() : 0;
   const double most = share(s.measure->max_strain(x, team), longest);

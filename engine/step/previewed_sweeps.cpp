@@ -13,8 +13,8 @@ kernels::LoopResult PreviewedSweeps::solve_positions(const PositionTask& task, T
   const kernels::LoopLimits limits{.fixed_iterations = s_.settings.iterations,
                                    .max_iterations = task.max_iterations,
                                    .renew_after = s_.settings.renew_after};
-  return reference_.solve_previewed_positions(motion, task.h, task.contacts, task.first_round,
-                                              limits);
+  return reference_.solve_previewed_positions(motion, task.h, task.contacts, task.laws,
+                                              task.first_round, limits);
 }
 
 kernels::LoopResult PreviewedSweeps::correct_velocities(const VelocityTask& task, Team& team) {

@@ -25,7 +25,7 @@ double largest_rigid_strain(const State& s) {
 
 bool is_out_of_tolerance(State& s, Team& team) {
   if (!s.model->constraints.has_springs())
-    return s.measure->error(s.position.view(), s.contacts, team) > 1;
+    return s.measure->error(s.position.view(), nullptr, s.contacts, team) > 1;
   return largest_rigid_strain(s) > s.settings.tolerance ||
          s.measure->penetration(s.position.view(), s.contacts) > s.settings.contact_tolerance;
 }
@@ -47,11 +47,13 @@ void project(State& s, double dt, StepReport& report, Team& team) {
   find_contacts(s, report);
   timed(report, Stage::solve_positions, [&] {
     if (s.settings.solver == Solver::small_steps) return by_small_steps();
+    if (s.laws) s.laws->begin(*s.model, s.position.view(), 0, s.settings.tolerance);
     const PositionTask task{.x = s.solved.view(),
                             .start = s.position.view(),
                             .contacts = s.contacts,
                             .h = dt,
-                            .max_iterations = s.small_steps ? std::max(1, most / 2) : most};
+                            .max_iterations = s.small_steps ? std::max(1, most / 2) : most,
+                            .laws = s.laws ? &*s.laws : nullptr};
     const auto result = solve_positions(s, *s.solver, task, report, team);
     if (!result.converged && s.small_steps) {
       s.solved = s.position;
@@ -75,7 +77,11 @@ void explain(State& s, double h, StepReport& report, Team& team) {
 
 void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team) {
   const Strain strain = s.measure->strain(x.view(), team);
-  report.max_strain = report.max_error = strain.max;
+  report.max_strain = strain.max;
+  if (!s.model->constraints.has_springs())
+    report.max_error = strain.max;
+  else if (!committed(report.status))
+    report.max_error = largest_rigid_strain(s);
   report.rms_strain = strain.rms;
   report.worst_constraint = strain.worst_constraint;
   report.contacts = static_cast<int>(s.contacts.count());

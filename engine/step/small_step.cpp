@@ -281,6 +281,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   timed(report, Stage::commit, [&] {
     if (takes_over_in(s)) s.lost_energy = 0;
     s.give_per_mass = give_per_mass(s, plan);
+    if (s.laws) s.elastic_energy = energy_of_springs(*s.model, s.solved, s.give_per_mass);
     const double released = frame.released();
     if (!fixed) guard_springs(s, change, released, h);
     if (s.pins.moving()) trial.pin_work = work_of(motion_of_pins(s, h), s, h);

@@ -32,6 +32,9 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   if (is_resisted(*model)) total_force.resize(model->slots());
   if (model->damping.motion > 0) velocity_before_decay.resize(model->slots());
   if (model->has_air()) resistances.resize(model->air.triangles.size());
+  if (model->constraints.has_springs() && settings.solver != Solver::small_steps) {
+    laws.emplace(model->constraints);
+  }
   make_solvers();
 }
 
@@ -97,6 +100,7 @@ void State::copy_scalars(const State& from, bool same) {
   placed = !same || from.placed;
   displaced = from.displaced;
   lost_energy = same ? from.lost_energy : 0;
+  elastic_energy = same ? from.elastic_energy : 0;
   give_per_mass = same ? from.give_per_mass : 0;
   refinement = same ? from.refinement : 0;
 }
@@ -132,6 +136,7 @@ std::size_t State::bytes() const {
   sum += contacts.bytes() + bytes_of(impulses) + bytes_of(resistances) + pins.bytes() +
          measure->bytes();
   sum += sizeof(Team::SharedState);
+  if (laws) sum += laws->bytes();
   if (sweeps) sum += sweeps->bytes();
   if (yarn) sum += yarn->bytes();
   if (direct) sum += direct->bytes();

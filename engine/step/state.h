@@ -14,10 +14,12 @@
 #include <weft/weft.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/contacts/contacts.h"
 #include "engine/measure/measure.h"
+#include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/constraint_solver.h"
@@ -40,7 +42,7 @@ struct Resistance {
 /// A state to return to.
 struct Checkpoint {
   kernels::Vectors position, velocity;
-  double lost_energy = 0;
+  double lost_energy = 0, elastic_energy = 0;
 };
 
 struct State {
@@ -59,17 +61,19 @@ struct State {
   kernels::Vectors substep_positions;  // where a small step began; with contacts only
   ContactStore contacts;
   Pins pins;
-  bool placed = true;        // positions were given, not stepped to: they may violate constraints
-  bool displaced = false;    // they may, though stepped to: a pin was put down, the model changed
-  double lost_energy = 0;    // J, lately (energy.h)
-  double give_per_mass = 0;  // s^2, of springs in the last step (measure/state_measure.h)
-  double refinement = 0;     // where the next step's list of attempts begins: log2 of the parts
+  bool placed = true;         // positions were given, not stepped to: they may violate constraints
+  bool displaced = false;     // they may, though stepped to: a pin was put down, the model changed
+  double lost_energy = 0;     // J, lately (energy.h)
+  double elastic_energy = 0;  // J, of springs, where the present substep begins; not of small steps
+  double give_per_mass = 0;   // s^2, of springs in the last step (measure/state_measure.h)
+  double refinement = 0;      // where the next step's list of attempts begins: log2 of the parts
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots
 
   const simd::Table* kernels;
   std::unique_ptr<Measure> measure;
-  kernels::Vectors predicted;  // reference backend only
+  kernels::Vectors predicted;      // reference backend only
+  std::optional<SpringLaws> laws;  // of the last substep; with springs, unless by small steps
   // Those that the settings need. What a solver gives up small steps do.
   std::unique_ptr<Sweeps> sweeps;
   std::unique_ptr<YarnSolver> yarn;

@@ -34,6 +34,7 @@ class Transaction {
     std::swap(s_.position, s_.step_start.position);
     std::swap(s_.velocity, s_.step_start.velocity);
     s_.lost_energy = s_.step_start.lost_energy;
+    s_.elastic_energy = s_.step_start.elastic_energy;
   }
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
@@ -44,6 +45,7 @@ class Transaction {
     s_.step_start.position = s_.position;
     s_.step_start.velocity = s_.velocity;
     s_.step_start.lost_energy = s_.lost_energy;
+    s_.step_start.elastic_energy = s_.elastic_energy;
     begun_ = true;
   }
   void commit() { begun_ = false; }
@@ -80,6 +82,7 @@ class Step {
       project(s_, dt, report_, team_);
     }
     plan_ = plan_for(s_, dt, report_, team_);
+    if (s_.laws && (s_.placed || s_.displaced)) find_elastic_energy(s_, dt / plan_.substeps);
     for (int left = plan_.substeps; left > 0; --left) {
       if (!do_substep(dt / plan_.substeps, left)) return false;
     }

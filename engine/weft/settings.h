@@ -19,7 +19,7 @@ namespace weft {
 ///   contacts are relaxed one by one after each sweep, and take part in that system. A yarn
 ///   between two fixed particles that is taut, and not braced by triangles, hangs by a strain: with
 ///   scheme paper it keeps most of what yarns may leave (0.3 %, or the tolerance if that is less),
-///   in addition to the strain that the distance of its ends demands. simd only.
+///   in addition to the strain that the distance of its ends demands; not with springs. simd only.
 /// small_steps: one relaxed sweep in each of many short substeps, over yarns where the cloth has
 ///   them and over single constraints elsewhere, and then passes over what is out of tolerance
 ///   alone. A sweep leaves a strain that falls with the square of the substep; how long that may be
@@ -27,7 +27,7 @@ namespace weft {
 ///   (engine/solvers/small_steps/small_steps_load.h). For any mesh, at tolerances of 0.1 % and
 ///   looser, and for a motion that is near the true one. Masses should not differ by more than a
 ///   hundred. Substeps of one length are best kept to: a change of it by half costs some energy.
-///   It alone solves springs (Constraint::compliance) and bending.
+///   It alone solves bending.
 /// automatic: by what the cloth is. small_steps for cloth, woven or a mesh, and for all springs.
 /// direct for chains of
 ///   ropes, trees and bridges of them. yarn for all else:
@@ -50,7 +50,7 @@ enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, auto
 ///   it and, in both schemes, act along their directions at its end. Where rattle does not
 ///   converge, or its impulses would add energy (engine/step/energy.h), the substep is redone from
 ///   the same state by the paper's scheme with velocity correction; StepReport::scheme_fallbacks
-///   counts these. With Settings::iterations nothing is redone.
+///   counts these. With Settings::iterations nothing is redone. Takes no springs.
 /// implicit, bdf2: of small_steps alone. The implicit Euler method, first order, and the second
 ///   order BDF2 with variable steps; particles that a contact or a local pass has moved go on from
 ///   there at first order. Whoever writes velocities changes the step before alike; written
@@ -75,9 +75,9 @@ inline constexpr int kAutomaticSubsteps = 0;
 /// How a cloth is solved. The defaults converge to 1 % the fastest way that is known here;
 /// paper_settings() are the paper's.
 struct Settings {
-  /// Strain, | |a-b| - rest | / rest, that every step must reach; > 0. The simd backend works in
-  /// floats: it takes rest lengths, tolerance * rest length, and the tolerances below that are
-  /// used, from 1e-18 to 1e18, and Cloth::create refuses others.
+  /// Strain, | |a-b| - rest | / rest, that every step must reach, of springs what is left of their
+  /// law; > 0. The simd backend works in floats: it takes rest lengths, tolerance * rest length,
+  /// and the tolerances below that are used, from 1e-18 to 1e18, and Cloth::create refuses others.
   double tolerance = 0.01;
   /// Each step is done as this many substeps, each solved to the tolerances; with small_steps only
   /// the last is looked at, and the number bounds the time of a step. 0 (kAutomaticSubsteps): of
@@ -127,12 +127,12 @@ struct Settings {
   /// kept, and updated through the stored products of neighbouring directions, as in section 4.2.
   /// Ropes, constraints at hubs and contacts still form theirs from displacements. An iteration
   /// takes 1.3 to 2 times as long as by displacements, on irregular meshes 3 times (perf/tried.md).
-  /// The reference backend keeps products whenever it anticipates, and refuses this.
+  /// The reference backend keeps products whenever it anticipates, and refuses this; so do springs.
   bool anticipate_products = false;
   bool skip = true;  ///< section 4.3: satisfied constraints are passed over
   /// Sections 3.2, 3.3: a second loop, on velocities; rattle has it always. Without it gauss_seidel
   /// gains energy in steps of a millisecond and less: errors left within a loose tolerance come
-  /// back as speed, error / dt (tests/README.md).
+  /// back as speed, error / dt (tests/README.md). Takes no springs.
   bool velocity_correction = false;
 };
 

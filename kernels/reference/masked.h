@@ -66,6 +66,7 @@ class MaskedLoop {
       mask_[b] &= ~bit(c);
       return false;
     }
+    accumulate(r_, c, change);
     apply(r_, c, change);
     const std::uint64_t others = r_.limit < kUnlimited ? ~std::uint64_t{0} : ~bit(c);
     mark_moved(a, others);

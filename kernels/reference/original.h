@@ -29,6 +29,7 @@ class OriginalLoop {
   bool visit_bilateral(std::size_t c) {
     const double change = impulse_change(r_, c, error(r_, c), 0);
     if (change == 0) return false;
+    accumulate(r_, c, change);
     apply(r_, c, change);
     return true;
   }

@@ -51,6 +51,7 @@ class PreviewedLoop {
   bool visit_bilateral(std::size_t c) {
     const double change = impulse_change(r_, c, error(r_, c, previewed_vector(c)), 0);
     if (change == 0) return false;
+    accumulate(r_, c, change);
     push(c, change);
     return true;
   }

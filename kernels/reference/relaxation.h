@@ -16,6 +16,11 @@
 /// must be able to be taken back. With lambda > 0 shortening: ropes keep lambda >= 0, contacts
 /// keep lambda <= 0.
 ///
+/// A spring gives way by softness = compliance / h^2 times the impulse that it has accumulated, mu
+/// (mu / h^2 is its tension), so that
+///
+///     e = n . (x_a - x_b) - target - softness mu,     lambda = e / (w_a + w_b + softness)
+///
 /// Constraints stand in four ranges, so that the common kind is solved without a question asked:
 ///
 ///   [0, plain)            distance, no hub at either end, colour by colour
@@ -66,12 +71,14 @@ struct Relaxation {
   const std::uint32_t* b = nullptr;
   const double* target = nullptr;
   const double* tolerance = nullptr;       // |e| up to here is satisfied
-  const double* effective_mass = nullptr;  // 1 / (w_a + w_b)
+  const double* effective_mass = nullptr;  // 1 / (w_a + w_b + softness)
+  const double* softness = nullptr;        // 1/kg; 0: rigid, as all are without this array
   const double* inverse_mass = nullptr;    // per particle
 
   VectorsView x;              // per particle, changed
   VectorsView n;              // per constraint, unit
-  double* impulse = nullptr;  // per constraint, accumulated lambda; read for unilateral ones only
+  double* impulse = nullptr;  // per constraint, accumulated lambda: of unilateral ones and, where
+                              // there is a softness, of all
   double limit = kUnlimited;  // largest |lambda| of one correction (paper 4.2)
 
   VectorsView start;                    // rattle: where directions are taken; null: at x
@@ -96,9 +103,19 @@ inline double impulse_change(const Relaxation& r, std::size_t c, double e, doubl
   return std::min(change, -impulse);
 }
 
+/// Adds to the accumulated impulse of a bilateral constraint, where somebody reads it.
+inline void accumulate(const Relaxation& r, std::size_t c, double change) {
+  if (r.softness != nullptr) r.impulse[c] += change;
+}
+
+/// By how much a constraint may be longer than its target, with the impulse it has accumulated.
+inline double give(const Relaxation& r, std::size_t c) {
+  return r.softness != nullptr ? r.softness[c] * r.impulse[c] : 0;
+}
+
 /// Where d leads from end b to end a.
 inline double error(const Relaxation& r, std::size_t c, Vector d) {
-  return dot(r.n[c], d) - r.target[c];
+  return dot(r.n[c], d) - r.target[c] - give(r, c);
 }
 inline double error(const Relaxation& r, std::size_t c) {
   return error(r, c, r.x[r.a[c]] - r.x[r.b[c]]);
@@ -126,7 +143,7 @@ inline double renew_direction_at_start(const Relaxation& r, std::size_t c) {
 inline double renew_direction(const Relaxation& r, std::size_t c, Vector d) {
   const double l = length(d);
   r.n.set(c, direction(d, l));
-  return l - r.target[c];
+  return l - r.target[c] - give(r, c);
 }
 
 /// The same from the positions x.

@@ -10,6 +10,7 @@
 #include "kernels/simd/masks.h"
 #include "kernels/simd/measure.h"
 #include "kernels/simd/relax.h"
+#include "kernels/simd/relax_springs.h"
 #include "kernels/simd/small_step_yarns.h"
 #include "kernels/simd/small_steps.h"
 #include "kernels/simd/split.h"
@@ -59,6 +60,9 @@ constexpr Table make_table() {
           .relax_rope_singles = relax_rope_singles,
           .relax_serial = relax_serial,
           .relax_rope_serial = relax_rope_serial,
+          .relax_spring_run = relax_spring_run,
+          .relax_spring_singles = relax_spring_singles,
+          .relax_spring_serial = relax_spring_serial,
           .relax_contacts = relax_contacts,
           .relax_masked_run = relax_masked_run,
           .renew_products_run = renew_products_run,

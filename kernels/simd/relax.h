@@ -164,7 +164,8 @@ template <class Correct>
   return relax_scattered<QuadLanes, false>(r, first, last, correct);
 }
 
-/// One constraint after the other: each sees what the one before it did.
+/// One constraint after the other: each sees what the one before it did. change(c, e): what is
+/// taken out of its error.
 template <class Change>
 [[gnu::always_inline]] inline std::uint32_t relax_one_by_one(const BlockRelaxation& r,
                                                              std::uint32_t first,
@@ -178,7 +179,7 @@ template <class Change>
     const float nx = block.nx[lane], ny = block.ny[lane], nz = block.nz[lane];
     const float e =
         fused(nx, x[a] - x[b], fused(ny, y[a] - y[b], fused(nz, z[a] - z[b], block.e0[lane])));
-    const float by = std::abs(e) > r.threshold ? change(c, e) : 0;
+    const float by = change(c, e);
     if (by == 0) continue;
     ++corrections;
     const float at_a = by * block.gain_a[lane], at_b = by * block.gain_b[lane];
@@ -193,10 +194,12 @@ template <class Change>
 }
 
 std::uint32_t relax_serial(const BlockRelaxation& r, std::uint32_t first, std::uint32_t last) {
-  return relax_one_by_one(r, first, last, [](std::size_t, float e) { return e; });
+  return relax_one_by_one(r, first, last,
+                          [&](std::size_t, float e) { return std::abs(e) > r.threshold ? e : 0; });
 }
 std::uint32_t relax_rope_serial(const BlockRelaxation& r, std::uint32_t first, std::uint32_t last) {
   return relax_one_by_one(r, first, last, [&](std::size_t c, float e) {
+    if (!(std::abs(e) > r.threshold)) return 0.f;
     const float change = e > -r.impulse[c] ? e : -r.impulse[c];
     r.impulse[c] += change;
     return change;

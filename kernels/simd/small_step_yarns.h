@@ -22,7 +22,7 @@ template <Base kBase, class At>
     ScratchRow* scratch = all.of(lane);
     fetch<kBase>(at, base, lane);
     Substitution substitution;
-    go_down<Along::present, kBase>(
+    go_down<Along::present, kBase, false>(
         y, block, at, base, lane,
         [&](const FloatVector& d, Floats rest) __attribute__((always_inline)) {
           const Floats square = rest * rest;
@@ -40,7 +40,7 @@ template <Base kBase, class At>
               store(scratch[k].n, link.along);
               substitution.take(scratch[k], link.error, f);
             });
-    go_up(
+    go_up<false>(
         y, block, lane, scratch, factors_in(scratch),
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           at.put(k, lane, fused(w, impulse, at.kept(k, lane)));

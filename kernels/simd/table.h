@@ -63,7 +63,10 @@ struct alignas(64) ConstraintBlock {
 struct BlockRelaxation {
   Displacements u;
   ConstraintBlock* blocks = nullptr;
-  float* impulse = nullptr;          // ropes, contacts: sum of corrections, >= 0 and <= 0
+  float* impulse = nullptr;          // ropes, contacts: sum of corrections, >= 0 and <= 0;
+                                     // springs: since directions were renewed
+  const float* yield = nullptr;      // springs (relax_springs.h), per constraint
+  const float* held = nullptr;       // springs: sum of corrections before that
   const std::uint32_t* a = nullptr;  // constraint -> slot, for singles
   const std::uint32_t* b = nullptr;
   std::uint64_t* mask = nullptr;  // skipping by masks: per slot, bit = colour
@@ -136,6 +139,12 @@ struct alignas(64) YarnRow {
   float joined[kernels::kLanes];  // the sum of both inverse masses; 0 without a constraint
   float square[kernels::kLanes];  // rest^2; without a constraint so large that no error counts
 };
+/// What the joints of a row give way by, where they may be springs (yarns.h).
+struct alignas(64) YarnSpringRow {
+  float softness[kernels::kLanes];  // compliance / h^2; 0: rigid, or nothing
+  float shift[kernels::kLanes];     // target - rest
+  float sum[kernels::kLanes];       // of its impulses in this substep
+};
 /// The last two of a block's rows, from the others.
 void derive_joints(std::span<YarnRow> rows);
 
@@ -200,7 +209,11 @@ struct Yarns {
   float cell = 0;                      // that it was split by
   bool moved = false;                  // what rows remember is not the present base
   bool from_memory = false;            // positions do not fit the caches
+  YarnSpringRow* springs = nullptr;    // per row; null: all joints are rigid
 };
+
+/// What is eliminated: how t changes lengths; errors besides; or these for the last time.
+enum class YarnElimination : std::uint8_t { changes, errors, last };
 
 /// What a watched sweep did to a block, and whether its lengths are good enough now.
 struct Swept {
@@ -378,6 +391,12 @@ struct Table {
   std::uint32_t (*relax_serial)(const BlockRelaxation&, std::uint32_t first, std::uint32_t last);
   std::uint32_t (*relax_rope_serial)(const BlockRelaxation&, std::uint32_t first,
                                      std::uint32_t last);
+  /// All of these where constraints may be springs.
+  std::uint32_t (*relax_spring_run)(const BlockRelaxation&, const Run&, bool rope);
+  std::uint32_t (*relax_spring_singles)(const BlockRelaxation&, std::uint32_t first,
+                                        std::uint32_t last, bool rope);
+  std::uint32_t (*relax_spring_serial)(const BlockRelaxation&, std::uint32_t first,
+                                       std::uint32_t last, bool rope);
   /// Contacts of one sphere, the slot a[first]; see contacts.h for their gains.
   std::uint32_t (*relax_contacts)(const BlockRelaxation&, std::uint32_t first, std::uint32_t last);
   /// The same with the paper's masks (4.3): lanes whose bit is clear at both ends are passed over,
@@ -444,7 +463,7 @@ struct Table {
   void (*yarn_push)(const Yarns&, const YarnBlock&, float beta, float* t, YarnScratch* scratch);
   /// The block's impulses take what t changes its lengths by out of t again; with errors, those
   /// too.
-  void (*yarn_eliminate)(const Yarns&, const YarnBlock&, float* t, bool errors,
+  void (*yarn_eliminate)(const Yarns&, const YarnBlock&, float* t, YarnElimination,
                          YarnScratch* scratch);
   float (*yarn_pull)(const Yarns&, const YarnBlock&, float* t, YarnScratch* scratch);
   void (*yarn_finish)(const Yarns&, const YarnBlock&, float* t, YarnScratch* scratch);

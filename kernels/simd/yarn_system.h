@@ -15,6 +15,8 @@
 /// (yarn_pull). With the errors of the first family included, the elimination gives the right side
 /// of the reduced system, and in the end the impulses of the first family.
 ///
+/// Springs have their softness on the diagonal of each T_f and R (yarns.h).
+///
 /// With scheme rattle A = J(q) M^-1 J(q)^T has the directions q at the start of the substep. It is
 /// symmetric, but ignores what constraints have turned by since. Each Newton step (of the
 /// simplified Newton method) leaves that part of the error, which the sweep after it, whose
@@ -49,14 +51,14 @@ namespace {
   return most;
 }
 
-template <Along kAlong, Base kBase, class At>
+template <Along kAlong, Base kBase, bool kSprings, class At>
 [[gnu::always_inline]] inline void linearise_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                    At base) {
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     fetch<kBase>(at, base, lane);
     SystemRow* system = system_of(y, block, lane);
     const Floats zero(0.f);
-    go_down<kAlong, kBase>(
+    go_down<kAlong, kBase, kSprings>(
         y, block, at, base, lane, unit_link,
         [&](std::uint32_t k, const FloatVector&, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
@@ -77,10 +79,11 @@ void yarn_linearise(const Yarns& y, const YarnBlock& block, float* u, YarnScratc
   with_rows(y, block, u, scratch, [&](auto at) {
     with_base(y, block, [&](auto where) {
       const auto base = rows_of_base(y, block, at, scratch);
-      if (y.start == nullptr)
-        linearise_yarns<Along::present, where>(y, block, at, base);
-      else
-        linearise_yarns<Along::frozen, where>(y, block, at, base);
+      if (y.start != nullptr)
+        return linearise_yarns<Along::frozen, where, false>(y, block, at, base);
+      with_springs(y, [&](auto springs) {
+        linearise_yarns<Along::present, where, springs>(y, block, at, base);
+      });
     });
   });
 }
@@ -205,7 +208,7 @@ void yarn_push(const Yarns& y, const YarnBlock& block, float beta, float* t, Yar
   });
 }
 
-template <class At>
+template <bool kSprings, class At>
 [[gnu::always_inline]] inline Floats pull_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                 std::uint32_t lane) {
   SystemRow* system = system_of(y, block, lane);
@@ -214,7 +217,9 @@ template <class At>
   for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
     SystemRow& row = system[k];
     FloatVector next = at.get(k + 1, lane);
-    const Floats q = dot(load(row.n), here - next);
+    Floats q = dot(load(row.n), here - next);
+    if constexpr (kSprings)
+      q = fused(load(y.springs[block.first + k].softness + lane), load(row.p), q);
     q.store_unaligned(row.q);
     product = fused(q, load(row.p), product);
     here = next;
@@ -222,19 +227,21 @@ template <class At>
   return product;
 }
 
-/// Sets q = J t, and returns p . q.
+/// Sets q = J t, of springs + s p, and returns p . q.
 float yarn_pull(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* scratch) {
   alignas(64) float products[kLanes] = {};
   with_rows(y, block, t, scratch, [&](auto at) {
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
       at.fetch(lane);
-      pull_yarns(y, block, at, lane).store_unaligned(products + lane);
+      with_springs(y, [&](auto springs) {
+        pull_yarns<springs>(y, block, at, lane).store_unaligned(products + lane);
+      });
     }
   });
   return sum(products);
 }
 
-/// Subtracts M^-1 J^T lambda from t.
+/// Subtracts M^-1 J^T lambda from t; the sums of springs take their impulses.
 void yarn_finish(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
@@ -246,6 +253,8 @@ void yarn_finish(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* 
         FloatVector below = load(row.lambda) * load(row.n);
         const Floats w = load(kind_of(y, block.first + k).inverse_mass + lane);
         at.put(k, lane, fused(w, above - below, at.get(k, lane)));
+        if (y.springs != nullptr)
+          add_to_sum(y.springs[block.first + k], lane, load(row.lambda), load(row.n));
         above = below;
       }
       at.put_back(lane);
@@ -253,7 +262,7 @@ void yarn_finish(const Yarns& y, const YarnBlock& block, float* t, YarnScratch* 
   });
 }
 
-template <bool kErrors, class At>
+template <bool kErrors, bool kKeep, class At>
 [[gnu::always_inline]] inline void eliminate_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                    const Scratch& all) {
   const std::uint32_t last = rows_of(block) - 1;
@@ -274,7 +283,7 @@ template <bool kErrors, class At>
       here = next;
     }
     at.keep(last, lane, here);
-    go_up(
+    go_up<kKeep>(
         y, block, lane, scratch,
         [&](std::uint32_t k) __attribute__((always_inline)) {
           return RowFactors{load(system[k].n), load(system[k].m)};
@@ -286,14 +295,19 @@ template <bool kErrors, class At>
   }
 }
 
-/// Subtracts M^-1 J^T T^-1 (J t) from t, or with errors M^-1 J^T T^-1 (residual + J t).
-void yarn_eliminate(const Yarns& y, const YarnBlock& block, float* t, bool errors,
+/// Subtracts M^-1 J^T T^-1 (J t) from t, or with errors M^-1 J^T T^-1 (residual + J t). As the last
+/// it also adds these impulses to the sums of springs.
+void yarn_eliminate(const Yarns& y, const YarnBlock& block, float* t, YarnElimination what,
                     YarnScratch* scratch) {
   with_rows(y, block, t, scratch, [&](auto at) {
-    if (errors)
-      eliminate_yarns<true>(y, block, at, Scratch(scratch, block));
-    else
-      eliminate_yarns<false>(y, block, at, Scratch(scratch, block));
+    const Scratch all(scratch, block);
+    if (what == YarnElimination::changes) {
+      eliminate_yarns<false, false>(y, block, at, all);
+    } else if (what == YarnElimination::last && y.springs != nullptr) {
+      eliminate_yarns<true, true>(y, block, at, all);
+    } else {
+      eliminate_yarns<true, false>(y, block, at, all);
+    }
   });
 }
 

@@ -25,6 +25,10 @@
 ///
 /// so that m_k is l_k r_{k-1} on the way down, and c_k r_{k-1} on the way up.
 ///
+/// A spring gives way: with s = compliance / h^2 and mu, the sum of its impulses in this substep,
+/// A(k, k) has + s, and e_k - (target - rest) - s mu (YarnSpringRow). Kernels come with springs and
+/// without.
+///
 /// Positions are sums base + u of two floats (yarn_rows.h). How rows find their particles:
 /// yarn_places.h.
 ///
@@ -112,6 +116,33 @@ template <Along kAlong>
   return {d.x, d.y + Floats(kApart * y.cell), d.z};
 }
 
+/// The length beyond rest at which a row's constraint has no error.
+[[gnu::always_inline]] inline Floats give_of(const YarnSpringRow& spring, std::uint32_t lane) {
+  return fused(load(spring.softness + lane), load(spring.sum + lane), load(spring.shift + lane));
+}
+
+/// Takes that off the errors of a link along present directions. Returns A(k, k) in units of its
+/// size.
+[[gnu::always_inline]] inline Floats soften(YarnLink& link, const YarnSpringRow& spring,
+                                            std::uint32_t lane, Floats joined) {
+  link.off = link.off - give_of(spring, lane);
+  link.error = xsimd::sqrt(link.size) * link.off;
+  return joined + load(spring.softness + lane);
+}
+
+/// Adds an impulse along n to the sum of a spring.
+[[gnu::always_inline]] inline void add_to_sum(YarnSpringRow& spring, std::uint32_t lane,
+                                              Floats lambda, const FloatVector& n) {
+  fused(lambda, xsimd::sqrt(dot(n, n)), load(spring.sum + lane)).store_unaligned(spring.sum + lane);
+}
+
+/// Whether a model has springs, as a constant.
+template <class Work>
+[[gnu::always_inline]] inline void with_springs(const Yarns& y, Work&& work) {
+  if (y.springs != nullptr) return work(std::true_type());
+  return work(std::false_type());
+}
+
 /// The factors of a row.
 struct Factors {
   Floats down, up;
@@ -185,7 +216,7 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScrat
 /// row, where link = make_link(d, rest). The lambdas must be inlined by force, here and in go_up:
 /// GCC 12 does not inline a lambda that is called in two places, and its captures then live in
 /// memory.
-template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
+template <Along kAlong, Base kBase, bool kSprings, class At, class MakeLink, class Take>
 [[gnu::always_inline]] inline void go_down(const Yarns& yarns, const YarnBlock& block, At at,
                                            At base, std::uint32_t lane, MakeLink&& make_link,
                                            Take&& take) {
@@ -205,8 +236,9 @@ template <Along kAlong, Base kBase, class At, class MakeLink, class Take>
     FloatVector d = apart(y, base_down.step(k, here - next, rest));
     YarnLink link = make_link(d, rest);
     direct<kAlong>(link, start, k);
-    take(k, here, link,
-         elimination.step(link, load(kind.inverse_mass + lane), load(kind.joined + lane)));
+    Floats joined = load(kind.joined + lane);
+    if constexpr (kSprings) joined = soften(link, y.springs[first + k], lane, joined);
+    take(k, here, link, elimination.step(link, load(kind.inverse_mass + lane), joined));
     here = next;
   }
   base_down.end(last);
@@ -227,8 +259,9 @@ struct RowFactors {
 }
 
 /// Goes up the yarns, and calls move(row of the block, its inverse mass, the sum of its impulses).
-/// factors(row) returns n and m.
-template <class GetFactors, class Move>
+/// factors(row) returns n and m. kKeep: the impulses are added to the sums of springs, before move
+/// is called for the row.
+template <bool kKeep, class GetFactors, class Move>
 [[gnu::always_inline]] inline void go_up(const Yarns& yarns, const YarnBlock& block,
                                          std::uint32_t lane, const ScratchRow* scratch,
                                          GetFactors&& factors, Move&& move) {
@@ -241,6 +274,7 @@ template <class GetFactors, class Move>
     RowFactors row = factors(k - 1);
     m = row.m;
     FloatVector above = lambda * row.n;
+    if constexpr (kKeep) add_to_sum(y.springs[first + k - 1], lane, lambda, row.n);
     move(k, load(kind_of(y, first + k).inverse_mass + lane), above - below);
     below = above;
   }
@@ -258,14 +292,14 @@ struct Substitution {
   }
 };
 
-template <Along kAlong, Base kBase, class At>
+template <Along kAlong, Base kBase, bool kSprings, class At>
 [[gnu::always_inline]] inline void sweep_yarns(const Yarns& y, const YarnBlock& block, At at,
                                                At base, const Scratch& all) {
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     ScratchRow* scratch = all.of(lane);
     fetch<kBase>(at, base, lane);
     Substitution substitution;
-    go_down<kAlong, kBase>(
+    go_down<kAlong, kBase, kSprings>(
         y, block, at, base, lane, scaled_link<kAlong>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
@@ -273,7 +307,7 @@ template <Along kAlong, Base kBase, class At>
               store(scratch[k].n, link.along);
               substitution.take(scratch[k], link.error, f);
             });
-    go_up(
+    go_up<kSprings>(
         y, block, lane, scratch, factors_in(scratch),
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           at.put(k, lane, fused(w, impulse, at.kept(k, lane)));
@@ -296,7 +330,7 @@ struct Before {
 enum class Visit : std::uint8_t { first, again };
 
 /// Eliminates a block forwards. Returns whether no length has an error above the share `quiet`.
-template <Base kBase, Visit kVisit, class At>
+template <Base kBase, Visit kVisit, bool kSprings, class At>
 [[gnu::always_inline]] inline bool find_impulses(const Yarns& y, const YarnBlock& block, At at,
                                                  At base, const Scratch& all, float quiet) {
   bool is_quiet = true;
@@ -305,7 +339,7 @@ template <Base kBase, Visit kVisit, class At>
     if constexpr (kVisit == Visit::first) fetch<kBase>(at, base, lane);
     Substitution substitution;
     Before before{Floats(quiet)};
-    go_down<Along::present, kBase>(
+    go_down<Along::present, kBase, kSprings>(
         y, block, at, base, lane, scaled_link<Along::present>,
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
@@ -321,6 +355,7 @@ template <Base kBase, Visit kVisit, class At>
 }
 
 /// The same with the differences that the last solve kept in the scratch.
+template <bool kSprings>
 [[gnu::always_inline]] inline void find_impulses_again(const Yarns& y, const YarnBlock& block,
                                                        const Scratch& all) {
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
@@ -330,9 +365,10 @@ template <Base kBase, Visit kVisit, class At>
     for (std::uint32_t k = 0; k + 1 < rows_of(block); ++k) {
       const YarnRow& kind = kind_of(y, block.first + k);
       YarnLink link = scaled_link<Along::present>(load(scratch[k].n), load(kind.rest + lane));
-      substitution.take(
-          scratch[k], link.error,
-          elimination.step(link, load(kind.inverse_mass + lane), load(kind.joined + lane)));
+      Floats joined = load(kind.joined + lane);
+      if constexpr (kSprings) joined = soften(link, y.springs[block.first + k], lane, joined);
+      substitution.take(scratch[k], link.error,
+                        elimination.step(link, load(kind.inverse_mass + lane), joined));
     }
   }
 }
@@ -358,21 +394,21 @@ struct After {
 
 /// Substitutes backwards, and calls keep(row, lane, d, u) with the new values. Returns whether a
 /// length has an error above the share `enough`.
-template <class At, class Keep>
+template <bool kSprings, class At, class Keep>
 [[gnu::always_inline]] inline bool apply_impulses(const Yarns& y, const YarnBlock& block, At at,
                                                   const Scratch& all, float enough, Keep&& keep) {
   bool out = false;
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     const ScratchRow* scratch = all.of(lane);
     After after{Floats(2 * enough)};
-    go_up(
+    go_up<kSprings>(
         y, block, lane, scratch, factors_in(scratch),
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           FloatVector u = fused(w, impulse, at.kept(k, lane));
           const YarnRow& kind = kind_of(y, block.first + k);
-          keep(k, lane,
-               after.take(load(scratch[k].n), w * impulse, load(kind.rest + lane),
-                          load(kind.square + lane)),
+          Floats rest = load(kind.rest + lane);
+          if constexpr (kSprings) rest = rest + give_of(y.springs[block.first + k], lane);
+          keep(k, lane, after.take(load(scratch[k].n), w * impulse, rest, load(kind.square + lane)),
                u);
         });
     out = out || xsimd::any(after.beyond > Floats(0.f));
@@ -384,7 +420,7 @@ template <class At, class Keep>
 /// are below a hundredth of `enough` is not solved, because larger errors that stay come back as
 /// speed. From the third solve on everything stays in the scratch, or in place. A link whose ends a
 /// solve brings together exactly is left to the next sweep.
-template <Base kBase, class At>
+template <Base kBase, bool kSprings, class At>
 [[gnu::always_inline]] inline Swept sweep_watched(const Yarns& y, const YarnBlock& block, At at,
                                                   At base, const Scratch& scratch, float enough,
                                                   std::uint32_t most) {
@@ -401,29 +437,29 @@ template <Base kBase, class At>
   const auto put_back = [&] {
     for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) at.put_back(lane);
   };
-  if (find_impulses<kBase, Visit::first>(y, block, at, base, scratch, kQuiet * enough)) {
+  if (find_impulses<kBase, Visit::first, kSprings>(y, block, at, base, scratch, kQuiet * enough)) {
     return {0, true};
   }
-  bool out = apply_impulses(y, block, at, scratch, enough, put);
+  bool out = apply_impulses<kSprings>(y, block, at, scratch, enough, put);
   if (!out || most == 1) {
     put_back();
     return {1, !out};
   }
   if constexpr (kBase == Base::remembered) {
-    find_impulses<Base::remembered, Visit::again>(y, block, at, base, scratch, 0);
+    find_impulses<Base::remembered, Visit::again, kSprings>(y, block, at, base, scratch, 0);
   } else {
     Yarns again = y;
     again.moved = false;
     with_base(
         again, block, [&](auto where) __attribute__((always_inline)) {
-          find_impulses<where, Visit::again>(again, block, at, base, scratch, 0);
+          find_impulses<where, Visit::again, kSprings>(again, block, at, base, scratch, 0);
         });
   }
-  out = apply_impulses(y, block, at, scratch, enough, keep);
+  out = apply_impulses<kSprings>(y, block, at, scratch, enough, keep);
   std::uint32_t solves = 2;
   for (; out && solves < most; ++solves) {
-    find_impulses_again(y, block, scratch);
-    out = apply_impulses(y, block, at, scratch, enough, keep);
+    find_impulses_again<kSprings>(y, block, scratch);
+    out = apply_impulses<kSprings>(y, block, at, scratch, enough, keep);
   }
   at.put_kept(rows_of(block), lanes_of(block));
   put_back();
@@ -434,10 +470,12 @@ void yarn_sweep(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* s
   with_rows(y, block, u, scratch, [&](auto at) {
     with_base(y, block, [&](auto where) {
       const auto base = rows_of_base(y, block, at, scratch);
-      if (y.start == nullptr)
-        sweep_yarns<Along::present, where>(y, block, at, base, Scratch(scratch, block));
-      else
-        sweep_yarns<Along::start, where>(y, block, at, base, Scratch(scratch, block));
+      const Scratch all(scratch, block);
+      if (y.start != nullptr)
+        return sweep_yarns<Along::start, where, false>(y, block, at, base, all);
+      with_springs(y, [&](auto springs) {
+        sweep_yarns<Along::present, where, springs>(y, block, at, base, all);
+      });
     });
   });
 }
@@ -448,7 +486,10 @@ Swept yarn_sweep_watched(const Yarns& y, const YarnBlock& block, float* u, YarnS
   with_rows(y, block, u, scratch, [&](auto at) {
     with_base(y, block, [&](auto where) {
       const auto base = rows_of_base(y, block, at, scratch);
-      swept = sweep_watched<where>(y, block, at, base, Scratch(scratch, block), enough, most);
+      with_springs(y, [&](auto springs) {
+        swept = sweep_watched<where, springs>(y, block, at, base, Scratch(scratch, block), enough,
+                                              most);
+      });
     });
   });
   return swept;

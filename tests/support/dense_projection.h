@@ -4,6 +4,9 @@
 ///     J    one row per bar: n at its end a, -n at b          A = J M^-1 J^T
 ///     positions:   repeat  x -= M^-1 J^T A^-1 e,  J and e anew from x   (Newton's method)
 ///     velocities:          v -= M^-1 J^T A^-1 J v
+///
+/// With a step h given, bars may be springs: A's diagonal gets compliance / h^2, and that
+/// times the sum of all impulses is taken off e.
 #pragma once
 
 #include <weft/weft.h>
@@ -16,7 +19,7 @@ namespace weft::test {
 class DenseProjection {
  public:
   /// At least one bar must be able to move.
-  explicit DenseProjection(const SceneDescription& scene);
+  explicit DenseProjection(const SceneDescription& scene, double h = 0);
 
   /// Whether Newton's method brought all errors to rounding.
   bool project_positions(std::vector<Vec3>& x);
@@ -37,11 +40,11 @@ class DenseProjection {
   void form(const std::vector<Vec3>& x);
   double condition() const;
 
-  const SceneDescription& scene_;
   std::vector<Constraint> bars_;  // those that can move
   std::vector<double> inverse_mass_;
   Eigen::MatrixXd jacobian_, matrix_;
   Eigen::VectorXd error_, inverse_;  // inverse masses, per coordinate
+  Eigen::VectorXd softness_;         // per bar
   double reciprocal_condition_ = 1, largest_share_ = 0;
 };
 

@@ -28,7 +28,8 @@ std::vector<kernels::Vector> solved_densely(const BlockOfYarns& b, std::uint32_t
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(e.size(), e.size());
   for (Eigen::Index i = 0; i < e.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    a(i, i) = (w[k] + w[k + 1]) * kernels::dot(n[k], s[k]);
+    a(i, i) = (w[k] + w[k + 1]) * kernels::dot(n[k], s[k]) +
+              b.softness(static_cast<std::uint32_t>(k), lane);
     if (k == 0) continue;
     a(i, i - 1) = -w[k] * kernels::dot(n[k], s[k - 1]);
     a(i - 1, i) = -w[k] * kernels::dot(n[k - 1], s[k]);
@@ -46,7 +47,7 @@ Eigen::VectorXd length_errors(const BlockOfYarns& b, std::uint32_t lane) {
   Eigen::VectorXd e(BlockOfYarns::length(lane) - 1);
   for (std::uint32_t k = 0; k + 1 < BlockOfYarns::length(lane); ++k) {
     const kernels::Vector d = b.x[b.slot_of(k, lane)] - b.x[b.slot_of(k + 1, lane)];
-    e[k] = kernels::length(d) - static_cast<double>(b.rows[k].rest[lane]);
+    e[k] = kernels::length(d) - static_cast<double>(b.rows[k].rest[lane]) - b.give(k, lane);
   }
   return e;
 }

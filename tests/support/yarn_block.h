@@ -30,6 +30,7 @@ struct BlockOfYarns {
   kernels::AlignedVector<simd::YarnBaseSteps> base_step;
   kernels::AlignedVector<simd::YarnScratch> scratch;
   kernels::AlignedVector<simd::YarnDirections> directions;  // at the start of a rattle step
+  kernels::AlignedVector<simd::YarnSpringRow> springs;      // empty: all links are rigid
   kernels::AlignedVector<float> base, u, t;
   kernels::Vectors x;
   double cell = 0x1p-10;
@@ -64,6 +65,28 @@ struct BlockOfYarns {
       }
     }
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) place(lane, random);
+  }
+
+  /// Two of three links become springs that have pulled and pushed before.
+  void soften() {
+    springs.resize(kRows);
+    for (std::uint32_t k = 0; k < kRows; ++k) {
+      for (std::uint32_t lane = k + 2; lane < kLanes; ++lane) {
+        if ((k + lane) % 3 == 0) continue;
+        springs[k].softness[lane] = 0.01f * static_cast<float>(1 << ((k + 2 * lane) % 12));
+        springs[k].shift[lane] = 1e-3f * static_cast<float>((k + lane) % 5);
+        springs[k].sum[lane] = 2e-4f * static_cast<float>(lane % 4) - 3e-4f;
+      }
+    }
+  }
+  double softness(std::uint32_t k, std::uint32_t lane) const {
+    return springs.empty() ? 0 : static_cast<double>(springs[k].softness[lane]);
+  }
+  /// The length beyond rest at which a link has no error.
+  double give(std::uint32_t k, std::uint32_t lane) const {
+    if (springs.empty()) return 0;
+    return static_cast<double>(springs[k].shift[lane]) +
+           softness(k, lane) * static_cast<double>(springs[k].sum[lane]);
   }
 
   static std::uint32_t length(std::uint32_t lane) { return lane; }
@@ -138,7 +161,8 @@ struct BlockOfYarns {
             base_step.data(),
             static_cast<float>(cell),
             !placed,
-            from_memory};
+            from_memory,
+            springs.empty() ? nullptr : springs.data()};
   }
   simd::YarnBlock block() const {
     simd::YarnBlock block{0, kRows, lanes};

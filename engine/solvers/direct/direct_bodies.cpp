@@ -12,8 +12,8 @@ namespace {
 using kernels::Vector;
 
 double compliance(const DirectSystem& system, const Tie& tie) {
-  return tuning::kBodyCompliance *
-         (system.model.inverse_mass[tie.a] + system.model.inverse_mass[tie.b]);
+  return system.softness(tie.index) + tuning::kBodyCompliance * (system.model.inverse_mass[tie.a] +
+                                                                 system.model.inverse_mass[tie.b]);
 }
 
 Spring spring_of_tie(const DirectSystem& system, const Tie& tie) {

@@ -22,7 +22,7 @@ void factorise_free(const DirectSystem& s, DirectFactor& factor) {
       [&](std::size_t e) {
         return layout.entry_weight[e] * dot(s.n(layout.entry_row[e]), s.n(layout.entry_with[e]));
       },
-      [&](std::size_t k) { return layout.diagonal[k]; });
+      [&](std::size_t k) { return layout.diagonal[k] + s.softness(layout.row_constraint[k]); });
 }
 
 void factorise_touched(const DirectSystem& s, DirectFactor& factor) {
@@ -38,7 +38,8 @@ void factorise_touched(const DirectSystem& s, DirectFactor& factor) {
       },
       [&](std::size_t k) {
         const double at_a = along(layout.a[k], s.n(k)), at_b = along(layout.b[k], s.n(k));
-        return layout.diagonal[k] - s.model.inverse_mass[layout.a[k]] * at_a * at_a -
+        return layout.diagonal[k] + s.softness(layout.row_constraint[k]) -
+               s.model.inverse_mass[layout.a[k]] * at_a * at_a -
                s.model.inverse_mass[layout.b[k]] * at_b * at_b;
       });
 }

@@ -47,7 +47,7 @@ void measure_rows(DirectSystem& s, Judge& takes_part, Read&& read) {
   const DirectLayout& layout = s.layout;
   for (std::size_t row = 0; row < layout.rows(); ++row) {
     const std::uint32_t c = layout.row_constraint[row];
-    const Reading r = read(c, layout.a[row], layout.b[row], s.model.constraints.rest_length[c]);
+    const Reading r = read(c, layout.a[row], layout.b[row], s.target(c));
     const bool active = takes_part(c, r);
     const Vector n = active ? r.n : Vector{0, 0, 0};
     s.turned |= n.x != s.nx[row] || n.y != s.ny[row] || n.z != s.nz[row];
@@ -64,7 +64,7 @@ void measure_links(DirectSystem& s, Judge& takes_part, Read&& read) {
   s.ties.clear();
   for (const std::uint32_t c : s.layout.links) {
     const std::uint32_t a = constraints.a[c], b = constraints.b[c];
-    const Reading r = read(c, a, b, constraints.rest_length[c]);
+    const Reading r = read(c, a, b, s.target(c));
     if (takes_part(c, r)) s.ties.push_back({c, a, b, r.n, r.error});
   }
 }

@@ -33,8 +33,15 @@ DirectSolver::DirectSolver(const Model& model, const Settings& settings, const s
 
 LoopResult DirectSolver::solve_positions(const PositionTask& task, Team&) {
   if (task.along_start) return solve_from_start(task);
+  const LoopResult result = solve_from_prediction(task);
+  if (task.laws != nullptr)
+    std::copy_n(system_.total.data(), task.laws->multiplier.size(), task.laws->multiplier.data());
+  return result;
+}
+
+LoopResult DirectSolver::solve_from_prediction(const PositionTask& task) {
   LoopResult result;
-  system_.start(task.contacts, task.first_round);
+  system_.start(task.contacts, task.first_round, task.laws);
   if (settings_.iterations > 0) {
     iterate_fixed(task.x, {}, task.contacts, result);
     return result;
@@ -92,7 +99,7 @@ DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const Cont
 DirectOutcome DirectSolver::iterate_stiff(VectorsView x, const ContactStore& contacts,
                                           int max_iterations, LoopResult& result) {
   copy(start_.view(), x, start_.size());
-  system_.start(contacts, true);
+  system_.start(contacts, true, system_.laws);
   balance_.start(x);
   return stiff_.iterate(system_, factor_, balance_, x, contacts, max_iterations, result);
 }

@@ -19,6 +19,9 @@
 ///   direct_bodies    spheres and particles of many constraints, as unknowns beside the matrix
 ///   direct_stiff     a second method, for masses that differ by hundreds
 ///
+/// A spring gives way by softness = compliance / h^2 times what its impulses have come to: that is
+/// added to its diagonal of A and taken off its error, and with it A is regular.
+///
 /// Newton's method fails where a step bends edges by much of their length, where masses differ by
 /// thousands, and where A is singular and the errors are inconsistent (compressed straight chains).
 /// Failure shows in errors that no longer fall, or in a motion that its impulses do not explain
@@ -55,6 +58,7 @@ class DirectSolver final : public ConstraintSolver {
   std::size_t bytes() const override;
 
  private:
+  kernels::LoopResult solve_from_prediction(const PositionTask& task);
   kernels::LoopResult solve_from_start(const PositionTask& task);
   DirectOutcome iterate(kernels::VectorsView x, kernels::VectorsView start,
                         const ContactStore& contacts, int max_iterations,

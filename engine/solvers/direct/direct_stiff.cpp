@@ -113,7 +113,7 @@ void DirectStiff::solve(DirectSystem& system, DirectFactor& factor, kernels::Vec
       [&](std::size_t k) {
         const Vector nk = system.n(k);
         const double d = dot(nk, soft_[layout.a[k]] * nk) + dot(nk, soft_[layout.b[k]] * nk);
-        return d > 0 ? d : layout.diagonal[k];
+        return (d > 0 ? d : layout.diagonal[k]) + system.softness(layout.row_constraint[k]);
       });
   system.turned = true;
   factor.solve(system.lambda.data());

@@ -18,13 +18,25 @@ DirectSystem::DirectSystem(const Model& model, const Settings& settings)
   ties.reserve(layout.links.size());
 }
 
-void DirectSystem::start(const ContactStore& contacts, bool fresh) {
+void DirectSystem::start(const ContactStore& contacts, bool fresh, const SpringLaws* its_laws) {
+  laws = its_laws;
+  if (laws != nullptr) turned = true;  // softness depends on h
   if (fresh) total.clear();
   total.resize(model.constraints.size() + contacts.count());
 }
 
+double DirectSystem::target(std::uint32_t index) const {
+  if (laws == nullptr) return model.constraints.rest_length[index];
+  return laws->target[index] + laws->softness[index] * total[index];
+}
+
+double DirectSystem::softness(std::uint32_t index) const {
+  return laws != nullptr && index < model.constraints.size() ? laws->softness[index] : 0;
+}
+
 double DirectSystem::tolerance(std::uint32_t index) const {
   const ConstraintStore& s = model.constraints;
+  if (laws != nullptr && index < s.size()) return laws->tolerance[index];
   return index < s.size() ? settings.tolerance * s.rest_length[index] : settings.contact_tolerance;
 }
 

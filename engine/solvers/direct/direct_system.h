@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/contacts/contacts.h"
+#include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
 #include "kernels/vectors.h"
 
@@ -35,6 +36,7 @@ struct DirectSystem {
   const Model& model;
   const DirectLayout& layout;
   const Settings settings;
+  const SpringLaws* laws = nullptr;  // of a model with springs; not of velocities
 
   std::vector<double> nx, ny, nz;       // per row; 0 if it does not take part
   std::vector<double> lambda;           // per row: first the error, then the impulse
@@ -50,7 +52,12 @@ struct DirectSystem {
   std::int64_t count() const { return static_cast<std::int64_t>(total.size()); }
 
   /// Makes room for the contacts. If `fresh`, every accumulated impulse becomes 0.
-  void start(const ContactStore& contacts, bool fresh);
+  void start(const ContactStore& contacts, bool fresh, const SpringLaws* laws = nullptr);
+  /// The length of a constraint at which it has no error: a spring gives way to what its impulse
+  /// has come to.
+  double target(std::uint32_t index) const;
+  /// What a constraint adds to its diagonal of A: compliance / h^2 of a spring, else 0.
+  double softness(std::uint32_t index) const;
   /// The largest permitted error of a constraint or contact, in m.
   double tolerance(std::uint32_t index) const;
   /// The sign of the impulses: +1 for a rope, -1 for a contact, and 0 for a distance constraint,

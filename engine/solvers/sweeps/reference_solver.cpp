@@ -10,7 +10,7 @@ namespace weft {
 ReferenceSolver::ReferenceSolver(const Model& model, const Settings& settings)
     : model_(model), layout_(model.reference()), settings_(settings) {
   const ConstraintStore& s = model.constraints;
-  if (model.has_contacts()) {
+  if (owns_constraints()) {
     a_ = s.a;
     b_ = s.b;
     target_ = s.rest_length;
@@ -30,16 +30,22 @@ ReferenceSolver::ReferenceSolver(const Model& model, const Settings& settings)
   if (!model.hubs.empty()) hub_motion_.resize(model.slots());
 }
 
+/// Where they are followed by contacts, or differ from substep to substep.
+bool ReferenceSolver::owns_constraints() const {
+  return model_.has_contacts() || model_.constraints.has_springs();
+}
+
 /// Grows only.
 void ReferenceSolver::reserve(std::size_t contacts) {
   const std::size_t size = model_.constraints.size() + contacts;
   if (size <= capacity_) return;
-  if (model_.has_contacts()) {
+  if (owns_constraints()) {
     a_.resize(size);
     b_.resize(size);
     target_.resize(size);
     effective_mass_.resize(size);
   }
+  if (model_.constraints.has_springs()) softness_.resize(size);
   if (settings_.scheme == Scheme::rattle) start_target_.resize(size);
   tolerance_.resize(size, settings_.iterations == 0 ? settings_.contact_tolerance : 0);
   direction_.resize(size);
@@ -66,9 +72,24 @@ void ReferenceSolver::place_contacts(const ContactStore& contacts) {
   }
 }
 
+/// With a fixed number of iterations nothing is tolerated.
+void ReferenceSolver::take_laws(const SpringLaws& laws) {
+  for (std::size_t c = 0; c < model_.constraints.size(); ++c) {
+    target_[c] = laws.target[c];
+    softness_[c] = laws.softness[c];
+    effective_mass_[c] = 1 / (1 / model_.constraints.effective_mass[c] + laws.softness[c]);
+    if (settings_.iterations == 0) tolerance_[c] = laws.tolerance[c];
+  }
+}
+
+void ReferenceSolver::keep_multipliers(SpringLaws* laws) const {
+  if (laws == nullptr) return;
+  std::copy_n(impulse_.data(), laws->multiplier.size(), laws->multiplier.data());
+}
+
 reference::Relaxation ReferenceSolver::problem(kernels::VectorsView x, std::size_t contacts) {
   const ConstraintStore& s = model_.constraints;
-  const bool own = model_.has_contacts();
+  const bool own = owns_constraints();
   reference::Relaxation r;
   r.particles = model_.slots();
   r.plain = s.plain;
@@ -110,33 +131,40 @@ reference::Method ReferenceSolver::method(const kernels::LoopLimits& limits) con
 
 reference::Relaxation ReferenceSolver::position_problem(kernels::VectorsView x, double h,
                                                         const ContactStore& contacts,
-                                                        bool first_round) {
+                                                        const SpringLaws* laws, bool first_round) {
   place_contacts(contacts);
+  if (laws != nullptr) take_laws(*laws);
   if (first_round) std::ranges::fill(impulse_, 0.0);
   reference::Relaxation r = problem(x, contacts.count());
+  if (laws != nullptr) r.softness = softness_.data();
   if (settings_.impulse_limit > 0) r.limit = settings_.impulse_limit * h;
   return r;
 }
 
 kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x,
                                                      kernels::VectorsView start, double h,
-                                                     const ContactStore& contacts, bool first_round,
+                                                     const ContactStore& contacts, SpringLaws* laws,
+                                                     bool first_round,
                                                      const kernels::LoopLimits& limits) {
-  reference::Relaxation r = position_problem(x, h, contacts, first_round);
+  reference::Relaxation r = position_problem(x, h, contacts, laws, first_round);
   if (start.x != nullptr) take_directions_at(start, r);
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
-  return reference::relax_positions(r, layout_.topology(),
-                                    model_.has_contacts() ? lists : reference::ContactLists{},
-                                    workspace(), method(limits));
+  const auto result = reference::relax_positions(
+      r, layout_.topology(), model_.has_contacts() ? lists : reference::ContactLists{}, workspace(),
+      method(limits));
+  keep_multipliers(laws);
+  return result;
 }
 
 kernels::LoopResult ReferenceSolver::solve_previewed_positions(const reference::Motion& motion,
                                                                double h,
                                                                const ContactStore& contacts,
-                                                               bool first_round,
+                                                               SpringLaws* laws, bool first_round,
                                                                const kernels::LoopLimits& limits) {
-  const auto r = position_problem(motion.solved, h, contacts, first_round);
-  return reference::relax_previewed_positions(r, motion, h, method(limits));
+  const auto r = position_problem(motion.solved, h, contacts, laws, first_round);
+  const auto result = reference::relax_previewed_positions(r, motion, h, method(limits));
+  keep_multipliers(laws);
+  return result;
 }
 
 void ReferenceSolver::take_directions_at(kernels::VectorsView start, reference::Relaxation& r) {
@@ -181,10 +209,10 @@ kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
 
 std::size_t ReferenceSolver::bytes() const {
   return bytes_of(a_) + bytes_of(b_) + bytes_of(target_) + bytes_of(effective_mass_) +
-         bytes_of(start_target_) + bytes_of(tolerance_) + bytes_of(velocity_tolerance_) +
-         bytes_of(zero_) + direction_.bytes() + bytes_of(impulse_) + bytes_of(error_) +
-         bytes_of(pending_) + bytes_of(row_product_) + bytes_of(row_ready_) + bytes_of(changed_) +
-         bytes_of(moved_) + hub_motion_.bytes() + bytes_of(mask_);
+         bytes_of(softness_) + bytes_of(start_target_) + bytes_of(tolerance_) +
+         bytes_of(velocity_tolerance_) + bytes_of(zero_) + direction_.bytes() + bytes_of(impulse_) +
+         bytes_of(error_) + bytes_of(pending_) + bytes_of(row_product_) + bytes_of(row_ready_) +
+         bytes_of(changed_) + bytes_of(moved_) + hub_motion_.bytes() + bytes_of(mask_);
 }
 
 }  // namespace weft

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/contacts/contacts.h"
+#include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
 #include "kernels/reference/relax.h"
 
@@ -18,14 +19,16 @@ class ReferenceSolver {
 
   /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
   /// were found anew, accumulated impulses start at 0. Scheme rattle takes directions at `start`,
-  /// if given, instead of x. h is the time step, for the impulse limit.
+  /// if given, instead of x. h is the time step, for the impulse limit. laws: of a model with
+  /// springs (PositionTask).
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start, double h,
-                                      const ContactStore& contacts, bool first_round,
-                                      const kernels::LoopLimits& limits);
+                                      const ContactStore& contacts, SpringLaws* laws,
+                                      bool first_round, const kernels::LoopLimits& limits);
   /// The same by the original method as the paper has it (kernels/reference/previewed.h), from
   /// motion.position; motion.velocity is room.
   kernels::LoopResult solve_previewed_positions(const reference::Motion& motion, double h,
-                                                const ContactStore& contacts, bool first_round,
+                                                const ContactStore& contacts, SpringLaws* laws,
+                                                bool first_round,
                                                 const kernels::LoopLimits& limits);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
@@ -35,9 +38,13 @@ class ReferenceSolver {
 
  private:
   void reserve(std::size_t contacts);
+  bool owns_constraints() const;
   void place_contacts(const ContactStore& contacts);
+  void take_laws(const SpringLaws& laws);
   reference::Relaxation position_problem(kernels::VectorsView x, double h,
-                                         const ContactStore& contacts, bool first_round);
+                                         const ContactStore& contacts, const SpringLaws* laws,
+                                         bool first_round);
+  void keep_multipliers(SpringLaws* laws) const;
   void take_directions_at(kernels::VectorsView start, reference::Relaxation& r);
   void choose_velocity_tolerances(const reference::Relaxation& r, kernels::VectorsView x);
   reference::Relaxation problem(kernels::VectorsView x, std::size_t contacts);
@@ -49,8 +56,9 @@ class ReferenceSolver {
   const Settings settings_;
   std::size_t capacity_ = 0;  // of the arrays over constraints, contacts behind them
 
-  std::vector<std::uint32_t> a_, b_;                          // with spheres only
-  kernels::AlignedVector<double> target_, effective_mass_;    // with spheres only
+  std::vector<std::uint32_t> a_, b_;                          // with spheres or springs only
+  kernels::AlignedVector<double> target_, effective_mass_;    // with spheres or springs only
+  kernels::AlignedVector<double> softness_;                   // with springs only
   kernels::AlignedVector<double> start_target_;               // scheme rattle only
   kernels::AlignedVector<double> tolerance_;                  // m
   kernels::AlignedVector<double> velocity_tolerance_, zero_;  // velocity correction only

@@ -47,6 +47,7 @@ void SimdLoop::renew() {
   if (anticipates() && renewed_) apply_sums();
   renewed_ = true;
   apply_displacements();
+  if (has_springs()) s_.renew_multipliers();
   team_.for_each_part(layout_.chunks.size(), kPiece, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (marks() && !s_.stale_[i]) continue;
@@ -260,7 +261,7 @@ void SimdLoop::relax_chunks(std::size_t index, std::size_t first, std::size_t la
 
 void SimdLoop::relax_runs(const Batch& batch, std::size_t first, std::size_t last,
                           kernels::Sweep& sweep) {
-  const bool plain = batch.kind == ConstraintKind::distance && !masks();
+  const bool plain = batch.kind == ConstraintKind::distance && !masks() && !has_springs();
   if (!plain) {
     for (std::size_t i = first; i < last; ++i) relax_one(batch, i, sweep);
     return;
@@ -284,7 +285,10 @@ void SimdLoop::relax_one(const Batch& batch, std::size_t i, kernels::Sweep& swee
     return;
   }
   sweep.visits += chunk.real;
-  if (chunk.singles) {
+  if (has_springs()) {
+    corrections = chunk.singles ? table_.relax_spring_singles(r_, first, last, chunk.rope)
+                                : table_.relax_spring_run(r_, chunk.run, chunk.rope);
+  } else if (chunk.singles) {
     corrections = chunk.rope ? table_.relax_rope_singles(r_, first, last)
                              : table_.relax_singles(r_, first, last);
   } else {
@@ -299,8 +303,11 @@ void SimdLoop::relax_one(const Batch& batch, std::size_t i, kernels::Sweep& swee
 
 void SimdLoop::sweep_hubs(kernels::Sweep& sweep) {
   if (layout_.hub_first == layout_.hub_last) return;
-  const auto corrections = table_.relax_serial(r_, layout_.hub_first, layout_.hub_ropes) +
-                           table_.relax_rope_serial(r_, layout_.hub_ropes, layout_.hub_last);
+  const std::uint32_t first = layout_.hub_first, ropes = layout_.hub_ropes, last = layout_.hub_last;
+  const auto corrections = has_springs() ? table_.relax_spring_serial(r_, first, ropes, false) +
+                                               table_.relax_spring_serial(r_, ropes, last, true)
+                                         : table_.relax_serial(r_, first, ropes) +
+                                               table_.relax_rope_serial(r_, ropes, last);
   sweep.visits += layout_.hub_last - layout_.hub_first;
   sweep.corrections += corrections;
   if (corrections == 0) return;

@@ -37,6 +37,7 @@ class SimdLoop {
            Team& team);
   bool skips() const { return !s_.changed_.empty(); }
   bool masks() const { return !s_.mask_.empty(); }
+  bool has_springs() const { return s_.springs_.has_value(); }
   void apply_displacements();
   void renew_chunk(std::size_t i);
   void renew_run(const kernels::Run& run);

@@ -36,6 +36,16 @@ std::size_t ContactLanes::bytes() const {
          bytes_of(impulse) + bytes_of(distance) + bytes_of(scale);
 }
 
+void SpringLanes::resize(std::size_t n) {
+  for (auto* values : {&target, &softness, &multiplier, &unit, &rest}) values->resize(n);
+  for (auto* values : {&yield, &held}) values->resize(n);
+}
+
+std::size_t SpringLanes::bytes() const {
+  return bytes_of(target) + bytes_of(softness) + bytes_of(multiplier) + bytes_of(unit) +
+         bytes_of(rest) + bytes_of(yield) + bytes_of(held);
+}
+
 SimdSolver::SimdSolver(const Model& model, const Settings& settings, const simd::Table& table)
     : model_(model),
       layout_(model.simd()),
@@ -53,9 +63,13 @@ SimdSolver::SimdSolver(const Model& model, const Settings& settings, const simd:
         scaled([&](double) { return fixed_iterations ? 1 : settings.velocity_tolerance; });
   }
   if (settings.anticipate_products) pulls_.emplace(model.pulls());
-  if (layout_.has_ropes) impulse_.resize(size);
+  if (layout_.has_ropes || model.constraints.has_springs()) impulse_.resize(size);
+  if (model.constraints.has_springs()) {
+    springs_.emplace().resize(size);
+    springs_->rest = layout_.rest_length;
+  }
   if (settings.skip && settings.iterations == 0) {
-    if (!settings.anticipate) mask_.resize(layout_.slots);
+    if (!settings.anticipate && !springs_) mask_.resize(layout_.slots);
     changed_.resize(layout_.chunks.size());
     stale_.resize(layout_.chunks.size());
   }
@@ -99,6 +113,48 @@ ScaledConstraints SimdSolver::scaled(Tolerance&& tolerance) const {
 
 std::size_t ScaledConstraints::bytes() const {
   return bytes_of(blocks) + bytes_of(scale) + bytes_of(weight);
+}
+
+/// Of padding nothing changes.
+void SimdSolver::take_laws(const SpringLaws& laws, bool first_round) {
+  SpringLanes& s = *springs_;
+  for (std::size_t c = 0; c < layout_.constraint_slots; ++c) {
+    const std::uint32_t constraint = layout_.constraint_at[c];
+    if (constraint == kNoIndex) continue;
+    const double tau =
+        settings_.iterations > 0 ? layout_.rest_length[c] : laws.tolerance[constraint];
+    const double inverse_masses = 1 / model_.constraints.effective_mass[constraint];
+    const double all = inverse_masses + laws.softness[constraint];
+    const double gain = tau * tau * inverse_masses / all;
+    positions_.scale[c] = 1 / tau;
+    simd::ConstraintBlock& block = positions_.blocks[c / kernels::kLanes];
+    block.gain_a[c % kernels::kLanes] = static_cast<float>(-gain * layout_.share_a[c]);
+    block.gain_b[c % kernels::kLanes] = static_cast<float>(gain * layout_.share_b[c]);
+    s.target[c] = laws.target[constraint];
+    s.softness[c] = laws.softness[constraint];
+    s.yield[c] = static_cast<float>(s.softness[c] / all);
+    s.unit[c] = tau / all;
+    if (first_round) s.multiplier[c] = 0;
+  }
+}
+
+/// What was corrected since the last renewal goes into the multipliers.
+void SimdSolver::renew_multipliers() {
+  SpringLanes& s = *springs_;
+  for (std::size_t c = 0; c < layout_.constraint_slots; ++c) {
+    if (s.unit[c] == 0) continue;
+    s.multiplier[c] += s.unit[c] * static_cast<double>(impulse_[c]);
+    impulse_[c] = 0;
+    s.held[c] = static_cast<float>(s.multiplier[c] / s.unit[c]);
+    s.rest[c] = s.target[c] + s.softness[c] * s.multiplier[c];
+  }
+}
+
+void SimdSolver::keep_multipliers(SpringLaws& laws) const {
+  for (std::size_t c = 0; c < layout_.constraint_slots; ++c) {
+    const std::uint32_t constraint = layout_.constraint_at[c];
+    if (constraint != kNoIndex) laws.multiplier[constraint] = springs_->multiplier[c];
+  }
 }
 
 /// The search lists them sphere by sphere; what it missed stands behind.
@@ -147,9 +203,11 @@ void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep
 }
 
 kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
-                                                const ContactStore& store, bool first_round,
-                                                const kernels::LoopLimits& limits, Team& team) {
+                                                const ContactStore& store, SpringLaws* laws,
+                                                bool first_round, const kernels::LoopLimits& limits,
+                                                Team& team) {
   if (first_round) std::ranges::fill(impulse_, 0.f);
+  if (laws != nullptr) take_laws(*laws, first_round);
   if (model_.has_contacts()) {
     const double tau = settings_.iterations > 0 ? 1 : settings_.contact_tolerance;
     place_contacts(store, tau, !first_round);
@@ -158,6 +216,10 @@ kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, kernels:
                                                                      : kernels::Directions::each;
   SimdLoop loop(*this, {.x = x, .start = start}, team);
   const auto result = kernels::iterate(loop, directions, not_too_old(limits));
+  if (laws != nullptr) {
+    renew_multipliers();
+    keep_multipliers(*laws);
+  }
   for (const ContactLanes::Range& range : contacts_.spheres) {
     for (std::size_t k = range.first; k < range.first + range.real; ++k) {
       contact_impulse_[contacts_.contact[k]] = contacts_.impulse[k];
@@ -208,6 +270,10 @@ simd::BlockRelaxation SimdSolver::relaxation(ScaledConstraints& constraints) {
   r.u = {u_.data(), u_stride_, u_step_};
   r.blocks = constraints.blocks.data();
   r.impulse = impulse_.data();
+  if (springs_) {
+    r.yield = springs_->yield.data();
+    r.held = springs_->held.data();
+  }
   r.a = layout_.a.data();
   r.b = layout_.b.data();
   r.mask = mask_.data();
@@ -219,7 +285,7 @@ simd::BlockRelaxation SimdSolver::relaxation(ScaledConstraints& constraints) {
 simd::Geometry SimdSolver::geometry(kernels::VectorsView x,
                                     const ScaledConstraints& constraints) const {
   return {x,
-          layout_.rest_length.data(),
+          springs_ ? springs_->rest.data() : layout_.rest_length.data(),
           layout_.inverse_square.data(),
           constraints.scale.data(),
           layout_.a.data(),
@@ -230,7 +296,8 @@ std::size_t SimdSolver::bytes() const {
   return bytes_of(u_) + bytes_of(impulse_) + positions_.bytes() + velocities_.bytes() +
          bytes_of(mask_) + bytes_of(changed_) + bytes_of(stale_) + bytes_of(corrections_) +
          bytes_of(sweeps_) + bytes_of(open_seam_) + contacts_.bytes() + bytes_of(contact_impulse_) +
-         bytes_of(contact_order_) + (pulls_ ? pulls_->bytes() : 0);
+         bytes_of(contact_order_) + (pulls_ ? pulls_->bytes() : 0) +
+         (springs_ ? springs_->bytes() : 0);
 }
 
 }  // namespace weft

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "engine/contacts/contacts.h"
+#include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/sweeps/pull_layout.h"
@@ -56,6 +57,19 @@ struct ScaledConstraints {
   std::size_t bytes() const;
 };
 
+/// Springs in lanes, per constraint slot (kernels/simd/relax_springs.h); of rigid constraints the
+/// softness is 0. What is corrected between two renewals is a float; multipliers are doubles.
+struct SpringLanes {
+  kernels::AlignedVector<double> target, softness;  // of the laws
+  kernels::AlignedVector<double> multiplier;        // kg m, until the last renewal
+  kernels::AlignedVector<double> unit;  // kg m: of a correction by one tolerance; padding: 0
+  kernels::AlignedVector<double> rest;  // m, to which a spring gives way with this multiplier
+  kernels::AlignedVector<float> yield, held;
+
+  void resize(std::size_t n);
+  std::size_t bytes() const;
+};
+
 /// Threads write theirs side by side.
 struct alignas(64) SharedSweep : kernels::Sweep {};
 
@@ -65,10 +79,11 @@ class SimdSolver {
 
   /// Moves x until every constraint and listed contact is within tolerance. first_round: contacts
   /// were found anew, accumulated impulses start at 0. Scheme rattle takes directions at `start`,
-  /// if given, instead of x.
+  /// if given, instead of x. laws: of a model with springs (PositionTask).
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
-                                      const ContactStore& contacts, bool first_round,
-                                      const kernels::LoopLimits& limits, Team& team);
+                                      const ContactStore& contacts, SpringLaws* laws,
+                                      bool first_round, const kernels::LoopLimits& limits,
+                                      Team& team);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
                                          const ContactStore& contacts,
@@ -83,6 +98,9 @@ class SimdSolver {
   ScaledConstraints scaled(Tolerance&& tau) const;
   void order_contacts(const ContactStore& contacts);
   void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
+  void take_laws(const SpringLaws& laws, bool first_round);
+  void renew_multipliers();
+  void keep_multipliers(SpringLaws& laws) const;
   void choose_active(kernels::VectorsView x);
   simd::BlockRelaxation relaxation(ScaledConstraints& constraints);
   simd::Geometry geometry(kernels::VectorsView x, const ScaledConstraints& constraints) const;
@@ -94,10 +112,12 @@ class SimdSolver {
   const simd::Table& table_;
 
   kernels::AlignedVector<float> u_;
-  std::size_t u_stride_ = 0, u_step_ = 1;       // simd::Displacements
-  kernels::AlignedVector<float> impulse_;       // with ropes only
-  ScaledConstraints positions_, velocities_;    // the latter with velocity correction
-  kernels::AlignedVector<std::uint64_t> mask_;  // skip without anticipation only
+  std::size_t u_stride_ = 0, u_step_ = 1;  // simd::Displacements
+  kernels::AlignedVector<float> impulse_;  // with ropes or springs only
+  std::optional<SpringLanes> springs_;
+  ScaledConstraints positions_, velocities_;  // the latter with velocity correction
+  // Skip without anticipation only; springs have no kernels that use it.
+  kernels::AlignedVector<std::uint64_t> mask_;
   // Per chunk, skip only: something in it, or in a chunk that shares a particle with it, was
   // corrected since it was last visited; since its directions were last renewed.
   std::vector<std::uint8_t> changed_, stale_;

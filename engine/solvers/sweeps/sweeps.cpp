@@ -22,9 +22,10 @@ Sweeps::Sweeps(const Model& model, const Settings& settings, const simd::Table& 
 LoopResult Sweeps::sweep(const PositionTask& task, bool first, const LoopLimits& limits,
                          Team& team) {
   const kernels::VectorsView directions = task.along_start ? task.start : kernels::VectorsView{};
-  return reference_
-             ? reference_->solve_positions(task.x, directions, task.h, task.contacts, first, limits)
-             : simd_->solve_positions(task.x, directions, task.contacts, first, limits, team);
+  return reference_ ? reference_->solve_positions(task.x, directions, task.h, task.contacts,
+                                                  task.laws, first, limits)
+                    : simd_->solve_positions(task.x, directions, task.contacts, task.laws, first,
+                                             limits, team);
 }
 
 /// The last of the passes may have put right what no other was left to find so.
@@ -42,7 +43,7 @@ LoopResult Sweeps::solve_positions(const PositionTask& task, Team& team) {
     const bool first = task.first_round && sum.iterations == 0;
     count(sum, sweep(task, first, {.max_iterations = part, .renew_after = renew_after}, team));
     if (sum.converged) return sum;
-    const double error = measure_.error(task.x, task.contacts, team);
+    const double error = measure_.error(task.x, task.laws, task.contacts, team);
     sum.converged = error <= 1;
     sum.failed = !sum.converged && stall.has_stalled(error);
     if (sum.converged || sum.failed || sum.iterations >= task.max_iterations) return sum;

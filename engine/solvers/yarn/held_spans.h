@@ -19,7 +19,7 @@
 /// that lands on it.
 ///
 /// A span is not held where it is braced, which means that more than half of its links are sides of
-/// triangles: the triangles carry it as well.
+/// triangles: the triangles carry it as well. Models with springs have no spans.
 #pragma once
 
 #include <cstdint>

@@ -71,14 +71,32 @@ void SingleConstraints::add(std::uint32_t a, std::uint32_t b, double distance, i
   pairs_.push_back({yarns.places.of(a), yarns.places.of(b), side, distance, wa, wb, 1 / (wa + wb)});
 }
 
-void SingleConstraints::start(const ContactStore& contacts, bool first_round) {
+void SingleConstraints::start(const ContactStore& contacts, const SpringLaws* laws,
+                              bool first_round) {
   from_start_ = false;
+  if (laws != nullptr) take_laws(*laws);
   if (first_round) {
     pairs_.resize(constraints_);
     for (Pair& pair : pairs_) pair.sum = 0;
   }
   for (std::size_t k = pairs_.size() - constraints_; k < contacts.count(); ++k) {
     add(contacts.sphere[k], contacts.particle[k], contacts.distance[k], -1);
+  }
+}
+
+void SingleConstraints::take_laws(const SpringLaws& laws) {
+  for (std::size_t i = 0; i < constraints_; ++i) {
+    const std::size_t c = model_.constraints.plain + i;
+    Pair& pair = pairs_[i];
+    pair.distance = laws.target[c];
+    pair.softness = laws.softness[c] * model_.yarns().lightest;
+    pair.reciprocal = 1 / (pair.wa + pair.wb + pair.softness);
+  }
+}
+
+void SingleConstraints::keep_multipliers(SpringLaws& laws) const {
+  for (std::size_t i = 0; i < constraints_; ++i) {
+    laws.multiplier[model_.constraints.plain + i] = pairs_[i].sum * model_.yarns().lightest;
   }
 }
 
@@ -106,7 +124,7 @@ void SingleConstraints::relax(const float* base, float* u) {
     if (at_rest(pair, d)) continue;
     const double l = length(d);
     Vector along = direction(d, l);
-    double change = (l - pair.distance) * pair.reciprocal;
+    double change = (l - pair.target()) * pair.reciprocal;
     if (from_start(i)) {
       const double cosine = dot(along, starts_[i]);
       if (cosine < tuning::kLeastCosine) continue;
@@ -121,7 +139,7 @@ void SingleConstraints::relax(const float* base, float* u) {
 
 double SingleConstraints::violation(const float* base, const float* u) const {
   const auto error_of = [&](const Pair& pair) {
-    return pair.side * (length(difference(base, u, pair, stride_)) - pair.distance);
+    return pair.side * (length(difference(base, u, pair, stride_)) - pair.target());
   };
   double ropes = 0, contacts = 0;
   for (std::size_t i = 0; i < constraints_; ++i) {
@@ -163,7 +181,7 @@ void SingleConstraints::linearise(const float* base, const float* u) {
     const double l = length(d);
     rows_[i].near = true;
     rows_[i].n = from_start(i) ? starts_[i] : direction(d, l);
-    set_error(i, l - pair.distance);
+    set_error(i, l - pair.target());
   }
 }
 
@@ -224,7 +242,7 @@ double SingleConstraints::pull(const float* t) {
   double product = 0;
   for (const std::uint32_t i : active_) {
     Row& row = rows_[i];
-    row.q = dot(row.n, difference(t, pairs_[i], stride_));
+    row.q = dot(row.n, difference(t, pairs_[i], stride_)) + pairs_[i].softness * row.p;
     product += row.p * row.q;
   }
   return product;

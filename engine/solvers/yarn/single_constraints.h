@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/contacts/contacts.h"
+#include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
 #include "kernels/simd/table.h"
 
@@ -19,8 +20,10 @@ class SingleConstraints {
   SingleConstraints(const Model& model, const Settings& settings);
 
   /// In the first round accumulated impulses start at 0; in later rounds contacts may have been
-  /// added. Impulses act along the directions at the present positions.
-  void start(const ContactStore& contacts, bool first_round);
+  /// added. Impulses act along the directions at the present positions. laws: of a model with
+  /// springs, for positions.
+  void start(const ContactStore& contacts, const SpringLaws* laws, bool first_round);
+  void keep_multipliers(SpringLaws& laws) const;
   std::size_t count() const { return pairs_.size(); }
   /// For scheme rattle: from here on the impulses of constraints act along the directions at base +
   /// u. Contacts come about within a step, and theirs act along present directions.
@@ -58,8 +61,10 @@ class SingleConstraints {
     int side = 0;                // +1: pulls only, -1: pushes only
     double distance = 0;
     double wa = 0, wb = 0;  // inverse masses, in units of 1 / YarnLayout::lightest
-    double reciprocal = 0;  // 1 / (wa + wb)
+    double reciprocal = 0;  // 1 / (wa + wb + softness)
     double sum = 0;         // of the impulses so far
+    double softness = 0;    // compliance / h^2, in the same units; 0: rigid
+    double target() const { return distance + softness * sum; }
   };
   struct Row {
     kernels::Vector n{};
@@ -68,6 +73,7 @@ class SingleConstraints {
   };
   static bool at_rest(const Pair& pair, kernels::Vector d);
   bool from_start(std::size_t i) const { return from_start_ && i < constraints_; }
+  void take_laws(const SpringLaws& laws);
   void make_rows();
   void set_error(std::size_t i, double error);
   void add(std::uint32_t a, std::uint32_t b, double distance, int side);

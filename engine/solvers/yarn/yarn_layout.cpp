@@ -212,7 +212,9 @@ class Builder {
     }
     add_spans(chain, first, lane);
   }
+  /// A model with springs holds none: with laws in place of lengths nothing is to be kept of these.
   void add_spans(const Chain& chain, std::size_t first, std::size_t lane) {
+    if (model_.constraints.has_springs()) return;
     for_each_span(model_, chain, [&](std::size_t k, std::size_t links) {
       const auto slots = std::span(chain.particles).subspan(k, links + 1);
       if (braces_.is_braced(slots)) return;

@@ -45,6 +45,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
   const std::size_t wanted =
       settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
+  if (model.constraints.has_springs()) springs_.resize(layout_.rows());
   system_.reserve(layout_.rows());
   t_.reserve(u_.size());
   scratch_.resize(layout_.scratch_rows() * std::min(wanted, kMostShares));
@@ -62,7 +63,8 @@ simd::Yarns YarnSolver::yarns() {
           .base_step = base_step_.data(),
           .cell = static_cast<float>(cell_),
           .moved = moved_,
-          .from_memory = layout_.from_memory()};
+          .from_memory = layout_.from_memory(),
+          .springs = springs_.empty() ? nullptr : springs_.data()};
 }
 
 void YarnSolver::split(kernels::VectorsView x, double cell, Team& team) {
@@ -142,7 +144,7 @@ kernels::LoopResult YarnSolver::correct_velocities(const VelocityTask& task, Tea
   from_start_ = false;
   velocities_ = true;
   make_system();
-  singles_.start(task.contacts, true);
+  singles_.start(task.contacts, nullptr, true);
   split(task.x, team);
   linearise_velocities(team);
   split(task.v, 0, team);
@@ -184,10 +186,34 @@ bool YarnSolver::loses_energy(kernels::VectorsView v) const {
   return after <= (1 + kRounding) * before;
 }
 
+/// Inverse masses are in units of 1 / lightest, and so are softness and impulses.
+void YarnSolver::take_laws(const SpringLaws& laws, bool first_round) {
+  for (std::size_t i = 0; i < layout_.constraint.size(); ++i) {
+    const std::uint32_t c = layout_.constraint[i];
+    if (c == kNoIndex) continue;
+    simd::YarnSpringRow& row = springs_[i / kernels::kLanes];
+    const std::size_t lane = i % kernels::kLanes;
+    row.softness[lane] = static_cast<float>(laws.softness[c] * layout_.lightest);
+    row.shift[lane] = static_cast<float>(laws.target[c] - model_.constraints.rest_length[c]);
+    if (first_round) row.sum[lane] = 0;
+  }
+}
+
+void YarnSolver::keep_multipliers(SpringLaws& laws) const {
+  for (std::size_t i = 0; i < layout_.constraint.size(); ++i) {
+    const std::uint32_t c = layout_.constraint[i];
+    if (c == kNoIndex) continue;
+    const float sum = springs_[i / kernels::kLanes].sum[i % kernels::kLanes];
+    laws.multiplier[c] = static_cast<double>(sum) * layout_.lightest;
+  }
+  singles_.keep_multipliers(laws);
+}
+
 void YarnSolver::begin(const PositionTask& task, Team& team) {
   from_start_ = false;
   velocities_ = false;
-  singles_.start(task.contacts, task.first_round);
+  singles_.start(task.contacts, task.laws, task.first_round);
+  if (task.laws != nullptr) take_laws(*task.laws, task.first_round);
   if (task.along_start) {
     spans_.release();
     keep_start(task.start, team);
@@ -213,15 +239,16 @@ YarnSolver::Aim YarnSolver::aim() const {
 /// Whether the result of a Newton step may be taken without the sweep that follows it. The sweep
 /// makes the result smoother, but in cloth that is carried fast it may undo what the step has
 /// reached, each time. The sweep is always kept where taut spans are held or something touches a
-/// sphere.
+/// sphere, and with springs, whose impulses it has changed.
 bool YarnSolver::may_take_newton(const ContactStore& contacts) const {
-  return !from_start_ && !spans_.holds() && contacts.count() == 0;
+  return !from_start_ && !spans_.holds() && contacts.count() == 0 && springs_.empty();
 }
 
-kernels::LoopResult YarnSolver::sweep_so_often(kernels::VectorsView x, int times, Team& team) {
+kernels::LoopResult YarnSolver::sweep_so_often(const PositionTask& task, Team& team) {
   kernels::LoopResult result;
-  while (result.iterations < times) sweep(kNoBound, team, result);
-  join(x, team);
+  while (result.iterations < settings_.iterations) sweep(kNoBound, team, result);
+  join(task.x, team);
+  if (task.laws != nullptr) keep_multipliers(*task.laws);
   return result;
 }
 
@@ -229,11 +256,17 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
   const kernels::VectorsView x = task.x;
   const int max_iterations = task.max_iterations;
   begin(task, team);
-  if (settings_.iterations > 0) return sweep_so_often(x, settings_.iterations, team);
+  if (settings_.iterations > 0) return sweep_so_often(task, team);
   kernels::LoopResult result;
   const Aim aim = this->aim();
   Stall stall(from_start_ ? tuning::kShortPatience : tuning::kYarnPatience);
   const auto look = [&] {
+    if (task.laws != nullptr) {
+      join(x, team);
+      keep_multipliers(*task.laws);
+      const double left = largest_violation(*task.laws, model_.constraints, x);
+      return Look{settings_.tolerance * left, singles_.violation(base_.data(), u_.data())};
+    }
     const double strain = measure_.max_strain(
         x, team, [&](std::size_t first, std::size_t last) { join(x, first, last); });
     return Look{strain, singles_.violation(base_.data(), u_.data())};
@@ -287,9 +320,9 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
 }
 
 std::size_t YarnSolver::bytes() const {
-  return bytes_of(base_step_) + bytes_of(start_) + bytes_of(system_) + bytes_of(scratch_) +
-         bytes_of(base_) + bytes_of(u_) + bytes_of(t_) + bytes_of(products_) + bytes_of(solves_) +
-         bytes_of(stubborn_) + singles_.bytes() + spans_.bytes();
+  return bytes_of(springs_) + bytes_of(base_step_) + bytes_of(start_) + bytes_of(system_) +
+         bytes_of(scratch_) + bytes_of(base_) + bytes_of(u_) + bytes_of(t_) + bytes_of(products_) +
+         bytes_of(solves_) + bytes_of(stubborn_) + singles_.bytes() + spans_.bytes();
 }
 
 }  // namespace weft

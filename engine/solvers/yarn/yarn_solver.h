@@ -14,6 +14,9 @@
 ///
 /// The constraints are linear in the velocities, so that one such system corrects these.
 ///
+/// A spring gives way to what its impulses have come to (kernels/simd/yarns.h); its error is that
+/// of its law, by double positions and the sum of its impulses.
+///
 /// Errors are measured in double after each sweep, or after every second one while they are large;
 /// a Newton step is followed by a sweep. If the errors do not fall, the solver gives up early and
 /// leaves the answer to its caller.
@@ -75,6 +78,8 @@ class YarnSolver final : public ConstraintSolver {
   Aim aim() const;
   bool may_take_newton(const ContactStore& contacts) const;
   void begin(const PositionTask& task, Team& team);
+  void take_laws(const SpringLaws& laws, bool first_round);
+  void keep_multipliers(SpringLaws& laws) const;
   /// Sets base and u to the positions x.
   void split(kernels::VectorsView x, Team& team) { split(x, layout_.cell, team); }
   void split(kernels::VectorsView x, double cell, Team& team);
@@ -84,7 +89,7 @@ class YarnSolver final : public ConstraintSolver {
   /// Solves the blocks of each family until their strain is at most `enough`, then relaxes the
   /// single constraints.
   void sweep(double enough, Team& team, kernels::LoopResult& result);
-  kernels::LoopResult sweep_so_often(kernels::VectorsView x, int times, Team& team);
+  kernels::LoopResult sweep_so_often(const PositionTask& task, Team& team);
   std::uint32_t solve_block(const simd::Yarns& yarns, std::size_t i, double enough,
                             simd::YarnScratch* scratch);
   bool loses_energy(kernels::VectorsView v) const;
@@ -108,7 +113,7 @@ class YarnSolver final : public ConstraintSolver {
   void clear_push(Team& team);
   Products reduce(double goal, Team& team);
   void push(double beta, Team& team);
-  void eliminate(bool errors, Team& team);
+  void eliminate(simd::YarnElimination what, Team& team);
   double pull(Team& team);
   void finish(Team& team);
 
@@ -130,6 +135,7 @@ class YarnSolver final : public ConstraintSolver {
   kernels::AlignedVector<simd::YarnBaseSteps> base_step_;  // per row
   kernels::AlignedVector<simd::YarnDirections> start_;     // scheme rattle only
   kernels::AlignedVector<simd::YarnSystemRow> system_;     // from the first Newton step on
+  kernels::AlignedVector<simd::YarnSpringRow> springs_;    // per row; with springs only
   kernels::AlignedVector<simd::YarnScratch> scratch_;      // one part for each share of blocks
   kernels::AlignedVector<float> base_, u_, t_;             // in the layout of YarnPlaces
   const std::size_t first_end_;                            // end of the first family's blocks

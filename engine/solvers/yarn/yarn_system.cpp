@@ -71,7 +71,7 @@ void YarnSolver::clear_push(Team& team) {
 /// Forms the right side of the reduced system, and its first preconditioned residual.
 YarnSolver::Products YarnSolver::reduce(double goal, Team& team) {
   clear_push(team);
-  eliminate(true, team);
+  eliminate(simd::YarnElimination::errors, team);
   pull(team);
   return precondition(-1, goal, team);
 }
@@ -94,10 +94,10 @@ void YarnSolver::push(double beta, Team& team) {
 }
 
 /// Subtracts M^-1 J^T T^-1 J t of the first family from t; with errors, M^-1 J^T T^-1 (e + J t).
-void YarnSolver::eliminate(bool errors, Team& team) {
+void YarnSolver::eliminate(simd::YarnElimination what, Team& team) {
   for_each_block(0, first_end_, team,
                  [&](const simd::Yarns& yarns, std::size_t i, simd::YarnScratch* scratch) {
-                   table_.yarn_eliminate(yarns, layout_.blocks[i], t_.data(), errors, scratch);
+                   table_.yarn_eliminate(yarns, layout_.blocks[i], t_.data(), what, scratch);
                  });
 }
 
@@ -127,7 +127,7 @@ void YarnSolver::finish(Team& team) {
                    });
   }
   singles_.finish(t_.data());
-  eliminate(true, team);
+  eliminate(simd::YarnElimination::last, team);
   team.for_each_part(t_.size(), kNumbers, [&](std::size_t first, std::size_t last) {
     table_.yarn_add(u_.data(), t_.data(), first, last);
   });
@@ -146,7 +146,7 @@ bool YarnSolver::solve(double goal, double part, int max_iterations, Team& team,
   int done = 0, since = 0;  // iterations: all, and those since the residual last fell
   while (now.worst > enough && done < max_iterations && since < tuning::kSystemPatience.most) {
     push(beta, team);
-    eliminate(false, team);
+    eliminate(simd::YarnElimination::changes, team);
     const double curvature = pull(team);
     if (!(curvature > 0 && now.product > 0)) break;
     const Products next = precondition(now.product / curvature, goal, team);

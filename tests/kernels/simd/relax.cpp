@@ -44,6 +44,41 @@ std::uint32_t visit_singles(const Rounding& rounding, KernelData& data, std::uin
   return corrections;
 }
 
+/// The same of constraints that may be springs.
+bool visit_spring(const Rounding& rounding, KernelData& data, std::uint32_t c, std::uint32_t a,
+                  std::uint32_t b, bool rope, float threshold) {
+  const float sum = data.impulse[c];
+  float change = rounding.fused(-data.yield[c], sum, data.error(rounding, c, a, b));
+  if (!(std::abs(change) > threshold)) return false;
+  if (rope) change = std::max(change, -(data.held[c] + sum));
+  if (change == 0) return false;
+  const Lane lane = data.lane(c);
+  data.impulse[c] += change;
+  data.move(rounding, a, change * lane.gain_a, lane);
+  data.move(rounding, b, change * lane.gain_b, lane);
+  return true;
+}
+
+std::uint32_t visit_spring_run(const Rounding& rounding, KernelData& data, bool rope,
+                               float threshold) {
+  const Run& run = data.run;
+  std::uint32_t corrections = 0;
+  for (std::uint32_t k = 0; k < run.length; ++k) {
+    corrections +=
+        visit_spring(rounding, data, run.constraint + k, run.a + k, run.b + k, rope, threshold);
+  }
+  return corrections;
+}
+
+std::uint32_t visit_spring_singles(const Rounding& rounding, KernelData& data, bool rope,
+                                   float threshold) {
+  std::uint32_t corrections = 0;
+  for (std::uint32_t c = data.first; c < data.last; ++c) {
+    corrections += visit_spring(rounding, data, c, data.a[c], data.b[c], rope, threshold);
+  }
+  return corrections;
+}
+
 /// f(isa, table, threshold, data) for every instruction set, length and threshold: some corrected,
 /// all corrected, none corrected.
 template <class F>
@@ -104,6 +139,34 @@ TEST_CASE("singles of distance constraints and of ropes") {
             if (pass == 0) check_count(count, wanted, found.run.length, threshold);
             REQUIRE(count == wanted);
             REQUIRE(same(found, expected));
+          }
+        });
+  }
+}
+
+TEST_CASE("springs and ropes that are springs: in runs, as singles, and one after the other") {
+  for (const bool rope : {false, true}) {
+    CAPTURE(rope);
+    for_every_length(
+        [&](simd::Isa isa, const simd::Table& table, float threshold, KernelData start) {
+          KernelData found[3] = {start, start, start}, expected[3] = {start, start, start};
+          for (int pass = 0; pass < 3; ++pass) {
+            const std::uint32_t first = start.first, last = start.last;
+            const std::uint32_t counts[3] = {
+                table.relax_spring_run(found[0].relaxation(threshold), start.run, rope),
+                table.relax_spring_singles(found[1].relaxation(threshold), first, last, rope),
+                table.relax_spring_serial(found[2].relaxation(threshold), first, last, rope)};
+            const Rounding rounding(isa);
+            const std::uint32_t wanted[3] = {
+                visit_spring_run(rounding, expected[0], rope, threshold),
+                visit_spring_singles(rounding, expected[1], rope, threshold),
+                visit_spring_singles(rounding, expected[2], rope, threshold)};
+            for (int i = 0; i < 3; ++i) {
+              CAPTURE(i);
+              if (pass == 0) check_count(counts[i], wanted[i], start.run.length, threshold);
+              REQUIRE(counts[i] == wanted[i]);
+              REQUIRE(same(found[i], expected[i]));
+            }
           }
         });
   }

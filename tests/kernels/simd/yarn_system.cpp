@@ -46,6 +46,41 @@ TEST_CASE("what conjugate gradients are made of agrees with one exact solve") {
   }
 }
 
+TEST_CASE("springs: the linear system and the elimination have one exact solution, and sum it up") {
+  BlockOfYarns untouched;
+  untouched.soften();
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    for (const bool eliminates : {false, true}) {
+      CAPTURE(eliminates);
+      BlockOfYarns b;
+      b.soften();
+      b.start(table);
+      table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
+      if (eliminates) {
+        table.yarn_eliminate(b.yarns(), b.block(), b.t.data(), simd::YarnElimination::last,
+                             b.scratch.data());
+        table.yarn_add(b.u.data(), b.t.data(), 0, b.u.size());
+      } else {
+        solve_system(b, b.yarns(), table);
+      }
+      const kernels::Vectors moved = b.end(table);
+      for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+        const auto expected = solved_densely(untouched, lane);
+        const auto n = directions(untouched, untouched.x, lane);
+        for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
+          CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 1e-7);
+          if (k == n.size()) continue;
+          const kernels::Vector d = moved[b.slot_of(k, lane)] - moved[b.slot_of(k + 1, lane)];
+          const double rest = static_cast<double>(b.rows[k].rest[lane]);
+          CHECK(std::abs(dot(n[k], d) - rest - b.give(k, lane)) < 1e-6);
+        }
+      }
+    }
+  }
+}
+
 /// A block whose system has p, z and q of a second iteration.
 BlockOfYarns in_conjugate_gradients(const simd::Table& table) {
   BlockOfYarns b;
@@ -91,7 +126,8 @@ TEST_CASE("elimination leaves nothing that changes a length, errors and all") {
       b.start(table);
       table.yarn_linearise(b.yarns(), b.block(), b.u.data(), b.scratch.data());
       b.push(pushed);
-      table.yarn_eliminate(b.yarns(), b.block(), b.t.data(), errors, b.scratch.data());
+      const auto what = errors ? simd::YarnElimination::errors : simd::YarnElimination::changes;
+      table.yarn_eliminate(b.yarns(), b.block(), b.t.data(), what, b.scratch.data());
       for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
         const auto n = directions(untouched, untouched.x, lane);
         Eigen::VectorXd e = length_errors(untouched, lane);

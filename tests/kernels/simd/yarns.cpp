@@ -43,15 +43,48 @@ TEST_CASE("a sweep over a block solves each of its yarns exactly") {
   }
 }
 
+/// What is left of the laws at x, the largest, over rest lengths.
 double largest_strain(const BlockOfYarns& b, const kernels::Vectors& x) {
   double largest = 0;
   for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
     for (std::uint32_t k = 0; k + 1 < BlockOfYarns::length(lane); ++k) {
       const double l = kernels::length(x[b.slot_of(k, lane)] - x[b.slot_of(k + 1, lane)]);
-      largest = std::max(largest, std::abs(l / static_cast<double>(b.rows[k].rest[lane]) - 1));
+      const double rest = static_cast<double>(b.rows[k].rest[lane]);
+      largest = std::max(largest, std::abs(l - rest - b.give(k, lane)) / rest);
     }
   }
   return largest;
+}
+
+TEST_CASE("a sweep solves springs exactly, and adds their impulses to their sums") {
+  BlockOfYarns untouched;
+  untouched.soften();
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    const simd::Table& table = simd::table(isa);
+    for (const Stand stand : kStands) {
+      BlockOfYarns b(stand);
+      b.soften();
+      b.start(table);
+      table.yarn_sweep(b.yarns(), b.block(), b.u.data(), b.scratch.data());
+      const kernels::Vectors moved = b.end(table);
+      for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+        const auto expected = solved_densely(untouched, lane);
+        for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
+          CHECK(kernels::length(moved[b.slot_of(k, lane)] - expected[k]) < 3e-8);
+        }
+      }
+      CHECK(largest_strain(b, moved) < 0.1 * largest_strain(untouched, untouched.x));
+      BlockOfYarns at_once(stand);
+      at_once.soften();
+      at_once.start(table);
+      const simd::Swept swept = table.yarn_sweep_watched(
+          at_once.yarns(), at_once.block(), at_once.u.data(), at_once.scratch.data(), 1e-5f, 20);
+      CHECK(swept.within);
+      CHECK(swept.solves > 1);
+      CHECK(largest_strain(at_once, at_once.end(table)) < 1.1e-5);
+    }
+  }
 }
 
 /// Far: links turn by much when they are straightened.
@@ -207,7 +240,8 @@ std::vector<float> worked_on(BlockOfYarns& b, const simd::Table& table) {
       table.yarn_push_first(b.yarns(), b.block(), 0, t, scratch);
       table.yarn_push(b.yarns(), b.block(), 0.5f, t, scratch);
       note(b.t);
-      table.yarn_eliminate(b.yarns(), b.block(), t, velocities, scratch);
+      const auto what = velocities ? simd::YarnElimination::errors : simd::YarnElimination::changes;
+      table.yarn_eliminate(b.yarns(), b.block(), t, what, scratch);
       note(b.t);
       result.push_back(table.yarn_pull(b.yarns(), b.block(), t, scratch));
       table.yarn_precondition(b.yarns(), b.block(), 0.25f);

@@ -55,8 +55,9 @@ TEST_CASE("contacts in any order push all the same") {
   const auto solved = [&](const ContactStore& contacts) {
     SimdSolver solver(*model, {}, table);
     kernels::Vectors x = start;
-    CHECK(solver.solve_positions(x.view(), {}, contacts, true, {.max_iterations = 100}, team)
-              .converged);
+    CHECK(
+        solver.solve_positions(x.view(), {}, contacts, nullptr, true, {.max_iterations = 100}, team)
+            .converged);
     return x;
   };
   const kernels::Vectors expected = solved(found);

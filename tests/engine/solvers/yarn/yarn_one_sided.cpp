@@ -135,7 +135,7 @@ struct Others {
         base(places.floats),
         u(places.floats),
         others(*trial.model, {.tolerance = kTolerance, .contact_tolerance = kContactTolerance}) {
-    others.start(trial.contacts, true);
+    others.start(trial.contacts, nullptr, true);
     places.clear(u.data());
     places.split(trial.table, trial.x.view(), 0, 0, trial.model->slots(), base.data(), u.data());
   }

@@ -1,0 +1,47 @@
+/// The laws of constraints in models with springs, as solvers of a whole substep see them.
+///
+/// In a substep of h, with the multiplier mu = h^2 f of the tension f, a spring is to obey
+///
+///     C + damping (C - C_start) = compliance / h^2 mu,     C = |a-b| - rest_length,
+///
+/// damping = (time constant) / h, C_start: when the substep began. Divided by 1 + damping this is
+/// the law of a spring without damping, of another length and softness:
+///
+///     |a-b| - target - softness mu = 0,
+///     target = rest_length + damping / (1 + damping) C_start,
+///     softness = compliance / (h^2 (1 + damping))
+///
+/// and so is its tolerance divided. A rigid constraint has softness 0, and its own length.
+///
+/// Where no time passes, h = 0, springs are infinitely soft: a projection leaves them as they are.
+#pragma once
+
+#include <vector>
+
+#include "engine/model/model.h"
+#include "kernels/vectors.h"
+
+namespace weft {
+
+struct SpringLaws {
+  explicit SpringLaws(const ConstraintStore& constraints);
+
+  /// For a substep of h that begins at `start`, held to `tolerance` times rest_length. h = 0: for a
+  /// projection.
+  void begin(const Model& model, kernels::VectorsView start, double h, double tolerance);
+  std::size_t bytes() const;
+
+  kernels::AlignedVector<double> target;      // m
+  kernels::AlignedVector<double> softness;    // 1/kg
+  kernels::AlignedVector<double> tolerance;   // m
+  kernels::AlignedVector<double> multiplier;  // kg m, of springs; solvers write it
+};
+
+/// What is left of the laws at x, the largest of all constraints, in tolerances.
+double largest_violation(const SpringLaws& laws, const ConstraintStore& constraints,
+                         kernels::VectorsView x);
+/// J, of springs by their tensions after a substep of h. Of a stiff one this says what can come
+/// back, and leaves out what is within the tolerance of its law.
+double energy_of_tensions(const SpringLaws& laws, const ConstraintStore& constraints, double h);
+
+}  // namespace weft
