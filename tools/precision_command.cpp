@@ -89,7 +89,7 @@ Result<Chart> measure_chart(Task task, const PrecisionOptions& options, TaskLine
     for (Point& point : points.value()) chart.points.push_back(std::move(point));
     note_aims(chart, curve);
   }
-  auto motion = measure_motion(chart.task, options.quick, watch);
+  auto motion = measure_motion(chart.task, watch);
   if (!motion) return Error{motion.error()};
   chart.motion = std::move(motion.value());
   line.next(scene + " Bullet");

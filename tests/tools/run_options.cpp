@@ -129,6 +129,19 @@ TEST_CASE("a tighter tolerance of contacts leaves less of them") {
   CHECK(report_of(folder, run + "1e-2")["max_penetration"] > 1e-3);
 }
 
+TEST_CASE("a tolerance of the motion takes more substeps, and is told beside what is estimated") {
+  const TemporaryFolder folder;
+  const auto plain = report_of(folder, "hang --size 9 --steps 40");
+  const auto close = report_of(folder, "hang --size 9 --steps 40 --motion-tolerance 1e-3");
+  CHECK(plain["motion_tolerance"] == 0);
+  CHECK(close["motion_tolerance"] == 1e-3);
+  CHECK(close["substeps"] > plain["substeps"]);
+  CHECK(close["motion_error"] < 1e-3);
+  CHECK(plain["motion_error"] > 1e-3);
+  CHECK(close["max_motion_error"] >= close["motion_error"]);
+  CHECK(close["energy_lost"] < plain["energy_lost"]);
+}
+
 TEST_CASE("a tighter tolerance of velocities takes more iterations") {
   const TemporaryFolder folder;
   const auto iterations = [&](const std::string& tolerance) {

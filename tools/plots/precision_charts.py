@@ -3,7 +3,8 @@
 
     precision_charts.py precision.json --out FOLDER
 
-precision: error against time per frame, a row for each scene; sizes: time against size.
+precision: error against time per frame, a row for each scene; motion: what was asked for of the
+motion, what was got, and its time; sizes: time against size.
 """
 
 import study_figures
@@ -215,6 +216,45 @@ def precision_figure(study):
     return figure
 
 
+# ------------------------------------------------------------------------- the motion asked and got
+
+def motion_figure(points, quick):
+    figure, (got, cost) = plt.subplots(1, 2, figsize=(11.6, 4.9))
+    colours = list(COLOURS.values())
+    scenes = sorted({(p["scene"], p["size"]) for p in points})
+    for colour, (scene, size) in zip(colours, scenes):
+        curve = [p for p in points if (p["scene"], p["size"]) == (scene, size)]
+        asked = [p for p in curve if p["asked"] > 0]
+        style = {"color": colour, "linewidth": 1.9, "marker": "o", "markersize": 5,
+                 "markeredgecolor": "white", "markeredgewidth": 0.8}
+        got.plot([1000 * p["asked"] for p in asked], [1000 * p["got"] for p in asked],
+                 label=f"{scene}, {size} x {size}", **style)
+        cost.plot([p["ms_per_frame"] for p in asked], [1000 * p["got"] for p in asked], **style)
+        plain_call = [p for p in curve if p["asked"] == 0]
+        cost.plot([p["ms_per_frame"] for p in plain_call], [1000 * p["got"] for p in plain_call],
+                  "s", color=colour, markersize=7, markerfacecolor="none")
+    ends = [1000 * extreme(p["asked"] for p in points if p["asked"] > 0) for extreme in (min, max)]
+    got.plot(ends, ends, color="0.45", linewidth=1, zorder=1)
+    got.fill_between(ends, [e / 3 for e in ends], [3 * e for e in ends], color="0.93", zorder=0)
+    for axes in (got, cost):
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        decorate(axes)
+        axes.yaxis.set_major_formatter(FuncFormatter(plain_tick))
+        axes.set_ylabel("got, mm/s")
+    got.set_xlabel("asked for: motion_tolerance, mm/s")
+    got.set_title("grey: within three times")
+    got.legend(loc="upper left")
+    cost.set_xlabel("ms per frame of 10 ms")
+    cost.set_title("squares: without a motion_tolerance")
+    figure.suptitle("What is asked for of the motion, and got", x=0.065, ha="left",
+                    fontweight="bold", fontsize=12.5)
+    figure.text(0.065, 0.9, "largest distance to the true motion after 0.4 s, over that time; small "
+                "steps at 1 %" + ("; QUICK run" if quick else ""), fontsize=8.5, color="0.35")
+    figure.subplots_adjust(left=0.065, right=0.985, top=0.82, bottom=0.11, wspace=0.18)
+    return figure
+
+
 # -------------------------------------------------------------------------------- time against size
 
 def sizes_figure(sizes, quick):
@@ -257,6 +297,8 @@ def sizes_figure(sizes, quick):
 
 def figures_of(study):
     figures = {"precision": precision_figure(study)}
+    if study["motion"]:
+        figures["motion"] = motion_figure(study["motion"], study["quick"])
     if "sizes" in study:
         figures["sizes"] = sizes_figure(study["sizes"], study["quick"])
     return figures

@@ -4,13 +4,11 @@
 
 namespace weft::tools::precision {
 
-Result<std::vector<MotionPoint>> measure_motion(const Task& task, bool quick, const Watch& watch) {
-  std::vector<double> asked{0, 0.1, 0.03, 0.01, 3e-3, 1e-3};
-  if (!quick) asked.insert(asked.end(), {3e-4, 1e-4});
+Result<std::vector<MotionPoint>> measure_motion(const Task& task, const Watch& watch) {
   Task until = task;
   until.frames = kReferenceFrame;
   std::vector<MotionPoint> points;
-  for (const double tolerance : asked) {
+  for (const double tolerance : {0., 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4}) {
     watch(fmt::format("motion, {:g} m/s", tolerance));
     Settings settings;
     settings.solver = Solver::small_steps;

@@ -20,7 +20,7 @@ struct MotionPoint {
 };
 
 /// At 1 %, by small steps, from loose to tight; first without. Of a task with its reference; runs
-/// that miss their tolerance are left out. quick: as far as a millimetre in a second.
-Result<std::vector<MotionPoint>> measure_motion(const Task& task, bool quick, const Watch& watch);
+/// that miss their tolerance are left out.
+Result<std::vector<MotionPoint>> measure_motion(const Task& task, const Watch& watch);
 
 }  // namespace weft::tools::precision

@@ -115,6 +115,23 @@ TEST_CASE("the JSON of a point, of an order and of a size") {
       "counts": true}]}])"));
 }
 
+TEST_CASE("of the motion is told what was asked for, got and estimated") {
+  Study study = distinct_study();
+  CHECK(to_json(study)["motion"] == Json::array());
+  CHECK(to_text(study).find("motion_tolerance") == std::string::npos);
+  study.charts.front().motion = {{0, 0.5, 0.25, 2, 0.125}, {0.0625, 0.03125, 0.25, 3, 0.75}};
+  CHECK(to_json(study)["motion"][1] ==
+        Json::parse(R"({"scene": "corners", "size": 21, "asked": 0.0625, "got": 0.03125,
+                        "estimated": 0.25, "substeps": 3, "ms_per_frame": 0.75})"));
+  const std::string text = to_text(study);
+  CHECK(text.find(
+            "\n             -           500           250         -         2         0.125\n") !=
+        std::string::npos);
+  CHECK(text.find(
+            "\n          62.5          31.2           250      0.50         3          0.75\n") !=
+        std::string::npos);
+}
+
 TEST_CASE("automatic substeps are told as what they came to") {
   Study study = distinct_study();
   study.charts.front().points.front().knobs.substeps = kAutomaticSubsteps;

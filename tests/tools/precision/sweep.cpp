@@ -11,6 +11,7 @@
 #include "tools/methods.h"
 #include "tools/precision/bullet.h"
 #include "tools/precision/meter.h"
+#include "tools/precision/motion.h"
 #include "tools/precision/order.h"
 #include "tools/precision/sizes.h"
 
@@ -106,6 +107,36 @@ TEST_CASE("a scene with ropes is compared with small steps, whose error is told"
   REQUIRE(point);
   REQUIRE(point.value().outcome.trajectory_error);
   CHECK(*point.value().outcome.trajectory_error > 0);
+}
+
+TEST_CASE("cloth of a material is compared with small steps, and swept by them alone") {
+  auto task = make_task("cape", 6, "cotton");
+  REQUIRE(task);
+  CHECK(task.value().has_material());
+  REQUIRE(add_reference(task.value(), 2));
+  CHECK(task.value().reference_by == "small_steps, 128 substeps");
+  for (const Curve& curve : weft_curves(task.value(), true)) {
+    CAPTURE(curve.label);
+    CHECK(curve.rows.empty() == (!curve.label.starts_with("small_steps") && curve.label != "auto"));
+  }
+  CHECK_FALSE(make_task("hang", 6, "cotton"));
+  CHECK_FALSE(make_task("cape", 6, "paper"));
+}
+
+TEST_CASE("the motion that is asked for is measured from loose to tight") {
+  Task task = small_task();
+  REQUIRE(add_reference(task, 8));
+  const auto points = measure_motion(task, [](const std::string&) {});
+  REQUIRE(points);
+  REQUIRE(points.value().size() > 4);
+  CHECK(points.value().front().asked == 0);
+  for (const MotionPoint& point : points.value()) {
+    CHECK(point.got > 0);
+    CHECK(point.estimated > 0);
+    CHECK(point.ms_per_frame > 0);
+  }
+  CHECK(points.value().back().substeps > points.value().front().substeps);
+  CHECK(points.value().back().got < points.value().front().got);
 }
 
 TEST_CASE("a fixed number of iterations is no tolerance; without a reference nothing is compared") {
