@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/bytes_of.h"
 
@@ -48,6 +49,7 @@ double largest_violation(const SpringLaws& laws, const ConstraintStore& s, kerne
     const double give = laws.softness[c] * laws.multiplier[c];
     double left = length(x[s.a[c]] - x[s.b[c]]) - laws.target[c] - give;
     if (c >= s.bilateral) left = std::max(left, -give);
+    if (std::isnan(left)) return std::numeric_limits<double>::infinity();
     most = std::max(most, std::abs(left) / laws.tolerance[c]);
   }
   return most;

@@ -37,7 +37,8 @@ struct SpringLaws {
   kernels::AlignedVector<double> multiplier;  // kg m, of springs; solvers write it
 };
 
-/// What is left of the laws at x, the largest of all constraints, in tolerances.
+/// What is left of the laws at x, the largest of all constraints, in tolerances; infinite if one is
+/// not a number.
 double largest_violation(const SpringLaws& laws, const ConstraintStore& constraints,
                          kernels::VectorsView x);
 /// J, of springs by their tensions after a substep of h. Of a stiff one this says what can come

@@ -121,7 +121,7 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
   }
   if (s.solver == Solver::small_steps) return validate_scheme(s);
   if (model.bending.size() == 0) return {};
-  return refuse("solver", "bending is solved by small_steps only", std::string(name(s.solver)));
+  return refuse("bending", "is solved by small_steps only", std::string(name(s.solver)));
 }
 
 Result<void> validate_for_lanes(const Settings& s, const Model& model) {

@@ -52,9 +52,10 @@ Solver solver_for(const Model& model, const Settings& settings) {
   return chain && has_ropes(model.constraints) && few_bodies ? Solver::direct : Solver::yarn;
 }
 
-/// Small steps alone solve springs and bending.
-bool has_material(const Model& model) {
-  return model.constraints.has_springs() || model.bending.size() > 0;
+/// Small steps alone solve bending, and are chosen for springs unless another scheme is asked for.
+bool is_for_small_steps(const Model& model, const Settings& settings) {
+  const bool springs = model.constraints.has_springs() && settings.scheme == Scheme::automatic;
+  return springs || model.bending.size() > 0 || is_of_small_steps(settings.scheme);
 }
 
 }  // namespace
@@ -74,8 +75,7 @@ void choose_solver(const Model& model, Settings& settings) {
   const bool fixed = settings.iterations > 0;
   const bool paper = settings.backend == Backend::reference || fixed;
   if (settings.solver == Solver::automatic) {
-    const bool asks_for_motion = settings.motion_tolerance > 0;
-    if (is_of_small_steps(settings.scheme) || has_material(model) || asks_for_motion)
+    if (is_for_small_steps(model, settings) || settings.motion_tolerance > 0)
       settings.solver = Solver::small_steps;
     else
       settings.solver = paper ? Solver::gauss_seidel : solver_for(model, settings);

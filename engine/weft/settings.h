@@ -28,12 +28,11 @@ namespace weft {
 ///   looser, and for a motion that is near the true one. Masses should not differ by more than a
 ///   hundred. Substeps of one length are best kept to: a change of it by half costs some energy.
 ///   It alone solves bending.
-/// automatic: by what the cloth is. small_steps for cloth, woven or a mesh, and for all springs.
-/// direct for chains of
-///   ropes, trees and bridges of them. yarn for all else:
+/// automatic: by what the cloth is. small_steps for cloth, woven or a mesh, and for all springs but
+///   with scheme paper. direct for chains of ropes, trees and bridges of them. yarn for all else:
 ///   cloth at a tolerance that small steps could not afford, with unequal masses or free spheres,
 ///   with scheme paper or rattle, or with velocity_correction. gauss_seidel on the reference
-///   backend and with `iterations`. The thresholds are not part of the interface.
+///   backend and with `iterations`. The thresholds are no part of the interface.
 /// What yarn and direct do not bring within tolerance is done by others, in this order: the same
 /// solver in shorter parts, halves of what was rejected down to a sixteenth of the substep
 /// (StepReport::halvings counts what was rejected); and for the rest of the substep direct behind
@@ -127,7 +126,7 @@ struct Settings {
   /// kept, and updated through the stored products of neighbouring directions, as in section 4.2.
   /// Ropes, constraints at hubs and contacts still form theirs from displacements. An iteration
   /// takes 1.3 to 2 times as long as by displacements, on irregular meshes 3 times (perf/tried.md).
-  /// The reference backend keeps products whenever it anticipates, and refuses this; so do springs.
+  /// The reference backend anticipates by products, and refuses this; models with springs do, too.
   bool anticipate_products = false;
   bool skip = true;  ///< section 4.3: satisfied constraints are passed over
   /// Sections 3.2, 3.3: a second loop, on velocities; rattle has it always. Without it gauss_seidel

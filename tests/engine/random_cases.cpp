@@ -190,8 +190,6 @@ RandomCase softened_case(std::uint32_t seed) {
   if (random.below(3) == 0) c.scene.damping.stretch = std::pow(10, random.between(-4, 0));
   c.settings.velocity_correction = c.settings.anticipate_products = false;
   if (c.settings.scheme == Scheme::rattle) c.settings.scheme = Scheme::paper;
-  const bool by_small_steps = c.settings.solver == Solver::automatic && has_springs(c);
-  if (by_small_steps && c.settings.scheme == Scheme::paper) c.settings.scheme = Scheme::automatic;
   return c;
 }
 

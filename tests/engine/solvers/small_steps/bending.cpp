@@ -426,5 +426,18 @@ TEST_CASE("an element with a rest length comes to rest at it") {
   }
 }
 
+TEST_CASE("bending is for small steps, which automatic chooses; other solvers refuse it") {
+  const auto model = model_of(with_rows(scene_of("corners", 5), 5, 1e-4));
+  CHECK(Cloth::create(model, {}).value().settings().solver == Solver::small_steps);
+  for (const Solver solver : {Solver::gauss_seidel, Solver::direct, Solver::yarn}) {
+    const auto cloth = Cloth::create(model, {.solver = solver});
+    REQUIRE_FALSE(cloth);
+    CHECK(cloth.error() ==
+          "bending: is solved by small_steps only (" + std::string(name(solver)) + ")");
+  }
+  CHECK_FALSE(Cloth::create(model, {.scheme = Scheme::rattle}));
+  CHECK_FALSE(Cloth::create(model, {.velocity_correction = true}));
+}
+
 }  // namespace
 }  // namespace weft::test
