@@ -215,14 +215,14 @@ class WEFT_API Cloth {
   /// those that are fixed and released, what solvers remember, and the settings that were asked
   /// for: Solver::automatic is chosen anew, and where another one is chosen nothing is remembered.
   ///
-  /// Constraints that are longer or shorter than they may be then, those between two pins that wait
-  /// for one to be released too, are put right as the next step begins, velocities unchanged. No
-  /// energy is gained by what is let go under tension. A released particle starts at the speed
-  /// that move_fixed gave it in the last step.
+  /// Constraints that are longer or shorter than they may be then, those between two pins of which
+  /// one is released too, are put right as the next step begins, velocities unchanged. A particle
+  /// is released at the speed that move_fixed gave it in the last step, and no energy is gained.
   ///
   /// It takes about as long as to build a model and create a cloth, whatever is changed: less than
   /// a step of fabrics, one or two of other meshes, three to fifteen of a woven sheet, whose steps
-  /// are the cheapest. Make all changes of a frame in one call.
+  /// are the cheapest. Make all changes of a frame in one call. What model() and settings()
+  /// referred to may be gone after it, and after copy_state.
   Result<void> change(const Changes& changes);
 
   /// Recomputed from the positions by this thread alone. The last step's is in its report already,
