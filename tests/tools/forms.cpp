@@ -33,8 +33,8 @@ TEST_CASE("what falls and decays") { check(motion_forms()); }
 TEST_CASE("a heavy strip that is short sags by load / 8, a long one hangs down by its length") {
   CHECK(heavy_elastica(0.01).y == doctest::Approx(-0.01 / 8).epsilon(1e-4));
   CHECK(heavy_elastica(0.01).x == doctest::Approx(1).epsilon(1e-5));
-  CHECK(heavy_elastica(1e4).y < -0.93);
-  CHECK(heavy_elastica(1e4).y > -1);
+  CHECK(heavy_elastica(1000).y < -0.9);
+  CHECK(heavy_elastica(1000).y > -1);
 }
 
 TEST_CASE("a strip that is hardly buckled is half a sine wave: height 2 / pi sqrt(nearer)") {

@@ -30,12 +30,13 @@ Shape slope(double load, double r, Shape f) {
   return {f.rate, -load * r * std::cos(f.theta), -std::cos(f.theta), std::sin(f.theta)};
 }
 
-/// At the clamp, for this slope at the tip; by Runge and Kutta's method of fourth order.
+/// At the clamp, for this slope at the tip, or where it becomes level before; by Runge and Kutta's
+/// method of fourth order.
 Shape from_tip(double load, double theta) {
   constexpr int kSteps = 1000;
   constexpr double kStep = 1.0 / kSteps;
   Shape f{theta, 0, 0, 0};
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kSteps && f.theta >= 0; ++i) {
     const double r = kStep * i;
     const Shape a = slope(load, r, f);
     const Shape b = slope(load, r + kStep / 2, f + (kStep / 2) * a);

@@ -12,7 +12,8 @@ struct Tip {
 ///
 ///     theta'' = - load (1 - s) cos theta,   theta(0) = 0,   theta'(1) = 0
 ///
-/// for the slope downwards, theta, along the length, s. load: rho g L^3 / k_b.
+/// for the slope downwards, theta, along the length, s, by shooting from the tip. load: rho g L^3 /
+/// k_b, 1000 at most: heavier strips hang down but for less than rounding.
 Tip heavy_elastica(double load);
 
 /// Height over its ends, of the length, of a strip that was straight between hinges and these have
