@@ -125,6 +125,7 @@ Result<void> Cloth::write_positions(std::span<const Vec3> in) {
     impl_->position.set(impl_->slot(i), to_internal(in[i]));
   }
   impl_->pins.put_down(impl_->position);
+  impl_->anchors.put_down();
   impl_->placed = true;
   impl_->lost_energy = 0;
   impl_->last_dt = 0;
@@ -180,6 +181,12 @@ Result<void> Cloth::move_fixed(std::uint32_t particle, Vec3 position) {
   if (auto r = validate_vector("position", particle, position); !r) return r;
   impl_->pins.watch(*impl_->model, impl_->position);
   impl_->position.set(slot, to_internal(position));
+  return {};
+}
+
+Result<void> Cloth::move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals) {
+  if (auto r = validate_anchor_move(*impl_->model, points, normals); !r) return r;
+  impl_->anchors.move(points, normals);
   return {};
 }
 

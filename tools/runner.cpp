@@ -56,6 +56,7 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.scheme_fallbacks += report.scheme_fallbacks;
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
   summary.max_error = std::max(summary.max_error, report.max_error);
+  summary.max_anchor_error = std::max(summary.max_anchor_error, report.max_anchor_error);
   summary.pin_work += report.pin_work;
   summary.solver_seconds = 0;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {

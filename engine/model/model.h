@@ -20,6 +20,7 @@
 #include "engine/solvers/sweeps/reference_layout.h"
 #include "engine/solvers/sweeps/simd_layout.h"
 #include "engine/solvers/yarn/yarn_layout.h"
+#include "kernels/reference/anchors.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -64,8 +65,22 @@ struct AirStore {
   kernels::Vector wind{};
 };
 
+/// Anchors (weft.h) in the order of the description. Normals have the length 1, or there is no
+/// backstop.
+struct AnchorStore {
+  std::vector<std::uint32_t> slot;
+  std::vector<reference::AnchorLimits> limits;
+  std::vector<reference::AnchorPose> initial;
+  std::vector<std::uint32_t> at;  // per slot: its anchor, or kNoIndex; empty without anchors
+  std::size_t size() const { return slot.size(); }
+  std::size_t bytes() const;
+};
+
 /// Of the first `count` constraints, between slots.
 std::vector<Link> links_of(const ConstraintStore& store, std::size_t count);
+
+/// With the normal's length 1.
+reference::AnchorPose pose_of(Vec3 point, Vec3 normal);
 
 class Model {
  public:
@@ -90,6 +105,7 @@ class Model {
   kernels::Vector gravity{};
   ConstraintStore constraints;
   BendingStore bending;
+  AnchorStore anchors;
   AirStore air;
   Damping damping;
   Unevenness uneven;
@@ -121,6 +137,7 @@ class Model {
   void store_batches(const Draft& draft, ConstraintKind kind);
   void store_hubs(const Draft& draft, ConstraintKind kind);
   void store_bending(const SceneDescription& description);
+  void store_anchors(const SceneDescription& description);
   void store_air(const SceneDescription& description);
   void find_holds();
   void find_joined();

@@ -95,6 +95,7 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
     return refuse_solver("a compliance is for small_steps, not this one");
   }
   if (model.bending.size() > 0) return refuse_solver("bending is for small_steps, not this one");
+  if (model.anchors.size() > 0) return refuse_solver("anchors are for small_steps, not this one");
   return {};
 }
 

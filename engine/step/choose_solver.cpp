@@ -56,9 +56,9 @@ Solver solver_for(const Model& model, const Settings& settings) {
   return direct && few_bodies ? Solver::direct : Solver::yarn;
 }
 
-/// Small steps alone solve springs and bending.
-bool has_material(const Model& model) {
-  return model.constraints.has_springs() || model.bending.size() > 0;
+/// Small steps alone solve springs, bending and anchors.
+bool needs_small_steps(const Model& model) {
+  return model.constraints.has_springs() || model.bending.size() > 0 || model.anchors.size() > 0;
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ void choose_solver(const Model& model, Settings& settings) {
   const bool fixed = settings.iterations > 0;
   const bool paper = settings.backend == Backend::reference || fixed;
   if (settings.solver == Solver::automatic) {
-    if (is_of_small_steps(settings.scheme) || has_material(model))
+    if (is_of_small_steps(settings.scheme) || needs_small_steps(model))
       settings.solver = Solver::small_steps;
     else
       settings.solver = paper ? Solver::gauss_seidel : solver_for(model, settings);

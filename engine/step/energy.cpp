@@ -61,7 +61,7 @@ bool gains_energy(const State& s, const kernels::ImpulseEnergy& impulses, double
 
 double gained_energy(const State& s, const kernels::ImpulseEnergy& change, double h) {
   double gain = 0.5 * change.gain;
-  if (s.pins.moving()) {
+  if (pins_move(s)) {
     const PinMotion pins = motion_of_pins(s, h);
     gain -= work_of(pins, s, h) + stray_energy(pins, s);
   }
@@ -70,7 +70,7 @@ double gained_energy(const State& s, const kernels::ImpulseEnergy& change, doubl
 
 bool take_energy(State& s, double gain, double h) {
   if (!(gain > 0)) return true;
-  const PinMotion pins = s.pins.moving() ? motion_of_pins(s, h) : PinMotion{};
+  const PinMotion pins = pins_move(s) ? motion_of_pins(s, h) : PinMotion{};
   const double kinetic = 0.5 * twice_kinetic(s, pins);
   slow_down(s, pins, gain < kinetic ? std::sqrt(1 - gain / kinetic) : 0);
   return gain <= kinetic;

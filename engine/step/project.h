@@ -20,7 +20,7 @@ void project(State& s, double dt, StepReport& report, Team& team);
 /// happened without any constraint.
 void explain(State& s, double h, StepReport& report, Team& team);
 
-/// The true errors at x.
-void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team);
+/// The true errors at x, where a step ends or where it begins.
+void report_errors(State& s, kernels::Vectors& x, bool ends, StepReport& report, Team& team);
 
 }  // namespace weft

@@ -14,6 +14,7 @@ namespace weft {
 State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     : model(std::move(shared)),
       settings(chosen),
+      anchors(*model),
       kernels(&simd::table(to_kernel(chosen.isa))),
       measure(std::make_unique<Measure>(*model, chosen, *kernels)) {
   settings.scheme = scheme_of(settings);
@@ -81,6 +82,7 @@ void State::copy(const State& from) {
   const bool same = alike(settings, from.settings);
   kernels::Vectors its_force = from.force;
   Pins its_pins = from.pins;
+  Anchors its_anchors = from.anchors;
   if (same && small_steps) small_steps->take_past(*from.small_steps);
   if (!same && small_steps) small_steps->forget_past();
   position = from.position;
@@ -89,6 +91,7 @@ void State::copy(const State& from) {
   gravity = from.gravity;
   wind = from.wind;
   pins = std::move(its_pins);
+  anchors = std::move(its_anchors);
   placed = !same || from.placed;
   lost_energy = same ? from.lost_energy : 0;
   give_per_mass = same ? from.give_per_mass : 0;
@@ -104,7 +107,7 @@ std::size_t State::bytes() const {
     sum += v->bytes();
   }
   sum += contacts.bytes() + bytes_of(impulses) + bytes_of(resistances) + pins.bytes() +
-         measure->bytes();
+         anchors.bytes() + measure->bytes();
   sum += sizeof(Team::SharedState);
   if (sweeps) sum += sweeps->bytes();
   if (yarn) sum += yarn->bytes();

@@ -25,6 +25,7 @@
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/sweeps/sweeps.h"
 #include "engine/solvers/yarn/yarn_solver.h"
+#include "engine/step/anchors.h"
 #include "engine/step/pins.h"
 #include "kernels/impulse_energy.h"
 #include "kernels/vectors.h"
@@ -59,6 +60,7 @@ struct State {
   kernels::Vectors substep_positions;  // where a small step began; with contacts only
   ContactStore contacts;
   Pins pins;
+  Anchors anchors;
   bool placed = true;        // positions were given, not stepped to: they may violate constraints
   double lost_energy = 0;    // J, lately (energy.h)
   double give_per_mass = 0;  // s^2, of springs in the last step (measure/state_measure.h)

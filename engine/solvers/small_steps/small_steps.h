@@ -10,7 +10,9 @@
 
 #include "engine/contacts/contacts.h"
 #include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/anchor_travel.h"
 #include "engine/solvers/small_steps/local_passes.h"
+#include "engine/turn.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -37,6 +39,7 @@ struct FramePlan {
   double omega = 1;       // of a sweep
   bool placed = false;    // positions are not where the last step ended: nothing is known of a past
   bool projects = false;  // no time passes: springs are left as they are
+  AnchorTravel anchors{};
 };
 
 class SmallSteps {
@@ -72,6 +75,8 @@ class SmallSteps {
   /// Goes on where another one of the same kind is.
   virtual void take_past(const SmallSteps& from) = 0;
   virtual void forget_past() = 0;
+  /// The past happened in other directions. Positions are new ones.
+  virtual void turn(const Turn& by) = 0;
   virtual std::size_t bytes() const = 0;
 };
 
