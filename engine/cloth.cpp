@@ -6,6 +6,7 @@
 #include "engine/isa.h"
 #include "engine/measure/state_measure.h"
 #include "engine/model/validate.h"
+#include "engine/step/carry.h"
 #include "engine/step/choose_solver.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"
@@ -188,6 +189,15 @@ Result<void> Cloth::move_anchors(std::span<const Vec3> points, std::span<const V
   if (auto r = validate_anchor_move(*impl_->model, points, normals); !r) return r;
   impl_->anchors.move(points, normals);
   return {};
+}
+
+Result<void> Cloth::carry(const RigidMotion& motion, double share) {
+  if (auto r = validate_motion(motion, share); !r) return r;
+  if (share == 0) return {};
+  const std::uint32_t lost = weft::carry(*impl_, Carriage(motion, share));
+  if (lost == kNoIndex) return {};
+  return Error{"motion: takes a particle out of the range of numbers (" +
+               std::to_string(impl_->model->ordering.particle_at[lost]) + ")"};
 }
 
 Strain Cloth::strain() const { return measure_strain(*impl_->model, impl_->position); }

@@ -21,6 +21,7 @@ Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> poin
                                   std::span<const Vec3> normals);
 Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_wind(Vec3 wind);
+Result<void> validate_motion(const RigidMotion& motion, double share);
 Result<void> validate_time_step(double dt);
 /// One finite vector per particle.
 Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vectors,

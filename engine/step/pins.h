@@ -26,6 +26,15 @@ class Pins {
   /// All velocities were replaced: the next move is from rest.
   void rest();
 
+  /// Everyone is taken along: moved(place), turned(velocity).
+  template <class Moved, class Turned>
+  void carry(Moved&& moved, Turned&& turned) {
+    for (Pin& pin : pins_) {
+      pin.from = moved(pin.from);
+      pin.last = turned(pin.last);
+    }
+  }
+
   /// Those that travel start where they were, with their velocities. Whether some jumped.
   bool depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);
   /// After depart: everyone is where the caller wants them, at rest; arrived: the step was done.

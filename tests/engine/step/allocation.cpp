@@ -140,7 +140,7 @@ TEST_CASE("nor does a warm step with bending elements, nor the first") {
   }
 }
 
-TEST_CASE("nor does a step with anchors, nor their moving") {
+TEST_CASE("nor does a step with anchors, nor their moving, nor carrying the cloth") {
   for (const char* name : {"corners", "cape"}) {
     for (const Backend backend : kBackends) {
       SceneDescription scene = scene_of(name, 9);
@@ -160,6 +160,7 @@ TEST_CASE("nor does a step with anchors, nor their moving") {
       for (int k = 0; k < 40; ++k) {
         for (Vec3& point : points) point.x += 0.002;
         failed += !cloth.move_anchors(points);
+        failed += !cloth.carry({.translation = {0.001, 0, 0}}, 0.5);
         failed += !cloth.step(0.01);
       }
       const std::size_t after = allocations();
