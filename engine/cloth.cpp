@@ -8,6 +8,7 @@
 #include "engine/model/change.h"
 #include "engine/model/validate.h"
 #include "engine/model/validation.h"
+#include "engine/step/carry.h"
 #include "engine/step/choose_solver.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"
@@ -173,6 +174,7 @@ Result<void> Cloth::write_positions(std::span<const Vec3> in) {
     impl_->position.set(impl_->slot(i), to_internal(in[i]));
   }
   impl_->pins.put_down(impl_->position);
+  impl_->anchors.put_down();
   impl_->placed = true;
   impl_->lost_energy = 0;
   impl_->refinement = 0;
@@ -230,6 +232,21 @@ Result<void> Cloth::place_fixed(std::uint32_t particle, Vec3 position) {
   impl_->position.set(slot.value(), to_internal(position));
   impl_->displaced = true;
   return {};
+}
+
+Result<void> Cloth::move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals) {
+  if (auto r = validate_anchor_move(*impl_->model, points, normals); !r) return r;
+  impl_->anchors.move(points, normals);
+  return {};
+}
+
+Result<void> Cloth::carry(const RigidMotion& motion, double share) {
+  if (auto r = validate_motion(motion, share); !r) return r;
+  if (share == 0) return {};
+  const std::uint32_t lost = weft::carry(*impl_, Carriage(motion, share));
+  if (lost == kNoIndex) return {};
+  return Error{"motion: takes a particle out of the range of numbers (" +
+               std::to_string(impl_->model->ordering.particle_at[lost]) + ")"};
 }
 
 Strain Cloth::strain() const { return measure_strain(*impl_->model, impl_->position); }

@@ -1,7 +1,8 @@
 /// A substep of small steps, all in, of a frame of sixteen, and its sweep alone: yarns of a woven
 /// sheet, single edges of an irregular mesh, and a braced sheet, which has both. And a visit of
 /// bending elements, of three particles along the rows and columns of a sheet, or of four over the
-/// pairs of its triangles.
+/// pairs of its triangles. And of anchors, of every particle, in woven rows or in quads: with
+/// nobody at its limit, or all, or all on a backstop.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include "engine/isa.h"
 #include "engine/model/model.h"
+#include "engine/solvers/small_steps/simd_anchors.h"
 #include "engine/solvers/small_steps/simd_bending.h"
 #include "engine/solvers/small_steps/simd_small_steps.h"
 #include "engine/tuning.h"
@@ -140,6 +142,53 @@ void run_bending(benchmark::State& state, const Shared& shared, simd::Isa isa, i
         shared.bandwidth);
 }
 
+enum class Limits : std::uint8_t { none, all, backstops };
+
+SceneDescription anchored_sheet(int size, bool woven, Limits limits) {
+  SceneDescription scene = scenes::make(woven ? "hang" : "cape", {.size = size}).value();
+  scene.fixed.clear();
+  for (std::uint32_t i = 0; i < scene.positions.size(); ++i) {
+    Anchor anchor{.particle = i, .point = scene.positions[i], .normal = {0, 1, 0}};
+    if (limits != Limits::all) anchor.max_distance = 1;
+    if (limits == Limits::backstops) anchor.backstop_radius = 0.2;
+    scene.anchors.push_back(anchor);
+  }
+  return scene;
+}
+
+void run_anchors(benchmark::State& state, const Shared& shared, simd::Isa isa, int size, bool woven,
+                 Limits limits) {
+  const auto model = build_model(anchored_sheet(size, woven, limits)).value();
+  const std::size_t floats = model->small_steps().floats;
+  Team team{1};
+  SimdAnchors anchors(*model, {}, simd::table(isa));
+  kernels::AlignedVector<float> base(floats), u(floats, -1e-4f), predicted(floats), v(floats);
+  std::vector<reference::AnchorPose> poses;
+  for (const Anchor& anchor : model->anchors.described) {
+    poses.push_back(pose_of(anchor.point, anchor.normal));
+  }
+  anchors.begin({poses, poses, false}, 1e-4, 1, {});
+  for (std::size_t i = 0; i < model->anchors.size(); ++i) {
+    const std::size_t place = model->small_steps().places().of(model->anchors.slot[i]);
+    const std::size_t next = model->small_steps().places().stride;
+    base[place] = static_cast<float>(poses[i].point.x);
+    base[place + next] = static_cast<float>(poses[i].point.y);
+    base[place + 2 * next] = static_cast<float>(poses[i].point.z);
+  }
+  anchors.measure_base(base.data());
+  const simd::Flight flight{.u = u.data(), .predicted = predicted.data(), .v = v.data()};
+  for (auto _ : state) {
+    std::ranges::fill(u, -1e-4f);  // a fall of a substep
+    anchors.hold(flight, 0, team);
+  }
+  const double footprint = static_cast<double>(anchors.bytes() + 3 * 4 * floats);
+  count(state,
+        {.items = static_cast<double>(model->anchors.size()),
+         .bytes = footprint,
+         .footprint = footprint},
+        shared.bandwidth);
+}
+
 }  // namespace
 
 void register_small_step_benchmarks(Shared& shared) {
@@ -164,6 +213,23 @@ void register_small_step_benchmarks(Shared& shared) {
         benchmark::RegisterBenchmark(name.c_str(), [=, &shared](benchmark::State& state) {
           run_bending(state, shared, isa, size, four);
         });
+      }
+    }
+  }
+  for (const bool woven : {true, false}) {
+    for (const auto& [limits, kind] :
+         {std::pair{Limits::none, "none"}, std::pair{Limits::all, "all"},
+          std::pair{Limits::backstops, "backstops"}}) {
+      for (const simd::Isa isa : supported_isas()) {
+        for (const int size : kSizes) {
+          const std::string name = std::string("small_step_anchors/") +
+                                   (woven ? "rows/" : "quads/") + kind + '/' + name_of(isa) + '/' +
+                                   std::to_string(size);
+          benchmark::RegisterBenchmark(name.c_str(),
+                                       [=, limits = limits, &shared](benchmark::State& state) {
+                                         run_anchors(state, shared, isa, size, woven, limits);
+                                       });
+        }
       }
     }
   }

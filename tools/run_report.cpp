@@ -95,6 +95,7 @@ std::string material_text(const ModelInfo& model) {
   };
   add(model.compliant, "spring");
   add(model.bending_elements, "bending element");
+  add(model.anchors, "anchor");
   add(model.air_triangles, "air triangle");
   return text;
 }
@@ -110,6 +111,7 @@ Json to_json(const RunReport& report) {
       {"constraints", summary.model.constraints},
       {"springs", summary.model.compliant},
       {"bending_elements", summary.model.bending_elements},
+      {"anchors", summary.model.anchors},
       {"air_triangles", summary.model.air_triangles},
       {"spheres", summary.model.spheres},
       {"solver", name(settings.solver)},
@@ -137,6 +139,7 @@ Json to_json(const RunReport& report) {
       {"mean_max_strain", summary.mean_max_strain},
       {"rms_strain", summary.rms_strain},
       {"max_penetration", summary.max_penetration},
+      {"max_anchor_error", summary.max_anchor_error},
       {"max_contacts", summary.max_contacts},
       {"iterations_per_step", summary.iterations_per_step()},
       {"velocity_iterations_per_step", mean(summary.velocity_iterations, summary.frames)},
@@ -198,6 +201,9 @@ std::string to_table(const RunReport& report) {
                   measured_percent(summary.rms_strain)));
   if (summary.model.spheres > 0) {
     row("contacts", fmt::format("{:.3g} m deepest penetration", summary.max_penetration));
+  }
+  if (summary.model.anchors > 0) {
+    row("anchors", fmt::format("{:.3g} m beyond their limits at most", summary.max_anchor_error));
   }
   row("work",
       fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {}, {}",

@@ -56,6 +56,7 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.scheme_fallbacks += report.scheme_fallbacks;
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
   summary.max_error = std::max(summary.max_error, report.max_error);
+  summary.max_anchor_error = std::max(summary.max_anchor_error, report.max_anchor_error);
   summary.pin_work += report.pin_work;
   summary.energy_lost += report.energy_lost;
   summary.max_motion_error = std::max(summary.max_motion_error, report.motion_error);

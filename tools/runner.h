@@ -83,11 +83,12 @@ struct RunSummary {
   std::int64_t scheme_fallbacks = 0;
   int max_contacts = 0;  ///< most pairs watched in one frame
 
-  double max_error = 0;        ///< of the constraints' laws, over all frames (StepReport)
-  double max_strain = 0;       ///< over all frames and constraints
-  double mean_max_strain = 0;  ///< mean over the frames of each frame's largest strain
-  double rms_strain = 0;       ///< over all frames and constraints
-  double max_penetration = 0;  ///< m, over all frames and sphere pairs
+  double max_error = 0;         ///< of the constraints' laws, over all frames (StepReport)
+  double max_strain = 0;        ///< over all frames and constraints
+  double mean_max_strain = 0;   ///< mean over the frames of each frame's largest strain
+  double rms_strain = 0;        ///< over all frames and constraints
+  double max_penetration = 0;   ///< m, over all frames and sphere pairs
+  double max_anchor_error = 0;  ///< m, over all frames and anchors
 
   double energy_start = 0;  ///< J, before the first frame
   double energy_end = 0;    ///< J, after the last frame

@@ -83,6 +83,8 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.constraints = read_array(json, key, read_constraint);
   } else if (key == "bending") {
     scene.bending = read_array(json, key, read_bending);
+  } else if (key == "anchors") {
+    scene.anchors = read_array(json, key, read_anchor);
   } else if (key == "damping") {
     scene.damping = read_damping(json, key);
   } else if (key == "air") {
@@ -185,6 +187,7 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   add_numbers(text, "fixed", scene.fixed);
   add_rows(text, "constraints", scene.constraints, constraint_row);
   add_rows(text, "bending", scene.bending, bending_row);
+  add_rows(text, "anchors", scene.anchors, anchor_row);
   if (has_damping(scene.damping)) {
     text += fmt::format(",\n\"damping\": {}", damping_text(scene.damping));
   }

@@ -18,6 +18,12 @@
 ///       "rest":       0,                          // optional, this is the default
 ///       "compliance": 1e-3
 ///     }, ...],
+///     "anchors": [{                               // optional; null: infinite
+///       "particle": 7, "point": [x, y, z],
+///       "max_distance": 0,                        // optional, this is the default
+///       "normal": [0, 0, 1],                      // of the backstop; optional, none by default
+///       "backstop_distance": 0.01, "backstop_radius": null
+///     }, ...],
 ///     "damping": {"stretch": 1e-3, "bending": 1e-2, "motion": 0},  // optional, as each field is
 ///     "air": {                                    // optional, as each field is
 ///       "triangles": [[0, 1, 2], ...],

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "tools/json_reading.h"
@@ -36,6 +38,16 @@ void check_given(const Json& json, const std::string& place,
 void read_if_given(const Json& json, const std::string& place, const char* key, double& value) {
   if (json.contains(key)) value = read_number(json[key], within(place, key));
 }
+
+/// null: infinite, for which JSON has no number.
+void read_distance_if_given(const Json& json, const std::string& place, const char* key,
+                            double& value) {
+  if (json.contains(key) && json[key].is_null())
+    value = std::numeric_limits<double>::infinity();
+  else
+    read_if_given(json, place, key, value);
+}
+Json distance_json(double value) { return std::isinf(value) ? Json() : Json(value); }
 
 std::array<std::uint32_t, 3> read_triangle(const Json& json, const std::string& place) {
   if (!json.is_array() || json.size() != 3) refuse(place, "[a, b, c]", json);
@@ -87,6 +99,33 @@ Air read_air(const Json& json, const std::string& place) {
   read_if_given(json, place, "lift", air.lift);
   if (json.contains("wind")) air.wind = read_vector(json["wind"], within(place, "wind"));
   return air;
+}
+
+Anchor read_anchor(const Json& json, const std::string& place) {
+  check_keys(
+      json, place,
+      {"particle", "point", "normal", "max_distance", "backstop_distance", "backstop_radius"});
+  check_given(json, place, {"particle", "point"});
+  Anchor anchor;
+  anchor.particle = read_index(json["particle"], within(place, "particle"));
+  anchor.point = read_vector(json["point"], within(place, "point"));
+  if (json.contains("normal")) anchor.normal = read_vector(json["normal"], within(place, "normal"));
+  read_distance_if_given(json, place, "max_distance", anchor.max_distance);
+  read_if_given(json, place, "backstop_distance", anchor.backstop_distance);
+  read_distance_if_given(json, place, "backstop_radius", anchor.backstop_radius);
+  return anchor;
+}
+
+std::string anchor_row(const Anchor& anchor) {
+  const auto vector = [](Vec3 v) { return Json{v.x, v.y, v.z}; };
+  Json row{{"particle", anchor.particle},
+           {"point", vector(anchor.point)},
+           {"max_distance", distance_json(anchor.max_distance)}};
+  const Vec3 n = anchor.normal;
+  if (n.x != 0 || n.y != 0 || n.z != 0) row["normal"] = vector(n);
+  if (anchor.backstop_distance > 0) row["backstop_distance"] = anchor.backstop_distance;
+  if (anchor.backstop_radius > 0) row["backstop_radius"] = distance_json(anchor.backstop_radius);
+  return row.dump();
 }
 
 std::string bending_row(const BendingElement& element) {

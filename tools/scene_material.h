@@ -1,4 +1,4 @@
-/// What a scene file says of a material: bending elements, damping and air.
+/// What a scene file says of a material, bending elements, damping and air, and of anchors.
 #pragma once
 
 #include <weft/weft.h>
@@ -13,8 +13,10 @@ namespace weft::tools {
 BendingElement read_bending(const Json& json, const std::string& place);
 Damping read_damping(const Json& json, const std::string& place);
 Air read_air(const Json& json, const std::string& place);
+Anchor read_anchor(const Json& json, const std::string& place);
 
 std::string bending_row(const BendingElement& element);
+std::string anchor_row(const Anchor& anchor);
 /// Whether they differ from what a description has by itself.
 bool has_damping(const Damping& damping);
 bool has_air(const Air& air);

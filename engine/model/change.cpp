@@ -19,6 +19,7 @@ class Describer {
     describe_constraints();
     describe_bending();
     describe_air();
+    description_.anchors = model_.anchors.described;
     description_.damping = model_.damping;
     description_.gravity = to_public(model_.gravity);
     return std::move(description_);

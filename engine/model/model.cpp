@@ -48,6 +48,7 @@ Model::Model(const SceneDescription& description, const Model* like)
   store_particles(draft);
   store_constraints(draft);
   store_bending(description);
+  store_anchors(description);
   store_air(description);
   damping = description.damping;
   find_holds();
@@ -139,6 +140,22 @@ void Model::store_bending(const SceneDescription& d) {
     bending.weights.push_back(element.weights);
     bending.rest.push_back(element.rest);
     bending.compliance.push_back(element.compliance);
+  }
+}
+
+void Model::store_anchors(const SceneDescription& d) {
+  if (d.anchors.empty()) return;
+  anchors.described = d.anchors;
+  anchors.at.assign(slots(), kNoIndex);
+  for (const Anchor& anchor : d.anchors) {
+    const std::uint32_t slot = ordering.slot_of[anchor.particle];
+    anchors.at[slot] = static_cast<std::uint32_t>(anchors.size());
+    anchors.slot.push_back(slot);
+    const bool has_backstop = anchor.backstop_radius > 0;
+    anchors.limits.push_back({.most = anchor.max_distance,
+                              .distance = anchor.backstop_distance,
+                              .curvature = has_backstop ? 1 / anchor.backstop_radius : 0,
+                              .has_backstop = has_backstop});
   }
 }
 
@@ -260,6 +277,15 @@ std::size_t BendingStore::bytes() const {
   return bytes_of(slots) + bytes_of(weights) + bytes_of(rest) + bytes_of(compliance);
 }
 
+std::size_t AnchorStore::bytes() const {
+  return bytes_of(slot) + bytes_of(limits) + bytes_of(described) + bytes_of(at);
+}
+
+reference::AnchorPose pose_of(Vec3 point, Vec3 normal) {
+  const kernels::Vector n{normal.x, normal.y, normal.z};
+  return {{point.x, point.y, point.z}, kernels::direction(n, length(n))};
+}
+
 std::size_t ConstraintStore::bytes() const {
   return bytes_of(a) + bytes_of(b) + bytes_of(rest_length) + bytes_of(effective_mass) +
          bytes_of(compliance) + bytes_of(colour) + bytes_of(described) + bytes_of(slot) +
@@ -273,9 +299,10 @@ std::size_t Model::bytes() const {
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bending.bytes() +
-         inert.bytes() + bytes_of(air.triangles) + air.at.bytes() + bytes_if_made(reference_) +
-         bytes_if_made(simd_) + bytes_if_made(chunk_neighbours_) + bytes_if_made(pulls_) +
-         bytes_if_made(direct_) + bytes_if_made(yarns_) + bytes_if_made(small_steps_);
+         inert.bytes() + anchors.bytes() + bytes_of(air.triangles) + air.at.bytes() +
+         bytes_if_made(reference_) + bytes_if_made(simd_) + bytes_if_made(chunk_neighbours_) +
+         bytes_if_made(pulls_) + bytes_if_made(direct_) + bytes_if_made(yarns_) +
+         bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {
@@ -292,6 +319,7 @@ ModelInfo describe(const Model& model) {
           .compliant = static_cast<std::size_t>(
               std::ranges::count_if(s.compliance, [](double c) { return c > 0; })),
           .bending_elements = model.bending.size(),
+          .anchors = model.anchors.size(),
           .air_triangles = model.air.triangles.size(),
           .spheres = model.spheres.size(),
           .colours = model.ordering.colours,

@@ -22,6 +22,7 @@
 #include "engine/solvers/sweeps/reference_layout.h"
 #include "engine/solvers/sweeps/simd_layout.h"
 #include "engine/solvers/yarn/yarn_layout.h"
+#include "kernels/reference/anchors.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -80,8 +81,21 @@ struct InertStore {
   std::size_t bytes() const;
 };
 
+/// Anchors (weft.h) in the order of the description.
+struct AnchorStore {
+  std::vector<std::uint32_t> slot;
+  std::vector<reference::AnchorLimits> limits;
+  std::vector<Anchor> described;
+  std::vector<std::uint32_t> at;  // per slot: its anchor, or kNoIndex; empty without anchors
+  std::size_t size() const { return slot.size(); }
+  std::size_t bytes() const;
+};
+
 /// Of the first `count` constraints, between slots.
 std::vector<Link> links_of(const ConstraintStore& store, std::size_t count);
+
+/// With the normal's length 1.
+reference::AnchorPose pose_of(Vec3 point, Vec3 normal);
 
 class Model {
  public:
@@ -108,6 +122,7 @@ class Model {
   kernels::Vector gravity{};
   ConstraintStore constraints;
   BendingStore bending;
+  AnchorStore anchors;
   AirStore air;
   Damping damping;
   Unevenness uneven;
@@ -117,6 +132,10 @@ class Model {
   std::shared_ptr<const int> origin;
 
   bool has_contacts() const { return !spheres.empty(); }
+  /// Of a particle; kNoIndex: none.
+  std::uint32_t anchor_of(std::uint32_t particle) const {
+    return anchors.at.empty() ? kNoIndex : anchors.at[ordering.slot_of[particle]];
+  }
   bool has_air() const {
     return !air.triangles.empty() && air.density > 0 && (air.drag > 0 || air.lift > 0);
   }
@@ -142,6 +161,7 @@ class Model {
   void store_batches(const Draft& draft, ConstraintKind kind);
   void store_hubs(const Draft& draft, ConstraintKind kind);
   void store_bending(const SceneDescription& description);
+  void store_anchors(const SceneDescription& description);
   void store_air(const SceneDescription& description);
   void find_holds();
   void find_joined();

@@ -16,8 +16,13 @@ Result<void> validate_for_lanes(const Settings& settings, const Model& model);
 Result<void> validate_for_solver(const Settings& resolved, const Model& model);
 /// What a description says besides particles, constraints and spheres.
 Result<void> validate_material(const SceneDescription& description);
+Result<void> validate_anchors(const SceneDescription& description);
+/// Of all anchors; normals: or none.
+Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> points,
+                                  std::span<const Vec3> normals);
 Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_wind(Vec3 wind);
+Result<void> validate_motion(const RigidMotion& motion, double share);
 Result<void> validate_time_step(double dt);
 /// One finite vector per particle.
 Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vectors,

@@ -37,9 +37,12 @@ Result<void> validate_particles(std::string_view field, const std::vector<std::u
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (auto r = particles.take(element(field, i), list[i]); !r) return r;
     const bool is_fixed = model.inverse_mass[model.ordering.slot_of[list[i]]] == 0;
-    if (is_fixed == are_fixed) continue;
-    return refuse(element(field, i), is_fixed ? "is fixed already" : "is not fixed",
-                  std::to_string(list[i]));
+    if (is_fixed != are_fixed) {
+      return refuse(element(field, i), is_fixed ? "is fixed already" : "is not fixed",
+                    std::to_string(list[i]));
+    }
+    if (!is_fixed && model.anchor_of(list[i]) != kNoIndex)
+      return refuse(element(field, i), "has an anchor", std::to_string(list[i]));
   }
   return {};
 }

@@ -124,6 +124,16 @@ Result<void> validate_gravity(Vec3 gravity) {
   return refuse("gravity", "must be finite", text(gravity));
 }
 
+Result<void> validate_motion(const RigidMotion& motion, double share) {
+  for (const auto& [field, vector] :
+       {std::pair{"motion.translation", motion.translation},
+        std::pair{"motion.rotation", motion.rotation}, std::pair{"motion.about", motion.about}}) {
+    if (!finite(vector)) return refuse(field, "must be finite", text(vector));
+  }
+  if (share >= 0 && share <= 1) return {};
+  return refuse("share", "must be from 0 to 1", number(share));
+}
+
 Result<void> validate_time_step(double dt) {
   if (auto r = validate_positive("dt", dt); !r) return r;
   if (!std::isfinite(1 / dt)) return refuse("dt", "is too small to be inverted", number(dt));
@@ -150,6 +160,7 @@ Result<void> validate(const SceneDescription& d) {
   if (auto r = validate_index_list("fixed", d.fixed, particles); !r) return r;
   if (auto r = validate_constraints(d.constraints, particles); !r) return r;
   if (auto r = validate_material(d); !r) return r;
+  if (auto r = validate_anchors(d); !r) return r;
   return validate_contacts(d);
 }
 

@@ -120,8 +120,12 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
     return refuse("anticipate_products", "takes no constraints with a compliance", "on");
   }
   if (s.solver == Solver::small_steps) return validate_scheme(s);
-  if (model.bending.size() == 0) return {};
-  return refuse("bending", "is solved by small_steps only", std::string(name(s.solver)));
+  for (const auto& [what, count] :
+       {std::pair{"bending", model.bending.size()}, std::pair{"anchors", model.anchors.size()}}) {
+    if (count > 0)
+      return refuse(what, "is solved by small_steps only", std::string(name(s.solver)));
+  }
+  return {};
 }
 
 Result<void> validate_for_lanes(const Settings& s, const Model& model) {

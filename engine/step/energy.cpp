@@ -67,7 +67,7 @@ bool gains_energy(const State& s, const kernels::ImpulseEnergy& impulses, double
 
 double gained_energy(const State& s, const kernels::ImpulseEnergy& change, double h) {
   double gain = 0.5 * change.gain;
-  if (s.pins.moving()) {
+  if (pins_move(s)) {
     const PinMotion pins = motion_of_pins(s, h);
     gain -= work_of(pins, s, h) + stray_energy(pins, s);
   }
@@ -76,7 +76,7 @@ double gained_energy(const State& s, const kernels::ImpulseEnergy& change, doubl
 
 bool take_energy(State& s, double gain, double h, kernels::ImpulseEnergy& change) {
   if (!(gain > 0)) return true;
-  const PinMotion pins = s.pins.moving() ? motion_of_pins(s, h) : PinMotion{};
+  const PinMotion pins = pins_move(s) ? motion_of_pins(s, h) : PinMotion{};
   const double kinetic = 0.5 * twice_kinetic(s, pins);
   change.gain -= slow_down(s, pins, gain < kinetic ? std::sqrt(1 - gain / kinetic) : 0);
   return gain <= kinetic;

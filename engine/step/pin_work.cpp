@@ -11,9 +11,16 @@ namespace {
 
 using kernels::Vector;
 
-/// Where a pin is halfway.
-Vector middle(const State& s, std::size_t slot, double h) {
-  return s.position[slot] + (0.5 * h) * s.velocity[slot];
+/// work(where it is halfway, its velocity)
+template <class Work>
+void for_each_pin(const State& s, const std::vector<std::uint32_t>& pins, double h, Work&& work) {
+  for (const std::uint32_t slot : pins)
+    work(s.position[slot] + (0.5 * h) * s.velocity[slot], s.velocity[slot]);
+  const AnchorTravel anchors = s.anchors.travel();
+  for (std::size_t i = 0; i < anchors.from.size(); ++i) {
+    const Vector from = anchors.from[i].point, to = anchors.to[i].point;
+    work(0.5 * (from + to), (1 / h) * (to - from));
+  }
 }
 
 /// A symmetric matrix of 3 x 3.
@@ -41,18 +48,16 @@ struct Inertia {
   }
 };
 
-bool any_under_way(const State& s) {
-  return std::ranges::any_of(s.model->pins, [&](std::uint32_t pin) {
-    const Vector v = s.velocity[pin];
-    return dot(v, v) > 0;
-  });
+bool any_under_way(const State& s, double h) {
+  bool any = false;
+  for_each_pin(s, s.model->pins, h, [&](Vector, Vector v) { any = any || dot(v, v) > 0; });
+  return any;
 }
 
 double largest_stray(const PinMotion& pins, const State& s, double h) {
   double most = 0;
-  for (const std::uint32_t pin : s.model->pins) {
-    most = std::max(most, length(s.velocity[pin] - pins.at(middle(s, pin, h))));
-  }
+  for_each_pin(s, s.model->pins, h,
+               [&](Vector x, Vector v) { most = std::max(most, length(v - pins.at(x))); });
   return most;
 }
 
@@ -60,23 +65,24 @@ double largest_stray(const PinMotion& pins, const State& s, double h) {
 
 PinMotion motion_of_pins(const State& s, double h) {
   PinMotion pins;
-  if (!any_under_way(s)) return pins;
-  const std::vector<std::uint32_t>& holds = s.model->holds;
-  for (const std::uint32_t slot : holds) {
-    pins.centre = pins.centre + middle(s, slot, h);
-    pins.velocity = pins.velocity + s.velocity[slot];
-  }
-  if (!holds.empty()) {
-    const auto count = static_cast<double>(holds.size());
+  if (!any_under_way(s, h)) return pins;
+  const auto for_each = [&](auto&& work) { for_each_pin(s, s.model->holds, h, work); };
+  double count = 0;
+  for_each([&](Vector x, Vector v) {
+    pins.centre = pins.centre + x;
+    pins.velocity = pins.velocity + v;
+    ++count;
+  });
+  if (count > 0) {
     pins.centre = (1 / count) * pins.centre;
     pins.velocity = (1 / count) * pins.velocity;
     Inertia inertia;
     Vector angular_momentum{};
-    for (const std::uint32_t slot : holds) {
-      const Vector r = middle(s, slot, h) - pins.centre;
+    for_each([&](Vector x, Vector v) {
+      const Vector r = x - pins.centre;
       inertia.add(r);
-      angular_momentum = angular_momentum + cross(r, s.velocity[slot] - pins.velocity);
-    }
+      angular_momentum = angular_momentum + cross(r, v - pins.velocity);
+    });
     pins.spin = inertia.spin_of(angular_momentum);
   }
   pins.stray = largest_stray(pins, s, h);

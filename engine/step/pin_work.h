@@ -9,14 +9,15 @@
 ///
 /// Of pins that move otherwise this is the work of the rigid motion nearest to theirs (least
 /// squares, each as often as it has constraints). What they do beyond that, and what moved spheres
-/// do, is not known: `stray` says how fast they do it.
+/// do, is not known: `stray` says how fast they do it. Points of anchors are pins that hold one
+/// constraint, whether or not their particle is at its limit.
 #pragma once
 
 #include "engine/step/state.h"
 
 namespace weft {
 
-/// Of fixed particles; 0 where none is under way.
+/// Of fixed particles and the points of anchors; 0 where none is under way.
 struct PinMotion {
   kernels::Vector centre{}, velocity{}, spin{};  // u + s x (x - c), as above
   double stray = 0;                              // m/s, the most by which one moves otherwise
@@ -24,6 +25,8 @@ struct PinMotion {
   kernels::Vector at(kernels::Vector x) const { return velocity + cross(spin, x - centre); }
 };
 
+/// Whether any is under way.
+inline bool pins_move(const State& s) { return s.pins.moving() || s.anchors.moving(); }
 /// Halfway through a substep of h from position, with velocity.
 PinMotion motion_of_pins(const State& s, double h);
 

@@ -27,6 +27,15 @@ class Pins {
   void go_on_from(const Pins& from, const Model& its_model, const Model& model,
                   const kernels::Vectors& position);
 
+  /// Everyone is taken along: moved(place), turned(velocity).
+  template <class Moved, class Turned>
+  void carry(Moved&& moved, Turned&& turned) {
+    for (Pin& pin : pins_) {
+      pin.from = moved(pin.from);
+      pin.last = turned(pin.last);
+    }
+  }
+
   /// Those that travel start where they were, with their velocities.
   void depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);
   /// After depart: everyone is where the caller wants them, at rest; arrived: the step was done.

@@ -24,6 +24,8 @@ double largest_rigid_strain(const State& s) {
 }
 
 bool is_out_of_tolerance(State& s, Team& team) {
+  if (s.anchors.largest_excess(s.model->anchors, s.position, false) > s.settings.contact_tolerance)
+    return true;
   if (!s.model->constraints.has_springs())
     return s.measure->error(s.position.view(), nullptr, s.contacts, team) > 1;
   return largest_rigid_strain(s) > s.settings.tolerance ||
@@ -75,7 +77,7 @@ void explain(State& s, double h, StepReport& report, Team& team) {
   worsen(report, input ? Status::non_finite_input : Status::non_finite);
 }
 
-void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team) {
+void report_errors(State& s, kernels::Vectors& x, bool ends, StepReport& report, Team& team) {
   const Strain strain = s.measure->strain(x.view(), team);
   report.max_strain = strain.max;
   if (!s.model->constraints.has_springs())
@@ -86,6 +88,7 @@ void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team
   report.worst_constraint = strain.worst_constraint;
   report.contacts = static_cast<int>(s.contacts.count());
   report.max_penetration = s.measure->penetration(x.view(), s.contacts);
+  report.max_anchor_error = s.anchors.largest_excess(s.model->anchors, x, ends);
 }
 
 }  // namespace weft

@@ -18,7 +18,8 @@ void project(State& s, double dt, StepReport& report, Team& team);
 /// happened without any constraint.
 void explain(State& s, double h, StepReport& report, Team& team);
 
-/// The true errors at x. What is left of the laws of springs is told by whoever solved them.
-void report_errors(State& s, kernels::Vectors& x, StepReport& report, Team& team);
+/// The true errors at x, where a step ends or where it begins. What is left of the laws of springs
+/// is told by whoever solved them.
+void report_errors(State& s, kernels::Vectors& x, bool ends, StepReport& report, Team& team);
 
 }  // namespace weft

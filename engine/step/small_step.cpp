@@ -109,10 +109,11 @@ class Frame {
 
   void begin(const FramePlan& plan) {
     plan_ = plan;
+    plan_.anchors = s_.anchors.travel();
     const kernels::VectorsView force =
         s_.forces().size() > 0 ? s_.forces().view() : kernels::VectorsView{};
     if (s_.model->has_contacts()) s_.substep_positions = s_.position;
-    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, plan, team_);
+    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, plan_, team_);
     elastic_energy_ = elastic_energy(s_.position);
   }
   /// J, since the beginning, by springs and bending elements.
@@ -138,8 +139,9 @@ class Frame {
       if (is_within_tolerance()) return Status::converged;
       if (s_.settings.iterations > 0) return Status::fixed_iterations;
       if (round >= most_rounds()) return Status::iteration_limit;
+      const double distance = std::max(report_.max_penetration, report_.max_anchor_error);
       const double error = std::max(report_.max_error / s_.settings.tolerance,
-                                    report_.max_penetration / s_.settings.contact_tolerance);
+                                    distance / s_.settings.contact_tolerance);
       if (stall.has_stalled(error)) return Status::infeasible;
       timed(report_, Stage::solve_positions, [&] { put_right(); });
     }
@@ -153,11 +155,12 @@ class Frame {
   /// Of what is solved, into the report.
   bool is_within_tolerance() {
     timed(report_, Stage::report, [&] {
-      report_errors(s_, s_.solved, report_, team_);
+      report_errors(s_, s_.solved, !plan_.projects, report_, team_);
       if (s_.model->constraints.has_springs()) report_.max_error = solver_.law_error();
     });
     return report_.max_error <= s_.settings.tolerance &&
-           report_.max_penetration <= s_.settings.contact_tolerance;
+           report_.max_penetration <= s_.settings.contact_tolerance &&
+           report_.max_anchor_error <= s_.settings.contact_tolerance;
   }
 
   std::uint32_t passed_particle = kNoIndex;  // the description's number
@@ -284,7 +287,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     if (s.laws) s.elastic_energy = energy_of_springs(*s.model, s.solved, s.give_per_mass);
     const double released = frame.released();
     if (!fixed) guard_springs(s, change, released, h);
-    if (s.pins.moving()) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
+    if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
     trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;
     if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
     if (s.settings.motion_tolerance > 0)

@@ -15,6 +15,7 @@ namespace weft {
 State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     : model(std::move(shared)),
       settings(chosen),
+      anchors(*model),
       kernels(&simd::table(to_kernel(chosen.isa))),
       measure(std::make_unique<Measure>(*model, chosen, *kernels)) {
   settings.scheme = scheme_of(settings);
@@ -74,7 +75,7 @@ namespace {
 bool alike(const Settings& a, const Settings& b) {
   return a.solver == b.solver && a.scheme == b.scheme && a.backend == b.backend &&
          a.iterations == b.iterations && a.tolerance == b.tolerance &&
-         a.contact_tolerance == b.contact_tolerance;
+         a.contact_tolerance == b.contact_tolerance && a.motion_tolerance == b.motion_tolerance;
 }
 
 }  // namespace
@@ -85,12 +86,14 @@ void State::copy(const State& from) {
   const bool same = alike(settings, from.settings);
   kernels::Vectors its_force = from.force;
   Pins its_pins = from.pins;
+  Anchors its_anchors = from.anchors;
   if (same && small_steps) small_steps->take_past(*from.small_steps);
   if (!same && small_steps) small_steps->forget_past();
   position = from.position;
   velocity = from.velocity;
   force = std::move(its_force);
   pins = std::move(its_pins);
+  anchors = std::move(its_anchors);
   copy_scalars(from, same);
 }
 
@@ -119,6 +122,7 @@ void State::go_on_from(const State& from) {
     velocity.set(slot, is_free ? from.pins.last_velocity(its_slot) : kernels::Vector{0, 0, 0});
   });
   pins.go_on_from(from.pins, its_model, *model, position);
+  anchors = from.anchors;
   const bool same = alike(settings, from.settings);
   copy_scalars(from, same);
   displaced = true;
@@ -134,7 +138,7 @@ std::size_t State::bytes() const {
     sum += v->bytes();
   }
   sum += contacts.bytes() + bytes_of(impulses) + bytes_of(resistances) + pins.bytes() +
-         measure->bytes();
+         anchors.bytes() + measure->bytes();
   sum += sizeof(Team::SharedState);
   if (laws) sum += laws->bytes();
   if (sweeps) sum += sweeps->bytes();

@@ -27,6 +27,7 @@
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/sweeps/sweeps.h"
 #include "engine/solvers/yarn/yarn_solver.h"
+#include "engine/step/anchors.h"
 #include "engine/step/pins.h"
 #include "kernels/impulse_energy.h"
 #include "kernels/vectors.h"
@@ -61,6 +62,7 @@ struct State {
   kernels::Vectors substep_positions;  // where a small step began; with contacts only
   ContactStore contacts;
   Pins pins;
+  Anchors anchors;
   bool placed = true;         // positions were given, not stepped to: they may violate constraints
   bool displaced = false;     // they may, though stepped to: a pin was put down, the model changed
   double lost_energy = 0;     // J, lately (energy.h)

@@ -207,11 +207,14 @@ StepReport step(State& s, double dt) {
   {
     Travel travel(s, dt);
     done = Step(s, report, team).run(dt);
-    if (done) travel.arrive();
+    if (done) {
+      travel.arrive();
+      s.anchors.arrive();
+    }
   }
   // Small steps have measured what they committed.
   if (!done || s.settings.solver != Solver::small_steps) {
-    timed(report, Stage::report, [&] { report_errors(s, s.position, report, team); });
+    timed(report, Stage::report, [&] { report_errors(s, s.position, done, report, team); });
   }
   return report;
 }

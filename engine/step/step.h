@@ -7,7 +7,8 @@
 ///   exact_substep  one substep by a prediction and a solver of constraints
 ///   small_step     a step, or a substep that solvers gave up, by small steps
 ///   energy         which attempts are rejected for the energy they gain, and the guard
-///   pins, pin_work fixed particles that are moved, and the work that they do
+///   pins, anchors  fixed particles and points of anchors that are moved
+///   pin_work       the work that they do
 #pragma once
 
 #include <weft/weft.h>

@@ -128,9 +128,9 @@ struct Changes {
 
 /// x -> about + R (x - about) + translation; R turns by |rotation| rad about the axis `rotation`.
 struct RigidMotion {
-  Vec3 translation;  ///< m
-  Vec3 rotation;     ///< rad
-  Vec3 about;        ///< m
+  Vec3 translation{};  ///< m
+  Vec3 rotation{};     ///< rad
+  Vec3 about{};        ///< m
 };
 
 /// One moving cloth: the state of a Model and the workspace of its solver. Particle numbers are
@@ -149,8 +149,8 @@ class WEFT_API Cloth {
   /// Takes over from `from`, a cloth of the same Model or of one that changes made of the same:
   /// that model, state, forces, gravity, wind, pending pin moves, and the solver's memory of its
   /// last steps. This cloth keeps its own settings, and refuses what they do not go with. If
-  /// solver, scheme, backend, iterations, tolerance or contact_tolerance differ, that memory is
-  /// dropped, and positions out of tolerance are projected as if newly written.
+  /// solver, scheme, backend, iterations or a tolerance (but for velocity_tolerance) differ, that
+  /// memory is dropped, and positions out of tolerance are projected as if newly written.
   Result<void> copy_state(const Cloth& from);
 
   /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
@@ -199,14 +199,18 @@ class WEFT_API Cloth {
   /// is not passed_through.
   Result<void> place_fixed(std::uint32_t particle, Vec3 position);
   /// Moves the points of all anchors, in the order of the description: they travel there in
-  /// straight lines during the next step. normals: one per anchor, of length 1; empty: as they are.
+  /// straight lines during the next step, as evenly as normals turn. The last move before a step
+  /// counts; write_positions lets them be there at once. normals: one per anchor, of length 1 where
+  /// there is a backstop; empty: as they are.
   Result<void> move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals = {});
 
-  /// Takes the whole cloth along by the share of a rigid motion, 0 to 1, without its feeling so:
-  /// positions, fixed particles, anchors, and what the solver remembers move and turn, velocities
-  /// turn and gain nothing. With share 1 this is a teleport. With share 1 - s before each step, s
+  /// Takes the whole cloth along by the share of a rigid motion (of its translation and its angle),
+  /// 0 to 1, at once and without its feeling so: positions, fixed particles, anchors, and what the
+  /// solver remembers move and turn, velocities turn and gain nothing. Gravity, forces and wind are
+  /// the world's, and stay. With share 1 this is a teleport. With share 1 - s before each step, s
   /// from 0 to 1, it scales by s the inertia that the cloth feels of a frame which moves so, a
-  /// character's root for example: then move_fixed what the frame carries to where it really is.
+  /// character's root for example: then move_fixed and move_anchors what the frame carries to where
+  /// it really is. (Velocities are relative to what carries, then.)
   Result<void> carry(const RigidMotion& motion, double share = 1);
 
   /// Changes what was described: all of it or, on an error and where memory runs out, nothing.

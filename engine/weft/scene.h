@@ -85,15 +85,18 @@ struct Air {
 ///     |x - centre| >= backstop_radius,
 ///         centre = point - (backstop_distance + backstop_radius) normal
 ///
-/// Both hold one particle alone and cost far less than a constraint. A max_distance of 0 attaches
-/// the particle to the point. Solver small_steps only.
+/// Both hold one particle alone and cost far less than a constraint: the particle is put within its
+/// limits, to Settings::contact_tolerance, and loses what of its velocity leads out of them as they
+/// move. That is a rope which becomes taut, and a floor without bounce and friction. A max_distance
+/// of 0 attaches the particle to the point; where that alone holds cloth, a fixed particle that is
+/// moved does so at far fewer substeps, if the cloth is woven. Solver small_steps only.
 struct Anchor {
   std::uint32_t particle = 0;    ///< one that is not fixed, in at most one anchor
-  Vec3 point;                    ///< m, where it begins
-  Vec3 normal;                   ///< of length 1, out of the backstop; used with one
+  Vec3 point{};                  ///< m, where it begins
+  Vec3 normal{};                 ///< of length 1 (to 1e-3), out of the backstop; used with one
   double max_distance = 0;       ///< m, at least 0; infinite: no limit
   double backstop_distance = 0;  ///< m, of the surface of the backstop behind the point; >= 0
-  double backstop_radius = 0;    ///< m, at least 0; 0: there is no backstop
+  double backstop_radius = 0;    ///< m; 0: there is no backstop; infinite: it is a plane
 };
 
 /// What is simulated. Lengths in m, masses in kg, times in s.

@@ -101,7 +101,7 @@ struct Settings {
   /// attempt (see Solver), which does one at least. The velocity loop may do as many of its own.
   /// Where a substep that is cut off would gain energy, its velocities are scaled down.
   int max_iterations = 1'000'000;
-  double contact_tolerance = 1e-4;   ///< m of penetration left; > 0
+  double contact_tolerance = 1e-4;   ///< m of penetration, and beyond an anchor's limits, left; > 0
   double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
   /// m/s, by which particles may come away from their true motion; 0: not asked for. Of small_steps
   /// alone, which automatic then chooses at any tolerance, and not with `substeps`, `iterations` or

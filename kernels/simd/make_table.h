@@ -1,6 +1,7 @@
 /// All vector kernels of one instruction set: that of the translation unit which includes this.
 #pragma once
 
+#include "kernels/simd/anchors.h"
 #include "kernels/simd/anticipate.h"
 #include "kernels/simd/bending.h"
 #include "kernels/simd/contacts.h"
@@ -110,6 +111,7 @@ constexpr Table make_table() {
           .measure_bending = measure_bending,
           .bend = bend,
           .bending_energy = bending_energy,
+          .hold_anchors = hold_anchors,
           .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),
           .strain_run = strain_run,
           .strain_singles = strain_singles,

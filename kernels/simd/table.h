@@ -311,6 +311,32 @@ struct Bending {
   float resolved = 0;                // 1/s^2: what is stiffer has a softness of less than 1 / this
 };
 
+/// Anchors (anchors.h) of kLanes particles that stand in a row of memory; those without one have an
+/// infinite `most`.
+struct alignas(64) AnchorBlock {
+  LaneVectors point;            // when the step begins, from the base of the particle
+  LaneVectors way;              // in the step
+  float most[kernels::kLanes];  // m
+  float far[kernels::kLanes];   // m^2: of a motion, beyond which its constraints are looked at
+  std::uint32_t place = 0;      // of the first
+  std::int32_t backstop = -1;   // its block of these, or none
+};
+struct alignas(64) BackstopBlock {
+  LaneVectors normal, turn;  // when the step begins, and in it; who has none: 0
+  float distance[kernels::kLanes], curvature[kernels::kLanes];
+};
+struct AnchorHold {
+  Flight flight{};
+  const AnchorBlock* blocks = nullptr;
+  const BackstopBlock* backstops = nullptr;
+  std::uint16_t* at_limit = nullptr;  // per block, a bit per lane
+  std::uint16_t* moved = nullptr;     // likewise: farther than `far`
+  bool woven = false;                 // in woven rows, else in quads
+  float rate = 0;                     // of SubstepWeights
+  float share = 0;                    // of the step that is over
+  float per_second = 0;               // 1 / its length
+};
+
 struct YarnRelaxation {
   float omega = 1;
   float compliance = 0;          // small_step_yarns.h
@@ -499,6 +525,7 @@ struct Table {
   /// J, of each block; stiffness: 1 / compliance per block and lane.
   void (*bending_energy)(const Bending&, const float* stiffness, double* energy, bool four,
                          std::size_t first, std::size_t last);
+  void (*hold_anchors)(const AnchorHold&, std::size_t first, std::size_t last);
   /// Scratch as above.
   void (*relax_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
                       const YarnRelaxation&);

@@ -40,6 +40,7 @@ RunReport report() {
   summary.mean_max_strain = 0.03125;
   summary.rms_strain = 0.015625;
   summary.max_penetration = 0.75;
+  summary.max_anchor_error = 0.5;
   summary.energy_start = -1.5;
   summary.energy_end = -2.5;
   summary.pin_work = 0.875;
@@ -54,6 +55,7 @@ RunReport report() {
   summary.model.constraints = 10;
   summary.model.compliant = 21;
   summary.model.bending_elements = 23;
+  summary.model.anchors = 31;
   summary.model.air_triangles = 29;
   summary.model.spheres = 17;
   return report;
@@ -62,7 +64,7 @@ RunReport report() {
 TEST_CASE("the JSON has every figure, per frame where its name says so") {
   const Json expected = Json::parse(R"({
     "scene": "somewhere", "particles": 16, "constraints": 10, "spheres": 17,
-    "springs": 21, "bending_elements": 23, "air_triangles": 29, "rejected": 15,
+    "springs": 21, "bending_elements": 23, "anchors": 31, "air_triangles": 29, "rejected": 15,
     "max_error": 0.25,
     "solver": "auto", "solver_used": "yarn", "scheme": "paper", "scheme_fallbacks": 8,
     "backend": "simd", "anticipate_products": false, "isa": "avx2", "threads": 3,
@@ -70,7 +72,7 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
     "tolerance": 0.0625, "iterations": 0, "status": "infeasible",
     "ms_per_frame": 250, "max_ms_per_frame": 500, "real_time_factor": 2,
     "max_strain": 0.125, "mean_max_strain": 0.03125, "rms_strain": 0.015625,
-    "max_penetration": 0.75, "max_contacts": 19,
+    "max_penetration": 0.75, "max_anchor_error": 0.5, "max_contacts": 19,
     "iterations_per_step": 5, "velocity_iterations_per_step": 3, "direction_updates_per_step": 9,
     "visits": 101, "corrections": 103, "ns_per_constraint_iteration": 3125000,
     "energy_start": -1.5, "energy_end": -2.5, "pin_work": 0.875, "energy_gain": 0.25,
@@ -94,7 +96,7 @@ TEST_CASE("the table has every figure too") {
   in_all.summary.scheme = Scheme::rattle;
   CHECK(to_table(in_all) ==
         "scene     somewhere: 16 particles, 10 constraints, 17 spheres\n"
-        "material  21 springs, 23 bending elements, 29 air triangles\n"
+        "material  21 springs, 23 bending elements, 31 anchors, 29 air triangles\n"
         "solver    auto (yarn), scheme rattle, backend simd, tolerance 6.25 %\n"
         "scheme    8 of 22 substeps left to scheme paper\n"
         "frames    4 of 0.5 s in 5.5 substeps each, status infeasible\n"
@@ -104,6 +106,7 @@ TEST_CASE("the table has every figure too") {
         "correct_velocities 281, report 344 ms at max error of the law 25 %\n"
         "strain    max 12.5 %, mean of the frames' max 3.12 %, rms 1.56 %\n"
         "contacts  0.75 m deepest penetration\n"
+        "anchors   0.5 m beyond their limits at most\n"
         "work      5 iterations and 9 direction updates per step, 101 visits, 103 corrections\n"
         "energy    -1.5 J to -2.5 J, 0.875 J by moved pins, largest gain 0.25 J, "
         "0.438 J lost\n"

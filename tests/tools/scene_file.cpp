@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "temporary_folder.h"
 #include "tools/scenes/scenes.h"
@@ -32,6 +33,15 @@ void check_same_material(const SceneDescription& a, const SceneDescription& b) {
   }
   CHECK(a.damping.stretch == b.damping.stretch);
   CHECK(a.damping.bending == b.damping.bending);
+  REQUIRE(a.anchors.size() == b.anchors.size());
+  for (std::size_t i = 0; i < a.anchors.size(); ++i) {
+    CHECK(a.anchors[i].particle == b.anchors[i].particle);
+    CHECK(same(a.anchors[i].point, b.anchors[i].point));
+    CHECK(same(a.anchors[i].normal, b.anchors[i].normal));
+    CHECK(a.anchors[i].max_distance == b.anchors[i].max_distance);
+    CHECK(a.anchors[i].backstop_distance == b.anchors[i].backstop_distance);
+    CHECK(a.anchors[i].backstop_radius == b.anchors[i].backstop_radius);
+  }
   CHECK(a.damping.motion == b.damping.motion);
   CHECK(a.air.triangles == b.air.triangles);
   CHECK(a.air.density == b.air.density);
@@ -100,6 +110,25 @@ TEST_CASE("a material survives writing and reading to the last bit") {
   const auto again = parse_scene(scene_text(scene));
   REQUIRE_MESSAGE(again, again.error());
   check_same(scene, again.value().description);
+}
+
+TEST_CASE("anchors survive writing and reading to the last bit; what is infinite is null") {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  scene.masses = {1, 1, 1};
+  scene.anchors = {{2, {1.0 / 3, 0, -1e-9}, {}, 1.0 / 7, 0, 0},
+                   {0, {}, {0, 0.6, 0.8}, kInfinity, 1e-3, kInfinity},
+                   {1, {1, 2, 3}, {1, 0, 0}, 0, 0, 0.3}};
+  const std::string text = scene_text(scene);
+  const auto again = parse_scene(text);
+  REQUIRE_MESSAGE(again, again.error());
+  check_same(scene, again.value().description);
+  CHECK(text.find("\"max_distance\":null") != std::string::npos);
+  CHECK(error_with(R"("anchors": [{"particle": 0}])") == "anchors[0]: the key 'point' is missing");
+  CHECK(error_with(R"("anchors": [{"particle": 0, "point": [0,0,0], "max_distance": "far"}])") ==
+        R"(anchors[0].max_distance: expected a number, not "far")");
+  CHECK(error_with(R"("anchors": [{"reach": 1}])") == "anchors[0]: unknown key 'reach'");
 }
 
 TEST_CASE("of a material everything but particles, weights and compliance may be left out") {

@@ -38,6 +38,8 @@ class LocalPasses {
  public:
   explicit LocalPasses(const Model& model);
 
+  /// Asks for all constraints of the slot, if it can move.
+  void look_at(std::uint32_t slot);
   /// Asks for the constraint, and for all that share a particle with it.
   void look_near(std::uint32_t constraint) {
     look_at(model_.constraints.a[constraint]);
@@ -58,8 +60,6 @@ class LocalPasses {
     std::uint32_t slot = 0;
     std::uint64_t bit = 0;  // 0: the slot has no mask
   };
-  /// All constraints of the slot, if it can move.
-  void look_at(std::uint32_t slot);
   void set(const Place& place) {
     if (place.bit == 0) return;
     if (next_[place.slot] == 0) waiting_.push_back(place.slot);

@@ -20,11 +20,25 @@ struct ReferenceSmallSteps::Points {
   double share;  // of what a local pass does, that the prediction takes: 1 - b
   std::vector<std::uint32_t>& touched;
   std::vector<double>& multipliers;
+  kernels::VectorsView v;
+  double rate;                     // by which it settles
+  const std::uint32_t* anchor_at;  // per slot, or null: anchors are left
+  const AnchorClock& anchors;
 
   Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
   void move(std::uint32_t slot, Vector by) const {
     x.add(slot, by);
     predicted.add(slot, share * by);
+    if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
+  }
+  bool hold(std::uint32_t slot, std::uint32_t anchor) const {
+    const Vector settled = v[slot] + rate * (x[slot] - predicted[slot]);
+    const reference::Held held = anchors.hold(anchor, x[slot], settled);
+    if (!held.is_at_limit) return false;
+    x.set(slot, held.x);
+    predicted.set(slot, held.x);
+    v.set(slot, held.v);
+    return true;
   }
   void push(std::uint32_t slot, Vector by) const {
     move(slot, by);
@@ -35,8 +49,17 @@ struct ReferenceSmallSteps::Points {
   void set_multiplier(std::uint32_t c, double to) const { multipliers[c] = to; }
 };
 
-ReferenceSmallSteps::Points ReferenceSmallSteps::points() {
-  return {x_.view(), predicted_.view(), before_.view(), 1 - formula_.part, touched_, multiplier_};
+ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_anchors) {
+  return {.x = x_.view(),
+          .predicted = predicted_.view(),
+          .start = before_.view(),
+          .share = 1 - formula_.part,
+          .touched = touched_,
+          .multipliers = multiplier_,
+          .v = v_.view(),
+          .rate = last_ > 0 ? 1 / last_ : 0,
+          .anchor_at = with_anchors && !at_limit_.empty() ? model_.anchors.at.data() : nullptr,
+          .anchors = anchors_};
 }
 
 LawStep ReferenceSmallSteps::law_step() const {
@@ -44,7 +67,7 @@ LawStep ReferenceSmallSteps::law_step() const {
 }
 
 double ReferenceSmallSteps::law_error() {
-  Points points = this->points();
+  Points points = this->points(false);
   return largest_violation(model_.constraints, points, law_step());
 }
 
@@ -53,7 +76,10 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
       layout_(model.small_steps()),
       settings_(settings),
       passes_(model),
-      pace_(layout_.bending.stiffest, model.damping.bending) {
+      pace_(layout_.bending.stiffest, model.damping.bending),
+      anchors_(model.anchors),
+      at_limit_(model.anchors.size()),
+      at_limit_before_(model.anchors.size()) {
   for (auto* vectors : {&x_, &before_, &predicted_, &v_, &v_before_, &acceleration_, &past_.v,
                         &past_.v_before, &past_.moved}) {
     vectors->resize(model.slots());
@@ -80,8 +106,12 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   departures_.begin();
   pace_.begin(plan);
   touched_.clear();
+  arrived_.clear();
   has_past_ = !plan.placed && h <= SubstepFormula::kLargestRatio * past_.h;
   if (!has_past_ && !plan.projects) past_.h = 0;
+  anchors_.begin(plan.anchors, h, plan.substeps);
+  at_limit_.assign(at_limit_.size(), false);
+  if (has_past_ && !plan.anchors.moving) at_limit_ = past_.at_limit;
   last_ = 0;
   const double push = h * decaying_share();
   for (std::size_t i = 0; i < model_.slots(); ++i) {
@@ -117,7 +147,7 @@ void ReferenceSmallSteps::measure_departure() {
 }
 
 void ReferenceSmallSteps::advance(Team&) {
-  stop_at_contacts();
+  end_motions();
   if (settings_.motion_tolerance > 0) measure_departure();
   is_begun_ = false;
   formula_ = std::exchange(next_formula_, formula_after(h_));
@@ -129,6 +159,9 @@ void ReferenceSmallSteps::advance(Team&) {
   }
   last_ = bh;
   bend();
+  anchors_.advance();
+  at_limit_before_.swap(at_limit_);
+  at_limit_.assign(at_limit_.size(), false);
 }
 
 SubstepFormula ReferenceSmallSteps::formula_after(double h_before) const {
@@ -173,14 +206,31 @@ double ReferenceSmallSteps::bending_energy(Team&) {
 
 void ReferenceSmallSteps::sweep(Team&) {
   out_.clear();
-  for_each_yarn(layout_.yarns, [&](std::span<const std::uint32_t> links) {
-    relax_chain(slots_of(model_.constraints, links), links);
-  });
+  for (std::size_t family = 0; family < layout_.yarns.families(); ++family) {
+    for_each_yarn(layout_.yarns, family, [&](std::span<const std::uint32_t> links) {
+      relax_chain(slots_of(model_.constraints, links), links);
+    });
+    hold_anchors();
+  }
   for (const std::uint32_t c : layout_.constraint) {
     if (c != kNoIndex) relax_edge(c);
   }
   for (const std::uint32_t c : layout_.serial) relax_edge(c);
+  if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors();
   is_begun_ = true;
+}
+
+void ReferenceSmallSteps::hold_anchors() {
+  const Points points = this->points(true);
+  const double strain = tuning::kLocalShare * settings_.tolerance;
+  for (std::uint32_t i = 0; i < at_limit_.size(); ++i) {
+    const std::uint32_t slot = model_.anchors.slot[i];
+    const Vector from = x_[slot];
+    if (!points.hold(slot, i)) continue;
+    if (!at_limit_before_[i] && !at_limit_[i]) arrived_.push_back(slot);
+    at_limit_[i] = true;
+    if (length(x_[slot] - from) > strain * layout_.anchors.shortest[i]) passes_.look_at(slot);
+  }
 }
 
 void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
@@ -223,14 +273,14 @@ void ReferenceSmallSteps::relax_edge(std::uint32_t c) {
 }
 
 void ReferenceSmallSteps::relax_spring(std::uint32_t c) {
-  Points points = this->points();
+  Points points = this->points(false);
   points.share = 0;
   const double tolerance = tuning::kLocalShare * settings_.tolerance;
   if (sweep_law(model_, points, law_step(), !is_begun_, omega_, tolerance, c)) out_.push_back(c);
 }
 
 LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
-  Points points = this->points();
+  Points points = this->points(true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
                            .omega = tuning::kOmega,
@@ -250,19 +300,28 @@ LocalWork ReferenceSmallSteps::repair_everywhere(const ContactStore& contacts,
   return run_passes(contacts, most_visits);
 }
 
-void ReferenceSmallSteps::stop_at_contacts() {
-  std::ranges::sort(touched_);
-  const auto rest = std::ranges::unique(touched_);
-  touched_.erase(rest.begin(), rest.end());
-  for (const std::uint32_t i : touched_) {
-    if (!is_free(i)) continue;
-    const Vector a = acceleration_[i], v = (1 / h_) * (x_[i] - before_[i]);
-    predicted_.set(i, x_[i]);
-    v_.set(i, v);
-    v_before_.set(i, v - h_ * decaying_share() * a);
-    before_.set(i, x_[i] - h_ * v + (0.5 * h_ * h_) * a);
-  }
-  touched_.clear();
+void ReferenceSmallSteps::end_motions() {
+  const auto for_each = [](std::vector<std::uint32_t>& slots, auto&& work) {
+    std::ranges::sort(slots);
+    const auto rest = std::ranges::unique(slots);
+    slots.erase(rest.begin(), rest.end());
+    for (const std::uint32_t slot : slots) work(slot);
+    slots.clear();
+  };
+  for_each(touched_, [&](std::uint32_t i) {
+    if (is_free(i)) lead_here_freely(i, (1 / h_) * (x_[i] - before_[i]));
+  });
+  for_each(arrived_, [&](std::uint32_t i) {
+    lead_here_freely(i, v_[i] + (1 / last_) * (x_[i] - predicted_[i]));
+  });
+}
+
+void ReferenceSmallSteps::lead_here_freely(std::size_t i, Vector v) {
+  const Vector a = acceleration_[i];
+  predicted_.set(i, x_[i]);
+  v_.set(i, v);
+  v_before_.set(i, v - h_ * decaying_share() * a);
+  before_.set(i, x_[i] - h_ * v + (0.5 * h_ * h_) * a);
 }
 
 void ReferenceSmallSteps::read_positions(kernels::VectorsView x, Team&) const {
@@ -272,7 +331,7 @@ void ReferenceSmallSteps::read_positions(kernels::VectorsView x, Team&) const {
 }
 
 void ReferenceSmallSteps::settle(Team&) {
-  stop_at_contacts();
+  end_motions();
   measure_departure();
   settle_velocities();
 }
@@ -290,6 +349,7 @@ void ReferenceSmallSteps::keep(Team&) {
   past_.h = h_;
   past_.v = v_;
   past_.v_before = v_before_;
+  past_.at_limit = at_limit_;
   for (std::size_t i = 0; i < model_.slots(); ++i) past_.moved.set(i, x_[i] - before_[i]);
 }
 
@@ -297,6 +357,7 @@ void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsVie
                                      Vector gravity) {
   const auto& other = static_cast<const ReferenceSmallSteps&>(from);
   past_.h = other.past_.h;
+  past_.at_limit = other.past_.at_limit;
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     const Past& its = other.past_;
     ParticlePast past{its.v[its_slot], its.v_before[its_slot], its.moved[its_slot]};
@@ -312,9 +373,15 @@ void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsVie
   });
 }
 
+void ReferenceSmallSteps::turn(const Turn& by) {
+  for (kernels::Vectors* v : {&past_.v, &past_.v_before, &past_.moved}) {
+    for (std::size_t i = 0; i < model_.slots(); ++i) v->set(i, by((*v)[i]));
+  }
+}
+
 std::size_t ReferenceSmallSteps::bytes() const {
-  return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + bytes_of(multiplier_) +
-         passes_.bytes();
+  return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + bytes_of(arrived_) +
+         bytes_of(multiplier_) + passes_.bytes();
 }
 
 std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,

@@ -24,6 +24,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   struct Past {
     double h = 0;  // of the last substep; 0: there was none
     kernels::Vectors v, v_before, moved;
+    std::vector<bool> at_limit;  // per anchor
   };
 
   ReferenceSmallSteps(const Model& model, const Settings& settings);
@@ -51,11 +52,12 @@ class ReferenceSmallSteps final : public SmallSteps {
   }
   void go_on_from(const SmallSteps& from, kernels::VectorsView v, kernels::Vector gravity) override;
   void forget_past() override { past_.h = 0; }
+  void turn(const Turn& by) override;
   std::size_t bytes() const override;
 
  private:
   struct Points;
-  Points points();
+  Points points(bool with_anchors);
   LawStep law_step() const;
   reference::Flight flight();
   bool is_free(std::size_t slot) const { return model_.inverse_mass[slot] > 0; }
@@ -74,13 +76,16 @@ class ReferenceSmallSteps final : public SmallSteps {
   void relax_edge(std::uint32_t constraint);
   void relax_spring(std::uint32_t constraint);
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
-  void stop_at_contacts();
+  void hold_anchors();
+  void end_motions();
+  void lead_here_freely(std::size_t slot, kernels::Vector v);
 
   const Model& model_;
   const SmallStepsLayout& layout_;
   const Settings settings_;
   LocalPasses passes_;
   BendingPace pace_;
+  AnchorClock anchors_;
   Past past_;
   reference::ChainSystem system_;
 
@@ -91,9 +96,10 @@ class ReferenceSmallSteps final : public SmallSteps {
   Departures departures_;
   kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_;
   std::vector<std::uint32_t> out_;  // constraints that a sweep found out of tolerance
-  std::vector<std::uint32_t> touched_;
-  std::vector<double> multiplier_;  // per constraint; with springs only
-  bool is_begun_ = false;           // the substep has been swept
+  std::vector<std::uint32_t> touched_, arrived_;
+  std::vector<bool> at_limit_, at_limit_before_;  // per anchor, in this substep and in the last
+  std::vector<double> multiplier_;                // per constraint; with springs only
+  bool is_begun_ = false;                         // the substep has been swept
   bool projects_ = false;
 };
 

@@ -39,6 +39,10 @@ struct SmallStepsSolver::Points {
   std::vector<std::uint32_t>& touched;
   const std::vector<std::uint32_t>& multiplier_place;
   float* multipliers;
+  float* v;
+  double rate;                     // by which it settles
+  const std::uint32_t* anchor_at;  // per slot, or null: anchors are left
+  const AnchorClock& anchors;
 
   double axis(const float* from, std::size_t a, std::size_t b) const {
     return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
@@ -69,6 +73,26 @@ struct SmallStepsSolver::Points {
       u[at] = moved;
       at += places.stride;
     }
+    if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
+  }
+  void hold(std::uint32_t slot, std::uint32_t anchor) const {
+    const std::size_t x = places.of(slot), y = x + places.stride, z = y + places.stride;
+    const auto place = [&](std::size_t at) {
+      return static_cast<double>(base[at]) + static_cast<double>(u[at]);
+    };
+    const auto settled = [&](std::size_t at) {
+      return static_cast<double>(v[at]) + rate * static_cast<double>(u[at] - predicted[at]);
+    };
+    const reference::Held held =
+        anchors.hold(anchor, {place(x), place(y), place(z)}, {settled(x), settled(y), settled(z)});
+    if (!held.is_at_limit) return;
+    const auto put = [&](std::size_t at, double position, double velocity) {
+      u[at] = predicted[at] = static_cast<float>(position - static_cast<double>(base[at]));
+      v[at] = static_cast<float>(velocity);
+    };
+    put(x, held.x.x, held.v.x);
+    put(y, held.x.y, held.v.y);
+    put(z, held.x.z, held.v.z);
   }
   void push(std::uint32_t slot, kernels::Vector by) const {
     move(slot, by);
@@ -76,12 +100,20 @@ struct SmallStepsSolver::Points {
   }
 };
 
-SmallStepsSolver::Points SmallStepsSolver::points(double share) {
-  return {layout_.places(),  base_.data(),
-          u_.data(),         predicted_.data(),
-          u_before_.data(),  static_cast<float>(share),
-          touched_,          layout_.multiplier_place,
-          multiplier_.data()};
+SmallStepsSolver::Points SmallStepsSolver::points(double share, bool with_anchors) {
+  return {.places = layout_.places(),
+          .base = base_.data(),
+          .u = u_.data(),
+          .predicted = predicted_.data(),
+          .u_start = u_before_.data(),
+          .share = static_cast<float>(share),
+          .touched = touched_,
+          .multiplier_place = layout_.multiplier_place,
+          .multipliers = multiplier_.data(),
+          .v = v_.data(),
+          .rate = static_cast<double>(weights_.last.rate),
+          .anchor_at = with_anchors && !anchors_.empty() ? model_.anchors.at.data() : nullptr,
+          .anchors = anchors_.clock()};
 }
 
 LawStep SmallStepsSolver::law_step() const {
@@ -89,7 +121,7 @@ LawStep SmallStepsSolver::law_step() const {
 }
 
 double SmallStepsSolver::law_error() {
-  Points points = this->points(0);
+  Points points = this->points(0, false);
   return largest_violation(model_.constraints, points, law_step());
 }
 
@@ -101,6 +133,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       table_(table),
       passes_(model),
       bending_(model, table),
+      anchors_(model, settings, table),
       spans_(layout_.blocks.size()),
       base_step_(layout_.yarns.rows()),
       edges_out_(layout_.blocks.size()),
@@ -111,6 +144,8 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
   }
   for (auto* array : {&past_.v, &past_.v_before, &past_.moved, &past_.base})
     array->resize(layout_.floats);
+  past_.at_limit = anchors_.at_limit();
+  arrived_.reserve(model.anchors.size());
   if (!layout_.springs.empty() || !layout_.multiplier_place.empty()) {
     multiplier_.resize(layout_.constraint.size() + layout_.serial.size());
   }
@@ -236,9 +271,13 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   departures_.begin();
   bending_.begin(plan);
   touched_.clear();
+  arrived_.clear();
   has_past_ = !plan.placed && plan.h <= SubstepFormula::kLargestRatio * past_.h;
   if (!has_past_ && !plan.projects) past_.h = 0;
   split(x, plan.substeps, team);
+  anchors_.begin(plan.anchors, plan.h, plan.substeps,
+                 has_past_ ? past_.at_limit : std::span<const std::uint16_t>{});
+  anchors_.measure_base(base_.data());
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());
   });
@@ -261,10 +300,11 @@ void SmallStepsSolver::renew_base(Team& team) {
     table_.renew_base(flight(), base_.data(), static_cast<float>(layout_.cell), first, last);
   });
   measure_base(team);
+  anchors_.measure_base(base_.data());
 }
 
 void SmallStepsSolver::advance(Team& team) {
-  stop_at_contacts();
+  end_motions();
   is_begun_ = false;
   if (since_renewal_++ == tuning::kRenewal) {  // never where the base is the past's
     since_renewal_ = 1;
@@ -287,6 +327,7 @@ void SmallStepsSolver::advance(Team& team) {
   weights_.last = {weights_.push, static_cast<float>(1 / (formula_.part * h_)),
                    static_cast<float>(formula_.slope)};
   bending_.bend(u_.data(), v_before_.data(), formula_.give(h_), team);
+  anchors_.advance();
 }
 
 SubstepFormula SmallStepsSolver::formula_after(double h_before) const {
@@ -326,7 +367,15 @@ void SmallStepsSolver::sweep(Team& team) {
     sweep_serial_springs();
   else
     sweep_serial();
+  if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors(team);
   is_begun_ = true;
+}
+
+void SmallStepsSolver::hold_anchors(Team& team) {
+  if (anchors_.empty()) return;
+  anchors_.hold(flight(), weights_.last.rate, team);
+  anchors_.report([&](std::uint32_t slot) { arrived_.push_back(slot); },
+                  [&](std::uint32_t slot) { passes_.look_at(slot); });
 }
 
 void SmallStepsSolver::sweep_yarns(Team& team) {
@@ -346,6 +395,7 @@ void SmallStepsSolver::sweep_yarns(Team& team) {
                            scratch_.data() + rows * share, relaxation);
       }
     });
+    hold_anchors(team);
   }
   moved_ = false;
 }
@@ -387,7 +437,7 @@ void SmallStepsSolver::sweep_edges(Team& team) {
 
 void SmallStepsSolver::sweep_serial() {
   const ConstraintStore& s = model_.constraints;
-  Points points = this->points(0);
+  Points points = this->points(0, false);
   for (const std::uint32_t c : layout_.serial) {
     const kernels::Vector d = points.difference(s.a[c], s.b[c]);
     const double square = s.rest_length[c] * s.rest_length[c], error = dot(d, d) - square;
@@ -401,7 +451,7 @@ void SmallStepsSolver::sweep_serial() {
 }
 
 void SmallStepsSolver::sweep_serial_springs() {
-  Points points = this->points(0);
+  Points points = this->points(0, false);
   const double tolerance = tuning::kLocalShare * settings_.tolerance;
   for (const std::uint32_t c : layout_.serial) {
     if (sweep_law(model_, points, law_step(), !is_begun_, omega_, tolerance, c))
@@ -435,7 +485,7 @@ void SmallStepsSolver::look_near_what_was_out() {
 }
 
 LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
-  Points points = this->points(1 - formula_.part);
+  Points points = this->points(1 - formula_.part, true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
                            .omega = tuning::kOmega,
@@ -455,27 +505,44 @@ LocalWork SmallStepsSolver::repair_everywhere(const ContactStore& contacts,
   return run_passes(contacts, most_visits);
 }
 
-/// A contact ends a motion. The velocity of a particle that was pushed is that of this substep
-/// alone, and its past a free flight that leads to it.
-void SmallStepsSolver::stop_at_contacts() {
-  std::ranges::sort(touched_);
-  const auto rest = std::ranges::unique(touched_);
-  touched_.erase(rest.begin(), rest.end());
-  for (const std::uint32_t slot : touched_) stop_at_contact(slot);
-  touched_.clear();
+/// A contact ends a motion, and so does a limit: the past of a particle is a free flight that leads
+/// to it then.
+void SmallStepsSolver::end_motions() {
+  const auto for_each = [](std::vector<std::uint32_t>& slots, auto&& work) {
+    std::ranges::sort(slots);
+    const auto rest = std::ranges::unique(slots);
+    slots.erase(rest.begin(), rest.end());
+    for (const std::uint32_t slot : slots) work(slot);
+    slots.clear();
+  };
+  for_each(touched_, [&](std::uint32_t slot) { stop_at_contact(slot); });
+  for_each(arrived_, [&](std::uint32_t slot) { begin_at_limit(slot); });
 }
 
+/// The velocity of a particle that was pushed is that of this substep alone.
 void SmallStepsSolver::stop_at_contact(std::uint32_t slot) {
   if (model_.inverse_mass[slot] == 0) return;
-  const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
   std::size_t at = layout_.places().of(slot);
   for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
-    const float a = acceleration_[at], v = (u_[at] - u_before_[at]) / h;
-    predicted_[at] = u_[at];
-    v_[at] = v;
-    v_before_[at] = v - push * a;
-    u_before_[at] = u_[at] - h * v + 0.5f * h * h * a;
+    v_[at] = (u_[at] - u_before_[at]) / static_cast<float>(h_);
+    lead_here_freely(at);
   }
+}
+
+void SmallStepsSolver::begin_at_limit(std::uint32_t slot) {
+  std::size_t at = layout_.places().of(slot);
+  for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
+    v_[at] += weights_.last.rate * (u_[at] - predicted_[at]);
+    lead_here_freely(at);
+  }
+}
+
+void SmallStepsSolver::lead_here_freely(std::size_t at) {
+  const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
+  const float a = acceleration_[at], v = v_[at];
+  predicted_[at] = u_[at];
+  v_before_[at] = v - push * a;
+  u_before_[at] = u_[at] - h * v + 0.5f * h * h * a;
 }
 
 double SmallStepsSolver::bending_energy(Team& team) {
@@ -483,7 +550,7 @@ double SmallStepsSolver::bending_energy(Team& team) {
 }
 
 void SmallStepsSolver::settle(Team& team) {
-  stop_at_contacts();
+  end_motions();
   settle_velocities(true, team);
 }
 
@@ -513,6 +580,7 @@ void SmallStepsSolver::read_velocities(kernels::VectorsView v, Team& team) const
 void SmallStepsSolver::keep(Team& team) {
   past_.h = h_;
   past_.since_renewal = since_renewal_;
+  past_.at_limit = anchors_.at_limit();
   is_new_ = false;
   const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -538,6 +606,7 @@ void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v
   const SmallStepsPast& its = other.past_;
   const auto& its_base = other.is_new_ ? its.base : other.base_;
   past_.h = its.h;
+  past_.at_limit = its.at_limit;
   past_.since_renewal = layout_.cell == other.layout_.cell ? its.since_renewal : tuning::kRenewal;
   const YarnPlaces &places = layout_.places(), &its_places = other.layout_.places();
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
@@ -573,10 +642,27 @@ void SmallStepsSolver::write_past(std::uint32_t slot, const ParticlePast& past) 
   write(past_.moved, past.moved);
 }
 
+void SmallStepsSolver::turn(const Turn& by) {
+  const YarnPlaces& places = layout_.places();
+  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
+    if (!model_.is_particle(slot)) continue;
+    const std::size_t x = places.of(slot), y = x + places.stride, z = y + places.stride;
+    for (auto* v : {&past_.v, &past_.v_before, &past_.moved}) {
+      float* const of = v->data();
+      const kernels::Vector to = by({double{of[x]}, double{of[y]}, double{of[z]}});
+      of[x] = static_cast<float>(to.x);
+      of[y] = static_cast<float>(to.y);
+      of[z] = static_cast<float>(to.z);
+    }
+  }
+  past_.since_renewal = tuning::kRenewal;
+}
+
 std::size_t SmallStepsSolver::bytes() const {
   return 11 * bytes_of(u_) + bytes_of(departure_) + bytes_of(spans_) + bytes_of(base_step_) +
          bytes_of(scratch_) + bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) +
-         bytes_of(multiplier_) + passes_.bytes() + bending_.bytes();
+         bytes_of(arrived_) + bytes_of(multiplier_) + passes_.bytes() + bending_.bytes() +
+         anchors_.bytes();
 }
 
 }  // namespace weft

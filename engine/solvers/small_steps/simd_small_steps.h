@@ -15,6 +15,7 @@
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/local_passes.h"
+#include "engine/solvers/small_steps/simd_anchors.h"
 #include "engine/solvers/small_steps/simd_bending.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
@@ -28,6 +29,7 @@ struct SmallStepsPast {
   int since_renewal = 0;  // substeps with the present base
   kernels::AlignedVector<float> v, v_before, moved;
   kernels::AlignedVector<float> base;  // of a frame that is kept
+  SimdAnchors::AtLimit at_limit;
 };
 
 class SmallStepsSolver final : public SmallSteps {
@@ -62,12 +64,13 @@ class SmallStepsSolver final : public SmallSteps {
   void take_past(const SmallSteps& from) override;
   void go_on_from(const SmallSteps& from, kernels::VectorsView v, kernels::Vector gravity) override;
   void forget_past() override { past_.h = 0; }
+  void turn(const Turn& by) override;
 
   std::size_t bytes() const override;
 
  private:
   struct Points;
-  Points points(double share);
+  Points points(double share, bool with_anchors);
   LawStep law_step() const;
   simd::Flight flight();
   simd::Yarns yarns();
@@ -89,8 +92,11 @@ class SmallStepsSolver final : public SmallSteps {
   void sweep_batch(const EdgeBatch& batch, std::uint32_t first, std::uint32_t last);
   void look_near_what_was_out();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
-  void stop_at_contacts();
+  void hold_anchors(Team& team);
+  void end_motions();
   void stop_at_contact(std::uint32_t slot);
+  void begin_at_limit(std::uint32_t slot);
+  void lead_here_freely(std::size_t at);
   template <class Work>
   void for_floats(Team& team, Work&& work);
   template <class Work>
@@ -102,6 +108,7 @@ class SmallStepsSolver final : public SmallSteps {
   const simd::Table& table_;
   LocalPasses passes_;
   SimdBending bending_;
+  SimdAnchors anchors_;
   SmallStepsPast past_;
 
   bool has_past_ = false;  // past_ is that of the present frame
@@ -124,6 +131,7 @@ class SmallStepsSolver final : public SmallSteps {
   std::vector<std::uint32_t> yarns_out_;                   // per row of yarns, likewise
   std::vector<std::uint32_t> touched_;                     // slots that contacts have pushed
   std::vector<float> departure_;                           // the largest, per part of the floats
+  std::vector<std::uint32_t> arrived_;                     // slots that came to an anchor's limit
   kernels::AlignedVector<float> multiplier_;               // in places of the layout
   bool is_begun_ = false;                                  // the substep has been swept
   bool projects_ = false;

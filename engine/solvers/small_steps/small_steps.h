@@ -11,7 +11,9 @@
 
 #include "engine/contacts/contacts.h"
 #include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/anchor_travel.h"
 #include "engine/solvers/small_steps/local_passes.h"
+#include "engine/turn.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -87,6 +89,7 @@ struct FramePlan {
   double omega = 1;       // of a sweep
   bool placed = false;    // positions are not where the last step ended: nothing is known of a past
   bool projects = false;  // no time passes: springs are left as they are, and the past is kept
+  AnchorTravel anchors{};
 };
 
 class SmallSteps {
@@ -132,6 +135,8 @@ class SmallSteps {
   virtual void go_on_from(const SmallSteps& from, kernels::VectorsView v,
                           kernels::Vector gravity) = 0;
   virtual void forget_past() = 0;
+  /// The past happened in other directions. Positions are new ones.
+  virtual void turn(const Turn& by) = 0;
   virtual std::size_t bytes() const = 0;
 };
 

@@ -132,6 +132,7 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   if (store.has_springs()) add_springs(model, layout);
   layout.cell = woven ? layout.yarns.cell : cell_of(store.rest_length);
   layout.floats = kernels::round_up(layout.yarns.places.floats, std::size_t{kLanes});
+  layout.anchors = make_anchor_layout(model, layout.places());
   layout.load = find_load(model, layout);
   return layout;
 }
@@ -151,7 +152,7 @@ std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
 std::size_t SmallStepsLayout::bytes() const {
   return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(used) +
          bytes_of(springs) + bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) +
-         bytes_of(serial) + bending.bytes() + bytes_of(load.spans);
+         bytes_of(serial) + bending.bytes() + anchors.bytes() + bytes_of(load.spans);
 }
 
 }  // namespace weft

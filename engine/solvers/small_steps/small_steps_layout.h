@@ -6,6 +6,9 @@
 ///                 yarns are all there is, else in quads
 ///   edge blocks   kLanes constraints of one colour each: tile by tile, then between the tiles
 ///   serial        constraints at hubs, one after the other
+///   anchors       after each family and in the end, since what one family did to an anchored
+///   particle
+///                 must not move the other's
 ///
 /// Either all distance constraints that are not at hubs belong to yarns, or none does: if the
 /// chains that run straight on through their particles are short, as in sheets of irregular
@@ -16,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/solvers/small_steps/anchor_layout.h"
 #include "engine/solvers/small_steps/bending_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/solvers/yarn/yarn_layout.h"
@@ -50,6 +54,7 @@ struct SmallStepsLayout {
   std::uint32_t between_tiles = 0;  // first batch
   std::vector<std::uint32_t> serial;
   BendingLayout bending;
+  AnchorLayout anchors;
 
   double cell = 0;         // that positions are split by
   std::size_t floats = 0;  // of an array of particles
@@ -57,6 +62,7 @@ struct SmallStepsLayout {
 
   const YarnPlaces& places() const { return yarns.places; }
   bool has_yarns() const { return !yarns.blocks.empty(); }
+  bool has_single_constraints() const { return !blocks.empty() || !serial.empty(); }
   std::size_t bytes() const;
 };
 
@@ -66,11 +72,12 @@ SmallStepsLayout make_small_steps_layout(const Model& model);
 std::vector<std::uint32_t> slots_of(const ConstraintStore& store,
                                     std::span<const std::uint32_t> links);
 
-/// work(constraints of a yarn, from one end to the other)
+/// work(constraints of a yarn, from one end to the other), of a family
 template <class Work>
-void for_each_yarn(const YarnLayout& yarns, Work&& work) {
+void for_each_yarn(const YarnLayout& yarns, std::size_t family, Work&& work) {
   std::vector<std::uint32_t> links;
-  for (const simd::YarnBlock& block : yarns.blocks) {
+  for (std::size_t i = yarns.family_begin[family]; i < yarns.family_begin[family + 1]; ++i) {
+    const simd::YarnBlock& block = yarns.blocks[i];
     for (std::size_t lane = 0; lane < block.lanes; ++lane) {
       links.clear();
       for (std::size_t row = block.first; row < block.last; ++row) {
@@ -80,6 +87,13 @@ void for_each_yarn(const YarnLayout& yarns, Work&& work) {
       work(links);
     }
   }
+}
+
+/// Of all families.
+template <class Work>
+void for_each_yarn(const YarnLayout& yarns, Work&& work) {
+  for (std::size_t family = 0; family < yarns.families(); ++family)
+    for_each_yarn(yarns, family, work);
 }
 
 }  // namespace weft

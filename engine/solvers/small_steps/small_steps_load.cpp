@@ -15,25 +15,43 @@ namespace weft {
 
 namespace {
 
-/// The particles of each block, and the blocks of each particle.
+/// The particles of each block, and the blocks of each particle. Behind those of constraints each
+/// anchored particle that holds is a block that is at a pin.
 struct Blocks {
   Lists slots_of, at;
+  std::size_t of_constraints = 0;
 };
 
-/// Of the yarn, between each fixed particle and the next.
-void add_spans(const Model& model, std::span<const std::uint32_t> links, SmallStepsLoad& load) {
+/// Anchored particles that cloth may hang on: a limit that is wider than another by more than a
+/// constraint is long is slack where that holds. A pin is a limit of 0.
+std::vector<std::uint32_t> anchors_that_hold(const Model& model, double mean_length) {
+  const AnchorStore& anchors = model.anchors;
+  double least = model.holds.empty() ? std::numeric_limits<double>::infinity() : 0;
+  for (const reference::AnchorLimits& limits : anchors.limits) least = std::min(least, limits.most);
+  std::vector<std::uint32_t> slots;
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    if (anchors.limits[i].most <= least + mean_length && std::isfinite(anchors.limits[i].most))
+      slots.push_back(anchors.slot[i]);
+  }
+  return slots;
+}
+
+/// Of the yarn, between each particle that holds and the next.
+void add_spans(const Model& model, const std::vector<bool>& holds,
+               std::span<const std::uint32_t> links, SmallStepsLoad& load) {
   const std::vector<std::uint32_t> slots = slots_of(model.constraints, links);
   SmallStepsLoad::Span span{kNoIndex, kNoIndex, 0};
   for (std::size_t k = 0; k < slots.size(); ++k) {
     if (k > 0) span.length += model.constraints.rest_length[links[k - 1]];
-    if (model.inverse_mass[slots[k]] > 0) continue;
+    if (!holds[slots[k]]) continue;
     span.last_slot = slots[k];
     if (span.first_slot != kNoIndex) load.spans.push_back(span);
     span = {slots[k], kNoIndex, 0};
   }
 }
 
-Blocks find_blocks(const Model& model, const SmallStepsLayout& layout) {
+Blocks find_blocks(const Model& model, const SmallStepsLayout& layout,
+                   std::span<const std::uint32_t> anchored) {
   Blocks blocks;
   const ConstraintStore& s = model.constraints;
   const auto add = [&](std::uint32_t c) {
@@ -44,6 +62,8 @@ Blocks find_blocks(const Model& model, const SmallStepsLayout& layout) {
   });
   std::ranges::for_each(layout.constraint, add);
   std::ranges::for_each(layout.serial, add);
+  blocks.of_constraints = blocks.slots_of.size();
+  for (const std::uint32_t slot : anchored) blocks.slots_of.push_back(std::span(&slot, 1));
   blocks.at = make_lists(model.slots(), [&](auto&& add_at) {
     for (std::uint32_t i = 0; i < blocks.slots_of.size(); ++i) {
       for (const std::uint32_t slot : blocks.slots_of[i]) add_at(slot, i);
@@ -80,6 +100,7 @@ class Levels {
  private:
   bool is_free(std::uint32_t slot) const { return model_.inverse_mass[slot] > 0; }
   bool is_pinned(std::uint32_t block) const {
+    if (block >= blocks_.of_constraints) return true;
     return !std::ranges::all_of(blocks_.slots_of[block],
                                 [&](std::uint32_t slot) { return is_free(slot); });
   }
@@ -143,9 +164,13 @@ Way longest_way(const Model& model, std::span<const std::uint32_t> from) {
 /// From where the cloth is held to what is farthest from there. Where no pin holds it, it may come
 /// to lie on a sphere by its middle: half of the way across, which two searches find (of several
 /// pieces, across the one of the first constraint).
-Way way_that_hangs(const Model& model) {
-  if (!model.holds.empty() || model.constraints.size() == 0 || !model.has_contacts())
-    return longest_way(model, model.pins);
+Way way_that_hangs(const Model& model, std::span<const std::uint32_t> anchored) {
+  const bool is_held = !model.holds.empty() || !anchored.empty();
+  if (is_held || model.constraints.size() == 0 || !model.has_contacts()) {
+    std::vector<std::uint32_t> from = model.pins;
+    from.insert(from.end(), anchored.begin(), anchored.end());
+    return longest_way(model, from);
+  }
   const Way out = longest_way(model, std::span(model.constraints.a).first(1));
   const Way across = longest_way(model, std::span(&out.end, 1));
   return {across.constraints / 2, across.length / 2};
@@ -155,16 +180,22 @@ Way way_that_hangs(const Model& model) {
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;
-  const Blocks blocks = find_blocks(model, layout);
-  const Way way = way_that_hangs(model);
+  for (const double rest : model.constraints.rest_length) load.mean_length += rest;
+  load.mean_length /= static_cast<double>(std::max<std::size_t>(1, model.constraints.size()));
+  const std::vector<std::uint32_t> anchored = anchors_that_hold(model, load.mean_length);
+  const Blocks blocks = find_blocks(model, layout, anchored);
+  const Way way = way_that_hangs(model, anchored);
   load.particles = Levels(model, blocks).carried();
   const bool is_by_ways = !layout.blocks.empty() || model.holds.empty();
   if (is_by_ways) load.particles = std::max(load.particles, way.constraints - 1);
   load.reach = way.length;
-  for (const double rest : model.constraints.rest_length) load.mean_length += rest;
-  load.mean_length /= static_cast<double>(std::max<std::size_t>(1, model.constraints.size()));
-  for_each_yarn(layout.yarns,
-                [&](std::span<const std::uint32_t> links) { add_spans(model, links, load); });
+  std::vector<bool> holds(model.slots());
+  for (const auto* slots : {&model.pins, &anchored}) {
+    for (const std::uint32_t slot : *slots) holds[slot] = true;
+  }
+  for_each_yarn(layout.yarns, [&](std::span<const std::uint32_t> links) {
+    add_spans(model, holds, links, load);
+  });
   return load;
 }
 

@@ -304,6 +304,31 @@ TEST_CASE("what a solver does not know no change brings in") {
   CHECK(cloth.change({.fix = {9}}));  // it was not
 }
 
+TEST_CASE("anchors are moved all at once, to where they can be") {
+  SceneDescription scene = scene_of("hang", 4);
+  scene.anchors = {{9, {}, {0, 1, 0}, 0.5, 0, 1}, {10, {}, {}, 0.5, 0, 0}};
+  Cloth cloth = cloth_of(scene, {});
+  const std::vector<Vec3> two{{1, 2, 3}, {4, 5, 6}}, up{{0, 1, 0}, {0, 0, 0}};
+  Cloth untouched = cloth.clone();
+  const auto check = [&](std::vector<Vec3> points, const std::vector<Vec3>& normals,
+                         std::initializer_list<const char*> parts) {
+    const auto moved = cloth.move_anchors(points, normals);
+    REQUIRE_FALSE(moved);
+    check_message(moved.error(), parts);
+  };
+  check({{1, 2, 3}}, {}, {"points", "2", "1"});
+  check(two, {{0, 1, 0}}, {"normals", "2", "1"});
+  check({{1, 2, 3}, {4, kNan, 6}}, up, {"points[1]", "nan"});
+  check(two, {{0, 1, 0}, {0, kInfinity, 0}}, {"normals[1]", "inf"});
+  check(two, {{0, 1.1, 0}, {0, 0, 0}}, {"normals[0]", "length 1", "1.1"});
+  run(cloth, 0.01, 2);
+  run(untouched, 0.01, 2);
+  CHECK(cloth.state_hash() == untouched.state_hash());
+  CHECK(cloth.move_anchors(two, up));
+  CHECK(cloth.move_anchors(two));
+  check_refusal([](Cloth& c) { return c.move_anchors(std::vector<Vec3>(1)); }, {"points", "0"});
+}
+
 TEST_CASE("reads into a span of the wrong size copy nothing") {
   const Backend backend = each_backend();
   Cloth cloth = cloth_of(scene_of("hang", 4), on(backend));

@@ -25,6 +25,8 @@ SceneDescription full_scene() {
   scene.bending.push_back({{0, 1, 2, kNoIndex}, {1, -2, 1, 0}, 0, 1});
   scene.damping = {0.01, 0.01, 0.1};
   scene.air = {{{0, 1, 4}}, 1.2, 1, 0.5, {1, 0, 0}};
+  for (const std::uint32_t i : {7u, 9u})
+    scene.anchors.push_back({i, scene.positions[i], {0, 1, 0}, 0.1, 0.01, 0.2});
   return scene;
 }
 
@@ -187,6 +189,40 @@ TEST_CASE("a material that is no material is refused by name, index and value") 
   check_refused([](auto& s) { s.air.lift = -1; }, {"air.lift", "(-1)"});
   check_refused([](auto& s) { s.air.triangles.clear(); }, {"air.drag", "air.triangles", "(1)"});
   check_refused([](auto& s) { s.air.wind.y = kInfinity; }, {"air.wind", "inf"});
+}
+
+TEST_CASE("anchors hold one free particle each, within limits that can be") {
+  check_refused([](auto& s) { s.anchors[1].particle = 17; }, {"anchors[1].particle", "(17)"});
+  check_refused([](auto& s) { s.anchors[1].particle = 7; },
+                {"anchors[1].particle", "already", "(7)"});
+  check_refused([](auto& s) { s.anchors[1].particle = 2; },
+                {"anchors[1].particle", "fixed", "(2)"});
+  check_refused([](auto& s) { s.anchors[0].point.y = kNan; }, {"anchors[0].point", "nan"});
+  check_refused([](auto& s) { s.anchors[0].max_distance = -0.5; },
+                {"anchors[0].max_distance", "(-0.5)"});
+  check_refused([](auto& s) { s.anchors[0].max_distance = kNan; },
+                {"anchors[0].max_distance", "nan"});
+  check_refused([](auto& s) { s.anchors[0].backstop_distance = -1; },
+                {"anchors[0].backstop_distance", "(-1)"});
+  check_refused([](auto& s) { s.anchors[0].backstop_distance = kInfinity; },
+                {"anchors[0].backstop_distance", "inf"});
+  check_refused([](auto& s) { s.anchors[0].backstop_radius = -1; },
+                {"anchors[0].backstop_radius", "(-1)"});
+  check_refused([](auto& s) { s.anchors[0].backstop_radius = 1e-200; },
+                {"anchors[0].backstop_radius", "1e-200"});
+  check_refused(
+      [](auto& s) {
+        s.anchors[0].normal = {0, 1.01, 0};
+      },
+      {"anchors[0].normal", "length 1", "1.01"});
+  check_refused([](auto& s) { s.anchors[0].normal = {}; }, {"anchors[0].normal", "length 1"});
+  check_refused([](auto& s) { s.anchors[0].normal.z = kNan; }, {"anchors[0].normal", "nan"});
+  SceneDescription scene = full_scene();
+  scene.anchors[0].normal = {0, 1.0009, 0};
+  scene.anchors[0].backstop_radius = scene.anchors[0].max_distance = kInfinity;
+  scene.anchors[1].normal = {};
+  scene.anchors[1].backstop_radius = 0;
+  CHECK(build_model(scene));
 }
 
 }  // namespace

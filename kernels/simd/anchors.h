@@ -1,0 +1,175 @@
+/// Anchors in lanes: reference::hold (kernels/reference/anchors.h), which has the formulas.
+///
+/// A block is kLanes particles that stand in a row of memory, in quads or in a woven row; those
+/// without an anchor have no limit. So nothing is gathered, and blocks in which nobody is at its
+/// limit, most of them, are read and left.
+#pragma once
+
+#include "kernels/simd/quads.h"
+
+namespace weft::simd {
+inline namespace WEFT_LANES {
+namespace {
+
+/// kFloats particles from a place.
+struct InQuads {
+  [[gnu::always_inline]] FloatVector get(const float* from, std::size_t place,
+                                         std::uint32_t lane) const {
+    return QuadsInRow().get(from + place + 4 * lane);
+  }
+  [[gnu::always_inline]] void put(float* to, std::size_t place, std::uint32_t lane,
+                                  const FloatVector& v) const {
+    QuadsInRow().put(to + place + 4 * lane, v);
+  }
+};
+struct InWovenRow {
+  [[gnu::always_inline]] FloatVector get(const float* from, std::size_t place,
+                                         std::uint32_t lane) const {
+    const float* x = from + place + lane;
+    return {load(x), load(x + kernels::kLanes), load(x + 2 * kernels::kLanes)};
+  }
+  [[gnu::always_inline]] void put(float* to, std::size_t place, std::uint32_t lane,
+                                  const FloatVector& v) const {
+    float* x = to + place + lane;
+    v.x.store_unaligned(x);
+    v.y.store_unaligned(x + kernels::kLanes);
+    v.z.store_unaligned(x + 2 * kernels::kLanes);
+  }
+};
+
+[[gnu::always_inline]] inline FloatVector select(FloatMask mask, const FloatVector& a,
+                                                 const FloatVector& b) {
+  return {xsimd::select(mask, a.x, b.x), xsimd::select(mask, a.y, b.y),
+          xsimd::select(mask, a.z, b.z)};
+}
+[[gnu::always_inline]] inline Floats tiny() { return Floats(1e-18f); }
+[[gnu::always_inline]] inline Floats over_length(const FloatVector& v) {
+  return Floats(1.f) / xsimd::max(xsimd::sqrt(dot(v, v)), tiny());
+}
+/// What leads out along the unit vector is taken.
+[[gnu::always_inline]] inline FloatVector without(const FloatVector& v, Floats outwards,
+                                                  const FloatVector& unit) {
+  return fused(Floats(0.f) - xsimd::max(outwards, Floats(0.f)), unit, v);
+}
+
+/// The particles of a block and their anchors in the present substep.
+struct HeldLanes {
+  FloatVector x, v;           // where they are, and their settled velocities
+  FloatVector point, motion;  // and its velocity
+  Floats most;
+  FloatMask at_limit;
+};
+
+[[gnu::always_inline]] inline void hold_in_ball(HeldLanes& p, const FloatVector& y, FloatMask out) {
+  FloatVector unit = over_length(y) * y;
+  p.x = select(out, fused(p.most, unit, p.point), p.x);
+  FloatVector on = without(p.v, dot(unit, p.v - p.motion), unit);
+  on = select(p.most > Floats(0.f), on, p.motion);
+  p.v = select(out, on, p.v);
+}
+
+/// A backstop as particles at x see it.
+struct BackstopLanes {
+  FloatVector normal;
+  Floats distance, curvature;
+  FloatVector w, e;
+  Floats g;
+
+  [[gnu::always_inline]] BackstopLanes(const BackstopBlock& b, std::uint32_t lane, Floats share,
+                                       const FloatVector& point, const FloatVector& x) {
+    normal = fused(share, load(b.turn, lane), load(b.normal, lane));
+    normal = over_length(normal) * normal;
+    distance = load(b.distance + lane);
+    curvature = load(b.curvature + lane);
+    w = fused(distance, normal, x - point);
+    e = fused(curvature, w, normal);
+    g = fused(Floats(0.5f) * curvature, dot(w, w), dot(normal, w));
+  }
+};
+
+[[gnu::always_inline]] inline void push_out(HeldLanes& p, const BackstopLanes& b,
+                                            const FloatVector& turning, FloatMask under) {
+  const Floats none(0.f), one(1.f), near(1e-6f);
+  const Floats size = xsimd::sqrt(xsimd::max(none, fused(Floats(2.f) * b.curvature, b.g, one)));
+  const Floats over_size = one / xsimd::max(size, near);
+  FloatVector unit = select(size > near, over_size * b.e, b.normal);
+  FloatVector surface = fused(none - b.distance, turning, p.motion);
+  const Floats inwards = dot(unit, surface - p.v) - dot(b.w, turning) * over_size;
+  const Floats depth = Floats(-2.f) * b.g / (one + size);
+  p.x = select(under, fused(depth, unit, p.x), p.x);
+  p.v = select(under, fused(xsimd::max(inwards, none), unit, p.v), p.v);
+}
+
+/// Lanes that the backstop has pushed out of the ball.
+[[gnu::always_inline]] inline void put_onto_rim(HeldLanes& p, const BackstopLanes& b,
+                                                FloatMask beyond) {
+  const Floats none(0.f), one(1.f), k = b.curvature, d = b.distance;
+  const Floats square = p.most * p.most;
+  const Floats z = Floats(0.5f) * k * fused_from(p.most, p.most, d * d) / fused(k, d, one);
+  const Floats radius = xsimd::sqrt(xsimd::max(none, fused_from(z - d, z - d, square)));
+  FloatVector w = fused(d, b.normal, p.x - p.point);
+  FloatVector across = fused(none - dot(w, b.normal), b.normal, w);
+  FloatVector rim = fused(z - d, b.normal, p.point);
+  rim = fused(radius * over_length(across), across, rim);
+  p.x = select(beyond, rim, p.x);
+}
+
+[[gnu::always_inline]] inline void hold_behind(HeldLanes& p, const BackstopBlock& block,
+                                               const AnchorHold& h, std::uint32_t lane) {
+  const BackstopLanes b(block, lane, Floats(h.share), p.point, p.x);
+  const FloatMask under = b.g < Floats(0.f);
+  if (bits(under) == 0) return;
+  p.at_limit = p.at_limit || under;
+  push_out(p, b, Floats(h.per_second) * load(block.turn, lane), under);
+  FloatVector y = p.x - p.point;
+  const Floats square = p.most * p.most, rounding(1 + 2e-6f);
+  const FloatMask beyond = under && (dot(y, y) > rounding * square);
+  if (bits(beyond) != 0) put_onto_rim(p, b, beyond);
+}
+
+template <class At>
+[[gnu::always_inline]] inline void hold_block(const AnchorHold& h, std::size_t i, At at) {
+  const AnchorBlock& block = h.blocks[i];
+  const BackstopBlock* backstop = block.backstop < 0 ? nullptr : h.backstops + block.backstop;
+  const Flight& f = h.flight;
+  std::uint32_t on = 0, moved = 0;
+  for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    HeldLanes p;
+    p.x = at.get(f.u, block.place, lane);
+    p.point = fused(Floats(h.share), load(block.way, lane), load(block.point, lane));
+    p.most = load(block.most + lane);
+    FloatVector from = p.x, y = p.x - p.point;
+    const FloatMask out = dot(y, y) >= p.most * p.most;
+    if (backstop == nullptr && bits(out) == 0) continue;
+    FloatVector predicted = at.get(f.predicted, block.place, lane);
+    FloatVector v = at.get(f.v, block.place, lane);
+    p.v = fused(Floats(h.rate), p.x - predicted, v);
+    p.motion = Floats(h.per_second) * load(block.way, lane);
+    p.at_limit = out;
+    hold_in_ball(p, y, out);
+    if (backstop != nullptr) hold_behind(p, *backstop, h, lane);
+    if (bits(p.at_limit) == 0) continue;
+    at.put(f.u, block.place, lane, p.x);
+    at.put(f.predicted, block.place, lane, select(p.at_limit, p.x, predicted));
+    at.put(f.v, block.place, lane, select(p.at_limit, p.v, v));
+    FloatVector by = p.x - from;
+    on |= bits(p.at_limit) << lane;
+    moved |= bits(dot(by, by) > load(block.far + lane)) << lane;
+  }
+  h.at_limit[i] = static_cast<std::uint16_t>(on);
+  h.moved[i] = static_cast<std::uint16_t>(moved);
+}
+
+void hold_anchors(const AnchorHold& hold, std::size_t first, std::size_t last) {
+  const AnchorHold h = hold;
+  for (std::size_t i = first; i < last; ++i) {
+    if (h.woven)
+      hold_block(h, i, InWovenRow{});
+    else
+      hold_block(h, i, InQuads{});
+  }
+}
+
+}  // namespace
+}  // namespace WEFT_LANES
+}  // namespace weft::simd

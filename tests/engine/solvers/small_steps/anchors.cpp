@@ -1,0 +1,483 @@
+/// Anchors against closed forms, on both backends.
+#include <doctest/doctest.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/support/clothes.h"
+#include "tests/support/isas.h"
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Settings small_steps(Backend backend, int substeps = kAutomaticSubsteps) {
+  return {.substeps = substeps, .solver = Solver::small_steps, .backend = backend, .threads = 1};
+}
+
+/// A particle of 1 kg with an anchor.
+SceneDescription one_particle(Vec3 position, Vec3 velocity, const Anchor& anchor) {
+  SceneDescription scene;
+  scene.positions = {position};
+  scene.velocities = {velocity};
+  scene.masses = {1};
+  scene.anchors = {anchor};
+  return scene;
+}
+
+Anchor plane(Vec3 point, Vec3 normal) {
+  return {
+      .point = point, .normal = normal, .max_distance = kInfinity, .backstop_radius = kInfinity};
+}
+
+/// An anchor for every particle, where it is.
+void anchor_all(SceneDescription& scene, double max_distance) {
+  for (std::uint32_t i = 0; i < scene.positions.size(); ++i) {
+    if (std::ranges::find(scene.fixed, i) != scene.fixed.end()) continue;
+    scene.anchors.push_back(
+        {.particle = i, .point = scene.positions[i], .max_distance = max_distance});
+  }
+}
+
+/// m, the largest of a particle from its point.
+double largest_reach(const SceneDescription& scene, const Cloth& cloth,
+                     const std::vector<Vec3>& points) {
+  double most = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    most = std::max(most, distance(cloth.position(scene.anchors[i].particle), points[i]));
+  }
+  return most;
+}
+
+std::vector<Vec3> points_of(const SceneDescription& scene) {
+  std::vector<Vec3> points;
+  for (const Anchor& anchor : scene.anchors) points.push_back(anchor.point);
+  return points;
+}
+
+/// s, of a pendulum of 1 m that is let go at `angle` rad.
+double period(double angle) {
+  double a = 1, g = std::cos(angle / 2);
+  for (int i = 0; i < 10; ++i) {
+    const double mean = (a + g) / 2;
+    g = std::sqrt(a * g);
+    a = mean;
+  }
+  return 2 * std::numbers::pi * std::sqrt(0.1) / a;
+}
+
+/// m, from where a pendulum is after half a period.
+double pendulum_error(Backend backend, int substeps) {
+  const double angle = 1.2, end = period(angle) / 2;
+  const Vec3 start{std::sin(angle), -std::cos(angle), 0};
+  Cloth cloth =
+      cloth_of(one_particle(start, {}, {.max_distance = 1}), small_steps(backend, substeps));
+  run(cloth, end / 50, 50);
+  return distance(cloth.position(0), {-start.x, start.y, 0});
+}
+
+TEST_CASE("what hangs on a maximum distance swings as a pendulum, to second order") {
+  for (const Backend backend : kBackends) {
+    const double coarse = pendulum_error(backend, 2), middle = pendulum_error(backend, 4),
+                 fine = pendulum_error(backend, 8);
+    CAPTURE(coarse);
+    CAPTURE(middle);
+    CAPTURE(fine);
+    CHECK(coarse < 0.01);
+    CHECK(coarse / middle > 3.4);
+    CHECK(middle / fine > 3.4);
+  }
+}
+
+TEST_CASE("with a maximum distance of 0 a particle is where its point is, at its speed") {
+  for (const Backend backend : kBackends) {
+    for (const int substeps : {1, 7}) {
+      Cloth cloth = cloth_of(one_particle({1, 0, 0}, {}, {.point = {1, 0, 0}}),
+                             small_steps(backend, substeps));
+      Vec3 before{1, 0, 0};
+      for (int frame = 1; frame <= 50; ++frame) {
+        const Vec3 point{std::cos(0.1 * frame), std::sin(0.1 * frame), 0};
+        REQUIRE(cloth.move_anchors({&point, 1}));
+        const StepReport report = step(cloth, 0.01);
+        CHECK(report.status == Status::converged);
+        CHECK(report.max_anchor_error < 1e-7);
+        CHECK(distance(cloth.position(0), point) < 1e-7);
+        CHECK(distance(cloth.velocity(0), 100 * (point - before)) < 1e-4);
+        before = point;
+      }
+    }
+  }
+}
+
+TEST_CASE("a maximum distance that becomes taut is a rope: it takes the speed along it alone") {
+  for (const Backend backend : kBackends) {
+    // From 0.6 m aside it meets the circle of 1 m with a cosine of 0.8.
+    SceneDescription scene = one_particle({0, 0.6, 0}, {2, 0, 0}, {.max_distance = 1});
+    scene.gravity = {0, 0, 0};
+    Cloth cloth = cloth_of(scene, small_steps(backend, 20));
+    run(cloth, 0.01, 100);
+    const Vec3 x = cloth.position(0), v = cloth.velocity(0);
+    CHECK(length(x) == doctest::Approx(1).epsilon(1e-6));
+    CHECK(length(v) == doctest::Approx(2 * 0.6).epsilon(2e-3));
+    CHECK(std::abs(dot(x, v)) < 1e-3);
+    const double angle = std::atan2(0.6, 0.8) - 1.2 * (1 - 0.8 / 2);
+    CHECK(std::atan2(x.y, x.x) == doctest::Approx(angle).epsilon(5e-3));
+  }
+}
+
+TEST_CASE("what a point pulls along comes to move as it does, and does not bounce") {
+  for (const Backend backend : kBackends) {
+    SceneDescription scene = one_particle({0, 0, 0}, {}, {.max_distance = 0.1});
+    scene.gravity = {0, 0, 0};
+    Cloth cloth = cloth_of(scene, small_steps(backend, 10));
+    double speed = 0;
+    Vec3 point;
+    for (int frame = 0; frame < 100; ++frame) {
+      if (frame < 40) speed += 0.05;
+      point.x += 0.01 * speed;
+      REQUIRE(cloth.move_anchors({&point, 1}));
+      step(cloth, 0.01);
+      if (point.x < 0.12) continue;
+      CAPTURE(frame);
+      CHECK(cloth.velocity(0).x == doctest::Approx(speed).epsilon(1e-3));
+      CHECK(point.x - cloth.position(0).x == doctest::Approx(0.1).epsilon(1e-3));
+    }
+  }
+}
+
+TEST_CASE(
+    "on a plane behind it a particle slides as without friction, and rests where it is level") {
+  for (const Backend backend : kBackends) {
+    const double angle = 0.5;
+    const Vec3 normal{std::sin(angle), std::cos(angle), 0},
+        down{std::cos(angle), -std::sin(angle), 0};
+    Cloth slope = cloth_of(one_particle({}, {}, plane({}, normal)), small_steps(backend, 10));
+    run(slope, 0.01, 50);
+    CHECK(distance(slope.position(0), 0.5 * 10 * std::sin(angle) * 0.25 * down) < 1e-3);
+    CHECK(distance(slope.velocity(0), 10 * std::sin(angle) * 0.5 * down) < 1e-3);
+    Cloth floor =
+        cloth_of(one_particle({0, 0.3, 0}, {}, plane({}, {0, 1, 0})), small_steps(backend, 10));
+    for (int frame = 0; frame < 60; ++frame) {
+      const StepReport report = step(floor, 0.01);
+      CHECK(report.max_anchor_error <= 1e-4);
+      CHECK(floor.position(0).y > -1e-6);
+    }
+    CHECK(std::abs(floor.position(0).y) < 1e-6);
+    CHECK(length(floor.velocity(0)) < 1e-6);
+  }
+}
+
+TEST_CASE("a particle slides down a backstop as fast as its fall says") {
+  for (const Backend backend : kBackends) {
+    const double angle = 0.2;
+    Anchor anchor = plane({0, 1, 0}, {0, 1, 0});
+    anchor.backstop_radius = 1;
+    Cloth cloth = cloth_of(one_particle({std::sin(angle), std::cos(angle), 0}, {}, anchor),
+                           small_steps(backend, 16));
+    run(cloth, 0.01, 60);
+    const Vec3 x = cloth.position(0);
+    CHECK(length(x) == doctest::Approx(1).epsilon(1e-6));
+    CHECK(length(cloth.velocity(0)) ==
+          doctest::Approx(std::sqrt(20 * (std::cos(angle) - x.y))).epsilon(2e-3));
+  }
+}
+
+/// A body that walks along x at 1.5 m/s, sways, and turns about y.
+std::vector<Vec3> walking(const std::vector<Vec3>& shape, double t) {
+  std::vector<Vec3> points;
+  const double angle = 1.5 * std::sin(2 * t), c = std::cos(angle), s = std::sin(angle);
+  for (const Vec3 p : shape) {
+    const double swing = 0.1 * (1 - p.y) * std::sin(9 * t);
+    points.push_back({c * p.x + s * p.z + 1.5 * t, p.y + 0.03 * std::abs(std::sin(9 * t)),
+                      c * p.z - s * p.x + swing});
+  }
+  return points;
+}
+
+TEST_CASE("a cape whose particles are to stay within 5 cm of a body that walks and turns does") {
+  for (const char* name : {"hang", "cape"}) {
+    for (const Backend backend : kBackends) {
+      SceneDescription scene = scene_of(name, 15);
+      scene.fixed.clear();
+      anchor_all(scene, 0.05);
+      const std::vector<Vec3> shape = points_of(scene);
+      Cloth cloth = cloth_of(scene, {.solver = Solver::small_steps, .backend = backend});
+      for (int frame = 1; frame <= 90; ++frame) {
+        const std::vector<Vec3> points = walking(shape, frame / 60.);
+        REQUIRE(cloth.move_anchors(points));
+        const StepReport report = step(cloth, 1. / 60);
+        CAPTURE(std::string(name));
+        CAPTURE(frame);
+        CHECK(report.status == Status::converged);
+        CHECK(report.max_strain <= 0.01 * (1 + 1e-6));
+        const double reach = largest_reach(scene, cloth, points);
+        CHECK(reach <= 0.05 + 1e-4);
+        CHECK(report.max_anchor_error ==
+              doctest::Approx(std::max(0.0, reach - 0.05)).epsilon(1e-3));
+      }
+    }
+  }
+}
+
+TEST_CASE("a sheet that is laid on backstops stays above them and comes to rest") {
+  for (const char* name : {"hang", "cape"}) {
+    for (const double radius : {kInfinity, 1e3}) {
+      SceneDescription scene = scene_of(name, 15);
+      scene.fixed.clear();
+      for (std::uint32_t i = 0; i < scene.positions.size(); ++i) {
+        Vec3& x = scene.positions[i];
+        x.y = 0.1 + 0.01 * std::sin(7 * x.x);
+        Anchor anchor = plane({x.x, 0, x.z}, {0, 1, 0});
+        anchor.backstop_radius = radius;
+        anchor.particle = i;
+        scene.anchors.push_back(anchor);
+      }
+      Cloth cloth = cloth_of(scene, {});
+      for (int frame = 0; frame < 100; ++frame) {
+        REQUIRE(step(cloth, 1. / 60).status == Status::converged);
+        for (const Vec3 x : positions(cloth)) REQUIRE(x.y > -1e-4 - 2 / radius);
+      }
+      for (const Vec3 x : positions(cloth)) CHECK(x.y < 1e-3);
+      CHECK(cloth.energy().kinetic < 1e-3);
+    }
+  }
+}
+
+TEST_CASE("anchors at rest bring no energy in") {
+  for (const char* name : {"hang", "corners", "cape"}) {
+    for (const double reach : {0., 0.02, 0.1}) {
+      for (const Scheme scheme : {Scheme::implicit, Scheme::bdf2}) {
+        SceneDescription scene = scene_of(name, 13);
+        for (const std::uint32_t i : scene.fixed)
+          scene.anchors.push_back(
+              {.particle = i, .point = scene.positions[i], .max_distance = reach});
+        scene.fixed.clear();
+        Cloth cloth = cloth_of(scene, {.solver = Solver::small_steps, .scheme = scheme});
+        const double start = cloth.energy().total();
+        for (int frame = 0; frame < 120; ++frame) {
+          CAPTURE(std::string(name));
+          CAPTURE(reach);
+          CAPTURE(frame);
+          REQUIRE(step(cloth, 1. / 60).status == Status::converged);
+          REQUIRE(cloth.energy().total() < start + 1e-3);
+        }
+      }
+    }
+  }
+}
+
+/// Anchors that have all kinds of limits, on a woven sheet, on triangles, and among springs.
+std::vector<SceneDescription> anchored_scenes(int size) {
+  std::vector<SceneDescription> scenes{scene_of("hang", size), scene_of("cape", size),
+                                       scene_of("corners", size)};
+  for (Constraint& c : scenes[2].constraints) c.compliance = 1e-5;
+  for (SceneDescription& scene : scenes) {
+    anchor_all(scene, 0.05);
+    for (std::size_t i = 0; i < scene.anchors.size(); i += 2) {
+      scene.anchors[i].normal = {0, 0.6, 0.8};
+      scene.anchors[i].max_distance = i % 3 == 0 ? 0.02 : kInfinity;
+      scene.anchors[i].backstop_distance = 0.01;
+      scene.anchors[i].backstop_radius = i % 4 == 0 ? 0.1 : 1;
+    }
+    std::erase_if(scene.anchors, [](const Anchor& anchor) { return anchor.particle % 11 == 0; });
+  }
+  return scenes;
+}
+
+std::vector<Vec3> shifted(std::vector<Vec3> points, double by) {
+  for (Vec3& point : points) point = point + Vec3{by, 0, 0.5 * by};
+  return points;
+}
+
+std::uint64_t hash_after(const SceneDescription& scene, const Settings& settings, int threads) {
+  tbb::task_arena arena(threads);
+  return arena.execute([&] {
+    Cloth cloth = cloth_of(scene, settings);
+    for (int frame = 1; frame <= 6; ++frame) {
+      REQUIRE(cloth.move_anchors(shifted(points_of(scene), 0.003 * frame)));
+      step(cloth, 0.005);
+    }
+    return cloth.state_hash();
+  });
+}
+
+TEST_CASE("anchored cloth has the same bits on any number of threads, and on AVX2 and AVX-512") {
+  for (const SceneDescription& scene : anchored_scenes(51)) {
+    Settings settings{.isa = Isa::avx2, .threads = 1};
+    const std::uint64_t alone = hash_after(scene, settings, 1);
+    settings.threads = 0;
+    CHECK(hash_after(scene, settings, 2) == alone);
+    CHECK(hash_after(scene, settings, 3) == alone);
+    settings.isa = Isa::avx512;
+    if (simd::supported(simd::Isa::avx512)) CHECK(hash_after(scene, settings, 1) == alone);
+  }
+}
+
+TEST_CASE("anchored cloth moves alike in lanes and in double") {
+  for (const Scheme scheme : {Scheme::implicit, Scheme::bdf2}) {
+    for (const SceneDescription& scene : anchored_scenes(15)) {
+      Settings settings = small_steps(Backend::simd, 12);
+      settings.iterations = 1;  // no local passes, whose choices differ by rounding
+      settings.scheme = scheme;
+      Cloth lanes = cloth_of(scene, settings);
+      settings.backend = Backend::reference;
+      Cloth reference = cloth_of(scene, settings);
+      for (int frame = 1; frame <= 7; ++frame) {
+        for (Cloth* cloth : {&lanes, &reference}) {
+          REQUIRE(cloth->move_anchors(shifted(points_of(scene), 0.002 * frame)));
+          step(*cloth, 0.01);
+        }
+      }
+      CAPTURE(scene.constraints.size());
+      CHECK(largest_distance(positions(lanes), positions(reference)) < 3e-6);
+    }
+  }
+}
+
+TEST_CASE("a copy goes on bit for bit, also while points travel") {
+  for (const Backend backend : kBackends) {
+    for (const SceneDescription& scene : anchored_scenes(9)) {
+      Cloth cloth = cloth_of(scene, small_steps(backend));
+      auto other = Cloth::create(cloth.model(), cloth.settings());
+      REQUIRE(other);
+      for (int k = 1; k <= 3; ++k) {
+        run(cloth, 0.01, 2);
+        REQUIRE(cloth.move_anchors(shifted(points_of(scene), 0.01 * k)));
+        Cloth clone = cloth.clone();
+        REQUIRE(other.value().copy_state(cloth));
+        for (Cloth* each : {&cloth, &clone, &other.value()}) run(*each, 0.007, 2);
+        CHECK(clone.state_hash() == cloth.state_hash());
+        CHECK(other.value().state_hash() == cloth.state_hash());
+      }
+    }
+  }
+}
+
+TEST_CASE("a step that is not committed leaves the points to the next one") {
+  const SceneDescription scene = one_particle({}, {}, {.max_distance = 0.1});
+  for (const Backend backend : kBackends) {
+    Cloth cloth = cloth_of(scene, small_steps(backend)), undisturbed = cloth.clone();
+    const Vec3 point{0.5, 0, 0}, pull{1e300, 0, 0};
+    REQUIRE(cloth.move_anchors({&point, 1}));
+    REQUIRE(undisturbed.move_anchors({&point, 1}));
+    REQUIRE(cloth.write_forces({&pull, 1}));
+    CHECK_FALSE(committed(step(cloth, 0.01).status));
+    REQUIRE(cloth.write_forces({}));
+    run(cloth, 0.01, 3);
+    run(undisturbed, 0.01, 3);
+    CHECK(cloth.state_hash() == undisturbed.state_hash());
+  }
+}
+
+TEST_CASE("positions that are written beyond their limits are projected, and velocities stay") {
+  for (const Backend backend : kBackends) {
+    SceneDescription scene = scene_of("hang", 9);
+    scene.fixed.clear();
+    scene.gravity = {0, 0, 0};
+    anchor_all(scene, 0.05);
+    Cloth cloth = cloth_of(scene, small_steps(backend));
+    std::vector<Vec3> away = scene.positions;
+    for (Vec3& x : away) x = x + Vec3{0, 1, 0};
+    REQUIRE(cloth.write_positions(away));
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::converged);
+    CHECK(largest_reach(scene, cloth, points_of(scene)) < 0.05 + 1e-4);
+    for (const Vec3 v : velocities(cloth)) CHECK(length(v) < 1e-3);
+  }
+}
+
+/// Its pins replaced by anchors that attach.
+SceneDescription attached(SceneDescription scene) {
+  for (const std::uint32_t i : scene.fixed)
+    scene.anchors.push_back({.particle = i, .point = scene.positions[i]});
+  scene.fixed.clear();
+  return scene;
+}
+
+TEST_CASE("cloth that hangs on anchors alone takes the substeps that its load asks for") {
+  for (const char* name : {"corners", "cape"}) {
+    const SceneDescription scene = scene_of(name, 21);
+    Cloth pinned = cloth_of(scene, {}), anchored = cloth_of(attached(scene), {});
+    for (int frame = 0; frame < 40; ++frame) {
+      const StepReport by_pins = step(pinned, 0.01), by_anchors = step(anchored, 0.01);
+      CAPTURE(std::string(name));
+      CAPTURE(frame);
+      CHECK(by_anchors.status == Status::converged);
+      CHECK(by_anchors.substeps >= by_pins.substeps);
+      CHECK(by_anchors.visits <
+            4 * by_anchors.substeps * static_cast<std::int64_t>(scene.constraints.size()));
+    }
+  }
+}
+
+TEST_CASE("a woven sheet swings on anchors as on pins, and keeps its energy without a guard") {
+  for (const Backend backend : kBackends) {
+    const SceneDescription scene = scene_of("corners", 13);
+    Settings settings = small_steps(backend, 100);
+    settings.iterations = 1;
+    Cloth pinned = cloth_of(scene, settings), anchored = cloth_of(attached(scene), settings);
+    const double start = pinned.energy().total();
+    for (int frame = 0; frame < 30; ++frame) {
+      step(pinned, 0.01);
+      step(anchored, 0.01);
+      CAPTURE(frame);
+      CHECK(anchored.energy().total() == doctest::Approx(start).epsilon(2e-3));
+    }
+    CHECK(largest_distance(positions(pinned), positions(anchored)) < 0.005);
+  }
+}
+
+TEST_CASE("a stretched string between two anchors ends within both tolerances") {
+  for (const Backend backend : kBackends) {
+    SceneDescription scene;
+    for (std::uint32_t i = 0; i <= 20; ++i) {
+      scene.positions.push_back({0.05 * i, 0, 0});
+      scene.masses.push_back(0.01);
+      if (i > 0) scene.constraints.push_back({i - 1, i, 0.05});
+    }
+    for (const std::uint32_t i : {0u, 20u})
+      scene.anchors.push_back({.particle = i, .point = scene.positions[i], .max_distance = 0.001});
+    Cloth cloth = cloth_of(scene, small_steps(backend));
+    for (int frame = 0; frame < 60; ++frame) {
+      const StepReport report = step(cloth, 0.01);
+      CHECK(report.status == Status::converged);
+      CHECK(report.max_strain <= 0.01 * (1 + 1e-6));
+      CHECK(report.max_anchor_error <= 1e-4);
+    }
+  }
+}
+
+TEST_CASE("anchors that contradict constraints are reported, not resolved") {
+  SceneDescription scene = scene_of("hang", 5);
+  scene.fixed.clear();
+  anchor_all(scene, 0);
+  for (Anchor& anchor : scene.anchors) anchor.point = 1.2 * anchor.point;
+  Cloth cloth = cloth_of(scene, {});
+  const StepReport report = step(cloth, 0.01);
+  CHECK(report.status == Status::infeasible);
+  CHECK(report.max_strain == doctest::Approx(0.2).epsilon(1e-3));
+  CHECK(report.max_anchor_error < 1e-6);
+}
+
+TEST_CASE("anchors are for small steps, which automatic chooses; other solvers refuse them") {
+  const auto model = model_of(one_particle({}, {}, {}));
+  CHECK(describe(*model).anchors == 1);
+  CHECK(Cloth::create(model, {}).value().settings().solver == Solver::small_steps);
+  for (const Solver solver : {Solver::gauss_seidel, Solver::direct, Solver::yarn}) {
+    const auto cloth = Cloth::create(model, {.solver = solver});
+    REQUIRE_FALSE(cloth);
+    CHECK(cloth.error().find("anchors") != std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace weft::test
