@@ -76,7 +76,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   const SmallStepsLayout& layout_;
   const Settings settings_;
   LocalPasses passes_;
-  BendingPace pace_;
+  std::vector<BendingPace> paces_;
   Past past_;
   reference::ChainSystem system_;
 
