@@ -44,9 +44,9 @@ inline constexpr double kLeastLinks = 8;
 /// Substeps between two renewals of the base. Displacements are rounded to a 2^-24 part of what a
 /// particle moves in between.
 inline constexpr int kRenewal = 16;
-/// The bound on n h (n h + tau) W / compliance where bending elements are visited in every n-th
-/// substep (engine/solvers/small_steps/bending_pace.h), and the largest n. Fewer visits are
-/// cheaper; more are closer to the true stiffness.
+/// The bound on (n h)^2 W / compliance where bending elements are visited in every n-th substep
+/// (engine/solvers/small_steps/bending_pace.h), and the largest n. Fewer visits are cheaper; more
+/// are closer to the true stiffness.
 inline constexpr double kBendingPace = 0.05;
 inline constexpr int kLongestGroup = 8;
 /// The largest n h tau W / compliance that an element is damped with: beyond that its neighbours

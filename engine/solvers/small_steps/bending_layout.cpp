@@ -1,6 +1,8 @@
 #include "engine/solvers/small_steps/bending_layout.h"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <span>
 
@@ -12,6 +14,10 @@ namespace {
 
 using kernels::kLanes;
 
+// More classes mean fewer visits, and batches that are less full. Those that would differ by less
+// than kLikeStiffness would be visited nearly as often.
+constexpr std::size_t kMostClasses = 4;
+constexpr double kLikeStiffness = 0.5;
 constexpr std::size_t kInBlock[] = {0, 1, 3};  // particles whose weights a block holds
 
 float to_float(double number) {
@@ -24,8 +30,25 @@ class Builder {
   Builder(const Model& model, BendingLayout& layout)
       : model_(model), store_(model.bending), layout_(layout) {}
 
-  void add_batches(bool four) {
-    std::vector<std::uint32_t> left = elements(four), batch, later;
+  /// Classes of equal numbers of elements, by their stiffness; where the next of them is not much
+  /// softer it is part of the one before.
+  void add_classes() {
+    std::vector<std::uint32_t> all = movable_elements();
+    std::ranges::stable_sort(all, std::greater{}, [&](std::uint32_t i) { return stiffness(i); });
+    for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
+      while (last < all.size() && stiffness(all[last]) >= kLikeStiffness * stiffness(all[first]))
+        last = std::min(all.size(), last + (all.size() + kMostClasses - 1) / kMostClasses);
+      const auto begin = static_cast<std::uint32_t>(layout_.batches.size());
+      const std::span<const std::uint32_t> elements = std::span(all).subspan(first, last - first);
+      for (const bool four : {false, true}) add_batches(elements, four);
+      layout_.classes.push_back(
+          {begin, static_cast<std::uint32_t>(layout_.batches.size()), stiffness(elements.front())});
+    }
+  }
+
+ private:
+  void add_batches(std::span<const std::uint32_t> of_class, bool four) {
+    std::vector<std::uint32_t> left = elements(of_class, four), batch, later;
     for (; !left.empty(); left.swap(later)) {
       batch.clear();
       later.clear();
@@ -34,8 +57,6 @@ class Builder {
       add_batch(batch, four);
     }
   }
-
- private:
   bool has_four(std::uint32_t i) const { return store_.slots[i][3] != store_.slots[i][2]; }
   std::size_t particles(std::uint32_t i) const { return has_four(i) ? 4 : 3; }
   std::span<const std::uint32_t> slots(std::uint32_t i) const {
@@ -50,13 +71,20 @@ class Builder {
     }
     return sum;
   }
-  /// Those that can move, by their first slots, so that a batch goes through memory in one
-  /// direction.
-  std::vector<std::uint32_t> elements(bool four) const {
+  /// 1/s^2
+  double stiffness(std::uint32_t i) const { return inverse_mass(i) / store_.compliance[i]; }
+  std::vector<std::uint32_t> movable_elements() const {
     std::vector<std::uint32_t> all;
     for (std::uint32_t i = 0; i < store_.size(); ++i) {
-      if (has_four(i) == four && inverse_mass(i) > 0) all.push_back(i);
+      if (inverse_mass(i) > 0) all.push_back(i);
     }
+    return all;
+  }
+  /// By their first slots, so that a batch goes through memory in one direction.
+  std::vector<std::uint32_t> elements(std::span<const std::uint32_t> of_class, bool four) const {
+    std::vector<std::uint32_t> all;
+    std::ranges::copy_if(of_class, std::back_inserter(all),
+                         [&](std::uint32_t i) { return has_four(i) == four; });
     std::ranges::stable_sort(all, {}, [&](std::uint32_t i) { return std::ranges::min(slots(i)); });
     return all;
   }
@@ -98,7 +126,6 @@ class Builder {
       block.weight[k][lane] = static_cast<float>(store_.weights[i][kInBlock[k]]);
     block.rest[lane] = static_cast<float>(store_.rest[i]);
     block.softness[lane] = to_float(store_.compliance[i] / inverse);
-    layout_.stiffest = std::max(layout_.stiffest, inverse / store_.compliance[i]);
     layout_.curved = layout_.curved || store_.rest[i] > 0;
   }
 
@@ -114,13 +141,13 @@ class Builder {
 BendingLayout make_bending_layout(const Model& model) {
   BendingLayout layout;
   if (model.bending.size() == 0) return layout;
-  Builder builder(model, layout);
-  for (const bool four : {false, true}) builder.add_batches(four);
+  Builder(model, layout).add_classes();
   return layout;
 }
 
 std::size_t BendingLayout::bytes() const {
-  return bytes_of(blocks) + bytes_of(element) + bytes_of(stiffness) + bytes_of(batches);
+  return bytes_of(blocks) + bytes_of(element) + bytes_of(stiffness) + bytes_of(batches) +
+         bytes_of(classes);
 }
 
 }  // namespace weft

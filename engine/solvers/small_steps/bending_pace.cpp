@@ -12,7 +12,9 @@ void BendingPace::begin(const FramePlan& plan) {
   substeps_ = plan.substeps;
   done_ = 0;
   const auto resolved = [&](int n) {
-    return n * h_ * (n * h_ + damping_) * stiffest_ <= tuning::kBendingPace;
+    const double time = n * h_;
+    return time * time * stiffest_ <= tuning::kBendingPace &&
+           time * damping_ * stiffest_ <= tuning::kMostBendingDamping;
   };
   for (group_ = 1; group_ < tuning::kLongestGroup && resolved(group_ + 1);) ++group_;
 }
@@ -28,6 +30,12 @@ reference::BendingVisit BendingPace::visit(int n, double give) const {
           .rate = 1 / (n * give),
           .damping = damping_,
           .most = tuning::kMostBendingDamping / (n * h_)};
+}
+
+std::vector<BendingPace> paces_of(const BendingLayout& layout, double damping) {
+  std::vector<BendingPace> paces;
+  for (const BendingClass& c : layout.classes) paces.emplace_back(c.stiffest, damping);
+  return paces;
 }
 
 }  // namespace weft

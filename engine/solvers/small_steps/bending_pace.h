@@ -2,15 +2,20 @@
 /// stretches, and one visit may stand for many substeps, with the impulse of all of them.
 ///
 /// A frame is cut into groups of n substeps, the last one perhaps of fewer, and a group's visit is
-/// in its middle. The element with the largest W / compliance, W = sum of w_i c_i^2, would swing
-/// alone with an angular frequency of sqrt(W / compliance) at least. Impulses that are n h apart
-/// resolve this, and its damping of time tau, if
+/// in its middle. Each class of elements (bending_layout.h) has its own n. The one with the largest
+/// W / compliance, W = sum of w_i c_i^2, would swing alone with an angular frequency of sqrt(W /
+/// compliance) at least. Impulses that are n h apart resolve this if
 ///
-///     n h (n h + tau) W / compliance
+///     (n h)^2 W / compliance
 ///
-/// is far below 1 (tuning::kBendingPace). Where a single substep is beyond that n is 1.
+/// is far below 1 (tuning::kBendingPace), and they take what its damping of the time tau asks if n
+/// h tau W / compliance is not limited (tuning::kMostBendingDamping). Where a single substep is
+/// beyond that n is 1.
 #pragma once
 
+#include <vector>
+
+#include "engine/solvers/small_steps/bending_layout.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "kernels/reference/bending.h"
 
@@ -38,5 +43,8 @@ class BendingPace {
   double h_ = 0, omega_ = 1;
   int substeps_ = 0, done_ = 0, group_ = 1;
 };
+
+/// One for each class.
+std::vector<BendingPace> paces_of(const BendingLayout& layout, double damping);
 
 }  // namespace weft

@@ -76,7 +76,7 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
       layout_(model.small_steps()),
       settings_(settings),
       passes_(model),
-      pace_(layout_.bending.stiffest, model.damping.bending),
+      paces_(paces_of(layout_.bending, model.damping.bending)),
       anchors_(model.anchors),
       at_limit_(model.anchors.size()),
       at_limit_before_(model.anchors.size()) {
@@ -104,7 +104,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   is_begun_ = false;
   passes_.forget();
   departures_.begin();
-  pace_.begin(plan);
+  for (BendingPace& pace : paces_) pace.begin(plan);
   touched_.clear();
   arrived_.clear();
   has_past_ = !plan.placed && h <= SubstepFormula::kLargestRatio * past_.h;
@@ -185,17 +185,24 @@ void ReferenceSmallSteps::decay() {
 }
 
 void ReferenceSmallSteps::bend() {
-  const int n = pace_.next();
-  if (n == 0) return;
-  const reference::BendingVisit visit = pace_.visit(n, formula_.give(h_));
-  for (const std::uint32_t i : layout_.bending.element) {
-    if (i == kNoIndex) continue;
-    reference::bend(element(i), visit, model_.inverse_mass.data(), x_.view(), v_before_.view());
+  const BendingLayout& layout = layout_.bending;
+  for (std::size_t k = 0; k < paces_.size(); ++k) {
+    const int n = paces_[k].next();
+    if (n == 0) continue;
+    const reference::BendingVisit visit = paces_[k].visit(n, formula_.give(h_));
+    const BendingClass& c = layout.classes[k];
+    for (std::uint32_t lane = layout.first_lane(c); lane < layout.last_lane(c); ++lane) {
+      const std::uint32_t i = layout.element[lane];
+      if (i == kNoIndex) continue;
+      reference::bend(element(i), visit, model_.inverse_mass.data(), x_.view(), v_before_.view());
+    }
   }
 }
 
 double ReferenceSmallSteps::bending_energy(Team&) {
-  const double resolved = pace_.resolved(SubstepFormula::of(settings_.scheme, 1).part * h_);
+  if (paces_.empty()) return 0;
+  const double resolved =
+      paces_.front().resolved(SubstepFormula::of(settings_.scheme, 1).part * h_);
   double sum = 0;
   for (const std::uint32_t i : layout_.bending.element) {
     if (i == kNoIndex) continue;

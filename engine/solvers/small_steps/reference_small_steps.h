@@ -84,7 +84,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   const SmallStepsLayout& layout_;
   const Settings settings_;
   LocalPasses passes_;
-  BendingPace pace_;
+  std::vector<BendingPace> paces_;
   AnchorClock anchors_;
   Past past_;
   reference::ChainSystem system_;

