@@ -163,31 +163,30 @@ TEST_CASE("nor does a warm step with bending elements, nor the first") {
 
 TEST_CASE("nor does a step with anchors, nor their moving, nor carrying the cloth") {
   for (const char* name : {"corners", "cape"}) {
-    for (const Backend backend : kBackends) {
-      SceneDescription scene = scene_of(name, 9);
-      std::vector<Vec3> points;
-      for (std::uint32_t i = 30; i < 60; ++i) {
-        points.push_back(scene.positions[i]);
-        scene.anchors.push_back({.particle = i,
-                                 .point = points.back(),
-                                 .normal = {0, 1, 0},
-                                 .max_distance = 0.02,
-                                 .backstop_radius = 1});
-      }
-      Cloth cloth = cloth_of(scene, on(backend, {.solver = Solver::small_steps}));
-      if (backend == Backend::reference) run(cloth, 0.01, 40);
-      std::size_t failed = 0;
-      const std::size_t before = allocations();
-      for (int k = 0; k < 40; ++k) {
-        for (Vec3& point : points) point.x += 0.002;
-        failed += !cloth.move_anchors(points);
-        failed += !cloth.carry({.translation = {0.001, 0, 0}}, 0.5);
-        failed += !cloth.step(0.01);
-      }
-      const std::size_t after = allocations();
-      CHECK(failed == 0);
-      CHECK(after == before);
+    SceneDescription scene = scene_of(name, 9);
+    std::vector<Vec3> points;
+    for (std::uint32_t i = 20; i < 70; ++i) {
+      if (std::ranges::find(scene.fixed, i) != scene.fixed.end()) continue;
+      points.push_back(scene.positions[i]);
+      scene.anchors.push_back({.particle = i,
+                               .point = points.back(),
+                               .normal = {0, 1, 0},
+                               .max_distance = 0.02,
+                               .backstop_radius = 1});
     }
+    Cloth cloth = cloth_of(scene, {.solver = Solver::small_steps});
+    step(cloth, 0.01);
+    std::size_t failed = 0;
+    const std::size_t before = allocations();
+    for (int k = 0; k < 40; ++k) {
+      for (Vec3& point : points) point.x += 0.002;
+      failed += !cloth.move_anchors(points);
+      failed += !cloth.carry({.translation = {0.001, 0, 0}}, 0.5);
+      failed += !cloth.step(0.01);
+    }
+    const std::size_t after = allocations();
+    CHECK(failed == 0);
+    CHECK(after == before);
   }
 }
 
