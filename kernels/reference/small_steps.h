@@ -28,15 +28,15 @@ inline void settle(const Flight& f, std::size_t i, double last) {
   f.predicted.set(i, f.x[i]);
 }
 /// Of a substep that is solved but not settled, b h = `last`, with the ratio r to the one before:
-/// how far its velocity is from what the two before it lead to. v'' being the velocity before
-/// v_before,
+/// how far its velocity is from what the two before it, u and then v_before, lead to,
 ///
-///     v - v_before - r (v_before - v'') = v - v_before - slope (v* - v_before - b h a),
+///     v - v_before - r (v_before - u) = v - v_before - slope (v* - v_before - b h a),
 ///     slope = r / c
 ///
-/// With the third derivative D of x, BDF2 has the local error (1 + r) / (6 r) h^3 D in x, and the
-/// departure is (1 + r) / (2 r) h^2 D, so that the error is h / 3 of it. With c = 0, slope = 0 it
-/// is h times the acceleration, and the error of the implicit Euler method h / 2 of it.
+/// D being the third derivative of x, BDF2 has the local error (1 + r) / (6 r) h^3 D of x (over b,
+/// as the rate at which the global error grows), and the departure is (1 + r) / (2 r) h^2 D: the
+/// error is h / 3 of it. With c = 0, slope = 0 it is h times the acceleration, and the error of the
+/// implicit Euler method h / 2 of it.
 inline kernels::Vector departure(const Flight& f, std::size_t i, kernels::Vector a, double slope,
                                  double last) {
   const kernels::Vector v = f.v[i] + (1 / last) * (f.x[i] - f.predicted[i]);

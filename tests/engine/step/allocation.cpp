@@ -72,6 +72,15 @@ TEST_CASE("nor does a warm step through products") {
   }
 }
 
+TEST_CASE("nor does a warm step whose motion is held") {
+  for (const char* name : {"hang", "hang_sphere", "corners"}) {
+    Settings settings;
+    settings.motion_tolerance = 0.003;
+    CAPTURE(std::string(name));
+    CHECK(allocations_when_warm(name, settings) == 0);
+  }
+}
+
 TEST_CASE("nor does a warm step by yarns") {
   for (const char* name : {"hang", "hang_sphere", "sphere_drop", "corners"}) {
     for (const Scheme scheme : {Scheme::paper, Scheme::rattle}) {
