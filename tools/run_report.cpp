@@ -95,7 +95,6 @@ std::string material_text(const ModelInfo& model) {
   };
   add(model.compliant, "spring");
   add(model.bending_elements, "bending element");
-  add(model.anchors, "anchor");
   add(model.air_triangles, "air triangle");
   return text;
 }
@@ -203,7 +202,8 @@ std::string to_table(const RunReport& report) {
     row("contacts", fmt::format("{:.3g} m deepest penetration", summary.max_penetration));
   }
   if (summary.model.anchors > 0) {
-    row("anchors", fmt::format("{:.3g} m beyond their limits at most", summary.max_anchor_error));
+    row("anchors", fmt::format("{}, {:.3g} m beyond their limits at most", summary.model.anchors,
+                               summary.max_anchor_error));
   }
   row("work",
       fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {}, {}",

@@ -43,7 +43,8 @@ double Anchors::largest_excess(const AnchorStore& store, const kernels::Vectors&
                                bool ends) const {
   double most = 0;
   for (std::size_t i = 0; i < store.size(); ++i) {
-    const auto at = reference::AnchorMotion::between(from_[i], to_[i], ends ? 1 : 0, 0);
+    const reference::AnchorPose& pose = ends ? to_[i] : from_[i];
+    const reference::AnchorMotion at{.point = pose.point, .normal = pose.normal};
     most = std::max(most, reference::excess(store.limits[i], at, x[store.slot[i]]));
   }
   return most;
