@@ -49,6 +49,11 @@ inline constexpr int kRenewal = 16;
 /// are closer to the true stiffness.
 inline constexpr double kBendingPace = 0.05;
 inline constexpr int kLongestGroup = 8;
+/// Elements are visited in at most kMostClasses classes, each at a pace of its own; those of one
+/// class differ in stiffness by less than the factor kLikeStiffness, if there are fewer. More
+/// classes mean fewer visits, and blocks that are less full.
+inline constexpr std::size_t kMostClasses = 4;
+inline constexpr double kLikeStiffness = 0.5;
 /// The largest n h tau W / compliance that an element is damped with: beyond that its neighbours
 /// and it would take from their motion more than there is.
 inline constexpr double kMostBendingDamping = 0.2;

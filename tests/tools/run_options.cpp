@@ -63,7 +63,7 @@ TEST_CASE("the report tells which solver auto came to") {
     std::string used;
   } kChoices[] = {{"hang --size 4", "yarn"},
                   {"hang --size 4 --iterations 3", "gauss_seidel"},
-                  {"chain --end-mass 1e7", "direct"}};
+                  {"cape --size 9 --tolerance 1%", "small_steps"}};
   for (const auto& choice : kChoices) {
     CAPTURE(choice.arguments);
     const std::string arguments = "run " + choice.arguments + " --steps 2";

@@ -8,16 +8,13 @@
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
 
 using kernels::kLanes;
 
-// More classes mean fewer visits, and batches that are less full. Those that would differ by less
-// than kLikeStiffness would be visited nearly as often.
-constexpr std::size_t kMostClasses = 4;
-constexpr double kLikeStiffness = 0.5;
 constexpr std::size_t kInBlock[] = {0, 1, 3};  // particles whose weights a block holds
 
 float to_float(double number) {
@@ -36,8 +33,10 @@ class Builder {
     std::vector<std::uint32_t> all = movable_elements();
     std::ranges::stable_sort(all, std::greater{}, [&](std::uint32_t i) { return stiffness(i); });
     for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
-      while (last < all.size() && stiffness(all[last]) >= kLikeStiffness * stiffness(all[first]))
-        last = std::min(all.size(), last + (all.size() + kMostClasses - 1) / kMostClasses);
+      while (last < all.size() &&
+             stiffness(all[last]) >= tuning::kLikeStiffness * stiffness(all[first]))
+        last = std::min(all.size(),
+                        last + (all.size() + tuning::kMostClasses - 1) / tuning::kMostClasses);
       const auto begin = static_cast<std::uint32_t>(layout_.batches.size());
       const std::span<const std::uint32_t> elements = std::span(all).subspan(first, last - first);
       for (const bool four : {false, true}) add_batches(elements, four);

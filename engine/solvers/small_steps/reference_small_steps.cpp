@@ -316,15 +316,21 @@ void ReferenceSmallSteps::end_motions() {
     slots.clear();
   };
   for_each(touched_, [&](std::uint32_t i) {
-    if (is_free(i)) lead_here_freely(i, (1 / h_) * (x_[i] - before_[i]));
+    if (is_free(i)) stop_at_contact(i);
   });
-  for_each(arrived_, [&](std::uint32_t i) {
-    lead_here_freely(i, v_[i] + (1 / last_) * (x_[i] - predicted_[i]));
-  });
+  for_each(arrived_, [&](std::uint32_t i) { begin_at_limit(i); });
 }
 
-void ReferenceSmallSteps::lead_here_freely(std::size_t i, Vector v) {
-  const Vector a = acceleration_[i];
+void ReferenceSmallSteps::stop_at_contact(std::size_t i) {
+  const Vector v = (1 / h_) * (x_[i] - before_[i]), gain = h_ * decaying_share() * acceleration_[i];
+  predicted_.set(i, x_[i]);
+  v_.set(i, v);
+  v_before_.set(i, v - gain);
+  before_.set(i, x_[i] - h_ * (v + gain));
+}
+
+void ReferenceSmallSteps::begin_at_limit(std::size_t i) {
+  const Vector a = acceleration_[i], v = v_[i] + (1 / last_) * (x_[i] - predicted_[i]);
   predicted_.set(i, x_[i]);
   v_.set(i, v);
   v_before_.set(i, v - h_ * decaying_share() * a);

@@ -78,7 +78,8 @@ class ReferenceSmallSteps final : public SmallSteps {
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
   void hold_anchors();
   void end_motions();
-  void lead_here_freely(std::size_t slot, kernels::Vector v);
+  void stop_at_contact(std::size_t slot);
+  void begin_at_limit(std::size_t slot);
 
   const Model& model_;
   const SmallStepsLayout& layout_;

@@ -505,8 +505,7 @@ LocalWork SmallStepsSolver::repair_everywhere(const ContactStore& contacts,
   return run_passes(contacts, most_visits);
 }
 
-/// A contact ends a motion, and so does a limit: the past of a particle is a free flight that leads
-/// to it then.
+/// A contact ends a motion, and so does a limit: from there a particle goes on at first order.
 void SmallStepsSolver::end_motions() {
   const auto for_each = [](std::vector<std::uint32_t>& slots, auto&& work) {
     std::ranges::sort(slots);
@@ -519,30 +518,32 @@ void SmallStepsSolver::end_motions() {
   for_each(arrived_, [&](std::uint32_t slot) { begin_at_limit(slot); });
 }
 
-/// The velocity of a particle that was pushed is that of this substep alone.
+/// The velocity v of a particle that was pushed is the mean one of this substep, and its past is
+/// such that the next one begins as by the implicit Euler method: with v + h a, at x + h v + h^2 a.
 void SmallStepsSolver::stop_at_contact(std::uint32_t slot) {
   if (model_.inverse_mass[slot] == 0) return;
+  const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
   std::size_t at = layout_.places().of(slot);
   for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
-    v_[at] = (u_[at] - u_before_[at]) / static_cast<float>(h_);
-    lead_here_freely(at);
+    const float a = acceleration_[at], v = (u_[at] - u_before_[at]) / h;
+    predicted_[at] = u_[at];
+    v_[at] = v;
+    v_before_[at] = v - push * a;
+    u_before_[at] = u_[at] - h * (v + push * a);
   }
 }
 
+/// The velocity is that at the end of this substep, and the past a free flight that leads to it.
 void SmallStepsSolver::begin_at_limit(std::uint32_t slot) {
+  const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
   std::size_t at = layout_.places().of(slot);
   for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
     v_[at] += weights_.last.rate * (u_[at] - predicted_[at]);
-    lead_here_freely(at);
+    const float a = acceleration_[at], v = v_[at];
+    predicted_[at] = u_[at];
+    v_before_[at] = v - push * a;
+    u_before_[at] = u_[at] - h * v + 0.5f * h * h * a;
   }
-}
-
-void SmallStepsSolver::lead_here_freely(std::size_t at) {
-  const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
-  const float a = acceleration_[at], v = v_[at];
-  predicted_[at] = u_[at];
-  v_before_[at] = v - push * a;
-  u_before_[at] = u_[at] - h * v + 0.5f * h * h * a;
 }
 
 double SmallStepsSolver::bending_energy(Team& team) {

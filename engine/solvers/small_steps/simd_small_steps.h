@@ -96,7 +96,6 @@ class SmallStepsSolver final : public SmallSteps {
   void end_motions();
   void stop_at_contact(std::uint32_t slot);
   void begin_at_limit(std::uint32_t slot);
-  void lead_here_freely(std::size_t at);
   template <class Work>
   void for_floats(Team& team, Work&& work);
   template <class Work>

@@ -47,6 +47,30 @@ TEST_CASE("a contact stops what would pass through, and shares the momentum") {
   }
 }
 
+TEST_CASE("by small steps a particle slides down a sphere as fast as its fall says") {
+  const double angle = 0.2;
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {std::sin(angle), std::cos(angle), 0}};
+  scene.masses = {1, 1};
+  scene.fixed = {0};
+  scene.spheres = {0};
+  scene.radii = {1, 0};
+  for (const Backend backend : {Backend::reference, Backend::simd}) {
+    for (const Scheme scheme : {Scheme::implicit, Scheme::bdf2}) {
+      CAPTURE(name(backend));
+      CAPTURE(name(scheme));
+      Cloth cloth = cloth_of(
+          scene,
+          {.substeps = 16, .solver = Solver::small_steps, .scheme = scheme, .backend = backend});
+      run(cloth, 0.01, 50);
+      const Vec3 x = cloth.position(1);
+      REQUIRE(length(x) == doctest::Approx(1).epsilon(1e-3));  // it has not left the sphere
+      CHECK(length(cloth.velocity(1)) ==
+            doctest::Approx(std::sqrt(20 * (std::cos(angle) - x.y))).epsilon(0.01));
+    }
+  }
+}
+
 TEST_CASE("a contact never pulls") {
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));

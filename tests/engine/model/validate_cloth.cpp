@@ -297,11 +297,21 @@ TEST_CASE("changes are of what there is, each once, and by values that it may ha
 }
 
 TEST_CASE("what a solver does not know no change brings in") {
-  Cloth cloth = cloth_of(scene_of("hang", 4), {.solver = Solver::yarn});
+  Cloth cloth = cloth_of(scene_of("hang", 4), {.scheme = Scheme::rattle});
   const auto refused = cloth.change({.fix = {9}, .compliances = {{5, 1e-3}}});
   REQUIRE_FALSE(refused);
-  check_message(refused.error(), {"solver", "compliance", "yarn"});
+  check_message(refused.error(), {"scheme", "compliance", "rattle"});
   CHECK(cloth.change({.fix = {9}}));  // it was not
+}
+
+TEST_CASE("what has an anchor is not fixed") {
+  SceneDescription scene = scene_of("hang", 4);
+  scene.anchors = {{.particle = 9, .max_distance = 0.5}};
+  Cloth cloth = cloth_of(scene, {});
+  const auto refused = cloth.change({.fix = {10, 9}});
+  REQUIRE_FALSE(refused);
+  check_message(refused.error(), {"fix[1]", "has an anchor", "9"});
+  CHECK(cloth.change({.fix = {10}}));
 }
 
 TEST_CASE("anchors are moved all at once, to where they can be") {
@@ -311,7 +321,7 @@ TEST_CASE("anchors are moved all at once, to where they can be") {
   const std::vector<Vec3> two{{1, 2, 3}, {4, 5, 6}}, up{{0, 1, 0}, {0, 0, 0}};
   Cloth untouched = cloth.clone();
   const auto check = [&](std::vector<Vec3> points, const std::vector<Vec3>& normals,
-                         std::initializer_list<const char*> parts) {
+                         const std::vector<std::string>& parts) {
     const auto moved = cloth.move_anchors(points, normals);
     REQUIRE_FALSE(moved);
     check_message(moved.error(), parts);

@@ -194,7 +194,7 @@ TEST_CASE("who takes over a changed cloth keeps the settings, or refuses") {
   const SceneDescription scene = scene_of("hang", 9);
   const auto model = model_of(scene);
   auto cloth = Cloth::create(model, {}), tight = Cloth::create(model, {.tolerance = 1e-4});
-  auto yarn = Cloth::create(model, {.solver = Solver::yarn});
+  auto rattle = Cloth::create(model, {.scheme = Scheme::rattle});
   REQUIRE(cloth.value().change({.compliances = {{0, 1e-3}}}));
   run(cloth.value(), 0.01, 5);
   REQUIRE(tight.value().settings().solver == Solver::yarn);
@@ -202,10 +202,10 @@ TEST_CASE("who takes over a changed cloth keeps the settings, or refuses") {
   CHECK(tight.value().settings().tolerance == 1e-4);
   CHECK(tight.value().settings().solver == Solver::small_steps);  // as springs demand
   CHECK(tight.value().state_hash() == cloth.value().state_hash());
-  const auto refused = yarn.value().copy_state(cloth.value());
+  const auto refused = rattle.value().copy_state(cloth.value());
   REQUIRE_FALSE(refused);
   CHECK(refused.error().find("compliance") != std::string::npos);
-  CHECK(yarn.value().model() == model);
+  CHECK(rattle.value().model() == model);
 }
 
 TEST_CASE("automatic solvers are chosen anew, by what was asked for at first") {
