@@ -39,6 +39,7 @@ SceneDescription mixture() {
     if (c % 7 == 0) constraint.compliance = 1e-4;
   }
   scene.damping = {0.001, 0.002, 0.003};
+  scene.anchors = {{60, {1, 2, 3}, {0, 1, 0}, 0.5, 0.01, 0.3}, {50, {4, 5, 6}, {}, 0.25, 0, 0}};
   scene.air = {{{0, 1, 10}, {20, 21, 30}}, 1.3, 0.5, 0.25, {1, 2, 3}};
   return scene;
 }
@@ -68,6 +69,11 @@ bool same(const BendingElement& a, const BendingElement& b) {
   return a.particles == b.particles && a.weights == b.weights && a.rest == b.rest &&
          a.compliance == b.compliance;
 }
+bool same(const Anchor& a, const Anchor& b) {
+  return a.particle == b.particle && same(a.point, b.point) && same(a.normal, b.normal) &&
+         a.max_distance == b.max_distance && a.backstop_distance == b.backstop_distance &&
+         a.backstop_radius == b.backstop_radius;
+}
 template <class T>
 bool all_same(const std::vector<T>& a, const std::vector<T>& b) {
   return std::ranges::equal(a, b, [](const T& x, const T& y) { return same(x, y); });
@@ -80,6 +86,7 @@ void check_same(const SceneDescription& a, const SceneDescription& b) {
   CHECK(sorted(a.fixed) == sorted(b.fixed));
   CHECK(all_same(a.constraints, b.constraints));
   CHECK(all_same(a.bending, b.bending));
+  CHECK(all_same(a.anchors, b.anchors));
   CHECK(a.damping.stretch == b.damping.stretch);
   CHECK(a.damping.bending == b.damping.bending);
   CHECK(a.damping.motion == b.damping.motion);

@@ -68,6 +68,14 @@ SceneDescription cotton_cape(int size) {
   return made.value().scene;
 }
 
+/// Some particles are to stay within 2 cm of where they are.
+SceneDescription with_anchors(SceneDescription scene) {
+  for (const std::uint32_t i : {30u, 31u, 100u}) {
+    scene.anchors.push_back({.particle = i, .point = scene.positions[i], .max_distance = 0.02});
+  }
+  return scene;
+}
+
 std::vector<NamedScene> rigid_scenes() {
   return {{"woven", with_inert(scene_of("hang", 20))},
           {"two tiles", with_inert(scene_of("hang", 80))},
@@ -79,6 +87,7 @@ std::vector<NamedScene> rigid_scenes() {
 std::vector<NamedScene> soft_scenes() {
   return {{"flag", scene_of("flag", 12)},
           {"bending", with_rows(scene_of("hang", 12), 12, 1e-4)},
+          {"anchors", with_anchors(scene_of("hang", 12))},
           {"cotton", cotton_cape(16)}};
 }
 
