@@ -1,0 +1,81 @@
+/// The memory of small steps: taken over from another cloth, or from a changed one, or turned.
+#include <algorithm>
+#include <utility>
+
+#include "engine/model/change.h"
+#include "engine/solvers/small_steps/simd_small_steps.h"
+#include "engine/tuning.h"
+
+namespace weft {
+
+void SmallStepsSolver::take_past(const SmallSteps& from) {
+  const auto& other = static_cast<const SmallStepsSolver&>(from);
+  SmallStepsPast its_past = other.past_;
+  if (!other.is_new_) its_past.base = other.base_;
+  past_ = std::move(its_past);
+  std::ranges::copy(past_.base, base_.begin());
+  multiplier_ = other.multiplier_;
+  is_new_ = false;
+  moved_ = true;
+}
+
+/// Floats are carried to other places as they are. A base of other cells is of no use.
+void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v,
+                                  kernels::Vector gravity) {
+  const auto& other = static_cast<const SmallStepsSolver&>(from);
+  const SmallStepsPast& its = other.past_;
+  const auto& its_base = other.is_new_ ? its.base : other.base_;
+  past_.h = its.h;
+  past_.at_limit = its.at_limit;
+  past_.since_renewal = layout_.cell == other.layout_.cell ? its.since_renewal : tuning::kRenewal;
+  const YarnPlaces &places = layout_.places(), &its_places = other.layout_.places();
+  for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
+    std::size_t to = places.of(slot), at = its_places.of(its_slot);
+    for (int axis = 0; axis < 3; ++axis, to += places.stride, at += its_places.stride) {
+      base_[to] = past_.base[to] = its_base[at];
+      past_.v[to] = its.v[at];
+      past_.v_before[to] = its.v_before[at];
+      past_.moved[to] = its.moved[at];
+    }
+    const bool is_free = model_.inverse_mass[slot] > 0;
+    if (is_free == (other.model_.inverse_mass[its_slot] > 0)) return;
+    write_past(slot, is_free ? ParticlePast::flight(v[slot], gravity, past_.h) : ParticlePast{});
+  });
+  if (multiplier_.empty() || other.multiplier_.empty()) return;
+  for_each_constraint(model_, other.model_, [&](std::uint32_t c, std::uint32_t its_c) {
+    multiplier_[layout_.multiplier_place[c]] =
+        other.multiplier_[other.layout_.multiplier_place[its_c]];
+  });
+}
+
+void SmallStepsSolver::write_past(std::uint32_t slot, const ParticlePast& past) {
+  const YarnPlaces& places = layout_.places();
+  const auto write = [&](auto& to, kernels::Vector vector) {
+    std::size_t at = places.of(slot);
+    for (const double component : {vector.x, vector.y, vector.z}) {
+      to[at] = static_cast<float>(component);
+      at += places.stride;
+    }
+  };
+  write(past_.v, past.v);
+  write(past_.v_before, past.v_before);
+  write(past_.moved, past.moved);
+}
+
+void SmallStepsSolver::turn(const Turn& by) {
+  const YarnPlaces& places = layout_.places();
+  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
+    if (!model_.is_particle(slot)) continue;
+    const std::size_t x = places.of(slot), y = x + places.stride, z = y + places.stride;
+    for (auto* v : {&past_.v, &past_.v_before, &past_.moved}) {
+      float* const of = v->data();
+      const kernels::Vector to = by({double{of[x]}, double{of[y]}, double{of[z]}});
+      of[x] = static_cast<float>(to.x);
+      of[y] = static_cast<float>(to.y);
+      of[z] = static_cast<float>(to.z);
+    }
+  }
+  past_.since_renewal = tuning::kRenewal;
+}
+
+}  // namespace weft
