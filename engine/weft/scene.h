@@ -50,6 +50,27 @@ struct BendingElement {
   double compliance = 0;                     ///< m/N, > 0
 };
 
+/// A triangle of fabric. With F = [f_u f_v], what becomes of a unit of length along the warp and
+/// along the weft, it obeys three laws:
+///
+///     |f_u| - 1 = T_u / warp,   |f_v| - 1 = T_v / weft,   f_u . f_v / (|f_u| |f_v|) = T_s / shear
+///
+/// T_u and T_v are tensions and T_s is the shear force, each per width; f_u and f_v follow from the
+/// corners, since the deformation is the same in the whole triangle. Its energy is half of each
+/// left side squared, times its stiffness, times the area at rest. This is exact for every affine
+/// deformation. A tolerance is about what is left of each law. (Baraff and Witkin, "Large Steps in
+/// Cloth Simulation", 1998; laws with compliances as of springs.)
+struct MembraneElement {
+  std::array<std::uint32_t, 3> particles{};  ///< all different
+  /// m, where the corners lie at rest in the plane of the fabric: along the warp, along the weft.
+  std::array<std::array<double, 2>, 3> rest{};
+  double warp = 0;   ///< N/m, at least 0; 0: there is no such law
+  double weft = 0;   ///< N/m, likewise
+  double shear = 0;  ///< N/m per radian of shear, likewise
+  /// rope: warp and weft only pull, so that the triangle may become narrower without a force.
+  ConstraintKind kind = ConstraintKind::distance;
+};
+
 /// Times in which springs lose what they swing with, and the decay of all motion.
 struct Damping {
   /// s. A spring resists its rate of change with its stiffness times this (Macklin et al. 2016,
@@ -109,6 +130,7 @@ struct SceneDescription {
   std::vector<double> masses;        ///< one per particle, 1e-150 to 1e150, fixed ones too
   std::vector<std::uint32_t> fixed;  ///< particles of infinite inertia; move them with move_fixed()
   std::vector<Constraint> constraints;
+  std::vector<MembraneElement> membrane;
   std::vector<BendingElement> bending;
   std::vector<Anchor> anchors;
   Damping damping;
