@@ -97,10 +97,11 @@ Material read_material(const Json& json) {
 }  // namespace
 
 void add_material_options(Verb verb, MaterialOptions& options) {
-  verb.option("--material", options.material,
-              fmt::format(".obj and cape: edges are springs, and faces bend: {}, or a .json file "
-                          "with the fields of Material in weft/mesh.h",
-                          names_of_materials()));
+  verb.option(
+      "--material", options.material,
+      fmt::format(".obj and built-in cloth: edges are springs, and faces bend: {}, or a .json file "
+                  "with the fields of Material in weft/mesh.h",
+                  names_of_materials()));
   verb.option("--stretch", options.stretch, "material: N/m, of warp and weft");
   verb.option("--shear", options.shear, "material: N/m");
   verb.option("--bend", options.bend, "material: N m");
@@ -142,21 +143,11 @@ Result<std::optional<Material>> material_of(const MaterialOptions& options) {
   return std::optional(material);
 }
 
-Result<Vec3> wind_of(const MaterialOptions& options) {
-  if (!options.wind) return Vec3{};
-  if (given_option(options) == "--wind") return Error{"--wind: only cloth of a material feels it"};
-  std::array<double, 3> values{};
-  std::string_view rest = *options.wind;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t comma = rest.find(',');
-    const auto value = parse_number(rest.substr(0, comma));
-    if (!value || (comma == std::string_view::npos) != (i == 2)) {
-      return Error{fmt::format("--wind: '{}' is not x,y,z", *options.wind)};
-    }
-    values[i] = *value;
-    if (i < 2) rest.remove_prefix(comma + 1);
-  }
-  return Vec3{values[0], values[1], values[2]};
+Result<std::optional<Vec3>> wind_of(const MaterialOptions& options) {
+  if (!options.wind) return std::optional<Vec3>{};
+  const auto wind = parse_vector("--wind", *options.wind);
+  if (!wind) return Error{wind.error()};
+  return std::optional(wind.value());
 }
 
 Result<Material> parse_material(std::string_view text) {

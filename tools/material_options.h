@@ -29,8 +29,8 @@ bool is_given(const MaterialOptions& options);
 /// None without options. What is given replaces what --material has; without that the cloth has
 /// nothing else, so stretch and density are needed.
 Result<std::optional<Material>> material_of(const MaterialOptions& options);
-/// No wind where none is given; refused without a material.
-Result<Vec3> wind_of(const MaterialOptions& options);
+/// None where none is given.
+Result<std::optional<Vec3>> wind_of(const MaterialOptions& options);
 
 /// The text of a material file: an object of fields of Material, those that are left out being 0.
 Result<Material> parse_material(std::string_view text);

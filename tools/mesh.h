@@ -21,10 +21,6 @@ struct Mesh {
 MeshDescription describe_mesh(std::vector<Vec3> vertices,
                               const std::vector<std::vector<std::uint32_t>>& faces);
 
-/// Size x size particles, particle (i, j) numbered i * size + j, as in the built-in scenes.
-Mesh grid_mesh(const SceneDescription& scene, std::uint32_t size);
-/// One vertex per particle, and these faces.
-Mesh face_mesh(const SceneDescription& scene, std::vector<std::vector<std::uint32_t>> faces);
 /// One vertex per particle and one line per constraint.
 Mesh line_mesh(const SceneDescription& scene);
 

@@ -1,5 +1,6 @@
 #include "tools/parse.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -43,6 +44,21 @@ Result<double> parse_tolerance(std::string_view option, std::string_view text) {
     return Error{fmt::format("{}: '{}' is not a strain above 0, like 1% or 0.01", option, text)};
   }
   return percent ? *number / 100 : *number;
+}
+
+Result<Vec3> parse_vector(std::string_view option, std::string_view text) {
+  std::array<double, 3> values{};
+  std::string_view rest = text;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t comma = rest.find(',');
+    const auto value = parse_number(rest.substr(0, comma));
+    if (!value || (comma == std::string_view::npos) != (i == 2)) {
+      return Error{fmt::format("{}: '{}' is not x,y,z", option, text)};
+    }
+    values[i] = *value;
+    if (i < 2) rest.remove_prefix(comma + 1);
+  }
+  return Vec3{values[0], values[1], values[2]};
 }
 
 Result<bool> parse_switch(std::string_view option, std::string_view text) {

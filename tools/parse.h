@@ -22,6 +22,8 @@ std::optional<long long> parse_count(std::string_view text);
 
 /// A strain above 0: "1%" or "0.01".
 Result<double> parse_tolerance(std::string_view option, std::string_view text);
+/// "x,y,z": three finite numbers.
+Result<Vec3> parse_vector(std::string_view option, std::string_view text);
 /// "on" or "off".
 Result<bool> parse_switch(std::string_view option, std::string_view text);
 

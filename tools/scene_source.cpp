@@ -7,7 +7,6 @@
 #include "tools/file_ending.h"
 #include "tools/obj_mesh.h"
 #include "tools/scene_file.h"
-#include "tools/scenes/irregular_mesh.h"
 #include "tools/scenes/scenes.h"
 
 namespace weft::tools {
@@ -32,11 +31,9 @@ bool is_built_in(std::string_view name) {
 constexpr std::string_view kBuiltIn = "built-in scenes";
 constexpr std::string_view kSphereDrop = "sphere_drop";
 constexpr std::string_view kChain = "chain";
-constexpr std::string_view kCape = "cape";
-constexpr std::string_view kGrids = "built-in grids";
+constexpr std::string_view kBuiltInCloth = "built-in scenes but chain";
 constexpr std::string_view kObj = ".obj meshes";
-constexpr std::string_view kMeshes = ".obj meshes and cape";
-constexpr std::string_view kMaterials = ".obj meshes, cape, flag and drape";
+constexpr std::string_view kCloth = ".obj meshes and built-in scenes but chain";
 
 /// Refuses what was given but belongs to another kind of scene.
 Result<void> check_options(const SceneOptions& options, std::span<const std::string_view> kinds) {
@@ -53,9 +50,9 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--pin", options.pin.has_value(), kObj},
       {"--mass", options.mass.has_value(), kObj},
       {"--scale", options.scale.has_value(), kObj},
-      {"--ropes", options.ropes.has_value(), kMeshes},
-      {"--diagonals", options.diagonals, kGrids},
-      {given_option(options.material), is_given(options.material), kMaterials},
+      {"--ropes", options.ropes.has_value(), kCloth},
+      {"--diagonals", options.diagonals, kBuiltInCloth},
+      {given_option(options.material), is_given(options.material), kCloth},
   };
   for (const Given& given : all) {
     if (!given.is_given || std::ranges::find(kinds, given.kind) != kinds.end()) continue;
@@ -63,19 +60,6 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
         fmt::format("{}: only for {}, not for '{}'", given.option, given.kind, options.scene)};
   }
   return {};
-}
-
-bool is_of_material(std::string_view name) { return name == "flag" || name == "drape"; }
-
-/// Rigid and woven, with cells that ropes may brace.
-bool is_grid(std::string_view name) {
-  return name != kCape && name != kChain && !is_of_material(name);
-}
-
-Mesh mesh_of(std::string_view name, int size, const SceneDescription& scene) {
-  if (name == kChain) return line_mesh(scene);
-  if (name == kCape) return face_mesh(scene, scenes::irregular_mesh(size).faces);
-  return grid_mesh(scene, static_cast<std::uint32_t>(size));
 }
 
 /// What --ropes says, and what it says alone.
@@ -91,7 +75,7 @@ Result<Ropes> ropes_of(const std::optional<std::string>& given, Ropes alone) {
 struct ClothOptions {
   Ropes ropes = Ropes::none;
   std::optional<Material> material;
-  Vec3 wind;
+  std::optional<Vec3> wind;
 };
 Result<ClothOptions> cloth_of(const SceneOptions& options, Ropes alone) {
   const auto ropes = ropes_of(options.ropes, alone);
@@ -103,52 +87,34 @@ Result<ClothOptions> cloth_of(const SceneOptions& options, Ropes alone) {
   return ClothOptions{ropes.value(), material.value(), wind.value()};
 }
 
-/// The same mesh and pins as cloth_from_mesh has them: a point that holes leave in no face is no
-/// particle then.
-Result<SceneSource> cape_of(const SceneSource& cape, const ClothOptions& cloth) {
-  MeshDescription description = describe_mesh(cape.mesh.vertices, cape.mesh.faces);
-  description.ropes = cloth.ropes;
-  description.material = cloth.material;
-  auto made = cloth_from_mesh(description);
-  if (!made) return Error{made.error()};
-  SceneSource source{cape.name, std::move(made.value().scene), cape.mesh};
-  source.mesh.particle_of_vertex = std::move(made.value().particle_of_vertex);
-  for (const std::uint32_t pin : cape.description.fixed) {
-    const std::uint32_t particle = source.mesh.particle_of_vertex[pin];
-    if (particle != kNoIndex) source.description.fixed.push_back(particle);
-  }
-  source.description.air.wind = cloth.wind;
-  return source;
+Result<void> blow(const std::optional<Vec3>& wind, SceneDescription& scene) {
+  if (!wind) return {};
+  if (scene.air.triangles.empty()) return Error{"--wind: only cloth of a material feels it"};
+  scene.air.wind = *wind;
+  return {};
 }
 
 Result<SceneSource> load_built_in(const SceneOptions& options) {
-  const std::string_view of_cells = is_grid(options.scene) ? kGrids : options.scene;
-  const std::string_view of_ropes = options.scene == kCape ? kMeshes : options.scene;
-  const bool may_have_material = options.scene == kCape || is_of_material(options.scene);
-  const std::string_view kinds[] = {kBuiltIn, options.scene, of_cells, of_ropes,
-                                    may_have_material ? kMaterials : options.scene};
+  const bool is_cloth = options.scene != kChain;
+  const std::string_view kinds[] = {kBuiltIn, options.scene, is_cloth ? kCloth : options.scene,
+                                    is_cloth ? kBuiltInCloth : options.scene};
   if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
+  const auto cloth = cloth_of(options, Ropes::all);
+  if (!cloth) return Error{cloth.error()};
   scenes::Options values;
   if (options.scene == "corners") values.size = kDefaultCornersSize;
   values.size = options.size.value_or(values.size);
   values.slack = options.slack.value_or(values.slack);
   values.sphere_mass = options.sphere_mass.value_or(values.sphere_mass);
   values.end_mass = options.end_mass.value_or(values.end_mass);
-  values.diagonals = options.diagonals;
-  const auto cloth = cloth_of(options, Ropes::all);
-  if (!cloth) return Error{cloth.error()};
   values.ropes = cloth.value().ropes == Ropes::all;
+  values.diagonals = options.diagonals || cloth.value().ropes == Ropes::diagonals;
   values.material = cloth.value().material;
-  auto scene = scenes::make(options.scene, values);
-  if (!scene) return Error{scene.error()};
-  Mesh mesh = mesh_of(options.scene, values.size, scene.value());
-  SceneSource source{options.scene, std::move(scene.value()), std::move(mesh)};
-  if (is_of_material(options.scene)) {
-    if (options.material.wind) source.description.air.wind = cloth.value().wind;
-    return source;
-  }
-  const bool is_remade = cloth.value().material || cloth.value().ropes == Ropes::diagonals;
-  return is_remade ? cape_of(source, cloth.value()) : std::move(source);
+  auto made = scenes::make_scene(options.scene, values);
+  if (!made) return Error{made.error()};
+  auto& [description, mesh] = made.value();
+  if (auto blown = blow(cloth.value().wind, description); !blown) return Error{blown.error()};
+  return SceneSource{options.scene, std::move(description), std::move(mesh)};
 }
 
 Result<SceneSource> load_scene_file(const SceneOptions& options) {
@@ -170,7 +136,7 @@ std::string note_of(const MeshCounts& counts, const ObjOptions& options) {
 }
 
 Result<SceneSource> load_obj(const SceneOptions& options) {
-  const std::string_view kinds[] = {kObj, kMeshes, kMaterials};
+  const std::string_view kinds[] = {kObj, kCloth};
   if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
   ObjOptions values;
   values.pin = options.pin.value_or(values.pin);
@@ -184,7 +150,7 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   auto scene = read_obj_file(options.scene, values);
   if (!scene) return Error{scene.error()};
   ObjScene& obj = scene.value();
-  obj.description.air.wind = cloth.value().wind;
+  if (auto blown = blow(cloth.value().wind, obj.description); !blown) return Error{blown.error()};
   return SceneSource{options.scene,
                      std::move(obj.description),
                      std::move(obj.mesh),
@@ -208,11 +174,11 @@ void add_scene_options(Verb verb, SceneOptions& options) {
   verb.option("--mass", options.mass, ".obj: kg of the whole mesh (default 1)");
   verb.option("--scale", options.scale, ".obj: multiplies all coordinates (default 1)");
   verb.option_or_flag("--ropes", options.ropes, "",
-                      ".obj and cape: what only pulls, all or diagonals (of four-sided faces; "
-                      "without a material only ropes join them); alone: cape all, .obj diagonals");
+                      "what only pulls, all or diagonals (of four-sided faces; without a "
+                      "material only ropes join them); alone: built-in scenes all, .obj diagonals");
   add_material_options(verb, options.material);
   verb.flag("--diagonals", options.diagonals,
-            "built-in scenes but cape and chain: both diagonals of every cell become ropes");
+            "built-in scenes but chain: the same as --ropes diagonals");
 }
 
 Result<SceneSource> load_scene(const SceneOptions& options) {

@@ -67,9 +67,9 @@ TEST_CASE("options of a material that mean nothing are refused") {
       {square + " --material silk --wind 1,2", "--wind: '1,2' is not x,y,z"},
       {square + " --material silk --wind 1,2,3,4", "--wind: '1,2,3,4' is not x,y,z"},
       {square + " --ropes some", "--ropes: 'some' is not one of all, diagonals"},
-      {"hang --material silk",
-       "--material: only for .obj meshes, cape, flag and drape, not for 'hang'"},
-      {"hang --drag 1", "--drag: only for .obj meshes, cape, flag and drape, not for 'hang'"}};
+      {"chain --material silk",
+       "--material: only for .obj meshes and built-in scenes but chain, not for 'chain'"},
+      {"hang --wind 1,2,3", "--wind: only cloth of a material feels it"}};
   for (const auto& [options, error] : kRefused) {
     CAPTURE(options);
     const Outcome outcome = run_program(folder, "run " + options);

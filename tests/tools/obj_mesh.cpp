@@ -318,13 +318,12 @@ TEST_CASE("a mesh is written with the numbering and the faces of its file") {
 }
 
 TEST_CASE("spheres are written as objects of their own") {
-  const auto scene = scenes::make("hang_sphere", {.size = 3});
-  REQUIRE(scene);
-  auto model = build_model(scene.value());
+  const auto [scene, mesh] = scenes::make_scene("hang_sphere", {.size = 3}).value();
+  auto model = build_model(scene);
   REQUIRE(model);
   const auto cloth = Cloth::create(model.value(), {});
   REQUIRE(cloth);
-  const std::string text = obj_text(grid_mesh(scene.value(), 3), scene.value(), cloth.value());
+  const std::string text = obj_text(mesh, scene, cloth.value());
   CHECK(text.find("o sphere_9\n") != std::string::npos);
   const ObjScene again = parse(text);
   CHECK(again.mesh.faces.size() > 4);
@@ -335,14 +334,14 @@ TEST_CASE("spheres are written as objects of their own") {
 }
 
 TEST_CASE("faces of a second sphere are its own") {
-  SceneDescription scene = scenes::make("hang_sphere", {.size = 3}).value();
+  auto [scene, mesh] = scenes::make_scene("hang_sphere", {.size = 3}).value();
   scene.spheres.push_back(4);
   scene.radii[4] = 0.01;
   const auto model = build_model(scene);
   REQUIRE(model);
   const auto cloth = Cloth::create(model.value(), {});
   REQUIRE(cloth);
-  const ObjScene again = parse(obj_text(grid_mesh(scene, 3), scene, cloth.value()));
+  const ObjScene again = parse(obj_text(mesh, scene, cloth.value()));
   const Vec3 centre = cloth.value().position(4);
   const auto& faces = again.mesh.faces;  // four of the cloth, then as many of each sphere
   for (std::size_t i = 4 + (faces.size() - 4) / 2; i < faces.size(); ++i) {

@@ -23,6 +23,16 @@ TEST_CASE("every built-in scene runs with its default size and reaches its toler
   }
 }
 
+TEST_CASE("every built-in grid of cotton reaches its tolerance") {
+  const TemporaryFolder folder;
+  for (const std::string name : {"hang", "hang_sphere", "corners", "banner", "four_pins"}) {
+    CAPTURE(name);
+    const auto report = report_of(folder, name + " --size 11 --material cotton --steps 20");
+    CHECK(report["springs"] == report["constraints"]);
+    CHECK(report["max_error"] <= 0.01);
+  }
+}
+
 TEST_CASE("every solver and scheme can be asked for, and the report names it") {
   const TemporaryFolder folder;
   using nlohmann::json;
@@ -227,6 +237,10 @@ TEST_CASE("what is asked of a built-in scene is what is made") {
                  {"corners", "--diagonals", {.size = 21, .diagonals = true}},
                  {"cape", "", {.size = 20}},
                  {"cape", "--ropes --size 9", {.size = 9, .ropes = true}},
+                 {"hang", "--ropes diagonals --size 9", {.size = 9, .diagonals = true}},
+                 {"corners",
+                  "--material silk --size 9",
+                  {.size = 9, .material = find_material("silk").value()}},
                  {"chain", "--end-mass 9", {.end_mass = 9}}};
   for (const auto& asked : kScenes) {
     CAPTURE(asked.arguments);

@@ -219,6 +219,55 @@ TEST_CASE("flag and drape are of a material, which may be another") {
   CHECK(made("drape", {.size = 11}).spheres == std::vector<std::uint32_t>{121});
 }
 
+TEST_CASE("every grid can be of a material, and the rest of the scene stays what it is") {
+  const Material cotton = find_material("cotton").value();
+  for (const std::string_view name :
+       {"hang", "hang_sphere", "sphere_drop", "corners", "banner", "four_pins"}) {
+    CAPTURE(std::string(name));
+    const SceneDescription rigid = made(name, {.size = 11});
+    const SceneDescription scene = made(name, {.size = 11, .material = cotton});
+    CHECK(cloth_mass(scene, 11) == doctest::Approx(cotton.density));
+    CHECK(scene.air.triangles.size() == 2 * 10 * 10);
+    CHECK(largest_distance(scene.positions, rigid.positions) == 0);
+    CHECK(scene.fixed == rigid.fixed);
+    CHECK(scene.radii == rigid.radii);
+    for (const BendingElement& element : scene.bending) REQUIRE(element.rest < 1e-12);
+    const ModelInfo info = describe(*model_of(scene));
+    CHECK(info.compliant == info.constraints);
+  }
+}
+
+TEST_CASE("ropes and diagonals of a cloth of a material only pull") {
+  const Material cotton = find_material("cotton").value();
+  const auto ropes = [&](const scenes::Options& options) {
+    const SceneDescription scene = made("hang", options);
+    return std::ranges::count(scene.constraints, ConstraintKind::rope, &Constraint::kind);
+  };
+  const std::ptrdiff_t all = std::ssize(made("hang", {.size = 11, .material = cotton}).constraints);
+  CHECK(ropes({.size = 11, .material = cotton}) == 0);
+  CHECK(ropes({.size = 11, .diagonals = true, .material = cotton}) == 2 * 10 * 10);
+  CHECK(ropes({.size = 11, .ropes = true, .material = cotton}) == all);
+  CHECK(ropes({.size = 11, .ropes = true}) == std::ssize(made("hang", {.size = 11}).constraints));
+}
+
+TEST_CASE("the mesh of a scene is its faces; that of a chain is its line") {
+  for (const scenes::BuiltIn& entry : scenes::list()) {
+    CAPTURE(std::string(entry.name));
+    const auto scene = scenes::make_scene(entry.name, {.size = 11});
+    REQUIRE(scene);
+    const auto& [description, mesh] = scene.value();
+    const bool is_chain = entry.name == "chain";
+    CHECK(mesh.vertices.size() == (is_chain ? 11 : 121));
+    CHECK(mesh.faces.empty() == is_chain);
+    CHECK(mesh.lines.empty() != is_chain);
+    for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
+      const std::uint32_t particle = mesh.particle_of_vertex[vertex];
+      if (particle == kNoIndex) continue;
+      REQUIRE(distance(mesh.vertices[vertex], description.positions[particle]) == 0);
+    }
+  }
+}
+
 TEST_CASE("a flag flies, and a sheet comes to hang over its sphere") {
   Cloth flag = cloth_of(made("flag", {.size = 11}), {});
   Cloth drape = cloth_of(made("drape", {.size = 11}), {});
@@ -332,6 +381,7 @@ TEST_CASE("options out of range are refused by name and value") {
   check_refused("cape", {.size = 2}, "size", "2");
   check_refused("chain", {.size = 1}, "size", "1");
   check_refused("chain", {.end_mass = 0}, "end_mass", "0");
+  check_refused("chain", {.material = find_material("silk").value()}, "material", "particles");
   check_refused("chain", {.end_mass = kNan}, "end_mass", "nan");
   check_refused("sphere_drop", {.slack = -0.25}, "slack", "-0.25");
   check_refused("sphere_drop", {.slack = 1}, "slack", "1");

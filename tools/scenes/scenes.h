@@ -7,6 +7,10 @@
 /// length sqrt(2) L); those between two fixed particles are left out. All start at rest, every edge
 /// at its rest length; particles of the cloth have radius 0.
 ///
+/// With Options::material a cloth is what cloth_from_mesh makes of its faces: its edges are
+/// springs, it bends, and its mass is that of its density. At rest it is flat, also where it starts
+/// folded.
+///
 /// hang         (i, j) at (i L, 0, j L); the column i = 0 is fixed.
 /// hang_sphere  The same, and a fixed sphere at (0.5, -0.6, 0.5), radius 0.25.
 /// sphere_drop  The rows j = 0 and j = N-1 are fixed, 1 - slack apart along z; between them the
@@ -18,13 +22,13 @@
 ///              in it, so that its upper edge can only hang by the strain that is tolerated.
 /// four_pins    (i, j) at (i L, 0, j L); its four corners are fixed, as far apart as in it.
 /// cape         The irregular mesh of triangles and quads of irregular_mesh.h, N x N points in an
-///              order of chance: no grid. Its faces' edges are constraints of the length they have,
-///              ropes with Options::ropes. Fixed is what has x < 1.19 L, an uneven row (N = 120:
-///              x < 0.01, 210 particles).
+///              order of chance: no grid. Its faces' edges are constraints of the length they have.
+///              Fixed is what has x < 1.19 L, an uneven row (N = 120: x < 0.01, 210 particles).
+///              Points that holes leave in no face are particles only without a material.
 /// chain        Particles of 1 kg in a line along x, 0.01 apart; the first is fixed, the last has
-///              end_mass.
-/// flag         (i, j) at (i L, -j L, 0), of cotton or of Options::material, with the masses of its
-///              density; the column i = 0 is fixed, in a wind of (8, 0, 2) m/s.
+///              end_mass. It has no material.
+/// flag         (i, j) at (i L, -j L, 0), of cotton if no material is given; the column i = 0 is
+///              fixed, in a wind of (8, 0, 2) m/s.
 /// drape        (i, j) at (i L, 0, j L), of the same, 1 cm above a fixed sphere of radius 0.3 below
 ///              the middle of the sheet.
 #pragma once
@@ -35,6 +39,8 @@
 #include <span>
 #include <string_view>
 
+#include "tools/mesh.h"
+
 namespace weft::scenes {
 
 struct Options {
@@ -42,9 +48,9 @@ struct Options {
   double slack = 0.05;     ///< sphere_drop: how much longer the sheet is than the gap it spans
   double sphere_mass = 1;  ///< sphere_drop, kg
   double end_mass = 1;     ///< chain, kg of the last particle
-  bool diagonals = false;  ///< all but cape and chain: both diagonals of every cell become ropes
-  bool ropes = false;      ///< cape: every edge is a rope
-  std::optional<Material> material = std::nullopt;  ///< flag and drape; none: cotton
+  bool diagonals = false;  ///< both diagonals of every four-sided face are ropes; not for "chain"
+  bool ropes = false;      ///< every edge is a rope; not for "chain"
+  std::optional<Material> material = std::nullopt;
 };
 
 struct BuiltIn {
@@ -55,7 +61,14 @@ struct BuiltIn {
 /// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain, flag, drape.
 std::span<const BuiltIn> list();
 
+struct Scene {
+  SceneDescription description;
+  tools::Mesh mesh;  ///< what pictures show: vertices and faces, or the lines of a chain
+};
+
 /// An unknown name or an option out of range is an error.
+Result<Scene> make_scene(std::string_view name, const Options& options);
+/// Its description alone.
 Result<SceneDescription> make(std::string_view name, const Options& options);
 
 }  // namespace weft::scenes

@@ -1,0 +1,19 @@
+/// The built-in scenes whose cloth is a grid (scenes.h).
+#pragma once
+
+#include "tools/scenes/layout.h"
+#include "tools/scenes/scenes.h"
+
+namespace weft::scenes {
+
+// Options are within their ranges.
+Layout hang(const Options& options);
+Layout hang_sphere(const Options& options);
+Layout sphere_drop(const Options& options);
+Layout corners(const Options& options);
+Layout banner(const Options& options);
+Layout four_pins(const Options& options);
+Layout flag(const Options& options);
+Layout drape(const Options& options);
+
+}  // namespace weft::scenes
