@@ -92,10 +92,13 @@ class ExactSubstep {
     if (s_.laws) release_energy();
     watch_energy();
     if (s_.pins.moving()) trial_.pin_work = work_of(motion_of_pins(s_, h_), s_, h_);
-    if (needs_energy()) trial_.energy_lost = trial_.pin_work - 0.5 * impulses_.gain;
+    if (needs_energy() && !corrects_longer_substeps())
+      trial_.energy_lost = trial_.pin_work - 0.5 * impulses_.gain;
     watch_crossings();
     if (is_fixed()) trial_.status = std::max(trial_.status, Status::fixed_iterations);
-    if (s_.laws && trial_.outcome == Outcome::accepted) keep_springs();
+    if (trial_.outcome != Outcome::accepted) return trial_;
+    if (s_.laws) keep_springs();
+    s_.longest_substep = std::max(s_.longest_substep, h_);
     return trial_;
   }
 
@@ -145,11 +148,15 @@ class ExactSubstep {
     if (needs_energy()) impulses_ = measure_impulses(s_, h_, team_);
   }
 
+  bool is_papers_loop() const { return s_.settings.solver == Solver::gauss_seidel; }
+  /// The paper's loop leaves errors within the tolerance. Whoever corrects in h what a longer
+  /// substep left gains energy by that.
+  bool corrects_longer_substeps() const { return is_papers_loop() && h_ < s_.longest_substep; }
   /// The paper's loop is left as it is where it converges: its gains belong to it. Others, and a
   /// loop that was cut off, may lead to a state that keeps the constraints far from the prediction.
   bool needs_energy() const {
     if (is_fixed()) return false;
-    return is_by_rattle() || s_.settings.solver != Solver::gauss_seidel || !is_solved_;
+    return is_by_rattle() || !is_papers_loop() || !is_solved_ || corrects_longer_substeps();
   }
 
   /// What springs have released is no gain.
@@ -169,9 +176,10 @@ class ExactSubstep {
     if (!needs_energy()) return;
     if (is_by_rattle() && !attempt_.is_last) {
       if (gains_energy(s_, impulses_, h_)) trial_.outcome = Outcome::rejected;
-      return;
+      if (!corrects_longer_substeps()) return;
     }
-    const bool is_suspect = attempt_.method != Method::by_solver || attempt_.parts > 1;
+    const bool is_suspect =
+        attempt_.method != Method::by_solver || attempt_.parts > 1 || corrects_longer_substeps();
     const bool is_kept = guard_energy(s_, impulses_, is_suspect, h_);
     if (!is_kept && !is_suspect && !attempt_.is_last) trial_.outcome = Outcome::rejected;
   }

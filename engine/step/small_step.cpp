@@ -57,15 +57,31 @@ double usual_length(State& s, const SmallSteps& solver, double dt) {
   return std::min(length, length_for_onset(s, a, dt)) * std::exp2(-s.refinement);
 }
 
+/// The compliance of a sweep, over w_a + w_b.
+double give_per_mass(const State& s, const FramePlan& plan) {
+  const double bh = SubstepFormula::of(s.settings.scheme, 1).part * plan.h;
+  return bh * bh / plan.omega;
+}
+
+/// A sweep is a spring of stiffness omega / (b h)^2, and what it leaves out of shape is its load. A
+/// spring that becomes stiffer under load gains energy. So where the caller's frames say how long
+/// substeps are, the stiffness rises by no more than e^(dt / kSpringTime) in one.
+void keep_stiffness(const State& s, double dt, FramePlan& plan) {
+  if (plan.placed) return;
+  const double least = s.give_per_mass * std::exp(-dt / tuning::kSpringTime);
+  const double give = give_per_mass(s, plan);
+  if (give < least) plan.omega *= give / least;
+}
+
 /// Substeps are about as long as the load allows. Whoever takes over from another solver has no
-/// past, and no energy in springs. In a step that is far shorter than that corrections are smaller:
-/// a sweep is a spring of stiffness omega / h^2, and a spring that keeps its stiffness releases
-/// nothing of what it holds.
+/// past, and no energy in springs. A step that is far shorter than the load allows is no stiffer.
 FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& budget) {
   const bool takes_over = takes_over_in(s);
   FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed || takes_over};
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
     plan.substeps = s.settings.substeps;
+    plan.h = dt / plan.substeps;
+    keep_stiffness(s, dt, plan);
   } else {
     const double usual = usual_length(s, solver, dt);
     const double wanted = std::ceil(dt / usual);
@@ -73,15 +89,9 @@ FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& 
     plan.substeps = wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
     const double part = 2 * dt / (plan.substeps * usual);
     if (part < 1) plan.omega *= part * part;
+    plan.h = dt / plan.substeps;
   }
-  plan.h = dt / plan.substeps;
   return plan;
-}
-
-/// The compliance of a sweep, over w_a + w_b.
-double give_per_mass(const State& s, const FramePlan& plan) {
-  const double bh = SubstepFormula::of(s.settings.scheme, 1).part * plan.h;
-  return bh * bh / plan.omega;
 }
 
 /// The logarithm to base 2 of how many times shorter substeps are to be than is known beforehand.
@@ -114,10 +124,13 @@ class Frame {
         s_.forces().size() > 0 ? s_.forces().view() : kernels::VectorsView{};
     if (s_.model->has_contacts()) s_.substep_positions = s_.position;
     solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, plan_, team_);
-    elastic_energy_ = elastic_energy(s_.position);
+    give_ = give_per_mass(s_, plan_);
+    const double give_before = plan_.placed ? 0 : s_.give_per_mass;
+    elastic_energy_before_ = elastic_energy(s_.position, std::max(give_, give_before));
   }
-  /// J, since the beginning, by springs and bending elements.
-  double released() { return elastic_energy_ - elastic_energy(s_.solved); }
+  /// J, by springs and bending elements, since the beginning: there those that have become stiffer
+  /// because substeps are shorter had no more than before.
+  double released() { return elastic_energy_before_ - elastic_energy(s_.solved, give_); }
 
   void substep() {
     solver_.advance(team_);
@@ -166,9 +179,8 @@ class Frame {
   std::uint32_t passed_particle = kNoIndex;  // the description's number
 
  private:
-  double elastic_energy(const kernels::Vectors& x) {
-    return energy_of_springs(*s_.model, x, give_per_mass(s_, plan_)) +
-           solver_.bending_energy(team_);
+  double elastic_energy(const kernels::Vectors& x, double give) {
+    return energy_of_springs(*s_.model, x, give) + solver_.bending_energy(give, team_);
   }
   /// With a number of substeps that was given the time of a frame is to be bounded.
   int most_rounds() const {
@@ -240,7 +252,8 @@ class Frame {
   const std::int64_t edges_;  // all constraints
   FramePlan plan_;
   int substeps_done_ = 0;
-  double elastic_energy_ = 0;  // J, in the beginning
+  double give_ = 0;                   // s^2, of a sweep, per mass
+  double elastic_energy_before_ = 0;  // J, in the beginning
 };
 
 }  // namespace

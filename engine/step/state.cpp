@@ -105,6 +105,7 @@ void State::copy_scalars(const State& from, bool same) {
   lost_energy = same ? from.lost_energy : 0;
   elastic_energy = same ? from.elastic_energy : 0;
   give_per_mass = same ? from.give_per_mass : 0;
+  longest_substep = same ? from.longest_substep : 0;
   refinement = same ? from.refinement : 0;
 }
 

@@ -68,7 +68,8 @@ struct State {
   double lost_energy = 0;     // J, lately (energy.h)
   double elastic_energy = 0;  // J, of springs, where the present substep begins; not of small steps
   double give_per_mass = 0;   // s^2, of springs in the last step (measure/state_measure.h)
-  double refinement = 0;      // log2 of the next step's parts, or how much shorter its substeps
+  double longest_substep = 0;  // s, of a solver, since positions were given
+  double refinement = 0;       // log2 of the next step's parts, or how much shorter its substeps
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots
 

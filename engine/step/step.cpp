@@ -81,6 +81,7 @@ class Step {
       transaction_.begin();
       project(s_, dt, report_, team_);
     }
+    if (s_.placed) s_.longest_substep = 0;
     plan_ = plan_for(s_, dt, report_, team_);
     if (s_.laws && (s_.placed || s_.displaced)) find_elastic_energy(s_, dt / plan_.substeps);
     for (int left = plan_.substeps; left > 0; --left) {

@@ -360,19 +360,25 @@ RandomCase roped_case(std::uint32_t seed) {
   return c;
 }
 
+double RandomCase::frame(int k) const {
+  if (k == 0 || !frames_vary()) return dt;
+  return Random(seed + 7919 * static_cast<std::uint32_t>(k)).between(4. / 33, 1) * dt;
+}
+
 std::string text(const RandomCase& c) {
   const SceneDescription& d = c.scene;
   const Settings& s = c.settings;
   std::ostringstream out;
   out << "WEFT_SEED=" << c.seed << " WEFT_CASES=1: " << c.shape << ", " << d.positions.size()
       << " particles, " << d.constraints.size() << " constraints, " << d.fixed.size() << " fixed, "
-      << d.spheres.size() << " spheres; dt " << c.dt << "; " << name(s.solver) << ", "
-      << name(s.scheme) << ", " << name(s.backend) << ", " << name(s.directions)
-      << (s.anticipate ? ", anticipate" : "") << (s.anticipate_products ? " through products" : "")
-      << (s.skip ? ", skip" : "") << (s.velocity_correction ? ", velocity correction" : "")
-      << ", tolerance " << s.tolerance << ", contacts " << s.contact_tolerance << ", velocities "
-      << s.velocity_tolerance << ", substeps " << s.substeps << ", iterations " << s.iterations
-      << " of at most " << s.max_iterations << ", renewed after " << s.renew_after;
+      << d.spheres.size() << " spheres; dt " << c.dt << (c.frames_vary() ? " at most; " : "; ")
+      << name(s.solver) << ", " << name(s.scheme) << ", " << name(s.backend) << ", "
+      << name(s.directions) << (s.anticipate ? ", anticipate" : "")
+      << (s.anticipate_products ? " through products" : "") << (s.skip ? ", skip" : "")
+      << (s.velocity_correction ? ", velocity correction" : "") << ", tolerance " << s.tolerance
+      << ", contacts " << s.contact_tolerance << ", velocities " << s.velocity_tolerance
+      << ", substeps " << s.substeps << ", iterations " << s.iterations << " of at most "
+      << s.max_iterations << ", renewed after " << s.renew_after;
   return out.str();
 }
 

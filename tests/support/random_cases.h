@@ -23,6 +23,10 @@ struct RandomCase {
   double dt = 0.01;
   int steps = 1;
   bool moves_pins = false;
+
+  /// s, of step k: dt at first. Where frames vary the others are 4/33 of dt to all of it.
+  double frame(int k) const;
+  bool frames_vary() const { return seed % 3 == 0; }
 };
 
 /// Anything that build_model and Cloth::create take, except what they say they cannot do.

@@ -32,8 +32,9 @@ class BendingPace {
   /// With positions that move by give w f.
   reference::BendingVisit visit(int n, double give) const;
   /// 1/s^2. A visit in each substep is a spring of the compliance W (1 / omega - 1/2) (b h)^2 at
-  /// least: an element has no more energy than that lets it have. Returns W over this compliance.
-  double resolved(double bh) const { return 1 / ((1 / omega_ - 0.5) * bh * bh); }
+  /// least: an element has no more energy than that lets it have. Returns W over this compliance,
+  /// with give for (b h)^2 / omega.
+  double resolved(double give) const { return 1 / ((1 - 0.5 * omega_) * give); }
 
   /// n of a whole group.
   int group() const { return group_; }

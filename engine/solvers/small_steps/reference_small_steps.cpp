@@ -199,10 +199,9 @@ void ReferenceSmallSteps::bend() {
   }
 }
 
-double ReferenceSmallSteps::bending_energy(Team&) {
+double ReferenceSmallSteps::bending_energy(double give, Team&) {
   if (paces_.empty()) return 0;
-  const double resolved =
-      paces_.front().resolved(SubstepFormula::of(settings_.scheme, 1).part * h_);
+  const double resolved = paces_.front().resolved(give);
   double sum = 0;
   for (const std::uint32_t i : layout_.bending.element) {
     if (i == kNoIndex) continue;

@@ -39,7 +39,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
   double law_error() override;
   void read_positions(kernels::VectorsView x, Team& team) const override;
-  double bending_energy(Team& team) override;
+  double bending_energy(double give, Team& team) override;
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;
   double motion_error() const override { return departures_.mean_error(); }

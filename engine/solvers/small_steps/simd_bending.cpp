@@ -61,10 +61,10 @@ void SimdBending::bend(float* u, const float* v, double give, Team& team) {
   }
 }
 
-double SimdBending::energy(float* u, double bh, Team& team) {
+double SimdBending::energy(float* u, double give, Team& team) {
   if (paces_.empty()) return 0;
   simd::Bending bending = arrays(u);
-  bending.resolved = to_float(paces_.front().resolved(bh));
+  bending.resolved = to_float(paces_.front().resolved(give));
   for_blocks(layout_.batches, team, [&](bool four, std::size_t first, std::size_t last) {
     table_.bending_energy(bending, layout_.stiffness.data(), energies_.data(), four, first, last);
   });

@@ -23,7 +23,7 @@ class SimdBending {
   /// beginning.
   void bend(float* u, const float* v, double give, Team& team);
   /// J, with positions at base + u, of substeps of b h.
-  double energy(float* u, double bh, Team& team);
+  double energy(float* u, double give, Team& team);
   std::size_t bytes() const;
 
  private:

@@ -545,8 +545,8 @@ void SmallStepsSolver::begin_at_limit(std::uint32_t slot) {
   }
 }
 
-double SmallStepsSolver::bending_energy(Team& team) {
-  return bending_.energy(u_.data(), SubstepFormula::of(settings_.scheme, 1).part * h_, team);
+double SmallStepsSolver::bending_energy(double give, Team& team) {
+  return bending_.energy(u_.data(), give, team);
 }
 
 void SmallStepsSolver::settle(Team& team) {

@@ -53,7 +53,7 @@ class SmallStepsSolver final : public SmallSteps {
   double law_error() override;
   /// Where the particles are; x: where they were when the frame began.
   void read_positions(kernels::VectorsView x, Team& team) const override;
-  double bending_energy(Team& team) override;
+  double bending_energy(double give, Team& team) override;
   /// After the last substep.
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;

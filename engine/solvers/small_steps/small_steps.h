@@ -114,9 +114,10 @@ class SmallSteps {
   virtual double law_error() = 0;
   /// Where the particles are; x: where they were when the frame began.
   virtual void read_positions(kernels::VectorsView x, Team& team) const = 0;
-  /// J, of the bending elements, where the particles are; of those that substeps are too long for
-  /// no more than they resolve.
-  virtual double bending_energy(Team& team) = 0;
+  /// J, of the bending elements, where the particles are. An element that is too stiff for the
+  /// substeps has no more energy than they resolve: those of the frame that a sweep gives by `give`
+  /// in, (b h)^2 / omega.
+  virtual double bending_energy(double give, Team& team) = 0;
   /// After the last substep.
   virtual void settle(Team& team) = 0;
   virtual void read_velocities(kernels::VectorsView v, Team& team) const = 0;
