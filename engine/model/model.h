@@ -47,6 +47,11 @@ struct ConstraintStore {
   std::vector<bool> turned;  // a is the description's b
   std::size_t size() const { return a.size(); }
   bool has_springs() const { return !compliance.empty(); }
+  /// m/N. Softer than this a spring of cloth does not exist, and floats hold its softness.
+  float compliance_in_lanes(std::size_t c) const {
+    constexpr double kSoftest = 1e6;
+    return static_cast<float>(has_springs() ? std::min(compliance[c], kSoftest) : 0);
+  }
   std::size_t bytes() const;
 };
 

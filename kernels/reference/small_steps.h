@@ -102,11 +102,21 @@ struct SpringStep {
 
 /// relaxed_impulse() for a chain, of all its constraints together: (A + compliance diag A) lambda =
 /// omega C, A = J M^-1 J^T, by elimination. d[k]: from particle k + 1 to particle k; w: one more.
-/// Solved in place: error becomes lambda.
+/// Solved in place: error becomes lambda. Of springs error is l times what is left of the law, and
+/// the matrix has also omega l^2 softness on its diagonal.
 struct ChainSystem {
   std::vector<kernels::Vector> d;
   std::vector<double> w, error, factor;
+  std::vector<double> softness;  // empty: all are rigid
+  std::vector<bool> is_left;     // with springs: has no impulse
 
+  void clear() {
+    d.clear();
+    w.clear();
+    error.clear();
+    softness.clear();
+    is_left.clear();
+  }
   void solve(double omega, double compliance) {
     const std::size_t n = d.size();
     factor.assign(n, 0);
@@ -117,6 +127,8 @@ struct ChainSystem {
       factor[k] = k > 0 && pivot > 0 ? c / pivot : 0;
       error[k] = omega * error[k] + (k > 0 ? factor[k] * error[k - 1] : 0);
       pivot = (1 + compliance) * size - factor[k] * c;
+      if (!softness.empty()) pivot += omega * softness[k] * dot(d[k], d[k]);
+      if (!is_left.empty() && is_left[k]) pivot = 0;
       pivots_.resize(n);
       pivots_[k] = pivot;
     }

@@ -12,6 +12,7 @@
 #include "kernels/simd/measure.h"
 #include "kernels/simd/relax.h"
 #include "kernels/simd/relax_springs.h"
+#include "kernels/simd/small_step_springs.h"
 #include "kernels/simd/small_step_yarns.h"
 #include "kernels/simd/small_steps.h"
 #include "kernels/simd/split.h"
@@ -107,12 +108,14 @@ constexpr Table make_table() {
           .relax_distances = relax_distances,
           .relax_ropes = relax_ropes,
           .relax_springs = relax_springs,
-          .relax_rope_springs = relax_rope_springs,
+          .judge_springs = judge_springs,
           .measure_bending = measure_bending,
           .bend = bend,
           .bending_energy = bending_energy,
           .hold_anchors = hold_anchors,
           .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),
+          .relax_spring_yarns = as_wide_as_block<relax_spring_yarns, &Table::relax_spring_yarns>(),
+          .judge_spring_yarns = as_wide_as_block<judge_spring_yarns, &Table::judge_spring_yarns>(),
           .strain_run = strain_run,
           .strain_singles = strain_singles,
           .stretch_runs = stretch_runs,

@@ -40,8 +40,8 @@ template <Base kBase, class At>
               store(scratch[k].n, link.along);
               substitution.take(scratch[k], link.error, f);
             });
-    go_up<false>(
-        y, block, lane, scratch, factors_in(scratch),
+    go_up(
+        y, block, lane, scratch, factors_in(scratch), keep_in_sums<false>(y, block, lane),
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           at.put(k, lane, fused(w, impulse, at.kept(k, lane)));
         });

@@ -136,8 +136,9 @@ struct alignas(64) LaneVectors {
 struct alignas(64) YarnRow {
   float rest[kernels::kLanes];
   float inverse_mass[kernels::kLanes];
-  float joined[kernels::kLanes];  // the sum of both inverse masses; 0 without a constraint
-  float square[kernels::kLanes];  // rest^2; without a constraint so large that no error counts
+  float joined[kernels::kLanes];      // the sum of both inverse masses; 0 without a constraint
+  float square[kernels::kLanes];      // rest^2; without a constraint so large that no error counts
+  float compliance[kernels::kLanes];  // m/N, of springs in small steps; 0: rigid
 };
 /// What the joints of a row give way by, where they may be springs (yarns.h).
 struct alignas(64) YarnSpringRow {
@@ -145,7 +146,7 @@ struct alignas(64) YarnSpringRow {
   float shift[kernels::kLanes];     // target - rest
   float sum[kernels::kLanes];       // of its impulses in this substep
 };
-/// The last two of a block's rows, from the others.
+/// Sets joined and square of a block's rows from rest and inverse_mass.
 void derive_joints(std::span<YarnRow> rows);
 
 /// Room for what kernels have of a row besides (yarn_arrays.h): in the linear system, in the
@@ -279,15 +280,20 @@ struct alignas(64) SpringBlock {
   float inverse_masses[kernels::kLanes];  // w_a + w_b
   float compliance[kernels::kLanes];      // m/N
 };
+/// What the laws of a substep have in common (reference::SpringStep, LawStep).
+struct SpringLaws {
+  const float* u_start = nullptr;  // when the substep began
+  float scale = 0;                 // 1 / (b h)^2, 1/s^2
+  float damping = 0;               // (time constant) / h
+  float most_compliance = 0;       // m/N, of a constraint that takes part
+  float strain = 0;                // tolerance of a law, over rest
+  bool continues = false;          // from the multipliers; else from none
+};
 struct SpringRelaxation {
   EdgeRelaxation edges;
   const SpringBlock* springs = nullptr;
-  const float* u_start = nullptr;  // when the substep began
-  float* multiplier = nullptr;     // per block and lane
-  float scale = 0;                 // reference::SpringStep
-  float damping = 0;
-  float strain = 0;        // tolerance of the law, over rest
-  bool continues = false;  // from the multipliers; else from none
+  float* multiplier = nullptr;  // per block and lane
+  SpringLaws laws;
 };
 /// Bending elements of small steps (bending.h), in blocks of kLanes, of three particles or of four;
 /// particles in quads. Padding: spare slots, with weights and shares of 0.
@@ -342,6 +348,14 @@ struct YarnRelaxation {
   float compliance = 0;          // small_step_yarns.h
   float tolerance = 0;           // as above
   std::uint32_t* out = nullptr;  // per row, a bit per lane, likewise
+};
+
+/// Of yarns whose links may be springs, in quads (small_step_springs.h).
+struct YarnSpringRelaxation {
+  YarnRelaxation yarns;
+  float* multiplier = nullptr;  // kg m, per row and lane
+  float unit_mass = 1;          // kg, by which rows divide masses
+  SpringLaws laws;
 };
 
 struct YarnProducts {
@@ -517,8 +531,9 @@ struct Table {
                         std::size_t last);
   void (*relax_distances)(const EdgeRelaxation&, std::size_t first, std::size_t last);
   void (*relax_ropes)(const EdgeRelaxation&, std::size_t first, std::size_t last);
-  void (*relax_springs)(const SpringRelaxation&, std::size_t first, std::size_t last);
-  void (*relax_rope_springs)(const SpringRelaxation&, std::size_t first, std::size_t last);
+  void (*relax_springs)(const SpringRelaxation&, bool rope, std::size_t first, std::size_t last);
+  /// Sets `out` to the constraints that break their laws by more than the tolerance.
+  void (*judge_springs)(const SpringRelaxation&, bool rope, std::size_t first, std::size_t last);
   void (*measure_bending)(const BendingBlock*, EdgeSpans*, const float* base, bool four,
                           std::size_t first, std::size_t last);
   void (*bend)(const Bending&, bool four, std::size_t first, std::size_t last);
@@ -529,6 +544,11 @@ struct Table {
   /// Scratch as above.
   void (*relax_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
                       const YarnRelaxation&);
+  void (*relax_spring_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
+                             const YarnSpringRelaxation&);
+  /// As judge_springs.
+  void (*judge_spring_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
+                             const YarnSpringRelaxation&);
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);

@@ -283,11 +283,12 @@ template <bool kErrors, bool kKeep, class At>
       here = next;
     }
     at.keep(last, lane, here);
-    go_up<kKeep>(
+    go_up(
         y, block, lane, scratch,
         [&](std::uint32_t k) __attribute__((always_inline)) {
           return RowFactors{load(system[k].n), load(system[k].m)};
         },
+        keep_in_sums<kKeep>(y, block, lane),
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           at.put(k, lane, fused(w, impulse, at.kept(k, lane)));
         });

@@ -212,39 +212,62 @@ void yarn_keep_start(const Yarns& y, const YarnBlock& block, float* u, YarnScrat
   });
 }
 
-/// Goes down the yarns, and calls take(row of the block, u of its particle, link, factors) for each
-/// row, where link = make_link(d, rest). The lambdas must be inlined by force, here and in go_up:
-/// GCC 12 does not inline a lambda that is called in two places, and its captures then live in
-/// memory.
-template <Along kAlong, Base kBase, bool kSprings, class At, class MakeLink, class Take>
-[[gnu::always_inline]] inline void go_down(const Yarns& yarns, const YarnBlock& block, At at,
-                                           At base, std::uint32_t lane, MakeLink&& make_link,
-                                           Take&& take) {
+/// Goes down the yarns, and calls take(row of the block, u of its particle, u of the next, d, kind
+/// of the row) for each row but the last. The lambdas must be inlined by force, here, in go_down
+/// and in go_up: GCC 12 does not inline a lambda that is called in two places, and its captures
+/// then live in memory. Returns u of the last particle.
+template <Base kBase, class At, class Take>
+[[gnu::always_inline]] inline FloatVector go_along(const Yarns& yarns, const YarnBlock& block,
+                                                   At at, At base, std::uint32_t lane,
+                                                   Take&& take) {
   // A copy, since stores of vectors could change what a reference leads to.
   const Yarns y = yarns;
   const std::uint32_t first = block.first, last = rows_of(block) - 1;
-  Elimination<kAlong> elimination;
   FloatVector here = at.get(0, lane);
-  const RowVectors* start = start_of(y, block, lane);
   BaseDown<kBase, At> base_down(y, block, base, lane);
   for (std::uint32_t k = 0; k < last; ++k) {
     at.fetch_ahead(k, last, lane);
     if constexpr (kBase == Base::fetched) base.fetch_ahead(k, last, lane);
     const YarnRow& kind = kind_of(y, first + k);
     FloatVector next = at.get(k + 1, lane);
-    const Floats rest = load(kind.rest + lane);
-    FloatVector d = apart(y, base_down.step(k, here - next, rest));
-    YarnLink link = make_link(d, rest);
-    direct<kAlong>(link, start, k);
-    Floats joined = load(kind.joined + lane);
-    if constexpr (kSprings) joined = soften(link, y.springs[first + k], lane, joined);
-    take(k, here, link, elimination.step(link, load(kind.inverse_mass + lane), joined));
+    FloatVector d = apart(y, base_down.step(k, here - next, load(kind.rest + lane)));
+    take(k, here, next, d, kind);
     here = next;
   }
   base_down.end(last);
+  return here;
+}
+
+/// A row without a constraint, behind the last.
+[[gnu::always_inline]] inline YarnLink no_link() {
   const Floats none(0.f);
-  take(last, here, YarnLink{no_vector(), none, none, no_vector(), none},
-       Factors{none, none, FloatMask(false), none});
+  return {no_vector(), none, none, no_vector(), none};
+}
+[[gnu::always_inline]] inline Factors no_factors() {
+  const Floats none(0.f);
+  return {none, none, FloatMask(false), none};
+}
+
+/// Goes down the yarns, and calls take(row of the block, u of its particle, link, factors) for each
+/// row, where link = make_link(d, rest).
+template <Along kAlong, Base kBase, bool kSprings, class At, class MakeLink, class Take>
+[[gnu::always_inline]] inline void go_down(const Yarns& yarns, const YarnBlock& block, At at,
+                                           At base, std::uint32_t lane, MakeLink&& make_link,
+                                           Take&& take) {
+  const Yarns y = yarns;  // as in go_along
+  Elimination<kAlong> elimination;
+  const RowVectors* start = start_of(y, block, lane);
+  const FloatVector last = go_along<kBase>(
+      y, block, at, base, lane,
+      [&](std::uint32_t k, const FloatVector& here, const FloatVector&, const FloatVector& d,
+          const YarnRow& kind) __attribute__((always_inline)) {
+        YarnLink link = make_link(d, load(kind.rest + lane));
+        direct<kAlong>(link, start, k);
+        Floats joined = load(kind.joined + lane);
+        if constexpr (kSprings) joined = soften(link, y.springs[block.first + k], lane, joined);
+        take(k, here, link, elimination.step(link, load(kind.inverse_mass + lane), joined));
+      });
+  take(rows_of(block) - 1, last, no_link(), no_factors());
 }
 
 /// The factors of a row that the back substitution needs.
@@ -258,13 +281,23 @@ struct RowFactors {
   };
 }
 
+/// What go_up does with the impulses of springs: it adds them to their sums.
+template <bool kSprings>
+[[gnu::always_inline]] inline auto keep_in_sums(const Yarns& y, const YarnBlock& block,
+                                                std::uint32_t lane) {
+  return [ springs = y.springs + (kSprings ? block.first : 0), lane ](
+      std::uint32_t k, Floats lambda, const FloatVector& n) __attribute__((always_inline)) {
+    if constexpr (kSprings) add_to_sum(springs[k], lane, lambda, n);
+  };
+}
+
 /// Goes up the yarns, and calls move(row of the block, its inverse mass, the sum of its impulses).
-/// factors(row) returns n and m. kKeep: the impulses are added to the sums of springs, before move
-/// is called for the row.
-template <bool kKeep, class GetFactors, class Move>
+/// factors(row) returns n and m. keep(row, impulse, n) is called for each constraint, before move
+/// is called for the row after it.
+template <class GetFactors, class Keep, class Move>
 [[gnu::always_inline]] inline void go_up(const Yarns& yarns, const YarnBlock& block,
                                          std::uint32_t lane, const ScratchRow* scratch,
-                                         GetFactors&& factors, Move&& move) {
+                                         GetFactors&& factors, Keep&& keep, Move&& move) {
   const Yarns y = yarns;  // as in go_down
   const std::uint32_t first = block.first;
   FloatVector below = no_vector();  // impulse of the constraint to the next row
@@ -274,7 +307,7 @@ template <bool kKeep, class GetFactors, class Move>
     RowFactors row = factors(k - 1);
     m = row.m;
     FloatVector above = lambda * row.n;
-    if constexpr (kKeep) add_to_sum(y.springs[first + k - 1], lane, lambda, row.n);
+    keep(k - 1, lambda, row.n);
     move(k, load(kind_of(y, first + k).inverse_mass + lane), above - below);
     below = above;
   }
@@ -307,8 +340,8 @@ template <Along kAlong, Base kBase, bool kSprings, class At>
               store(scratch[k].n, link.along);
               substitution.take(scratch[k], link.error, f);
             });
-    go_up<kSprings>(
-        y, block, lane, scratch, factors_in(scratch),
+    go_up(
+        y, block, lane, scratch, factors_in(scratch), keep_in_sums<kSprings>(y, block, lane),
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           at.put(k, lane, fused(w, impulse, at.kept(k, lane)));
         });
@@ -401,8 +434,8 @@ template <bool kSprings, class At, class Keep>
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     const ScratchRow* scratch = all.of(lane);
     After after{Floats(2 * enough)};
-    go_up<kSprings>(
-        y, block, lane, scratch, factors_in(scratch),
+    go_up(
+        y, block, lane, scratch, factors_in(scratch), keep_in_sums<kSprings>(y, block, lane),
         [&](std::uint32_t k, Floats w, const FloatVector& impulse) __attribute__((always_inline)) {
           FloatVector u = fused(w, impulse, at.kept(k, lane));
           const YarnRow& kind = kind_of(y, block.first + k);

@@ -33,8 +33,8 @@ struct LawVisit {
 };
 
 template <class Points>
-LawVisit visit_law(const ConstraintStore& s, Points& points, const reference::SpringStep& step,
-                   std::uint32_t c) {
+LawVisit visit_law(const ConstraintStore& s, const Points& points,
+                   const reference::SpringStep& step, std::uint32_t c) {
   LawVisit visit{.law = step.law(s.compliance[c], c >= s.bilateral),
                  .d = points.difference(s.a[c], s.b[c])};
   visit.length = kernels::length(visit.d);
@@ -46,9 +46,18 @@ LawVisit visit_law(const ConstraintStore& s, Points& points, const reference::Sp
   return visit;
 }
 
+/// Whether a constraint breaks its law by more than the tolerance, which is a strain.
+template <class Points>
+bool breaks_law(const ConstraintStore& s, const Points& points, const LawStep& step,
+                double tolerance, std::uint32_t c) {
+  if (!step.is_kept(s, c)) return false;
+  const double violation = visit_law(s, points, step.springs, c).violation();
+  return std::abs(violation) > tolerance * s.rest_length[c];
+}
+
 /// The largest violation of all laws, over rest_length.
 template <class Points>
-double largest_violation(const ConstraintStore& s, Points& points, const LawStep& step) {
+double largest_violation(const ConstraintStore& s, const Points& points, const LawStep& step) {
   double most = 0;
   for (std::uint32_t c = 0; c < s.size(); ++c) {
     if (!step.is_kept(s, c)) continue;
@@ -72,21 +81,13 @@ void apply_law(const Model& model, Points& points, const LawVisit& visit, double
 }
 
 /// The visit of a sweep, the first of the substep or another. The multiplier of a substep begins at
-/// zero; what a constraint breaks of its law is judged by that of the visit before, in the last
-/// substep too. Returns whether that is more than the tolerance.
+/// zero.
 template <class Points>
-bool sweep_law(const Model& model, Points& points, const LawStep& step, bool is_first, double omega,
-               double tolerance, std::uint32_t c) {
+void sweep_law(const Model& model, Points& points, const LawStep& step, bool is_first, double omega,
+               std::uint32_t c) {
   const ConstraintStore& s = model.constraints;
-  if (!step.is_kept(s, c)) return false;
-  LawVisit visit = visit_law(s, points, step.springs, c);
-  const bool is_out = std::abs(visit.violation()) > tolerance * s.rest_length[c];
-  if (is_first) {
-    visit.residual += visit.law.softness * visit.multiplier;
-    visit.multiplier = 0;
-  }
-  apply_law(model, points, visit, omega, c);
-  return is_out;
+  if (is_first) points.set_multiplier(c, 0);
+  if (step.is_kept(s, c)) apply_law(model, points, visit_law(s, points, step.springs, c), omega, c);
 }
 
 }  // namespace weft

@@ -224,6 +224,15 @@ void ReferenceSmallSteps::sweep(Team&) {
   for (const std::uint32_t c : layout_.serial) relax_edge(c);
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors();
   is_begun_ = true;
+  if (model_.constraints.has_springs()) judge_springs();
+}
+
+void ReferenceSmallSteps::judge_springs() {
+  const Points points = this->points(false);
+  const double tolerance = tuning::kLocalShare * settings_.tolerance;
+  for (std::uint32_t c = 0; c < model_.constraints.size(); ++c) {
+    if (breaks_law(model_.constraints, points, law_step(), tolerance, c)) out_.push_back(c);
+  }
 }
 
 void ReferenceSmallSteps::hold_anchors() {
@@ -241,10 +250,9 @@ void ReferenceSmallSteps::hold_anchors() {
 
 void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
                                       std::span<const std::uint32_t> links) {
+  if (model_.constraints.has_springs()) return relax_spring_chain(slots, links);
   reference::ChainSystem& system = system_;
-  system.d.clear();
-  system.w.clear();
-  system.error.clear();
+  system.clear();
   for (std::size_t k = 0; k < slots.size(); ++k) {
     system.w.push_back(model_.inverse_mass[slots[k]]);
     if (k == links.size()) break;
@@ -256,7 +264,41 @@ void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
     system.error.push_back(0.5 * (dot(d, d) - rest * rest));
   }
   system.solve(omega_, tuning::kCompliance);
+  apply_impulses(slots);
+}
+
+/// Each law divided by 1 + damping, which leaves the matrix symmetric.
+void ReferenceSmallSteps::relax_spring_chain(std::span<const std::uint32_t> slots,
+                                             std::span<const std::uint32_t> links) {
+  const ConstraintStore& s = model_.constraints;
+  const LawStep step = law_step();
+  Points points = this->points(false);
+  reference::ChainSystem& system = system_;
+  system.clear();
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    system.w.push_back(model_.inverse_mass[slots[k]]);
+    if (k == links.size()) break;
+    if (!is_begun_) points.set_multiplier(links[k], 0);
+    const Vector d = x_[slots[k]] - x_[slots[k + 1]];
+    const LawVisit visit = visit_law(s, points, step.springs, links[k]);
+    const double share = 1 / (1 + visit.law.damping);
+    system.d.push_back(d);
+    system.error.push_back(share * visit.length * visit.residual);
+    system.softness.push_back(share * visit.law.softness);
+    system.is_left.push_back(!step.is_kept(s, links[k]));
+  }
+  system.solve(omega_, tuning::kCompliance);
   for (std::size_t k = 0; k < links.size(); ++k) {
+    const double impulse = system.error[k] * length(system.d[k]);
+    points.set_multiplier(links[k], points.multiplier(links[k]) + impulse);
+  }
+  apply_impulses(slots);
+}
+
+/// Those that the system was solved for.
+void ReferenceSmallSteps::apply_impulses(std::span<const std::uint32_t> slots) {
+  const reference::ChainSystem& system = system_;
+  for (std::size_t k = 0; k < system.d.size(); ++k) {
     const Vector impulse = system.error[k] * system.d[k];
     x_.view().add(slots[k], -system.w[k] * impulse);
     x_.view().add(slots[k + 1], system.w[k + 1] * impulse);
@@ -281,8 +323,7 @@ void ReferenceSmallSteps::relax_edge(std::uint32_t c) {
 void ReferenceSmallSteps::relax_spring(std::uint32_t c) {
   Points points = this->points(false);
   points.share = 0;
-  const double tolerance = tuning::kLocalShare * settings_.tolerance;
-  if (sweep_law(model_, points, law_step(), !is_begun_, omega_, tolerance, c)) out_.push_back(c);
+  sweep_law(model_, points, law_step(), !is_begun_, omega_, c);
 }
 
 LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
@@ -378,10 +419,6 @@ void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsVie
     past_.v.set(slot, past.v);
     past_.v_before.set(slot, past.v_before);
     past_.moved.set(slot, past.moved);
-  });
-  if (multiplier_.empty() || other.multiplier_.empty()) return;
-  for_each_constraint(model_, other.model_, [&](std::uint32_t c, std::uint32_t its_c) {
-    multiplier_[c] = other.multiplier_[its_c];
   });
 }
 

@@ -48,7 +48,6 @@ class ReferenceSmallSteps final : public SmallSteps {
   void keep(Team& team) override;
   void take_past(const SmallSteps& from) override {
     past_ = static_cast<const ReferenceSmallSteps&>(from).past_;
-    multiplier_ = static_cast<const ReferenceSmallSteps&>(from).multiplier_;
   }
   void go_on_from(const SmallSteps& from, kernels::VectorsView v, kernels::Vector gravity) override;
   void forget_past() override { past_.h = 0; }
@@ -73,6 +72,10 @@ class ReferenceSmallSteps final : public SmallSteps {
     return {s.slots[i], s.weights[i], s.rest[i], s.compliance[i]};
   }
   void relax_chain(std::span<const std::uint32_t> slots, std::span<const std::uint32_t> links);
+  void relax_spring_chain(std::span<const std::uint32_t> slots,
+                          std::span<const std::uint32_t> links);
+  void apply_impulses(std::span<const std::uint32_t> slots);
+  void judge_springs();
   void relax_edge(std::uint32_t constraint);
   void relax_spring(std::uint32_t constraint);
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);

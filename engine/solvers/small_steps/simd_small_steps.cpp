@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -13,7 +14,6 @@ namespace weft {
 namespace {
 
 constexpr std::size_t kMostShares = 16;      // of the blocks of a family, each with its scratch
-constexpr float kStill = 1e30f;              // the scale of springs that do not give
 constexpr std::size_t kPart = 4 * kStretch;  // floats that a thread takes at a time
 
 float squared_tolerance(const Settings& settings) {
@@ -145,9 +145,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
     array->resize(layout_.floats);
   past_.at_limit = anchors_.at_limit();
   arrived_.reserve(model.anchors.size());
-  if (!layout_.springs.empty() || !layout_.multiplier_place.empty()) {
-    multiplier_.resize(layout_.constraint.size() + layout_.serial.size());
-  }
+  multiplier_.resize(layout_.multipliers());
   const std::size_t wanted =
       settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
   if (layout_.has_yarns())
@@ -368,6 +366,24 @@ void SmallStepsSolver::sweep(Team& team) {
     sweep_serial();
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors(team);
   is_begun_ = true;
+  if (model_.constraints.has_springs() && settings_.iterations == 0) judge_springs(team);
+}
+
+/// Finds which springs, and rigid constraints beside them, are out of tolerance.
+void SmallStepsSolver::judge_springs(Team& team) {
+  for_each_batch(team, [&](const EdgeBatch& batch, std::uint32_t first, std::uint32_t last) {
+    table_.judge_springs(relaxation_of_springs(), batch.rope, first, last);
+  });
+  for_each_yarn_block(team, 0, layout_.yarns.blocks.size(),
+                      [&](const simd::YarnBlock& block, simd::YarnScratch* scratch) {
+                        table_.judge_spring_yarns(yarns(), block, u_.data(), scratch,
+                                                  relaxation_of_spring_yarns());
+                      });
+  const Points points = this->points(0, false);
+  const double tolerance = tuning::kLocalShare * settings_.tolerance;
+  for (const std::uint32_t c : layout_.serial) {
+    if (breaks_law(model_.constraints, points, law_step(), tolerance, c)) passes_.look_near(c);
+  }
 }
 
 void SmallStepsSolver::hold_anchors(Team& team) {
@@ -377,61 +393,96 @@ void SmallStepsSolver::hold_anchors(Team& team) {
                   [&](std::uint32_t slot) { passes_.look_at(slot); });
 }
 
+simd::YarnRelaxation SmallStepsSolver::relaxation_of_yarns() {
+  return {static_cast<float>(omega_), static_cast<float>(tuning::kCompliance),
+          squared_tolerance(settings_), yarns_out_.data()};
+}
+
+simd::EdgeRelaxation SmallStepsSolver::relaxation_of_edges() {
+  return {u_.data(),         layout_.blocks.data(),      spans_.data(),
+          edges_out_.data(), static_cast<float>(omega_), squared_tolerance(settings_)};
+}
+
+simd::SpringLaws SmallStepsSolver::spring_laws() const {
+  const LawStep step = law_step();
+  return {.u_start = u_before_.data(),
+          .scale = static_cast<float>(step.springs.scale),
+          .damping = static_cast<float>(step.springs.damping),
+          .most_compliance = step.projects ? 0 : std::numeric_limits<float>::max(),
+          .strain = static_cast<float>(tuning::kLocalShare * settings_.tolerance),
+          .continues = is_begun_};
+}
+
+simd::SpringRelaxation SmallStepsSolver::relaxation_of_springs() {
+  return {relaxation_of_edges(), layout_.springs.data(), multiplier_.data(), spring_laws()};
+}
+
+simd::YarnSpringRelaxation SmallStepsSolver::relaxation_of_spring_yarns() {
+  return {relaxation_of_yarns(), multiplier_.data() + layout_.first_multiplier_of_yarns(),
+          static_cast<float>(layout_.yarns.lightest), spring_laws()};
+}
+
+/// work(block, scratch), for blocks first ... last - 1, which share no particle or are only read.
+template <class Work>
+void SmallStepsSolver::for_each_yarn_block(Team& team, std::size_t first, std::size_t last,
+                                           Work&& work) {
+  const std::size_t rows = layout_.yarns.scratch_rows(), count = last - first;
+  const std::size_t shares = std::min({scratch_.size() / rows, count, team.size()});
+  team.for_each(shares, [&](std::size_t share) {
+    const std::size_t end = first + count * (share + 1) / shares;
+    for (std::size_t i = first + count * share / shares; i < end; ++i) {
+      work(layout_.yarns.blocks[i], scratch_.data() + rows * share);
+    }
+  });
+}
+
 void SmallStepsSolver::sweep_yarns(Team& team) {
   const simd::Yarns yarns = this->yarns();
-  const simd::YarnRelaxation relaxation{static_cast<float>(omega_),
-                                        static_cast<float>(tuning::kCompliance),
-                                        squared_tolerance(settings_), yarns_out_.data()};
-  const std::size_t rows = layout_.yarns.scratch_rows();
+  const bool has_springs = model_.constraints.has_springs();
+  const simd::YarnRelaxation relaxation = relaxation_of_yarns();
+  const simd::YarnSpringRelaxation with_springs = relaxation_of_spring_yarns();
+  const std::vector<std::uint32_t>& begin = layout_.yarns.family_begin;
   for (std::size_t family = 0; family < layout_.yarns.families(); ++family) {
-    const std::size_t begin = layout_.yarns.family_begin[family];
-    const std::size_t count = layout_.yarns.family_begin[family + 1] - begin;
-    const std::size_t shares = std::min({scratch_.size() / rows, count, team.size()});
-    team.for_each(shares, [&](std::size_t share) {
-      const std::size_t last = begin + count * (share + 1) / shares;
-      for (std::size_t i = begin + count * share / shares; i < last; ++i) {
-        table_.relax_yarns(yarns, layout_.yarns.blocks[i], u_.data(),
-                           scratch_.data() + rows * share, relaxation);
-      }
-    });
+    for_each_yarn_block(team, begin[family], begin[family + 1],
+                        [&](const simd::YarnBlock& block, simd::YarnScratch* scratch) {
+                          if (has_springs)
+                            table_.relax_spring_yarns(yarns, block, u_.data(), scratch,
+                                                      with_springs);
+                          else
+                            table_.relax_yarns(yarns, block, u_.data(), scratch, relaxation);
+                        });
     hold_anchors(team);
   }
   moved_ = false;
 }
 
-void SmallStepsSolver::sweep_batch(const EdgeBatch& batch, std::uint32_t first,
-                                   std::uint32_t last) {
-  const simd::EdgeRelaxation relaxation{
-      u_.data(),         layout_.blocks.data(),      spans_.data(),
-      edges_out_.data(), static_cast<float>(omega_), squared_tolerance(settings_)};
-  if (layout_.springs.empty())
-    return (batch.rope ? table_.relax_ropes : table_.relax_distances)(relaxation, first, last);
-  const reference::SpringStep step = law_step().springs;
-  const simd::SpringRelaxation springs{
-      .edges = relaxation,
-      .springs = layout_.springs.data(),
-      .u_start = u_before_.data(),
-      .multiplier = multiplier_.data(),
-      .scale = projects_ ? kStill : static_cast<float>(step.scale),
-      .damping = projects_ ? 0 : static_cast<float>(step.damping),
-      .strain = static_cast<float>(tuning::kLocalShare * settings_.tolerance),
-      .continues = is_begun_};
-  (batch.rope ? table_.relax_rope_springs : table_.relax_springs)(springs, first, last);
-}
-
-void SmallStepsSolver::sweep_edges(Team& team) {
+/// work(batch, first, last): blocks first ... last - 1 of it.
+template <class Work>
+void SmallStepsSolver::for_each_batch(Team& team, Work&& work) {
   team.for_each(layout_.tiles.size(), [&](std::size_t tile) {
     for (std::uint32_t i = layout_.tiles[tile].first; i < layout_.tiles[tile].last; ++i) {
-      sweep_batch(layout_.batches[i], layout_.batches[i].first, layout_.batches[i].last);
+      work(layout_.batches[i], layout_.batches[i].first, layout_.batches[i].last);
     }
   });
   for (std::size_t i = layout_.between_tiles; i < layout_.batches.size(); ++i) {
     const EdgeBatch& batch = layout_.batches[i];
     team.for_each_share(batch.last - batch.first, [&](std::size_t first, std::size_t last) {
-      sweep_batch(batch, batch.first + static_cast<std::uint32_t>(first),
-                  batch.first + static_cast<std::uint32_t>(last));
+      work(batch, batch.first + static_cast<std::uint32_t>(first),
+           batch.first + static_cast<std::uint32_t>(last));
     });
   }
+}
+
+void SmallStepsSolver::sweep_edges(Team& team) {
+  const bool has_springs = model_.constraints.has_springs();
+  for_each_batch(team, [&](const EdgeBatch& batch, std::uint32_t first, std::uint32_t last) {
+    if (has_springs)
+      table_.relax_springs(relaxation_of_springs(), batch.rope, first, last);
+    else if (batch.rope)
+      table_.relax_ropes(relaxation_of_edges(), first, last);
+    else
+      table_.relax_distances(relaxation_of_edges(), first, last);
+  });
 }
 
 void SmallStepsSolver::sweep_serial() {
@@ -451,10 +502,8 @@ void SmallStepsSolver::sweep_serial() {
 
 void SmallStepsSolver::sweep_serial_springs() {
   Points points = this->points(0, false);
-  const double tolerance = tuning::kLocalShare * settings_.tolerance;
   for (const std::uint32_t c : layout_.serial) {
-    if (sweep_law(model_, points, law_step(), !is_begun_, omega_, tolerance, c))
-      passes_.look_near(c);
+    sweep_law(model_, points, law_step(), !is_begun_, omega_, c);
   }
 }
 

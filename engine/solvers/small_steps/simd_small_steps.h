@@ -87,9 +87,18 @@ class SmallStepsSolver final : public SmallSteps {
   void renew_base(Team& team);
   void sweep_yarns(Team& team);
   void sweep_edges(Team& team);
+  void judge_springs(Team& team);
   void sweep_serial();
   void sweep_serial_springs();
-  void sweep_batch(const EdgeBatch& batch, std::uint32_t first, std::uint32_t last);
+  simd::YarnRelaxation relaxation_of_yarns();
+  simd::EdgeRelaxation relaxation_of_edges();
+  simd::SpringLaws spring_laws() const;
+  simd::SpringRelaxation relaxation_of_springs();
+  simd::YarnSpringRelaxation relaxation_of_spring_yarns();
+  template <class Work>
+  void for_each_yarn_block(Team& team, std::size_t first, std::size_t last, Work&& work);
+  template <class Work>
+  void for_each_batch(Team& team, Work&& work);
   void look_near_what_was_out();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
   void hold_anchors(Team& team);

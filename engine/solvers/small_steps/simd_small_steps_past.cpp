@@ -14,7 +14,6 @@ void SmallStepsSolver::take_past(const SmallSteps& from) {
   if (!other.is_new_) its_past.base = other.base_;
   past_ = std::move(its_past);
   std::ranges::copy(past_.base, base_.begin());
-  multiplier_ = other.multiplier_;
   is_new_ = false;
   moved_ = true;
 }
@@ -40,11 +39,6 @@ void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v
     const bool is_free = model_.inverse_mass[slot] > 0;
     if (is_free == (other.model_.inverse_mass[its_slot] > 0)) return;
     write_past(slot, is_free ? ParticlePast::flight(v[slot], gravity, past_.h) : ParticlePast{});
-  });
-  if (multiplier_.empty() || other.multiplier_.empty()) return;
-  for_each_constraint(model_, other.model_, [&](std::uint32_t c, std::uint32_t its_c) {
-    multiplier_[layout_.multiplier_place[c]] =
-        other.multiplier_[other.layout_.multiplier_place[its_c]];
   });
 }
 

@@ -80,28 +80,29 @@ class Builder {
   SmallStepsLayout& layout_;
 };
 
-/// Softer than this a spring of cloth does not exist, and floats hold its softness.
-constexpr double kSoftest = 1e6;
-
 void add_springs(const Model& model, SmallStepsLayout& layout) {
   const ConstraintStore& store = model.constraints;
   layout.multiplier_place.resize(store.size());
+  const auto place = [&](std::uint32_t c, std::size_t at) {
+    if (c != kNoIndex) layout.multiplier_place[c] = static_cast<std::uint32_t>(at);
+  };
   for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
     simd::SpringBlock& block = layout.springs.emplace_back();
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::size_t place = i * kLanes + lane;
-      const std::uint32_t c = layout.constraint[place];
+      const std::size_t at = i * kLanes + lane;
+      const std::uint32_t c = layout.constraint[at];
       const bool is_one = c != kNoIndex;
       block.rest[lane] = static_cast<float>(is_one ? store.rest_length[c] : 1);
       block.inverse_masses[lane] = static_cast<float>(is_one ? 1 / store.effective_mass[c] : 1);
-      block.compliance[lane] =
-          static_cast<float>(is_one ? std::min(store.compliance[c], kSoftest) : 0);
-      if (is_one) layout.multiplier_place[c] = static_cast<std::uint32_t>(place);
+      block.compliance[lane] = is_one ? store.compliance_in_lanes(c) : 0;
+      place(c, at);
     }
   }
   for (std::size_t i = 0; i < layout.serial.size(); ++i) {
-    layout.multiplier_place[layout.serial[i]] =
-        static_cast<std::uint32_t>(layout.constraint.size() + i);
+    place(layout.serial[i], layout.constraint.size() + i);
+  }
+  for (std::size_t i = 0; i < layout.yarns.constraint.size(); ++i) {
+    place(layout.yarns.constraint[i], layout.first_multiplier_of_yarns() + i);
   }
 }
 
@@ -118,11 +119,9 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   const ConstraintStore& store = model.constraints;
   SmallStepsLayout layout;
   layout.bending = make_bending_layout(model);
-  const bool only_distances = store.plain == store.size() && layout.bending.empty();
-  if (!store.has_springs()) {
-    layout.yarns =
-        make_yarn_layout(model, only_distances ? YarnMemory::woven_if_possible : YarnMemory::quads);
-  }
+  const bool weaves = store.plain == store.size() && !store.has_springs() && layout.bending.empty();
+  layout.yarns =
+      make_yarn_layout(model, weaves ? YarnMemory::woven_if_possible : YarnMemory::quads);
   const bool woven = makes_yarns(layout.yarns);
   if (!woven) layout.yarns = no_yarns(model);
   Builder(model, layout).add_batches(!woven);

@@ -12,7 +12,7 @@
 ///
 /// Either all distance constraints that are not at hubs belong to yarns, or none does: if the
 /// chains that run straight on through their particles are short, as in sheets of irregular
-/// triangles, or if any constraint is a spring, each constraint is a block of its own.
+/// triangles, each constraint is a block of its own.
 #pragma once
 
 #include <cstdint>
@@ -46,10 +46,11 @@ struct SmallStepsLayout {
   std::vector<simd::EdgeBlock> blocks;
   std::vector<std::uint32_t> constraint;  // per edge block and lane, or kNoIndex
   std::vector<std::uint16_t> used;        // per edge block, a bit per lane that has a constraint
-  // Of a model with springs only, whose constraints are all in edge blocks or serial.
-  std::vector<simd::SpringBlock> springs;       // per edge block
-  std::vector<std::uint32_t> multiplier_place;  // per constraint: edge lanes, then serial
-  std::vector<EdgeBatch> batches;               // those of each tile, then those between tiles
+  // Of a model with springs only.
+  std::vector<simd::SpringBlock> springs;  // per edge block
+  /// Per constraint: edge lanes, then serial ones, then rows of yarns.
+  std::vector<std::uint32_t> multiplier_place;
+  std::vector<EdgeBatch> batches;  // those of each tile, then those between tiles
   std::vector<EdgeTile> tiles;
   std::uint32_t between_tiles = 0;  // first batch
   std::vector<std::uint32_t> serial;
@@ -63,6 +64,12 @@ struct SmallStepsLayout {
   const YarnPlaces& places() const { return yarns.places; }
   bool has_yarns() const { return !yarns.blocks.empty(); }
   bool has_single_constraints() const { return !blocks.empty() || !serial.empty(); }
+  std::size_t first_multiplier_of_yarns() const { return constraint.size() + serial.size(); }
+  /// 0 without springs.
+  std::size_t multipliers() const {
+    if (multiplier_place.empty()) return 0;
+    return first_multiplier_of_yarns() + yarns.constraint.size();
+  }
   std::size_t bytes() const;
 };
 

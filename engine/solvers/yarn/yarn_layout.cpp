@@ -209,6 +209,7 @@ class Builder {
       if (k == chain.links.size()) continue;
       layout_.constraint[(first + k) * kLanes + lane] = chain.links[k];
       row.rest[lane] = static_cast<float>(model_.constraints.rest_length[chain.links[k]]);
+      row.compliance[lane] = model_.constraints.compliance_in_lanes(chain.links[k]);
     }
     add_spans(chain, first, lane);
   }

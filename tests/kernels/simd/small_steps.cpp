@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "kernels/reference/small_steps.h"
@@ -254,6 +255,142 @@ TEST_CASE("a relaxed sweep solves each yarn as a chain in double, wherever its p
         }
       }
     }
+  }
+}
+
+/// Links of all stiffness in the lanes of a block, some of them rigid, with what they had when the
+/// substep began and multipliers of a sweep before.
+struct SpringYarns {
+  static constexpr double kOmega = 0.8, kScale = 1e6, kShare = 1e-3, kUnitMass = 0.5;
+  static constexpr double kStrain = 0.02;
+  BlockOfYarns b;
+  kernels::AlignedVector<float> start, multiplier;
+  std::vector<std::uint32_t> out;
+
+  explicit SpringYarns(const simd::Table& table)
+      : multiplier(BlockOfYarns::kRows * kLanes), out(BlockOfYarns::kRows) {
+    for (std::uint32_t k = 0; k < BlockOfYarns::kRows; ++k) {
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        const bool is_link = k + 1 < BlockOfYarns::length(lane);
+        const bool is_rigid = (k + lane) % 4 == 0;
+        const double compliance = std::pow(10., -8. + (k + 2 * lane) % 12 / 2.);
+        if (is_link && !is_rigid) b.rows[k].compliance[lane] = static_cast<float>(compliance);
+        if (is_link) multiplier[k * kLanes + lane] = 1e-3f * static_cast<float>((k + lane) % 3);
+      }
+    }
+    b.start(table);
+    start = b.u;
+    Random random(5);
+    for (float& u : start) u += static_cast<float>(random.between(-1e-3, 1e-3));
+  }
+  simd::YarnSpringRelaxation relaxation(double damping, bool continues) {
+    return {.yarns = {static_cast<float>(kOmega), static_cast<float>(kShare), 0, out.data()},
+            .multiplier = multiplier.data(),
+            .unit_mass = static_cast<float>(kUnitMass),
+            .laws = {.u_start = start.data(),
+                     .scale = static_cast<float>(kScale),
+                     .damping = static_cast<float>(damping),
+                     .most_compliance = std::numeric_limits<float>::max(),
+                     .strain = static_cast<float>(kStrain),
+                     .continues = continues}};
+  }
+  Vector start_of(std::uint32_t k, std::uint32_t lane) const {
+    const std::size_t at = b.place_of(k, lane);
+    const auto axis = [&](std::size_t i) {
+      return static_cast<double>(b.base[at + i]) + static_cast<double>(start[at + i]);
+    };
+    return {axis(0), axis(1), axis(2)};
+  }
+  double multiplier_of(std::uint32_t k, std::uint32_t lane) const {
+    return static_cast<double>(multiplier[k * kLanes + lane]);
+  }
+};
+
+/// A sweep over a lane in double; the multipliers that it adds.
+struct SpringLane {
+  reference::ChainSystem chain;
+  std::vector<double> from;       // multipliers before
+  std::vector<double> violation;  // m, then, with the multipliers before
+
+  SpringLane(const SpringYarns& s, std::uint32_t lane, double damping, bool continues) {
+    const BlockOfYarns& b = s.b;
+    for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
+      chain.w.push_back(static_cast<double>(b.rows[k].inverse_mass[lane]) / SpringYarns::kUnitMass);
+      if (k + 1 == BlockOfYarns::length(lane)) break;
+      const auto law = reference::SpringStep{SpringYarns::kScale, damping}.law(
+          static_cast<double>(b.rows[k].compliance[lane]), false);
+      const Vector d = b.x[b.slot_of(k, lane)] - b.x[b.slot_of(k + 1, lane)];
+      const double l = length(d), rest = static_cast<double>(b.rows[k].rest[lane]);
+      const double change = l - length(s.start_of(k, lane) - s.start_of(k + 1, lane));
+      const double share = 1 / (1 + law.damping);
+      from.push_back(continues ? s.multiplier_of(k, lane) : 0);
+      violation.push_back(law.residual(l - rest, change, s.multiplier_of(k, lane)));
+      chain.d.push_back(d);
+      chain.error.push_back(share * l * law.residual(l - rest, change, from.back()));
+      chain.softness.push_back(share * law.softness);
+    }
+    chain.solve(SpringYarns::kOmega, SpringYarns::kShare);
+  }
+  Vector moved(std::uint32_t k) const {
+    Vector by{0, 0, 0};
+    if (k > 0) by = by + (chain.w[k] * chain.error[k - 1]) * chain.d[k - 1];
+    if (k < chain.d.size()) by = by - (chain.w[k] * chain.error[k]) * chain.d[k];
+    return by;
+  }
+};
+
+void check_spring_yarns(const simd::Table& table, double damping, bool continues) {
+  const SpringYarns before(table);
+  SpringYarns s(table);
+  BlockOfYarns& b = s.b;
+  const simd::YarnSpringRelaxation relaxation = s.relaxation(damping, continues);
+  table.judge_spring_yarns(b.yarns(), b.block(), b.u.data(), b.scratch.data(), relaxation);
+  table.relax_spring_yarns(b.yarns(), b.block(), b.u.data(), b.scratch.data(), relaxation);
+  const kernels::Vectors moved = b.end(table);
+  for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
+    CAPTURE(lane);
+    const SpringLane expected(before, lane, damping, continues);
+    for (std::uint32_t k = 0; k < BlockOfYarns::length(lane); ++k) {
+      CAPTURE(k);
+      const Vector at = b.x[b.slot_of(k, lane)] + expected.moved(k);
+      CHECK(length(moved[b.slot_of(k, lane)] - at) < 1e-7);
+      if (k + 1 == BlockOfYarns::length(lane)) break;
+      const double multiplier =
+          expected.from[k] + expected.chain.error[k] * length(expected.chain.d[k]);
+      CHECK(std::abs(s.multiplier_of(k, lane) - multiplier) < 3e-8 + 1e-5 * std::abs(multiplier));
+      const double share = std::abs(expected.violation[k]) / 0.1 / SpringYarns::kStrain;
+      if (std::abs(share - 1) > 1e-3) CHECK((s.out[k] >> lane & 1) == (share > 1 ? 1 : 0));
+    }
+  }
+}
+
+TEST_CASE("a yarn of springs and rigid links is solved by its laws as a chain in double") {
+  for (const simd::Isa isa : supported_isas()) {
+    for (const double damping : {0., 3.}) {
+      for (const bool continues : {false, true}) {
+        CAPTURE(text(isa));
+        CAPTURE(damping);
+        CAPTURE(continues);
+        check_spring_yarns(simd::table(isa), damping, continues);
+      }
+    }
+  }
+}
+
+TEST_CASE("springs of yarns that take no part are left, and are not out of tolerance") {
+  for (const simd::Isa isa : supported_isas()) {
+    const simd::Table& table = simd::table(isa);
+    SpringYarns s(table);
+    for (simd::YarnRow& row : s.b.rows) std::ranges::fill(row.compliance, 1e-4f);
+    simd::YarnSpringRelaxation relaxation = s.relaxation(3, false);
+    relaxation.laws.most_compliance = 0;
+    const kernels::AlignedVector<float> before = s.b.u;
+    table.relax_spring_yarns(s.b.yarns(), s.b.block(), s.b.u.data(), s.b.scratch.data(),
+                             relaxation);
+    table.judge_spring_yarns(s.b.yarns(), s.b.block(), s.b.u.data(), s.b.scratch.data(),
+                             relaxation);
+    CHECK(s.b.of_particles(before) == s.b.of_particles(s.b.u));
+    CHECK(std::ranges::all_of(s.out, [](std::uint32_t lanes) { return lanes == 0; }));
   }
 }
 
