@@ -23,8 +23,13 @@ MeshDescription describe_mesh(std::vector<Vec3> vertices,
 
 /// One vertex per particle and one line per constraint.
 Mesh line_mesh(const SceneDescription& scene);
+/// One vertex per particle, these faces, and lines where constraints lead to particles of no face.
+Mesh face_mesh(const SceneDescription& scene, std::vector<std::vector<std::uint32_t>> faces);
+/// The faces with their particles in place of the vertices.
+std::vector<std::vector<std::uint32_t>> particle_faces(const Mesh& mesh);
 
-/// Where the mesh's vertices are now.
-std::vector<Vec3> vertex_positions(const Mesh& mesh, const Cloth& cloth);
+std::vector<Vec3> particle_positions(const Cloth& cloth);
+/// Where the mesh's vertices are if its particles are there.
+std::vector<Vec3> vertex_positions(const Mesh& mesh, const std::vector<Vec3>& particles);
 
 }  // namespace weft::tools

@@ -189,12 +189,55 @@ Result<Mesh> load_mesh(const std::string& text) {
 
 // --------------------------------------------------------------------------------------- joining
 
+constexpr double kGravity = 10;  // m/s^2, as SceneDescription has it
+
 void scale_all(std::vector<Vec3>& points, double scale) {
   for (Vec3& point : points) point = {point.x * scale, point.y * scale, point.z * scale};
 }
 
+std::vector<std::uint32_t> expanded(const std::vector<NumberRange>& ranges) {
+  std::vector<std::uint32_t> numbers;
+  for (const NumberRange& range : ranges) {
+    for (long long i = 0; i < range.count(); ++i)
+      numbers.push_back(static_cast<std::uint32_t>(range.at(i)));
+  }
+  return numbers;
+}
+
+/// The vertices on one side of a seam.
+Result<std::vector<std::uint32_t>> side_of(std::string_view seam, std::string_view side,
+                                           std::size_t vertices) {
+  const auto ranges = parse_ranges(side);
+  if (!ranges) {
+    return Error{fmt::format("--seam: '{}' is not two lists of vertices, like 0-9:29-20", seam)};
+  }
+  for (const NumberRange& range : *ranges) {
+    const long long largest = std::max(range.first, range.last);
+    if (static_cast<std::size_t>(largest) < vertices) continue;
+    return Error{fmt::format("--seam: '{}': there is no vertex {}, the last one is {}", seam,
+                             largest, vertices - 1)};
+  }
+  return expanded(*ranges);
+}
+
+Result<void> sew(std::string_view seam, MeshDescription& description) {
+  const std::size_t colon = std::min(seam.find(':'), seam.size());
+  const std::size_t vertices = description.positions.size();
+  const auto one = side_of(seam, seam.substr(0, colon), vertices);
+  if (!one) return Error{one.error()};
+  const auto other = side_of(seam, seam.substr(std::min(colon + 1, seam.size())), vertices);
+  if (!other) return Error{other.error()};
+  if (one.value().size() != other.value().size()) {
+    return Error{fmt::format("--seam: '{}' sews {} vertices to {}", seam, one.value().size(),
+                             other.value().size())};
+  }
+  for (std::size_t i = 0; i < one.value().size(); ++i)
+    description.seams.push_back({one.value()[i], other.value()[i]});
+  return {};
+}
+
 /// Pins are left out: their rules are in the file's coordinates.
-MeshDescription description_of(const Mesh& mesh, const ObjOptions& options) {
+Result<MeshDescription> description_of(const Mesh& mesh, const ObjOptions& options) {
   MeshDescription description = describe_mesh(mesh.vertices, mesh.faces);
   scale_all(description.positions, options.scale);
   for (const auto& line : mesh.lines) {
@@ -205,6 +248,10 @@ MeshDescription description_of(const Mesh& mesh, const ObjOptions& options) {
   description.material = options.material;
   description.mass = options.mass;
   description.ropes = options.ropes;
+  description.weld_distance = options.weld_distance;
+  for (const std::string& seam : options.seams) {
+    if (auto sewn = sew(seam, description); !sewn) return Error{sewn.error()};
+  }
   return description;
 }
 
@@ -260,13 +307,17 @@ Result<ObjScene> parse_obj(const std::string& text, const ObjOptions& options) {
 
   ObjScene scene;
   scene.mesh = std::move(loaded.value());
-  auto cloth = cloth_from_mesh(description_of(scene.mesh, options));
+  const auto description = description_of(scene.mesh, options);
+  if (!description) return Error{description.error()};
+  auto cloth = cloth_from_mesh(description.value());
   if (!cloth) return Error{cloth.error()};
   scene.mesh.particle_of_vertex = std::move(cloth.value().particle_of_vertex);
-  auto fixed = pinned_particles(options.pin, scene.mesh);
+  auto fixed = pinned_particles(options.pin, scene.mesh, options.up);
   if (!fixed) return Error{fixed.error()};
   scene.description = std::move(cloth.value().scene);
   scene.description.fixed = std::move(fixed.value());
+  scene.description.gravity = {};
+  scene.description.gravity.*options.up = -kGravity;
   scene.counts = cloth.value().counts;
   scale_all(scene.mesh.vertices, options.scale);
   return scene;
@@ -280,16 +331,17 @@ Result<ObjScene> read_obj_file(const std::string& path, const ObjOptions& option
   return scene;
 }
 
-std::string obj_text(const Mesh& mesh, const SceneDescription& scene, const Cloth& cloth) {
+std::string obj_text(const Mesh& mesh, const SceneDescription& scene,
+                     const std::vector<Vec3>& particles) {
   std::string text = "o cloth\n";
-  for (const Vec3& v : vertex_positions(mesh, cloth)) {
+  for (const Vec3& v : vertex_positions(mesh, particles)) {
     text += fmt::format("v {} {} {}\n", v.x, v.y, v.z);
   }
   for (const auto& face : mesh.faces) add_part_text(text, 'f', face);
   for (const auto& line : mesh.lines) add_part_text(text, 'l', line);
   std::size_t next_vertex = mesh.vertices.size() + 1;
   for (const std::uint32_t sphere : scene.spheres) {
-    add_sphere_text(text, sphere, cloth.position(sphere), scene.radii[sphere], next_vertex);
+    add_sphere_text(text, sphere, particles[sphere], scene.radii[sphere], next_vertex);
     next_vertex += (kSphereRings + 1) * kSphereSegments;
   }
   return text;

@@ -22,8 +22,13 @@ namespace weft::tools {
 
 struct ObjOptions {
   /// Which vertices are fixed, in the file's coordinates: "none", "top" (the topmost thousandth of
-  /// the height), one comparison like "y>0.9" or "x<=-1", or vertex numbers from 0: "0,5,7-9".
+  /// the height), one comparison like "y>0.9" or "x<=-1", or vertex numbers from 0: "0,5,7-9";
+  /// several of them with "and" and "or" between, where "and" binds more tightly.
   std::string pin = "none";
+  double Vec3::*up = &Vec3::y;  ///< against gravity
+  double weld_distance = 0;     ///< m, as that of MeshDescription
+  /// Vertices that are sewn, in lists of the same length: "0-9:29-20" sews 0 to 29, 1 to 28, ...
+  std::vector<std::string> seams = {};
   double mass = 1;   ///< kg, shared equally by all particles; without a material
   double scale = 1;  ///< multiplies all coordinates
   Ropes ropes = Ropes::none;
@@ -39,7 +44,8 @@ struct ObjScene {
 Result<ObjScene> parse_obj(const std::string& text, const ObjOptions& options);
 Result<ObjScene> read_obj_file(const std::string& path, const ObjOptions& options);
 
-/// The OBJ text of the mesh and the scene's spheres as they are now.
-std::string obj_text(const Mesh& mesh, const SceneDescription& scene, const Cloth& cloth);
+/// The OBJ text of the mesh and the scene's spheres where the particles are.
+std::string obj_text(const Mesh& mesh, const SceneDescription& scene,
+                     const std::vector<Vec3>& particles);
 
 }  // namespace weft::tools

@@ -30,36 +30,51 @@ Result<void> Outputs::add(const std::string& path) {
   if (ending != ".obj" && ending != ".json") {
     return Error{fmt::format("'{}' does not end in .obj, .pc2 or .json", path)};
   }
+  const Format format = ending == ".obj" ? Format::mesh : Format::scene;
+  if (const auto name = NumberedName::of(path)) return add_series(*name, format);
   auto file = PendingFile::open(path);
   if (!file) return Error{file.error()};
-  (ending == ".obj" ? meshes_ : scenes_).push_back(std::move(file.value()));
+  lasts_.push_back({std::move(file.value()), format});
   return {};
 }
 
-void Outputs::add_frame(const Cloth& cloth) {
+Result<void> Outputs::add_series(const NumberedName& name, Format format) {
+  series_.push_back({name, format});
+  const SceneDescription& scene = source_->description;
+  return write_file(name.with(0),
+                    format == Format::mesh
+                        ? obj_text(source_->mesh, scene, scene.positions)
+                        : scene_text(scene, source_->moves, particle_faces(source_->mesh)));
+}
+
+std::string Outputs::text(Format format, const Cloth& cloth, double elapsed) const {
+  const SceneDescription& scene = source_->description;
+  if (format == Format::mesh) return obj_text(source_->mesh, scene, particle_positions(cloth));
+  return scene_text(present_scene(scene, cloth), present_moves(source_->moves, scene, elapsed),
+                    particle_faces(source_->mesh));
+}
+
+void Outputs::add_frame(const Cloth& cloth, int frame, double elapsed) {
+  for (const Series& series : series_) {
+    if (!written_) break;
+    written_ = write_file(series.name.with(frame), text(series.format, cloth, elapsed));
+  }
   if (motions_.empty()) return;
-  const std::vector<Vec3> points = vertex_positions(source_->mesh, cloth);
+  const std::vector<Vec3> points = vertex_positions(source_->mesh, particle_positions(cloth));
   for (Pc2Writer& motion : motions_) motion.add_sample(points);
 }
 
 void Outputs::add_last(const Cloth& cloth, double elapsed) {
-  for (const PendingFile& mesh : meshes_) {
-    mesh.write(obj_text(source_->mesh, source_->description, cloth));
-  }
-  for (const PendingFile& scene : scenes_) {
-    scene.write(scene_text(present_scene(source_->description, cloth),
-                           present_moves(source_->moves, source_->description, elapsed)));
-  }
+  for (const Last& last : lasts_) last.file.write(text(last.format, cloth, elapsed));
 }
 
 Result<void> Outputs::finish() {
+  if (!written_) return written_;
   for (Pc2Writer& motion : motions_) {
     if (auto finished = motion.finish(); !finished) return finished;
   }
-  for (auto* files : {&meshes_, &scenes_}) {
-    for (PendingFile& file : *files) {
-      if (auto committed = file.commit(); !committed) return committed;
-    }
+  for (Last& last : lasts_) {
+    if (auto committed = last.file.commit(); !committed) return committed;
   }
   return {};
 }

@@ -13,12 +13,32 @@
 namespace weft::tools {
 namespace {
 
+/// Of each vertex, whether a rule is about it.
+using Chosen = std::vector<bool>;
 using Test = std::function<bool(const Vec3&)>;
+
+constexpr double Vec3::*kAxes[] = {&Vec3::x, &Vec3::y, &Vec3::z};
+
+std::string_view without_blanks(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+/// The parts between words like " and ".
+std::vector<std::string_view> parts_of(std::string_view text, std::string_view word) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t found = text.find(word);
+    parts.push_back(without_blanks(text.substr(0, found)));
+    if (found == std::string_view::npos) return parts;
+    text.remove_prefix(found + word.size());
+  }
+}
 
 /// "y>0.9": one axis, one comparison, one number.
 std::optional<Test> comparison(std::string_view rule) {
   if (rule.size() < 3 || rule[0] < 'x' || rule[0] > 'z') return std::nullopt;
-  constexpr double Vec3::*kAxes[] = {&Vec3::x, &Vec3::y, &Vec3::z};
   const auto axis = kAxes[rule[0] - 'x'];
   const bool greater = rule[1] == '>';
   const bool or_equal = rule[2] == '=';
@@ -30,80 +50,105 @@ std::optional<Test> comparison(std::string_view rule) {
   };
 }
 
-Test near_top(const Mesh& mesh) {
+/// The vertices that a particle stands for.
+class Vertices {
+ public:
+  explicit Vertices(const Mesh& mesh) : mesh_(mesh) {}
+  std::size_t count() const { return mesh_.vertices.size(); }
+  bool has_particle(std::size_t vertex) const {
+    return vertex < count() && mesh_.particle_of_vertex[vertex] != kNoIndex;
+  }
+  Chosen matching(const Test& matches) const {
+    Chosen chosen(count());
+    for (std::size_t vertex = 0; vertex < count(); ++vertex)
+      chosen[vertex] = has_particle(vertex) && matches(mesh_.vertices[vertex]);
+    return chosen;
+  }
+
+ private:
+  const Mesh& mesh_;
+};
+
+Test near_top(const Mesh& mesh, double Vec3::*up) {
   constexpr double kFractionOfHeight = 1e-3;
+  const Vertices vertices(mesh);
   double highest = -std::numeric_limits<double>::infinity();
   double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
-    if (mesh.particle_of_vertex[vertex] == kNoIndex) continue;
-    highest = std::max(highest, mesh.vertices[vertex].y);
-    lowest = std::min(lowest, mesh.vertices[vertex].y);
+  for (std::size_t vertex = 0; vertex < vertices.count(); ++vertex) {
+    if (!vertices.has_particle(vertex)) continue;
+    highest = std::max(highest, mesh.vertices[vertex].*up);
+    lowest = std::min(lowest, mesh.vertices[vertex].*up);
   }
-  return [bound = highest - kFractionOfHeight * (highest - lowest)](const Vec3& v) {
-    return v.y >= bound;
+  return [up, bound = highest - kFractionOfHeight * (highest - lowest)](const Vec3& v) {
+    return v.*up >= bound;
   };
 }
 
-/// "7" or "7-9"; nothing if it is neither.
-struct Range {
-  long long first, last;
-};
-std::optional<Range> range(std::string_view text) {
-  const std::size_t dash = text.find('-');
-  const auto first = parse_count(text.substr(0, dash));
-  const auto last = dash == std::string_view::npos ? first : parse_count(text.substr(dash + 1));
-  if (!first || !last || *last < *first) return std::nullopt;
-  return Range{*first, *last};
-}
-
 Error unreadable(std::string_view rule) {
-  return Error{fmt::format(
-      "--pin: '{}' is not none, top, a comparison like y>0.9, or vertex numbers like 0,5,7-9",
-      rule)};
+  return Error{
+      fmt::format("--pin: '{}' is not none, top, a comparison like y>0.9, or vertex "
+                  "numbers like 0,5,7-9, nor several of them joined by and, or",
+                  rule)};
 }
 
-Result<std::set<std::uint32_t>> listed_particles(std::string_view rule, const Mesh& mesh) {
-  std::set<std::uint32_t> particles;
-  for (std::string_view rest = rule;;) {
-    const std::size_t comma = rest.find(',');
-    const auto numbers = range(rest.substr(0, comma));
-    if (!numbers) return unreadable(rule);
-    for (auto vertex = numbers->first; vertex <= numbers->last; ++vertex) {
+Result<Chosen> listed(std::string_view rule, const Vertices& vertices) {
+  const auto ranges = parse_ranges(rule);
+  if (!ranges) return unreadable(rule);
+  Chosen chosen(vertices.count());
+  for (const NumberRange& range : *ranges) {
+    if (range.last < range.first) return unreadable(rule);
+    for (long long vertex = range.first; vertex <= range.last; ++vertex) {
       const auto number = static_cast<std::size_t>(vertex);
-      if (number >= mesh.vertices.size() || mesh.particle_of_vertex[number] == kNoIndex) {
+      if (!vertices.has_particle(number)) {
         return Error{fmt::format("--pin: '{}': no face has a vertex {}", rule, vertex)};
       }
-      particles.insert(mesh.particle_of_vertex[number]);
+      chosen[number] = true;
     }
-    if (comma == std::string_view::npos) return particles;
-    rest.remove_prefix(comma + 1);
   }
+  return chosen;
 }
 
-Result<std::set<std::uint32_t>> matching_particles(std::string_view rule, const Mesh& mesh,
-                                                   const Test& matches) {
-  std::set<std::uint32_t> particles;
-  for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
-    const std::uint32_t particle = mesh.particle_of_vertex[vertex];
-    if (particle != kNoIndex && matches(mesh.vertices[vertex])) particles.insert(particle);
-  }
-  if (particles.empty()) return Error{fmt::format("--pin: '{}' matches no vertex", rule)};
-  return particles;
+Result<Chosen> chosen_by_one(std::string_view rule, const Mesh& mesh, double Vec3::*up) {
+  const Vertices vertices(mesh);
+  if (rule == "top") return vertices.matching(near_top(mesh, up));
+  if (const auto test = comparison(rule)) return vertices.matching(*test);
+  return listed(rule, vertices);
 }
 
-Result<std::set<std::uint32_t>> chosen_particles(std::string_view rule, const Mesh& mesh) {
-  if (rule == "top") return matching_particles(rule, mesh, near_top(mesh));
-  if (const auto test = comparison(rule)) return matching_particles(rule, mesh, *test);
-  return listed_particles(rule, mesh);
+/// "top and x<0.2"
+Result<Chosen> chosen_by_all(std::string_view rules, const Mesh& mesh, double Vec3::*up) {
+  Chosen chosen(mesh.vertices.size(), true);
+  for (const std::string_view rule : parts_of(rules, " and ")) {
+    const auto by_one = chosen_by_one(rule, mesh, up);
+    if (!by_one) return by_one;
+    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = chosen[i] && by_one.value()[i];
+  }
+  return chosen;
+}
+
+Result<Chosen> chosen_by_any(std::string_view rule, const Mesh& mesh, double Vec3::*up) {
+  Chosen chosen(mesh.vertices.size());
+  for (const std::string_view rules : parts_of(rule, " or ")) {
+    const auto by_all = chosen_by_all(rules, mesh, up);
+    if (!by_all) return by_all;
+    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = chosen[i] || by_all.value()[i];
+  }
+  return chosen;
 }
 
 }  // namespace
 
-Result<std::vector<std::uint32_t>> pinned_particles(std::string_view rule, const Mesh& mesh) {
+Result<std::vector<std::uint32_t>> pinned_particles(std::string_view rule, const Mesh& mesh,
+                                                    double Vec3::*up) {
   if (rule == "none") return std::vector<std::uint32_t>{};
-  const auto chosen = chosen_particles(rule, mesh);
+  const auto chosen = chosen_by_any(rule, mesh, up);
   if (!chosen) return Error{chosen.error()};
-  return std::vector<std::uint32_t>(chosen.value().begin(), chosen.value().end());
+  std::set<std::uint32_t> particles;
+  for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
+    if (chosen.value()[vertex]) particles.insert(mesh.particle_of_vertex[vertex]);
+  }
+  if (particles.empty()) return Error{fmt::format("--pin: '{}' matches no vertex", rule)};
+  return std::vector<std::uint32_t>(particles.begin(), particles.end());
 }
 
 }  // namespace weft::tools

@@ -13,6 +13,8 @@ namespace weft::tools {
 
 /// The numbers of the fixed particles, ascending. A rule that cannot be read or that matches no
 /// particle (other than "none") is an error.
-Result<std::vector<std::uint32_t>> pinned_particles(std::string_view rule, const Mesh& mesh);
+/// up: the coordinate that "top" is about.
+Result<std::vector<std::uint32_t>> pinned_particles(std::string_view rule, const Mesh& mesh,
+                                                    double Vec3::*up = &Vec3::y);
 
 }  // namespace weft::tools

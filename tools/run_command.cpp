@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "tools/interrupt.h"
 #include "tools/json_output.h"
 #include "tools/outputs.h"
+#include "tools/parse.h"
 #include "tools/progress.h"
 #include "tools/run_report.h"
 #include "tools/runner.h"
@@ -29,17 +29,21 @@ struct RunOptions {
   SceneOptions scene;
   SolverOptions solver;
   RunPlan plan;
+  std::optional<std::string> dt;
   std::vector<std::string> out;
   std::optional<std::string> json;
 };
 
-Result<void> check_plan(const RunPlan& plan) {
-  if (!std::isfinite(plan.dt) || plan.dt <= 0) {
-    return Error{fmt::format("--dt: {} is not a number above 0", plan.dt)};
+Result<RunPlan> plan_of(const RunOptions& options) {
+  RunPlan plan = options.plan;
+  if (options.dt) {
+    const auto seconds = parse_seconds("--dt", *options.dt);
+    if (!seconds) return Error{seconds.error()};
+    plan.dt = seconds.value();
   }
   if (plan.steps < 1) return Error{fmt::format("--steps: {} is below 1", plan.steps)};
   if (plan.repeat < 1) return Error{fmt::format("--repeat: {} is below 1", plan.repeat)};
-  return {};
+  return plan;
 }
 
 /// Two outputs of one name, however it is spelt, would overwrite each other.
@@ -64,18 +68,26 @@ Result<void> check_destinations(const RunOptions& options) {
 /// What is known to be possible before anything runs.
 struct Prepared {
   SceneSource source;
+  std::shared_ptr<const Model> model;
   Settings settings;
+  RunPlan plan;
   std::optional<JsonOutput> json;
 };
 
 Result<Prepared> prepare(const RunOptions& options) {
-  if (auto plan = check_plan(options.plan); !plan) return Error{plan.error()};
+  auto plan = plan_of(options);
+  if (!plan) return Error{plan.error()};
   if (auto names = check_destinations(options); !names) return Error{names.error()};
   const auto settings = settings_of(options.solver);
   if (!settings) return Error{settings.error()};
   auto source = load_scene(options.scene);
   if (!source) return Error{source.error()};
-  Prepared prepared{std::move(source.value()), settings.value(), std::nullopt};
+  const auto model = model_of(source.value());
+  if (!model) return Error{model.error()};
+  plan.value().moves = source.value().moves;
+  plan.value().up = source.value().up;
+  Prepared prepared{std::move(source.value()), model.value(), settings.value(),
+                    std::move(plan.value()), std::nullopt};
   if (options.json) {
     auto json = JsonOutput::open(*options.json);
     if (!json) return Error{fmt::format("--json: {}", json.error())};
@@ -84,14 +96,14 @@ Result<Prepared> prepare(const RunOptions& options) {
   return prepared;
 }
 
-Result<RunSummary> run_and_record(const Prepared& prepared, RunPlan plan, Outputs& outputs) {
+Result<RunSummary> run_and_record(const Prepared& prepared, Outputs& outputs) {
   ProgressLine progress;
+  RunPlan plan = prepared.plan;
   bool stopped = false;
   plan.stop = [&stopped] { return stopped = OrderlyInterrupt::signal() != 0; };
-  plan.moves = prepared.source.moves;
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
     const bool is_done = committed(report.status);
-    if (is_done) outputs.add_frame(cloth);
+    if (is_done) outputs.add_frame(cloth, frame, plan.dt * frame);
     if (frame == plan.steps || !is_done || stopped) {
       outputs.add_last(cloth, plan.dt * (is_done ? frame : frame - 1));
     }
@@ -99,7 +111,7 @@ Result<RunSummary> run_and_record(const Prepared& prepared, RunPlan plan, Output
     progress.show(fmt::format("{} frame {}/{}, strain {}", bar(frame, plan.steps, 30), frame,
                               plan.steps, measured_percent(report.max_strain)));
   };
-  return run(prepared.source.description, prepared.settings, plan, on_frame);
+  return run(prepared.model, prepared.settings, plan, on_frame);
 }
 
 /// Files are those of the first run, the report is that of the fastest.
@@ -122,15 +134,15 @@ int interrupted(const RunSummary& summary, const RunPlan& plan) {
 Result<int> run_verb(const RunOptions& options) {
   auto prepared = prepare(options);
   if (!prepared) return Error{prepared.error()};
-  auto& [source, settings, json] = prepared.value();
-  if (!source.note.empty()) print_message(fmt::format("weft: {}\n", source.note));
+  auto& [source, model, settings, plan, json] = prepared.value();
+  for (const std::string& note : source.notes) print_message(fmt::format("weft: {}\n", note));
   const OrderlyInterrupt interrupt;
   auto outputs = Outputs::open(options.out, source);
   if (!outputs) return Error{outputs.error()};
-  auto summary = run_and_record(prepared.value(), options.plan, outputs.value());
+  auto summary = run_and_record(prepared.value(), outputs.value());
   if (!summary) return Error{summary.error()};
 
-  const RunReport report{source.name, settings, options.plan, summary.value()};
+  const RunReport report{source.name, settings, plan, summary.value()};
   if (auto finished = outputs.value().finish(); !finished) {
     return Error{fmt::format("--out: {}", finished.error())};
   }
@@ -143,7 +155,7 @@ Result<int> run_verb(const RunOptions& options) {
     const bool hung_up = OrderlyInterrupt::signal() == SIGHUP;  // and nobody reads any more
     if (!printed && !hung_up) return Error{printed.error()};
   }
-  if (summary.value().stopped) return interrupted(summary.value(), options.plan);
+  if (summary.value().stopped) return interrupted(summary.value(), plan);
   if (summary.value().reached_tolerance()) return kDone;
   return missed_tolerance(text(*summary.value().first_miss));
 }
@@ -157,7 +169,7 @@ void add_run_command(CommandLine& line) {
     return result ? result.value() : refuse(result.error());
   });
   add_scene_options(verb, options->scene);
-  verb.option("--dt", options->plan.dt, "s, one frame (default 0.01)");
+  verb.option("--dt", options->dt, "s, one frame: 0.01 (default), or as 1/60");
   verb.option("--steps", options->plan.steps, "frames to run (default 200)");
   verb.option("--repeat", options->plan.repeat,
               "report the fastest of this many runs, after one to warm up (default 1: a "
@@ -165,7 +177,8 @@ void add_run_command(CommandLine& line) {
   add_solver_options(verb, options->solver);
   verb.repeated("--out", options->out,
                 "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
-                "frames, .json the last state as a scene");
+                "frames, .json the last state as a scene; frame_%04d.obj or .json a file for the "
+                "start and each frame");
   verb.option("--json", options->json, "write the report to a file, or - for stdout");
 }
 

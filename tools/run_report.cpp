@@ -34,6 +34,10 @@ double bytes_per_particle(const RunSummary& summary) {
   return static_cast<double>(summary.bytes) / static_cast<double>(summary.model.particles);
 }
 
+char axis(const RunPlan& plan) { return plan.up == &Vec3::z ? 'z' : 'y'; }
+/// "lowest_y"
+std::string lowest_name(const RunPlan& plan) { return fmt::format("lowest_{}", axis(plan)); }
+
 std::string_view isa(const RunReport& report) {
   return report.settings.backend == Backend::reference ? "scalar" : name(report.summary.isa);
 }
@@ -154,7 +158,7 @@ Json to_json(const RunReport& report) {
       {"motion_tolerance", settings.motion_tolerance},
       {"motion_error", summary.mean_motion_error},
       {"max_motion_error", summary.max_motion_error},
-      {"lowest_y", summary.lowest_y},
+      {lowest_name(report.plan), summary.lowest},
       {"state_hash", fmt::format("{:016x}", summary.state_hash)},
       {"bytes_per_particle", bytes_per_particle(summary)},
       {"stages", stages_json(summary)},
@@ -185,8 +189,8 @@ std::string to_table(const RunReport& report) {
       settings.substeps != 1
           ? fmt::format(" in {:.3g} substeps each", mean(summary.substeps, summary.frames))
           : "";
-  row("frames", fmt::format("{} of {} s{}, status {}", summary.frames, report.plan.dt, in_substeps,
-                            name(summary.status)));
+  row("frames", fmt::format("{} of {:.6g} s{}, status {}", summary.frames, report.plan.dt,
+                            in_substeps, name(summary.status)));
   row("time",
       fmt::format("{:.4g} ms per frame, {:.3g} the longest, {} times real time, at max {} {}",
                   1e3 * summary.seconds_per_frame(), 1e3 * summary.longest_step_seconds,
@@ -218,7 +222,8 @@ std::string to_table(const RunReport& report) {
     row("motion", fmt::format("{:.3g} m/s away from the true one by estimate, {:.3g} at most",
                               summary.mean_motion_error, summary.max_motion_error));
   }
-  row("state", fmt::format("{:016x}, lowest y {:.6g} m", summary.state_hash, summary.lowest_y));
+  row("state", fmt::format("{:016x}, lowest {} {:.6g} m", summary.state_hash, axis(report.plan),
+                           summary.lowest));
   return text;
 }
 

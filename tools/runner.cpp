@@ -19,10 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double lowest_y(const Cloth& cloth) {
+double lowest_of(const Cloth& cloth, double Vec3::*up) {
   double lowest = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
-    lowest = std::min(lowest, cloth.position(i).y);
+    lowest = std::min(lowest, cloth.position(i).*up);
   }
   return lowest;
 }
@@ -75,13 +75,13 @@ struct Errors {
   double square_strain_sum = 0;  ///< of the frames' mean squares
 };
 
-void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth) {
+void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth, double Vec3::*up) {
   const Strain strain = cloth.strain();
   summary.max_strain = std::max(summary.max_strain, strain.max);
   errors.strain_sum += strain.max;
   errors.square_strain_sum += strain.rms * strain.rms;
   summary.max_penetration = std::max(summary.max_penetration, cloth.max_penetration());
-  summary.lowest_y = std::min(summary.lowest_y, lowest_y(cloth));
+  summary.lowest = std::min(summary.lowest, lowest_of(cloth, up));
   const double gain = cloth.energy().total() - summary.energy_start - summary.pin_work;
   summary.energy_gain = summary.frames == 1 ? gain : std::max(summary.energy_gain, gain);
 }
@@ -110,7 +110,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   RunSummary summary;
   Errors errors;
   summary.energy_start = cloth.energy().total();
-  summary.lowest_y = std::numeric_limits<double>::infinity();
+  summary.lowest = std::numeric_limits<double>::infinity();
   while (summary.frames < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
          committed(summary.status) && !summary.stopped) {
     if (auto sent = pins.send(cloth, (summary.frames + 1) * plan.dt); !sent) {
@@ -125,7 +125,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     add_frame(summary, report.value());
     summary.step_seconds += elapsed.count();
     summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
-    add_errors(summary, errors, cloth);
+    add_errors(summary, errors, cloth, plan.up);
     summary.stopped = plan.stop && plan.stop();
     if (on_frame) on_frame(summary.frames, cloth, report.value());
   }

@@ -31,6 +31,7 @@ struct RunPlan {
   /// Of fixed particles, each in one move at most. Before each frame they are sent to where they
   /// are at its end.
   std::vector<PinMove> moves = {};
+  double Vec3::*up = &Vec3::y;  ///< what RunSummary::lowest is measured along
 };
 
 /// Called once per frame, frames counted from 1, with the state that the frame reached.
@@ -100,7 +101,7 @@ struct RunSummary {
   double energy_lost = 0;        ///< J, over all frames (StepReport)
   double max_motion_error = 0;   ///< m/s, over all frames (StepReport)
   double mean_motion_error = 0;  ///< m/s, mean over the frames
-  double lowest_y = 0;           ///< m, over all frames and particles
+  double lowest = 0;             ///< m along RunPlan::up, over all frames and particles
 
   std::uint64_t state_hash = 0;  ///< of the last frame
   std::size_t bytes = 0;         ///< of the cloth and its model

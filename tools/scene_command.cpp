@@ -24,9 +24,10 @@ Result<void> write_scene(const WriteOptions& options) {
   }
   const auto source = load_scene(options.scene);
   if (!source) return Error{source.error()};
-  const auto& [name, description, mesh, moves, note] = source.value();
-  if (auto model = build_model(description); !model) return Error{model.error()};
-  const auto written = write_file(options.out, scene_text(description, moves));
+  if (auto model = model_of(source.value()); !model) return Error{model.error()};
+  const auto written =
+      write_file(options.out, scene_text(source.value().description, source.value().moves,
+                                         particle_faces(source.value().mesh)));
   if (!written) return Error{fmt::format("--out: {}", written.error())};
   return {};
 }

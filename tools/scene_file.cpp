@@ -18,12 +18,6 @@ namespace {
 
 // --------------------------------------------------------------------------------------- reading
 
-ConstraintKind read_kind(const Json& json, const std::string& place) {
-  if (json == "distance") return ConstraintKind::distance;
-  if (json == "rope") return ConstraintKind::rope;
-  refuse(place, "\"distance\" or \"rope\"", json);
-}
-
 /// A rest length that the file leaves out becomes 0 here: legal lengths are above 0.
 constexpr double kMeasured = 0;
 
@@ -68,6 +62,22 @@ void share_total_mass(SceneDescription& scene, const Json& json) {
   scene.masses.assign(scene.positions.size(), total / count);
 }
 
+std::vector<std::uint32_t> read_face(const Json& json, const std::string& place) {
+  if (!json.is_array() || json.size() < 3) refuse(place, "three particles or more", json);
+  return read_array(json, place, read_index);
+}
+
+Faces read_faces(const Json& json, std::size_t particles) {
+  Faces faces = read_array(json, "faces", read_face);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (std::size_t k = 0; k < faces[i].size(); ++k) {
+      if (faces[i][k] < particles) continue;
+      throw Refused{fmt::format("faces[{}][{}]: there is no particle {}", i, k, faces[i][k])};
+    }
+  }
+  return faces;
+}
+
 void read_key(const std::string& key, const Json& json, SceneDescription& scene) {
   if (key == "gravity") {
     scene.gravity = read_vector(json, key);
@@ -81,6 +91,8 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.fixed = read_array(json, key, read_index);
   } else if (key == "constraints") {
     scene.constraints = read_array(json, key, read_constraint);
+  } else if (key == "membrane") {
+    scene.membrane = read_array(json, key, read_membrane);
   } else if (key == "bending") {
     scene.bending = read_array(json, key, read_bending);
   } else if (key == "anchors") {
@@ -93,7 +105,7 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.spheres = read_array(json, key, read_index);
   } else if (key == "radii") {
     scene.radii = read_array(json, key, read_number);
-  } else if (key != "total_mass" && key != "moves") {
+  } else if (key != "total_mass" && key != "moves" && key != "faces") {
     throw Refused{fmt::format("unknown key {}", in_quotes(key))};
   }
 }
@@ -110,9 +122,11 @@ SceneFile read_scene(const Json& json) {
     share_total_mass(scene, json["total_mass"]);
   }
   measure_rest_lengths(scene);
-  std::vector<PinMove> moves;
-  if (json.contains("moves")) moves = read_moves(json["moves"], scene);
-  return {std::move(scene), std::move(moves)};
+  SceneFile file;
+  if (json.contains("moves")) file.moves = read_moves(json["moves"], scene);
+  if (json.contains("faces")) file.faces = read_faces(json["faces"], scene.positions.size());
+  file.description = std::move(scene);
+  return file;
 }
 
 /// Of two values for one key the parser would drop one in silence. Only keys of the scene itself,
@@ -179,13 +193,15 @@ Result<SceneFile> read_scene_file(const std::string& path) {
   return scene;
 }
 
-std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves) {
+std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves,
+                       const Faces& faces) {
   std::string text = fmt::format("{{\n\"gravity\": {}", vector_row(scene.gravity));
   add_rows(text, "positions", scene.positions, vector_row);
   add_rows(text, "velocities", scene.velocities, vector_row);
   add_numbers(text, "masses", scene.masses);
   add_numbers(text, "fixed", scene.fixed);
   add_rows(text, "constraints", scene.constraints, constraint_row);
+  add_rows(text, "membrane", scene.membrane, membrane_row);
   add_rows(text, "bending", scene.bending, bending_row);
   add_rows(text, "anchors", scene.anchors, anchor_row);
   if (has_damping(scene.damping)) {
@@ -195,6 +211,7 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   add_numbers(text, "spheres", scene.spheres);
   add_numbers(text, "radii", scene.radii);
   add_rows(text, "moves", moves, move_row);
+  add_rows(text, "faces", faces, [](const auto& face) { return Json(face).dump(); });
   return text + "\n}\n";
 }
 

@@ -57,7 +57,33 @@ std::array<std::uint32_t, 3> read_triangle(const Json& json, const std::string& 
   return {corner(0), corner(1), corner(2)};
 }
 
+std::array<double, 2> read_pair(const Json& json, const std::string& place) {
+  if (!json.is_array() || json.size() != 2) refuse(place, "[along warp, along weft]", json);
+  return {read_number(json[0], place + "[0]"), read_number(json[1], place + "[1]")};
+}
+
 }  // namespace
+
+ConstraintKind read_kind(const Json& json, const std::string& place) {
+  if (json == "distance") return ConstraintKind::distance;
+  if (json == "rope") return ConstraintKind::rope;
+  refuse(place, "\"distance\" or \"rope\"", json);
+}
+
+MembraneElement read_membrane(const Json& json, const std::string& place) {
+  check_keys(json, place, {"particles", "rest", "warp", "weft", "shear", "kind"});
+  check_given(json, place, {"particles", "rest"});
+  MembraneElement element;
+  element.particles = read_triangle(json["particles"], within(place, "particles"));
+  const auto rest = read_array(json["rest"], within(place, "rest"), read_pair);
+  if (rest.size() != 3) refuse(within(place, "rest"), "three corners", json["rest"]);
+  std::ranges::copy(rest, element.rest.begin());
+  read_if_given(json, place, "warp", element.warp);
+  read_if_given(json, place, "weft", element.weft);
+  read_if_given(json, place, "shear", element.shear);
+  if (json.contains("kind")) element.kind = read_kind(json["kind"], within(place, "kind"));
+  return element;
+}
 
 BendingElement read_bending(const Json& json, const std::string& place) {
   check_keys(json, place, {"particles", "weights", "rest", "compliance"});
@@ -125,6 +151,15 @@ std::string anchor_row(const Anchor& anchor) {
   if (n.x != 0 || n.y != 0 || n.z != 0) row["normal"] = vector(n);
   if (anchor.backstop_distance > 0) row["backstop_distance"] = anchor.backstop_distance;
   if (anchor.backstop_radius > 0) row["backstop_radius"] = distance_json(anchor.backstop_radius);
+  return row.dump();
+}
+
+std::string membrane_row(const MembraneElement& element) {
+  Json row{{"particles", element.particles}, {"rest", element.rest}};
+  if (element.warp > 0) row["warp"] = element.warp;
+  if (element.weft > 0) row["weft"] = element.weft;
+  if (element.shear > 0) row["shear"] = element.shear;
+  if (element.kind == ConstraintKind::rope) row["kind"] = "rope";
   return row.dump();
 }
 

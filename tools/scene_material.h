@@ -1,4 +1,4 @@
-/// What a scene file says of a material, bending elements, damping and air, and of anchors.
+/// What a scene file says of fabric: triangles of it, bending elements, damping, air and anchors.
 #pragma once
 
 #include <weft/weft.h>
@@ -10,11 +10,14 @@
 namespace weft::tools {
 
 /// These throw Refused (json_reading.h).
+ConstraintKind read_kind(const Json& json, const std::string& place);
+MembraneElement read_membrane(const Json& json, const std::string& place);
 BendingElement read_bending(const Json& json, const std::string& place);
 Damping read_damping(const Json& json, const std::string& place);
 Air read_air(const Json& json, const std::string& place);
 Anchor read_anchor(const Json& json, const std::string& place);
 
+std::string membrane_row(const MembraneElement& element);
 std::string bending_row(const BendingElement& element);
 std::string anchor_row(const Anchor& anchor);
 /// Whether they differ from what a description has by itself.

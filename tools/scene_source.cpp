@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "tools/file_ending.h"
 #include "tools/obj_mesh.h"
@@ -50,6 +51,9 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--pin", options.pin.has_value(), kObj},
       {"--mass", options.mass.has_value(), kObj},
       {"--scale", options.scale.has_value(), kObj},
+      {"--up", options.up.has_value(), kObj},
+      {"--weld", options.weld.has_value(), kObj},
+      {"--seam", !options.seams.empty(), kObj},
       {"--ropes", options.ropes.has_value(), kCloth},
       {"--diagonals", options.diagonals, kBuiltInCloth},
       {given_option(options.material), is_given(options.material), kCloth},
@@ -121,18 +125,48 @@ Result<SceneSource> load_scene_file(const SceneOptions& options) {
   if (auto checked = check_options(options, {}); !checked) return Error{checked.error()};
   auto read = read_scene_file(options.scene);
   if (!read) return Error{read.error()};
-  auto& [description, moves] = read.value();
-  Mesh mesh = line_mesh(description);
+  auto& [description, moves, faces] = read.value();
+  Mesh mesh = face_mesh(description, std::move(faces));
   return SceneSource{options.scene, std::move(description), std::move(mesh), std::move(moves)};
 }
 
-/// Of a mesh whose edges are rigid and enclose triangles, more of them than quads.
-std::string note_of(const MeshCounts& counts, const ObjOptions& options) {
+/// Whether edges are rigid and enclose triangles, more of them than quads.
+bool locks(const MeshCounts& counts, const ObjOptions& options) {
   const std::size_t triangles = counts.triangles + 2 * counts.recognised_quads;
   const std::size_t quads = counts.quads - counts.recognised_quads;
-  if (options.material || options.ropes == Ropes::all || triangles <= quads) return {};
-  return "triangles of rigid edges lock, so that the cloth hardly folds: ask for --material, or "
-         "--ropes all";
+  return !options.material && options.ropes != Ropes::all && triangles > quads;
+}
+
+/// m, the largest of the three extents.
+double size_of(const SceneDescription& scene) {
+  double size = 0;
+  for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    const auto [least, most] = std::ranges::minmax(scene.positions, {}, axis);
+    size = std::max(size, most.*axis - least.*axis);
+  }
+  return size;
+}
+
+std::vector<std::string> notes_of(const ObjScene& scene, const ObjOptions& options) {
+  constexpr double kLargestCloth = 20;  // m; clothes and curtains in centimetres are larger
+  std::vector<std::string> notes;
+  if (locks(scene.counts, options)) {
+    notes.emplace_back(
+        "triangles of rigid edges lock, so that the cloth hardly folds: ask for --material, or "
+        "--ropes all");
+  }
+  if (const double size = size_of(scene.description); size > kLargestCloth) {
+    notes.push_back(fmt::format(
+        "the mesh is {:.3g} m large: if its coordinates are in centimetres, ask for --scale {}",
+        size, 0.01 * options.scale));
+  }
+  return notes;
+}
+
+Result<double Vec3::*> up_of(const std::optional<std::string>& given) {
+  if (!given || *given == "y") return &Vec3::y;
+  if (*given == "z") return &Vec3::z;
+  return Error{fmt::format("--up: '{}' is not one of y, z", *given)};
 }
 
 Result<SceneSource> load_obj(const SceneOptions& options) {
@@ -142,6 +176,11 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   values.pin = options.pin.value_or(values.pin);
   values.mass = options.mass.value_or(values.mass);
   values.scale = options.scale.value_or(values.scale);
+  values.weld_distance = options.weld.value_or(values.weld_distance);
+  values.seams = options.seams;
+  const auto up = up_of(options.up);
+  if (!up) return Error{up.error()};
+  values.up = up.value();
   const auto cloth = cloth_of(options, Ropes::diagonals);
   if (!cloth) return Error{cloth.error()};
   values.ropes = cloth.value().ropes;
@@ -151,11 +190,26 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   if (!scene) return Error{scene.error()};
   ObjScene& obj = scene.value();
   if (auto blown = blow(cloth.value().wind, obj.description); !blown) return Error{blown.error()};
-  return SceneSource{options.scene,
-                     std::move(obj.description),
-                     std::move(obj.mesh),
-                     {},
-                     note_of(obj.counts, values)};
+  SceneSource source{options.scene, {}, {}};
+  source.notes = notes_of(obj, values);
+  source.up = values.up;
+  source.description = std::move(obj.description);
+  source.mesh = std::move(obj.mesh);
+  return source;
+}
+
+bool is_held(const SceneDescription& scene) {
+  const std::set<std::uint32_t> fixed(scene.fixed.begin(), scene.fixed.end());
+  return !scene.positions.empty() && fixed.size() == scene.positions.size();
+}
+
+Result<SceneSource> load_as_it_is(const SceneOptions& options) {
+  if (is_built_in(options.scene)) return load_built_in(options);
+  const std::string ending = file_ending(options.scene);
+  if (ending == ".json") return load_scene_file(options);
+  if (ending == ".obj") return load_obj(options);
+  return Error{fmt::format("SCENE: '{}' is not one of {}, nor a .json or .obj file", options.scene,
+                           built_in_names())};
 }
 
 }  // namespace
@@ -170,24 +224,40 @@ void add_scene_options(Verb verb, SceneOptions& options) {
   verb.option("--end-mass", options.end_mass, "chain: kg of the last particle (default 1)");
   verb.option("--pin", options.pin,
               ".obj: fixed vertices; none (default), top, a comparison of the file's "
-              "coordinates like 'y>0.9' or 'x<=-1', or vertex numbers from 0 like 0,5,7-9");
+              "coordinates like 'y>0.9' or 'x<=-1', or vertex numbers from 0 like 0,5,7-9; "
+              "several with and, or between: 'top and x<0.1 or 17'");
   verb.option("--mass", options.mass, ".obj: kg of the whole mesh (default 1)");
   verb.option("--scale", options.scale, ".obj: multiplies all coordinates (default 1)");
+  verb.option("--up", options.up, ".obj: y (default) or z, where top is and gravity comes from");
+  verb.option("--weld", options.weld,
+              ".obj: m, vertices as near as this are one (default 0: those at one place)");
+  verb.repeated("--seam", options.seams,
+                ".obj: vertices that are sewn together, two lists from 0 like 0-9:29-20; may be "
+                "repeated");
   verb.option_or_flag("--ropes", options.ropes, "",
                       "what only pulls, all or diagonals (of four-sided faces; without a "
                       "material only ropes join them); alone: built-in scenes all, .obj diagonals");
   add_material_options(verb, options.material);
+  add_world_options(verb, options.world);
   verb.flag("--diagonals", options.diagonals,
             "built-in scenes but chain: the same as --ropes diagonals");
 }
 
 Result<SceneSource> load_scene(const SceneOptions& options) {
-  if (is_built_in(options.scene)) return load_built_in(options);
-  const auto ending = file_ending(options.scene);
-  if (ending == ".json") return load_scene_file(options);
-  if (ending == ".obj") return load_obj(options);
-  return Error{fmt::format("SCENE: '{}' is not one of {}, nor a .json or .obj file", options.scene,
-                           built_in_names())};
+  auto source = load_as_it_is(options);
+  if (!source) return source;
+  auto surrounded = surround(options.world, source.value().description);
+  if (!surrounded) return Error{surrounded.error()};
+  if (is_held(source.value().description)) {
+    source.value().notes.emplace_back("every particle is fixed, so that nothing can move");
+  }
+  return source;
+}
+
+Result<std::shared_ptr<const Model>> model_of(const SceneSource& source) {
+  auto model = build_model(source.description);
+  if (model || is_built_in(source.name)) return model;
+  return Error{fmt::format("{}: {}", source.name, model.error())};
 }
 
 }  // namespace weft::tools

@@ -3,6 +3,7 @@
 
 #include <weft/weft.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "tools/material_options.h"
 #include "tools/mesh.h"
 #include "tools/pin_moves.h"
+#include "tools/world_options.h"
 
 namespace weft::tools {
 
@@ -24,8 +26,12 @@ struct SceneOptions {
   std::optional<std::string> pin;
   std::optional<double> mass;
   std::optional<double> scale;
+  std::optional<std::string> up;
+  std::optional<double> weld;
+  std::vector<std::string> seams;
   std::optional<std::string> ropes;
   MaterialOptions material;
+  WorldOptions world;
   bool diagonals = false;
 };
 
@@ -36,9 +42,12 @@ struct SceneSource {
   SceneDescription description;
   Mesh mesh;
   std::vector<PinMove> moves = {};
-  std::string note = {};  ///< one line for whoever runs it, or empty
+  std::vector<std::string> notes = {};  ///< for whoever runs it, a line each
+  double Vec3::*up = &Vec3::y;          ///< what heights are measured along
 };
 
 Result<SceneSource> load_scene(const SceneOptions& options);
+/// An error names the file.
+Result<std::shared_ptr<const Model>> model_of(const SceneSource& source);
 
 }  // namespace weft::tools

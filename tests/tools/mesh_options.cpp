@@ -92,5 +92,54 @@ TEST_CASE("whoever runs rigid triangles is told what to ask for") {
   CHECK(err(square).empty());
 }
 
+TEST_CASE("whoever runs a mesh in centimetres, or one that cannot move, is told so") {
+  const TemporaryFolder folder;
+  const std::string large =
+      folder.write("large.obj", "v 0 0 0\nv 90 0 0\nv 90 170 0\nv 0 170 0\nf 1 2 3 4\n");
+  const auto err = [&](const std::string& options) {
+    return run_program(folder, "run --steps 1 " + options).err;
+  };
+  CHECK(err(large) ==
+        "weft: the mesh is 170 m large: if its coordinates are in centimetres, ask for --scale "
+        "0.01\n");
+  CHECK(err(large + " --scale 0.01").empty());
+  CHECK(err(large + " --scale 0.01 --pin top").empty());
+  CHECK(err(large + " --scale 0.01 --pin 'y<1 or top'") ==
+        "weft: every particle is fixed, so that nothing can move\n");
+}
+
+TEST_CASE("errors of a file name the file, also those of what is in it") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write(
+      "apart.json",
+      R"({"positions": [[0,0,0],[1,0,0]], "total_mass": 1, "constraints": [[0, 7, 1]]})");
+  const std::string mesh = folder.write("square.obj", kSquare);
+  for (const std::string& arguments : {"run " + scene, "scene " + scene + " --out x.json"}) {
+    CAPTURE(arguments);
+    CHECK(run_program(folder, arguments).err.starts_with("weft: " + scene + ": constraints[0]"));
+  }
+  for (const std::string options :
+       {"--pin 77", "--seam 0:77", "--weld -1", "--mass 0", "--scale -1"}) {
+    CAPTURE(options);
+    const Outcome outcome = run_program(folder, "run " + mesh + ' ' + options);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.err.starts_with("weft: " + mesh + ": "));
+  }
+  CHECK(run_program(folder, "run " + mesh + " --up x").err ==
+        "weft: --up: 'x' is not one of y, z\n");
+  CHECK(run_program(folder, "run hang --weld 1").err ==
+        "weft: --weld: only for .obj meshes, not for 'hang'\n");
+}
+
+TEST_CASE("a mesh whose z is up hangs along z, and its report says so") {
+  const TemporaryFolder folder;
+  const std::string wall = folder.write(
+      "wall.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 1 0 2\nv 0 0 2\nf 1 2 3 4\nf 4 3 5 6\n");
+  const auto report = report_of(folder, wall + " --up z --pin top --steps 5 --dt 1/60");
+  CHECK(report["dt"] == 1.0 / 60);
+  CHECK(report["lowest_z"] == doctest::Approx(0).epsilon(0.03));
+  CHECK_FALSE(report.contains("lowest_y"));
+}
+
 }  // namespace
 }  // namespace weft::tools

@@ -137,6 +137,59 @@ TEST_CASE("top is the highest thousandth") {
   CHECK(parse(uneven, {.pin = "top"}).description.fixed == std::vector<std::uint32_t>{2, 3});
 }
 
+TEST_CASE("pin rules may be joined: or adds, and takes away, and binds more tightly") {
+  CHECK(pinned("top and x<1") == std::vector<std::uint32_t>{3});
+  CHECK(pinned("x>=2 or 0") == std::vector<std::uint32_t>{0, 4, 5});
+  CHECK(pinned("x<1 and y<0.5 or top and x>1") == std::vector<std::uint32_t>{0, 5});
+  CHECK(pinned("top and x<1 or  0,1 ") == std::vector<std::uint32_t>{0, 1, 3});
+  CHECK(error_of(kTwoSquares, {.pin = "top and x>5"}) == "--pin: 'top and x>5' matches no vertex");
+  CHECK(error_of(kTwoSquares, {.pin = "top or 99"}) == "--pin: '99': no face has a vertex 99");
+  CHECK(
+      error_of(kTwoSquares, {.pin = "top and "}).starts_with("--pin: 'top and' is not none, top"));
+  CHECK(error_of(kTwoSquares, {.pin = "top or left"}).starts_with("--pin: 'left' is not none"));
+}
+
+TEST_CASE("what is up decides where the top is and where gravity comes from") {
+  const std::string wall = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n";
+  const SceneDescription scene = parse(wall, {.pin = "top", .up = &Vec3::z}).description;
+  CHECK(scene.fixed == std::vector<std::uint32_t>{2, 3});
+  CHECK(scene.gravity.y == 0);
+  CHECK(scene.gravity.z == -10);
+  CHECK(parse(wall).description.gravity.y == -10);
+}
+
+TEST_CASE("vertices are welded within a distance, after the scale") {
+  const std::string noisy =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0.001 0\nv 1 1.001 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n";
+  CHECK(parse(noisy).counts.pieces == 2);
+  const ObjScene welded = parse(noisy, {.weld_distance = 0.002});
+  CHECK(welded.counts.pieces == 1);
+  CHECK(welded.description.positions.size() == 4);
+  CHECK(parse(noisy, {.weld_distance = 0.002, .scale = 10}).counts.pieces == 2);
+}
+
+TEST_CASE("seams sew lists of vertices, one by one") {
+  const std::string strips =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 -1 1\nv 0 -1 1\n"
+      "f 1 2 3 4\nf 5 6 7 8\n";
+  CHECK(parse(strips).counts.pieces == 2);
+  const ObjScene sewn = parse(strips, {.seams = {"0-1:4,5"}});
+  CHECK(sewn.counts.pieces == 1);
+  CHECK(sewn.mesh.particle_of_vertex[0] == sewn.mesh.particle_of_vertex[4]);
+  CHECK(sewn.mesh.particle_of_vertex[1] == sewn.mesh.particle_of_vertex[5]);
+  const ObjScene crossed = parse(strips, {.seams = {"0-1:5-4", "3:7"}});
+  CHECK(crossed.mesh.particle_of_vertex[0] == crossed.mesh.particle_of_vertex[5]);
+  CHECK(crossed.mesh.particle_of_vertex[3] == crossed.mesh.particle_of_vertex[7]);
+  CHECK(error_of(strips, {.seams = {"0-1:4"}}) == "--seam: '0-1:4' sews 2 vertices to 1");
+  CHECK(error_of(strips, {.seams = {"0:8"}}) ==
+        "--seam: '0:8': there is no vertex 8, the last one is 7");
+  for (const std::string seam : {"", "0-1", ":", "0:", "0:x", "a:b"}) {
+    CAPTURE(seam);
+    CHECK(
+        error_of(strips, {.seams = {seam}}).starts_with("--seam: '" + seam + "' is not two lists"));
+  }
+}
+
 TEST_CASE("pin rules are in the file's coordinates") {
   CHECK(parse(kTwoSquares, {.pin = "y>0.9", .scale = 0.1}).description.fixed.size() == 3);
 }
@@ -310,7 +363,8 @@ TEST_CASE("a mesh is written with the numbering and the faces of its file") {
   REQUIRE(model);
   const auto cloth = Cloth::create(model.value(), {});
   REQUIRE(cloth);
-  const std::string text = obj_text(scene.mesh, scene.description, cloth.value());
+  const std::string text =
+      obj_text(scene.mesh, scene.description, particle_positions(cloth.value()));
   CHECK(text ==
         "o cloth\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 9 9 9\nv 1 0 0\nv 2 0 0\nv 2 1 0\n"
         "v 1 1 0\nf 1 2 3 4\nf 6 7 8 9\n");
@@ -323,7 +377,7 @@ TEST_CASE("spheres are written as objects of their own") {
   REQUIRE(model);
   const auto cloth = Cloth::create(model.value(), {});
   REQUIRE(cloth);
-  const std::string text = obj_text(mesh, scene, cloth.value());
+  const std::string text = obj_text(mesh, scene, particle_positions(cloth.value()));
   CHECK(text.find("o sphere_9\n") != std::string::npos);
   const ObjScene again = parse(text);
   CHECK(again.mesh.faces.size() > 4);
@@ -341,7 +395,7 @@ TEST_CASE("faces of a second sphere are its own") {
   REQUIRE(model);
   const auto cloth = Cloth::create(model.value(), {});
   REQUIRE(cloth);
-  const ObjScene again = parse(obj_text(mesh, scene, cloth.value()));
+  const ObjScene again = parse(obj_text(mesh, scene, particle_positions(cloth.value())));
   const Vec3 centre = cloth.value().position(4);
   const auto& faces = again.mesh.faces;  // four of the cloth, then as many of each sphere
   for (std::size_t i = 4 + (faces.size() - 4) / 2; i < faces.size(); ++i) {

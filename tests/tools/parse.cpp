@@ -22,6 +22,45 @@ TEST_CASE("a tolerance that is no strain above 0 is refused by name and value") 
   }
 }
 
+TEST_CASE("a time is a number or a fraction above 0") {
+  CHECK(parse_seconds("--dt", "0.25").value() == 0.25);
+  CHECK(parse_seconds("--dt", "1/60").value() == 1.0 / 60);
+  CHECK(parse_seconds("--dt", "0.5/4").value() == 0.125);
+  for (const std::string text :
+       {"", "0", "-1", "nan", "1/0", "1/", "/60", "1/2/3", "x", "-1/-60x"}) {
+    CAPTURE(text);
+    const auto seconds = parse_seconds("--dt", text);
+    REQUIRE_FALSE(seconds);
+    CHECK(seconds.error() == "--dt: '" + text + "' is not a time above 0, like 0.01 or 1/60");
+  }
+}
+
+TEST_CASE("a vector is three numbers") {
+  const Vec3 v = parse_vector("--wind", "1,-2.5,3e2").value();
+  CHECK(v.x == 1);
+  CHECK(v.y == -2.5);
+  CHECK(v.z == 300);
+  for (const std::string text : {"", "1", "1,2", "1,2,3,4", "1,2,", "1,2,x", "1 2 3"}) {
+    CAPTURE(text);
+    CHECK(parse_vector("--wind", text).error() == "--wind: '" + text + "' is not x,y,z");
+  }
+}
+
+TEST_CASE("ranges of whole numbers go up or down") {
+  const auto ranges = parse_ranges("5,7-9,3-2");
+  REQUIRE(ranges);
+  REQUIRE(ranges->size() == 3);
+  CHECK((*ranges)[0].count() == 1);
+  CHECK((*ranges)[1].count() == 3);
+  CHECK((*ranges)[1].at(2) == 9);
+  CHECK((*ranges)[2].count() == 2);
+  CHECK((*ranges)[2].at(1) == 2);
+  for (const char* text : {"", ",", "1-", "-1", "1.5", "x", "1,"}) {
+    CAPTURE(text);
+    CHECK_FALSE(parse_ranges(text));
+  }
+}
+
 TEST_CASE("a switch is on or off") {
   CHECK(parse_switch("--skip", "on").value());
   CHECK_FALSE(parse_switch("--skip", "off").value());

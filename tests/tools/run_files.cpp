@@ -129,6 +129,36 @@ TEST_CASE("a mesh is pinned, run and saved with its numbering") {
   CHECK(folder.read("motion.pc2").size() == 32 + 4 * 5 * 12);
 }
 
+TEST_CASE("a file a frame is written where the name has a number in it") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      folder, "run hang --size 4 --steps 3 --out " + folder.file("f_%03d.obj") + " --out " +
+                  folder.file("s%d.json") + " --out " + folder.file("last.obj"));
+  CHECK(outcome.exit_code == 0);
+  CHECK(folder.read("f_000.obj").find("\nv 1 0 1\n") != std::string::npos);
+  CHECK(folder.read("f_003.obj") == folder.read("last.obj"));
+  CHECK(folder.read("f_002.obj") != folder.read("last.obj"));
+  CHECK_FALSE(std::filesystem::exists(folder.file("f_004.obj")));
+  CHECK(read_scene_file(folder.file("s2.json")));
+  const Outcome refused = run_program(folder, "run hang --out " + folder.file("no/f_%d.obj"));
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.err.find("no/f_0.obj") != std::string::npos);
+}
+
+TEST_CASE("a mesh that was written as a scene keeps its faces") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("scene.json"), last = folder.file("last.obj");
+  CHECK(run_program(folder, "scene hang --size 3 --out " + scene).exit_code == 0);
+  CHECK(run_program(folder, "run " + scene + " --steps 2 --out " + last).exit_code == 0);
+  CHECK(folder.read("last.obj").ends_with("f 1 2 5 4\nf 2 3 6 5\nf 4 5 8 7\nf 5 6 9 8\n"));
+  const std::string square = folder.write("square.obj",
+                                          "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\n"
+                                          "f 1 2 3 4\nl 5 6\n");
+  CHECK(run_program(folder, "scene " + square + " --out " + scene).exit_code == 0);
+  CHECK(run_program(folder, "run " + scene + " --steps 2 --out " + last).exit_code == 0);
+  CHECK(folder.read("last.obj").ends_with("f 1 2 3 4\nl 2 5\n"));
+}
+
 TEST_CASE("a cape is saved with its faces") {
   const TemporaryFolder folder;
   const std::string last = folder.file("last.obj");

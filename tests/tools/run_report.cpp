@@ -48,7 +48,7 @@ RunReport report() {
   summary.energy_lost = 0.4375;
   summary.mean_motion_error = 0.0078125;
   summary.max_motion_error = 0.046875;
-  summary.lowest_y = -0.375;
+  summary.lowest = -0.375;
   summary.state_hash = 0x0123456789abcdef;
   summary.bytes = 1600;
   summary.model.particles = 16;

@@ -112,6 +112,46 @@ TEST_CASE("a material survives writing and reading to the last bit") {
   check_same(scene, again.value().description);
 }
 
+TEST_CASE("triangles of fabric survive writing and reading to the last bit") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  scene.masses = {1, 1, 1, 1};
+  scene.membrane = {{{0, 1, 2}, {{{0, 0}, {1.0 / 3, 0}, {0, 1}}}, 4000, 3000, 1.0 / 7},
+                    {{3, 2, 1}, {{{0, 0}, {-1, 0}, {0, -1}}}, 0, 0, 60, ConstraintKind::rope}};
+  const auto again = parse_scene(scene_text(scene));
+  REQUIRE_MESSAGE(again, again.error());
+  const auto& membrane = again.value().description.membrane;
+  REQUIRE(membrane.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(membrane[i].particles == scene.membrane[i].particles);
+    CHECK(membrane[i].rest == scene.membrane[i].rest);
+    CHECK(membrane[i].warp == scene.membrane[i].warp);
+    CHECK(membrane[i].weft == scene.membrane[i].weft);
+    CHECK(membrane[i].shear == scene.membrane[i].shear);
+    CHECK(membrane[i].kind == scene.membrane[i].kind);
+  }
+  const std::string corners = R"("membrane": [{"particles": [0,1,1], "rest": )";
+  CHECK(error_with(R"("membrane": [{"particles": [0,1]}])") ==
+        "membrane[0]: the key 'rest' is missing");
+  CHECK(error_with(corners + "[[0,0],[1,0]]}]") ==
+        "membrane[0].rest: expected three corners, not a nested array");
+  CHECK(error_with(corners + "[[0,0],[1,0],[0]]}]") ==
+        "membrane[0].rest[2]: expected [along warp, along weft], not [0]");
+  CHECK(error_with(corners + R"([[0,0],[1,0],[0,1]], "kind": "string"}])") ==
+        R"(membrane[0].kind: expected "distance" or "rope", not "string")");
+}
+
+TEST_CASE("faces survive writing and reading, and those that cannot be are refused") {
+  const auto [scene, mesh] = scenes::make_scene("hang", {.size = 4}).value();
+  const auto again = parse_scene(scene_text(scene, {}, particle_faces(mesh)));
+  REQUIRE(again);
+  CHECK(again.value().faces == mesh.faces);
+  CHECK(error_with(R"("faces": [[0,1]])") ==
+        "faces[0]: expected three particles or more, not [0,1]");
+  CHECK(error_with(R"("faces": [[0,1,2]])") == "faces[0][2]: there is no particle 2");
+  CHECK(error_with(R"("faces": [[0,1,"a"]])").starts_with("faces[0][2]: expected"));
+}
+
 TEST_CASE("anchors survive writing and reading to the last bit; what is infinite is null") {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   SceneDescription scene;

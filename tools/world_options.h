@@ -1,0 +1,26 @@
+/// What surrounds a cloth: gravity, spheres and the decay of its motion.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/command_line.h"
+
+namespace weft::tools {
+
+struct WorldOptions {
+  std::optional<std::string> gravity = {};    ///< x,y,z in m/s^2
+  std::vector<std::string> spheres = {};      ///< x,y,z,radius in m, and perhaps a mass in kg
+  std::optional<double> damping_motion = {};  ///< 1/s
+};
+
+void add_world_options(Verb verb, WorldOptions& options);
+
+/// Replaces gravity and the decay of motion where they are given, and adds the spheres as the last
+/// particles. Spheres without a mass are fixed.
+Result<void> surround(const WorldOptions& options, SceneDescription& scene);
+
+}  // namespace weft::tools
