@@ -103,12 +103,47 @@ std::string material_text(const ModelInfo& model) {
   return text;
 }
 
+struct MeshCount {
+  std::string_view key;
+  std::string_view noun;  ///< of one
+  std::string_view rest;  ///< after the noun
+  std::size_t MeshCounts::*value;
+};
+constexpr MeshCount kMeshCounts[] = {
+    {"welded_vertices", "vertex", " welded", &MeshCounts::welded_vertices},
+    {"unused_vertices", "vertex", " in no face and no line", &MeshCounts::unused_vertices},
+    {"degenerate_faces", "face", " without area", &MeshCounts::degenerate_faces},
+    {"non_manifold_edges", "edge", " of more than two faces", &MeshCounts::non_manifold_edges},
+};
+
+void add_mesh(const MeshFindings& mesh, Json& json) {
+  json["pieces"] = mesh.counts.pieces;
+  json["loose_pieces"] = mesh.loose_pieces;
+  for (const MeshCount& count : kMeshCounts)
+    json[std::string(count.key)] = mesh.counts.*count.value;
+}
+
+/// Of what is seldom, only what there is.
+std::string mesh_text(const MeshFindings& mesh) {
+  std::string text = counted(mesh.counts.pieces, "piece");
+  if (mesh.loose_pieces > 0) text += fmt::format(", {} on no pin", mesh.loose_pieces);
+  for (const MeshCount& count : kMeshCounts) {
+    const std::size_t number = mesh.counts.*count.value;
+    if (number == 0) continue;
+    const bool is_vertex = count.noun == "vertex";
+    text += ", " + (is_vertex && number != 1 ? fmt::format("{} vertices", number)
+                                             : counted(number, count.noun));
+    text += count.rest;
+  }
+  return text;
+}
+
 }  // namespace
 
 Json to_json(const RunReport& report) {
   const RunSummary& summary = report.summary;
   const Settings& settings = report.settings;
-  return {
+  Json json{
       {"scene", report.scene},
       {"particles", summary.model.particles},
       {"constraints", summary.model.constraints},
@@ -164,6 +199,8 @@ Json to_json(const RunReport& report) {
       {"stages", stages_json(summary)},
       {"peak_rss_mb", peak_rss_mb()},
   };
+  if (report.mesh) add_mesh(*report.mesh, json);
+  return json;
 }
 
 std::string to_table(const RunReport& report) {
@@ -177,6 +214,7 @@ std::string to_table(const RunReport& report) {
       fmt::format("{}: {}, {}, {}", report.scene, counted(summary.model.particles, "particle"),
                   counted(summary.model.constraints, "constraint"),
                   counted(summary.model.spheres, "sphere")));
+  if (report.mesh) row("mesh", mesh_text(*report.mesh));
   if (const auto material = material_text(summary.model); !material.empty())
     row("material", material);
   row("solver", fmt::format("{}, scheme {}, backend {}, {}", solver_text(report),

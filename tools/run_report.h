@@ -4,10 +4,12 @@
 
 #include <weft/weft.h>
 
+#include <optional>
 #include <string>
 
 #include "tools/json_output.h"
 #include "tools/runner.h"
+#include "tools/scene_source.h"
 
 namespace weft::tools {
 
@@ -16,6 +18,7 @@ struct RunReport {
   Settings settings;
   RunPlan plan;
   RunSummary summary;
+  std::optional<MeshFindings> mesh = {};
 };
 
 Json to_json(const RunReport& report);

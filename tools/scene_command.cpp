@@ -22,7 +22,7 @@ Result<void> write_scene(const WriteOptions& options) {
   if (file_ending(options.out) != ".json") {
     return Error{fmt::format("--out: '{}' does not end in .json", options.out)};
   }
-  const auto source = load_scene(options.scene);
+  auto source = load_scene(options.scene);
   if (!source) return Error{source.error()};
   if (auto model = model_of(source.value()); !model) return Error{model.error()};
   const auto written =

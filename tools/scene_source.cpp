@@ -6,9 +6,11 @@
 #include <set>
 
 #include "tools/file_ending.h"
+#include "tools/loose_pieces.h"
 #include "tools/obj_mesh.h"
 #include "tools/scene_file.h"
 #include "tools/scenes/scenes.h"
+#include "tools/wording.h"
 
 namespace weft::tools {
 namespace {
@@ -193,6 +195,7 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   SceneSource source{options.scene, {}, {}};
   source.notes = notes_of(obj, values);
   source.up = values.up;
+  source.findings = MeshFindings{obj.counts};
   source.description = std::move(obj.description);
   source.mesh = std::move(obj.mesh);
   return source;
@@ -201,6 +204,26 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
 bool is_held(const SceneDescription& scene) {
   const std::set<std::uint32_t> fixed(scene.fixed.begin(), scene.fixed.end());
   return !scene.positions.empty() && fixed.size() == scene.positions.size();
+}
+
+/// Where some pieces are held, those that are not fall away, which nobody may have wanted.
+std::string note_of(const Pieces& pieces, const SceneSource& source) {
+  if (pieces.loose() == 0 || pieces.loose() == pieces.count) return {};
+  std::string note =
+      fmt::format("{} of {} hang on no pin", pieces.loose(), counted(pieces.count, "piece"));
+  const double gap = source.findings ? joining_distance(source.description, pieces) : 0;
+  if (gap > 0) note += fmt::format(": --weld {:g} would join what lies that near", gap);
+  return note;
+}
+
+/// What whoever runs the scene should know of it.
+void look_over(SceneSource& source) {
+  const SceneDescription& scene = source.description;
+  if (is_held(scene))
+    source.notes.emplace_back("every particle is fixed, so that nothing can move");
+  const Pieces pieces = pieces_of(scene);
+  if (auto note = note_of(pieces, source); !note.empty()) source.notes.push_back(std::move(note));
+  if (source.findings) source.findings->loose_pieces = pieces.loose();
 }
 
 Result<SceneSource> load_as_it_is(const SceneOptions& options) {
@@ -248,14 +271,12 @@ Result<SceneSource> load_scene(const SceneOptions& options) {
   if (!source) return source;
   auto surrounded = surround(options.world, source.value().description);
   if (!surrounded) return Error{surrounded.error()};
-  if (is_held(source.value().description)) {
-    source.value().notes.emplace_back("every particle is fixed, so that nothing can move");
-  }
   return source;
 }
 
-Result<std::shared_ptr<const Model>> model_of(const SceneSource& source) {
+Result<std::shared_ptr<const Model>> model_of(SceneSource& source) {
   auto model = build_model(source.description);
+  if (model) look_over(source);
   if (model || is_built_in(source.name)) return model;
   return Error{fmt::format("{}: {}", source.name, model.error())};
 }

@@ -37,17 +37,24 @@ struct SceneOptions {
 
 void add_scene_options(Verb verb, SceneOptions& options);
 
+/// What a mesh turned out to be.
+struct MeshFindings {
+  MeshCounts counts;
+  std::size_t loose_pieces = 0;  ///< that no pin holds
+};
+
 struct SceneSource {
   std::string name;  ///< the built-in name, or the file's path
   SceneDescription description;
   Mesh mesh;
   std::vector<PinMove> moves = {};
-  std::vector<std::string> notes = {};  ///< for whoever runs it, a line each
-  double Vec3::*up = &Vec3::y;          ///< what heights are measured along
+  std::optional<MeshFindings> findings = {};  ///< of a mesh that was read
+  std::vector<std::string> notes = {};        ///< for whoever runs it, a line each
+  double Vec3::*up = &Vec3::y;                ///< what heights are measured along
 };
 
 Result<SceneSource> load_scene(const SceneOptions& options);
-/// An error names the file.
-Result<std::shared_ptr<const Model>> model_of(const SceneSource& source);
+/// An error names the file. Without one the scene is looked over, for its notes and findings.
+Result<std::shared_ptr<const Model>> model_of(SceneSource& source);
 
 }  // namespace weft::tools
