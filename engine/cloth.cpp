@@ -249,7 +249,11 @@ Result<void> Cloth::carry(const RigidMotion& motion, double share) {
                std::to_string(impl_->model->ordering.particle_at[lost]) + ")"};
 }
 
-Strain Cloth::strain() const { return measure_strain(*impl_->model, impl_->position); }
+Strain Cloth::strain() const {
+  Strain strain = measure_strain(*impl_->model, impl_->position);
+  add_membrane_strain(*impl_->model, impl_->position, strain);
+  return strain;
+}
 double Cloth::max_penetration() const {
   return weft::max_penetration(*impl_->model, *impl_->kernels, impl_->position.view(),
                                impl_->contacts);

@@ -12,7 +12,7 @@ namespace {
 Ordering order_of(const SceneDescription& scene, const OrderingOptions& options) {
   std::vector<Link> links;
   for (const Constraint& c : scene.constraints) links.push_back({c.a, c.b, c.kind});
-  return order(scene.positions, links, options);
+  return order(scene.positions, links, {}, options);
 }
 
 }  // namespace

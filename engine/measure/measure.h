@@ -19,6 +19,7 @@ class Measure {
  public:
   Measure(const Model& model, const Settings& settings, const simd::Table& table);
 
+  /// Over all active constraints.
   Strain strain(kernels::VectorsView x, Team& team);
   double max_strain(kernels::VectorsView x, Team& team);
   /// m; the search writes into the scratch of the store.

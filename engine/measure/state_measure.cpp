@@ -1,9 +1,49 @@
 #include "engine/measure/state_measure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace weft {
+namespace {
+
+template <class Vectors>
+reference::Deformation deformation_of(const MembraneStore& s, const Vectors& x, std::size_t i) {
+  const auto& [p0, p1, p2] = s.slots[i];
+  return deformation(s.element[i].shape, x[p1] - x[p0], x[p2] - x[p0]);
+}
+
+/// Of warp, weft and shear; where there is no such law, 0.
+std::array<double, reference::kMembraneLaws> strains_of(const reference::MembraneElement& e,
+                                                        const reference::Deformation& f) {
+  std::array<double, reference::kMembraneLaws> strains{};
+  for (std::size_t k = 0; k < strains.size(); ++k) {
+    if (e.stiffness[k] == 0) continue;
+    const double error = term(e, f, k).error;
+    strains[k] = e.is_rope && k < 2 ? std::max(0.0, error) : std::abs(error);
+  }
+  return strains;
+}
+
+}  // namespace
+
+void add_membrane_strain(const Model& m, const kernels::Vectors& x, Strain& strain) {
+  const MembraneStore& s = m.membrane;
+  if (s.size() == 0) return;
+  const auto constraints = static_cast<double>(m.constraints.size());
+  double squares = constraints * strain.rms * strain.rms, most = -1;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const auto [warp, weft, shear] = strains_of(s.element[i], deformation_of(s, x, i));
+    strain.max = std::max({strain.max, warp, weft});
+    strain.max_shear = std::max(strain.max_shear, shear);
+    squares += 0.5 * (warp * warp + weft * weft);
+    if (std::max({warp, weft, shear}) <= most) continue;
+    most = std::max({warp, weft, shear});
+    strain.worst_element = s.described[i];
+  }
+  strain.rms = std::sqrt(squares / (constraints + static_cast<double>(s.size())));
+}
+
 namespace {
 
 template <class Vectors>
@@ -41,6 +81,13 @@ double energy_of_springs(const Model& m, const kernels::Vectors& x, double give_
   return sum;
 }
 
+double energy_of_membrane(const Model& m, const kernels::Vectors& x, double give_per_mass) {
+  double sum = 0;
+  for (std::size_t i = 0; i < m.membrane.size(); ++i)
+    sum += energy(m.membrane.element[i], deformation_of(m.membrane, x, i), give_per_mass);
+  return sum;
+}
+
 double energy_of_bending(const Model& m, const kernels::Vectors& x, double give_per_mass) {
   const BendingStore& s = m.bending;
   double sum = 0;
@@ -65,7 +112,8 @@ Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Ve
     energy.kinetic += 0.5 * m.mass[i] * dot(v[i], v[i]);
     energy.potential -= m.mass[i] * dot(gravity, x[i]);
   }
-  energy.elastic = energy_of_springs(m, x, give_per_mass) + energy_of_bending(m, x, give_per_mass);
+  energy.elastic = energy_of_springs(m, x, give_per_mass) +
+                   energy_of_membrane(m, x, give_per_mass) + energy_of_bending(m, x, give_per_mass);
   return energy;
 }
 

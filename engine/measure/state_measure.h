@@ -22,6 +22,8 @@ double strain_of(const Model& model, const Vectors& position, std::size_t constr
 /// Over all active constraints.
 Strain measure_strain(const Model& model, const kernels::Vectors& position);
 Strain measure_strain(const Model& model, kernels::VectorsView position);
+/// Adds the triangles of fabric to such a strain.
+void add_membrane_strain(const Model& model, const kernels::Vectors& position, Strain& strain);
 /// give_per_mass: of the springs, below.
 Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
                       const kernels::Vectors& velocity, double give_per_mass = 0);
@@ -33,6 +35,8 @@ Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels
 /// 0: its own. Without this what a solver leaves of a stiff spring's law would count as energy.
 double energy_of_springs(const Model& model, const kernels::Vectors& position,
                          double give_per_mass = 0);
+double energy_of_membrane(const Model& model, const kernels::Vectors& position,
+                          double give_per_mass = 0);
 double energy_of_bending(const Model& model, const kernels::Vectors& position,
                          double give_per_mass = 0);
 /// Whether all components, and the squared distances between any two vectors, are finite.

@@ -17,6 +17,7 @@ class Describer {
   SceneDescription description() && {
     describe_particles();
     describe_constraints();
+    describe_membrane();
     describe_bending();
     describe_air();
     description_.anchors = model_.anchors.described;
@@ -58,6 +59,23 @@ class Describer {
       if (s.turned[c]) std::swap(to.a, to.b);
     }
     for (const auto& [described, c] : inert.constraints) description_.constraints[described] = c;
+  }
+
+  void describe_membrane() {
+    const MembraneStore& s = model_.membrane;
+    const InertStore& inert = model_.inert;
+    description_.membrane.resize(s.size() + inert.membrane.size());
+    for (std::uint32_t i = 0; i < s.size(); ++i) {
+      MembraneElement& to = description_.membrane[s.described[i]];
+      for (std::size_t k = 0; k < 3; ++k) to.particles[k] = particle(s.slots[i][k]);
+      to.rest = s.rest[i];
+      const auto& [warp, weft, shear] = s.element[i].stiffness;
+      to.warp = warp;
+      to.weft = weft;
+      to.shear = shear;
+      to.kind = s.element[i].is_rope ? ConstraintKind::rope : ConstraintKind::distance;
+    }
+    for (const auto& [described, e] : inert.membrane) description_.membrane[described] = e;
   }
 
   BendingElement element(std::size_t i) const {

@@ -32,16 +32,32 @@ void for_each_particle(const Model& a, const Model& b, Work&& work) {
   }
 }
 
-/// work(constraint of a, constraint of b) for each that is active in both.
+/// work(number in a, number in b) for each that is active in both. described: the numbers in the
+/// description of those that are active, of `count` with the inert ones.
+template <class Work>
+void for_each_described(const std::vector<std::uint32_t>& described_a,
+                        const std::vector<std::uint32_t>& described_b, std::size_t count,
+                        Work&& work) {
+  std::vector<std::uint32_t> in_b(count, kNoIndex);
+  for (std::uint32_t i = 0; i < described_b.size(); ++i) in_b[described_b[i]] = i;
+  for (std::uint32_t i = 0; i < described_a.size(); ++i) {
+    const std::uint32_t there = in_b[described_a[i]];
+    if (there != kNoIndex) work(i, there);
+  }
+}
+
+/// Of constraints.
 template <class Work>
 void for_each_constraint(const Model& a, const Model& b, Work&& work) {
-  const auto& described = b.constraints.described;
-  std::vector<std::uint32_t> in_b(described.size() + b.inert.constraints.size(), kNoIndex);
-  for (std::uint32_t c = 0; c < described.size(); ++c) in_b[described[c]] = c;
-  for (std::uint32_t c = 0; c < a.constraints.size(); ++c) {
-    const std::uint32_t there = in_b[a.constraints.described[c]];
-    if (there != kNoIndex) work(c, there);
-  }
+  for_each_described(a.constraints.described, b.constraints.described,
+                     b.constraints.size() + b.inert.constraints.size(), work);
+}
+
+/// Of triangles of fabric.
+template <class Work>
+void for_each_triangle(const Model& a, const Model& b, Work&& work) {
+  for_each_described(a.membrane.described, b.membrane.described,
+                     b.membrane.size() + b.inert.membrane.size(), work);
 }
 
 }  // namespace weft

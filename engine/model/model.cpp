@@ -47,6 +47,7 @@ Model::Model(const SceneDescription& description, const Model* like)
   order_particles(draft, like);
   store_particles(draft);
   store_constraints(draft);
+  store_membrane(description);
   store_bending(description);
   store_anchors(description);
   store_air(description);
@@ -60,7 +61,8 @@ Model::Model(const SceneDescription& description, const Model* like)
 }
 
 /// Constraints at hubs take no part: they are solved one after the other anyway. The ordering
-/// depends on positions and links alone: where the same constraints are inert it is the same.
+/// depends on positions, links and triangles of fabric alone: where the same constraints are inert
+/// it is the same.
 void Model::order_particles(Draft& draft, const Model* like) {
   const SceneDescription& d = draft.description;
   std::vector<Link> links;
@@ -78,7 +80,12 @@ void Model::order_particles(Draft& draft, const Model* like) {
     spare_slots = like->spare_slots;
     return;
   }
-  ordering = order(d.positions, links);
+  std::vector<Link> sides;
+  for (const MembraneElement& element : d.membrane) {
+    const auto& [a, b, c] = element.particles;
+    sides.insert(sides.end(), {{a, b}, {b, c}, {c, a}});
+  }
+  ordering = order(d.positions, links, sides);
   spare_slots = static_cast<std::uint32_t>(ordering.slots());
   ordering.particle_at.resize(ordering.slots() + kLanes, kNoIndex);
 }
@@ -121,6 +128,30 @@ void Model::store_constraints(const Draft& draft) {
   store_hubs(draft, ConstraintKind::rope);
   if (std::ranges::all_of(constraints.compliance, [](double c) { return c == 0; })) {
     constraints.compliance = {};
+  }
+}
+
+void Model::store_membrane(const SceneDescription& d) {
+  for (std::uint32_t i = 0; i < d.membrane.size(); ++i) {
+    const MembraneElement& element = d.membrane[i];
+    std::array<std::uint32_t, 3> slots{};
+    std::array<double, 3> w{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      slots[k] = ordering.slot_of[element.particles[k]];
+      w[k] = inverse_mass[slots[k]];
+    }
+    if (std::ranges::all_of(w, [](double inverse) { return inverse == 0; })) {
+      inert.membrane.push_back({i, element});
+      continue;
+    }
+    const reference::MembraneShape shape = reference::shape_of(element.rest);
+    membrane.slots.push_back(slots);
+    membrane.rest.push_back(element.rest);
+    membrane.element.push_back({.shape = shape,
+                                .mobility = reference::mobility(shape, w),
+                                .stiffness = {element.warp, element.weft, element.shear},
+                                .is_rope = element.kind == ConstraintKind::rope});
+    membrane.described.push_back(i);
   }
 }
 
@@ -175,10 +206,15 @@ void Model::store_air(const SceneDescription& d) {
   });
 }
 
-/// Inert constraints are not in the store: the other end is free.
+/// Inert constraints are not in the store: another end is free.
 void Model::find_holds() {
   for (const auto* ends : {&constraints.a, &constraints.b}) {
     for (const std::uint32_t s : *ends) {
+      if (inverse_mass[s] == 0) holds.push_back(s);
+    }
+  }
+  for (const auto& corners : membrane.slots) {
+    for (const std::uint32_t s : corners) {
       if (inverse_mass[s] == 0) holds.push_back(s);
     }
   }
@@ -212,13 +248,18 @@ void Model::store_hubs(const Draft& draft, ConstraintKind kind) {
 
 /// Spheres are hubs.
 void Model::find_joined() {
+  if (!has_contacts()) return;
   const ConstraintStore& s = constraints;
+  const auto add = [&](std::uint32_t a, std::uint32_t b) {
+    if (is_sphere[a]) joined_.push_back(pair_of(a, b));
+    if (is_sphere[b]) joined_.push_back(pair_of(b, a));
+  };
   for (const auto* list : {&s.hub_distances, &s.hub_ropes}) {
     for (const std::uint32_t c : *list) {
-      if (has_contacts() && is_sphere[s.a[c]]) joined_.push_back(pair_of(s.a[c], s.b[c]));
-      if (has_contacts() && is_sphere[s.b[c]]) joined_.push_back(pair_of(s.b[c], s.a[c]));
+      add(s.a[c], s.b[c]);
     }
   }
+  membrane.for_each_side([&](std::uint32_t a, std::uint32_t b, double) { add(a, b); });
   std::ranges::sort(joined_);
 }
 
@@ -273,6 +314,10 @@ std::vector<Link> links_of(const ConstraintStore& store, std::size_t count) {
   return links;
 }
 
+std::size_t MembraneStore::bytes() const {
+  return bytes_of(slots) + bytes_of(rest) + bytes_of(element) + bytes_of(described);
+}
+
 std::size_t BendingStore::bytes() const {
   return bytes_of(slots) + bytes_of(weights) + bytes_of(rest) + bytes_of(compliance);
 }
@@ -292,17 +337,19 @@ std::size_t ConstraintStore::bytes() const {
          bytes_of(hub_distances) + bytes_of(hub_ropes) + bytes_of_bits(turned);
 }
 
-std::size_t InertStore::bytes() const { return bytes_of(constraints) + bytes_of(bending); }
+std::size_t InertStore::bytes() const {
+  return bytes_of(constraints) + bytes_of(membrane) + bytes_of(bending);
+}
 
 std::size_t Model::bytes() const {
   return initial_position.bytes() + initial_velocity.bytes() + bytes_of(mass) +
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
-         bytes_of(joined_) + ordering.bytes() + constraints.bytes() + bending.bytes() +
-         inert.bytes() + anchors.bytes() + bytes_of(air.triangles) + air.at.bytes() +
-         bytes_if_made(reference_) + bytes_if_made(simd_) + bytes_if_made(chunk_neighbours_) +
-         bytes_if_made(pulls_) + bytes_if_made(direct_) + bytes_if_made(yarns_) +
-         bytes_if_made(small_steps_);
+         bytes_of(joined_) + ordering.bytes() + constraints.bytes() + membrane.bytes() +
+         bending.bytes() + inert.bytes() + anchors.bytes() + bytes_of(air.triangles) +
+         air.at.bytes() + bytes_if_made(reference_) + bytes_if_made(simd_) +
+         bytes_if_made(chunk_neighbours_) + bytes_if_made(pulls_) + bytes_if_made(direct_) +
+         bytes_if_made(yarns_) + bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {
@@ -318,6 +365,7 @@ ModelInfo describe(const Model& model) {
           .ropes = s.size() - s.bilateral,
           .compliant = static_cast<std::size_t>(
               std::ranges::count_if(s.compliance, [](double c) { return c > 0; })),
+          .membrane_elements = model.membrane.size(),
           .bending_elements = model.bending.size(),
           .anchors = model.anchors.size(),
           .air_triangles = model.air.triangles.size(),

@@ -8,6 +8,7 @@
 #include <weft/weft.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "engine/solvers/sweeps/simd_layout.h"
 #include "engine/solvers/yarn/yarn_layout.h"
 #include "kernels/reference/anchors.h"
+#include "kernels/reference/membrane.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -65,6 +67,27 @@ struct BendingStore {
   std::size_t bytes() const;
 };
 
+/// Triangles of fabric (weft.h) in the order of the description, those between fixed particles
+/// alone left out.
+struct MembraneStore {
+  std::vector<std::array<std::uint32_t, 3>> slots;
+  std::vector<std::array<std::array<double, 2>, 3>> rest;
+  std::vector<reference::MembraneElement> element;
+  std::vector<std::uint32_t> described;  // index in the description
+  std::size_t size() const { return slots.size(); }
+  std::size_t bytes() const;
+  /// work(slot, slot, length at rest) for each side of each triangle.
+  template <class Work>
+  void for_each_side(Work&& work) const {
+    for (std::size_t i = 0; i < size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto &from = rest[i][k], &to = rest[i][(k + 1) % 3];
+        work(slots[i][k], slots[i][(k + 1) % 3], std::hypot(to[0] - from[0], to[1] - from[1]));
+      }
+    }
+  }
+};
+
 /// Triangles that feel the air, between slots, and its coefficients (weft.h).
 struct AirStore {
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -82,6 +105,7 @@ struct InertStore {
     T entry;
   };
   std::vector<Entry<Constraint>> constraints;
+  std::vector<Entry<MembraneElement>> membrane;
   std::vector<Entry<BendingElement>> bending;
   std::size_t bytes() const;
 };
@@ -120,12 +144,13 @@ class Model {
   std::vector<std::uint8_t> hub;
   std::vector<std::uint32_t> hubs;
   std::vector<std::uint32_t> pins;      // the fixed particles
-  std::vector<std::uint32_t> holds;     // the fixed end of each constraint that has one
+  std::vector<std::uint32_t> holds;     // fixed ends of each constraint and each triangle of fabric
   std::vector<std::uint32_t> spheres;   // in ascending order
   std::vector<std::uint8_t> is_sphere;  // empty without spheres
 
   kernels::Vector gravity{};
   ConstraintStore constraints;
+  MembraneStore membrane;
   BendingStore bending;
   AnchorStore anchors;
   AirStore air;
@@ -136,6 +161,8 @@ class Model {
   /// One object for a model and all that changes (engine/model/change.h) make of it.
   std::shared_ptr<const int> origin;
 
+  /// Whether anything obeys a law with a compliance: springs or triangles of fabric.
+  bool has_laws() const { return constraints.has_springs() || membrane.size() > 0; }
   bool has_contacts() const { return !spheres.empty(); }
   /// Of a particle; kNoIndex: none.
   std::uint32_t anchor_of(std::uint32_t particle) const {
@@ -144,7 +171,7 @@ class Model {
   bool has_air() const {
     return !air.triangles.empty() && air.density > 0 && (air.drag > 0 || air.lift > 0);
   }
-  /// Whether a constraint joins the two; slots.
+  /// Whether a constraint or a triangle of fabric joins the two; slots.
   bool joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const;
   bool is_particle(std::size_t slot) const { return ordering.particle_at[slot] != kNoIndex; }
   std::size_t bytes() const;
@@ -165,6 +192,7 @@ class Model {
   void store_constraints(const Draft& draft);
   void store_batches(const Draft& draft, ConstraintKind kind);
   void store_hubs(const Draft& draft, ConstraintKind kind);
+  void store_membrane(const SceneDescription& description);
   void store_bending(const SceneDescription& description);
   void store_anchors(const SceneDescription& description);
   void store_air(const SceneDescription& description);

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "engine/model/validate.h"
 #include "engine/model/validation.h"
+#include "kernels/reference/membrane.h"
 
 namespace weft {
 namespace {
@@ -19,6 +21,9 @@ Result<void> validate_corners(const std::string& field, std::span<const std::uin
   }
   return {};
 }
+
+/// m, of a triangle of fabric: its area has a square.
+constexpr double kLeastSide = 1e-75, kMostSide = 1e75;
 
 /// Weights cancel but for their rounding.
 constexpr double kLeastSum = 1e-9;
@@ -45,6 +50,40 @@ Result<void> validate_bending(std::size_t index, const BendingElement& b, std::s
   if (auto r = validate_not_negative(field + ".rest", b.rest); !r) return r;
   if (auto r = validate_positive(field + ".compliance", b.compliance); !r) return r;
   return validate_square(field + ".compliance", b.compliance);
+}
+
+/// Of twice the area of a triangle, over two of its sides: below this it is rounding.
+constexpr double kLeastSine = 1e-9;
+
+Result<void> validate_rest(const std::string& field, const MembraneElement& e) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& [u, v] = e.rest[k];
+    if (std::isfinite(u) && std::isfinite(v)) continue;
+    return refuse(element(field, k), "must be finite", number(u) + ", " + number(v));
+  }
+  double sides[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& [u, v] = e.rest[k];
+    const auto& [next_u, next_v] = e.rest[(k + 1) % 3];
+    sides[k] = std::hypot(next_u - u, next_v - v);
+    if (sides[k] >= kLeastSide && sides[k] <= kMostSide) continue;
+    return refuse(element(field, k), "must be from 1e-75 to 1e75 m away from the next corner",
+                  number(sides[k]));
+  }
+  const double area = reference::shape_of(e.rest).area;
+  if (area > kLeastSine * sides[0] * sides[2]) return {};
+  return refuse(field, "the corners lie on a line, the area must be greater than 0", number(area));
+}
+
+Result<void> validate_membrane(std::size_t index, const MembraneElement& e, std::size_t particles) {
+  const std::string field = element("membrane", index);
+  if (auto r = validate_corners(field + ".particles", e.particles, particles); !r) return r;
+  if (auto r = validate_rest(field + ".rest", e); !r) return r;
+  for (const auto& [law, stiffness] :
+       {std::pair{".warp", e.warp}, std::pair{".weft", e.weft}, std::pair{".shear", e.shear}}) {
+    if (auto r = validate_not_negative(field + law, stiffness); !r) return r;
+  }
+  return validate_kind(field + ".kind", e.kind);
 }
 
 Result<void> validate_air(const Air& air, std::size_t particles) {
@@ -76,6 +115,9 @@ Result<void> validate_wind(Vec3 wind) {
 }
 
 Result<void> validate_material(const SceneDescription& d) {
+  for (std::size_t i = 0; i < d.membrane.size(); ++i) {
+    if (auto r = validate_membrane(i, d.membrane[i], d.positions.size()); !r) return r;
+  }
   for (std::size_t i = 0; i < d.bending.size(); ++i) {
     if (auto r = validate_bending(i, d.bending[i], d.positions.size()); !r) return r;
   }

@@ -32,9 +32,7 @@ Result<void> validate_constraint(std::size_t index, const Constraint& c, std::si
   if (auto r = validate_particle(field + ".a", c.a, particles); !r) return r;
   if (auto r = validate_particle(field + ".b", c.b, particles); !r) return r;
   if (c.a == c.b) return refuse(field, "joins a particle to itself", std::to_string(c.a));
-  if (c.kind != ConstraintKind::distance && c.kind != ConstraintKind::rope) {
-    return refuse(field + ".kind", "unknown", std::to_string(static_cast<int>(c.kind)));
-  }
+  if (auto r = validate_kind(field + ".kind", c.kind); !r) return r;
   if (auto r = validate_positive(field + ".rest_length", c.rest_length); !r) return r;
   if (auto r = validate_square(field + ".rest_length", c.rest_length); !r) return r;
   return validate_not_negative(field + ".compliance", c.compliance);

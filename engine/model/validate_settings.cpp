@@ -72,6 +72,23 @@ Result<void> validate_motion_tolerance(const Settings& s) {
   return {};
 }
 
+/// Heights are the inverse lengths of weights.
+Result<void> validate_membrane_for_lanes(const MembraneStore& s) {
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const reference::MembraneShape& shape = s.element[i].shape;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto &from = s.rest[i][k], &to = s.rest[i][(k + 1) % 3];
+      const double height = 1 / std::hypot(shape.u[k], shape.v[k]);
+      const double side = std::hypot(to[0] - from[0], to[1] - from[1]);
+      if (fits_float(height) && fits_float(side)) continue;
+      const std::string field = element("membrane", s.described[i]) + ".rest";
+      if (auto r = validate_float(field + ": its height", height); !r) return r;
+      return validate_float(field + ": its side", side);
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<void> validate(const Settings& s) {
@@ -121,7 +138,8 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
   }
   if (s.solver == Solver::small_steps) return validate_scheme(s);
   for (const auto& [what, count] :
-       {std::pair{"bending", model.bending.size()}, std::pair{"anchors", model.anchors.size()}}) {
+       {std::pair{"membrane", model.membrane.size()}, std::pair{"bending", model.bending.size()},
+        std::pair{"anchors", model.anchors.size()}}) {
     if (count > 0)
       return refuse(what, "is solved by small_steps only", std::string(name(s.solver)));
   }
@@ -145,7 +163,7 @@ Result<void> validate_for_lanes(const Settings& s, const Model& model) {
     if (auto r = validate_float(field, rest); !r) return r;
     return validate_float("tolerance * " + field, tolerance * rest);
   }
-  return {};
+  return validate_membrane_for_lanes(model.membrane);
 }
 
 }  // namespace weft

@@ -61,6 +61,11 @@ inline Result<void> validate_float(std::string_view field, double value) {
   return refuse(field, "must be from 1e-18 to 1e18 on the simd backend", number(value));
 }
 
+inline Result<void> validate_kind(std::string_view field, ConstraintKind kind) {
+  if (kind == ConstraintKind::distance || kind == ConstraintKind::rope) return {};
+  return refuse(field, "unknown", std::to_string(static_cast<int>(kind)));
+}
+
 inline Result<void> validate_particle(const std::string& field, std::uint32_t particle,
                                       std::size_t particles) {
   if (particle < particles) return {};

@@ -129,18 +129,22 @@ std::size_t Ordering::bytes() const {
 }
 
 Ordering order(std::span<const Vec3> positions, std::span<const Link> links,
-               const OrderingOptions& options) {
+               std::span<const Link> sides, const OrderingOptions& options) {
   const auto assemble = [&](const Placement& placement) {
     return Assembly(placement, links, positions.size()).ordering();
   };
-  const std::vector<Cell> cells = find_lattice(positions, find_yarns(positions, links));
-  const Placement rows = place_woven(cells, links, options.tile_particles);
-  if (may_be_woven(rows, options.least_run_share)) {
-    Ordering woven = assemble(rows);
-    if (woven.run_share >= options.least_run_share) return woven;
+  if (sides.size() <= links.size()) {
+    const std::vector<Cell> cells = find_lattice(positions, find_yarns(positions, links));
+    const Placement rows = place_woven(cells, links, options.tile_particles);
+    if (may_be_woven(rows, options.least_run_share)) {
+      Ordering woven = assemble(rows);
+      if (woven.run_share >= options.least_run_share) return woven;
+    }
   }
-  const Lists incidence = links_at(positions.size(), links);
-  return assemble(place_nearby(incidence, links, options.tile_particles));
+  std::vector<Link> all(links.begin(), links.end());
+  all.insert(all.end(), sides.begin(), sides.end());
+  const Lists incidence = links_at(positions.size(), all);
+  return assemble(place_nearby(incidence, all, options.tile_particles));
 }
 
 }  // namespace weft

@@ -76,8 +76,10 @@ struct OrderingOptions {
   double least_run_share = 0.7;
 };
 
-/// The result depends on the arguments only. Links must be valid and without duplicates.
+/// The result depends on the arguments only. Links must be valid and without duplicates. sides: of
+/// triangles that join particles as links do, but are no constraints of a batch. Where there are
+/// more of them than links the mesh is ordered for locality alone.
 Ordering order(std::span<const Vec3> positions, std::span<const Link> links,
-               const OrderingOptions& options = {});
+               std::span<const Link> sides = {}, const OrderingOptions& options = {});
 
 }  // namespace weft

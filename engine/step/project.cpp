@@ -78,14 +78,17 @@ void explain(State& s, double h, StepReport& report, Team& team) {
 }
 
 void report_errors(State& s, kernels::Vectors& x, bool ends, StepReport& report, Team& team) {
-  const Strain strain = s.measure->strain(x.view(), team);
-  report.max_strain = strain.max;
+  Strain strain = s.measure->strain(x.view(), team);
   if (!s.model->constraints.has_springs())
     report.max_error = strain.max;
   else if (!committed(report.status))
     report.max_error = largest_rigid_strain(s);
+  add_membrane_strain(*s.model, x, strain);
+  report.max_strain = strain.max;
   report.rms_strain = strain.rms;
   report.worst_constraint = strain.worst_constraint;
+  report.max_shear = strain.max_shear;
+  report.worst_element = strain.worst_element;
   report.contacts = static_cast<int>(s.contacts.count());
   report.max_penetration = s.measure->penetration(x.view(), s.contacts);
   report.max_anchor_error = s.anchors.largest_excess(s.model->anchors, x, ends);

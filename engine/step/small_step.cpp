@@ -115,7 +115,7 @@ class Frame {
         report_(report),
         team_(team),
         end_(report.iterations + budget.positions),
-        edges_(static_cast<std::int64_t>(s.model->constraints.size())) {}
+        edges_(static_cast<std::int64_t>(s.model->constraints.size() + s.model->membrane.size())) {}
 
   void begin(const FramePlan& plan) {
     plan_ = plan;
@@ -128,8 +128,8 @@ class Frame {
     const double give_before = plan_.placed ? 0 : s_.give_per_mass;
     elastic_energy_before_ = elastic_energy(s_.position, std::max(give_, give_before));
   }
-  /// J, by springs and bending elements, since the beginning: there those that have become stiffer
-  /// because substeps are shorter had no more than before.
+  /// J, by springs, triangles of fabric and bending elements, since the beginning: there those that
+  /// have become stiffer because substeps are shorter had no more than before.
   double released() { return elastic_energy_before_ - elastic_energy(s_.solved, give_); }
 
   void substep() {
@@ -169,7 +169,10 @@ class Frame {
   bool is_within_tolerance() {
     timed(report_, Stage::report, [&] {
       report_errors(s_, s_.solved, !plan_.projects, report_, team_);
-      if (s_.model->constraints.has_springs()) report_.max_error = solver_.law_error();
+      if (s_.model->has_laws()) {
+        const double of_rigid = s_.model->constraints.has_springs() ? 0 : report_.max_error;
+        report_.max_error = std::max(of_rigid, solver_.law_error());
+      }
     });
     return report_.max_error <= s_.settings.tolerance &&
            report_.max_penetration <= s_.settings.contact_tolerance &&
@@ -180,7 +183,8 @@ class Frame {
 
  private:
   double elastic_energy(const kernels::Vectors& x, double give) {
-    return energy_of_springs(*s_.model, x, give) + solver_.bending_energy(give, team_);
+    return energy_of_springs(*s_.model, x, give) + energy_of_membrane(*s_.model, x, give) +
+           solver_.bending_energy(give, team_);
   }
   /// With a number of substeps that was given the time of a frame is to be bounded.
   int most_rounds() const {
@@ -249,7 +253,7 @@ class Frame {
   StepReport& report_;
   Team& team_;
   const std::int64_t end_;    // of the budget, as the report counts iterations
-  const std::int64_t edges_;  // all constraints
+  const std::int64_t edges_;  // all constraints and triangles of fabric
   FramePlan plan_;
   int substeps_done_ = 0;
   double give_ = 0;                   // s^2, of a sweep, per mass

@@ -73,13 +73,17 @@ struct StepReport {
   std::int64_t corrections = 0;          ///< impulses applied, both loops
   int scheme_fallbacks = 0;              ///< attempts that scheme rattle left to the paper's
   int contacts = 0;                      ///< candidate pairs, near enough to be watched
-  double max_strain = 0;                 ///< over all constraints, recomputed from the positions
+  double max_strain = 0;  ///< over all constraints and triangles of fabric, recomputed from the
+                          ///< positions (Strain)
   double rms_strain = 0;
+  double max_shear = 0;  ///< rad, over all triangles of fabric
   /// What is left of the constraints' laws, the largest, as a fraction of rest_length: of rigid
   /// constraints the strain, of springs | |a-b| - rest_length - compliance f | / rest_length with
-  /// the tension f that the solver applied in the last substep. This is what `tolerance` bounds.
+  /// the tension f that the solver applied in the last substep. Of triangles of fabric likewise, in
+  /// strains and in radians of shear. This is what `tolerance` bounds.
   double max_error = 0;
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
+  std::uint32_t worst_element = kNoIndex;     ///< likewise, of the largest strain or shear
   double max_penetration = 0;                 ///< m, 0 without contacts
   double max_anchor_error = 0;  ///< m, by which an anchor's limits are exceeded; 0 without anchors
   /// m/s, by which this step is estimated to lead a particle away from its true motion, at most:
@@ -97,17 +101,22 @@ struct StepReport {
   std::array<double, kStageCount> stage_seconds{};
 };
 
+/// Of all constraints, and of triangles of fabric: | |f_u| - 1 | and | |f_v| - 1 | where they have
+/// these laws (MembraneElement). What only pulls has none where it is slack.
 struct Strain {
   double max = 0;
   double rms = 0;
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
+  double max_shear = 0;                       ///< rad, |f_u . f_v| / (|f_u| |f_v|) of triangles
+  std::uint32_t worst_element = kNoIndex;     ///< the triangle of the largest strain or shear
 };
 
 struct Energy {
   double kinetic = 0;    ///< J
   double potential = 0;  ///< J, of gravity, zero at the origin
-  double elastic = 0;  ///< J, of springs and bending elements, no stiffer than the substeps of the
-                       ///< last step can tell: what these leave of a law is no energy
+  double elastic =
+      0;  ///< J, of springs, triangles and bending elements, no stiffer than the substeps of the
+          ///< last step can tell: what these leave of a law is no energy
   double total() const { return kinetic + potential + elastic; }
 };
 

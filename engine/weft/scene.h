@@ -158,7 +158,8 @@ struct ModelInfo {
   std::size_t constraints = 0;  ///< active ones, without contacts
   std::size_t inert_constraints = 0;
   std::size_t ropes = 0;
-  std::size_t compliant = 0;  ///< constraints that are springs
+  std::size_t compliant = 0;          ///< constraints that are springs
+  std::size_t membrane_elements = 0;  ///< active ones, likewise
   std::size_t bending_elements = 0;
   std::size_t anchors = 0;
   std::size_t air_triangles = 0;

@@ -176,6 +176,12 @@ template <class Batch>
                                                     const VectorOf<Batch>& a) {
   return {fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.z, a.z)};
 }
+/// a - s b
+template <class Batch>
+[[gnu::always_inline]] inline VectorOf<Batch> fused_from(Batch s, const VectorOf<Batch>& b,
+                                                         const VectorOf<Batch>& a) {
+  return {fused_from(s, b.x, a.x), fused_from(s, b.y, a.y), fused_from(s, b.z, a.z)};
+}
 template <class Batch>
 [[gnu::always_inline]] inline Batch dot(const VectorOf<Batch>& a, const VectorOf<Batch>& b) {
   return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));

@@ -10,6 +10,7 @@
 #include "kernels/simd/integrate.h"
 #include "kernels/simd/masks.h"
 #include "kernels/simd/measure.h"
+#include "kernels/simd/membrane.h"
 #include "kernels/simd/relax.h"
 #include "kernels/simd/relax_springs.h"
 #include "kernels/simd/small_step_springs.h"
@@ -112,6 +113,9 @@ constexpr Table make_table() {
           .measure_bending = measure_bending,
           .bend = bend,
           .bending_energy = bending_energy,
+          .measure_membrane = measure_membrane,
+          .relax_membrane = relax_membrane,
+          .judge_membrane = judge_membrane,
           .hold_anchors = hold_anchors,
           .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),
           .relax_spring_yarns = as_wide_as_block<relax_spring_yarns, &Table::relax_spring_yarns>(),

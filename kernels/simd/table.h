@@ -317,6 +317,31 @@ struct Bending {
   float resolved = 0;                // 1/s^2: what is stiffer has a softness of less than 1 / this
 };
 
+/// Triangles of fabric (membrane.h), in blocks of kLanes, of one kind each; particles in quads.
+/// Padding: spare slots, and zeros.
+struct alignas(64) MembraneBlock {
+  std::uint32_t slot[3][kernels::kLanes];
+  float u[2][kernels::kLanes];        // 1/m, weights of corners 1 and 2 along the warp
+  float v[2][kernels::kLanes];        // likewise along the weft; those of corner 0 make sums 0
+  float share_u[3][kernels::kLanes];  // m, w_k u_k / W
+  float share_v[3][kernels::kLanes];
+  float mobility[3][kernels::kLanes];   // W_uu, W_uv and W_vv, over W
+  float stiffness[3][kernels::kLanes];  // of warp, weft and shear: k A W, 1/s^2
+};
+/// The deformation of the base.
+struct alignas(64) MembraneSpans {
+  LaneVectors u, v;
+};
+struct Membrane {
+  float* u = nullptr;
+  const float* u_start = nullptr;  // when the substep began
+  const MembraneBlock* blocks = nullptr;
+  const MembraneSpans* spans = nullptr;
+  float* multiplier = nullptr;  // per block: of warp, weft and shear, kLanes each; times W
+  float give = 0;               // (b h)^2
+  float damping = 0;            // (time constant) / h
+};
+
 /// Anchors (anchors.h) of kLanes particles that stand in a row of memory; those without one have an
 /// infinite `most`.
 struct alignas(64) AnchorBlock {
@@ -539,6 +564,14 @@ struct Table {
   void (*bend)(const Bending&, bool four, std::size_t first, std::size_t last);
   /// J, of each block; stiffness: 1 / compliance per block and lane.
   void (*bending_energy)(const Bending&, const float* stiffness, double* energy, bool four,
+                         std::size_t first, std::size_t last);
+  void (*measure_membrane)(const MembraneBlock*, MembraneSpans*, const float* base,
+                           std::size_t first, std::size_t last);
+  /// continues: from the multipliers, else from none.
+  void (*relax_membrane)(const Membrane&, float omega, bool continues, bool rope, std::size_t first,
+                         std::size_t last);
+  /// out: per block, a bit per lane: whether a law is broken by more than `strain`.
+  void (*judge_membrane)(const Membrane&, float strain, std::uint16_t* out, bool rope,
                          std::size_t first, std::size_t last);
   void (*hold_anchors)(const AnchorHold&, std::size_t first, std::size_t last);
   /// Scratch as above.

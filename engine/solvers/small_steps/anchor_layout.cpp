@@ -22,15 +22,18 @@ AnchorPlace find_place(const YarnPlaces& places, std::uint32_t slot, std::uint32
   return {place - lane, lane, anchor};
 }
 
+/// And the shortest sides of triangles of fabric.
 std::vector<double> shortest_constraints(const Model& model) {
   std::vector<double> shortest(model.anchors.size(), std::numeric_limits<double>::infinity());
-  const ConstraintStore& s = model.constraints;
-  for (std::size_t c = 0; c < s.size(); ++c) {
-    for (const std::uint32_t slot : {s.a[c], s.b[c]}) {
+  const auto add = [&](std::uint32_t a, std::uint32_t b, double length) {
+    for (const std::uint32_t slot : {a, b}) {
       const std::uint32_t anchor = model.anchors.at[slot];
-      if (anchor != kNoIndex) shortest[anchor] = std::min(shortest[anchor], s.rest_length[c]);
+      if (anchor != kNoIndex) shortest[anchor] = std::min(shortest[anchor], length);
     }
-  }
+  };
+  const ConstraintStore& s = model.constraints;
+  for (std::size_t c = 0; c < s.size(); ++c) add(s.a[c], s.b[c], s.rest_length[c]);
+  model.membrane.for_each_side(add);
   return shortest;
 }
 

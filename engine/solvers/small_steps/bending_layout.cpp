@@ -5,9 +5,11 @@
 #include <iterator>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
+#include "engine/solvers/small_steps/element_batches.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -47,12 +49,11 @@ class Builder {
 
  private:
   void add_batches(std::span<const std::uint32_t> of_class, bool four) {
-    std::vector<std::uint32_t> left = elements(of_class, four), batch, later;
-    for (; !left.empty(); left.swap(later)) {
-      batch.clear();
-      later.clear();
-      ++batches_;
-      for (const std::uint32_t i : left) (takes(i) ? batch : later).push_back(i);
+    std::vector<std::uint32_t> elements;
+    std::ranges::copy_if(of_class, std::back_inserter(elements),
+                         [&](std::uint32_t i) { return has_four(i) == four; });
+    for (const auto& batch : batches_of(std::move(elements), model_.slots(),
+                                        [&](std::uint32_t i) { return slots(i); })) {
       add_batch(batch, four);
     }
   }
@@ -78,22 +79,6 @@ class Builder {
       if (inverse_mass(i) > 0) all.push_back(i);
     }
     return all;
-  }
-  /// By their first slots, so that a batch goes through memory in one direction.
-  std::vector<std::uint32_t> elements(std::span<const std::uint32_t> of_class, bool four) const {
-    std::vector<std::uint32_t> all;
-    std::ranges::copy_if(of_class, std::back_inserter(all),
-                         [&](std::uint32_t i) { return has_four(i) == four; });
-    std::ranges::stable_sort(all, {}, [&](std::uint32_t i) { return std::ranges::min(slots(i)); });
-    return all;
-  }
-  /// Whether no element of the present batch has a particle of it; then it is one of them.
-  bool takes(std::uint32_t i) {
-    for (const std::uint32_t slot : slots(i)) {
-      if (batch_of_[slot] == batches_) return false;
-    }
-    for (const std::uint32_t slot : slots(i)) batch_of_[slot] = batches_;
-    return true;
   }
   void add_batch(std::span<const std::uint32_t> batch, bool four) {
     const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
@@ -131,8 +116,6 @@ class Builder {
   const Model& model_;
   const BendingStore& store_;
   BendingLayout& layout_;
-  std::uint32_t batches_ = 0;
-  std::vector<std::uint32_t> batch_of_ = std::vector<std::uint32_t>(model_.slots());  // 1, 2, ...
 };
 
 }  // namespace

@@ -1,31 +1,44 @@
 #include "engine/solvers/small_steps/local_passes.h"
 
+#include <algorithm>
+
 #include "engine/bytes_of.h"
 
 namespace weft {
 
 LocalPasses::LocalPasses(const Model& model)
     : model_(model),
-      bit_a_(model.constraints.size(), kNoBit),
-      bit_b_(model.constraints.size(), kNoBit),
+      constraints_(static_cast<std::uint32_t>(model.constraints.size())),
       now_(model.slots()),
       next_(model.slots()) {
   const ConstraintStore& s = model.constraints;
+  ends_.reserve(2 * s.size() + 3 * model.membrane.size());
+  for (std::uint32_t c = 0; c < s.size(); ++c) {
+    ends_.push_back({s.a[c]});
+    ends_.push_back({s.b[c]});
+  }
+  for (const auto& corners : model.membrane.slots) {
+    for (const std::uint32_t slot : corners) ends_.push_back({slot});
+  }
+  const auto items = item_of_element(static_cast<std::uint32_t>(model.membrane.size()));
   at_ = make_lists(model.slots(), [&](auto&& add) {
-    for (std::uint32_t c = 0; c < s.size(); ++c) {
-      add(s.a[c], c);
-      add(s.b[c], c);
+    for (std::uint32_t item = 0; item < items; ++item) {
+      for (const End& end : ends(item)) add(end.slot, item);
     }
   });
-  for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
-    const auto list = at_[slot];
-    if (list.size() > 64) continue;
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      (s.a[list[k]] == slot ? bit_a_ : bit_b_)[list[k]] = static_cast<std::uint8_t>(k);
+  const auto bit_of = [&](const End& end, std::uint32_t item) {
+    const auto list = at_[end.slot];
+    if (list.size() > 64) return kNoBit;
+    return static_cast<std::uint32_t>(std::ranges::find(list, item) - list.begin());
+  };
+  for (std::uint32_t item = 0; item < items; ++item) {
+    const std::size_t first = static_cast<std::size_t>(ends(item).data() - ends_.data());
+    bool has_bit = false;
+    for (std::size_t k = first; k < first + ends(item).size(); ++k) {
+      ends_[k].bit = bit_of(ends_[k], item);
+      has_bit = has_bit || ends_[k].bit != kNoBit;
     }
-  }
-  for (std::uint32_t c = 0; c < s.size(); ++c) {
-    if (bit_a_[c] == kNoBit && bit_b_[c] == kNoBit) always_.push_back(c);
+    if (!has_bit) always_.push_back(item);
   }
   present_.reserve(model.slots());
   waiting_.reserve(model.slots());
@@ -39,11 +52,13 @@ void LocalPasses::look_at(std::uint32_t slot) {
     next_[slot] = list.size() == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << list.size()) - 1;
     return;
   }
-  for (const std::uint32_t c : list) {
-    const bool is_a = model_.constraints.a[c] == slot;
-    const std::uint8_t there = is_a ? bit_b_[c] : bit_a_[c];
-    if (there == kNoBit) continue;
-    set({is_a ? model_.constraints.b[c] : model_.constraints.a[c], std::uint64_t{1} << there});
+  for (const std::uint32_t item : list) {
+    for (const End& end : ends(item)) {
+      if (end.bit == kNoBit) continue;
+      if (next_[end.slot] == 0) waiting_.push_back(end.slot);
+      next_[end.slot] |= end.mask();
+      break;
+    }
   }
 }
 
@@ -64,8 +79,8 @@ void LocalPasses::begin_pass() {
 }
 
 std::size_t LocalPasses::bytes() const {
-  return at_.bytes() + bytes_of(bit_a_) + bytes_of(bit_b_) + bytes_of(always_) + bytes_of(now_) +
-         bytes_of(next_) + bytes_of(present_) + bytes_of(waiting_);
+  return bytes_of(ends_) + at_.bytes() + bytes_of(always_) + bytes_of(now_) + bytes_of(next_) +
+         bytes_of(present_) + bytes_of(waiting_);
 }
 
 }  // namespace weft

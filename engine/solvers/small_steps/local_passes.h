@@ -1,15 +1,17 @@
 /// Local passes: Gauss-Seidel over what is out of tolerance, and over nothing else (paper 4.3).
 ///
-/// Each particle has a mask of 64 bits, one for each of its constraints. A constraint is looked at
-/// if its bit is set at one of its ends, which clears both; where it is out of tolerance it is
-/// relaxed, and the bits of all constraints at its ends are set for the next pass. It ends when no
-/// bit is set. A particle with more constraints has no mask: these have their bits at their other
-/// ends, or, where that has none either, are looked at in every pass.
+/// An item is a constraint, or a triangle of fabric with its three laws; items are numbered in this
+/// order. Each particle has a mask of 64 bits, one for each of its items. An item is looked at if
+/// its bit is set at one of its ends, which clears all of them; where it is out of tolerance it is
+/// relaxed, and the bits of all items at its ends are set for the next pass. It ends when no bit is
+/// set. A particle with more items has no mask: these have their bits at their other ends, or,
+/// where none of those has a mask either, are looked at in every pass.
 #pragma once
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "engine/lists.h"
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/laws.h"
+#include "engine/solvers/small_steps/membrane_laws.h"
 
 namespace weft {
 
@@ -35,38 +38,48 @@ struct LocalLimits {
 };
 
 class LocalPasses {
+  static constexpr std::uint32_t kNoBit = 255;
+
  public:
   explicit LocalPasses(const Model& model);
 
-  /// Asks for all constraints of the slot, if it can move.
+  /// The number of a triangle of fabric among all items.
+  std::uint32_t item_of_element(std::uint32_t element) const { return constraints_ + element; }
+  /// Asks for all items of the slot, if it can move.
   void look_at(std::uint32_t slot);
-  /// Asks for the constraint, and for all that share a particle with it.
-  void look_near(std::uint32_t constraint) {
-    look_at(model_.constraints.a[constraint]);
-    look_at(model_.constraints.b[constraint]);
+  /// Asks for the item, and for all that share a particle with it.
+  void look_near(std::uint32_t item) {
+    for (const End& end : ends(item)) look_at(end.slot);
   }
   void look_everywhere();
   /// Of what was asked for, and not done: where a step was broken off.
   void forget();
 
   /// points: difference(a, b), the vector from slot b to slot a; move(slot, by), of a constraint;
-  /// push(slot, by), of a contact. With springs also what laws.h asks of them.
+  /// push(slot, by), of a contact. With springs also what laws.h asks of them, with triangles of
+  /// fabric what membrane_laws.h does.
   template <class Points>
   LocalWork run(Points& points, const ContactStore& contacts, const LocalLimits& limits);
   std::size_t bytes() const;
 
  private:
-  struct Place {
+  /// Where an item has its bit.
+  struct End {
     std::uint32_t slot = 0;
-    std::uint64_t bit = 0;  // 0: the slot has no mask
+    std::uint32_t bit = kNoBit;  // its number; kNoBit: the slot has no mask
+    std::uint64_t mask() const { return bit == kNoBit ? 0 : std::uint64_t{1} << bit; }
   };
-  void set(const Place& place) {
-    if (place.bit == 0) return;
-    if (next_[place.slot] == 0) waiting_.push_back(place.slot);
-    next_[place.slot] |= place.bit;
+  std::span<const End> ends(std::uint32_t item) const {
+    if (item < constraints_) return {ends_.data() + 2 * std::size_t{item}, 2};
+    const std::size_t element = item - constraints_;
+    return {ends_.data() + 2 * std::size_t{constraints_} + 3 * element, 3};
   }
   template <class Points>
-  bool relax(Points& points, std::uint32_t constraint, const LocalLimits& limits);
+  bool relax(Points& points, std::uint32_t item, const LocalLimits& limits);
+  template <class Points>
+  bool relax_constraint(Points& points, std::uint32_t constraint, const LocalLimits& limits);
+  template <class Points>
+  bool relax_triangle(Points& points, std::uint32_t element, const LocalLimits& limits);
   template <class Points>
   bool relax_by_law(Points& points, std::uint32_t constraint, const LocalLimits& limits);
   template <class Points>
@@ -74,16 +87,24 @@ class LocalPasses {
   void begin_pass();
 
   const Model& model_;
-  Lists at_;                                 // slot -> constraints
-  std::vector<std::uint8_t> bit_a_, bit_b_;  // per constraint: its number at its ends, or kNoBit
+  const std::uint32_t constraints_;
+  std::vector<End> ends_;  // of constraints two each, of triangles three each
+  Lists at_;               // slot -> items
   std::vector<std::uint32_t> always_;
   std::vector<std::uint64_t> now_, next_;         // per slot
   std::vector<std::uint32_t> present_, waiting_;  // slots whose masks may not be empty
-  static constexpr std::uint8_t kNoBit = 255;
 };
 
 template <class Points>
-bool LocalPasses::relax(Points& points, std::uint32_t c, const LocalLimits& limits) {
+bool LocalPasses::relax(Points& points, std::uint32_t item, const LocalLimits& limits) {
+  const bool is_out = item < constraints_ ? relax_constraint(points, item, limits)
+                                          : relax_triangle(points, item - constraints_, limits);
+  if (is_out) look_near(item);
+  return is_out;
+}
+
+template <class Points>
+bool LocalPasses::relax_constraint(Points& points, std::uint32_t c, const LocalLimits& limits) {
   const ConstraintStore& s = model_.constraints;
   if (s.has_springs()) return relax_by_law(points, c, limits);
   const std::uint32_t a = s.a[c], b = s.b[c];
@@ -96,8 +117,6 @@ bool LocalPasses::relax(Points& points, std::uint32_t c, const LocalLimits& limi
       (limits.omega * error * s.effective_mass[c]) * kernels::direction(d, l);
   points.move(a, -model_.inverse_mass[a] * by);
   points.move(b, model_.inverse_mass[b] * by);
-  look_at(a);
-  look_at(b);
   return true;
 }
 
@@ -108,8 +127,14 @@ bool LocalPasses::relax_by_law(Points& points, std::uint32_t c, const LocalLimit
   const LawVisit visit = visit_law(s, points, limits.laws.springs, c);
   if (!(std::abs(visit.violation()) > limits.tolerance * s.rest_length[c])) return false;
   apply_law(model_, points, visit, limits.omega, c);
-  look_at(s.a[c]);
-  look_at(s.b[c]);
+  return true;
+}
+
+template <class Points>
+bool LocalPasses::relax_triangle(Points& points, std::uint32_t element, const LocalLimits& limits) {
+  const MembraneStore& s = model_.membrane;
+  if (!(violation_of_element(s, points, limits.laws, element) > limits.tolerance)) return false;
+  relax_element(model_, points, limits.laws, limits.omega, element);
   return true;
 }
 
@@ -147,23 +172,18 @@ LocalWork LocalPasses::run(Points& points, const ContactStore& contacts,
       break;
     }
     begin_pass();
-    const auto visit = [&](std::uint32_t c) {
+    const auto visit = [&](std::uint32_t item) {
       ++work.visits;
-      if (relax(points, c, limits)) ++work.corrections;
+      if (relax(points, item, limits)) ++work.corrections;
     };
     for (const std::uint32_t slot : present_) {
       for (std::uint64_t bits = std::exchange(now_[slot], 0); bits != 0; bits &= bits - 1) {
-        const std::uint32_t c = at_[slot][static_cast<std::size_t>(std::countr_zero(bits))];
-        const bool is_a = model_.constraints.a[c] == slot;
-        const std::uint8_t there = is_a ? bit_b_[c] : bit_a_[c];
-        if (there != kNoBit) {
-          now_[is_a ? model_.constraints.b[c] : model_.constraints.a[c]] &=
-              ~(std::uint64_t{1} << there);
-        }
-        visit(c);
+        const std::uint32_t item = at_[slot][static_cast<std::size_t>(std::countr_zero(bits))];
+        for (const End& end : ends(item)) now_[end.slot] &= ~end.mask();
+        visit(item);
       }
     }
-    for (const std::uint32_t c : always_) visit(c);
+    for (const std::uint32_t item : always_) visit(item);
     again = push_apart(points, contacts, limits.contact_tolerance, work);
   }
   forget();

@@ -24,6 +24,7 @@ struct ReferenceSmallSteps::Points {
   double rate;                     // by which it settles
   const std::uint32_t* anchor_at;  // per slot, or null: anchors are left
   const AnchorClock& anchors;
+  std::vector<reference::MembraneMultipliers>& of_membrane;
 
   Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
   void move(std::uint32_t slot, Vector by) const {
@@ -47,6 +48,13 @@ struct ReferenceSmallSteps::Points {
   Vector start_difference(std::uint32_t a, std::uint32_t b) const { return start[a] - start[b]; }
   double multiplier(std::uint32_t c) const { return multipliers[c]; }
   void set_multiplier(std::uint32_t c, double to) const { multipliers[c] = to; }
+  const reference::MembraneMultipliers& membrane_multipliers(std::uint32_t element) const {
+    return of_membrane[element];
+  }
+  void set_membrane_multipliers(std::uint32_t element,
+                                const reference::MembraneMultipliers& to) const {
+    of_membrane[element] = to;
+  }
 };
 
 ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_anchors) {
@@ -59,7 +67,8 @@ ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_anchors) {
           .v = v_.view(),
           .rate = last_ > 0 ? 1 / last_ : 0,
           .anchor_at = with_anchors && !at_limit_.empty() ? model_.anchors.at.data() : nullptr,
-          .anchors = anchors_};
+          .anchors = anchors_,
+          .of_membrane = membrane_multiplier_};
 }
 
 LawStep ReferenceSmallSteps::law_step() const {
@@ -68,7 +77,10 @@ LawStep ReferenceSmallSteps::law_step() const {
 
 double ReferenceSmallSteps::law_error() {
   Points points = this->points(false);
-  return largest_violation(model_.constraints, points, law_step());
+  double most = largest_violation(model_.membrane, points, law_step());
+  if (model_.constraints.has_springs())
+    most = std::max(most, largest_violation(model_.constraints, points, law_step()));
+  return most;
 }
 
 ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& settings)
@@ -85,6 +97,7 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
     vectors->resize(model.slots());
   }
   if (model.constraints.has_springs()) multiplier_.resize(model.constraints.size());
+  membrane_multiplier_.resize(model.membrane.size());
 }
 
 double ReferenceSmallSteps::substep_length(kernels::VectorsView x, double acceleration) const {
@@ -222,9 +235,11 @@ void ReferenceSmallSteps::sweep(Team&) {
     if (c != kNoIndex) relax_edge(c);
   }
   for (const std::uint32_t c : layout_.serial) relax_edge(c);
+  relax_membrane();
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors();
   is_begun_ = true;
   if (model_.constraints.has_springs()) judge_springs();
+  judge_membrane();
 }
 
 void ReferenceSmallSteps::judge_springs() {
@@ -326,6 +341,25 @@ void ReferenceSmallSteps::relax_spring(std::uint32_t c) {
   sweep_law(model_, points, law_step(), !is_begun_, omega_, c);
 }
 
+void ReferenceSmallSteps::relax_membrane() {
+  if (projects_) return;
+  Points points = this->points(false);
+  points.share = 0;
+  if (!is_begun_) std::ranges::fill(membrane_multiplier_, reference::MembraneMultipliers{});
+  for (const std::uint32_t i : layout_.membrane.element) {
+    if (i != kNoIndex) relax_element(model_, points, law_step(), omega_, i);
+  }
+}
+
+void ReferenceSmallSteps::judge_membrane() {
+  const Points points = this->points(false);
+  const double tolerance = tuning::kLocalShare * settings_.tolerance;
+  for (std::uint32_t i = 0; i < model_.membrane.size(); ++i) {
+    if (violation_of_element(model_.membrane, points, law_step(), i) > tolerance)
+      out_.push_back(passes_.item_of_element(i));
+  }
+}
+
 LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
   Points points = this->points(true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
@@ -337,7 +371,7 @@ LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int
 }
 
 LocalWork ReferenceSmallSteps::repair(const ContactStore& contacts, std::int64_t most_visits) {
-  for (const std::uint32_t c : out_) passes_.look_near(c);
+  for (const std::uint32_t item : out_) passes_.look_near(item);
   return run_passes(contacts, most_visits);
 }
 
@@ -430,7 +464,7 @@ void ReferenceSmallSteps::turn(const Turn& by) {
 
 std::size_t ReferenceSmallSteps::bytes() const {
   return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + bytes_of(arrived_) +
-         bytes_of(multiplier_) + passes_.bytes();
+         bytes_of(multiplier_) + bytes_of(membrane_multiplier_) + passes_.bytes();
 }
 
 std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,

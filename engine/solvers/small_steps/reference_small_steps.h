@@ -78,6 +78,8 @@ class ReferenceSmallSteps final : public SmallSteps {
   void judge_springs();
   void relax_edge(std::uint32_t constraint);
   void relax_spring(std::uint32_t constraint);
+  void relax_membrane();
+  void judge_membrane();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
   void hold_anchors();
   void end_motions();
@@ -99,11 +101,12 @@ class ReferenceSmallSteps final : public SmallSteps {
   SubstepFormula formula_, next_formula_;
   Departures departures_;
   kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_;
-  std::vector<std::uint32_t> out_;  // constraints that a sweep found out of tolerance
+  std::vector<std::uint32_t> out_;  // items (local_passes.h) that a sweep found out of tolerance
   std::vector<std::uint32_t> touched_, arrived_;
   std::vector<bool> at_limit_, at_limit_before_;  // per anchor, in this substep and in the last
   std::vector<double> multiplier_;                // per constraint; with springs only
-  bool is_begun_ = false;                         // the substep has been swept
+  std::vector<reference::MembraneMultipliers> membrane_multiplier_;  // per triangle of fabric
+  bool is_begun_ = false;                                            // the substep has been swept
   bool projects_ = false;
 };
 

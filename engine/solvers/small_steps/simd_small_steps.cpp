@@ -42,6 +42,7 @@ struct SmallStepsSolver::Points {
   double rate;                     // by which it settles
   const std::uint32_t* anchor_at;  // per slot, or null: anchors are left
   const AnchorClock& anchors;
+  SimdMembrane& membrane;
 
   double axis(const float* from, std::size_t a, std::size_t b) const {
     return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
@@ -63,6 +64,13 @@ struct SmallStepsSolver::Points {
   }
   void set_multiplier(std::uint32_t c, double to) const {
     multipliers[multiplier_place[c]] = static_cast<float>(to);
+  }
+  reference::MembraneMultipliers membrane_multipliers(std::uint32_t element) const {
+    return membrane.multipliers(element);
+  }
+  void set_membrane_multipliers(std::uint32_t element,
+                                const reference::MembraneMultipliers& to) const {
+    membrane.set_multipliers(element, to);
   }
   void move(std::uint32_t slot, kernels::Vector by) const {
     std::size_t at = places.of(slot);
@@ -112,7 +120,8 @@ SmallStepsSolver::Points SmallStepsSolver::points(double share, bool with_anchor
           .v = v_.data(),
           .rate = static_cast<double>(weights_.last.rate),
           .anchor_at = with_anchors && !anchors_.empty() ? model_.anchors.at.data() : nullptr,
-          .anchors = anchors_.clock()};
+          .anchors = anchors_.clock(),
+          .membrane = membrane_};
 }
 
 LawStep SmallStepsSolver::law_step() const {
@@ -121,7 +130,10 @@ LawStep SmallStepsSolver::law_step() const {
 
 double SmallStepsSolver::law_error() {
   Points points = this->points(0, false);
-  return largest_violation(model_.constraints, points, law_step());
+  double most = largest_violation(model_.membrane, points, law_step());
+  if (model_.constraints.has_springs())
+    most = std::max(most, largest_violation(model_.constraints, points, law_step()));
+  return most;
 }
 
 SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
@@ -131,6 +143,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       settings_(settings),
       table_(table),
       passes_(model),
+      membrane_(model, table),
       bending_(model, table),
       anchors_(model, settings, table),
       spans_(layout_.blocks.size()),
@@ -289,6 +302,7 @@ void SmallStepsSolver::measure_base(Team& team) {
   team.for_each_share(layout_.blocks.size(), [&](std::size_t first, std::size_t last) {
     table_.measure_edges(layout_.blocks.data(), spans_.data(), base_.data(), first, last);
   });
+  membrane_.measure_base(base_.data(), team);
   bending_.measure_base(base_.data(), team);
 }
 
@@ -364,9 +378,12 @@ void SmallStepsSolver::sweep(Team& team) {
     sweep_serial_springs();
   else
     sweep_serial();
+  sweep_membrane(team);
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors(team);
   is_begun_ = true;
-  if (model_.constraints.has_springs() && settings_.iterations == 0) judge_springs(team);
+  if (settings_.iterations > 0) return;
+  if (model_.constraints.has_springs()) judge_springs(team);
+  judge_membrane(team);
 }
 
 /// Finds which springs, and rigid constraints beside them, are out of tolerance.
@@ -507,8 +524,18 @@ void SmallStepsSolver::sweep_serial_springs() {
   }
 }
 
+void SmallStepsSolver::sweep_membrane(Team& team) {
+  membrane_.relax(u_.data(), u_before_.data(), law_step(), omega_, is_begun_, team);
+}
+
+/// Finds which triangles of fabric are out of tolerance.
+void SmallStepsSolver::judge_membrane(Team& team) {
+  membrane_.judge(u_.data(), u_before_.data(), law_step(),
+                  tuning::kLocalShare * settings_.tolerance, team);
+}
+
 std::int64_t SmallStepsSolver::count_out() const {
-  std::int64_t count = 0;
+  std::int64_t count = membrane_.count_out();
   for (std::size_t i = 0; i < edges_out_.size(); ++i) {
     count += std::popcount(static_cast<std::uint32_t>(edges_out_[i] & layout_.used[i]));
   }
@@ -530,6 +557,8 @@ void SmallStepsSolver::look_near_what_was_out() {
   };
   look(edges_out_, layout_.constraint);
   look(yarns_out_, layout_.yarns.constraint);
+  membrane_.for_each_out(
+      [&](std::uint32_t element) { passes_.look_near(passes_.item_of_element(element)); });
 }
 
 LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
@@ -640,8 +669,8 @@ void SmallStepsSolver::keep(Team& team) {
 std::size_t SmallStepsSolver::bytes() const {
   return 11 * bytes_of(u_) + bytes_of(departure_) + bytes_of(spans_) + bytes_of(base_step_) +
          bytes_of(scratch_) + bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) +
-         bytes_of(arrived_) + bytes_of(multiplier_) + passes_.bytes() + bending_.bytes() +
-         anchors_.bytes();
+         bytes_of(arrived_) + bytes_of(multiplier_) + passes_.bytes() + membrane_.bytes() +
+         bending_.bytes() + anchors_.bytes();
 }
 
 }  // namespace weft

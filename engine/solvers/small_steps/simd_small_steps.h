@@ -17,6 +17,7 @@
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/simd_anchors.h"
 #include "engine/solvers/small_steps/simd_bending.h"
+#include "engine/solvers/small_steps/simd_membrane.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "kernels/simd/table.h"
@@ -90,6 +91,8 @@ class SmallStepsSolver final : public SmallSteps {
   void judge_springs(Team& team);
   void sweep_serial();
   void sweep_serial_springs();
+  void sweep_membrane(Team& team);
+  void judge_membrane(Team& team);
   simd::YarnRelaxation relaxation_of_yarns();
   simd::EdgeRelaxation relaxation_of_edges();
   simd::SpringLaws spring_laws() const;
@@ -115,6 +118,7 @@ class SmallStepsSolver final : public SmallSteps {
   const Settings settings_;
   const simd::Table& table_;
   LocalPasses passes_;
+  SimdMembrane membrane_;
   SimdBending bending_;
   SimdAnchors anchors_;
   SmallStepsPast past_;

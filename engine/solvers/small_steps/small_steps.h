@@ -110,7 +110,8 @@ class SmallSteps {
   virtual LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) = 0;
   /// After the last: local passes that look at all constraints.
   virtual LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) = 0;
-  /// What is left of the laws of all constraints, the largest, over rest_length. With springs only.
+  /// What is left of the laws of all constraints, the largest, over rest_length, with springs only;
+  /// and of those of triangles of fabric.
   virtual double law_error() = 0;
   /// Where the particles are; x: where they were when the frame began.
   virtual void read_positions(kernels::VectorsView x, Team& team) const = 0;

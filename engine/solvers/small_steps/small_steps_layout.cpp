@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "engine/bytes_of.h"
@@ -106,10 +107,16 @@ void add_springs(const Model& model, SmallStepsLayout& layout) {
   }
 }
 
-/// As yarns' cell (kernels/simd/yarn_rows.h), of all constraints.
-double cell_of(std::span<const double> rests) {
-  if (rests.empty()) return 0;
-  const auto [shortest, longest] = std::ranges::minmax(rests);
+/// As yarns' cell (kernels/simd/yarn_rows.h), of all constraints and triangles of fabric.
+double cell_of(const Model& model) {
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  const auto take = [&](double length) {
+    shortest = std::min(shortest, length);
+    longest = std::max(longest, length);
+  };
+  for (const double rest : model.constraints.rest_length) take(rest);
+  model.membrane.for_each_side([&](std::uint32_t, std::uint32_t, double side) { take(side); });
+  if (longest == 0) return 0;
   return std::exp2(std::floor(std::log2(std::min(8 * shortest, longest / 64))));
 }
 
@@ -119,7 +126,9 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   const ConstraintStore& store = model.constraints;
   SmallStepsLayout layout;
   layout.bending = make_bending_layout(model);
-  const bool weaves = store.plain == store.size() && !store.has_springs() && layout.bending.empty();
+  layout.membrane = make_membrane_layout(model);
+  const bool weaves = store.plain == store.size() && !store.has_springs() &&
+                      layout.membrane.empty() && layout.bending.empty();
   layout.yarns =
       make_yarn_layout(model, weaves ? YarnMemory::woven_if_possible : YarnMemory::quads);
   const bool woven = makes_yarns(layout.yarns);
@@ -129,7 +138,7 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
     layout.serial.insert(layout.serial.end(), hubs->begin(), hubs->end());
   }
   if (store.has_springs()) add_springs(model, layout);
-  layout.cell = woven ? layout.yarns.cell : cell_of(store.rest_length);
+  layout.cell = woven ? layout.yarns.cell : cell_of(model);
   layout.floats = kernels::round_up(layout.yarns.places.floats, std::size_t{kLanes});
   layout.anchors = make_anchor_layout(model, layout.places());
   layout.load = find_load(model, layout);
@@ -151,7 +160,8 @@ std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
 std::size_t SmallStepsLayout::bytes() const {
   return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(used) +
          bytes_of(springs) + bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) +
-         bytes_of(serial) + bending.bytes() + anchors.bytes() + bytes_of(load.spans);
+         bytes_of(serial) + membrane.bytes() + bending.bytes() + anchors.bytes() +
+         bytes_of(load.spans);
 }
 
 }  // namespace weft

@@ -6,6 +6,7 @@
 ///                 yarns are all there is, else in quads
 ///   edge blocks   kLanes constraints of one colour each: tile by tile, then between the tiles
 ///   serial        constraints at hubs, one after the other
+///   membrane      triangles of fabric of one colour each
 ///   anchors       after each family and in the end, since what one family did to an anchored
 ///   particle
 ///                 must not move the other's
@@ -21,6 +22,7 @@
 
 #include "engine/solvers/small_steps/anchor_layout.h"
 #include "engine/solvers/small_steps/bending_layout.h"
+#include "engine/solvers/small_steps/membrane_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/solvers/yarn/yarn_layout.h"
 #include "kernels/simd/table.h"
@@ -54,6 +56,7 @@ struct SmallStepsLayout {
   std::vector<EdgeTile> tiles;
   std::uint32_t between_tiles = 0;  // first batch
   std::vector<std::uint32_t> serial;
+  MembraneLayout membrane;
   BendingLayout bending;
   AnchorLayout anchors;
 
@@ -63,7 +66,10 @@ struct SmallStepsLayout {
 
   const YarnPlaces& places() const { return yarns.places; }
   bool has_yarns() const { return !yarns.blocks.empty(); }
-  bool has_single_constraints() const { return !blocks.empty() || !serial.empty(); }
+  /// Whether anything besides yarns is swept.
+  bool has_single_constraints() const {
+    return !blocks.empty() || !serial.empty() || !membrane.empty();
+  }
   std::size_t first_multiplier_of_yarns() const { return constraint.size() + serial.size(); }
   /// 0 without springs.
   std::size_t multipliers() const {

@@ -62,6 +62,7 @@ Blocks find_blocks(const Model& model, const SmallStepsLayout& layout,
   });
   std::ranges::for_each(layout.constraint, add);
   std::ranges::for_each(layout.serial, add);
+  for (const auto& corners : model.membrane.slots) blocks.slots_of.push_back(std::span(corners));
   blocks.of_constraints = blocks.slots_of.size();
   for (const std::uint32_t slot : anchored) blocks.slots_of.push_back(std::span(&slot, 1));
   blocks.at = make_lists(model.slots(), [&](auto&& add_at) {
@@ -126,19 +127,36 @@ class Levels {
   std::vector<bool> reached_, held_;
 };
 
-/// Along constraints from the nearest of some particles, nearest by their number, to the farthest.
+/// A constraint, or a side of a triangle of fabric.
+struct Join {
+  std::uint32_t a = 0, b = 0;
+  double length = 0;
+};
+
+std::vector<Join> joins_of(const Model& model) {
+  std::vector<Join> joins;
+  const auto add = [&](std::uint32_t a, std::uint32_t b, double length) {
+    joins.push_back({a, b, length});
+  };
+  const ConstraintStore& s = model.constraints;
+  for (std::size_t c = 0; c < s.size(); ++c) add(s.a[c], s.b[c], s.rest_length[c]);
+  model.membrane.for_each_side(add);
+  return joins;
+}
+
+/// Along joins from the nearest of some particles, nearest by their number, to the farthest.
 struct Way {
-  double constraints = 0;
+  double joins = 0;
   double length = 0;  // m
   std::uint32_t end = kNoIndex;
 };
 
-Way longest_way(const Model& model, std::span<const std::uint32_t> from) {
-  const ConstraintStore& s = model.constraints;
+Way longest_way(const Model& model, std::span<const Join> joins,
+                std::span<const std::uint32_t> from) {
   const Lists at = make_lists(model.slots(), [&](auto&& add) {
-    for (std::uint32_t c = 0; c < s.size(); ++c) {
-      add(s.a[c], c);
-      add(s.b[c], c);
+    for (std::uint32_t i = 0; i < joins.size(); ++i) {
+      add(joins[i].a, i);
+      add(joins[i].b, i);
     }
   });
   std::vector<Way> way(model.slots(), {-1, 0});
@@ -150,11 +168,11 @@ Way longest_way(const Model& model, std::span<const std::uint32_t> from) {
   Way longest;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const Way here = way[queue[i]];
-    longest = {here.constraints, std::max(longest.length, here.length), queue[i]};
-    for (const std::uint32_t c : at[queue[i]]) {
-      const std::uint32_t other = s.a[c] == queue[i] ? s.b[c] : s.a[c];
-      if (way[other].constraints >= 0) continue;
-      way[other] = {here.constraints + 1, here.length + s.rest_length[c]};
+    longest = {here.joins, std::max(longest.length, here.length), queue[i]};
+    for (const std::uint32_t k : at[queue[i]]) {
+      const std::uint32_t other = joins[k].a == queue[i] ? joins[k].b : joins[k].a;
+      if (way[other].joins >= 0) continue;
+      way[other] = {here.joins + 1, here.length + joins[k].length};
       queue.push_back(other);
     }
   }
@@ -163,31 +181,33 @@ Way longest_way(const Model& model, std::span<const std::uint32_t> from) {
 
 /// From where the cloth is held to what is farthest from there. Where no pin holds it, it may come
 /// to lie on a sphere by its middle: half of the way across, which two searches find (of several
-/// pieces, across the one of the first constraint).
-Way way_that_hangs(const Model& model, std::span<const std::uint32_t> anchored) {
+/// pieces, across the one of the first join).
+Way way_that_hangs(const Model& model, std::span<const Join> joins,
+                   std::span<const std::uint32_t> anchored) {
   const bool is_held = !model.holds.empty() || !anchored.empty();
-  if (is_held || model.constraints.size() == 0 || !model.has_contacts()) {
+  if (is_held || joins.empty() || !model.has_contacts()) {
     std::vector<std::uint32_t> from = model.pins;
     from.insert(from.end(), anchored.begin(), anchored.end());
-    return longest_way(model, from);
+    return longest_way(model, joins, from);
   }
-  const Way out = longest_way(model, std::span(model.constraints.a).first(1));
-  const Way across = longest_way(model, std::span(&out.end, 1));
-  return {across.constraints / 2, across.length / 2};
+  const Way out = longest_way(model, joins, std::span(&joins.front().a, 1));
+  const Way across = longest_way(model, joins, std::span(&out.end, 1));
+  return {across.joins / 2, across.length / 2};
 }
 
 }  // namespace
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;
-  for (const double rest : model.constraints.rest_length) load.mean_length += rest;
-  load.mean_length /= static_cast<double>(std::max<std::size_t>(1, model.constraints.size()));
+  const std::vector<Join> joins = joins_of(model);
+  for (const Join& join : joins) load.mean_length += join.length;
+  load.mean_length /= static_cast<double>(std::max<std::size_t>(1, joins.size()));
   const std::vector<std::uint32_t> anchored = anchors_that_hold(model, load.mean_length);
   const Blocks blocks = find_blocks(model, layout, anchored);
-  const Way way = way_that_hangs(model, anchored);
+  const Way way = way_that_hangs(model, joins, anchored);
   load.particles = Levels(model, blocks).carried();
-  const bool is_by_ways = !layout.blocks.empty() || model.holds.empty();
-  if (is_by_ways) load.particles = std::max(load.particles, way.constraints - 1);
+  const bool is_by_ways = !layout.blocks.empty() || !layout.membrane.empty() || model.holds.empty();
+  if (is_by_ways) load.particles = std::max(load.particles, way.joins - 1);
   load.reach = way.length;
   std::vector<bool> holds(model.slots());
   for (const auto* slots : {&model.pins, &anchored}) {

@@ -47,7 +47,7 @@ struct SmallStepsLoad {
     double length = 0;  // m, of its constraints
   };
   double particles = 0;    // that a block at a pin carries besides its own
-  double mean_length = 0;  // m, of the constraints
+  double mean_length = 0;  // m, of the constraints and sides of triangles of fabric
   double reach = 0;        // m, the longest way from a particle to its nearest pin
   std::vector<Span> spans;
 };

@@ -22,6 +22,7 @@ SceneDescription full_scene() {
   SceneDescription scene = scene_of("hang_sphere", 4);
   scene.velocities.assign(scene.positions.size(), Vec3{});
   scene.constraints.push_back({5, 15, 1.0, ConstraintKind::rope, 1e-3});
+  scene.membrane.push_back({{0, 1, 4}, {{{0, 0}, {1, 0}, {0, 1}}}, 4000, 3000, 60});
   scene.bending.push_back({{0, 1, 2, kNoIndex}, {1, -2, 1, 0}, 0, 1});
   scene.damping = {0.01, 0.01, 0.1};
   scene.air = {{{0, 1, 4}}, 1.2, 1, 0.5, {1, 0, 0}};
@@ -180,6 +181,24 @@ TEST_CASE("a material that is no material is refused by name, index and value") 
                 {"bending[0].weights[3]", "no particle", "(1)"});
   check_refused([](auto& s) { s.bending[0].rest = -1; }, {"bending[0].rest", "(-1)"});
   check_refused([](auto& s) { s.bending[0].compliance = 0; }, {"bending[0].compliance", "(0)"});
+  check_refused([](auto& s) { s.membrane[0].particles[2] = 999; },
+                {"membrane[0].particles[2]", "(999)"});
+  check_refused([](auto& s) { s.membrane[0].particles[2] = s.membrane[0].particles[0]; },
+                {"membrane[0].particles[2]", "twice"});
+  check_refused([](auto& s) { s.membrane[0].rest[1][0] = kNan; },
+                {"membrane[0].rest[1]", "finite", "nan"});
+  check_refused([](auto& s) { s.membrane[0].rest[1] = s.membrane[0].rest[0]; },
+                {"membrane[0].rest[0]", "next corner", "(0)"});
+  check_refused(
+      [](auto& s) {
+        s.membrane[0].rest = {{{0, 0}, {1, 1}, {3, 3}}};
+      },
+      {"membrane[0].rest", "area", "(0)"});
+  check_refused([](auto& s) { s.membrane[0].warp = -1; }, {"membrane[0].warp", "(-1)"});
+  check_refused([](auto& s) { s.membrane[0].weft = kInfinity; }, {"membrane[0].weft", "(inf)"});
+  check_refused([](auto& s) { s.membrane[0].shear = kNan; }, {"membrane[0].shear", "(nan)"});
+  check_refused([](auto& s) { s.membrane[0].kind = static_cast<ConstraintKind>(7); },
+                {"membrane[0].kind", "unknown", "(7)"});
   check_refused([](auto& s) { s.damping.stretch = -1; }, {"damping.stretch", "(-1)"});
   check_refused([](auto& s) { s.damping.bending = kNan; }, {"damping.bending", "nan"});
   check_refused([](auto& s) { s.damping.motion = -2; }, {"damping.motion", "(-2)"});

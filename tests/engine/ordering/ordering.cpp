@@ -14,7 +14,7 @@ namespace weft::test {
 namespace {
 
 Ordering order_of(const Mesh& mesh, const OrderingOptions& options = {}) {
-  const Ordering ordering = order(mesh.positions, mesh.links, options);
+  const Ordering ordering = order(mesh.positions, mesh.links, {}, options);
   CHECK(fault_of(ordering, mesh.links, mesh.positions.size()) == "");
   return ordering;
 }

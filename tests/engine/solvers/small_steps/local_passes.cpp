@@ -24,9 +24,11 @@ struct Points {
     moved.insert(slot);
   }
   void push(std::uint32_t slot, kernels::Vector by) { move(slot, by); }
-  // Of springs, which none of these models has.
+  // Of springs and triangles of fabric, which none of these models has.
   double multiplier(std::uint32_t) const { return 0; }
   void set_multiplier(std::uint32_t, double) {}
+  reference::MembraneMultipliers membrane_multipliers(std::uint32_t) const { return {}; }
+  void set_membrane_multipliers(std::uint32_t, const reference::MembraneMultipliers&) {}
   kernels::Vector start_difference(std::uint32_t a, std::uint32_t b) const {
     return difference(a, b);
   }
