@@ -27,7 +27,14 @@ std::string built_in_names() {
 }
 
 bool is_built_in(std::string_view name) {
-  return std::ranges::any_of(scenes::list(), [&](const auto& scene) { return scene.name == name; });
+  return std::ranges::find(scenes::list(), name, &scenes::BuiltIn::name) != scenes::list().end();
+}
+
+/// What changes a material changes that which the scene has by itself.
+MaterialOptions with_its_own(MaterialOptions options, std::string_view scene) {
+  const auto built_in = std::ranges::find(scenes::list(), scene, &scenes::BuiltIn::name);
+  if (built_in->is_fabric && !options.material) options.material = scenes::kFabric;
+  return options;
 }
 
 /// The kinds of scene that options belong to, for their errors.
@@ -83,12 +90,13 @@ struct ClothOptions {
   std::optional<Material> material;
   std::optional<Vec3> wind;
 };
-Result<ClothOptions> cloth_of(const SceneOptions& options, Ropes alone) {
-  const auto ropes = ropes_of(options.ropes, alone);
+Result<ClothOptions> cloth_of(const std::optional<std::string>& given_ropes,
+                              const MaterialOptions& given, Ropes alone) {
+  const auto ropes = ropes_of(given_ropes, alone);
   if (!ropes) return Error{ropes.error()};
-  const auto material = material_of(options.material);
+  const auto material = material_of(given);
   if (!material) return Error{material.error()};
-  const auto wind = wind_of(options.material);
+  const auto wind = wind_of(given);
   if (!wind) return Error{wind.error()};
   return ClothOptions{ropes.value(), material.value(), wind.value()};
 }
@@ -105,7 +113,8 @@ Result<SceneSource> load_built_in(const SceneOptions& options) {
   const std::string_view kinds[] = {kBuiltIn, options.scene, is_cloth ? kCloth : options.scene,
                                     is_cloth ? kBuiltInCloth : options.scene};
   if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
-  const auto cloth = cloth_of(options, Ropes::all);
+  const auto cloth =
+      cloth_of(options.ropes, with_its_own(options.material, options.scene), Ropes::all);
   if (!cloth) return Error{cloth.error()};
   scenes::Options values;
   if (options.scene == "corners") values.size = kDefaultCornersSize;
@@ -183,7 +192,7 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   const auto up = up_of(options.up);
   if (!up) return Error{up.error()};
   values.up = up.value();
-  const auto cloth = cloth_of(options, Ropes::diagonals);
+  const auto cloth = cloth_of(options.ropes, options.material, Ropes::diagonals);
   if (!cloth) return Error{cloth.error()};
   values.ropes = cloth.value().ropes;
   values.material = cloth.value().material;

@@ -78,6 +78,18 @@ TEST_CASE("options of a material that mean nothing are refused") {
   }
 }
 
+TEST_CASE("what changes a material changes the cotton of a scene that always has one") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("scene.json");
+  CHECK(
+      run_program(folder, "scene flag --size 5 --density 3 --wind 1,2,3 --out " + file).exit_code ==
+      0);
+  const SceneDescription flag = read_scene_file(file).value().description;
+  CHECK(flag.masses[12] == doctest::Approx(3.0 / 16));
+  CHECK(flag.air.wind.y == 2);
+  CHECK(flag.damping.bending == find_material("cotton").value().damping_bending);
+}
+
 TEST_CASE("whoever runs rigid triangles is told what to ask for") {
   const TemporaryFolder folder;
   const std::string triangle = folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

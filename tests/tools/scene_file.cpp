@@ -75,7 +75,7 @@ std::string error_with(const std::string& more) {
 TEST_CASE("every built-in scene survives writing and reading to the last bit") {
   for (const scenes::BuiltIn& built_in : scenes::list()) {
     CAPTURE(built_in.name);
-    const auto scene = scenes::make(built_in.name, {.size = 7});
+    const auto scene = scenes::make(built_in.name, {.size = 21});
     REQUIRE(scene);
     const auto again = parse_scene(scene_text(scene.value()));
     REQUIRE(again);

@@ -39,8 +39,11 @@ TEST_CASE("the list names what make() makes") {
     CHECK(!scene.summary.empty());
     names += std::string(scene.name) + " ";
   }
-  CHECK(names == "hang hang_sphere sphere_drop corners banner four_pins cape chain flag drape ");
+  CHECK(names ==
+        "hang hang_sphere sphere_drop corners banner four_pins cape chain flag drape tunic skirt ");
 }
+
+bool is_sewn(std::string_view name) { return name == "tunic" || name == "skirt"; }
 
 void check_at_rest(const SceneDescription& scene) {
   for (const Constraint& c : scene.constraints) {
@@ -49,8 +52,9 @@ void check_at_rest(const SceneDescription& scene) {
   }
 }
 
-TEST_CASE("every edge of every scene starts at its rest length, and every model builds") {
+TEST_CASE("every edge of what is not sewn starts at its rest length, and every model builds") {
   for (const scenes::BuiltIn& scene : scenes::list()) {
+    if (is_sewn(scene.name)) continue;
     for (const int size : {3, 5, 21, 101}) {
       CAPTURE(std::string(scene.name));
       CAPTURE(size);
@@ -252,6 +256,7 @@ TEST_CASE("ropes and diagonals of a cloth of a material only pull") {
 
 TEST_CASE("the mesh of a scene is its faces; that of a chain is its line") {
   for (const scenes::BuiltIn& entry : scenes::list()) {
+    if (is_sewn(entry.name)) continue;
     CAPTURE(std::string(entry.name));
     const auto scene = scenes::make_scene(entry.name, {.size = 11});
     REQUIRE(scene);

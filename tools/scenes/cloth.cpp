@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace weft::scenes {
@@ -97,10 +98,22 @@ Ropes ropes_of(const Options& options) {
   return options.diagonals ? Ropes::diagonals : Ropes::none;
 }
 
+/// Each particle begins in the middle between its vertices.
 void start_from(const std::vector<Vec3>& start, const std::vector<std::uint32_t>& particles,
                 SceneDescription& description) {
+  const std::size_t count = description.positions.size();
+  std::vector<double> vertices(count);
+  for (const std::uint32_t particle : particles) {
+    if (particle != kNoIndex) ++vertices[particle];
+  }
+  description.positions.assign(count, {});
   for (std::size_t vertex = 0; vertex < start.size(); ++vertex) {
-    if (particles[vertex] != kNoIndex) description.positions[particles[vertex]] = start[vertex];
+    if (particles[vertex] == kNoIndex) continue;
+    const double share = 1 / vertices[particles[vertex]];
+    Vec3& position = description.positions[particles[vertex]];
+    position.x += share * start[vertex].x;
+    position.y += share * start[vertex].y;
+    position.z += share * start[vertex].z;
   }
 }
 
@@ -110,14 +123,17 @@ Result<Scene> of_material(const Layout& layout, const Options& options) {
       tools::describe_mesh(layout.rest.empty() ? layout.start : layout.rest, layout.faces);
   mesh.material = options.material;
   mesh.ropes = ropes_of(options);
+  mesh.seams = layout.seams;
   auto made = cloth_from_mesh(mesh);
   if (!made) return Error{made.error()};
   Scene scene{std::move(made.value().scene), {}};
   scene.mesh.particle_of_vertex = std::move(made.value().particle_of_vertex);
   start_from(layout.start, scene.mesh.particle_of_vertex, scene.description);
+  std::set<std::uint32_t> pinned;
   for (const std::uint32_t pin : layout.pins) {
     const std::uint32_t particle = scene.mesh.particle_of_vertex[pin];
-    if (particle != kNoIndex) scene.description.fixed.push_back(particle);
+    if (particle != kNoIndex && pinned.insert(particle).second)
+      scene.description.fixed.push_back(particle);
   }
   scene.description.air.wind = layout.wind;
   return scene;

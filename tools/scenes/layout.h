@@ -3,6 +3,7 @@
 
 #include <weft/weft.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -28,13 +29,14 @@ struct Ball {
 };
 
 struct Layout {
-  std::vector<Vec3> start;          ///< m, where each vertex begins
-  std::vector<Vec3> rest;           ///< m, where each lies in the shape at rest; empty: as `start`
-  std::vector<Face> faces;          ///< vertices, in order around each
-  std::vector<std::uint32_t> pins;  ///< fixed vertices
-  std::optional<Grid> grid;         ///< whose vertices these are: its edges have one length
-  std::optional<Ball> sphere;       ///< a particle after those of the cloth
-  Vec3 wind;                        ///< m/s; only cloth of a material feels it
+  std::vector<Vec3> start;  ///< m, where each vertex begins
+  std::vector<Vec3> rest;   ///< m, where each lies in the shape at rest; empty: as `start`
+  std::vector<Face> faces;  ///< vertices, in order around each
+  std::vector<std::array<std::uint32_t, 2>> seams;  ///< vertices that are sewn together
+  std::vector<std::uint32_t> pins;                  ///< fixed vertices
+  std::optional<Grid> grid;    ///< whose vertices these are: its edges have one length
+  std::optional<Ball> sphere;  ///< a particle after those of the cloth
+  Vec3 wind;                   ///< m/s; only cloth of a material feels it
 };
 
 }  // namespace weft::scenes

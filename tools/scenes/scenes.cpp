@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tools/scenes/cloth.h"
+#include "tools/scenes/garments.h"
 #include "tools/scenes/grid_layouts.h"
 #include "tools/scenes/irregular_mesh.h"
 
@@ -103,12 +104,11 @@ Result<Scene> cloth(const Options& options) {
   return cloth_of(kLayout(options), options);
 }
 
-/// Without a material it is of cotton.
-template <Layout (*kLayout)(const Options&)>
-Result<Scene> fabric(const Options& options) {
-  Options with_material = options;
-  if (!with_material.material) with_material.material = find_material("cotton").value();
-  return cloth<kLayout>(with_material);
+template <Result<Layout> (*kLayout)(const Options&)>
+Result<Scene> garment(const Options& options) {
+  const auto layout = kLayout(options);
+  if (!layout) return Error{layout.error()};
+  return cloth_of(layout.value(), options);
 }
 
 struct Entry {
@@ -118,7 +118,7 @@ struct Entry {
   Result<Scene> (*make)(const Options&);
 };
 
-constexpr std::array<Entry, 10> kEntries{{
+constexpr std::array<Entry, 12> kEntries{{
     {{"hang", "a sheet with one fixed side swings down"}, 2, anything, cloth<hang>},
     {{"hang_sphere", "the same, swinging into a fixed sphere"}, 2, anything, cloth<hang_sphere>},
     {{"sphere_drop", "a heavy sphere drops into a sagging sheet"},
@@ -133,8 +133,13 @@ constexpr std::array<Entry, 10> kEntries{{
      cloth<four_pins>},
     {{"cape", "an irregular mesh hangs from an uneven seam"}, 3, anything, cloth<cape>},
     {{"chain", "a line of particles with a heavy end"}, 2, check_chain, chain},
-    {{"flag", "a sheet of cotton flies from a pole"}, 2, anything, fabric<flag>},
-    {{"drape", "a sheet of cotton falls over a fixed sphere"}, 2, anything, fabric<drape>},
+    {{"flag", "a sheet of cotton flies from a pole", true}, 2, anything, cloth<flag>},
+    {{"drape", "a sheet of cotton falls over a fixed sphere", true}, 2, anything, cloth<drape>},
+    {{"tunic", "a sewn tunic of cotton hangs from two pegs", true}, 20, anything, garment<tunic>},
+    {{"skirt", "a flared skirt of cotton falls from its waist", true},
+     20,
+     anything,
+     garment<skirt>},
 }};
 
 constexpr auto kList = [] {
@@ -147,7 +152,9 @@ Result<Scene> make_entry(const Entry& entry, const Options& options) {
   const auto size = check_size(entry.built_in.name, options.size, entry.smallest);
   if (!size) return Error{size.error()};
   if (const auto checked = entry.check(options); !checked) return Error{checked.error()};
-  return entry.make(options);
+  Options all = options;
+  if (entry.built_in.is_fabric && !all.material) all.material = find_material(kFabric).value();
+  return entry.make(all);
 }
 
 }  // namespace

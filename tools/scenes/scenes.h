@@ -1,5 +1,5 @@
-/// The built-in scenes: the paper's three, three hard ones, two that are like a game's, and two of
-/// a material. Exact definitions, SI units.
+/// The built-in scenes: the paper's three, three hard ones, two that are like a game's, two of a
+/// material, and two that are sewn. Exact definitions, SI units.
 ///
 /// Cloth scenes are N x N particles over 1 m x 1 m, particle (i, j) has the number i * N + j,
 /// spacing L = 1/(N-1), total mass 1 kg, gravity (0, -10, 0); constraints join grid neighbours
@@ -31,6 +31,11 @@
 ///              fixed, in a wind of (8, 0, 2) m/s.
 /// drape        (i, j) at (i L, 0, j L), of the same, 1 cm above a fixed sphere of radius 0.3 below
 ///              the middle of the sheet.
+/// tunic        A front and a back of irregular triangles, body and sleeves of one piece, sewn
+///              along shoulders, sleeves and sides (garments.cpp has the pattern, 0.9 m wide and
+///              0.7 long). Vertices are about 1/(N-1) m apart. It hangs from 8 cm of each shoulder;
+///              of cotton if no material is given.
+/// skirt        Likewise: a front and a back that make up a cone, 0.45 m long; its waist is fixed.
 #pragma once
 
 #include <weft/mesh.h>
@@ -53,12 +58,17 @@ struct Options {
   std::optional<Material> material = std::nullopt;
 };
 
+/// What fabric is made of if nothing else is asked for.
+inline constexpr const char* kFabric = "cotton";
+
 struct BuiltIn {
   std::string_view name;
   std::string_view summary;
+  bool is_fabric = false;  ///< it always has a material
 };
 
-/// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain, flag, drape.
+/// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain, flag, drape, tunic,
+/// skirt.
 std::span<const BuiltIn> list();
 
 struct Scene {

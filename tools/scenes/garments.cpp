@@ -1,0 +1,191 @@
+#include "tools/scenes/garments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace weft::scenes {
+namespace {
+
+enum PanelOf : std::size_t { kFront, kBack };
+
+// -------------------------------------------------------------------------------------- tunic
+
+/// Edges of both panels, counterclockwise from the hem.
+enum TunicEdge : std::size_t {
+  kHem,
+  kRightSide,
+  kRightUnderarm,
+  kRightCuff,
+  kRightSleeve,
+  kRightPeg,
+  kRightNeck,
+  kNeckline,
+  kLeftNeck,
+  kLeftPeg,
+  kLeftSleeve,
+  kLeftCuff,
+  kLeftUnderarm,
+  kLeftSide
+};
+
+constexpr TunicEdge kSewn[] = {kRightSide, kRightUnderarm, kRightSleeve, kRightPeg,     kRightNeck,
+                               kLeftNeck,  kLeftPeg,       kLeftSleeve,  kLeftUnderarm, kLeftSide};
+
+Point mirrored(Point p) { return {-p.x, p.y}; }
+
+/// Body and sleeves are of one piece. m, above the floor that its wearer stands on.
+Panel tunic_panel(double neckline_depth) {
+  const Point hem{0.26, 0.60}, waist{0.17, 0.85}, armpit{0.18, 1.03}, cuff_below{0.46, 1.10},
+      cuff_above{0.46, 1.25}, neck{0.085, 1.28};
+  const auto shoulder = [&](double x) {
+    return Point{x, neck.y + (x - neck.x) / (cuff_above.x - neck.x) * (cuff_above.y - neck.y)};
+  };
+  const Point peg_out = shoulder(0.20), peg_in = shoulder(0.12), under{0.22, 1.07};
+  return {bent(mirrored(hem), {0, 0.57}, hem),
+          bent(hem, waist, armpit),
+          bent(armpit, under, cuff_below),
+          line(cuff_below, cuff_above),
+          line(cuff_above, peg_out),
+          line(peg_out, peg_in),
+          line(peg_in, neck),
+          bent(neck, {0, neck.y - 2 * neckline_depth}, mirrored(neck)),
+          line(mirrored(neck), mirrored(peg_in)),
+          line(mirrored(peg_in), mirrored(peg_out)),
+          line(mirrored(peg_out), mirrored(cuff_above)),
+          line(mirrored(cuff_above), mirrored(cuff_below)),
+          bent(mirrored(cuff_below), mirrored(under), mirrored(armpit)),
+          bent(mirrored(armpit), mirrored(waist), mirrored(hem))};
+}
+
+/// m, from each vertex to the nearest one of its panel that is sewn.
+std::vector<double> distances_to_seams(const CutPattern& cut) {
+  std::vector<double> distances(cut.flat.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t v = 0; v < cut.flat.size(); ++v) {
+    for (const TunicEdge edge : kSewn) {
+      for (const std::uint32_t sewn : cut.edges[cut.panel[v]][edge]) {
+        const Point a = cut.flat[v], b = cut.flat[sewn];
+        distances[v] = std::min(distances[v], std::hypot(a.x - b.x, a.y - b.y));
+      }
+    }
+  }
+  return distances;
+}
+
+/// Front and back lie against each other with a little air between, which ends at the seams.
+std::vector<Vec3> laid_flat(const CutPattern& cut) {
+  constexpr double kHalfGap = 0.01, kRamp = 0.1;  // m; between them edges are 0.5 % longer
+  const std::vector<double> distances = distances_to_seams(cut);
+  std::vector<Vec3> start;
+  for (std::size_t v = 0; v < cut.flat.size(); ++v) {
+    const double away = kHalfGap * std::min(1.0, distances[v] / kRamp);
+    start.push_back({cut.flat[v].x, cut.flat[v].y, cut.panel[v] == kFront ? away : -away});
+  }
+  return start;
+}
+
+// -------------------------------------------------------------------------------------- skirt
+
+/// Each panel is a sector of a ring, a quarter of whose circle is missing: the cone that both make
+/// is `kConeTurn` times as wide in angle as they are when they lie flat.
+constexpr double kWaist = 0.216, kLength = 0.45;  // m, from the centre; and down the skirt
+constexpr double kSector = 100 * std::numbers::pi / 180;
+constexpr double kConeTurn = std::numbers::pi / kSector;
+
+enum SkirtEdge : std::size_t { kSkirtHem, kSkirtRight, kSkirtWaist, kSkirtLeft };
+
+Panel skirt_panel() {
+  constexpr double kDown = -std::numbers::pi / 2;
+  const double left = kDown - kSector / 2, right = kDown + kSector / 2;
+  const auto at = [](double radius, double angle) {
+    return Point{radius * std::cos(angle), radius * std::sin(angle)};
+  };
+  const double outer = kWaist + kLength;
+  return {arc({}, outer, left, right), line(at(outer, right), at(kWaist, right)),
+          arc({}, kWaist, right, left), line(at(kWaist, left), at(outer, left))};
+}
+
+/// On the cone that both panels make together; no edge is longer or shorter for it.
+Vec3 on_cone(Point p, std::size_t panel) {
+  constexpr double kWaistHeight = 0.95;  // m
+  const double radius = std::hypot(p.x, p.y);
+  const double turn = kConeTurn * std::atan2(p.x, -p.y) + (panel == kBack ? std::numbers::pi : 0);
+  const double out = radius / kConeTurn;
+  const double down = std::sqrt(1 - 1 / (kConeTurn * kConeTurn)) * (radius - kWaist);
+  return {out * std::sin(turn), kWaistHeight - down, out * std::cos(turn)};
+}
+
+// --------------------------------------------------------------------------------------- both
+
+/// Panels lie side by side at rest, so that none is on another.
+std::vector<Vec3> side_by_side(const CutPattern& cut) {
+  constexpr double kApart = 3;  // m
+  std::vector<Vec3> rest;
+  for (std::size_t v = 0; v < cut.flat.size(); ++v)
+    rest.push_back({cut.flat[v].x + kApart * static_cast<double>(cut.panel[v]), cut.flat[v].y, 0});
+  return rest;
+}
+
+Result<CutPattern> cut_for(const Pattern& pattern, const Options& options) {
+  return cut(pattern, Grid{options.size}.spacing());
+}
+
+Layout layout_of(const CutPattern& cut, std::vector<Vec3> start) {
+  Layout layout;
+  layout.start = std::move(start);
+  layout.rest = side_by_side(cut);
+  layout.faces = cut.faces;
+  layout.seams = cut.seams;
+  return layout;
+}
+
+void pin_edge(const CutPattern& cut, PanelEdge edge, Layout& layout) {
+  const auto& vertices = cut.edges[edge.panel][edge.edge];
+  layout.pins.insert(layout.pins.end(), vertices.begin(), vertices.end());
+}
+
+}  // namespace
+
+Pattern tunic_pattern() {
+  Pattern pattern;
+  pattern.panels = {tunic_panel(0.09), tunic_panel(0.03)};
+  for (const TunicEdge edge : kSewn) pattern.seams.push_back({{kFront, edge}, {kBack, edge}});
+  return pattern;
+}
+
+Pattern skirt_pattern() {
+  Pattern pattern;
+  pattern.panels = {skirt_panel(), skirt_panel()};
+  pattern.seams = {{{kFront, kSkirtRight}, {kBack, kSkirtLeft}, true},
+                   {{kBack, kSkirtRight}, {kFront, kSkirtLeft}, true}};
+  return pattern;
+}
+
+Result<Layout> tunic(const Options& options) {
+  auto made = cut_for(tunic_pattern(), options);
+  if (!made) return Error{"tunic: " + made.error()};
+  const CutPattern& cut = made.value();
+  Layout layout = layout_of(cut, laid_flat(cut));
+  for (Face& face : layout.faces) {  // outside is outside on the back, too
+    if (cut.panel[face[0]] == kBack) std::swap(face[1], face[2]);
+  }
+  pin_edge(cut, {kFront, kRightPeg}, layout);
+  pin_edge(cut, {kFront, kLeftPeg}, layout);
+  return layout;
+}
+
+Result<Layout> skirt(const Options& options) {
+  auto made = cut_for(skirt_pattern(), options);
+  if (!made) return Error{"skirt: " + made.error()};
+  const CutPattern& cut = made.value();
+  std::vector<Vec3> start;
+  for (std::size_t v = 0; v < cut.flat.size(); ++v)
+    start.push_back(on_cone(cut.flat[v], cut.panel[v]));
+  Layout layout = layout_of(cut, std::move(start));
+  for (const std::size_t panel : {kFront, kBack}) pin_edge(cut, {panel, kSkirtWaist}, layout);
+  return layout;
+}
+
+}  // namespace weft::scenes

@@ -1,0 +1,19 @@
+/// The built-in scenes that are clothes (scenes.h).
+#pragma once
+
+#include <weft/result.h>
+
+#include "tools/scenes/layout.h"
+#include "tools/scenes/pattern.h"
+#include "tools/scenes/scenes.h"
+
+namespace weft::scenes {
+
+Pattern tunic_pattern();
+Pattern skirt_pattern();
+
+/// The error says what is too coarse.
+Result<Layout> tunic(const Options& options);
+Result<Layout> skirt(const Options& options);
+
+}  // namespace weft::scenes
