@@ -165,7 +165,7 @@ class Frame {
     solver_.read_velocities(s_.next_velocity.view(), team_);
   }
 
-  /// Of what is solved, into the report.
+  /// Adds what the solver reached to the report.
   bool is_within_tolerance() {
     timed(report_, Stage::report, [&] {
       report_errors(s_, s_.solved, !plan_.projects, report_, team_);

@@ -15,10 +15,10 @@
 
 namespace weft {
 
+/// converged: every constraint is within its tolerance. The state is committed.
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
 /// iteration_limit: max_iterations were done, or with small_steps all rounds, and some constraint
-/// is
-///   still out of tolerance. The state is committed.
+///   is still out of tolerance. The state is committed.
 /// infeasible: some constraint is out of tolerance and tens of thousands of iterations
 ///   (small_steps: sixteen rounds of a sweep and local passes) hardly reduce the error: constraints
 ///   contradict each other (a chain whose ends are too far apart), masses differ by far, or nothing
@@ -209,17 +209,17 @@ class WEFT_API Cloth {
   Result<void> place_fixed(std::uint32_t particle, Vec3 position);
   /// Moves the points of all anchors, in the order of the description: they travel there in
   /// straight lines during the next step, as evenly as normals turn. The last move before a step
-  /// counts; write_positions lets them be there at once. normals: one per anchor, of length 1 where
-  /// there is a backstop; empty: as they are.
+  /// counts. Call move_anchors before write_positions, and anchors jump instead of travelling.
+  /// normals: one per anchor, of length 1 where there is a backstop; empty: as they are.
   Result<void> move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals = {});
 
   /// Takes the whole cloth along by the share of a rigid motion (of its translation and its angle),
   /// 0 to 1, at once and without its feeling so: positions, fixed particles, anchors, and what the
   /// solver remembers move and turn, velocities turn and gain nothing. Gravity, forces and wind are
-  /// the world's, and stay. With share 1 this is a teleport. With share 1 - s before each step, s
-  /// from 0 to 1, it scales by s the inertia that the cloth feels of a frame which moves so, a
-  /// character's root for example: then move_fixed and move_anchors what the frame carries to where
-  /// it really is. (Velocities are relative to what carries, then.)
+  /// the world's, and stay. With share 1 this is a teleport. To let the cloth feel only the
+  /// fraction s of its character's acceleration, call carry(motion, 1 - s) before each step, then
+  /// move pins and anchors to where they really are. (Velocities are then relative to the
+  /// character.)
   Result<void> carry(const RigidMotion& motion, double share = 1);
 
   /// Changes what was described: all of it or, on an error and where memory runs out, nothing.
@@ -228,8 +228,8 @@ class WEFT_API Cloth {
   /// those that are fixed and released, what solvers remember, and the settings that were asked
   /// for: Solver::automatic is chosen anew, and where another one is chosen nothing is remembered.
   ///
-  /// Constraints that are longer or shorter than they may be then, those between two pins of which
-  /// one is released too, are put right as the next step begins, velocities unchanged. A particle
+  /// Constraints that are then longer or shorter than they may be, and those of pins that are
+  /// released, are put right as the next step begins, velocities unchanged. A particle
   /// is released at the speed that move_fixed gave it in the last step, and no energy is gained.
   ///
   /// It takes about as long as to build a model and create a cloth, whatever is changed: less than

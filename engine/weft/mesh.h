@@ -5,7 +5,7 @@
 ///   auto cloth = weft::cloth_from_mesh(mesh);         // welds, sews, derives springs and masses
 ///   auto model = weft::build_model(cloth.value().scene);
 ///
-/// This header stands beside weft.h and needs nothing else of weft. What it makes is a plain
+/// weft.h does not include this header; this header includes weft.h. What it makes is a plain
 /// SceneDescription, which may be changed before a model is built.
 #pragma once
 

@@ -144,8 +144,6 @@ inline Settings paper_settings() {
   return settings;
 }
 
-/// converged: every constraint is within its tolerance.
-
 WEFT_API std::string_view name(Solver);
 WEFT_API std::string_view name(Scheme);
 WEFT_API std::string_view name(Directions);

@@ -1,6 +1,6 @@
-/// weft: a cloth simulation library. This header is the whole public interface of simulation, in
-/// the order of the line below: scene.h, settings.h, cloth.h. mesh.h beside it makes a
-/// SceneDescription of a mesh and a material.
+/// weft: a cloth simulation library. This header includes the whole public interface of
+/// simulation: scene.h (describe and build), settings.h (create) and cloth.h (step and read).
+/// mesh.h, which it does not include, makes a SceneDescription of a mesh and a material.
 ///
 ///   describe -> build -> create -> step -> read
 ///
