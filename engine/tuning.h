@@ -208,9 +208,23 @@ inline constexpr double kProductTime = 0.12;
 
 // --------------------------------------------------------------------------------- meshes
 
-/// Steps of the iteration that makes a mesh bend alike in all directions. More take longer as a
-/// mesh is made into cloth, fewer leave it uneven.
-inline constexpr int kBendingSteps = 32;
+/// How often the energies that bending stores around particles become means over neighbours, before
+/// elements get their factors; and how often all of that is done. More rings leave a sheet stiffer
+/// as a whole and its parts less alike (perf/tried.md).
+inline constexpr int kBendingRings = 3;
+inline constexpr int kBendingSteps = 2;
+/// Where the mesh around a particle stores in each direction what it should, to this fraction,
+/// elements keep what their areas give them.
+inline constexpr double kBendingEven = 1e-3;
+/// The largest factor that one step gives an element, and the inverse of the smallest.
+inline constexpr double kMostBendingFactor = 10;
+/// How strongly the coefficients of factors are held near those of equal factors, relative to the
+/// equations that they solve: enough for meshes that have fewer directions than equations.
+inline constexpr double kBendingRestraint = 1e-3;
+/// How often particles settle in each step of the calibration, and the share of the way that they
+/// go: of a Jacobi iteration, which diverges from about 0.7 on.
+inline constexpr int kSettlings = 8;
+inline constexpr double kSettlingShare = 0.4;
 /// Where the mesh around a particle bends in some direction by more than this fraction too much or
 /// too little, elements are added. A smaller one makes it more even, and steps slower.
 inline constexpr double kBendingUneven = 0.1;

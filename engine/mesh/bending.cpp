@@ -1,8 +1,8 @@
 #include "engine/mesh/bending.h"
 
 #include <algorithm>
-#include <map>
 
+#include "engine/mesh/pair_key.h"
 #include "engine/mesh/stencils.h"
 
 namespace weft::mesh {
@@ -16,6 +16,12 @@ std::size_t corner_of(const Face& face, std::uint32_t particle) {
   const auto found = std::ranges::find(face.particles, particle);
   return static_cast<std::size_t>(found - face.particles.begin());
 }
+
+/// An element of a yarn that crosses an edge at one of its ends.
+struct Crossing {
+  std::uint64_t ends = 0;  ///< pair_key
+  std::uint32_t stencil = 0;
+};
 
 class Builder {
  public:
@@ -74,14 +80,26 @@ class Builder {
     const std::size_t j = beside(face(two), corner_of(face(two), end), two.side);
     const auto [least, most] = std::minmax(face(one).particles[i], face(two).particles[j]);
     if (least == most) return;
-    const auto next = static_cast<std::uint32_t>(built_.stencils.size());
-    const auto [entry, is_new] = crossing_at_.try_emplace({least, end, most}, next);
-    if (is_new) built_.stencils.push_back(without_end(bend(edge, i, j), end));
-    const Stencil& stencil = built_.stencils[entry->second];
+    const std::uint32_t number = crossing_at(end, pair_key(least, most));
+    if (number == built_.stencils.size()) {
+      built_.stencils.push_back(without_end(bend(edge, i, j), end));
+    }
+    const Stencil& stencil = built_.stencils[number];
     for (const EdgeOfFace& of : {one, two}) {
       built_.contributions.push_back(
-          {entry->second, of.face, weight_in_grid(stencil, area_across(of) / 2)});
+          {number, of.face, weight_in_grid(stencil, area_across(of) / 2)});
     }
+  }
+
+  /// The number of the crossing at a particle between these ends; the next one if it is new.
+  std::uint32_t crossing_at(std::uint32_t particle, std::uint64_t ends) {
+    if (crossings_.size() <= particle) crossings_.resize(particle + 1);
+    for (const Crossing& crossing : crossings_[particle]) {
+      if (crossing.ends == ends) return crossing.stencil;
+    }
+    const auto next = static_cast<std::uint32_t>(built_.stencils.size());
+    crossings_[particle].push_back({ends, next});
+    return next;
   }
 
   /// Corners of a face that are not on the side: one of a triangle, two of a quad.
@@ -149,7 +167,7 @@ class Builder {
   const double weld_distance_;
   const double extent_;  ///< m, of the mesh
   Stencils built_;
-  std::map<std::array<std::uint32_t, 3>, std::uint32_t> crossing_at_;
+  std::vector<std::vector<Crossing>> crossings_;  ///< at particles
 };
 
 }  // namespace

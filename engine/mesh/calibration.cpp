@@ -2,78 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "engine/mesh/corners.h"
+#include "engine/mesh/moments.h"
 #include "engine/tuning.h"
 
 namespace weft::mesh {
 namespace {
 
-constexpr std::size_t kDirections = 8;
-using PerDirection = std::array<double, kDirections>;
-
-/// Cosines and sines of half a turn's directions.
-struct Directions {
-  PerDirection cc{}, ss{}, sc2{};  ///< cos^2, sin^2, 2 sin cos
-  Directions() {
-    for (std::size_t i = 0; i < kDirections; ++i) {
-      const double angle = std::numbers::pi * static_cast<double>(i) / kDirections;
-      cc[i] = std::cos(angle) * std::cos(angle);
-      ss[i] = 1 - cc[i];
-      sc2[i] = 2 * std::sin(angle) * std::cos(angle);
-    }
-  }
-};
-
-/// An element in the patch around a particle: what it reads of curvatures along the two axes of the
-/// patch's plane and of its twist, and its weight there.
-struct Entry {
-  std::uint32_t stencil = 0;
-  double xx = 0, yy = 0, xy = 0;
-  double weight = 0;
-
-  /// At the curvature 1, by direction.
-  PerDirection energies(const Directions& of) const {
-    PerDirection values;
-    for (std::size_t i = 0; i < kDirections; ++i) {
-      const double d = of.cc[i] * xx + of.ss[i] * yy + of.sc2[i] * xy;
-      values[i] = weight * d * d;
-    }
-    return values;
-  }
-};
-
-struct Patch {
-  std::uint32_t particle = 0;
-  std::size_t first = 0, last = 0;  ///< entries
-  double area = 0;
-};
-
-struct System {
-  std::vector<Entry> entries;
-  std::vector<Patch> patches;
-};
-
-template <class Value>
-using Lists = std::vector<std::vector<Value>>;
-
-Lists<std::uint32_t> faces_at_particles(const std::vector<Face>& faces, std::size_t particles) {
-  Lists<std::uint32_t> at(particles);
-  for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    for (std::size_t i = 0; i < faces[f].size; ++i) at[faces[f].particles[i]].push_back(f);
-  }
-  return at;
-}
-
+/// Of the plane in which a particle's faces lie in the mean.
 struct Axes {
   Vec3 x, y;
 };
 
-/// Of the plane that the faces have in the mean, whichever way round they are given.
-Axes axes_of(const std::vector<Face>& faces, const std::vector<std::uint32_t>& around) {
-  const Face& first = faces[around[0]];
+/// Whichever way round the faces are given.
+Axes axes_of(const std::vector<Face>& faces, std::span<const CornerOfFace> around) {
+  const Face& first = faces[around[0].face];
   Vec3 normal;
-  for (const std::uint32_t f : around) {
+  for (const auto& [f, corner] : around) {
     const Vec3 own = area_vector(faces[f]);
     normal = dot(own, area_vector(first)) < 0 ? normal - own : normal + own;
   }
@@ -83,116 +29,288 @@ Axes axes_of(const std::vector<Face>& faces, const std::vector<std::uint32_t>& a
   return {x, cross(normal, x)};
 }
 
-Entry entry_of(const Contribution& part, const Stencils& stencils, const Axes& axes) {
-  const Tensor& reading = stencils.stencils[part.stencil].reading;
-  return {part.stencil, form(reading, axes.x, axes.x), form(reading, axes.y, axes.y),
-          form(reading, axes.x, axes.y), part.weight};
+struct Neighbour {
+  std::uint32_t particle = 0;
+  Turn turn;  ///< from its axes
+};
+
+Turn turn_between(const Axes& from, const Axes& to) {
+  const double c = dot(to.x, from.x), s = dot(to.y, from.x), size = c * c + s * s;
+  const bool mirrored = dot(cross(from.x, from.y), cross(to.x, to.y)) < 0;
+  if (!(size > 0)) return {1, 0, mirrored};
+  return {(c * c - s * s) / size, 2 * s * c / size, mirrored};
 }
 
-/// Entries of one element become one.
-void merge(std::vector<Entry>& entries, std::size_t first) {
-  const auto begin = entries.begin() + static_cast<std::ptrdiff_t>(first);
-  std::stable_sort(begin, entries.end(),
-                   [](const Entry& a, const Entry& b) { return a.stencil < b.stencil; });
-  auto kept = begin;
-  for (auto entry = begin; entry != entries.end(); ++entry) {
-    if (kept != begin && (kept - 1)->stencil == entry->stencil) {
-      (kept - 1)->weight += entry->weight;
-    } else {
-      *kept++ = *entry;
+/// What is stored around a particle, in its axes.
+struct Patch {
+  MomentMatrix stored{};  ///< row: moments of energy; column: as much of each coefficient
+  double area = 0;
+
+  void add(double factor, const Patch& other, const Turn& turn) {
+    const MomentMatrix turned = turn(other.stored);
+    for (std::size_t i = 0; i < kMoments; ++i) {
+      for (std::size_t j = 0; j < kMoments; ++j) stored[i][j] += factor * turned[i][j];
+    }
+    area += factor * other.area;
+  }
+  /// The first coefficient is that of the first moment, which is 1 of itself. So its column is what
+  /// is stored where all factors are 1.
+  double unevenness() const {
+    if (!(area > 0)) return 0;
+    return (std::abs(stored[0][0] - area) + std::hypot(stored[1][0], stored[2][0]) +
+            std::hypot(stored[3][0], stored[4][0])) /
+           area;
+  }
+};
+
+/// Marks the particles of all faces that have a marked one.
+void widen(const std::vector<Face>& faces, std::vector<bool>& marked) {
+  const std::vector<bool> before = marked;
+  for (const Face& face : faces) {
+    bool any = false;
+    for (std::size_t i = 0; i < face.size; ++i) any |= before[face.particles[i]];
+    for (std::size_t i = 0; any && i < face.size; ++i) marked[face.particles[i]] = true;
+  }
+}
+
+/// Those that are neither at the border nor beside a particle that is. There elements do not
+/// balance each other on a cylinder, since it ends.
+std::vector<bool> free_particles(const std::vector<Face>& faces, const Edges& edges,
+                                 std::size_t particles) {
+  std::vector<bool> near_border(particles, false);
+  for (const Edge& edge : edges.all()) {
+    if (!edge.is_inner()) near_border[edge.a] = near_border[edge.b] = true;
+  }
+  widen(faces, near_border);
+  near_border.flip();
+  return near_border;
+}
+
+class Calibrator {
+ public:
+  Calibrator(const std::vector<Face>& faces, const Edges& edges, const Stencils& stencils,
+             std::size_t particles)
+      : faces_(faces),
+        stencils_(stencils),
+        corners_(faces, particles),
+        axes_(particles),
+        is_free_(free_particles(faces, edges, particles)),
+        factors_(stencils.stencils.size(), 1),
+        patches_(particles) {
+    for (const Stencil& stencil : stencils.stencils) readings_.push_back(stencil.reading);
+    for (std::uint32_t p = 0; p < particles; ++p) {
+      if (!corners_.at(p).empty()) axes_[p] = axes_of(faces, corners_.at(p));
+    }
+    find_neighbours(edges);
+  }
+
+  Calibrated calibrate() {
+    fill_patches();
+    is_active_ = uneven_patches(tuning::kBendingEven);
+    const bool is_even = std::ranges::none_of(is_active_, [](bool active) { return active; });
+    if (!is_even) {
+      for (int ring = 0; ring < tuning::kBendingRings; ++ring) widen(faces_, is_active_);
+      for (int i = 0; i < tuning::kBendingSteps; ++i) improve();
+      settle();
+      fill_patches();
+      smooth();
+    }
+    Calibrated result;
+    result.weights.assign(factors_.size(), 0);
+    for (const Contribution& part : stencils_.contributions) {
+      result.weights[part.stencil] += factors_[part.stencil] * part.weight;
+    }
+    const auto uneven = uneven_patches(tuning::kBendingUneven);
+    for (std::uint32_t p = 0; p < uneven.size(); ++p) {
+      if (!is_even && uneven[p]) result.uneven.push_back(p);
+    }
+    return result;
+  }
+
+ private:
+  void find_neighbours(const Edges& edges) {
+    first_neighbour_.assign(axes_.size() + 1, 0);
+    for (const Edge& edge : edges.all()) {
+      ++first_neighbour_[edge.a + 1];
+      ++first_neighbour_[edge.b + 1];
+    }
+    for (std::size_t p = 0; p < axes_.size(); ++p) first_neighbour_[p + 1] += first_neighbour_[p];
+    neighbours_.resize(first_neighbour_.back());
+    auto next = first_neighbour_;
+    for (const Edge& edge : edges.all()) {
+      neighbours_[next[edge.a]++] = {edge.b, turn_between(axes_[edge.b], axes_[edge.a])};
+      neighbours_[next[edge.b]++] = {edge.a, turn_between(axes_[edge.a], axes_[edge.b])};
     }
   }
-  entries.erase(kept, entries.end());
-}
 
-System system_of(const std::vector<Face>& faces, const Stencils& stencils, std::size_t particles) {
-  Lists<Contribution> of_face(faces.size());
-  for (const Contribution& part : stencils.contributions) of_face[part.face].push_back(part);
-  System system;
-  const auto at_particles = faces_at_particles(faces, particles);
-  for (std::uint32_t particle = 0; particle < particles; ++particle) {
-    const auto& around = at_particles[particle];
-    if (around.empty()) continue;
-    const Axes axes = axes_of(faces, around);
-    Patch patch{particle, system.entries.size(), 0, 0};
-    for (const std::uint32_t f : around) {
-      patch.area += area(faces[f]);
-      for (const Contribution& part : of_face[f]) {
-        system.entries.push_back(entry_of(part, stencils, axes));
+  std::span<const Neighbour> neighbours(std::size_t particle) const {
+    return std::span(neighbours_)
+        .subspan(first_neighbour_[particle],
+                 first_neighbour_[particle + 1] - first_neighbour_[particle]);
+  }
+
+  Moments moments(const Tensor& reading, std::uint32_t particle) const {
+    const Axes& axes = axes_[particle];
+    return moments_of_square(form(reading, axes.x, axes.x), form(reading, axes.y, axes.y),
+                             form(reading, axes.x, axes.y));
+  }
+
+  bool is_active(std::uint32_t particle) const {
+    return is_active_.empty() || is_active_[particle];
+  }
+
+  void fill_patches() {
+    std::ranges::fill(patches_, Patch{});
+    for (const Face& face : faces_) {
+      const double size = area(face);
+      for (std::size_t i = 0; i < face.size; ++i) patches_[face.particles[i]].area += size;
+    }
+    for (const Contribution& part : stencils_.contributions) {
+      const Face& face = faces_[part.face];
+      const double weight = factors_[part.stencil] * part.weight;
+      for (std::size_t c = 0; c < face.size; ++c) {
+        const std::uint32_t particle = face.particles[c];
+        if (!is_active(particle)) continue;
+        const Moments energy = moments(readings_[part.stencil], particle);
+        const Moments own = moments(stencils_.stencils[part.stencil].reading, particle);
+        if (!(own[0] > 0)) continue;
+        MomentMatrix& stored = patches_[particle].stored;
+        for (std::size_t i = 0; i < kMoments; ++i) {
+          for (std::size_t j = 0; j < kMoments; ++j) {
+            stored[i][j] += weight * energy[i] * own[j] / own[0];
+          }
+        }
       }
     }
-    merge(system.entries, patch.first);
-    patch.last = system.entries.size();
-    if (patch.last > patch.first) system.patches.push_back(patch);
   }
-  return system;
-}
 
-PerDirection stored_in(const System& system, const Patch& patch, const Directions& directions,
-                       const std::vector<double>& factors) {
-  PerDirection sums{};
-  for (std::size_t e = patch.first; e < patch.last; ++e) {
-    const Entry& entry = system.entries[e];
-    const PerDirection energies = entry.energies(directions);
-    const double factor = factors[entry.stencil];
-    for (std::size_t i = 0; i < kDirections; ++i) sums[i] += factor * energies[i];
+  std::vector<bool> uneven_patches(double most) const {
+    std::vector<bool> uneven(patches_.size());
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      uneven[p] =
+          !corners_.at(static_cast<std::uint32_t>(p)).empty() && patches_[p].unevenness() > most;
+    }
+    return uneven;
   }
-  return sums;
-}
 
-/// One step of the iteration. stored: the sum of each element's energies over all patches.
-void improve(const System& system, const Directions& directions, const std::vector<double>& stored,
-             std::vector<double>& factors) {
-  std::vector<double> wanted(factors.size(), 0);
-  for (const Patch& patch : system.patches) {
-    PerDirection ratios = stored_in(system, patch, directions, factors);
-    for (double& ratio : ratios) ratio = ratio > 0 ? patch.area / ratio : 0;
-    for (std::size_t e = patch.first; e < patch.last; ++e) {
-      const PerDirection energies = system.entries[e].energies(directions);
-      double sum = 0;
-      for (std::size_t i = 0; i < kDirections; ++i) sum += energies[i] * ratios[i];
-      wanted[system.entries[e].stencil] += sum;
+  /// Patches become means of themselves and their neighbours, several times.
+  void smooth() {
+    for (int ring = 0; ring < tuning::kBendingRings; ++ring) {
+      const std::vector<Patch> before = patches_;
+      for (std::size_t p = 0; p < before.size(); ++p) {
+        if (!is_active_[p]) continue;
+        const double share = 1.0 / (1 + static_cast<double>(neighbours(p).size()));
+        patches_[p] = {};
+        patches_[p].add(share, before[p], {});
+        for (const auto& [other, turn] : neighbours(p)) {
+          if (is_active_[other]) patches_[p].add(share, before[other], turn);
+        }
+      }
     }
   }
-  for (std::size_t s = 0; s < factors.size(); ++s) {
-    if (stored[s] > 0) factors[s] *= wanted[s] / stored[s];
-  }
-}
 
-std::vector<double> sums_of_energies(const System& system, const Directions& directions,
-                                     std::size_t stencils) {
-  std::vector<double> sums(stencils, 0);
-  for (const Entry& entry : system.entries) {
-    for (const double energy : entry.energies(directions)) sums[entry.stencil] += energy;
+  Moments coefficients(const Patch& patch) const {
+    const double size = patch.stored[0][0];
+    if (!(size > 0)) return {1, 0, 0, 0, 0};
+    MomentMatrix stored = patch.stored;
+    for (Moments& row : stored) {
+      for (double& value : row) value /= size;
+    }
+    const Moments target{patch.area / size, 0, 0, 0, 0};
+    return least_squares(stored, target, target, tuning::kBendingRestraint);
   }
-  return sums;
-}
 
-bool is_uneven(const PerDirection& sums, double area) {
-  return std::ranges::any_of(
-      sums, [area](double sum) { return std::abs(sum - area) > tuning::kBendingUneven * area; });
-}
+  void improve() {
+    settle();
+    fill_patches();
+    smooth();
+    std::vector<Moments> at(patches_.size(), {1, 0, 0, 0, 0});
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      if (is_active_[p]) at[p] = coefficients(patches_[p]);
+    }
+    std::vector<double> sums(factors_.size(), 0), counts(factors_.size(), 0);
+    for (const Contribution& part : stencils_.contributions) {
+      const Face& face = faces_[part.face];
+      for (std::size_t c = 0; c < face.size; ++c) {
+        const std::uint32_t particle = face.particles[c];
+        counts[part.stencil] += part.weight;
+        sums[part.stencil] += part.weight * factor_by(at[particle], part.stencil, particle);
+      }
+    }
+    for (std::size_t s = 0; s < factors_.size(); ++s) {
+      if (counts[s] > 0) factors_[s] *= sums[s] / counts[s];
+    }
+  }
+
+  /// Particles leave a cylinder until no element pulls at them, and elements read what is left.
+  void settle() {
+    std::vector<double> weights(factors_.size(), 0), stiffness(patches_.size(), 0);
+    for (const Contribution& part : stencils_.contributions) {
+      weights[part.stencil] += factors_[part.stencil] * part.weight;
+    }
+    for_each_end([&](std::uint32_t s, std::uint32_t particle, double w) {
+      stiffness[particle] += weights[s] * w * w;
+    });
+    std::vector<Tensor> moved(patches_.size());
+    for (int i = 0; i < tuning::kSettlings; ++i) {
+      read(moved);
+      std::vector<Tensor> pulls(patches_.size());
+      for_each_end([&](std::uint32_t s, std::uint32_t particle, double w) {
+        pulls[particle] = plus(pulls[particle], weights[s] * w, readings_[s]);
+      });
+      for (std::size_t p = 0; p < moved.size(); ++p) {
+        if (!is_free_[p] || !is_active_[p] || !(stiffness[p] > 0)) continue;
+        moved[p] = plus(moved[p], -tuning::kSettlingShare / stiffness[p], pulls[p]);
+      }
+    }
+    read(moved);
+  }
+
+  template <class Call>
+  void for_each_end(const Call& call) const {
+    for (std::uint32_t s = 0; s < stencils_.stencils.size(); ++s) {
+      const Stencil& stencil = stencils_.stencils[s];
+      for (std::size_t i = 0; i < stencil.particles.size(); ++i) {
+        if (stencil.particles[i] != kNoIndex) call(s, stencil.particles[i], stencil.weights[i]);
+      }
+    }
+  }
+
+  /// moved: by how much particles have left a surface of curvature K: the product with K.
+  void read(const std::vector<Tensor>& moved) {
+    for (std::size_t s = 0; s < readings_.size(); ++s) readings_[s] = stencils_.stencils[s].reading;
+    for_each_end([&](std::uint32_t s, std::uint32_t particle, double w) {
+      readings_[s] = plus(readings_[s], w, moved[particle]);
+    });
+  }
+
+  double factor_by(const Moments& coefficients, std::uint32_t stencil,
+                   std::uint32_t particle) const {
+    if (!is_active_[particle]) return 1;
+    const Moments m = moments(stencils_.stencils[stencil].reading, particle);
+    if (!(m[0] > 0)) return 1;
+    return std::clamp(dot(coefficients, m) / m[0], 1 / tuning::kMostBendingFactor,
+                      tuning::kMostBendingFactor);
+  }
+
+  const std::vector<Face>& faces_;
+  const Stencils& stencils_;
+  const Corners corners_;
+  std::vector<Axes> axes_;
+  std::vector<std::size_t> first_neighbour_;
+  std::vector<Neighbour> neighbours_;  ///< of one particle after the other
+  const std::vector<bool> is_free_;    ///< particles that leave a cylinder by themselves
+  std::vector<double> factors_;        ///< of elements
+  std::vector<Tensor> readings_;       ///< of elements, when the particles have settled
+  std::vector<Patch> patches_;         ///< around particles
+  std::vector<bool> is_active_;        ///< empty: all are
+};
 
 }  // namespace
 
-Calibrated calibrate(const std::vector<Face>& faces, const Stencils& stencils,
+Calibrated calibrate(const std::vector<Face>& faces, const Edges& edges, const Stencils& stencils,
                      std::size_t particles) {
-  const System system = system_of(faces, stencils, particles);
-  const Directions directions;
-  std::vector<double> factors(stencils.stencils.size(), 1);
-  const auto stored = sums_of_energies(system, directions, factors.size());
-  for (int i = 0; i < tuning::kBendingSteps; ++i) improve(system, directions, stored, factors);
-
-  Calibrated result;
-  result.weights.assign(factors.size(), 0);
-  for (const Contribution& part : stencils.contributions) {
-    result.weights[part.stencil] += factors[part.stencil] * part.weight;
-  }
-  for (const Patch& patch : system.patches) {
-    const PerDirection sums = stored_in(system, patch, directions, factors);
-    if (is_uneven(sums, patch.area)) result.uneven.push_back(patch.particle);
-  }
-  return result;
+  return Calibrator(faces, edges, stencils, particles).calibrate();
 }
 
 }  // namespace weft::mesh

@@ -12,14 +12,24 @@ struct Calibrated {
   std::vector<std::uint32_t> uneven;  ///< particles around which that is not enough, ascending
 };
 
-/// The mesh around each particle, the faces that meet there, is to store what a cylinder of each of
-/// eight directions stores, its area times k c^2 / 2 at the curvature c. (As a function of its
-/// direction this is a polynomial of fourth degree, which eight directions determine.) That is a
-/// system A s = t with nothing negative in it, for factors s of the elements. A fixed number of
-/// steps of Richardson and Lucy's iteration, s_j <- s_j sum_i A_ij t_i / (A s)_i / sum_i A_ij,
-/// keeps all factors above 0 and the sum of A s at that of t; where s = 1 solves the system, as in
-/// grids of rectangles, it stays.
-Calibrated calibrate(const std::vector<Face>& faces, const Stencils& stencils,
+/// The mesh around each particle is to store what a cylinder of any direction stores, its area
+/// times k c^2 / 2 at the curvature c. As a function of the direction of the cylinder the energy is
+/// a polynomial of fourth degree, which five moments describe (moments.h).
+///
+/// Each element gets a factor: the product of its own moments, as fractions of the first, and five
+/// coefficients, which are the mean of those at its particles. The coefficients at a particle solve
+/// five equations, one for each moment of the energy around it, of means over its neighbours and
+/// theirs (tuning::kBendingRings). So the factor depends on the direction of an element and changes
+/// slowly over the mesh. Factors that fit each particle by itself would be exact there, but a sheet
+/// of them is softer as a whole, because soft elements bend more than their share (perf/tried.md).
+///
+/// What counts is what a cylinder stores once its particles have settled (tuning::kSettlings). Held
+/// exactly on a cylinder they store more, up to a tenth in irregular triangles; where elements pull
+/// at particles evenly, as in lattices, it is the same.
+///
+/// Where the elements store what they should without a factor, as in grids of rectangles, they keep
+/// the factor 1.
+Calibrated calibrate(const std::vector<Face>& faces, const Edges& edges, const Stencils& stencils,
                      std::size_t particles);
 
 }  // namespace weft::mesh

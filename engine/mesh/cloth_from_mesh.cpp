@@ -71,10 +71,10 @@ std::vector<BendingElement> bending_of(const std::vector<Face>& faces, std::size
   const std::vector<Face> bent = well_shaped(faces, mesh.weld_distance);
   const Edges edges(bent);
   Stencils stencils = bending_stencils(bent, edges, mesh.weld_distance);
-  Calibrated calibrated = calibrate(bent, stencils, particles);
+  Calibrated calibrated = calibrate(bent, edges, stencils, particles);
   if (!calibrated.uneven.empty()) {
-    add_rays(bent, edges, mesh.weld_distance, calibrated.uneven, stencils);
-    calibrated = calibrate(bent, stencils, particles);
+    add_rays(bent, edges, mesh.weld_distance, calibrated.uneven, particles, stencils);
+    calibrated = calibrate(bent, edges, stencils, particles);
   }
   std::vector<BendingElement> elements;
   for (std::size_t i = 0; i < calibrated.weights.size(); ++i) {

@@ -1,16 +1,14 @@
 #include "engine/mesh/delaunay.h"
 
-#include <unordered_set>
-
 #include "engine/mesh/edges.h"
-#include "engine/mesh/pair_key.h"
+#include "engine/mesh/pair_numbers.h"
 
 namespace weft::mesh {
 namespace {
 
-/// Passes end when nothing is left to flip: in a plane they do. Edges of faces that are curved at
-/// rest could be flipped to and fro.
-constexpr int kMostPasses = 64;
+/// So many edges are flipped at most, per face. In a plane far fewer are. Edges of faces that are
+/// curved at rest could be flipped to and fro.
+constexpr std::size_t kMostFlips = 16;
 /// So that rounding flips nothing: four corners of a rectangle have a sum of 0.
 constexpr double kLeastCotangent = 1e-6;
 
@@ -20,40 +18,104 @@ double cotangent_against(const Face& triangle, std::size_t side) {
   return dot(u, v) / length(cross(u, v));
 }
 
+/// A corner of a face.
+struct At {
+  const Face& face;
+  std::size_t corner;
+};
+
+Face triangle(At a, At b, At c) {
+  Face made;
+  made.size = 3;
+  std::size_t i = 0;
+  for (const At& at : {a, b, c}) {
+    made.particles[i] = at.face.particles[at.corner];
+    made.places[i++] = at.face.places[at.corner];
+  }
+  return made;
+}
+
+/// Flips edges, and then the edges around those that were flipped, until nothing is left to flip.
 class Flipper {
  public:
   Flipper(std::vector<Face>& faces, double weld_distance)
-      : faces_(faces), edges_(faces), weld_distance_(weld_distance), done_(faces.size(), false) {
-    for (const Edge& edge : edges_.all()) joined_.insert(pair_key(edge.a, edge.b));
+      : faces_(faces), weld_distance_(weld_distance), across_(faces.size()) {
+    const Edges edges(faces);
+    for (const Edge& edge : edges.all()) {
+      joined_.add(edge.a, edge.b);
+      if (!edge.is_inner() || edge.faces[0].face == edge.faces[1].face) continue;
+      join(edge.faces[0], edge.faces[1]);
+      waiting_.push_back(edge.faces[0]);
+    }
   }
 
-  /// Flips what it can, each face once. Returns whether there was anything.
-  bool pass() {
-    bool any = false;
-    for (const Edge& edge : edges_.all()) any |= edge.is_inner() && flip(edge);
-    return any;
+  void run() {
+    std::size_t left = kMostFlips * faces_.size();
+    while (!waiting_.empty() && left > 0) {
+      const EdgeOfFace edge = waiting_.back();
+      waiting_.pop_back();
+      left -= flip(edge);
+    }
   }
 
  private:
-  bool flip(const Edge& edge) {
-    const auto [f, side] = edge.faces[0];
-    const auto [g, other_side] = edge.faces[1];
-    if (faces_[f].is_quad() || faces_[g].is_quad() || done_[f] || done_[g] || f == g) return false;
-    const Face one = faces_[f], two = faces_[g];
-    if (cotangent_against(one, side) + cotangent_against(two, other_side) > -kLeastCotangent) {
+  bool has_other(const EdgeOfFace& edge) const {
+    return across_[edge.face][edge.side].face != kNoIndex;
+  }
+  void join(const EdgeOfFace& one, const EdgeOfFace& two) {
+    across_[one.face][one.side] = two;
+    across_[two.face][two.side] = one;
+  }
+
+  bool flip(const EdgeOfFace& edge) {
+    if (!has_other(edge)) return false;
+    const EdgeOfFace across = across_[edge.face][edge.side];
+    const Face one = faces_[edge.face], two = faces_[across.face];
+    if (one.is_quad() || two.is_quad()) return false;
+    if (cotangent_against(one, edge.side) + cotangent_against(two, across.side) >
+        -kLeastCotangent) {
       return false;
     }
-    const std::size_t from = side, to = one.next(side), far = one.previous(side);
-    const std::size_t far_two = two.previous(other_side);
-    const auto key = pair_key(one.particles[far], two.particles[far_two]);
+    const std::size_t from = edge.side, to = one.next(from), far = one.previous(from);
+    const std::size_t far_two = two.previous(across.side);
     if (one.particles[far] == two.particles[far_two] || !is_one_place(one, from, two) ||
-        !is_one_place(one, to, two) || !joined_.insert(key).second) {
+        !is_one_place(one, to, two) ||
+        !joined_.add(one.particles[far], two.particles[far_two]).second) {
       return false;
     }
-    faces_[f] = triangle(one, far, one, from, two, far_two);
-    faces_[g] = triangle(two, far_two, one, to, one, far);
-    done_[f] = done_[g] = true;
+    replace(edge, across, one, two);
     return true;
+  }
+
+  /// Puts the triangles on both sides of the other diagonal in the place of both.
+  void replace(const EdgeOfFace& edge, const EdgeOfFace& across, const Face& one, const Face& two) {
+    const std::size_t from = edge.side, to = one.next(from), far = one.previous(from);
+    const std::size_t far_two = two.previous(across.side);
+    // The other triangle may have its corners in the same order or in the opposite one.
+    const bool starts_at_to = two.particles[across.side] == one.particles[to];
+    const std::size_t after = two.next(across.side);
+    const EdgeOfFace at_far_to = across_[edge.face][to];
+    const EdgeOfFace at_far_from = across_[edge.face][far];
+    const EdgeOfFace after_side = across_[across.face][after];
+    const EdgeOfFace before_side = across_[across.face][far_two];
+    const EdgeOfFace two_from = starts_at_to ? after_side : before_side;
+    const EdgeOfFace two_to = starts_at_to ? before_side : after_side;
+    faces_[edge.face] = triangle({one, far}, {one, from}, {two, far_two});
+    faces_[across.face] = triangle({two, far_two}, {one, to}, {one, far});
+    const std::uint32_t f = edge.face, g = across.face;
+    put({f, 0}, at_far_from);
+    put({f, 1}, two_from);
+    put({g, 0}, two_to);
+    put({g, 1}, at_far_to);
+    join({f, 2}, {g, 2});
+  }
+
+  /// Joins the side to what was across it before, and looks at it again.
+  void put(const EdgeOfFace& side, const EdgeOfFace& other) {
+    across_[side.face][side.side] = {kNoIndex, 0};
+    if (other.face == kNoIndex) return;
+    join(side, other);
+    waiting_.push_back(side);
   }
 
   bool is_one_place(const Face& one, std::size_t corner, const Face& two) const {
@@ -65,28 +127,21 @@ class Flipper {
     return false;
   }
 
-  static Face triangle(const Face& a, std::size_t i, const Face& b, std::size_t j, const Face& c,
-                       std::size_t k) {
-    Face made;
-    made.size = 3;
-    made.particles = {a.particles[i], b.particles[j], c.particles[k]};
-    made.places = {a.places[i], b.places[j], c.places[k]};
-    return made;
-  }
+  struct Across : std::array<EdgeOfFace, 4> {
+    Across() { fill({kNoIndex, 0}); }
+  };
 
   std::vector<Face>& faces_;
-  const Edges edges_;
   const double weld_distance_;
-  std::vector<bool> done_;
-  std::unordered_set<std::uint64_t> joined_;  ///< particles
+  std::vector<Across> across_;       ///< by side: the same edge in the other face; kNoIndex: none
+  std::vector<EdgeOfFace> waiting_;  ///< edges to look at
+  PairNumbers joined_;               ///< particles
 };
 
 }  // namespace
 
 std::vector<Face> well_shaped(std::vector<Face> faces, double weld_distance) {
-  for (int i = 0; i < kMostPasses; ++i) {
-    if (!Flipper(faces, weld_distance).pass()) break;
-  }
+  Flipper(faces, weld_distance).run();
   return faces;
 }
 

@@ -1,6 +1,7 @@
 /// Which faces meet at an edge.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/mesh/faces.h"
@@ -14,7 +15,7 @@ struct EdgeOfFace {
 
 struct Edge {
   std::uint32_t a = 0, b = 0;  ///< particles, a < b
-  std::vector<EdgeOfFace> faces;
+  std::span<const EdgeOfFace> faces;
   bool is_inner() const { return faces.size() == 2; }
   bool is_border() const { return faces.size() == 1; }
 };
@@ -23,11 +24,14 @@ struct Edge {
 class Edges {
  public:
   explicit Edges(const std::vector<Face>& faces);
+  Edges(const Edges&) = delete;
+  Edges& operator=(const Edges&) = delete;
   const std::vector<Edge>& all() const { return edges_; }
   const Edge& at(std::size_t face, std::size_t side) const { return edges_[of_[face][side]]; }
 
  private:
   std::vector<Edge> edges_;
+  std::vector<EdgeOfFace> faces_;                 ///< of all edges, one edge after the other
   std::vector<std::array<std::uint32_t, 4>> of_;  ///< number of each face's sides
 };
 

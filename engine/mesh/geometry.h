@@ -31,6 +31,11 @@ inline double triangle_area(Vec3 a, Vec3 b, Vec3 c) { return length(area_vector(
 struct Tensor {
   double xx = 0, yy = 0, zz = 0, yz = 0, zx = 0, xy = 0;
 };
+/// t + s u
+inline Tensor plus(Tensor t, double s, const Tensor& u) {
+  return {t.xx + s * u.xx, t.yy + s * u.yy, t.zz + s * u.zz,
+          t.yz + s * u.yz, t.zx + s * u.zx, t.xy + s * u.xy};
+}
 /// t + s v v^T
 inline Tensor plus_square(Tensor t, double s, Vec3 v) {
   return {t.xx + s * v.x * v.x, t.yy + s * v.y * v.y, t.zz + s * v.z * v.z,

@@ -1,7 +1,6 @@
 #include "engine/mesh/grid_recognition.h"
 
 #include <algorithm>
-#include <map>
 
 #include "engine/mesh/edges.h"
 
@@ -78,9 +77,17 @@ struct Around {
   bool is_regular() const { return triangles == 0 && quads == (is_at_border ? 2 : 4); }
 };
 
-std::map<std::uint32_t, Around> look_around(const std::vector<Face>& faces, const Edges& edges,
-                                            const std::vector<Cell>& cells) {
-  std::map<std::uint32_t, Around> around;
+std::size_t particle_count(const std::vector<Face>& faces) {
+  std::uint32_t last = 0;
+  for (const Face& face : faces) {
+    for (std::size_t i = 0; i < face.size; ++i) last = std::max(last, face.particles[i]);
+  }
+  return std::size_t{last} + 1;
+}
+
+std::vector<Around> look_around(const std::vector<Face>& faces, const Edges& edges,
+                                const std::vector<Cell>& cells) {
+  std::vector<Around> around(particle_count(faces));
   std::vector<bool> in_cell(faces.size(), false);
   for (const Cell& cell : cells) {
     in_cell[cell.first] = in_cell[cell.second] = true;
@@ -107,9 +114,8 @@ std::size_t recognise_grids(std::vector<Face>& faces) {
   if (cells.empty()) return 0;
   const auto around = look_around(faces, edges, cells);
   std::erase_if(cells, [&](const Cell& cell) {
-    return std::ranges::none_of(cell.quad.particles, [&](std::uint32_t particle) {
-      return around.at(particle).is_regular();
-    });
+    return std::ranges::none_of(
+        cell.quad.particles, [&](std::uint32_t particle) { return around[particle].is_regular(); });
   });
   std::vector<std::uint32_t> cell_of(faces.size(), kNone);
   for (std::uint32_t c = 0; c < cells.size(); ++c) {

@@ -1,12 +1,10 @@
 #include "engine/mesh/membrane.h"
 
 #include <algorithm>
-#include <unordered_map>
-#include <unordered_set>
 
 #include "engine/mesh/families.h"
 #include "engine/mesh/mesh_input.h"
-#include "engine/mesh/pair_key.h"
+#include "engine/mesh/pair_numbers.h"
 
 namespace weft::mesh {
 namespace {
@@ -21,17 +19,17 @@ class Joiner {
   void join(std::uint32_t first_vertex, std::uint32_t second_vertex, ConstraintKind kind) {
     const std::uint32_t a = welded_.particle_of_vertex[first_vertex];
     const std::uint32_t b = welded_.particle_of_vertex[second_vertex];
-    if (a == b || !joined_.insert(pair_key(a, b)).second) return;
+    if (a == b || !joined_.add(a, b).second) return;
     const Vec3 across = mesh_.positions[first_vertex] - mesh_.positions[second_vertex];
     constraints_.push_back({a, b, length(across), kind});
   }
-  void skip(const Constraint& joined) { joined_.insert(pair_key(joined.a, joined.b)); }
+  void skip(const Constraint& joined) { joined_.add(joined.a, joined.b); }
   std::vector<Constraint> take() { return std::move(constraints_); }
 
  private:
   const MeshDescription& mesh_;
   const Welded& welded_;
-  std::unordered_set<std::uint64_t> joined_;
+  PairNumbers joined_;
   std::vector<Constraint> constraints_;
 };
 
@@ -57,13 +55,12 @@ class Springs {
   void add(const Face& face, std::size_t from, std::size_t to, double stiffness) {
     if (!(stiffness > 0)) return;
     const std::uint32_t a = face.particles[from], b = face.particles[to];
-    const auto next = static_cast<std::uint32_t>(constraints_.size());
-    const auto [entry, is_new] = number_of_.try_emplace(pair_key(a, b), next);
+    const auto [number, is_new] = numbers_.add(a, b);
     if (is_new) {
       const double rest_length = length(face.places[from] - face.places[to]);
       constraints_.push_back({a, b, rest_length, kind_, 1 / stiffness});
     } else {
-      double& compliance = constraints_[entry->second].compliance;
+      double& compliance = constraints_[number].compliance;
       compliance = 1 / (1 / compliance + stiffness);
     }
   }
@@ -73,7 +70,7 @@ class Springs {
  private:
   ConstraintKind kind_;
   std::vector<Constraint> constraints_;
-  std::unordered_map<std::uint64_t, std::uint32_t> number_of_;
+  PairNumbers numbers_;
 };
 
 double square(double x) { return x * x; }

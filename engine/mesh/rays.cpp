@@ -1,9 +1,8 @@
 #include "engine/mesh/rays.h"
 
 #include <algorithm>
-#include <map>
-#include <set>
 
+#include "engine/mesh/corners.h"
 #include "engine/mesh/pair_key.h"
 
 namespace weft::mesh {
@@ -11,11 +10,7 @@ namespace {
 
 constexpr std::size_t kMostRays = 3;
 
-struct Corner {
-  std::uint32_t face = 0;
-  std::size_t corner = 0;
-};
-using Around = std::vector<Corner>;
+using Around = std::span<const CornerOfFace>;
 
 /// One side of the ring around a particle, in places from there.
 struct RingSide {
@@ -29,7 +24,7 @@ struct Ray {
   std::uint64_t ends = 0;  ///< pair_key of both, the nearer corner of the second
 };
 
-std::vector<RingSide> ring_of(const std::vector<Face>& faces, const Around& around) {
+std::vector<RingSide> ring_of(const std::vector<Face>& faces, Around around) {
   std::vector<RingSide> ring;
   for (const auto& [f, corner] : around) {
     const Face& face = faces[f];
@@ -74,19 +69,21 @@ bool make_ray(std::uint32_t middle, const RingSide& start, const RingSide& end, 
 
 class Adder {
  public:
-  Adder(const std::vector<Face>& faces, const Edges& edges, double weld_distance, Stencils& into)
+  Adder(const std::vector<Face>& faces, const Edges& edges, double weld_distance,
+        std::size_t particles, Stencils& into)
       : faces_(faces),
         edges_(edges),
         weld_distance_(weld_distance),
         extent_(extent(faces)),
-        into_(into) {
+        into_(into),
+        lines_(particles) {
     for (const Stencil& s : into.stencils) {
       if (s.particles[3] != kNoIndex) continue;
-      lines_.insert({s.particles[1], pair_key(s.particles[0], s.particles[2])});
+      lines_[s.particles[1]].push_back(pair_key(s.particles[0], s.particles[2]));
     }
   }
 
-  void add(std::uint32_t particle, const Around& around) {
+  void add(std::uint32_t particle, Around around) {
     if (!is_inner(around)) return;
     const auto ring = ring_of(faces_, around);
     if (!is_one_shape(ring)) return;
@@ -95,8 +92,8 @@ class Adder {
   }
 
  private:
-  bool is_inner(const Around& around) const {
-    return std::ranges::all_of(around, [&](const Corner& at) {
+  bool is_inner(Around around) const {
+    return std::ranges::all_of(around, [&](const CornerOfFace& at) {
       const std::size_t before = faces_[at.face].previous(at.corner);
       return edges_.at(at.face, at.corner).is_inner() && edges_.at(at.face, before).is_inner();
     });
@@ -119,7 +116,8 @@ class Adder {
     for (const RingSide& start : ring) {
       for (const RingSide& end : ring) {
         if (!make_ray(particle, start, end, extent_, ray)) continue;
-        if (!lines_.contains({particle, ray.ends})) rays.push_back(ray);
+        const auto& lines = lines_[particle];
+        if (std::ranges::find(lines, ray.ends) == lines.end()) rays.push_back(ray);
       }
     }
     std::ranges::stable_sort(rays, {}, &Ray::beside);
@@ -131,7 +129,7 @@ class Adder {
     return best;
   }
 
-  void add(const Ray& ray, const Around& around, double rays) {
+  void add(const Ray& ray, Around around, double rays) {
     const auto number = static_cast<std::uint32_t>(into_.stencils.size());
     into_.stencils.push_back(ray.stencil);
     for (const auto& [f, corner] : around) {
@@ -145,23 +143,17 @@ class Adder {
   const double weld_distance_;
   const double extent_;  ///< m, of the mesh
   Stencils& into_;
-  std::set<std::pair<std::uint32_t, std::uint64_t>> lines_;  ///< middle and ends of three points
+  std::vector<std::vector<std::uint64_t>> lines_;  ///< ends of three points, by the middle
 };
 
 }  // namespace
 
 void add_rays(const std::vector<Face>& faces, const Edges& edges, double weld_distance,
-              const std::vector<std::uint32_t>& particles, Stencils& stencils) {
-  std::map<std::uint32_t, Around> around;
-  for (const std::uint32_t particle : particles) around[particle];
-  for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    for (std::size_t i = 0; i < faces[f].size; ++i) {
-      const auto found = around.find(faces[f].particles[i]);
-      if (found != around.end()) found->second.push_back({f, i});
-    }
-  }
-  Adder adder(faces, edges, weld_distance, stencils);
-  for (const auto& [particle, corners] : around) adder.add(particle, corners);
+              const std::vector<std::uint32_t>& through, std::size_t particles,
+              Stencils& stencils) {
+  const Corners corners(faces, particles);
+  Adder adder(faces, edges, weld_distance, particles, stencils);
+  for (const std::uint32_t particle : through) adder.add(particle, corners.at(particle));
 }
 
 }  // namespace weft::mesh

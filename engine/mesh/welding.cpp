@@ -1,5 +1,6 @@
 #include "engine/mesh/welding.h"
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 
@@ -10,14 +11,24 @@
 namespace weft::mesh {
 namespace {
 
-/// Equal zeros of either sign are equal here.
+bool equal(Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+/// Equal zeros of either sign are equal here. Vertices are sorted by their places, and by their
+/// numbers within one place.
 void join_equal(const MeshDescription& mesh, const std::vector<bool>& used, Partition& parts) {
-  std::map<std::tuple<double, double, double>, std::uint32_t> first_at;
+  struct Place {
+    Vec3 at;
+    std::uint32_t vertex;
+  };
+  std::vector<Place> places;
   for (std::uint32_t vertex = 0; vertex < used.size(); ++vertex) {
-    if (!used[vertex]) continue;
-    const Vec3 v = mesh.positions[vertex];
-    const auto [entry, is_new] = first_at.try_emplace({v.x, v.y, v.z}, vertex);
-    if (!is_new) parts.join(entry->second, vertex);
+    if (used[vertex]) places.push_back({mesh.positions[vertex], vertex});
+  }
+  std::ranges::sort(places, [](const Place& a, const Place& b) {
+    return std::tie(a.at.x, a.at.y, a.at.z, a.vertex) < std::tie(b.at.x, b.at.y, b.at.z, b.vertex);
+  });
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    if (equal(places[i - 1].at, places[i].at)) parts.join(places[i - 1].vertex, places[i].vertex);
   }
 }
 
@@ -53,8 +64,6 @@ void join_sewn(const MeshDescription& mesh, const std::vector<bool>& used, Parti
     if (used[a] && used[b]) parts.join(a, b);
   }
 }
-
-bool equal(Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 /// Of different places the mean; of equal ones the place itself, to the last bit.
 void place_particles(const MeshDescription& mesh, Welded& welded) {
