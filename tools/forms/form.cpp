@@ -25,13 +25,20 @@ Settings by_one_thread(Settings settings) {
 
 }  // namespace
 
+namespace {
+
+/// Bounds above this are of errors that do not vanish as the mesh becomes finer.
+constexpr double kRough = 0.05;
+
+}  // namespace
+
 bool FormResult::holds() const {
   const auto converged = [](const Reading& r) { return r.missed == 0; };
   if (readings.empty() || !std::ranges::all_of(readings, converged)) return false;
   if (std::ssize(readings) < kRefinements) return true;
   const double finest = std::abs(readings.back().error());
   const double coarsest = std::abs(readings.front().error());
-  return finest <= bound && (finest <= kSmall || finest < coarsest);
+  return finest <= bound && (finest <= kSmall || finest < coarsest || bound > kRough);
 }
 
 FormResult measure(const Form& form, int refinements) {

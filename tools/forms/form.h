@@ -39,7 +39,8 @@ struct FormResult {
   double bound = 0;
   std::vector<Reading> readings;  ///< from the coarsest on
 
-  /// Whether the finest reading is within the bound and either small or better than the coarsest;
+  /// Whether the finest reading is within the bound and either small or better than the coarsest,
+  /// which is not asked for where the bound is above 5 %;
   /// and every frame converged. Without the finest mesh only the last is asked for.
   bool holds() const;
 };
