@@ -1,8 +1,8 @@
 /// A substep of small steps, all in, of a frame of sixteen, and its sweep alone: yarns of a woven
 /// sheet, single edges of an irregular mesh, and a braced sheet, which has both. And a visit of
 /// bending elements, of three particles along the rows and columns of a sheet, or of four over the
-/// pairs of its triangles. And of anchors, of every particle, in woven rows or in quads: with
-/// nobody at its limit, or all, or all on a backstop.
+/// pairs of its triangles. And of triangles of fabric, relaxed or judged. And of anchors, of every
+/// particle, in woven rows or in quads: with nobody at its limit, or all, or all on a backstop.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -12,6 +12,7 @@
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/simd_anchors.h"
 #include "engine/solvers/small_steps/simd_bending.h"
+#include "engine/solvers/small_steps/simd_membrane.h"
 #include "engine/solvers/small_steps/simd_small_steps.h"
 #include "engine/tuning.h"
 #include "perf/benchmarks.h"
@@ -117,17 +118,68 @@ SceneDescription bending_sheet(int size, bool four) {
   return scene;
 }
 
+/// Quads of particles.
+kernels::AlignedVector<float> quads_of(const Model& model) {
+  kernels::AlignedVector<float> quads(4 * model.slots());
+  for (std::size_t i = 0; i < model.slots(); ++i) {
+    const kernels::Vector x = model.initial_position[i];
+    for (const auto& [axis, place] : {std::pair{0, x.x}, {1, x.y}, {2, x.z}})
+      quads[4 * i + static_cast<std::size_t>(axis)] = static_cast<float>(place);
+  }
+  return quads;
+}
+
+/// A grid of size x size particles, each cell of two triangles.
+SceneDescription fabric_sheet(int size) {
+  SceneDescription scene = scenes::make("hang", {.size = size}).value();
+  const double cell = scene.constraints.front().rest_length;
+  scene.constraints.clear();
+  const auto n = static_cast<std::uint32_t>(size);
+  const auto add = [&](std::array<std::uint32_t, 3> particles) {
+    MembraneElement element{.particles = particles, .warp = 4000, .weft = 4000, .shear = 60};
+    for (std::size_t k = 0; k < 3; ++k)
+      element.rest[k] = {cell * (particles[k] % n), cell * (particles[k] / n)};
+    scene.membrane.push_back(element);
+  };
+  for (std::uint32_t row = 0; row + 1 < n; ++row) {
+    for (std::uint32_t column = 0; column + 1 < n; ++column) {
+      const std::uint32_t i = row * n + column;
+      add({i, i + 1, i + n + 1});
+      add({i, i + n + 1, i + n});
+    }
+  }
+  return scene;
+}
+
+void run_membrane(benchmark::State& state, const Shared& shared, simd::Isa isa, int size,
+                  bool judges) {
+  const auto model = build_model(fabric_sheet(size)).value();
+  Team team{1};
+  SimdMembrane membrane(*model, simd::table(isa));
+  kernels::AlignedVector<float> base = quads_of(*model), u(base.size());
+  membrane.measure_base(base.data(), team);
+  const LawStep laws{{.scale = 1e7}, false};
+  for (auto _ : state) {
+    if (judges)
+      membrane.judge(u.data(), nullptr, laws, 0.01, team);
+    else
+      membrane.relax(u.data(), nullptr, laws, tuning::kOmega, false, team);
+  }
+  const double footprint =
+      static_cast<double>(membrane.bytes() + model->small_steps().membrane.bytes());
+  count(state,
+        {.items = static_cast<double>(model->membrane.size()),
+         .bytes = footprint,
+         .footprint = footprint},
+        shared.bandwidth);
+}
+
 void run_bending(benchmark::State& state, const Shared& shared, simd::Isa isa, int size,
                  bool four) {
   const auto model = build_model(bending_sheet(size, four)).value();
   Team team{1};
   SimdBending bending(*model, simd::table(isa));
-  kernels::AlignedVector<float> base(4 * model->slots()), u(4 * model->slots());
-  for (std::size_t i = 0; i < model->slots(); ++i) {
-    const kernels::Vector x = model->initial_position[i];
-    for (const auto& [axis, place] : {std::pair{0, x.x}, {1, x.y}, {2, x.z}})
-      base[4 * i + static_cast<std::size_t>(axis)] = static_cast<float>(place);
-  }
+  kernels::AlignedVector<float> base = quads_of(*model), u(base.size());
   bending.measure_base(base.data(), team);
   // Too long a substep for a visit to stand for several.
   const FramePlan plan{.h = 1, .substeps = std::numeric_limits<int>::max()};
@@ -212,6 +264,18 @@ void register_small_step_benchmarks(Shared& shared) {
                                  name_of(isa) + '/' + std::to_string(size);
         benchmark::RegisterBenchmark(name.c_str(), [=, &shared](benchmark::State& state) {
           run_bending(state, shared, isa, size, four);
+        });
+      }
+    }
+  }
+  for (const bool judges : {false, true}) {
+    for (const simd::Isa isa : supported_isas()) {
+      for (const int size : kSizes) {
+        const std::string name = std::string("small_step_membrane/") +
+                                 (judges ? "judge/" : "relax/") + name_of(isa) + '/' +
+                                 std::to_string(size);
+        benchmark::RegisterBenchmark(name.c_str(), [=, &shared](benchmark::State& state) {
+          run_membrane(state, shared, isa, size, judges);
         });
       }
     }

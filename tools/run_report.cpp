@@ -89,7 +89,8 @@ Json substeps(const RunReport& report) {
 
 /// Of rigid constraints the error is their strain.
 std::string_view error_name(const RunSummary& summary) {
-  return summary.model.compliant > 0 ? "error of the law" : "strain";
+  return summary.model.compliant > 0 || summary.model.membrane_elements > 0 ? "error of the law"
+                                                                            : "strain";
 }
 
 std::string material_text(const ModelInfo& model) {
@@ -98,6 +99,7 @@ std::string material_text(const ModelInfo& model) {
     if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, what);
   };
   add(model.compliant, "spring");
+  add(model.membrane_elements, "triangle");
   add(model.bending_elements, "bending element");
   add(model.air_triangles, "air triangle");
   return text;
@@ -148,6 +150,7 @@ Json to_json(const RunReport& report) {
       {"particles", summary.model.particles},
       {"constraints", summary.model.constraints},
       {"springs", summary.model.compliant},
+      {"membrane_elements", summary.model.membrane_elements},
       {"bending_elements", summary.model.bending_elements},
       {"anchors", summary.model.anchors},
       {"air_triangles", summary.model.air_triangles},

@@ -54,6 +54,7 @@ RunReport report() {
   summary.model.particles = 16;
   summary.model.constraints = 10;
   summary.model.compliant = 21;
+  summary.model.membrane_elements = 37;
   summary.model.bending_elements = 23;
   summary.model.anchors = 31;
   summary.model.air_triangles = 29;
@@ -64,7 +65,7 @@ RunReport report() {
 TEST_CASE("the JSON has every figure, per frame where its name says so") {
   const Json expected = Json::parse(R"({
     "scene": "somewhere", "particles": 16, "constraints": 10, "spheres": 17,
-    "springs": 21, "bending_elements": 23, "anchors": 31, "air_triangles": 29, "rejected": 15,
+    "springs": 21, "membrane_elements": 37, "bending_elements": 23, "anchors": 31, "air_triangles": 29, "rejected": 15,
     "max_error": 0.25,
     "solver": "auto", "solver_used": "yarn", "scheme": "paper", "scheme_fallbacks": 8,
     "backend": "simd", "anticipate_products": false, "isa": "avx2", "threads": 3,
@@ -96,7 +97,7 @@ TEST_CASE("the table has every figure too") {
   in_all.summary.scheme = Scheme::rattle;
   CHECK(to_table(in_all) ==
         "scene     somewhere: 16 particles, 10 constraints, 17 spheres\n"
-        "material  21 springs, 23 bending elements, 29 air triangles\n"
+        "material  21 springs, 37 triangles, 23 bending elements, 29 air triangles\n"
         "solver    auto (yarn), scheme rattle, backend simd, tolerance 6.25 %\n"
         "scheme    8 of 22 substeps left to scheme paper\n"
         "frames    4 of 0.5 s in 5.5 substeps each, status infeasible\n"
@@ -156,7 +157,8 @@ TEST_CASE("a table tells of the motion where small steps estimated its error") {
 
 TEST_CASE("a table of rigid cloth is about strain, and says nothing of a material") {
   RunReport rigid = report();
-  rigid.summary.model.compliant = rigid.summary.model.bending_elements = 0;
+  rigid.summary.model.compliant = rigid.summary.model.membrane_elements =
+      rigid.summary.model.bending_elements = 0;
   rigid.summary.model.air_triangles = 0;
   CHECK(to_table(rigid).find("at max strain 25 %") != std::string::npos);
   CHECK(to_table(rigid).find("material") == std::string::npos);
