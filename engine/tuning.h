@@ -57,12 +57,17 @@ inline constexpr double kLikeStiffness = 0.5;
 /// The largest n h tau W / compliance that an element is damped with: beyond that its neighbours
 /// and it would take from their motion more than there is.
 inline constexpr double kMostBendingDamping = 0.2;
-/// If more than this share of all constraints is out of tolerance a substep sweeps once more, which
+/// While more than this share of all constraints is out of tolerance a substep sweeps again, which
 /// is cheaper than local passes.
 inline constexpr double kManyOut = 0.02;
 /// s. Energy that the motion loses may come back for about this time, since constraints are
 /// springs.
 inline constexpr double kSpringTime = 0.1;
+/// Time of a visit of local passes, over that of a sweep's visit.
+inline constexpr double kLocalVisit = 8;
+/// Where at least as many substeps were given as automatic ones would be: the time beyond their
+/// sweeps, in sweeps for each. Less leaves more to later frames; more takes longer.
+inline constexpr double kPassesBeyond = 6;
 /// The largest number of visits of local passes in a substep and in a round, in units of all
 /// constraints. Fewer leave more to later substeps; more are spent in vain on what is
 /// contradictory.

@@ -49,8 +49,10 @@ void add_solver_options(Verb verb, SolverOptions& options) {
               "strain that every step must reach, 1% or 0.01 (default 1%)");
   verb.option("--iterations", settings.iterations,
               "exactly this many iterations in each substep, instead of a tolerance");
-  verb.option("--max-iterations", settings.max_iterations,
-              "most iterations of a step, shared by its substeps (default 1000000)");
+  verb.option(
+      "--max-iterations", settings.max_iterations,
+      "most iterations of a step, shared by its substeps (default 1000000); small_steps with "
+      "--substeps N: beyond N sweeps, from 0");
   verb.option("--contact-tolerance", settings.contact_tolerance,
               "m of penetration left (default 1e-4)");
   verb.option("--velocity-tolerance", settings.velocity_tolerance,

@@ -96,7 +96,7 @@ Result<void> validate(const Settings& s) {
   if (auto r = validate_count("substeps", s.substeps, kAutomaticSubsteps); !r) return r;
   if (auto r = validate_count("iterations", s.iterations, 0); !r) return r;
   if (auto r = validate_count("renew_after", s.renew_after, 0); !r) return r;
-  if (auto r = validate_count("max_iterations", s.max_iterations, 1); !r) return r;
+  if (auto r = validate_count("max_iterations", s.max_iterations, 0); !r) return r;
   if (auto r = validate_positive("contact_tolerance", s.contact_tolerance); !r) return r;
   if (auto r = validate_positive("velocity_tolerance", s.velocity_tolerance); !r) return r;
   if (!std::isfinite(s.impulse_limit) || s.impulse_limit < 0) {
@@ -135,6 +135,11 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
   }
   if (springs && s.anticipate_products) {
     return refuse("anticipate_products", "takes no constraints with a compliance", "on");
+  }
+  const bool is_bounded_alone = s.solver == Solver::small_steps && s.substeps != kAutomaticSubsteps;
+  if (s.max_iterations == 0 && !is_bounded_alone) {
+    return refuse("max_iterations", "must be at least 1 but for small_steps with given substeps",
+                  "0");
   }
   if (s.solver == Solver::small_steps) return validate_scheme(s);
   for (const auto& [what, count] :

@@ -40,9 +40,9 @@ bool needs_projection(State& s, Team& team) {
 }
 
 void project(State& s, double dt, StepReport& report, Team& team) {
-  const int most = std::max(1, s.settings.max_iterations / 2);
+  const int most = (s.settings.max_iterations + 1) / 2;
   const auto by_small_steps = [&] {
-    const auto left = static_cast<int>(std::max<std::int64_t>(1, most - report.iterations));
+    const auto left = static_cast<int>(std::max<std::int64_t>(0, most - report.iterations));
     project_by_small_steps(s, dt, {.positions = left}, report, team);
   };
   s.solved = s.position;

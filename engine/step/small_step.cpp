@@ -73,23 +73,32 @@ void keep_stiffness(const State& s, double dt, FramePlan& plan) {
   if (give < least) plan.omega *= give / least;
 }
 
+/// A number of substeps that was given bounds the time of a step: where it is less than automatic
+/// substeps would be, by the time of those.
+double passes_beyond(int substeps, double automatic_substeps) {
+  const double missing =
+      std::min<double>(automatic_substeps, tuning::kMostSubsteps) - static_cast<double>(substeps);
+  return std::max(tuning::kPassesBeyond * substeps, missing);
+}
+
 /// Substeps are about as long as the load allows. Whoever takes over from another solver has no
 /// past, and no energy in springs. A step that is far shorter than the load allows is no stiffer.
 FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& budget) {
   const bool takes_over = takes_over_in(s);
   FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed || takes_over};
+  const double usual = usual_length(s, solver, dt);
+  const double wanted = std::max(1.0, std::ceil(dt / usual));
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
     plan.substeps = s.settings.substeps;
     plan.h = dt / plan.substeps;
+    plan.passes = std::min<double>(budget.positions, passes_beyond(plan.substeps, wanted));
     keep_stiffness(s, dt, plan);
   } else {
-    const double usual = usual_length(s, solver, dt);
-    const double wanted = std::ceil(dt / usual);
-    const int most = most_substeps(budget);
-    plan.substeps = wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
-    const double part = 2 * dt / (plan.substeps * usual);
-    if (part < 1) plan.omega *= part * part;
+    plan.substeps = static_cast<int>(std::min<double>(wanted, most_substeps(budget)));
     plan.h = dt / plan.substeps;
+    plan.passes = budget.positions - plan.substeps;
+    const double part = 2 * plan.h / usual;
+    if (part < 1) plan.omega *= part * part;
   }
   return plan;
 }
@@ -109,16 +118,16 @@ double next_refinement(const State& s, const FramePlan& plan, double error, cons
 /// The frame that is being done.
 class Frame {
  public:
-  Frame(State& s, const Budget& budget, StepReport& report, Team& team)
+  Frame(State& s, StepReport& report, Team& team)
       : s_(s),
         solver_(*s.small_steps),
         report_(report),
         team_(team),
-        end_(report.iterations + budget.positions),
         edges_(static_cast<std::int64_t>(s.model->constraints.size() + s.model->membrane.size())) {}
 
   void begin(const FramePlan& plan) {
     plan_ = plan;
+    passes_left_ = plan.passes;
     plan_.anchors = s_.anchors.travel();
     const kernels::VectorsView force =
         s_.forces().size() > 0 ? s_.forces().view() : kernels::VectorsView{};
@@ -134,12 +143,13 @@ class Frame {
 
   void substep() {
     solver_.advance(team_);
-    ++substeps_done_;
     const bool to_tolerance = s_.settings.iterations == 0;
     for (int i = 0; i < std::max(1, s_.settings.iterations); ++i) sweep();
-    if (to_tolerance && many_are_out()) sweep();
+    const double rest = passes_left_ - share_of_substep();  // is for later substeps
+    ++substeps_done_;
+    while (to_tolerance && passes_left_ - rest >= 1 && many_are_out()) sweep_beyond();
     if (s_.model->has_contacts()) find_contacts();
-    if (to_tolerance) count(solver_.repair(s_.contacts, most_visits()));
+    if (to_tolerance) count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest)));
     if (s_.model->has_contacts()) watch_crossings();
   }
 
@@ -147,17 +157,9 @@ class Frame {
   /// that look at all constraints. If rounds no longer bring the error down it is there to stay.
   Status finish() {
     read_positions();
-    Stall stall(tuning::kRoundPatience);
-    for (int round = 0;; ++round) {
-      if (is_within_tolerance()) return Status::converged;
-      if (s_.settings.iterations > 0) return Status::fixed_iterations;
-      if (round >= most_rounds()) return Status::iteration_limit;
-      const double distance = std::max(report_.max_penetration, report_.max_anchor_error);
-      const double error = std::max(report_.max_error / s_.settings.tolerance,
-                                    distance / s_.settings.contact_tolerance);
-      if (stall.has_stalled(error)) return Status::infeasible;
-      timed(report_, Stage::solve_positions, [&] { put_right(); });
-    }
+    const Status status = put_right_what_is_left();
+    report_.iterations += static_cast<std::int64_t>(std::ceil(local_passes_));
+    return status;
   }
 
   void read_velocities() {
@@ -186,15 +188,33 @@ class Frame {
     return energy_of_springs(*s_.model, x, give) + energy_of_membrane(*s_.model, x, give) +
            solver_.bending_energy(give, team_);
   }
-  /// With a number of substeps that was given the time of a frame is to be bounded.
-  int most_rounds() const {
-    if (report_.iterations >= end_) return 0;
-    return s_.settings.substeps == kAutomaticSubsteps ? tuning::kMostRounds : 1;
+  Status put_right_what_is_left() {
+    Stall stall(tuning::kRoundPatience);
+    for (int round = 0;; ++round) {
+      if (is_within_tolerance()) return Status::converged;
+      if (s_.settings.iterations > 0) return Status::fixed_iterations;
+      if (round >= tuning::kMostRounds || passes_left_ < 1) return Status::iteration_limit;
+      const double distance = std::max(report_.max_penetration, report_.max_anchor_error);
+      const double error = std::max(report_.max_error / s_.settings.tolerance,
+                                    distance / s_.settings.contact_tolerance);
+      if (stall.has_stalled(error)) return Status::infeasible;
+      timed(report_, Stage::solve_positions, [&] { put_right(); });
+    }
+  }
+  /// Of the passes that are left for each substep to come, and for what the last one leaves.
+  double share_of_substep() const {
+    const double share = passes_left_ / (plan_.substeps - substeps_done_ + 1);
+    return std::clamp(share, 0.0, kMostOfSubstep);
   }
   void put_right() {
-    sweep();
-    count(solver_.repair_everywhere(s_.contacts, most_visits()));
+    sweep_beyond();
+    const double most = std::min(passes_left_, kMostOfSubstep);
+    count(solver_.repair_everywhere(s_.contacts, most_visits(most)));
     read_positions();
+  }
+  void sweep_beyond() {
+    sweep();
+    passes_left_ -= 1;
   }
   void sweep() {
     solver_.sweep(team_);
@@ -208,18 +228,21 @@ class Frame {
            tuning::kManyOut * static_cast<double>(edges_);
   }
 
-  std::int64_t most_visits() const {
-    const std::int64_t left = end_ - report_.iterations;
-    return std::clamp<std::int64_t>(left, 1, tuning::kMostVisits) * visits_of_an_iteration();
-  }
   /// Passes visit contacts too, which may be many more than the constraints.
-  std::int64_t visits_of_an_iteration() const {
-    return std::max<std::int64_t>(1, edges_ + s_.contacts.count());
+  double visits_of_a_pass() const {
+    return std::max(1.0, static_cast<double>(edges_ + s_.contacts.count()));
+  }
+  std::int64_t most_visits(double passes) const {
+    const double most = passes * visits_of_a_pass() / tuning::kLocalVisit;
+    return static_cast<std::int64_t>(std::max(0.0, most));
   }
   void count(const LocalWork& work) {
     report_.visits += work.visits;
     report_.corrections += work.corrections;
-    report_.iterations += work.visits / visits_of_an_iteration();
+    const double beyond = static_cast<double>(work.visits - s_.contacts.count());
+    const double passes = std::max(0.0, beyond) / visits_of_a_pass();
+    local_passes_ += passes;
+    passes_left_ -= tuning::kLocalVisit * passes;
   }
   void read_positions() {
     s_.solved = s_.position;
@@ -252,7 +275,10 @@ class Frame {
   SmallSteps& solver_;
   StepReport& report_;
   Team& team_;
-  const std::int64_t end_;    // of the budget, as the report counts iterations
+  static constexpr double kMostOfSubstep = tuning::kLocalVisit * tuning::kMostVisits;
+
+  double passes_left_ = 0;    // beyond a sweep for each substep, in the time of sweeps
+  double local_passes_ = 0;   // done
   const std::int64_t edges_;  // all constraints and triangles of fabric
   FramePlan plan_;
   int substeps_done_ = 0;
@@ -266,7 +292,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
                  StepReport& report, Team& team) {
   const bool fixed = s.settings.iterations > 0;
   Trial trial;
-  Frame frame(s, budget, report, team);
+  Frame frame(s, report, team);
   FramePlan plan;
   timed(report, Stage::predict, [&] {
     plan = plan_for(s, *s.small_steps, h, budget);
@@ -316,8 +342,12 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
 
 void project_by_small_steps(State& s, double h, const Budget& budget, StepReport& report,
                             Team& team) {
-  Frame frame(s, budget, report, team);
-  frame.begin({.h = h, .omega = tuning::kOmega, .placed = true, .projects = true});
+  Frame frame(s, report, team);
+  frame.begin({.h = h,
+               .passes = static_cast<double>(budget.positions),
+               .omega = tuning::kOmega,
+               .placed = true,
+               .projects = true});
   frame.finish();
 }
 

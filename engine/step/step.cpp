@@ -178,14 +178,14 @@ class Step {
   struct Share {
     std::int64_t end = 0, early_end = 0;
     int left(const Attempt& attempt, std::int64_t done) const {
-      return static_cast<int>(
-          std::max<std::int64_t>(1, (attempt.is_last ? end : early_end) - done));
+      const std::int64_t least = attempt.method == Method::by_small_steps ? 0 : 1;
+      return static_cast<int>(std::max(least, (attempt.is_last ? end : early_end) - done));
     }
   };
   /// Half of the iterations that the step has left are for each substep, and all for the last.
   Share share_of(std::int64_t done, int substeps_left) const {
     const std::int64_t left = s_.settings.max_iterations - done;
-    const std::int64_t share = std::max<std::int64_t>(1, left / std::min(substeps_left, 2));
+    const std::int64_t share = std::max<std::int64_t>(0, left / std::min(substeps_left, 2));
     return {done + share, done + share / 2};
   }
 

@@ -17,8 +17,9 @@ namespace weft {
 
 /// converged: every constraint is within its tolerance. The state is committed.
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
-/// iteration_limit: max_iterations were done, or with small_steps all rounds, and some constraint
-///   is still out of tolerance. The state is committed.
+/// iteration_limit: max_iterations were done, or with small_steps all rounds or all that a given
+///   number of substeps allows, and some constraint is still out of tolerance. The state is
+///   committed.
 /// infeasible: some constraint is out of tolerance and tens of thousands of iterations
 ///   (small_steps: sixteen rounds of a sweep and local passes) hardly reduce the error: constraints
 ///   contradict each other (a chain whose ends are too far apart), masses differ by far, or nothing
@@ -66,7 +67,8 @@ struct StepReport {
   int halvings = 0;                      ///< attempts at a substep that were rejected (Solver)
   std::int64_t iterations = 0;           ///< passes over the position constraints; yarn: sweeps and
                                          ///< conjugate gradient iterations; direct: solves;
-                                         ///< small_steps: local passes by their visits
+                                         ///< small_steps: `substeps` sweeps, and what was done
+                                         ///< beyond, sweeps and local passes by their visits
   std::int64_t direction_updates = 0;    ///< renewals of the constraint directions
   std::int64_t velocity_iterations = 0;  ///< passes of the velocity loop; direct: solves
   std::int64_t visits = 0;               ///< constraints whose error was looked at, both loops

@@ -79,7 +79,9 @@ struct Settings {
   /// and the tolerances below that are used, from 1e-18 to 1e18, and Cloth::create refuses others.
   double tolerance = 0.01;
   /// Each step is done as this many substeps, each solved to the tolerances; with small_steps only
-  /// the last is looked at, and the number bounds the time of a step. 0 (kAutomaticSubsteps): of
+  /// the last is looked at, and the number bounds the time of a step: n substeps are n sweeps, and
+  /// what is done beyond takes as long as 6 n more, or as automatic substeps would if these are
+  /// more. max_iterations lowers that bound. 0 (kAutomaticSubsteps): of
   /// small_steps by closed form, up to 1024; else chosen from the motion (rattle: up to 2.5 times
   /// as many as paper) and, with yarns, from the load that heavy particles and, with scheme paper,
   /// spheres are; no more than max_iterations / 8 then. 1 on the reference backend or with
@@ -96,7 +98,10 @@ struct Settings {
   int renew_after = 32;
   /// Of a whole step, whatever its substeps, attempts and schemes; > 0. It bounds the time of a
   /// step: a game sets it, to several times of what its frames take, for what one leaves undone the
-  /// next finds. (For the same time in each frame: `iterations` and `substeps`, solver yarn.) Each
+  /// next finds. (For the same time in each frame: `iterations` and `substeps`, solver yarn.) With
+  /// small_steps and n `substeps` a step is n sweeps, and no more than max_iterations passes
+  /// beyond, projections of a start included, whatever the state; it may be 0 then. A pass is a
+  /// sweep, or as many visits of local passes as take about as long. With other solvers each
   /// substep may do half of what is left, the last one all; half of that is kept for the last
   /// attempt (see Solver), which does one at least. The velocity loop may do as many of its own.
   /// Where a substep that is cut off would gain energy, its velocities are scaled down.

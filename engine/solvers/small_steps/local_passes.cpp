@@ -78,6 +78,11 @@ void LocalPasses::begin_pass() {
   waiting_.clear();
 }
 
+/// Within a pass.
+void LocalPasses::break_off() {
+  for (const std::uint32_t slot : present_) now_[slot] = 0;
+}
+
 std::size_t LocalPasses::bytes() const {
   return bytes_of(ends_) + at_.bytes() + bytes_of(always_) + bytes_of(now_) + bytes_of(next_) +
          bytes_of(present_) + bytes_of(waiting_);

@@ -33,8 +33,8 @@ struct LocalLimits {
   double tolerance = 0;          // strain
   double contact_tolerance = 0;  // m
   double omega = 1;
-  std::int64_t most_visits = 0;
-  LawStep laws{};  // with springs
+  std::int64_t most_visits = 0;  // besides one of each contact, by which a run begins
+  LawStep laws{};                // with springs
 };
 
 class LocalPasses {
@@ -84,7 +84,11 @@ class LocalPasses {
   bool relax_by_law(Points& points, std::uint32_t constraint, const LocalLimits& limits);
   template <class Points>
   bool push_apart(Points& points, const ContactStore& contacts, double least, LocalWork& work);
+  /// One of what was asked for. Returns false where visits were used up before its end.
+  template <class Points>
+  bool pass(Points& points, const LocalLimits& limits, std::int64_t most_visits, LocalWork& work);
   void begin_pass();
+  void break_off();
 
   const Model& model_;
   const std::uint32_t constraints_;
@@ -166,28 +170,41 @@ LocalWork LocalPasses::run(Points& points, const ContactStore& contacts,
                            const LocalLimits& limits) {
   LocalWork work;
   bool again = push_apart(points, contacts, 0, work);
+  const std::int64_t most_visits = limits.most_visits + work.visits;
   while (again || !waiting_.empty()) {
-    if (work.visits >= limits.most_visits) {
-      work.done = false;
-      break;
-    }
-    begin_pass();
-    const auto visit = [&](std::uint32_t item) {
-      ++work.visits;
-      if (relax(points, item, limits)) ++work.corrections;
-    };
-    for (const std::uint32_t slot : present_) {
-      for (std::uint64_t bits = std::exchange(now_[slot], 0); bits != 0; bits &= bits - 1) {
-        const std::uint32_t item = at_[slot][static_cast<std::size_t>(std::countr_zero(bits))];
-        for (const End& end : ends(item)) now_[end.slot] &= ~end.mask();
-        visit(item);
-      }
-    }
-    for (const std::uint32_t item : always_) visit(item);
+    work.done = pass(points, limits, most_visits, work) &&
+                work.visits + static_cast<std::int64_t>(contacts.count()) <= most_visits;
+    if (!work.done) break;
     again = push_apart(points, contacts, limits.contact_tolerance, work);
   }
   forget();
   return work;
+}
+
+template <class Points>
+bool LocalPasses::pass(Points& points, const LocalLimits& limits, std::int64_t most_visits,
+                       LocalWork& work) {
+  begin_pass();
+  const auto visit = [&](std::uint32_t item) {
+    ++work.visits;
+    if (relax(points, item, limits)) ++work.corrections;
+  };
+  for (const std::uint32_t slot : present_) {
+    for (std::uint64_t bits = std::exchange(now_[slot], 0); bits != 0; bits &= bits - 1) {
+      if (work.visits >= most_visits) {
+        break_off();
+        return false;
+      }
+      const std::uint32_t item = at_[slot][static_cast<std::size_t>(std::countr_zero(bits))];
+      for (const End& end : ends(item)) now_[end.slot] &= ~end.mask();
+      visit(item);
+    }
+  }
+  for (const std::uint32_t item : always_) {
+    if (work.visits >= most_visits) return false;
+    visit(item);
+  }
+  return true;
 }
 
 }  // namespace weft

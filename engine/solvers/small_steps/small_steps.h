@@ -86,6 +86,7 @@ class Departures {
 struct FramePlan {
   double h = 0;  // s, of a substep
   int substeps = 1;
+  double passes = 0;      // at most, beyond a sweep for each substep, in the time of sweeps
   double omega = 1;       // of a sweep
   bool placed = false;    // positions are not where the last step ended: nothing is known of a past
   bool projects = false;  // no time passes: springs are left as they are, and the past is kept
