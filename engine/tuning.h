@@ -38,9 +38,12 @@ inline constexpr double kMotionSpare = 0.3;
 /// More substeps are of use for the motion while its error is this many times what rounding makes
 /// of it.
 inline constexpr double kOverRounding = 4;
-/// Yarns are blocks if they have this many constraints on average. Random triangles make yarns of 3
-/// or 4, a woven sheet of n x n particles makes yarns of n - 1.
+/// Yarns are blocks if they have this many constraints, in rigid sheets on average. Random
+/// triangles make yarns of 3 or 4, a woven sheet of n x n particles makes yarns of n - 1.
 inline constexpr double kLeastLinks = 8;
+/// A spring that is so many times as soft as those that cross it is no part of a yarn. Diagonals of
+/// the cells of fabrics are 20 to 200 times as soft as warp and weft.
+inline constexpr double kSofter = 8;
 /// Substeps between two renewals of the base. Displacements are rounded to a 2^-24 part of what a
 /// particle moves in between.
 inline constexpr int kRenewal = 16;
@@ -60,6 +63,11 @@ inline constexpr double kMostBendingDamping = 0.2;
 /// While more than this share of all constraints is out of tolerance a substep sweeps again, which
 /// is cheaper than local passes.
 inline constexpr double kManyOut = 0.02;
+/// Substeps of fabric are shorter in the next frame where local passes of the last substep visit
+/// more than the first share of what all sweeps did, and longer below the second. A visit of a
+/// local pass takes about eight times as long as one of a sweep (perf/tried.md).
+inline constexpr double kMuchMended = 0.06;
+inline constexpr double kLittleMended = 0.005;
 /// s. Energy that the motion loses may come back for about this time, since constraints are
 /// springs.
 inline constexpr double kSpringTime = 0.1;

@@ -32,6 +32,10 @@ double mean_acceleration(const State& s) {
   return mass > 0 ? sum / mass : 0;
 }
 
+bool has_laws(const State& s) {
+  return s.model->constraints.has_springs() || s.model->membrane.size() > 0;
+}
+
 bool takes_over_in(const State& s) { return s.settings.solver != Solver::small_steps; }
 
 /// A substep is a sweep or two, and local passes that may always visit every constraint once.
@@ -53,8 +57,10 @@ double usual_length(State& s, const SmallSteps& solver, double dt) {
   const double a = mean_acceleration(s);
   const double length =
       std::min(tuning::kLongestSubstep, solver.substep_length(s.position.view(), a));
-  if (s.settings.motion_tolerance == 0) return length;
-  return std::min(length, length_for_onset(s, a, dt)) * std::exp2(-s.refinement);
+  if (!refines_substeps(s)) return length;
+  const double shorter = std::exp2(-s.refinement);
+  if (s.settings.motion_tolerance == 0) return length * shorter;
+  return std::min(length, length_for_onset(s, a, dt)) * shorter;
 }
 
 /// The compliance of a sweep, over w_a + w_b.
@@ -115,6 +121,19 @@ double next_refinement(const State& s, const FramePlan& plan, double error, cons
   return is_small ? std::max(0.0, s.refinement - kLevel) : s.refinement;
 }
 
+/// The same for fabric without a motion tolerance. Its load may come from any side, and what
+/// carries it sideways is swept one by one: substeps are shorter where the last one of a frame left
+/// much to local passes, which visited `mended` constraints.
+double next_refinement(const State& s, const FramePlan& plan, std::int64_t mended,
+                       std::int64_t constraints, const Budget& budget) {
+  constexpr double kLevel = 0.25;
+  const double share =
+      static_cast<double>(mended) / static_cast<double>(constraints * plan.substeps);
+  if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget))
+    return s.refinement + kLevel;
+  return share < tuning::kLittleMended ? std::max(0.0, s.refinement - kLevel) : s.refinement;
+}
+
 /// The frame that is being done.
 class Frame {
  public:
@@ -140,6 +159,8 @@ class Frame {
   /// J, by springs, triangles of fabric and bending elements, since the beginning: there those that
   /// have become stiffer because substeps are shorter had no more than before.
   double released() { return elastic_energy_before_ - elastic_energy(s_.solved, give_); }
+  std::int64_t mended() const { return mended_; }
+  std::int64_t constraints() const { return edges_; }
 
   void substep() {
     solver_.advance(team_);
@@ -147,9 +168,18 @@ class Frame {
     for (int i = 0; i < std::max(1, s_.settings.iterations); ++i) sweep();
     const double rest = passes_left_ - share_of_substep();  // is for later substeps
     ++substeps_done_;
-    while (to_tolerance && passes_left_ - rest >= 1 && many_are_out()) sweep_beyond();
+    const bool mends = to_tolerance && mends_now();
+    if (mends) solver_.judge(team_);
+    while (mends && passes_left_ - rest >= 1 && many_are_out()) {
+      sweep_beyond();
+      solver_.judge(team_);
+    }
     if (s_.model->has_contacts()) find_contacts();
-    if (to_tolerance) count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest)));
+    if (mends) {
+      const LocalWork work = solver_.repair(s_.contacts, most_visits(passes_left_ - rest));
+      mended_ += work.visits;
+      count(work);
+    }
     if (s_.model->has_contacts()) watch_crossings();
   }
 
@@ -223,6 +253,12 @@ class Frame {
     report_.visits += edges_;
     report_.corrections += edges_;
   }
+  /// What a sweep leaves of a law the next one has again, and small steps bring it down faster than
+  /// local passes do: without contacts these wait for the last substep. What is left of a rigid
+  /// length would be let go as speed.
+  bool mends_now() const {
+    return !has_laws(s_) || s_.model->has_contacts() || substeps_done_ == plan_.substeps;
+  }
   bool many_are_out() const {
     return static_cast<double>(solver_.count_out()) >
            tuning::kManyOut * static_cast<double>(edges_);
@@ -282,11 +318,17 @@ class Frame {
   const std::int64_t edges_;  // all constraints and triangles of fabric
   FramePlan plan_;
   int substeps_done_ = 0;
+  std::int64_t mended_ = 0;           // visits of local passes in substeps
   double give_ = 0;                   // s^2, of a sweep, per mass
   double elastic_energy_before_ = 0;  // J, in the beginning
 };
 
 }  // namespace
+
+bool refines_substeps(const State& s) {
+  if (s.settings.motion_tolerance > 0) return true;
+  return has_laws(s) && !takes_over_in(s) && s.settings.substeps == kAutomaticSubsteps;
+}
 
 Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budget,
                  StepReport& report, Team& team) {
@@ -335,6 +377,8 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
     if (s.settings.motion_tolerance > 0)
       trial.refinement = next_refinement(s, plan, trial.motion_error, budget);
+    else if (refines_substeps(s))
+      trial.refinement = next_refinement(s, plan, frame.mended(), frame.constraints(), budget);
     s.small_steps->keep(team);
   });
   return trial;

@@ -12,6 +12,9 @@ namespace weft {
 Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budget,
                  StepReport& report, Team& team);
 
+/// Whether State::refinement says how much shorter substeps are than is known beforehand.
+bool refines_substeps(const State& s);
+
 /// Puts solved, which is equal to position, right in the same rounds.
 void project_by_small_steps(State& s, double h, const Budget& budget, StepReport& report,
                             Team& team);

@@ -120,7 +120,7 @@ class Step {
   }
 
   double next_refinement() const {
-    if (s_.settings.motion_tolerance > 0) return refinement_;
+    if (refines_substeps(s_)) return refinement_;
     const double needed = report_.halvings > 0 ? std::log2(parts_ / plan_.substeps) : 0;
     return std::max(needed, s_.refinement - tuning::kCoarsening);
   }

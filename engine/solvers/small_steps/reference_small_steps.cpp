@@ -238,6 +238,9 @@ void ReferenceSmallSteps::sweep(Team&) {
   relax_membrane();
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors();
   is_begun_ = true;
+}
+
+void ReferenceSmallSteps::judge(Team&) {
   if (model_.constraints.has_springs()) judge_springs();
   judge_membrane();
 }

@@ -34,6 +34,7 @@ class ReferenceSmallSteps final : public SmallSteps {
              kernels::VectorsView force, const FramePlan& plan, Team& team) override;
   void advance(Team& team) override;
   void sweep(Team& team) override;
+  void judge(Team& team) override;
   std::int64_t count_out() const override { return std::ssize(out_); }
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;

@@ -381,7 +381,9 @@ void SmallStepsSolver::sweep(Team& team) {
   sweep_membrane(team);
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors(team);
   is_begun_ = true;
-  if (settings_.iterations > 0) return;
+}
+
+void SmallStepsSolver::judge(Team& team) {
   if (model_.constraints.has_springs()) judge_springs(team);
   judge_membrane(team);
 }

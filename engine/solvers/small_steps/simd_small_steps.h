@@ -46,6 +46,7 @@ class SmallStepsSolver final : public SmallSteps {
   /// The stages of a substep.
   void advance(Team& team) override;
   void sweep(Team& team) override;
+  void judge(Team& team) override;
   /// Constraints that the last sweep found out of tolerance.
   std::int64_t count_out() const override;
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;

@@ -106,7 +106,10 @@ class SmallSteps {
   /// The stages of a substep.
   virtual void advance(Team& team) = 0;
   virtual void sweep(Team& team) = 0;
-  /// Constraints that the last sweep found out of tolerance.
+  /// After a sweep: finds the springs and triangles of fabric that are out of tolerance, and rigid
+  /// constraints beside springs. Where all are rigid a sweep has found them.
+  virtual void judge(Team& team) = 0;
+  /// Constraints that were found out of tolerance.
   virtual std::int64_t count_out() const = 0;
   virtual LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) = 0;
   /// After the last: local passes that look at all constraints.

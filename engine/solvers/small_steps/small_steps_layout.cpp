@@ -3,26 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
-#include "engine/ordering/yarns.h"
+#include "engine/solvers/small_steps/constraints_of_yarns.h"
 #include "engine/tuning.h"
 
 namespace weft {
 namespace {
 
 using kernels::kLanes;
-
-bool makes_yarns(const YarnLayout& layout) {
-  double yarns = 0, links = 0;
-  for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
-    yarns += layout.blocks[i].lanes;
-    links += layout.links[i];
-  }
-  return yarns > 0 && links >= tuning::kLeastLinks * yarns;
-}
 
 /// Slots as quads, and nothing else.
 YarnLayout no_yarns(const Model& model) {
@@ -32,17 +24,18 @@ YarnLayout no_yarns(const Model& model) {
   return layout;
 }
 
+/// Edge blocks of the constraints that are not in yarns.
 class Builder {
  public:
-  Builder(const Model& model, SmallStepsLayout& layout) : model_(model), layout_(layout) {}
+  Builder(const Model& model, std::span<const std::uint32_t> in_yarns, SmallStepsLayout& layout)
+      : model_(model), layout_(layout), is_in_yarn_(model.constraints.size()) {
+    for (const std::uint32_t c : in_yarns) is_in_yarn_[c] = true;
+  }
 
-  void add_batches(bool distances) {
+  void add_batches() {
     const Ordering& ordering = model_.ordering;
     const auto add = [&](std::uint32_t first, std::uint32_t last) {
-      for (std::uint32_t i = first; i < last; ++i) {
-        const bool rope = ordering.batches[i].kind == ConstraintKind::rope;
-        if (rope || distances) add_batch(ordering.batches[i], rope);
-      }
+      for (std::uint32_t i = first; i < last; ++i) add_batch(ordering.batches[i]);
     };
     for (const Tile& tile : ordering.tiles) {
       const auto first = static_cast<std::uint32_t>(layout_.batches.size());
@@ -54,31 +47,46 @@ class Builder {
   }
 
  private:
-  void add_batch(const Batch& batch, bool rope) {
-    const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
-    for (std::uint32_t slot = batch.first; slot < batch.last; slot += kLanes) add_block(slot);
-    layout_.batches.push_back({first, static_cast<std::uint32_t>(layout_.blocks.size()), rope});
+  bool is_single(std::uint32_t slot) const {
+    const std::uint32_t c = model_.simd().constraint_at[slot];
+    return c != kNoIndex && !is_in_yarn_[c];
   }
-  void add_block(std::uint32_t first) {
+  /// The other slots of the batch, which share no particle with these, are padding.
+  void add_batch(const Batch& batch) {
+    const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
+    slots_.resize(batch.last - batch.first);
+    std::iota(slots_.begin(), slots_.end(), batch.first);
+    const auto others =
+        std::ranges::stable_partition(slots_, [&](std::uint32_t slot) { return is_single(slot); });
+    const std::size_t singles = slots_.size() - others.size();
+    for (std::size_t i = 0; i < singles; i += kLanes)
+      add_block(std::span(slots_).subspan(i, kLanes));
+    const auto last = static_cast<std::uint32_t>(layout_.blocks.size());
+    if (first < last) layout_.batches.push_back({first, last, batch.kind == ConstraintKind::rope});
+  }
+  void add_block(std::span<const std::uint32_t> slots) {
     const SimdLayout& simd = model_.simd();
     simd::EdgeBlock& block = layout_.blocks.emplace_back();
     std::uint32_t used = 0;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      const std::uint32_t slot = first + lane, c = simd.constraint_at[slot];
+      const std::uint32_t slot = slots[lane];
+      const bool is_one = is_single(slot);
       block.a[lane] = simd.a[slot];
       block.b[lane] = simd.b[slot];
-      block.share_a[lane] = static_cast<float>(c == kNoIndex ? 0 : simd.share_a[slot]);
-      block.share_b[lane] = static_cast<float>(c == kNoIndex ? 0 : simd.share_b[slot]);
+      block.share_a[lane] = static_cast<float>(is_one ? simd.share_a[slot] : 0);
+      block.share_b[lane] = static_cast<float>(is_one ? simd.share_b[slot] : 0);
       block.square[lane] =
-          static_cast<float>(c == kNoIndex ? 1 : simd.rest_length[slot] * simd.rest_length[slot]);
-      layout_.constraint.push_back(c);
-      used |= (c == kNoIndex ? 0u : 1u) << lane;
+          static_cast<float>(is_one ? simd.rest_length[slot] * simd.rest_length[slot] : 1);
+      layout_.constraint.push_back(is_one ? simd.constraint_at[slot] : kNoIndex);
+      used |= (is_one ? 1u : 0u) << lane;
     }
     layout_.used.push_back(static_cast<std::uint16_t>(used));
   }
 
   const Model& model_;
   SmallStepsLayout& layout_;
+  std::vector<bool> is_in_yarn_;
+  std::vector<std::uint32_t> slots_;  // constraint slots of a batch
 };
 
 void add_springs(const Model& model, SmallStepsLayout& layout) {
@@ -129,16 +137,15 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   layout.membrane = make_membrane_layout(model);
   const bool weaves = store.plain == store.size() && !store.has_springs() &&
                       layout.membrane.empty() && layout.bending.empty();
-  layout.yarns =
-      make_yarn_layout(model, weaves ? YarnMemory::woven_if_possible : YarnMemory::quads);
-  const bool woven = makes_yarns(layout.yarns);
-  if (!woven) layout.yarns = no_yarns(model);
-  Builder(model, layout).add_batches(!woven);
+  const YarnMemory memory = weaves ? YarnMemory::woven_if_possible : YarnMemory::quads;
+  const std::vector<std::uint32_t> in_yarns = constraints_of_yarns(model);
+  layout.yarns = in_yarns.empty() ? no_yarns(model) : make_yarn_layout(model, in_yarns, memory);
+  Builder(model, in_yarns, layout).add_batches();
   for (const auto* hubs : {&store.hub_distances, &store.hub_ropes}) {
     layout.serial.insert(layout.serial.end(), hubs->begin(), hubs->end());
   }
   if (store.has_springs()) add_springs(model, layout);
-  layout.cell = woven ? layout.yarns.cell : cell_of(model);
+  layout.cell = layout.has_yarns() ? layout.yarns.cell : cell_of(model);
   layout.floats = kernels::round_up(layout.yarns.places.floats, std::size_t{kLanes});
   layout.anchors = make_anchor_layout(model, layout.places());
   layout.load = find_load(model, layout);

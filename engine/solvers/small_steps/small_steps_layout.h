@@ -10,10 +10,6 @@
 ///   anchors       after each family and in the end, since what one family did to an anchored
 ///   particle
 ///                 must not move the other's
-///
-/// Either all distance constraints that are not at hubs belong to yarns, or none does: if the
-/// chains that run straight on through their particles are short, as in sheets of irregular
-/// triangles, each constraint is a block of its own.
 #pragma once
 
 #include <cstdint>

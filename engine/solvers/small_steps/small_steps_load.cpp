@@ -195,10 +195,21 @@ Way way_that_hangs(const Model& model, std::span<const Join> joins,
   return {across.joins / 2, across.length / 2};
 }
 
+/// That of the class which has the median element.
+double median_stiffness(const BendingLayout& bending) {
+  std::uint32_t lanes = 0;
+  for (const BendingClass& c : bending.classes) {
+    lanes += bending.last_lane(c) - bending.first_lane(c);
+    if (2 * lanes >= bending.element.size()) return c.stiffest;
+  }
+  return 0;
+}
+
 }  // namespace
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;
+  load.bending = median_stiffness(layout.bending);
   const std::vector<Join> joins = joins_of(model);
   for (const Join& join : joins) load.mean_length += join.length;
   load.mean_length /= static_cast<double>(std::max<std::size_t>(1, joins.size()));
@@ -206,8 +217,12 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   const Blocks blocks = find_blocks(model, layout, anchored);
   const Way way = way_that_hangs(model, joins, anchored);
   load.particles = Levels(model, blocks).carried();
-  const bool is_by_ways = !layout.blocks.empty() || !layout.membrane.empty() || model.holds.empty();
-  if (is_by_ways) load.particles = std::max(load.particles, way.joins - 1);
+  const bool has_ropes =
+      std::ranges::any_of(layout.batches, [](const EdgeBatch& batch) { return batch.rope; });
+  const bool is_by_ways = (!layout.has_yarns() && !layout.blocks.empty()) || has_ropes ||
+                          !layout.membrane.empty() || model.holds.empty();
+  load.way = std::max(load.particles, way.joins - 1);
+  if (is_by_ways) load.particles = load.way;
   load.reach = way.length;
   std::vector<bool> holds(model.slots());
   for (const auto* slots : {&model.pins, &anchored}) {
@@ -227,11 +242,18 @@ double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double
     const double slack = std::max(0.0, span.length / distance - 1) + tolerance;
     over_slope = std::max(over_slope, 1 / std::sqrt(6 * slack));
   }
-  const double pull = 6 * acceleration * load.particles * over_slope;
+  const auto length_for = [&](double particles) {
+    const double pull = 6 * acceleration * particles * over_slope;
+    return pull > 0 ? std::sqrt(tuning::kOmega * tolerance * load.mean_length / pull)
+                    : std::numeric_limits<double>::infinity();
+  };
   const double speed = std::sqrt(2 * acceleration * load.reach);
-  double h = std::numeric_limits<double>::infinity();
-  if (pull > 0) h = std::sqrt(tuning::kOmega * tolerance * load.mean_length / pull);
+  double h = length_for(load.particles);
   if (speed > 0) h = std::min(h, tuning::kPassing * load.mean_length / speed);
+  if (load.bending > 0) {
+    const double bent = std::sqrt(tuning::kBendingPace / load.bending);
+    h = std::min(h, std::max(bent, length_for(load.way)));
+  }
   return h;
 }
 

@@ -14,9 +14,9 @@
 /// by the mass of the particles on blocks that hold a pin; or the number of blocks between a pin
 /// and the particle that is farthest from all pins, if that is larger. One is subtracted, since a
 /// block carries its own particles, and (1 - omega) / 2 is added for what a relaxed sweep leaves of
-/// those. Where single constraints are blocks the load may run through them one by one, also beside
-/// yarns: there the way to the pin is counted in constraints. Cloth without pins, in a scene of
-/// spheres, may come to hang over one: its way is half of that across it.
+/// those. Where there are no yarns, or ropes beside them, the load may run through single
+/// constraints one by one: there the way to the pin is counted in constraints. Cloth without pins,
+/// in a scene of spheres, may come to hang over one: its way is half of that across it.
 ///
 /// Anchors hold as pins do, those of the narrowest limits (anchors_that_hold). To a sweep an
 /// anchored particle is one that can move: it counts as a block of its own, and all that hangs on
@@ -24,6 +24,11 @@
 ///
 /// A yarn between two pins whose length exceeds their distance by the share s sags with the slope
 /// sqrt(6 s). Its tension is its load divided by that slope, where the slope is below 1.
+///
+/// What a cloth carries by its bending each element gives anew in every substep, so that it is
+/// softer than it should be by the share h^2 W / compliance (kernels/simd/bending.h). This stays
+/// within the bound at which elements are visited less often, for half of them at least; but a cloth that is as
+/// stiff as a board gets no more substeps for it than its load would ask for along constraints.
 ///
 /// No constraint should turn over within a substep. What has fallen as far as the cloth reaches
 /// from its pins, D, has the speed sqrt(2 g D), and h is at most a part of L over that speed.
@@ -49,6 +54,8 @@ struct SmallStepsLoad {
   double particles = 0;    // that a block at a pin carries besides its own
   double mean_length = 0;  // m, of the constraints and sides of triangles of fabric
   double reach = 0;        // m, the longest way from a particle to its nearest pin
+  double bending = 0;      // 1/s^2, W / compliance of the median bending element, or somewhat more
+  double way = 0;          // particles, on the longest way of constraints from a pin
   std::vector<Span> spans;
 };
 

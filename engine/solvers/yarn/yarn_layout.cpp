@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -22,14 +23,14 @@ struct Chain {
   std::uint32_t family = 0;
 };
 
-std::vector<Vec3> positions_of(const Model& model) {
-  std::vector<Vec3> positions;
-  positions.reserve(model.slots());
-  for (std::size_t i = 0; i < model.slots(); ++i) {
-    const kernels::Vector x = model.initial_position[i];
-    positions.push_back({x.x, x.y, x.z});
-  }
-  return positions;
+/// Its links are numbers of constraints.
+WovenYarns find_yarns_of(const Model& model, std::span<const std::uint32_t> constraints) {
+  const ConstraintStore& s = model.constraints;
+  std::vector<Link> links;
+  for (const std::uint32_t c : constraints) links.push_back({s.a[c], s.b[c]});
+  WovenYarns yarns = find_yarns(initial_positions(model), links);
+  for (std::uint32_t& link : yarns.links) link = constraints[link];
+  return yarns;
 }
 
 std::vector<Chain> open_chains(const WovenYarns& yarns, std::size_t slots) {
@@ -289,12 +290,27 @@ std::vector<std::uint32_t> find_longest_at(const Model& model, std::span<const C
 
 }  // namespace
 
-YarnLayout make_yarn_layout(const Model& model, YarnMemory memory) {
+std::vector<Vec3> initial_positions(const Model& model) {
+  std::vector<Vec3> positions;
+  positions.reserve(model.slots());
+  for (std::size_t i = 0; i < model.slots(); ++i) {
+    const kernels::Vector x = model.initial_position[i];
+    positions.push_back({x.x, x.y, x.z});
+  }
+  return positions;
+}
+
+YarnLayout make_yarn_layout(const Model& model) {
+  std::vector<std::uint32_t> all(model.constraints.plain);
+  std::iota(all.begin(), all.end(), 0u);
+  return make_yarn_layout(model, all, YarnMemory::woven_if_possible);
+}
+
+YarnLayout make_yarn_layout(const Model& model, std::span<const std::uint32_t> constraints,
+                            YarnMemory memory) {
   YarnLayout layout;
   layout.cell = cell_of(model.constraints);
-  const WovenYarns yarns =
-      find_yarns(positions_of(model), links_of(model.constraints, model.constraints.plain));
-  std::vector<Chain> chains = open_chains(yarns, model.slots());
+  std::vector<Chain> chains = open_chains(find_yarns_of(model, constraints), model.slots());
   Braces braces(model);
   begin_with_spans(model, braces, chains);
   sort(chains);

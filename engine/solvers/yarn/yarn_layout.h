@@ -15,6 +15,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/solvers/yarn/yarn_places.h"
@@ -59,6 +60,13 @@ struct YarnLayout {
 /// With `quads` even a model that could be woven is laid out in quads.
 enum class YarnMemory : std::uint8_t { woven_if_possible, quads };
 
-YarnLayout make_yarn_layout(const Model& model, YarnMemory memory = YarnMemory::woven_if_possible);
+/// Of these distance constraints, which are not at hubs.
+YarnLayout make_yarn_layout(const Model& model, std::span<const std::uint32_t> constraints,
+                            YarnMemory memory);
+/// Of all of them.
+YarnLayout make_yarn_layout(const Model& model);
+
+/// Per slot.
+std::vector<Vec3> initial_positions(const Model& model);
 
 }  // namespace weft
