@@ -151,7 +151,9 @@ class ExactSubstep {
   bool is_papers_loop() const { return s_.settings.solver == Solver::gauss_seidel; }
   /// The paper's loop leaves errors within the tolerance. Whoever corrects in h what a longer
   /// substep left gains energy by that.
-  bool corrects_longer_substeps() const { return is_papers_loop() && h_ < s_.longest_substep; }
+  bool corrects_longer_substeps() const {
+    return is_papers_loop() && !is_by_rattle() && h_ < s_.longest_substep;
+  }
   /// The paper's loop is left as it is where it converges: its gains belong to it. Others, and a
   /// loop that was cut off, may lead to a state that keeps the constraints far from the prediction.
   bool needs_energy() const {
@@ -176,7 +178,7 @@ class ExactSubstep {
     if (!needs_energy()) return;
     if (is_by_rattle() && !attempt_.is_last) {
       if (gains_energy(s_, impulses_, h_)) trial_.outcome = Outcome::rejected;
-      if (!corrects_longer_substeps()) return;
+      return;
     }
     const bool is_suspect =
         attempt_.method != Method::by_solver || attempt_.parts > 1 || corrects_longer_substeps();
