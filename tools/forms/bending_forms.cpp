@@ -192,7 +192,7 @@ std::vector<Form> bending_forms() {
   for (const Pattern pattern : {Pattern::quads, Pattern::equilateral}) {
     const std::string of = fmt::format(", {}", name(pattern));
     forms.push_back({"a cantilever sags" + of, "rho g L^4 / 8 k_b", "mm",
-                     [=](int r) { return cantilever(pattern, r); }});
+                     [=](int r) { return cantilever(pattern, r); }, 0.03});
     forms.push_back({"the heavy elastica" + of, "k_b theta'' = - rho g (L - s) cos theta", "mm",
                      [=](int r) { return heavy(pattern, r); }});
     forms.push_back({"a strip buckles" + of, "L p / K(p), 2 E(p) / K(p) - 1 = 0.8", "mm",
