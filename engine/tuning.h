@@ -63,11 +63,11 @@ inline constexpr double kMostBendingDamping = 0.2;
 /// While more than this share of all constraints is out of tolerance a substep sweeps again, which
 /// is cheaper than local passes.
 inline constexpr double kManyOut = 0.02;
-/// Substeps of fabric are shorter in the next frame where local passes of the last substep visit
-/// more than the first share of what all sweeps did, and longer below the second. A visit of a
-/// local pass takes about eight times as long as one of a sweep (perf/tried.md).
-inline constexpr double kMuchMended = 0.06;
-inline constexpr double kLittleMended = 0.005;
+/// Substeps of fabric are shorter in the next frame where putting right what the last one left
+/// takes more than the first share of the time of all sweeps, and longer below the second
+/// (perf/tried.md).
+inline constexpr double kMuchMended = 0.5;
+inline constexpr double kLittleMended = 0.04;
 /// s. Energy that the motion loses may come back for about this time, since constraints are
 /// springs.
 inline constexpr double kSpringTime = 0.1;

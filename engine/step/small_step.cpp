@@ -32,10 +32,6 @@ double mean_acceleration(const State& s) {
   return mass > 0 ? sum / mass : 0;
 }
 
-bool has_laws(const State& s) {
-  return s.model->constraints.has_springs() || s.model->membrane.size() > 0;
-}
-
 bool takes_over_in(const State& s) { return s.settings.solver != Solver::small_steps; }
 
 /// A substep is a sweep or two, and local passes that may always visit every constraint once.
@@ -123,12 +119,11 @@ double next_refinement(const State& s, const FramePlan& plan, double error, cons
 
 /// The same for fabric without a motion tolerance. Its load may come from any side, and what
 /// carries it sideways is swept one by one: substeps are shorter where the last one of a frame left
-/// much to local passes, which visited `mended` constraints.
-double next_refinement(const State& s, const FramePlan& plan, std::int64_t mended,
-                       std::int64_t constraints, const Budget& budget) {
+/// much to put right, which took the time of `beyond` sweeps.
+double refinement_for_laws(const State& s, const FramePlan& plan, double beyond,
+                           const Budget& budget) {
   constexpr double kLevel = 0.25;
-  const double share =
-      static_cast<double>(mended) / static_cast<double>(constraints * plan.substeps);
+  const double share = beyond / plan.substeps;
   if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget))
     return s.refinement + kLevel;
   return share < tuning::kLittleMended ? std::max(0.0, s.refinement - kLevel) : s.refinement;
@@ -159,8 +154,8 @@ class Frame {
   /// J, by springs, triangles of fabric and bending elements, since the beginning: there those that
   /// have become stiffer because substeps are shorter had no more than before.
   double released() { return elastic_energy_before_ - elastic_energy(s_.solved, give_); }
-  std::int64_t mended() const { return mended_; }
-  std::int64_t constraints() const { return edges_; }
+  /// What substeps took beyond a sweep each, in the time of sweeps.
+  double beyond() const { return beyond_; }
 
   void substep() {
     solver_.advance(team_);
@@ -176,9 +171,8 @@ class Frame {
     }
     if (s_.model->has_contacts()) find_contacts();
     if (mends) {
-      const LocalWork work = solver_.repair(s_.contacts, most_visits(passes_left_ - rest));
-      mended_ += work.visits;
-      count(work);
+      count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest)));
+      beyond_ = plan_.passes - passes_left_;
     }
     if (s_.model->has_contacts()) watch_crossings();
   }
@@ -257,7 +251,7 @@ class Frame {
   /// local passes do: without contacts these wait for the last substep. What is left of a rigid
   /// length would be let go as speed.
   bool mends_now() const {
-    return !has_laws(s_) || s_.model->has_contacts() || substeps_done_ == plan_.substeps;
+    return !s_.model->has_laws() || s_.model->has_contacts() || substeps_done_ == plan_.substeps;
   }
   bool many_are_out() const {
     return static_cast<double>(solver_.count_out()) >
@@ -318,7 +312,7 @@ class Frame {
   const std::int64_t edges_;  // all constraints and triangles of fabric
   FramePlan plan_;
   int substeps_done_ = 0;
-  std::int64_t mended_ = 0;           // visits of local passes in substeps
+  double beyond_ = 0;                 // of the passes, in substeps
   double give_ = 0;                   // s^2, of a sweep, per mass
   double elastic_energy_before_ = 0;  // J, in the beginning
 };
@@ -327,7 +321,7 @@ class Frame {
 
 bool refines_substeps(const State& s) {
   if (s.settings.motion_tolerance > 0) return true;
-  return has_laws(s) && !takes_over_in(s) && s.settings.substeps == kAutomaticSubsteps;
+  return s.model->has_laws() && !takes_over_in(s) && s.settings.substeps == kAutomaticSubsteps;
 }
 
 Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budget,
@@ -378,7 +372,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     if (s.settings.motion_tolerance > 0)
       trial.refinement = next_refinement(s, plan, trial.motion_error, budget);
     else if (refines_substeps(s))
-      trial.refinement = next_refinement(s, plan, frame.mended(), frame.constraints(), budget);
+      trial.refinement = refinement_for_laws(s, plan, frame.beyond(), budget);
     s.small_steps->keep(team);
   });
   return trial;

@@ -192,7 +192,7 @@ std::vector<Form> bending_forms() {
   for (const Pattern pattern : {Pattern::quads, Pattern::equilateral}) {
     const std::string of = fmt::format(", {}", name(pattern));
     forms.push_back({"a cantilever sags" + of, "rho g L^4 / 8 k_b", "mm",
-                     [=](int r) { return cantilever(pattern, r); }, 0.03});
+                     [=](int r) { return cantilever(pattern, r); }});
     forms.push_back({"the heavy elastica" + of, "k_b theta'' = - rho g (L - s) cos theta", "mm",
                      [=](int r) { return heavy(pattern, r); }});
     forms.push_back({"a strip buckles" + of, "L p / K(p), 2 E(p) / K(p) - 1 = 0.8", "mm",
@@ -206,7 +206,7 @@ std::vector<Form> bending_forms() {
   }
   forms.push_back({fmt::format("a cantilever sags, {}", name(Pattern::irregular)),
                    "rho g L^4 / 8 k_b", "mm",
-                   [=](int r) { return cantilever(Pattern::irregular, r); }, 0.08});
+                   [=](int r) { return cantilever(Pattern::irregular, r); }, 0.06});
   for (const Pattern pattern :
        {Pattern::quads, Pattern::right_angled, Pattern::equilateral, Pattern::irregular}) {
     forms.push_back({fmt::format("cylinders, {}", name(pattern)), "k_b kappa^2 / 2 per area", "uJ",

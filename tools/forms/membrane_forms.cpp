@@ -54,8 +54,8 @@ Reading deformed(Pattern pattern, const std::function<Vec3(Vec3, double e)>& mov
   const Sheet sheet = sheet_of(pattern, kSide, kSide, 4 << refinement);
   Material material = cotton();
   material.damping_motion = 50;
-  material.bending =
-      0.1;  // No wrinkles where a patch is sheared: along one diagonal it is pressed.
+  // Along one diagonal a sheared patch is pressed: it would come out of its plane in wrinkles.
+  material.bending = 0.1;
   MeshDescription mesh = mesh_of(sheet, material);
   pin(mesh, [&](Vec3 p) {
     return std::min({p.x, p.z, sheet.length - p.x, sheet.width - p.z}) < 1e-9;

@@ -252,7 +252,7 @@ double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double
   if (speed > 0) h = std::min(h, tuning::kPassing * load.mean_length / speed);
   if (load.bending > 0) {
     const double bent = std::sqrt(tuning::kBendingPace / load.bending);
-    h = std::min(h, std::max(bent, length_for(load.way)));
+    h = std::min(h, std::max(bent, length_for(2 * load.way)));
   }
   return h;
 }
