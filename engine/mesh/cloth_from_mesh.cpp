@@ -31,7 +31,7 @@ std::vector<std::uint32_t> pinned(const MeshDescription& mesh, const Welded& wel
 std::size_t pieces(const MeshDescription& mesh, const Welded& welded) {
   Partition parts(welded.positions.size());
   const auto particle = [&](std::uint32_t vertex) { return welded.particle_of_vertex[vertex]; };
-  for_each_face(mesh, [&](std::span<const std::uint32_t> face) {
+  for_each_face(mesh, [&](std::size_t, std::span<const std::uint32_t> face) {
     for (const std::uint32_t vertex : face) parts.join(particle(face[0]), particle(vertex));
   });
   for (const auto& [a, b] : mesh.lines) parts.join(particle(a), particle(b));

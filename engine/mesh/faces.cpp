@@ -7,10 +7,6 @@
 namespace weft::mesh {
 namespace {
 
-/// Heights below this fraction of the longest side are what rounding to single precision makes of
-/// three points on a line: such a face has no area.
-constexpr double kFlattest = 1e-6;
-
 double longest_side(const Face& face) {
   double longest = 0;
   for (std::size_t i = 0; i < face.size; ++i) {
@@ -20,8 +16,8 @@ double longest_side(const Face& face) {
 }
 
 bool has_area(const Face& triangle) {
-  const double longest = longest_side(triangle);
-  return length(area_vector(triangle)) > kFlattest * longest * longest;
+  const auto& p = triangle.places;
+  return mesh::has_area(p[0], p[1], p[2]);
 }
 
 bool has_repeated_particle(const Face& face) {
@@ -86,16 +82,17 @@ struct Polygon {
   std::vector<Vec3> places;
 };
 
+/// first: the number of the face's first corner.
 Polygon polygon_of(const MeshDescription& mesh,
-                   const std::vector<std::uint32_t>& particle_of_vertex,
-                   std::span<const std::uint32_t> corners) {
+                   const std::vector<std::uint32_t>& particle_of_vertex, std::size_t first,
+                   std::span<const std::uint32_t> vertices) {
   Polygon polygon;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const std::uint32_t before = corners[i > 0 ? i - 1 : corners.size() - 1];
-    const std::uint32_t particle = particle_of_vertex[corners[i]];
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const std::uint32_t before = vertices[i > 0 ? i - 1 : vertices.size() - 1];
+    const std::uint32_t particle = particle_of_vertex[vertices[i]];
     if (particle == particle_of_vertex[before]) continue;
     polygon.particles.push_back(particle);
-    polygon.places.push_back(mesh.positions[corners[i]]);
+    polygon.places.push_back(rest_of_corner(mesh, first + i));
   }
   return polygon;
 }
@@ -168,8 +165,8 @@ double extent(const std::vector<Face>& faces) {
 
 Faces faces_of(const MeshDescription& mesh, const std::vector<std::uint32_t>& particle_of_vertex) {
   Collector collector;
-  for_each_face(mesh, [&](std::span<const std::uint32_t> corners) {
-    const Polygon polygon = polygon_of(mesh, particle_of_vertex, corners);
+  for_each_face(mesh, [&](std::size_t first, std::span<const std::uint32_t> vertices) {
+    const Polygon polygon = polygon_of(mesh, particle_of_vertex, first, vertices);
     const std::size_t size = polygon.particles.size();
     if (size < 3) return collector.add_degenerate();
     if (size == 4) return collector.add(face_of(polygon, std::array<std::size_t, 4>{0, 1, 2, 3}));

@@ -26,6 +26,13 @@ inline Vec3 unit(Vec3 v) {
 /// Twice the area of the triangle, along its normal.
 inline Vec3 area_vector(Vec3 a, Vec3 b, Vec3 c) { return cross(b - a, c - a); }
 inline double triangle_area(Vec3 a, Vec3 b, Vec3 c) { return length(area_vector(a, b, c)) / 2; }
+/// Heights below this fraction of the longest side are what rounding to single precision makes of
+/// three points on a line: such a triangle has no area.
+inline constexpr double kFlattest = 1e-6;
+inline bool has_area(Vec3 a, Vec3 b, Vec3 c) {
+  const double longest = std::max({length(b - a), length(c - b), length(a - c)});
+  return length(area_vector(a, b, c)) > kFlattest * longest * longest;
+}
 
 /// Symmetric, of three dimensions.
 struct Tensor {

@@ -11,22 +11,32 @@ namespace {
 
 // ----------------------------------------------------------------------------------------- rigid
 
-/// Adds constraints at their present lengths, the first of any two particles only.
+/// Adds constraints at their lengths at rest, the first of any two particles only.
 class Joiner {
  public:
   Joiner(const MeshDescription& mesh, const Welded& welded) : mesh_(mesh), welded_(welded) {}
 
-  void join(std::uint32_t first_vertex, std::uint32_t second_vertex, ConstraintKind kind) {
-    const std::uint32_t a = welded_.particle_of_vertex[first_vertex];
-    const std::uint32_t b = welded_.particle_of_vertex[second_vertex];
-    if (a == b || !joined_.add(a, b).second) return;
-    const Vec3 across = mesh_.positions[first_vertex] - mesh_.positions[second_vertex];
-    constraints_.push_back({a, b, length(across), kind});
+  void join_vertices(std::uint32_t first, std::uint32_t second, ConstraintKind kind) {
+    const Vec3 across = rest_of_vertex(mesh_, first) - rest_of_vertex(mesh_, second);
+    join(first, second, length(across), kind);
+  }
+  /// Corners of one face, by their numbers in the mesh.
+  void join_corners(std::size_t first, std::size_t second, ConstraintKind kind) {
+    const Vec3 across = rest_of_corner(mesh_, first) - rest_of_corner(mesh_, second);
+    join(mesh_.corners[first], mesh_.corners[second], length(across), kind);
   }
   void skip(const Constraint& joined) { joined_.add(joined.a, joined.b); }
   std::vector<Constraint> take() { return std::move(constraints_); }
 
  private:
+  void join(std::uint32_t first_vertex, std::uint32_t second_vertex, double length,
+            ConstraintKind kind) {
+    const std::uint32_t a = welded_.particle_of_vertex[first_vertex];
+    const std::uint32_t b = welded_.particle_of_vertex[second_vertex];
+    if (a == b || !joined_.add(a, b).second) return;
+    constraints_.push_back({a, b, length, kind});
+  }
+
   const MeshDescription& mesh_;
   const Welded& welded_;
   PairNumbers joined_;
@@ -42,7 +52,7 @@ ConstraintKind kind_of_diagonals(Ropes ropes) {
 }
 
 void join_lines(const MeshDescription& mesh, Joiner& joiner) {
-  for (const auto& [a, b] : mesh.lines) joiner.join(a, b, kind_of_edges(mesh.ropes));
+  for (const auto& [a, b] : mesh.lines) joiner.join_vertices(a, b, kind_of_edges(mesh.ropes));
 }
 
 // --------------------------------------------------------------------------------------- elastic
@@ -131,17 +141,17 @@ void add_triangle(const Face& triangle, const Material& material, Springs& sprin
 
 std::vector<Constraint> rigid_constraints(const MeshDescription& mesh, const Welded& welded) {
   Joiner joiner(mesh, welded);
-  for_each_face(mesh, [&](std::span<const std::uint32_t> face) {
+  for_each_face(mesh, [&](std::size_t first, std::span<const std::uint32_t> face) {
     for (std::size_t i = 0; i < face.size(); ++i) {
-      joiner.join(face[i], face[(i + 1) % face.size()], kind_of_edges(mesh.ropes));
+      joiner.join_corners(first + i, first + (i + 1) % face.size(), kind_of_edges(mesh.ropes));
     }
   });
   join_lines(mesh, joiner);
   if (mesh.ropes == Ropes::diagonals) {
-    for_each_face(mesh, [&](std::span<const std::uint32_t> face) {
+    for_each_face(mesh, [&](std::size_t first, std::span<const std::uint32_t> face) {
       if (face.size() != 4) return;
-      joiner.join(face[0], face[2], ConstraintKind::rope);
-      joiner.join(face[1], face[3], ConstraintKind::rope);
+      joiner.join_corners(first, first + 2, ConstraintKind::rope);
+      joiner.join_corners(first + 1, first + 3, ConstraintKind::rope);
     });
   }
   return joiner.take();

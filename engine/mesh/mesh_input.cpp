@@ -1,5 +1,8 @@
 #include "engine/mesh/mesh_input.h"
 
+#include <cmath>
+
+#include "engine/mesh/geometry.h"
 #include "engine/model/validation.h"
 
 namespace weft::mesh {
@@ -37,6 +40,35 @@ Result<void> check_positions(const MeshDescription& mesh) {
   return {};
 }
 
+Result<void> check_count(std::string_view field, std::size_t count, std::string_view of,
+                         std::size_t needed) {
+  if (count == 0 || count == needed) return {};
+  return refuse(field, "needs as many as " + std::string(of) + ", " + std::to_string(needed),
+                std::to_string(count));
+}
+
+Result<void> check_rest(const MeshDescription& mesh) {
+  const auto& in_space = mesh.rest_positions;
+  const auto& flat = mesh.rest_corners;
+  if (!in_space.empty() && !flat.empty()) {
+    return Error{"rest_corners: there are rest_positions already"};
+  }
+  auto r = check_count("rest_positions", in_space.size(), "positions", mesh.positions.size());
+  if (!r) return r;
+  r = check_count("rest_corners", flat.size(), "corners", mesh.corners.size());
+  if (!r) return r;
+  for (std::size_t i = 0; i < in_space.size(); ++i) {
+    if (finite(in_space[i])) continue;
+    return refuse(element("rest_positions", i), "must be finite", text(in_space[i]));
+  }
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    const auto [u, v] = flat[i];
+    if (std::isfinite(u) && std::isfinite(v)) continue;
+    return refuse(element("rest_corners", i), "must be finite", number(u) + ", " + number(v));
+  }
+  return {};
+}
+
 Result<void> check_faces(const MeshDescription& mesh) {
   const std::size_t corners = mesh.corners.size();
   if (mesh.face_sizes.empty() && corners % 3 != 0) {
@@ -60,6 +92,33 @@ Result<void> check_faces(const MeshDescription& mesh) {
   return {};
 }
 
+/// Whether any triangle from the first corner of the face has an area.
+bool has_area(std::span<const Vec3> face) {
+  for (std::size_t i = 2; i < face.size(); ++i) {
+    if (mesh::has_area(face[0], face[i - 1], face[i])) return true;
+  }
+  return false;
+}
+
+Result<void> check_rest_areas(const MeshDescription& mesh) {
+  if (mesh.rest_positions.empty() && mesh.rest_corners.empty()) return {};
+  std::size_t face = 0, refused = face_count(mesh);
+  std::vector<Vec3> start, rest;
+  for_each_face(mesh, [&](std::size_t first, std::span<const std::uint32_t> vertices) {
+    start.clear();
+    rest.clear();
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      start.push_back(mesh.positions[vertices[i]]);
+      rest.push_back(rest_of_corner(mesh, first + i));
+    }
+    if (has_area(start) && !has_area(rest)) refused = std::min(refused, face);
+    ++face;
+  });
+  if (refused == face_count(mesh)) return {};
+  return Error{std::string(mesh.rest_corners.empty() ? "rest_positions" : "rest_corners") +
+               ": face " + std::to_string(refused) + " has no area at rest"};
+}
+
 Result<void> check_pins(const MeshDescription& mesh) {
   const std::vector<bool> used = used_vertices(mesh);
   for (std::size_t i = 0; i < mesh.pins.size(); ++i) {
@@ -76,6 +135,8 @@ Result<void> check_pins(const MeshDescription& mesh) {
 Result<void> check_input(const MeshDescription& mesh) {
   if (auto r = check_positions(mesh); !r) return r;
   if (auto r = check_faces(mesh); !r) return r;
+  if (auto r = check_rest(mesh); !r) return r;
+  if (auto r = check_rest_areas(mesh); !r) return r;
   if (auto r = check_pairs("lines", mesh.lines, mesh); !r) return r;
   if (mesh.corners.empty() && mesh.lines.empty()) {
     return Error{"corners: the mesh has no face and no line"};
@@ -90,14 +151,25 @@ std::size_t face_count(const MeshDescription& mesh) {
   return mesh.face_sizes.empty() ? mesh.corners.size() / 3 : mesh.face_sizes.size();
 }
 
-void for_each_face(const MeshDescription& mesh,
-                   const std::function<void(std::span<const std::uint32_t>)>& call) {
-  std::span<const std::uint32_t> rest = mesh.corners;
+void for_each_face(
+    const MeshDescription& mesh,
+    const std::function<void(std::size_t first, std::span<const std::uint32_t> vertices)>& call) {
+  std::size_t first = 0;
   for (std::size_t i = 0; i < face_count(mesh); ++i) {
     const std::size_t size = mesh.face_sizes.empty() ? 3 : mesh.face_sizes[i];
-    call(rest.first(size));
-    rest = rest.subspan(size);
+    call(first, std::span(mesh.corners).subspan(first, size));
+    first += size;
   }
+}
+
+Vec3 rest_of_corner(const MeshDescription& mesh, std::size_t corner) {
+  if (mesh.rest_corners.empty()) return rest_of_vertex(mesh, mesh.corners[corner]);
+  const auto [along_weft, along_warp] = mesh.rest_corners[corner];
+  return {along_weft, along_warp, 0};
+}
+
+Vec3 rest_of_vertex(const MeshDescription& mesh, std::uint32_t vertex) {
+  return mesh.rest_positions.empty() ? mesh.positions[vertex] : mesh.rest_positions[vertex];
 }
 
 std::vector<bool> used_vertices(const MeshDescription& mesh) {

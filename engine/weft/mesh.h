@@ -62,8 +62,8 @@ WEFT_API Result<Material> find_material(std::string_view name);
 /// all: every one.
 enum class Ropes : std::uint8_t { none, diagonals, all };
 
-/// A surface in its shape at rest. Vertices become particles; what is in no face and no line does
-/// not.
+/// A surface, where it begins and in its shape at rest. Vertices become particles; what is in no
+/// face and no line does not.
 ///
 /// Without a material every edge of a face becomes a rigid constraint at its length, faces in their
 /// order, and then every line. Diagonals join four-sided faces only where they are asked for.
@@ -90,16 +90,27 @@ struct MeshDescription {
   std::vector<std::uint32_t> corners;     ///< vertices, face after face, in order around each
   std::vector<std::uint32_t> face_sizes;  ///< corners of each face, 3 or more; empty: triangles
   std::vector<std::array<std::uint32_t, 2>> lines;  ///< two vertices each
-  std::vector<std::uint32_t> pins;                  ///< vertices whose particles are fixed
-  std::optional<Material> material;                 ///< none: rigid edges
-  double mass = 1;  ///< kg of the whole, shared equally; used without a material
+  /// The shape at rest, where it differs from `positions`: one of these two, or neither. Lengths,
+  /// areas, angles and masses are those of this shape; vertices are welded and pinned where they
+  /// begin. A face that has an area at the beginning must have one at rest.
+  ///
+  /// In space: one place per vertex, m.
+  std::vector<Vec3> rest_positions;
+  /// Flat, as panels and texture coordinates are: one place per entry of `corners`, m along the
+  /// weft and m along the warp. Where two faces have an edge in different places there is a seam
+  /// between two panels. Lines are as long as at the beginning.
+  std::vector<std::array<double, 2>> rest_corners;
+  std::vector<std::uint32_t> pins;   ///< vertices whose particles are fixed
+  std::optional<Material> material;  ///< none: rigid edges
+  double mass = 1;                   ///< kg of the whole, shared equally; used without a material
   /// m. Vertices as near as this become one particle, and so do those that a chain of such
   /// vertices joins. 0: those at exactly equal positions, as files repeat them along seams of
   /// texture coordinates.
   double weld_distance = 0;
   /// Pairs of vertices that are sewn together, wherever they lie: they become one particle, at the
-  /// mean of their positions. Lengths, areas and angles remain those of each face by itself; across
-  /// an edge whose faces lie apart the cloth is flat at rest.
+  /// mean of their positions. Lengths, areas and angles remain those of each face by itself. Across
+  /// a seam, that is an edge whose faces lie apart at rest, the cloth bends as elsewhere and is
+  /// flat at rest.
   std::vector<std::array<std::uint32_t, 2>> seams;
   Ropes ropes = Ropes::none;
 };
