@@ -63,6 +63,7 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--up", options.up.has_value(), kObj},
       {"--weld", options.weld.has_value(), kObj},
       {"--seam", !options.seams.empty(), kObj},
+      {"--rest", options.rest.has_value(), kObj},
       {"--ropes", options.ropes.has_value(), kCloth},
       {"--diagonals", options.diagonals, kBuiltInCloth},
       {given_option(options.material), is_given(options.material), kCloth},
@@ -189,6 +190,7 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   values.scale = options.scale.value_or(values.scale);
   values.weld_distance = options.weld.value_or(values.weld_distance);
   values.seams = options.seams;
+  values.rest = options.rest;
   const auto up = up_of(options.up);
   if (!up) return Error{up.error()};
   values.up = up.value();
@@ -266,6 +268,9 @@ void add_scene_options(Verb verb, SceneOptions& options) {
   verb.repeated("--seam", options.seams,
                 ".obj: vertices that are sewn together, two lists from 0 like 0-9:29-20; may be "
                 "repeated");
+  verb.option("--rest", options.rest,
+              ".obj: the shape at rest: FILE.obj with the same vertices and faces, or uv:SCALE, "
+              "texture coordinates times SCALE in m (default 1)");
   verb.option_or_flag("--ropes", options.ropes, "",
                       "what only pulls, all or diagonals (of four-sided faces; without a "
                       "material only ropes join them); alone: built-in scenes all, .obj diagonals");

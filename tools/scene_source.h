@@ -29,6 +29,7 @@ struct SceneOptions {
   std::optional<std::string> up;
   std::optional<double> weld;
   std::vector<std::string> seams;
+  std::optional<std::string> rest;
   std::optional<std::string> ropes;
   MaterialOptions material;
   WorldOptions world;

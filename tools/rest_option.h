@@ -1,0 +1,16 @@
+/// --rest: the shape that a mesh has at rest, where it differs from the one it begins in.
+#pragma once
+
+#include <string_view>
+
+#include "tools/obj_file.h"
+
+namespace weft::tools {
+
+/// given: "FILE.obj", a file of the same vertices and faces at other places, or "uv:SCALE", the
+/// texture coordinates times SCALE (m, 1 if it is left out). `scale` is that of --scale: it
+/// multiplies the coordinates of FILE.obj too.
+Result<void> give_rest(std::string_view given, const ObjFile& file, double scale,
+                       MeshDescription& description);
+
+}  // namespace weft::tools
