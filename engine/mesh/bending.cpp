@@ -17,9 +17,20 @@ std::size_t corner_of(const Face& face, std::uint32_t particle) {
   return static_cast<std::size_t>(found - face.particles.begin());
 }
 
+/// From one face of an inner edge to the other, in the places of the first. In a panel both faces
+/// store what an element reads; across a seam the first alone does, and another element reads it in
+/// the places of the second.
+struct Across {
+  const Edge& edge;
+  std::array<EdgeOfFace, 2> faces;
+  bool is_seam = false;
+  std::span<const EdgeOfFace> storing() const { return std::span(faces).first(is_seam ? 1 : 2); }
+};
+
 /// An element of a yarn that crosses an edge at one of its ends.
 struct Crossing {
   std::uint64_t ends = 0;  ///< pair_key
+  Vec3 place;              ///< of that end: in each panel a yarn has an element of its own
   std::uint32_t stencil = 0;
 };
 
@@ -54,17 +65,20 @@ class Builder {
   }
 
   void add_edge(const Edge& edge) {
-    const EdgeOfFace& one = edge.faces[0];
-    const EdgeOfFace& two = edge.faces[1];
-    if (face(one).is_quad() && face(two).is_quad()) {
-      add_crossing(edge, edge.a);
-      add_crossing(edge, edge.b);
-    } else {
-      add_hinges(edge, one, two);
-    }
+    const EdgeOfFace &one = edge.faces[0], &two = edge.faces[1];
+    const bool seam = is_seam(edge, faces_, weld_distance_);
+    add(Across{edge, {one, two}, seam});
+    if (seam) add(Across{edge, {two, one}, seam});
   }
 
-  bool is_one_place(Vec3 a, Vec3 b) const { return length(a - b) <= weld_distance_; }
+  void add(const Across& across) {
+    if (face(across.faces[0]).is_quad() && face(across.faces[1]).is_quad()) {
+      add_crossing(across, across.edge.a);
+      add_crossing(across, across.edge.b);
+    } else {
+      add_hinges(across);
+    }
+  }
 
   /// The corner of a quad beside this one that is not on the edge.
   static std::size_t beside(const Face& quad, std::size_t corner, std::size_t side) {
@@ -73,32 +87,33 @@ class Builder {
 
   /// Half of what the edge stores, along the yarn that crosses it at one end. The same yarn crosses
   /// the next edge at that end: both share an element.
-  void add_crossing(const Edge& edge, std::uint32_t end) {
-    const EdgeOfFace& one = edge.faces[0];
-    const EdgeOfFace& two = edge.faces[1];
-    const std::size_t i = beside(face(one), corner_of(face(one), end), one.side);
+  void add_crossing(const Across& across, std::uint32_t end) {
+    const auto& [one, two] = across.faces;
+    const std::size_t corner = corner_of(face(one), end);
+    const std::size_t i = beside(face(one), corner, one.side);
     const std::size_t j = beside(face(two), corner_of(face(two), end), two.side);
-    const auto [least, most] = std::minmax(face(one).particles[i], face(two).particles[j]);
-    if (least == most) return;
-    const std::uint32_t number = crossing_at(end, pair_key(least, most));
+    const std::uint32_t from = face(one).particles[i], to = face(two).particles[j];
+    if (from == to) return;
+    const std::uint32_t number = crossing_at(point(face(one), corner), pair_key(from, to));
     if (number == built_.stencils.size()) {
-      built_.stencils.push_back(without_end(bend(edge, i, j), end));
+      built_.stencils.push_back(without_end(bend(across, i, j), end));
     }
     const Stencil& stencil = built_.stencils[number];
-    for (const EdgeOfFace& of : {one, two}) {
+    for (const EdgeOfFace& of : across.storing()) {
       built_.contributions.push_back(
           {number, of.face, weight_in_grid(stencil, area_across(of) / 2)});
     }
   }
 
-  /// The number of the crossing at a particle between these ends; the next one if it is new.
-  std::uint32_t crossing_at(std::uint32_t particle, std::uint64_t ends) {
-    if (crossings_.size() <= particle) crossings_.resize(particle + 1);
-    for (const Crossing& crossing : crossings_[particle]) {
-      if (crossing.ends == ends) return crossing.stencil;
+  /// The number of the crossing at a point between these ends; the next one if it is new.
+  std::uint32_t crossing_at(const Point& at, std::uint64_t ends) {
+    if (crossings_.size() <= at.particle) crossings_.resize(at.particle + 1);
+    for (const Crossing& crossing : crossings_[at.particle]) {
+      if (crossing.ends == ends && length(crossing.place - at.place) <= weld_distance_)
+        return crossing.stencil;
     }
     const auto next = static_cast<std::uint32_t>(built_.stencils.size());
-    crossings_[particle].push_back({ends, next});
+    crossings_[at.particle].push_back({ends, at.place, next});
     return next;
   }
 
@@ -109,22 +124,23 @@ class Builder {
   }
 
   /// From each far corner of one face to each of the other, in equal parts.
-  void add_hinges(const Edge& edge, const EdgeOfFace& one, const EdgeOfFace& two) {
+  void add_hinges(const Across& across) {
+    const auto& [one, two] = across.faces;
     const auto far_one = far_corners(face(one), one.side);
     const auto far_two = far_corners(face(two), two.side);
     const double part = 1.0 / static_cast<double>(far_one.size() * far_two.size());
     for (const std::size_t i : far_one) {
-      for (const std::size_t j : far_two) add_hinge(edge, one, i, two, j, part);
+      for (const std::size_t j : far_two) add_hinge(across, i, j, part);
     }
   }
 
-  void add_hinge(const Edge& edge, const EdgeOfFace& one, std::size_t i, const EdgeOfFace& two,
-                 std::size_t j, double part) {
+  void add_hinge(const Across& across, std::size_t i, std::size_t j, double part) {
+    const auto& [one, two] = across.faces;
     if (face(one).particles[i] == face(two).particles[j]) return;
-    const Stencil stencil = bend(edge, i, j);
+    const Stencil stencil = bend(across, i, j);
     const auto number = static_cast<std::uint32_t>(built_.stencils.size());
     built_.stencils.push_back(stencil);
-    for (const EdgeOfFace& of : {one, two}) {
+    for (const EdgeOfFace& of : across.storing()) {
       const double share = part * area_across(of);
       const double weight =
           face(of).is_quad() ? weight_in_grid(stencil, share) : weight_among_others(stencil, share);
@@ -132,15 +148,16 @@ class Builder {
     }
   }
 
-  /// Across an inner edge, from one corner of its first face to one of its second.
-  Stencil bend(const Edge& edge, std::size_t i, std::size_t j) const {
-    const Face& one = face(edge.faces[0]);
-    const Face& two = face(edge.faces[1]);
+  /// From one corner of the first face to one of the second.
+  Stencil bend(const Across& across, std::size_t i, std::size_t j) const {
+    const Edge& edge = across.edge;
+    const Face& one = face(across.faces[0]);
+    const Face& two = face(across.faces[1]);
     const Point a = point(one, corner_of(one, edge.a)), b = point(one, corner_of(one, edge.b));
     const Vec3 a_of_two = two.places[corner_of(two, edge.a)];
     const Vec3 b_of_two = two.places[corner_of(two, edge.b)];
-    Stencil stencil = hinge(a, b, point(one, i), point(two, j), a_of_two, b_of_two);
-    if (is_one_place(a.place, a_of_two) && is_one_place(b.place, b_of_two)) {
+    Stencil stencil = hinge(a, b, point(one, i), point(two, j), a_of_two, b_of_two, across.is_seam);
+    if (!across.is_seam) {
       const Vec3 sum =
           weighted_sum(stencil.weights, {a.place, b.place, one.places[i], two.places[j]});
       stencil.rest = rest_of(stencil, sum, extent_);
@@ -153,7 +170,7 @@ class Builder {
     const auto [one, two] = cut(quad);
     const Point a = point(quad, one[0]), b = point(quad, one[2]);
     const Point far_one = point(quad, one[1]), far_two = point(quad, two[1]);
-    Stencil stencil = hinge(a, b, far_one, far_two, a.place, b.place);
+    Stencil stencil = hinge(a, b, far_one, far_two, a.place, b.place, false);
     const Vec3 sum =
         weighted_sum(stencil.weights, {a.place, b.place, far_one.place, far_two.place});
     stencil.rest = rest_of(stencil, sum, extent_);

@@ -32,7 +32,8 @@ struct Stencils {
 /// exactly, for c^2 = Kxx^2 + Kyy^2 + 2 Kxy^2 is what warp, weft and twist read; elsewhere in the
 /// mean over all directions. Faces at the border give what their border edges cannot store to the
 /// other edges. weld_distance: as far apart may be what is one place of two faces; those that lie
-/// farther apart are flat to each other.
+/// farther apart are panels that are sewn: flat to each other, with an element in the places of
+/// each.
 Stencils bending_stencils(const std::vector<Face>& faces, const Edges& edges, double weld_distance);
 
 }  // namespace weft::mesh

@@ -73,11 +73,20 @@ void widen(const std::vector<Face>& faces, std::vector<bool>& marked) {
   }
 }
 
-/// Those that are neither at the border nor beside a particle that is. There elements do not
-/// balance each other on a cylinder, since it ends.
+std::vector<bool> particles_of_seams(const std::vector<Face>& faces, const Edges& edges,
+                                     double weld_distance, std::size_t particles) {
+  std::vector<bool> is_sewn(particles, false);
+  for (const Edge& edge : edges.all()) {
+    if (is_seam(edge, faces, weld_distance)) is_sewn[edge.a] = is_sewn[edge.b] = true;
+  }
+  return is_sewn;
+}
+
+/// Those that are neither at the border of a panel nor beside a particle that is. There elements do
+/// not balance each other on a cylinder, since the panel ends.
 std::vector<bool> free_particles(const std::vector<Face>& faces, const Edges& edges,
-                                 std::size_t particles) {
-  std::vector<bool> near_border(particles, false);
+                                 const std::vector<bool>& is_sewn) {
+  std::vector<bool> near_border = is_sewn;
   for (const Edge& edge : edges.all()) {
     if (!edge.is_inner()) near_border[edge.a] = near_border[edge.b] = true;
   }
@@ -89,12 +98,13 @@ std::vector<bool> free_particles(const std::vector<Face>& faces, const Edges& ed
 class Calibrator {
  public:
   Calibrator(const std::vector<Face>& faces, const Edges& edges, const Stencils& stencils,
-             std::size_t particles)
+             double weld_distance, std::size_t particles)
       : faces_(faces),
         stencils_(stencils),
         corners_(faces, particles),
         axes_(particles),
-        is_free_(free_particles(faces, edges, particles)),
+        is_sewn_(particles_of_seams(faces, edges, weld_distance, particles)),
+        is_free_(free_particles(faces, edges, is_sewn_)),
         factors_(stencils.stencils.size(), 1),
         patches_(particles) {
     for (const Stencil& stencil : stencils.stencils) readings_.push_back(stencil.reading);
@@ -110,6 +120,9 @@ class Calibrator {
     const bool is_even = std::ranges::none_of(is_active_, [](bool active) { return active; });
     if (!is_even) {
       for (int ring = 0; ring < tuning::kBendingRings; ++ring) widen(faces_, is_active_);
+      for (std::size_t p = 0; p < is_active_.size(); ++p) {
+        if (is_sewn_[p]) is_active_[p] = false;
+      }
       for (int i = 0; i < tuning::kBendingSteps; ++i) improve();
       settle();
       fill_patches();
@@ -187,8 +200,8 @@ class Calibrator {
   std::vector<bool> uneven_patches(double most) const {
     std::vector<bool> uneven(patches_.size());
     for (std::size_t p = 0; p < patches_.size(); ++p) {
-      uneven[p] =
-          !corners_.at(static_cast<std::uint32_t>(p)).empty() && patches_[p].unevenness() > most;
+      if (is_sewn_[p] || corners_.at(static_cast<std::uint32_t>(p)).empty()) continue;
+      uneven[p] = patches_[p].unevenness() > most;
     }
     return uneven;
   }
@@ -299,6 +312,7 @@ class Calibrator {
   std::vector<Axes> axes_;
   std::vector<std::size_t> first_neighbour_;
   std::vector<Neighbour> neighbours_;  ///< of one particle after the other
+  const std::vector<bool> is_sewn_;    ///< particles on a seam
   const std::vector<bool> is_free_;    ///< particles that leave a cylinder by themselves
   std::vector<double> factors_;        ///< of elements
   std::vector<Tensor> readings_;       ///< of elements, when the particles have settled
@@ -309,8 +323,8 @@ class Calibrator {
 }  // namespace
 
 Calibrated calibrate(const std::vector<Face>& faces, const Edges& edges, const Stencils& stencils,
-                     std::size_t particles) {
-  return Calibrator(faces, edges, stencils, particles).calibrate();
+                     double weld_distance, std::size_t particles) {
+  return Calibrator(faces, edges, stencils, weld_distance, particles).calibrate();
 }
 
 }  // namespace weft::mesh

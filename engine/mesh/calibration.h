@@ -29,7 +29,10 @@ struct Calibrated {
 ///
 /// Where the elements store what they should without a factor, as in grids of rectangles, they keep
 /// the factor 1.
+///
+/// Panels that are sewn lie in planes of their own, each turned as it likes. So each is calibrated
+/// by itself, up to the particles on its seams.
 Calibrated calibrate(const std::vector<Face>& faces, const Edges& edges, const Stencils& stencils,
-                     std::size_t particles);
+                     double weld_distance, std::size_t particles);
 
 }  // namespace weft::mesh

@@ -71,10 +71,10 @@ std::vector<BendingElement> bending_of(const std::vector<Face>& faces, std::size
   const std::vector<Face> bent = well_shaped(faces, mesh.weld_distance);
   const Edges edges(bent);
   Stencils stencils = bending_stencils(bent, edges, mesh.weld_distance);
-  Calibrated calibrated = calibrate(bent, edges, stencils, particles);
+  Calibrated calibrated = calibrate(bent, edges, stencils, mesh.weld_distance, particles);
   if (!calibrated.uneven.empty()) {
     add_rays(bent, edges, mesh.weld_distance, calibrated.uneven, particles, stencils);
-    calibrated = calibrate(bent, edges, stencils, particles);
+    calibrated = calibrate(bent, edges, stencils, mesh.weld_distance, particles);
   }
   std::vector<BendingElement> elements;
   for (std::size_t i = 0; i < calibrated.weights.size(); ++i) {
@@ -138,7 +138,7 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
   if (auto r = check_input(mesh); !r) return Error{r.error()};
   Welded welded = weld(mesh);
   Faces found = faces_of(mesh, welded.particle_of_vertex);
-  const std::size_t recognised = recognise_grids(found.faces);
+  const std::size_t recognised = recognise_grids(found.faces, mesh.weld_distance);
   const Edges edges(found.faces);
 
   MeshCloth cloth;

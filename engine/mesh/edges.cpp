@@ -4,6 +4,18 @@
 
 namespace weft::mesh {
 
+bool is_seam(const Edge& edge, const std::vector<Face>& faces, double weld_distance) {
+  const auto ends = [&](const EdgeOfFace& of) {
+    const Face& face = faces[of.face];
+    const std::size_t from = of.side, to = face.next(from);
+    const bool is_forward = face.particles[from] == edge.a;
+    return std::array{face.places[is_forward ? from : to], face.places[is_forward ? to : from]};
+  };
+  if (!edge.is_inner()) return false;
+  const auto one = ends(edge.faces[0]), two = ends(edge.faces[1]);
+  return length(one[0] - two[0]) > weld_distance || length(one[1] - two[1]) > weld_distance;
+}
+
 Edges::Edges(const std::vector<Face>& faces) : of_(faces.size()) {
   PairNumbers numbers(2 * faces.size());
   std::vector<std::uint32_t> counts;

@@ -20,6 +20,10 @@ struct Edge {
   bool is_border() const { return faces.size() == 1; }
 };
 
+/// Whether the two faces of an inner edge have it in different places at rest, farther apart than
+/// weld_distance: each is in a panel of its own.
+bool is_seam(const Edge& edge, const std::vector<Face>& faces, double weld_distance);
+
 /// In the order of the faces and their sides.
 class Edges {
  public:

@@ -53,10 +53,11 @@ struct Cell {
   Face quad;
 };
 
-std::vector<Cell> possible_cells(const std::vector<Face>& faces, const Edges& edges) {
+std::vector<Cell> possible_cells(const std::vector<Face>& faces, const Edges& edges,
+                                 double weld_distance) {
   std::vector<Cell> cells;
   for (const Edge& edge : edges.all()) {
-    if (!edge.is_inner()) continue;
+    if (!edge.is_inner() || is_seam(edge, faces, weld_distance)) continue;
     const auto [f, side] = edge.faces[0];
     const auto [g, other_side] = edge.faces[1];
     if (faces[f].is_quad() || faces[g].is_quad() || f == g) continue;
@@ -108,9 +109,9 @@ std::vector<Around> look_around(const std::vector<Face>& faces, const Edges& edg
 
 }  // namespace
 
-std::size_t recognise_grids(std::vector<Face>& faces) {
+std::size_t recognise_grids(std::vector<Face>& faces, double weld_distance) {
   const Edges edges(faces);
-  std::vector<Cell> cells = possible_cells(faces, edges);
+  std::vector<Cell> cells = possible_cells(faces, edges, weld_distance);
   if (cells.empty()) return 0;
   const auto around = look_around(faces, edges, cells);
   std::erase_if(cells, [&](const Cell& cell) {

@@ -8,7 +8,8 @@ Vec3 weighted_sum(const std::array<double, 4>& weights, const std::array<Vec3, 4
   return sum;
 }
 
-Stencil hinge(Point a, Point b, Point far_a, Point far_b, Vec3 a_of_other, Vec3 b_of_other) {
+Stencil hinge(Point a, Point b, Point far_a, Point far_b, Vec3 a_of_other, Vec3 b_of_other,
+              bool is_seam) {
   struct Side {
     double along = 0, height = 0;  ///< m, of the far corner from a, and from the edge
     Vec3 across;
@@ -24,7 +25,7 @@ Stencil hinge(Point a, Point b, Point far_a, Point far_b, Vec3 a_of_other, Vec3 
   const Side two = side(a_of_other, b_of_other, far_b.place);
   const double size = length(b.place - a.place);
   const Vec3 edge = unit(b.place - a.place);
-  Vec3 across = unit(one.across - two.across);
+  Vec3 across = is_seam ? one.across : unit(one.across - two.across);
   if (dot(across, across) == 0) across = one.across;
 
   Stencil stencil;

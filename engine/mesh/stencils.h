@@ -26,8 +26,10 @@ struct Point {
 
 /// The bend between two triangles with a common edge from a to b: the sum of the slopes at which
 /// their far corners leave it, in the plane that both are unfolded into. The second triangle has
-/// the edge at places of its own.
-Stencil hinge(Point a, Point b, Point far_a, Point far_b, Vec3 a_of_other, Vec3 b_of_other);
+/// the edge at places of its own. Across a seam these may be anywhere, and the plane is that of the
+/// first.
+Stencil hinge(Point a, Point b, Point far_a, Point far_b, Vec3 a_of_other, Vec3 b_of_other,
+              bool is_seam);
 
 /// Where both far corners and one end of the edge, `kept`, are on one line, the other end has no
 /// weight: then it goes, and three points remain, with the kept one between the others.

@@ -113,6 +113,49 @@ TEST_CASE(
   CHECK(bending_energy(sewn.scene, whole.positions) < 1e-30);
 }
 
+/// Cut in stripes of this width, each a panel that is turned and moved by chance.
+MeshDescription in_stripes(MeshDescription mesh, double width, Random& random) {
+  struct Panel {
+    double angle, x, y;
+  };
+  std::vector<Panel> panels;
+  for (int i = 0; i < 10; ++i)
+    panels.push_back({random.between(0, 6), random.between(-9, 9), random.between(-9, 9)});
+  for (std::size_t face = 0; face < mesh.corners.size() / 3; ++face) {
+    const auto corners = std::span(mesh.corners).subspan(3 * face, 3);
+    double middle = 0;
+    for (const std::uint32_t vertex : corners) middle += mesh.positions[vertex].x / 3;
+    const Panel& panel = panels[static_cast<std::size_t>(std::max(0.0, middle) / width)];
+    const double c = std::cos(panel.angle), s = std::sin(panel.angle);
+    for (const std::uint32_t vertex : corners) {
+      const Vec3 p = mesh.positions[vertex];
+      mesh.rest_corners.push_back({panel.x + c * p.x - s * p.y, panel.y + s * p.x + c * p.y});
+    }
+  }
+  return mesh;
+}
+
+TEST_CASE("cloth bends alike in all directions, however its panels lie at rest") {
+  Random random(8);
+  MeshDescription one = irregular_triangles(20, 0.2, random);
+  one.material = plain_material();
+  const SceneDescription whole = made(one).scene;
+  const SceneDescription sewn = made(in_stripes(one, 4, random)).scene;
+  for (int i = 0; i < 8; ++i) {
+    const double c = std::cos(0.4 * i), s = std::sin(0.4 * i);
+    std::vector<Vec3> bent = whole.positions;
+    for (Vec3& p : bent) p.z = 0.01 * (c * p.x + s * p.y) * (c * p.x + s * p.y);
+    CHECK(bending_energy(sewn, bent) == doctest::Approx(bending_energy(whole, bent)).epsilon(0.03));
+  }
+}
+
+TEST_CASE("no cell lies across a seam") {
+  MeshDescription mesh = begun_elsewhere_flat(right_triangles(4));
+  CHECK(made(mesh).counts.recognised_quads == 9);
+  for (std::size_t corner = 0; corner < 3; ++corner) mesh.rest_corners[corner][0] += 0.01;
+  CHECK(made(mesh).counts.recognised_quads == 8);
+}
+
 TEST_CASE("a rest shape that means nothing is refused by field and value") {
   const auto with = [](auto change) {
     MeshDescription mesh = right_triangles(3);
