@@ -64,7 +64,6 @@ Result<void> sew(std::string_view seam, MeshDescription& description) {
   return {};
 }
 
-/// Pins are left out: their rules are in the file's coordinates.
 Result<MeshDescription> description_of(const ObjFile& file, const ObjOptions& options) {
   const Mesh& mesh = file.mesh;
   MeshDescription description = describe_mesh(mesh.vertices, mesh.faces);
@@ -82,6 +81,9 @@ Result<MeshDescription> description_of(const ObjFile& file, const ObjOptions& op
   description.mass = options.mass;
   description.ropes = options.ropes;
   description.weld_distance = options.weld_distance;
+  auto pins = pinned_vertices(options.pin, mesh, options.up);
+  if (!pins) return Error{pins.error()};
+  description.pins = std::move(pins.value());
   for (const std::string& seam : options.seams) {
     if (auto sewn = sew(seam, description); !sewn) return Error{sewn.error()};
   }
@@ -144,10 +146,7 @@ Result<ObjScene> parse_obj(const std::string& text, const ObjOptions& options) {
   auto cloth = cloth_from_mesh(description.value());
   if (!cloth) return Error{cloth.error()};
   scene.mesh.particle_of_vertex = std::move(cloth.value().particle_of_vertex);
-  auto fixed = pinned_particles(options.pin, scene.mesh, options.up);
-  if (!fixed) return Error{fixed.error()};
   scene.description = std::move(cloth.value().scene);
-  scene.description.fixed = std::move(fixed.value());
   scene.description.gravity = {};
   scene.description.gravity.*options.up = -kGravity;
   scene.counts = cloth.value().counts;

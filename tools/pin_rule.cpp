@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <set>
 
 #include "tools/parse.h"
 
@@ -50,39 +49,47 @@ std::optional<Test> comparison(std::string_view rule) {
   };
 }
 
-/// The vertices that a particle stands for.
+/// Those of a face or a line.
+std::vector<bool> used_vertices(const Mesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size());
+  for (const auto* parts : {&mesh.faces, &mesh.lines}) {
+    for (const auto& part : *parts) {
+      for (const std::uint32_t vertex : part) used[vertex] = true;
+    }
+  }
+  return used;
+}
+
+/// What rules choose from.
 class Vertices {
  public:
-  explicit Vertices(const Mesh& mesh) : mesh_(mesh) {}
-  std::size_t count() const { return mesh_.vertices.size(); }
-  bool has_particle(std::size_t vertex) const {
-    return vertex < count() && mesh_.particle_of_vertex[vertex] != kNoIndex;
-  }
+  Vertices(const Mesh& mesh, double Vec3::*up) : mesh_(mesh), up_(up), used_(used_vertices(mesh)) {}
+  std::size_t count() const { return used_.size(); }
+  bool is_used(std::size_t vertex) const { return vertex < count() && used_[vertex]; }
   Chosen matching(const Test& matches) const {
     Chosen chosen(count());
     for (std::size_t vertex = 0; vertex < count(); ++vertex)
-      chosen[vertex] = has_particle(vertex) && matches(mesh_.vertices[vertex]);
+      chosen[vertex] = used_[vertex] && matches(mesh_.vertices[vertex]);
     return chosen;
+  }
+  Chosen top() const {
+    constexpr double kFractionOfHeight = 1e-3;
+    double highest = -std::numeric_limits<double>::infinity();
+    double lowest = std::numeric_limits<double>::infinity();
+    for (std::size_t vertex = 0; vertex < count(); ++vertex) {
+      if (!used_[vertex]) continue;
+      highest = std::max(highest, mesh_.vertices[vertex].*up_);
+      lowest = std::min(lowest, mesh_.vertices[vertex].*up_);
+    }
+    const double bound = highest - kFractionOfHeight * (highest - lowest);
+    return matching([&](const Vec3& v) { return v.*up_ >= bound; });
   }
 
  private:
   const Mesh& mesh_;
+  double Vec3::*up_;
+  std::vector<bool> used_;
 };
-
-Test near_top(const Mesh& mesh, double Vec3::*up) {
-  constexpr double kFractionOfHeight = 1e-3;
-  const Vertices vertices(mesh);
-  double highest = -std::numeric_limits<double>::infinity();
-  double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t vertex = 0; vertex < vertices.count(); ++vertex) {
-    if (!vertices.has_particle(vertex)) continue;
-    highest = std::max(highest, mesh.vertices[vertex].*up);
-    lowest = std::min(lowest, mesh.vertices[vertex].*up);
-  }
-  return [up, bound = highest - kFractionOfHeight * (highest - lowest)](const Vec3& v) {
-    return v.*up >= bound;
-  };
-}
 
 Error unreadable(std::string_view rule) {
   return Error{
@@ -99,7 +106,7 @@ Result<Chosen> listed(std::string_view rule, const Vertices& vertices) {
     if (range.last < range.first) return unreadable(rule);
     for (long long vertex = range.first; vertex <= range.last; ++vertex) {
       const auto number = static_cast<std::size_t>(vertex);
-      if (!vertices.has_particle(number)) {
+      if (!vertices.is_used(number)) {
         return Error{fmt::format("--pin: '{}': no face has a vertex {}", rule, vertex)};
       }
       chosen[number] = true;
@@ -108,28 +115,27 @@ Result<Chosen> listed(std::string_view rule, const Vertices& vertices) {
   return chosen;
 }
 
-Result<Chosen> chosen_by_one(std::string_view rule, const Mesh& mesh, double Vec3::*up) {
-  const Vertices vertices(mesh);
-  if (rule == "top") return vertices.matching(near_top(mesh, up));
+Result<Chosen> chosen_by_one(std::string_view rule, const Vertices& vertices) {
+  if (rule == "top") return vertices.top();
   if (const auto test = comparison(rule)) return vertices.matching(*test);
   return listed(rule, vertices);
 }
 
 /// "top and x<0.2"
-Result<Chosen> chosen_by_all(std::string_view rules, const Mesh& mesh, double Vec3::*up) {
-  Chosen chosen(mesh.vertices.size(), true);
+Result<Chosen> chosen_by_all(std::string_view rules, const Vertices& vertices) {
+  Chosen chosen(vertices.count(), true);
   for (const std::string_view rule : parts_of(rules, " and ")) {
-    const auto by_one = chosen_by_one(rule, mesh, up);
+    const auto by_one = chosen_by_one(rule, vertices);
     if (!by_one) return by_one;
     for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = chosen[i] && by_one.value()[i];
   }
   return chosen;
 }
 
-Result<Chosen> chosen_by_any(std::string_view rule, const Mesh& mesh, double Vec3::*up) {
-  Chosen chosen(mesh.vertices.size());
+Result<Chosen> chosen_by_any(std::string_view rule, const Vertices& vertices) {
+  Chosen chosen(vertices.count());
   for (const std::string_view rules : parts_of(rule, " or ")) {
-    const auto by_all = chosen_by_all(rules, mesh, up);
+    const auto by_all = chosen_by_all(rules, vertices);
     if (!by_all) return by_all;
     for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = chosen[i] || by_all.value()[i];
   }
@@ -138,17 +144,17 @@ Result<Chosen> chosen_by_any(std::string_view rule, const Mesh& mesh, double Vec
 
 }  // namespace
 
-Result<std::vector<std::uint32_t>> pinned_particles(std::string_view rule, const Mesh& mesh,
-                                                    double Vec3::*up) {
+Result<std::vector<std::uint32_t>> pinned_vertices(std::string_view rule, const Mesh& mesh,
+                                                   double Vec3::*up) {
   if (rule == "none") return std::vector<std::uint32_t>{};
-  const auto chosen = chosen_by_any(rule, mesh, up);
+  const auto chosen = chosen_by_any(rule, Vertices(mesh, up));
   if (!chosen) return Error{chosen.error()};
-  std::set<std::uint32_t> particles;
-  for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
-    if (chosen.value()[vertex]) particles.insert(mesh.particle_of_vertex[vertex]);
+  std::vector<std::uint32_t> pinned;
+  for (std::uint32_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
+    if (chosen.value()[vertex]) pinned.push_back(vertex);
   }
-  if (particles.empty()) return Error{fmt::format("--pin: '{}' matches no vertex", rule)};
-  return std::vector<std::uint32_t>(particles.begin(), particles.end());
+  if (pinned.empty()) return Error{fmt::format("--pin: '{}' matches no vertex", rule)};
+  return pinned;
 }
 
 }  // namespace weft::tools

@@ -11,10 +11,10 @@
 
 namespace weft::tools {
 
-/// The numbers of the fixed particles, ascending. A rule that cannot be read or that matches no
-/// particle (other than "none") is an error.
-/// up: the coordinate that "top" is about.
-Result<std::vector<std::uint32_t>> pinned_particles(std::string_view rule, const Mesh& mesh,
-                                                    double Vec3::*up = &Vec3::y);
+/// The numbers of the fixed vertices, ascending; of those alone that are in a face or a line. A
+/// rule that cannot be read or that matches no vertex (other than "none") is an error. up: the
+/// coordinate that "top" is about.
+Result<std::vector<std::uint32_t>> pinned_vertices(std::string_view rule, const Mesh& mesh,
+                                                   double Vec3::*up = &Vec3::y);
 
 }  // namespace weft::tools

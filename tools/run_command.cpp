@@ -142,7 +142,7 @@ Result<int> run_verb(const RunOptions& options) {
   auto summary = run_and_record(prepared.value(), outputs.value());
   if (!summary) return Error{summary.error()};
 
-  const RunReport report{source.name, settings, plan, summary.value(), source.findings};
+  const RunReport report{source.name, settings, plan, summary.value(), source.counts};
   if (auto finished = outputs.value().finish(); !finished) {
     return Error{fmt::format("--out: {}", finished.error())};
   }

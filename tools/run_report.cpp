@@ -115,22 +115,22 @@ constexpr MeshCount kMeshCounts[] = {
     {"welded_vertices", "vertex", " welded", &MeshCounts::welded_vertices},
     {"unused_vertices", "vertex", " in no face and no line", &MeshCounts::unused_vertices},
     {"degenerate_faces", "face", " without area", &MeshCounts::degenerate_faces},
+    {"double_faces", "face", " twice, used once", &MeshCounts::double_faces},
     {"non_manifold_edges", "edge", " of more than two faces", &MeshCounts::non_manifold_edges},
 };
 
-void add_mesh(const MeshFindings& mesh, Json& json) {
-  json["pieces"] = mesh.counts.pieces;
+void add_mesh(const MeshCounts& mesh, Json& json) {
+  json["pieces"] = mesh.pieces;
   json["loose_pieces"] = mesh.loose_pieces;
-  for (const MeshCount& count : kMeshCounts)
-    json[std::string(count.key)] = mesh.counts.*count.value;
+  for (const MeshCount& count : kMeshCounts) json[std::string(count.key)] = mesh.*count.value;
 }
 
 /// Of what is seldom, only what there is.
-std::string mesh_text(const MeshFindings& mesh) {
-  std::string text = counted(mesh.counts.pieces, "piece");
+std::string mesh_text(const MeshCounts& mesh) {
+  std::string text = counted(mesh.pieces, "piece");
   if (mesh.loose_pieces > 0) text += fmt::format(", {} on no pin", mesh.loose_pieces);
   for (const MeshCount& count : kMeshCounts) {
-    const std::size_t number = mesh.counts.*count.value;
+    const std::size_t number = mesh.*count.value;
     if (number == 0) continue;
     const bool is_vertex = count.noun == "vertex";
     text += ", " + (is_vertex && number != 1 ? fmt::format("{} vertices", number)

@@ -18,7 +18,7 @@ struct RunReport {
   Settings settings;
   RunPlan plan;
   RunSummary summary;
-  std::optional<MeshFindings> mesh = {};
+  std::optional<MeshCounts> mesh = {};
 };
 
 Json to_json(const RunReport& report);

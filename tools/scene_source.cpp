@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "engine/mesh/pieces.h"
 #include "tools/file_ending.h"
-#include "tools/loose_pieces.h"
 #include "tools/obj_mesh.h"
 #include "tools/scene_file.h"
 #include "tools/scenes/scenes.h"
@@ -206,7 +206,7 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   SceneSource source{options.scene, {}, {}};
   source.notes = notes_of(obj, values);
   source.up = values.up;
-  source.findings = MeshFindings{obj.counts};
+  source.counts = obj.counts;
   source.description = std::move(obj.description);
   source.mesh = std::move(obj.mesh);
   return source;
@@ -218,12 +218,12 @@ bool is_held(const SceneDescription& scene) {
 }
 
 /// Where some pieces are held, those that are not fall away, which nobody may have wanted.
-std::string note_of(const Pieces& pieces, const SceneSource& source) {
+std::string note_of(const mesh::Pieces& pieces, const SceneSource& source) {
   if (pieces.loose() == 0 || pieces.loose() == pieces.count) return {};
   std::string note =
       fmt::format("{} of {} hang on no pin", pieces.loose(), counted(pieces.count, "piece"));
-  const double gap = source.findings ? joining_distance(source.description, pieces) : 0;
-  if (gap > 0) note += fmt::format(": --weld {:g} would join what lies that near", gap);
+  const double weld = source.counts ? source.counts->suggested_weld : 0;
+  if (weld > 0) note += fmt::format(": --weld {:g} would join what lies that near", weld);
   return note;
 }
 
@@ -232,9 +232,8 @@ void look_over(SceneSource& source) {
   const SceneDescription& scene = source.description;
   if (is_held(scene))
     source.notes.emplace_back("every particle is fixed, so that nothing can move");
-  const Pieces pieces = pieces_of(scene);
-  if (auto note = note_of(pieces, source); !note.empty()) source.notes.push_back(std::move(note));
-  if (source.findings) source.findings->loose_pieces = pieces.loose();
+  auto note = note_of(mesh::pieces_of(scene), source);
+  if (!note.empty()) source.notes.push_back(std::move(note));
 }
 
 Result<SceneSource> load_as_it_is(const SceneOptions& options) {

@@ -38,20 +38,14 @@ struct SceneOptions {
 
 void add_scene_options(Verb verb, SceneOptions& options);
 
-/// What a mesh turned out to be.
-struct MeshFindings {
-  MeshCounts counts;
-  std::size_t loose_pieces = 0;  ///< that no pin holds
-};
-
 struct SceneSource {
   std::string name;  ///< the built-in name, or the file's path
   SceneDescription description;
   Mesh mesh;
   std::vector<PinMove> moves = {};
-  std::optional<MeshFindings> findings = {};  ///< of a mesh that was read
-  std::vector<std::string> notes = {};        ///< for whoever runs it, a line each
-  double Vec3::*up = &Vec3::y;                ///< what heights are measured along
+  std::optional<MeshCounts> counts = {};  ///< of a mesh that was read
+  std::vector<std::string> notes = {};    ///< for whoever runs it, a line each
+  double Vec3::*up = &Vec3::y;            ///< what heights are measured along
 };
 
 Result<SceneSource> load_scene(const SceneOptions& options);

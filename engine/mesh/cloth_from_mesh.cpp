@@ -12,7 +12,7 @@
 #include "engine/mesh/masses.h"
 #include "engine/mesh/membrane.h"
 #include "engine/mesh/mesh_input.h"
-#include "engine/mesh/partition.h"
+#include "engine/mesh/pieces.h"
 #include "engine/mesh/rays.h"
 #include "engine/mesh/welding.h"
 #include "engine/model/validation.h"
@@ -28,18 +28,6 @@ std::vector<std::uint32_t> pinned(const MeshDescription& mesh, const Welded& wel
   return {particles.begin(), particles.end()};
 }
 
-std::size_t pieces(const MeshDescription& mesh, const Welded& welded) {
-  Partition parts(welded.positions.size());
-  const auto particle = [&](std::uint32_t vertex) { return welded.particle_of_vertex[vertex]; };
-  for_each_face(mesh, [&](std::size_t, std::span<const std::uint32_t> face) {
-    for (const std::uint32_t vertex : face) parts.join(particle(face[0]), particle(vertex));
-  });
-  for (const auto& [a, b] : mesh.lines) parts.join(particle(a), particle(b));
-  std::size_t count = 0;
-  for (std::uint32_t i = 0; i < welded.positions.size(); ++i) count += parts.first(i) == i;
-  return count;
-}
-
 MeshCounts count_all(const MeshDescription& mesh, const Welded& welded,
                      const std::vector<Face>& faces, const Edges& edges) {
   MeshCounts counts;
@@ -49,8 +37,14 @@ MeshCounts count_all(const MeshDescription& mesh, const Welded& welded,
   }
   counts.welded_vertices = mesh.positions.size() - counts.unused_vertices - welded.positions.size();
   for (const Edge& edge : edges.all()) counts.non_manifold_edges += edge.faces.size() > 2;
-  counts.pieces = pieces(mesh, welded);
   return counts;
+}
+
+void count_pieces(const SceneDescription& scene, MeshCounts& counts) {
+  const Pieces pieces = pieces_of(scene);
+  counts.pieces = pieces.count;
+  counts.loose_pieces = pieces.loose();
+  counts.suggested_weld = joining_distance(scene, pieces);
 }
 
 /// With weights of a size that does not depend on that of the mesh, that of 1, -2, 1: d is a
@@ -145,6 +139,7 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
   cloth.counts = count_all(mesh, welded, found.faces, edges);
   cloth.counts.recognised_quads = recognised;
   cloth.counts.degenerate_faces = found.degenerate;
+  cloth.counts.double_faces = found.doubles;
   SceneDescription& scene = cloth.scene;
   scene.positions = welded.positions;
   scene.fixed = pinned(mesh, welded);
@@ -154,6 +149,7 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
     return Error{r.error()};
   }
   if (scene.constraints.empty()) return Error{"every edge of the mesh has length 0"};
+  count_pieces(scene, cloth.counts);
   cloth.particle_of_vertex = std::move(welded.particle_of_vertex);
   return cloth;
 }

@@ -1,6 +1,7 @@
 #include "engine/mesh/faces.h"
 
 #include <algorithm>
+#include <compare>
 
 #include "engine/mesh/mesh_input.h"
 
@@ -75,6 +76,54 @@ class Collector {
 
   Faces found_;
 };
+
+/// A face by its particles, whatever their order.
+struct Key {
+  std::array<std::uint32_t, 4> particles{};  ///< ascending; kNoIndex after those of a triangle
+  std::uint32_t face = 0;
+  auto operator<=>(const Key&) const = default;
+};
+
+std::vector<Key> sorted_keys(const std::vector<Face>& faces) {
+  std::vector<Key> keys;
+  for (std::uint32_t f = 0; f < faces.size(); ++f) {
+    Key key{faces[f].particles, f};
+    if (!faces[f].is_quad()) key.particles[3] = kNoIndex;
+    std::ranges::sort(key.particles);
+    keys.push_back(key);
+  }
+  std::ranges::sort(keys);
+  return keys;
+}
+
+/// Of two faces with the same particles: whether these lie at the same places.
+bool at_same_places(const Face& one, const Face& two, double weld_distance) {
+  for (std::size_t i = 0; i < one.size; ++i) {
+    const auto found = std::ranges::find(two.particles, one.particles[i]);
+    const Vec3 place = two.places[static_cast<std::size_t>(found - two.particles.begin())];
+    if (length(one.places[i] - place) > weld_distance) return false;
+  }
+  return true;
+}
+
+/// Leaves out faces that an earlier one has all corners of.
+void remove_doubles(double weld_distance, Faces& found) {
+  const std::vector<Key> keys = sorted_keys(found.faces);
+  std::vector<bool> is_double(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Face& face = found.faces[keys[i].face];
+    for (std::size_t k = i; k-- > 0 && keys[k].particles == keys[i].particles;) {
+      if (at_same_places(face, found.faces[keys[k].face], weld_distance))
+        is_double[keys[i].face] = true;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f < keys.size(); ++f) {
+    if (!is_double[f]) found.faces[kept++] = found.faces[f];
+  }
+  found.doubles = found.faces.size() - kept;
+  found.faces.resize(kept);
+}
 
 /// Without corners that are the same particle as the one before.
 struct Polygon {
@@ -174,7 +223,9 @@ Faces faces_of(const MeshDescription& mesh, const std::vector<std::uint32_t>& pa
       collector.add(face_of(polygon, std::array<std::size_t, 3>{0, i, i + 1}));
     }
   });
-  return collector.take();
+  Faces found = collector.take();
+  remove_doubles(mesh.weld_distance, found);
+  return found;
 }
 
 }  // namespace weft::mesh

@@ -36,8 +36,9 @@ std::array<std::array<std::size_t, 3>, 2> cut(const Face& quad);
 double extent(const std::vector<Face>& faces);
 
 struct Faces {
-  std::vector<Face> faces;  ///< convex, with area
+  std::vector<Face> faces;  ///< convex, with area, none twice
   std::size_t degenerate = 0;
+  std::size_t doubles = 0;  ///< with the particles of an earlier face at the same places
 };
 Faces faces_of(const MeshDescription& mesh, const std::vector<std::uint32_t>& particle_of_vertex);
 

@@ -84,7 +84,9 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 ///
 /// Faces of five and more corners are cut into triangles around the first; they should be convex.
 /// Lines are threads that do not stretch, and have no mass of their own. An edge of more than two
-/// faces stretches as the sum of them, and does not bend. Faces without area are left out.
+/// faces stretches as the sum of them, and does not bend. Faces without area are left out, and of
+/// faces with the same corners, as files of two-sided surfaces have them, all but the first:
+/// corners at other places at rest are others, so that two layers of panels remain two.
 struct MeshDescription {
   std::vector<Vec3> positions;            ///< m, one per vertex
   std::vector<std::uint32_t> corners;     ///< vertices, face after face, in order around each
@@ -124,8 +126,13 @@ struct MeshCounts {
   std::size_t welded_vertices = 0;     ///< that share the particle of an earlier vertex
   std::size_t unused_vertices = 0;     ///< in no face and no line
   std::size_t degenerate_faces = 0;    ///< without area, left out
+  std::size_t double_faces = 0;        ///< that an earlier face has all corners of, left out
   std::size_t non_manifold_edges = 0;  ///< of more than two faces
   std::size_t pieces = 0;              ///< that nothing joins to one another
+  std::size_t loose_pieces = 0;        ///< of these, without a pin
+  /// m, a power of ten: as weld_distance it would join loose pieces to what they lie against, with
+  /// gaps of a twentieth of an edge at most. 0: there are no such gaps.
+  double suggested_weld = 0;
 };
 
 struct MeshCloth {

@@ -117,18 +117,20 @@ TEST_CASE("the table has every figure too") {
 TEST_CASE("the report of a mesh says what it turned out to be") {
   RunReport of_mesh = report();
   CHECK_FALSE(to_json(of_mesh).contains("pieces"));
-  of_mesh.mesh = MeshFindings{{.pieces = 1}};
+  of_mesh.mesh = MeshCounts{.pieces = 1};
   CHECK(to_table(of_mesh).find("mesh      1 piece\n") != std::string::npos);
-  of_mesh.mesh = MeshFindings{{.welded_vertices = 3,
-                               .unused_vertices = 1,
-                               .degenerate_faces = 2,
-                               .non_manifold_edges = 1,
-                               .pieces = 5},
-                              4};
+  of_mesh.mesh = MeshCounts{.welded_vertices = 3,
+                            .unused_vertices = 1,
+                            .degenerate_faces = 2,
+                            .double_faces = 7,
+                            .non_manifold_edges = 1,
+                            .pieces = 5,
+                            .loose_pieces = 4};
   CHECK(
       to_table(of_mesh).find(
           "mesh      5 pieces, 4 on no pin, 3 vertices welded, 1 vertex in no face and no line, 2 "
-          "faces without area, 1 edge of more than two faces\n") != std::string::npos);
+          "faces without area, 7 faces twice, used once, 1 edge of more than two faces\n") !=
+      std::string::npos);
   const Json json = to_json(of_mesh);
   CHECK(json["pieces"] == 5);
   CHECK(json["loose_pieces"] == 4);

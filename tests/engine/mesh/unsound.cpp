@@ -88,8 +88,24 @@ TEST_CASE("concave and crossed quads are cut, polygons too") {
   CHECK(sound(mesh_of(ring, {{0, 1, 2, 3, 4, 5, 6}})).counts.triangles == 5);
 }
 
-TEST_CASE("the same face twice is cloth twice as thick") {
-  const auto mesh = mesh_of(kSquare, {{0, 1, 2, 3}, {3, 2, 1, 0}});
+TEST_CASE("the same face twice is used once, whichever way round and wherever it begins") {
+  auto mesh = mesh_of(kSquare, {{0, 1, 2, 3}, {2, 1, 0, 3}, {1, 2, 3, 0}});
+  CHECK(sound(mesh).counts.double_faces == 2);
+  CHECK(area_of(sound(mesh).scene, *mesh.material) == doctest::Approx(1));
+  mesh = mesh_of(kSquare, {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}});
+  for (const Vec3& p : kSquare) mesh.positions.push_back(p);
+  for (std::size_t i = 6; i < 12; ++i) mesh.corners[i] += 4;  // with vertices of its own
+  const MeshCloth cloth = sound(mesh);
+  CHECK(cloth.counts.double_faces == 2);
+  CHECK(cloth.counts.non_manifold_edges == 0);
+  CHECK(cloth.scene.bending.size() == 1);
+}
+
+TEST_CASE("two layers that are sewn at all corners remain two") {
+  auto mesh = mesh_of(kSquare, {{0, 1, 2, 3}, {3, 2, 1, 0}});
+  for (const Vec3& p : kSquare) mesh.rest_corners.push_back({p.x, p.y});
+  for (const Vec3& p : kSquare) mesh.rest_corners.push_back({5 + p.x, p.y});
+  CHECK(sound(mesh).counts.double_faces == 0);
   CHECK(area_of(sound(mesh).scene, *mesh.material) == doctest::Approx(2));
 }
 

@@ -1,5 +1,4 @@
-#include "tools/loose_pieces.h"
-
+/// What the program says of meshes that are not as they should be.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -10,43 +9,6 @@
 
 namespace weft::tools {
 namespace {
-
-TEST_CASE("what constraints and triangles join is a piece; fixed particles and anchors hold it") {
-  SceneDescription scene;
-  scene.positions.resize(10);
-  scene.constraints = {{0, 1, 1}, {3, 4, 1}, {1, 2, 1}};
-  scene.membrane = {{{5, 6, 7}}};
-  scene.spheres = {4, 8};
-  scene.fixed = {2};
-  scene.anchors = {{.particle = 6}};
-  const Pieces pieces = pieces_of(scene);
-  CHECK(pieces.of_particle == std::vector<std::uint32_t>{0, 0, 0, 1, 1, 2, 2, 2, kNoIndex, 3});
-  CHECK(pieces.held == std::vector<bool>{true, false, true, false});
-  CHECK(pieces.count == 4);
-  CHECK(pieces.loose() == 2);
-}
-
-/// Two strips of three edges, one above the other.
-SceneDescription strips(double gap) {
-  SceneDescription scene;
-  for (int row = 0; row < 2; ++row) {
-    for (int i = 0; i < 4; ++i) scene.positions.push_back({0.1 * i, -gap * row, 0});
-  }
-  for (const std::uint32_t i : {0u, 1u, 2u, 4u, 5u, 6u})
-    scene.constraints.push_back({i, i + 1, 0.1});
-  scene.fixed = {0};
-  return scene;
-}
-
-TEST_CASE("the distance that would join loose pieces is a power of ten, and far below an edge") {
-  const auto joining = [](const SceneDescription& scene) {
-    return joining_distance(scene, pieces_of(scene));
-  };
-  CHECK(joining(strips(3e-6)) == doctest::Approx(1e-5));
-  CHECK(joining(strips(2e-4)) == doctest::Approx(1e-3));
-  CHECK(joining(strips(0.02)) == 0);
-  CHECK(joining(strips(0)) == 0);
-}
 
 /// A square of n x n cells as loose triangles, whose corners differ by up to a millionth.
 std::string soup(int n) {
@@ -91,6 +53,23 @@ TEST_CASE("whoever runs loose triangles is told which weld joins them, and the w
   CHECK(joined["loose_pieces"] == 0);
   CHECK(joined["welded_vertices"] == 3 * 72 - 49);
   CHECK(joined["lowest_y"] > -0.1);
+}
+
+TEST_CASE("faces that a file has twice, as two-sided surfaces, are used once and named") {
+  const TemporaryFolder folder;
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 -1 0\nv 0 -1 0\nv 1 -2 0\nv 0 -2 0\n";
+  const std::string front = "f 1 2 3\nf 1 3 4\nf 4 3 5\nf 4 5 6\n";
+  const std::string back = "f 3 2 1\nf 4 3 1\nf 5 3 4\nf 6 5 4\n";
+  const auto run = [&](const std::string& faces) {
+    return folder.write("sheet.obj", vertices + faces) + " --pin top --material cotton --steps 2";
+  };
+  CHECK(run_program(folder, "run " + run(front)).out.find("twice") == std::string::npos);
+  const Outcome shown = run_program(folder, "run " + run(front + back));
+  CHECK(shown.out.find("4 faces twice, used once") != std::string::npos);
+  const auto once = report_of(folder, run(front)), twice = report_of(folder, run(front + back));
+  CHECK(once["double_faces"] == 0);
+  CHECK(twice["double_faces"] == 4);
+  CHECK(twice["state_hash"] == once["state_hash"]);
 }
 
 TEST_CASE("cloth that nothing holds at all was meant to fall") {

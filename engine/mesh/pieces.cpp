@@ -1,18 +1,17 @@
-#include "tools/loose_pieces.h"
+#include "engine/mesh/pieces.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "engine/mesh/geometry.h"
 #include "engine/mesh/partition.h"
 
-namespace weft::tools {
+namespace weft::mesh {
 namespace {
 
 constexpr std::uint32_t kNoPiece = kNoIndex;
-
-double distance(Vec3 a, Vec3 b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 
 /// Calls join(a, b) for whatever keeps two particles together.
 template <class Join>
@@ -35,7 +34,15 @@ std::vector<bool> lone_spheres(const SceneDescription& scene) {
 double mean_edge(const SceneDescription& scene) {
   double sum = 0;
   for (const Constraint& c : scene.constraints) sum += c.rest_length;
-  return sum / static_cast<double>(std::max<std::size_t>(1, scene.constraints.size()));
+  for (const MembraneElement& element : scene.membrane) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [u, v] = element.rest[i];
+      const auto [next_u, next_v] = element.rest[(i + 1) % 3];
+      sum += std::hypot(next_u - u, next_v - v);
+    }
+  }
+  const std::size_t edges = scene.constraints.size() + 3 * scene.membrane.size();
+  return sum / static_cast<double>(std::max<std::size_t>(1, edges));
 }
 
 double extent(const SceneDescription& scene, double Vec3::*axis) {
@@ -79,7 +86,7 @@ class InOrder {
       if (std::abs(there.*axis_ - here.*axis_) > reach) break;
       const std::uint32_t piece = pieces.of_particle[other];
       if (piece == kNoPiece || piece == pieces.of_particle[own]) continue;
-      if (const double d = distance(here, there); d <= reach) least = std::min(least, d);
+      if (const double d = length(here - there); d <= reach) least = std::min(least, d);
     }
     return least;
   }
@@ -96,7 +103,7 @@ std::size_t Pieces::loose() const {
 }
 
 Pieces pieces_of(const SceneDescription& scene) {
-  mesh::Partition parts(scene.positions.size());
+  Partition parts(scene.positions.size());
   for_each_joint(scene, [&](std::uint32_t a, std::uint32_t b) { parts.join(a, b); });
   const std::vector<bool> lone = lone_spheres(scene);
   Pieces pieces;
@@ -118,6 +125,7 @@ Pieces pieces_of(const SceneDescription& scene) {
 }
 
 double joining_distance(const SceneDescription& scene, const Pieces& pieces) {
+  if (pieces.loose() == 0 || pieces.count < 2) return 0;
   constexpr double kShareOfEdge = 0.05;
   const double reach = kShareOfEdge * mean_edge(scene);
   const InOrder in_order(scene);
@@ -131,4 +139,4 @@ double joining_distance(const SceneDescription& scene, const Pieces& pieces) {
   return largest > 0 ? std::pow(10, std::ceil(std::log10(largest))) : 0;
 }
 
-}  // namespace weft::tools
+}  // namespace weft::mesh

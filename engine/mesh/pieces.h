@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace weft::tools {
+namespace weft::mesh {
 
 /// Particles are of one piece where constraints or triangles of fabric join them, over any number
 /// of others. A sphere that is joined to nothing is no piece.
@@ -20,8 +20,9 @@ struct Pieces {
 };
 Pieces pieces_of(const SceneDescription& scene);
 
-/// m, a power of ten: a distance that, as --weld, would join pieces that nothing holds to the rest,
-/// as far as they lie against it with gaps of a twentieth of an edge at most. 0: there is none.
+/// m, a power of ten: a distance that, as weld_distance of a mesh, would join pieces that nothing
+/// holds to the rest, as far as they lie against it with gaps of a twentieth of an edge at most. 0:
+/// there is none.
 double joining_distance(const SceneDescription& scene, const Pieces& pieces);
 
-}  // namespace weft::tools
+}  // namespace weft::mesh
