@@ -20,10 +20,12 @@ inline constexpr double kOmega = 0.8;
 /// Local passes look at a constraint whose strain exceeds this share of the tolerance. The rest is
 /// room for what corrections of its neighbours add.
 inline constexpr double kLocalShare = 0.99;
-/// Compliance of a yarn's constraints, relative to the diagonal of its matrix, which is singular
-/// where the yarn is straight between two pins. A larger one is softer, and farther from the true
-/// motion.
-inline constexpr double kCompliance = 3e-3;
+/// Compliance of a yarn's constraints in a sweep, relative to the diagonal of its matrix. That of a
+/// yarn that two fixed particles hold is singular where it is straight: a smaller compliance lifts
+/// banners, a larger one is softer, and farther from the true motion. All other yarns have only
+/// what keeps rounding in bounds: a sweep carries a load along 1 / sqrt(2 compliance) constraints.
+inline constexpr double kHeldCompliance = 3e-3;
+inline constexpr double kCompliance = 1e-4;
 /// s. No substep is longer. It bounds the error of motion where nothing hangs on a pin.
 inline constexpr double kLongestSubstep = 0.005;
 /// A substep is no longer than this part of the time in which a falling particle passes the length

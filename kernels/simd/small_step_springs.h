@@ -169,7 +169,7 @@ template <bool kDamped, Base kBase>
   const YarnSpringRelaxation r = relaxation;
   const std::uint32_t first = block.first, last = rows_of(block) - 1;
   const float share = 1 / (1 + r.laws.damping), omega = r.yarns.omega;
-  const Floats none(0.f), relaxed(omega), stiff(1 + r.yarns.compliance);
+  const Floats none(0.f), relaxed(omega);
   const Floats lag(r.laws.damping * share), most(r.laws.most_compliance);
   const Floats softness(r.laws.scale * share), weight(omega * r.laws.scale * share * r.unit_mass);
   const Floats unit_mass(r.unit_mass);
@@ -180,6 +180,7 @@ template <bool kDamped, Base kBase>
     fetch<kBase>(at, base, lane);
     Substitution substitution;
     Elimination<Along::present> elimination;
+    const Floats stiff = Floats(1.f) + load(block.compliance + lane);
     StartDown<kDamped> start_down(start, lane);
     const FloatVector end = go_along<kBase>(
         y, block, at, base, lane,

@@ -2,8 +2,8 @@
 ///
 /// As in yarns.h a yarn is solved exactly, here Newton's step for C = (l^2 - L^2) / 2 of each of
 /// its constraints, whose gradient is d: no root is taken. The right side is relaxed by omega; the
-/// diagonal has a compliance, the share `compliance` of it, since the matrix of a straight yarn
-/// between two fixed ends is singular.
+/// diagonal has a compliance, the share YarnBlock::compliance of it, since the matrix of a straight
+/// yarn between two fixed ends is singular.
 #pragma once
 
 #include "kernels/simd/yarns.h"
@@ -16,12 +16,13 @@ template <Base kBase, class At>
 [[gnu::always_inline]] inline void relax_block(const Yarns& y, const YarnBlock& block, At at,
                                                At base, const Scratch& all,
                                                const YarnRelaxation& r) {
-  const Floats half_omega(0.5f * r.omega), stiff(1 + r.compliance), tolerance(r.tolerance);
+  const Floats half_omega(0.5f * r.omega), tolerance(r.tolerance);
   std::uint32_t* const out = r.out + block.first;
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     ScratchRow* scratch = all.of(lane);
     fetch<kBase>(at, base, lane);
     Substitution substitution;
+    const Floats stiff = Floats(1.f) + load(block.compliance + lane);
     go_down<Along::present, kBase, false>(
         y, block, at, base, lane,
         [&](const FloatVector& d, Floats rest) __attribute__((always_inline)) {

@@ -184,7 +184,8 @@ struct YarnBlock {
   YarnAccess access = YarnAccess::quads;
   std::uint32_t place = 0;  // in place: of the first row
   std::uint32_t first_patch = 0, last_patch = 0;
-  std::uint32_t patches_ahead = 0;  // behind these: those of the block that comes next
+  std::uint32_t patches_ahead = 0;         // behind these: those of the block that comes next
+  float compliance[kernels::kLanes] = {};  // per lane, in small steps (small_step_yarns.h)
 };
 
 /// A row of the woven layout, | x ... x | y ... y | z ... z |. Each four of its lanes are slots in
@@ -370,7 +371,6 @@ struct AnchorHold {
 
 struct YarnRelaxation {
   float omega = 1;
-  float compliance = 0;          // small_step_yarns.h
   float tolerance = 0;           // as above
   std::uint32_t* out = nullptr;  // per row, a bit per lane, likewise
 };

@@ -164,8 +164,12 @@ struct BlockOfYarns {
             from_memory,
             springs.empty() ? nullptr : springs.data()};
   }
+  /// Of small steps.
+  static double compliance(std::uint32_t lane) { return lane % 3 == 0 ? 1e-2 : 1e-3; }
   simd::YarnBlock block() const {
     simd::YarnBlock block{0, kRows, lanes};
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+      block.compliance[lane] = static_cast<float>(compliance(lane));
     if (stand == Stand::quads) return block;
     block.access =
         stand == Stand::in_place ? simd::YarnAccess::in_place : simd::YarnAccess::patches;

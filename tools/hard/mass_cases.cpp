@@ -34,7 +34,7 @@ Outcome run_chain(const Setup& setup, double end_mass) {
   options.end_mass = end_mass;
   Trial trial{built_in("chain", options), setup.settings(kChainStrain)};
   trial.dt = 1.0 / 60;
-  trial.steps = setup.steps(600, 60);
+  trial.steps = setup.steps(300, 60);
   return strain_outcome(trial, kChainGain * energy_of_the_fall(trial.scene));
 }
 
@@ -76,6 +76,7 @@ constexpr double kHeaviestCaughtByYarns = 100;
 Outcome run_heaviest(const Setup& setup, double sphere_mass, double slack) {
   Trial trial = drop(setup, sphere_mass, slack);
   trial.settings.max_iterations = 20'000;
+  trial.steps = setup.steps(80, 45);
   const Observed o = observe(trial);
   Outcome result = honesty_outcome(o, kAnyEnergy);
   if (o.max_strain > 1) result.failure = "the sheet does not hold";

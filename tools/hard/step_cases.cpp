@@ -45,9 +45,9 @@ std::vector<Case> step_cases() {
   }
   cases.push_back({"dt_varying", "max strain", kStrain, run_varying});
   cases.push_back({"fine_hang_160", "max strain", kStrain,
-                   [](const Setup& setup) { return run_fine(setup, "hang", 160, 200, 5); }});
+                   [](const Setup& setup) { return run_fine(setup, "hang", 160, 60, 5); }});
   cases.push_back({"fine_corners_81", "max strain", kStrain,
-                   [](const Setup& setup) { return run_fine(setup, "corners", 81, 200, 5); }});
+                   [](const Setup& setup) { return run_fine(setup, "corners", 81, 45, 5); }});
   return cases;
 }
 

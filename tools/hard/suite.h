@@ -20,6 +20,8 @@ std::vector<Case> length_cases();
 std::vector<Case> graph_cases();
 std::vector<Case> material_cases();
 std::vector<Case> input_cases();
+std::vector<Case> sheet_cases();
+std::vector<Case> budget_cases();
 
 std::vector<Case> all_cases();
 

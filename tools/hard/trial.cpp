@@ -51,6 +51,7 @@ bool take_step(Observed& o, const Trial& trial, Cloth& cloth) {
   const double took = thread_cpu_seconds() - start;
   if (!report) return o.refusal = report.error(), false;
   o.seconds += took;
+  o.longest_seconds = std::max(o.longest_seconds, took);
   o.end = snapshot(cloth);
   add(o, trial, report.value());
   return committed(report.value().status);

@@ -36,6 +36,7 @@ struct Observed {
   double energy_start = 0, energy_gain = 0, energy_end = 0;  ///< J; gain: the largest over start
   double most_kinetic = 0, end_kinetic = 0;
   double seconds = 0;  ///< of the processor, in step()
+  double longest_seconds = 0;
   Snapshot end = {};
 
   double ms_per_step() const { return steps > 0 ? 1e3 * seconds / steps : 0; }

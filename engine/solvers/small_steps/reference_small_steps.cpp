@@ -281,7 +281,7 @@ void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
     system.d.push_back(d);
     system.error.push_back(0.5 * (dot(d, d) - rest * rest));
   }
-  system.solve(omega_, tuning::kCompliance);
+  system.solve(omega_, compliance_of_yarn(model_, slots));
   apply_impulses(slots);
 }
 
@@ -305,7 +305,7 @@ void ReferenceSmallSteps::relax_spring_chain(std::span<const std::uint32_t> slot
     system.softness.push_back(share * visit.law.softness);
     system.is_left.push_back(!step.is_kept(s, links[k]));
   }
-  system.solve(omega_, tuning::kCompliance);
+  system.solve(omega_, compliance_of_yarn(model_, slots));
   for (std::size_t k = 0; k < links.size(); ++k) {
     const double impulse = system.error[k] * length(system.d[k]);
     points.set_multiplier(links[k], points.multiplier(links[k]) + impulse);

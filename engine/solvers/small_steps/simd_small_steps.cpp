@@ -413,8 +413,7 @@ void SmallStepsSolver::hold_anchors(Team& team) {
 }
 
 simd::YarnRelaxation SmallStepsSolver::relaxation_of_yarns() {
-  return {static_cast<float>(omega_), static_cast<float>(tuning::kCompliance),
-          squared_tolerance(settings_), yarns_out_.data()};
+  return {static_cast<float>(omega_), squared_tolerance(settings_), yarns_out_.data()};
 }
 
 simd::EdgeRelaxation SmallStepsSolver::relaxation_of_edges() {

@@ -128,6 +128,15 @@ double cell_of(const Model& model) {
   return std::exp2(std::floor(std::log2(std::min(8 * shortest, longest / 64))));
 }
 
+void set_compliances(const Model& model, YarnLayout& yarns) {
+  for (simd::YarnBlock& block : yarns.blocks) {
+    for (std::size_t lane = 0; lane < block.lanes; ++lane) {
+      const auto slots = slots_of(model.constraints, links_of(yarns, block, lane));
+      block.compliance[lane] = static_cast<float>(compliance_of_yarn(model, slots));
+    }
+  }
+}
+
 }  // namespace
 
 SmallStepsLayout make_small_steps_layout(const Model& model) {
@@ -140,6 +149,7 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   const YarnMemory memory = weaves ? YarnMemory::woven_if_possible : YarnMemory::quads;
   const std::vector<std::uint32_t> in_yarns = constraints_of_yarns(model);
   layout.yarns = in_yarns.empty() ? no_yarns(model) : make_yarn_layout(model, in_yarns, memory);
+  set_compliances(model, layout.yarns);
   Builder(model, in_yarns, layout).add_batches();
   for (const auto* hubs : {&store.hub_distances, &store.hub_ropes}) {
     layout.serial.insert(layout.serial.end(), hubs->begin(), hubs->end());
@@ -162,6 +172,24 @@ std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
   std::vector<std::uint32_t> slots{forwards ? s.a[first] : s.b[first]};
   for (const std::uint32_t c : links) slots.push_back(s.a[c] == slots.back() ? s.b[c] : s.a[c]);
   return slots;
+}
+
+std::vector<std::uint32_t> links_of(const YarnLayout& yarns, const simd::YarnBlock& block,
+                                    std::size_t lane) {
+  std::vector<std::uint32_t> links;
+  for (std::size_t row = block.first; row < block.last; ++row) {
+    const std::uint32_t c = yarns.constraint[row * kernels::kLanes + lane];
+    if (c != kNoIndex) links.push_back(c);
+  }
+  return links;
+}
+
+/// A straight yarn between two fixed particles has a singular matrix. All others are regular, and a
+/// compliance would only keep what happens at one end of a long yarn from the other.
+double compliance_of_yarn(const Model& model, std::span<const std::uint32_t> slots) {
+  const auto fixed = std::ranges::count_if(
+      slots, [&](std::uint32_t slot) { return model.inverse_mass[slot] == 0; });
+  return fixed < 2 ? tuning::kCompliance : tuning::kHeldCompliance;
 }
 
 std::size_t SmallStepsLayout::bytes() const {

@@ -81,20 +81,20 @@ SmallStepsLayout make_small_steps_layout(const Model& model);
 std::vector<std::uint32_t> slots_of(const ConstraintStore& store,
                                     std::span<const std::uint32_t> links);
 
-/// work(constraints of a yarn, from one end to the other), of a family
+/// The compliance of a yarn's constraints in a sweep (kernels/simd/small_step_yarns.h), by which of
+/// its particles are fixed.
+double compliance_of_yarn(const Model& model, std::span<const std::uint32_t> slots);
+
+/// The constraints of a yarn, from one end to the other.
+std::vector<std::uint32_t> links_of(const YarnLayout& yarns, const simd::YarnBlock& block,
+                                    std::size_t lane);
+
+/// work(constraints of a yarn), of a family
 template <class Work>
 void for_each_yarn(const YarnLayout& yarns, std::size_t family, Work&& work) {
-  std::vector<std::uint32_t> links;
   for (std::size_t i = yarns.family_begin[family]; i < yarns.family_begin[family + 1]; ++i) {
     const simd::YarnBlock& block = yarns.blocks[i];
-    for (std::size_t lane = 0; lane < block.lanes; ++lane) {
-      links.clear();
-      for (std::size_t row = block.first; row < block.last; ++row) {
-        const std::uint32_t c = yarns.constraint[row * kernels::kLanes + lane];
-        if (c != kNoIndex) links.push_back(c);
-      }
-      work(links);
-    }
+    for (std::size_t lane = 0; lane < block.lanes; ++lane) work(links_of(yarns, block, lane));
   }
 }
 

@@ -53,15 +53,15 @@ constexpr Golden kGolden[] = {
     {Way::exact, "ropes", 33, 10, true, 0xa949244dd37813dc},
     {Way::exact, "random", 33, 10, false, 0xc6766fc95781ffdf},
     {Way::exact, "hub", 17, 6, true, 0x439aea5723cae410},
-    {Way::automatic, "hang", 20, 40, false, 0xe2c986d3f98221cd},
-    {Way::automatic, "hang", 90, 30, false, 0x45edfb11bad01049},
-    {Way::automatic, "hang_sphere", 21, 40, false, 0xed61aa52b688f5b7},
-    {Way::automatic, "corners", 41, 20, false, 0x100e39f50b603e1b},
-    {Way::automatic, "banner", 21, 20, false, 0x71f044c45fa6d5d0},
-    {Way::automatic, "four_pins", 21, 20, false, 0x20e47e72c4cd3dc3},
-    {Way::automatic, "ropes", 33, 10, false, 0x68e4fa5f94a55790},
+    {Way::automatic, "hang", 20, 40, false, 0xfc5c1d9e43d0a7a7},
+    {Way::automatic, "hang", 90, 30, false, 0x7635537cee4c48db},
+    {Way::automatic, "hang_sphere", 21, 40, false, 0x5b1ab0df5c6d1abc},
+    {Way::automatic, "corners", 41, 20, false, 0xd18306d477c2d089},
+    {Way::automatic, "banner", 21, 20, false, 0xc93a2fe2e580b4a3},
+    {Way::automatic, "four_pins", 21, 20, false, 0xb5e9b96b64714f27},
+    {Way::automatic, "ropes", 33, 10, false, 0x94c66e026c01cda1},
     {Way::automatic, "random", 33, 10, false, 0x50d5bcfea7dbe026},
-    {Way::automatic, "hub", 17, 6, false, 0x23cf0369bec07715},
+    {Way::automatic, "hub", 17, 6, false, 0x7b4fbde0a98af0c7},
 };
 
 SceneDescription describe(const Golden& golden) {

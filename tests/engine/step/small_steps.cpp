@@ -293,5 +293,16 @@ TEST_CASE("schemes and solvers that do not go together are refused") {
         "velocity_correction: small steps have no velocity loop (on)");
 }
 
+TEST_CASE(
+    "a fold that runs through long yarns at a tight tolerance leaves little to local passes") {
+  Cloth cloth = cloth_of(scene_of("hang", 200), small_steps(Scheme::bdf2, 0.001));
+  for (int frame = 0; frame < 46; ++frame) {
+    CAPTURE(frame);
+    const StepReport report = step(cloth, 0.01);
+    CHECK(report.status == Status::converged);
+    CHECK(static_cast<double>(report.iterations) < 2.5 * report.substeps);
+  }
+}
+
 }  // namespace
 }  // namespace weft::test

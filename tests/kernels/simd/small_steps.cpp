@@ -230,7 +230,7 @@ TEST_CASE("a relaxed sweep solves each yarn as a chain in double, wherever its p
       BlockOfYarns b(stand);
       b.start(table);
       std::vector<std::uint32_t> out(BlockOfYarns::kRows);
-      const simd::YarnRelaxation relaxation{0.8f, 1e-3f, 0.01f, out.data()};
+      const simd::YarnRelaxation relaxation{0.8f, 0.01f, out.data()};
       table.relax_yarns(b.yarns(), b.block(), b.u.data(), b.scratch.data(), relaxation);
       const kernels::Vectors moved = b.end(table);
       for (std::uint32_t lane = 2; lane < kLanes; ++lane) {
@@ -246,7 +246,7 @@ TEST_CASE("a relaxed sweep solves each yarn as a chain in double, wherever its p
           const bool is_out = (out[k] >> lane & 1) != 0;
           CHECK(is_out == (std::abs(dot(d, d) / (rest * rest) - 1) > 0.01));
         }
-        chain.solve(0.8, 1e-3);
+        chain.solve(0.8, BlockOfYarns::compliance(lane));
         for (std::uint32_t k = 0; k < n; ++k) {
           Vector expected = b.x[b.slot_of(k, lane)];
           if (k > 0) expected = expected + (chain.w[k] * chain.error[k - 1]) * chain.d[k - 1];
@@ -261,7 +261,7 @@ TEST_CASE("a relaxed sweep solves each yarn as a chain in double, wherever its p
 /// Links of all stiffness in the lanes of a block, some of them rigid, with what they had when the
 /// substep began and multipliers of a sweep before.
 struct SpringYarns {
-  static constexpr double kOmega = 0.8, kScale = 1e6, kShare = 1e-3, kUnitMass = 0.5;
+  static constexpr double kOmega = 0.8, kScale = 1e6, kUnitMass = 0.5;
   static constexpr double kStrain = 0.02;
   BlockOfYarns b;
   kernels::AlignedVector<float> start, multiplier;
@@ -284,7 +284,7 @@ struct SpringYarns {
     for (float& u : start) u += static_cast<float>(random.between(-1e-3, 1e-3));
   }
   simd::YarnSpringRelaxation relaxation(double damping, bool continues) {
-    return {.yarns = {static_cast<float>(kOmega), static_cast<float>(kShare), 0, out.data()},
+    return {.yarns = {static_cast<float>(kOmega), 0, out.data()},
             .multiplier = multiplier.data(),
             .unit_mass = static_cast<float>(kUnitMass),
             .laws = {.u_start = start.data(),
@@ -329,7 +329,7 @@ struct SpringLane {
       chain.error.push_back(share * l * law.residual(l - rest, change, from.back()));
       chain.softness.push_back(share * law.softness);
     }
-    chain.solve(SpringYarns::kOmega, SpringYarns::kShare);
+    chain.solve(SpringYarns::kOmega, BlockOfYarns::compliance(lane));
   }
   Vector moved(std::uint32_t k) const {
     Vector by{0, 0, 0};
@@ -406,7 +406,7 @@ TEST_CASE("a yarn that is straight between two fixed ends moves finitely, and ha
     b.start(table);
     std::vector<std::uint32_t> out(BlockOfYarns::kRows);
     table.relax_yarns(b.yarns(), b.block(), b.u.data(), b.scratch.data(),
-                      {0.8f, 1e-3f, 0.01f, out.data()});
+                      {0.8f, 0.01f, out.data()});
     const kernels::Vectors moved = b.end(table);
     for (std::uint32_t k = 0; k < n; ++k) {
       const Vector by = moved[b.slot_of(k, lane)] - b.x[b.slot_of(k, lane)];
