@@ -228,7 +228,7 @@ Result<void> Cloth::move_fixed(std::uint32_t particle, Vec3 position) {
 Result<void> Cloth::place_fixed(std::uint32_t particle, Vec3 position) {
   const auto slot = impl_->pin_slot(particle, position);
   if (!slot) return Error{slot.error()};
-  impl_->pins.put_down(slot.value(), to_internal(position));
+  impl_->pins.put_down(slot.value(), to_internal(position), impl_->position[slot.value()]);
   impl_->position.set(slot.value(), to_internal(position));
   impl_->displaced = true;
   return {};

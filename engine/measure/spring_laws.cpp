@@ -22,19 +22,27 @@ SpringLaws::SpringLaws(const ConstraintStore& constraints) {
 
 void SpringLaws::begin(const Model& model, kernels::VectorsView start, double h, double share) {
   const ConstraintStore& s = model.constraints;
-  const double damping = h > 0 ? model.damping.stretch / h : 0;
+  begin_projection(model, std::numeric_limits<double>::infinity(), h, share);
+  const double damping = model.damping.stretch / h;
+  if (damping == 0) return;
   for (std::size_t c = 0; c < s.size(); ++c) {
-    target[c] = s.rest_length[c];
-    softness[c] = 0;
-    tolerance[c] = share * s.rest_length[c];
-    multiplier[c] = 0;
     if (s.compliance[c] == 0) continue;
-    softness[c] = std::min(s.compliance[c] / (h * h), kSoftest / s.effective_mass[c]);
-    if (damping == 0) continue;
     const double stretch = length(start[s.a[c]] - start[s.b[c]]) - s.rest_length[c];
     target[c] += damping / (1 + damping) * stretch;
     softness[c] /= 1 + damping;
     tolerance[c] /= 1 + damping;
+  }
+}
+
+void SpringLaws::begin_projection(const Model& model, double softest, double h, double share) {
+  const ConstraintStore& s = model.constraints;
+  for (std::size_t c = 0; c < s.size(); ++c) {
+    target[c] = s.rest_length[c];
+    tolerance[c] = share * s.rest_length[c];
+    multiplier[c] = 0;
+    const double most = kSoftest / s.effective_mass[c];
+    const bool is_left = s.compliance[c] > softest;
+    softness[c] = is_left ? most : std::min(s.compliance[c] / (h * h), most);
   }
 }
 

@@ -13,7 +13,8 @@
 ///
 /// and so is its tolerance divided. A rigid constraint has softness 0, and its own length.
 ///
-/// Where no time passes, h = 0, springs are infinitely soft: a projection leaves them as they are.
+/// Where a start is projected springs have some time to give way, without damping; and softer ones
+/// than were asked for are left as they are, as if they were infinitely soft.
 #pragma once
 
 #include <vector>
@@ -26,9 +27,10 @@ namespace weft {
 struct SpringLaws {
   explicit SpringLaws(const ConstraintStore& constraints);
 
-  /// For a substep of h that begins at `start`, held to `tolerance` times rest_length. h = 0: for a
-  /// projection.
+  /// For a substep of h that begins at `start`, held to `tolerance` times rest_length.
   void begin(const Model& model, kernels::VectorsView start, double h, double tolerance);
+  /// For a projection in which springs up to the compliance `softest` have the time h.
+  void begin_projection(const Model& model, double softest, double h, double tolerance);
   std::size_t bytes() const;
 
   kernels::AlignedVector<double> target;      // m

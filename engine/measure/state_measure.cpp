@@ -7,12 +7,6 @@
 namespace weft {
 namespace {
 
-template <class Vectors>
-reference::Deformation deformation_of(const MembraneStore& s, const Vectors& x, std::size_t i) {
-  const auto& [p0, p1, p2] = s.slots[i];
-  return deformation(s.element[i].shape, x[p1] - x[p0], x[p2] - x[p0]);
-}
-
 /// Of warp, weft and shear; where there is no such law, 0.
 std::array<double, reference::kMembraneLaws> strains_of(const reference::MembraneElement& e,
                                                         const reference::Deformation& f) {

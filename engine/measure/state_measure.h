@@ -19,6 +19,12 @@ double strain_of(const Model& model, const Vectors& position, std::size_t constr
   return constraint < s.bilateral ? std::abs(stretch) : std::max(0.0, stretch);
 }
 
+template <class Vectors>
+reference::Deformation deformation_of(const MembraneStore& s, const Vectors& x, std::size_t i) {
+  const auto& [p0, p1, p2] = s.slots[i];
+  return deformation(s.element[i].shape, x[p1] - x[p0], x[p2] - x[p0]);
+}
+
 /// Over all active constraints.
 Strain measure_strain(const Model& model, const kernels::Vectors& position);
 Strain measure_strain(const Model& model, kernels::VectorsView position);

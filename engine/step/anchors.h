@@ -30,6 +30,8 @@ class Anchors {
   void arrive();
 
   AnchorTravel travel() const { return {from_, to_, moving()}; }
+  /// They stand where they are.
+  AnchorTravel standing() const { return {from_, from_, false}; }
   /// m, the largest by which a limit is exceeded: where a step ends, or begins.
   double largest_excess(const AnchorStore& store, const kernels::Vectors& x, bool ends) const;
   /// Whether one moves in this step or has moved in the last.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/bytes_of.h"
+
 namespace weft {
 
 using kernels::Vector;
@@ -27,11 +29,20 @@ std::size_t Pins::index_of(std::uint32_t slot) const {
 
 void Pins::put_down(const Vectors& position) {
   for (Pin& pin : pins_) pin.from = position[pin.slot];
+  put_down_.clear();
 }
 
-void Pins::put_down(std::uint32_t slot, Vector position) {
+void Pins::put_down(std::uint32_t slot, Vector position, Vector before) {
   const std::size_t i = index_of(slot);
-  if (i < pins_.size()) pins_[i].from = position;
+  const bool is_watched = i < pins_.size();
+  const auto place = std::ranges::lower_bound(put_down_, slot, {}, &Place::slot);
+  if (place == put_down_.end() || place->slot != slot)
+    put_down_.insert(place, {slot, is_watched ? pins_[i].from : before});
+  if (is_watched) pins_[i].from = position;
+}
+
+void Pins::take_back(Vectors& position) const {
+  for (const Place& place : put_down_) position.set(place.slot, place.before);
 }
 
 void Pins::rest() {
@@ -40,6 +51,11 @@ void Pins::rest() {
 
 void Pins::go_on_from(const Pins& from, const Model& its_model, const Model& model,
                       const Vectors& position) {
+  for (const Place& place : from.put_down_) {
+    const std::uint32_t slot = model.ordering.slot_of[its_model.ordering.particle_at[place.slot]];
+    if (model.inverse_mass[slot] == 0) put_down_.push_back({slot, place.before});
+  }
+  std::ranges::sort(put_down_, {}, &Place::slot);
   if (from.pins_.empty()) return;
   watch(model, position);
   moving_ = from.moving_;
@@ -63,6 +79,7 @@ void Pins::depart(double dt, Vectors& position, Vectors& velocity) {
 }
 
 void Pins::stop(bool arrived, Vectors& position, Vectors& velocity) {
+  if (arrived) put_down_.clear();
   if (!moving_) return;
   if (arrived) moving_ = false;
   for (Pin& pin : pins_) {
@@ -80,6 +97,6 @@ Vector Pins::last_velocity(std::uint32_t slot) const {
   return i < pins_.size() ? pins_[i].last : Vector{0, 0, 0};
 }
 
-std::size_t Pins::bytes() const { return pins_.capacity() * sizeof(Pin); }
+std::size_t Pins::bytes() const { return bytes_of(pins_) + bytes_of(put_down_); }
 
 }  // namespace weft

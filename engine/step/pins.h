@@ -19,8 +19,12 @@ class Pins {
   void watch(const Model& model, const kernels::Vectors& position);
   /// All positions were replaced: nobody travels, but who moved may go on at the same speed.
   void put_down(const kernels::Vectors& position);
-  /// That of this pin was replaced: it does not travel there.
-  void put_down(std::uint32_t slot, kernels::Vector position);
+  /// That of this pin was replaced: it does not travel there. before: where it stands now.
+  void put_down(std::uint32_t slot, kernels::Vector position, kernels::Vector before);
+  /// Whether one was put down since the last step.
+  bool were_put_down() const { return !put_down_.empty(); }
+  /// Moves those that were put down to where they stood in the last step's end.
+  void take_back(kernels::Vectors& position) const;
   /// All velocities were replaced: nobody has moved.
   void rest();
   /// Goes on from those of another model of the same particles; position: in the new slots.
@@ -34,6 +38,7 @@ class Pins {
       pin.from = moved(pin.from);
       pin.last = turned(pin.last);
     }
+    for (Place& place : put_down_) place.before = moved(place.before);
   }
 
   /// Those that travel start where they were, with their velocities.
@@ -52,11 +57,17 @@ class Pins {
     kernels::Vector from{}, to{};
     kernels::Vector last{}, speed{};  // of the last move and of this one
   };
+  /// A pin that was put down, and where it stood before.
+  struct Place {
+    std::uint32_t slot = 0;
+    kernels::Vector before{};
+  };
   /// In pins_; its size if none is watched there.
   std::size_t index_of(std::uint32_t slot) const;
 
-  std::vector<Pin> pins_;  // by slots; empty until one is moved
-  bool moving_ = false;    // see moving()
+  std::vector<Pin> pins_;        // by slots; empty until one is moved
+  bool moving_ = false;          // see moving()
+  std::vector<Place> put_down_;  // by slots, each pin once
 };
 
 }  // namespace weft

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "engine/measure/state_measure.h"
 #include "engine/step/exact_substep.h"
+#include "engine/step/fast_springs.h"
 #include "engine/step/motion.h"
 #include "engine/step/reporting.h"
 #include "engine/step/small_step.h"
@@ -32,37 +34,147 @@ bool is_out_of_tolerance(State& s, Team& team) {
          s.measure->penetration(s.position.view(), s.contacts) > s.settings.contact_tolerance;
 }
 
-}  // namespace
-
-bool needs_projection(State& s, Team& team) {
-  if (s.settings.iterations > 0) return false;
-  return (s.placed || s.displaced) && is_out_of_tolerance(s, team);
+/// Where a substep from rest leads, into solved.
+void look_ahead(State& s, double h, Team& team) {
+  StepReport unused;
+  if (s.settings.solver == Solver::small_steps)
+    return look_ahead_by_small_steps(s, h, unused, team);
+  s.solved = s.position;
+  for (std::size_t slot = 0; slot < s.model->slots(); ++slot) {
+    if (s.model->inverse_mass[slot] > 0) s.solved.view().add(slot, h * h * acceleration(s, slot));
+  }
+  s.laws->begin(*s.model, s.position.view(), h, s.settings.tolerance);
+  find_contacts(s, unused);
+  const PositionTask task{.x = s.solved.view(),
+                          .start = s.position.view(),
+                          .contacts = s.contacts,
+                          .h = h,
+                          .max_iterations = std::max(1, s.settings.max_iterations / 2),
+                          .laws = &*s.laws};
+  solve_positions(s, *s.solver, task, unused, team);
 }
 
-void project(State& s, double dt, StepReport& report, Team& team) {
-  const int most = (s.settings.max_iterations + 1) / 2;
-  const auto by_small_steps = [&] {
-    const auto left = static_cast<int>(std::max<std::int64_t>(0, most - report.iterations));
-    project_by_small_steps(s, dt, {.positions = left}, report, team);
-  };
-  s.solved = s.position;
-  find_contacts(s, report);
-  timed(report, Stage::solve_positions, [&] {
-    if (s.settings.solver == Solver::small_steps) return by_small_steps();
-    if (s.laws) s.laws->begin(*s.model, s.position.view(), 0, s.settings.tolerance);
-    const PositionTask task{.x = s.solved.view(),
-                            .start = s.position.view(),
-                            .contacts = s.contacts,
-                            .h = dt,
-                            .max_iterations = s.small_steps ? std::max(1, most / 2) : most,
-                            .laws = s.laws ? &*s.laws : nullptr};
-    const auto result = solve_positions(s, *s.solver, task, report, team);
-    if (!result.converged && s.small_steps) {
-      s.solved = s.position;
-      by_small_steps();
+/// m
+double largest_way(const kernels::Vectors& from, const kernels::Vectors& to) {
+  double most = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, length(to[i] - from[i]));
+  return most;
+}
+
+/// Fast springs of which a pin was put down elsewhere, or whose rest has changed. Where positions
+/// were given they are misplaced if in a moment from rest they would become fast by changing their
+/// lengths: what a cloth carries does not.
+bool springs_are_misplaced(State& s, Team& team) {
+  if (!s.model->has_laws() || softest_of_fast(*s.model) == 0) return false;
+  if (s.rests_differ) return true;
+  if (s.placed) {
+    constexpr double kMoment = tuning::kLongestSubstep;
+    look_ahead(s, kMoment, team);
+    if (largest_way(s.position, s.solved) < tuning::kMisplacedSpeed * kMoment) return false;
+  } else {
+    s.solved = s.position;
+    s.pins.take_back(s.solved);
+  }
+  return largest_change_of_fast(*s.model, s.position, s.solved) > s.settings.tolerance;
+}
+
+}  // namespace
+
+Misplaced find_misplaced(State& s, Team& team) {
+  if (s.settings.iterations > 0 || !(s.placed || s.displaced)) return {};
+  return {.edges = is_out_of_tolerance(s, team), .springs = springs_are_misplaced(s, team)};
+}
+
+namespace {
+
+class Projection {
+ public:
+  Projection(State& s, StepReport& report, Team& team)
+      : s_(s), report_(report), team_(team), most_((s.settings.max_iterations + 1) / 2) {}
+
+  void put_edges_right(double dt) {
+    solve(0, dt);
+    if (all_finite(s_.solved)) s_.position = s_.solved;
+  }
+
+  /// What the fabric carried before pins were put down pulls as before: the way that this takes in
+  /// the time of a round, from where the pins were, is taken back in each round.
+  void put_springs_right() {
+    const double softest = softest_of_fast(*s_.model);
+    const bool carries = s_.pins.were_put_down() && !s_.placed;
+    kernels::Vectors before, drift;
+    if (carries) {
+      before = s_.position;
+      s_.pins.take_back(before);
     }
-  });
-  if (all_finite(s.solved)) s.position = s.solved;
+    for (const double h : {tuning::kPlacing, tuning::kLongestSubstep}) {
+      if (carries) drift = find_drift(before, softest, h);
+      for (int i = 0; i < tuning::kMostPlacings; ++i) {
+        solve(softest, h);
+        if (!all_finite(s_.solved)) return;
+        if (carries) take_back(drift);
+        const double way = largest_way(s_.position, s_.solved);
+        s_.position = s_.solved;
+        if (way < tuning::kPlacedSpeed * h) break;
+      }
+    }
+  }
+
+ private:
+  kernels::Vectors find_drift(const kernels::Vectors& from, double softest, double h) {
+    kernels::Vectors start = std::exchange(s_.position, from), drift(from.size());
+    solve(softest, h);
+    if (all_finite(s_.solved)) {
+      for (std::size_t i = 0; i < drift.size(); ++i) drift.set(i, s_.solved[i] - from[i]);
+    }
+    s_.position = std::move(start);
+    return drift;
+  }
+  void take_back(const kernels::Vectors& drift) {
+    for (std::size_t i = 0; i < drift.size(); ++i) s_.solved.set(i, s_.solved[i] - drift[i]);
+  }
+  int left() const {
+    return static_cast<int>(std::max<std::int64_t>(0, most_ - report_.iterations));
+  }
+  /// solved: from position onto the constraints. Springs up to the compliance `softest` have the
+  /// time h to give way; others are left as they are.
+  void solve(double softest, double h) {
+    s_.solved = s_.position;
+    find_contacts(s_, report_);
+    timed(report_, Stage::solve_positions, [&] {
+      if (s_.settings.solver == Solver::small_steps) return by_small_steps(softest, h);
+      if (s_.laws) {
+        s_.laws->begin_projection(*s_.model, softest, h, s_.settings.tolerance);
+      }
+      const PositionTask task{.x = s_.solved.view(),
+                              .start = s_.position.view(),
+                              .contacts = s_.contacts,
+                              .h = h,
+                              .max_iterations = std::max(1, s_.small_steps ? left() / 2 : left()),
+                              .laws = s_.laws ? &*s_.laws : nullptr};
+      const auto result = solve_positions(s_, *s_.solver, task, report_, team_);
+      if (!result.converged && s_.small_steps) {
+        s_.solved = s_.position;
+        by_small_steps(softest, h);
+      }
+    });
+  }
+  void by_small_steps(double softest, double h) {
+    project_by_small_steps(s_, softest, h, {.positions = left()}, report_, team_);
+  }
+
+  State& s_;
+  StepReport& report_;
+  Team& team_;
+  const std::int64_t most_;  // iterations
+};
+
+}  // namespace
+
+void project(State& s, const Misplaced& what, double dt, StepReport& report, Team& team) {
+  Projection projection(s, report, team);
+  if (what.springs) return projection.put_springs_right();
+  projection.put_edges_right(dt);
 }
 
 void explain(State& s, double h, StepReport& report, Team& team) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "engine/contacts/contacts.h"
 #include "engine/contacts/crossings.h"
@@ -142,11 +143,13 @@ class Frame {
   void begin(const FramePlan& plan) {
     plan_ = plan;
     passes_left_ = plan.passes;
-    plan_.anchors = s_.anchors.travel();
+    plan_.anchors = plan.projects ? s_.anchors.standing() : s_.anchors.travel();
+    kernels::Vectors& velocity = plan.projects ? s_.next_velocity : s_.velocity;
+    if (plan.projects) velocity = kernels::Vectors(velocity.size());  // at rest
     const kernels::VectorsView force =
         s_.forces().size() > 0 ? s_.forces().view() : kernels::VectorsView{};
     if (s_.model->has_contacts()) s_.substep_positions = s_.position;
-    solver_.begin(s_.position.view(), s_.velocity.view(), s_.gravity, force, plan_, team_);
+    solver_.begin(s_.position.view(), velocity.view(), s_.gravity, force, plan_, team_);
     give_ = give_per_mass(s_, plan_);
     const double give_before = plan_.placed ? 0 : s_.give_per_mass;
     elastic_energy_before_ = elastic_energy(s_.position, std::max(give_, give_before));
@@ -184,6 +187,18 @@ class Frame {
     const Status status = put_right_what_is_left();
     report_.iterations += static_cast<std::int64_t>(std::ceil(local_passes_));
     return status;
+  }
+
+  /// Where a substep from rest leads that nothing is asked of beyond its sweep.
+  void look_ahead() {
+    solver_.advance(team_);
+    sweep();
+    read_positions();
+  }
+  /// From where the particles are, without a substep.
+  void put_right_at_once() {
+    if (passes_left_ >= 1) sweep_beyond();
+    finish();
   }
 
   void read_velocities() {
@@ -378,15 +393,26 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   return trial;
 }
 
-void project_by_small_steps(State& s, double h, const Budget& budget, StepReport& report,
-                            Team& team) {
+void project_by_small_steps(State& s, double softest, double h, const Budget& budget,
+                            StepReport& report, Team& team) {
   Frame frame(s, report, team);
   frame.begin({.h = h,
                .passes = static_cast<double>(budget.positions),
                .omega = tuning::kOmega,
                .placed = true,
-               .projects = true});
-  frame.finish();
+               .projects = true,
+               .softest = softest});
+  frame.put_right_at_once();
+}
+
+void look_ahead_by_small_steps(State& s, double h, StepReport& report, Team& team) {
+  Frame frame(s, report, team);
+  frame.begin({.h = h,
+               .omega = tuning::kOmega,
+               .placed = true,
+               .projects = true,
+               .softest = std::numeric_limits<double>::infinity()});
+  frame.look_ahead();
 }
 
 }  // namespace weft

@@ -15,8 +15,11 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
 /// Whether State::refinement says how much shorter substeps are than is known beforehand.
 bool refines_substeps(const State& s);
 
-/// Puts solved, which is equal to position, right in the same rounds.
-void project_by_small_steps(State& s, double h, const Budget& budget, StepReport& report,
-                            Team& team);
+/// Puts solved, which is equal to position, right in the same rounds. Springs up to the compliance
+/// `softest` have the time h from rest to give way; softer ones are left as they are.
+void project_by_small_steps(State& s, double softest, double h, const Budget& budget,
+                            StepReport& report, Team& team);
+/// solved: where a substep of h from rest leads, by its sweep alone. What is remembered stays.
+void look_ahead_by_small_steps(State& s, double h, StepReport& report, Team& team);
 
 }  // namespace weft

@@ -8,6 +8,7 @@
 #include "engine/model/change.h"
 #include "engine/step/air.h"
 #include "engine/step/choose_solver.h"
+#include "engine/step/fast_springs.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -102,6 +103,7 @@ void State::copy_scalars(const State& from, bool same) {
   wind = from.wind;
   placed = !same || from.placed;
   displaced = from.displaced;
+  rests_differ = from.rests_differ;
   lost_energy = same ? from.lost_energy : 0;
   elastic_energy = same ? from.elastic_energy : 0;
   give_per_mass = same ? from.give_per_mass : 0;
@@ -127,6 +129,7 @@ void State::go_on_from(const State& from) {
   const bool same = alike(settings, from.settings);
   copy_scalars(from, same);
   displaced = true;
+  rests_differ = rests_differ || fast_rest_differs(*model, its_model, settings.tolerance);
   if (!same_masses) lost_energy = 0;  // what was lost was energy of others
   if (same && small_steps) small_steps->go_on_from(*from.small_steps, velocity.view(), gravity);
 }

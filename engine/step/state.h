@@ -65,6 +65,7 @@ struct State {
   Anchors anchors;
   bool placed = true;         // positions were given, not stepped to: they may violate constraints
   bool displaced = false;     // they may, though stepped to: a pin was put down, the model changed
+  bool rests_differ = false;  // the rest of fast springs has changed since (fast_springs.h)
   double lost_energy = 0;     // J, lately (energy.h)
   double elastic_energy = 0;  // J, of springs, where the present substep begins; not of small steps
   double give_per_mass = 0;   // s^2, of springs in the last step (measure/state_measure.h)

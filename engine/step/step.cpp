@@ -77,9 +77,9 @@ class Step {
 
   /// Returns whether all of dt was done.
   bool run(double dt) {
-    if (needs_projection(s_, team_)) {
+    if (const Misplaced misplaced = find_misplaced(s_, team_); misplaced.any()) {
       transaction_.begin();
-      project(s_, dt, report_, team_);
+      project(s_, misplaced, dt, report_, team_);
     }
     if (s_.placed) s_.longest_substep = 0;
     plan_ = plan_for(s_, dt, report_, team_);
@@ -88,7 +88,7 @@ class Step {
       if (!do_substep(dt / plan_.substeps, left)) return false;
     }
     transaction_.commit();
-    s_.placed = s_.displaced = false;
+    s_.placed = s_.displaced = s_.rests_differ = false;
     s_.refinement = next_refinement();
     return true;
   }

@@ -188,7 +188,10 @@ class WEFT_API Cloth {
 
   /// Replace the state; finite values, one per particle. Initial or written positions that are out
   /// of tolerance are projected onto the constraints as the next step begins, velocities unchanged
-  /// (not with Settings::iterations). Fixed particles that moved in the last step are at rest after
+  /// (not with Settings::iterations). So are fabrics, and all springs that by themselves swing
+  /// faster than 200 rad/s, if at these positions they would at once become fast: they come to the
+  /// equilibrium that is near, and what they stored is gone. Slower springs keep their stretch, for
+  /// their swings are seen. Fixed particles that moved in the last step are at rest after
   /// write_velocities, not after write_positions.
   Result<void> write_positions(std::span<const Vec3> in);
   Result<void> write_velocities(std::span<const Vec3> in);
@@ -205,9 +208,9 @@ class WEFT_API Cloth {
   /// animation, interpolate.
   Result<void> move_fixed(std::uint32_t particle, Vec3 position);
   /// Puts a fixed particle down somewhere else, without a way between: it is there before the next
-  /// step begins, and the cloth is projected after it, velocities unchanged (with
-  /// Settings::iterations nothing is projected: the jump becomes speed). What a sphere jumped over
-  /// is not passed_through.
+  /// step begins, and the cloth is projected after it, fabrics too (write_positions), velocities
+  /// and what the fabric carries unchanged (with Settings::iterations nothing is projected: the
+  /// jump becomes speed). What a sphere jumped over is not passed_through.
   Result<void> place_fixed(std::uint32_t particle, Vec3 position);
   /// Moves the points of all anchors, in the order of the description: they travel there in
   /// straight lines during the next step, as evenly as normals turn. The last move before a step
@@ -231,7 +234,8 @@ class WEFT_API Cloth {
   /// for: Solver::automatic is chosen anew, and where another one is chosen nothing is remembered.
   ///
   /// Constraints that are then longer or shorter than they may be, and those of pins that are
-  /// released, are put right as the next step begins, velocities unchanged. A particle
+  /// released, are put right as the next step begins, velocities unchanged; so are fabrics
+  /// (write_positions) whose rest lengths change by more than the tolerance. A particle
   /// is released at the speed that move_fixed gave it in the last step, and no energy is gained.
   ///
   /// It takes about as long as to build a model and create a cloth, whatever is changed: less than

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "engine/model/model.h"
 #include "kernels/reference/small_steps.h"
@@ -17,11 +18,13 @@ namespace weft {
 /// What laws have in common in a substep.
 struct LawStep {
   reference::SpringStep springs{};
-  bool projects = false;  // no time passes: springs are left as they are
+  double softest = std::numeric_limits<double>::infinity();  // m/N; softer springs are left
 
   bool is_kept(const ConstraintStore& s, std::uint32_t c) const {
-    return !projects || s.compliance[c] == 0;
+    return s.compliance[c] <= softest;
   }
+  /// Triangles of fabric take part where any springs do.
+  bool leaves_triangles() const { return softest == 0; }
 };
 
 /// A constraint as its law sees it.

@@ -36,11 +36,11 @@ MembraneLook look_at_element(const MembraneStore& s, const Points& points,
   return look;
 }
 
-/// The largest of the element's laws. Where no time passes elements are left as they are.
+/// The largest of the element's laws.
 template <class Points>
 double violation_of_element(const MembraneStore& s, const Points& points, const LawStep& laws,
                             std::uint32_t i) {
-  if (laws.projects) return 0;
+  if (laws.leaves_triangles()) return 0;
   const reference::MembraneStep step = membrane_step(laws);
   const MembraneLook look = look_at_element(s, points, step, i);
   return violation(s.element[i], step, look.now, look.start, points.membrane_multipliers(i));

@@ -72,7 +72,8 @@ ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_anchors) {
 }
 
 LawStep ReferenceSmallSteps::law_step() const {
-  return {{1 / formula_.give(h_), model_.damping.stretch / h_}, projects_};
+  if (projects_) return {{1 / (h_ * h_), 0}, softest_};
+  return {{1 / formula_.give(h_), model_.damping.stretch / h_}};
 }
 
 double ReferenceSmallSteps::law_error() {
@@ -114,6 +115,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   h_ = h;
   omega_ = plan.omega;
   projects_ = plan.projects;
+  softest_ = plan.softest;
   is_begun_ = false;
   passes_.forget();
   departures_.begin();
@@ -345,7 +347,7 @@ void ReferenceSmallSteps::relax_spring(std::uint32_t c) {
 }
 
 void ReferenceSmallSteps::relax_membrane() {
-  if (projects_) return;
+  if (law_step().leaves_triangles()) return;
   Points points = this->points(false);
   points.share = 0;
   if (!is_begun_) std::ranges::fill(membrane_multiplier_, reference::MembraneMultipliers{});

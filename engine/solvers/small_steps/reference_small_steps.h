@@ -109,6 +109,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   std::vector<reference::MembraneMultipliers> membrane_multiplier_;  // per triangle of fabric
   bool is_begun_ = false;                                            // the substep has been swept
   bool projects_ = false;
+  double softest_ = 0;  // m/N, where it projects
 };
 
 }  // namespace weft

@@ -45,7 +45,7 @@ void SimdMembrane::for_blocks(Team& team, Work&& work) const {
 
 void SimdMembrane::relax(float* u, const float* u_start, const LawStep& laws, double omega,
                          bool continues, Team& team) {
-  if (laws.projects) return;
+  if (laws.leaves_triangles()) return;
   const simd::Membrane membrane = arrays(u, u_start, laws);
   for_blocks(team, [&](bool rope, std::size_t first, std::size_t last) {
     table_.relax_membrane(membrane, static_cast<float>(omega), continues, rope, first, last);
@@ -54,7 +54,7 @@ void SimdMembrane::relax(float* u, const float* u_start, const LawStep& laws, do
 
 void SimdMembrane::judge(float* u, const float* u_start, const LawStep& laws, double strain,
                          Team& team) {
-  if (laws.projects) {
+  if (laws.leaves_triangles()) {
     std::ranges::fill(out_, 0);
     return;
   }

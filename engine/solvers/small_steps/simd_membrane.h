@@ -18,8 +18,7 @@ class SimdMembrane {
 
   /// Of a new base.
   void measure_base(const float* base, Team& team);
-  /// u_start: when the substep began. continues: the substep has been swept before. Where no time
-  /// passes elements are left as they are.
+  /// u_start: when the substep began. continues: the substep has been swept before.
   void relax(float* u, const float* u_start, const LawStep& laws, double omega, bool continues,
              Team& team);
   /// Finds which elements break a law by more than the strain.

@@ -125,7 +125,8 @@ SmallStepsSolver::Points SmallStepsSolver::points(double share, bool with_anchor
 }
 
 LawStep SmallStepsSolver::law_step() const {
-  return {{1 / formula_.give(h_), model_.damping.stretch / h_}, projects_};
+  if (projects_) return {{1 / (h_ * h_), 0}, softest_};
+  return {{1 / formula_.give(h_), model_.damping.stretch / h_}};
 }
 
 double SmallStepsSolver::law_error() {
@@ -276,6 +277,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   h_ = plan.h;
   omega_ = plan.omega;
   projects_ = plan.projects;
+  softest_ = plan.softest;
   is_begun_ = false;
   passes_.forget();
   departures_.begin();
@@ -426,7 +428,8 @@ simd::SpringLaws SmallStepsSolver::spring_laws() const {
   return {.u_start = u_before_.data(),
           .scale = static_cast<float>(step.springs.scale),
           .damping = static_cast<float>(step.springs.damping),
-          .most_compliance = step.projects ? 0 : std::numeric_limits<float>::max(),
+          .most_compliance =
+              static_cast<float>(std::min<double>(step.softest, std::numeric_limits<float>::max())),
           .strain = static_cast<float>(tuning::kLocalShare * settings_.tolerance),
           .continues = is_begun_};
 }

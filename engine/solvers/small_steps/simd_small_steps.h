@@ -148,6 +148,7 @@ class SmallStepsSolver final : public SmallSteps {
   kernels::AlignedVector<float> multiplier_;               // in places of the layout
   bool is_begun_ = false;                                  // the substep has been swept
   bool projects_ = false;
+  double softest_ = 0;  // m/N, where it projects
 };
 
 }  // namespace weft

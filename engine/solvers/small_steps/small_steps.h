@@ -89,7 +89,8 @@ struct FramePlan {
   double passes = 0;      // at most, beyond a sweep for each substep, in the time of sweeps
   double omega = 1;       // of a sweep
   bool placed = false;    // positions are not where the last step ended: nothing is known of a past
-  bool projects = false;  // no time passes: springs are left as they are, and the past is kept
+  bool projects = false;  // a start is put right (engine/step/project.h): the past is kept
+  double softest = 0;     // m/N; where it projects: springs that are softer are left as they are
   AnchorTravel anchors{};
 };
 
