@@ -175,6 +175,21 @@ void add_texture(const std::vector<tinyobj::index_t>& corners,
 
 }  // namespace
 
+Result<std::vector<FlatPlace>> whole_texture(const ObjFile& file) {
+  std::vector<FlatPlace> texture;
+  for (std::size_t face = 0; face < file.mesh.faces.size(); ++face) {
+    for (std::size_t i = 0; i < file.mesh.faces[face].size(); ++i) {
+      const auto& place = file.texture[texture.size()];
+      if (!place) {
+        return Error{
+            fmt::format("face {}, counted from 0, has a corner without texture coordinates", face)};
+      }
+      texture.push_back(*place);
+    }
+  }
+  return texture;
+}
+
 Result<ObjFile> parse_obj_file(std::string_view text) {
   LineCheck check;
   const auto checked = checked_text(text, check);

@@ -19,6 +19,9 @@ struct ObjFile {
   std::vector<std::optional<FlatPlace>> texture;
 };
 
+/// The texture of all corners. The error names the first face that lacks some.
+Result<std::vector<FlatPlace>> whole_texture(const ObjFile& file);
+
 /// An error names the line.
 Result<ObjFile> parse_obj_file(std::string_view text);
 

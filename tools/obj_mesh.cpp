@@ -9,7 +9,7 @@
 #include "tools/obj_file.h"
 #include "tools/parse.h"
 #include "tools/pin_rule.h"
-#include "tools/rest_option.h"
+#include "tools/rest_and_warp.h"
 #include "tools/text_file.h"
 
 namespace weft::tools {
@@ -72,6 +72,10 @@ Result<MeshDescription> description_of(const ObjFile& file, const ObjOptions& op
       return Error{given.error()};
   }
   scale_all(description.positions, options.scale);
+  if (options.warp) {
+    auto given = give_warp(*options.warp, file, description);
+    if (!given) return Error{given.error()};
+  }
   for (const auto& line : mesh.lines) {
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
       description.lines.push_back({line[i], line[i + 1]});

@@ -29,7 +29,8 @@ struct ObjOptions {
   double weld_distance = 0;     ///< m, as that of MeshDescription
   /// Vertices that are sewn, in lists of the same length: "0-9:29-20" sews 0 to 29, 1 to 28, ...
   std::vector<std::string> seams = {};
-  std::optional<std::string> rest = {};  ///< as rest_option.h says
+  std::optional<std::string> rest = {};  ///< as rest_and_warp.h says
+  std::optional<std::string> warp = {};  ///< likewise
   double mass = 1;   ///< kg, shared equally by all particles; without a material
   double scale = 1;  ///< multiplies all coordinates
   Ropes ropes = Ropes::none;

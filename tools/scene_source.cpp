@@ -64,6 +64,7 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--weld", options.weld.has_value(), kObj},
       {"--seam", !options.seams.empty(), kObj},
       {"--rest", options.rest.has_value(), kObj},
+      {"--warp", options.warp.has_value(), kObj},
       {"--ropes", options.ropes.has_value(), kCloth},
       {"--diagonals", options.diagonals, kBuiltInCloth},
       {given_option(options.material), is_given(options.material), kCloth},
@@ -191,6 +192,7 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   values.weld_distance = options.weld.value_or(values.weld_distance);
   values.seams = options.seams;
   values.rest = options.rest;
+  values.warp = options.warp;
   const auto up = up_of(options.up);
   if (!up) return Error{up.error()};
   values.up = up.value();
@@ -198,6 +200,7 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   if (!cloth) return Error{cloth.error()};
   values.ropes = cloth.value().ropes;
   values.material = cloth.value().material;
+  if (options.warp && !values.material) return Error{"--warp: only cloth of a material has one"};
   if (options.mass && values.material) return Error{"--mass: a material has a density instead"};
   auto scene = read_obj_file(options.scene, values);
   if (!scene) return Error{scene.error()};
@@ -270,6 +273,9 @@ void add_scene_options(Verb verb, SceneOptions& options) {
   verb.option("--rest", options.rest,
               ".obj: the shape at rest: FILE.obj with the same vertices and faces, or uv:SCALE, "
               "texture coordinates times SCALE in m (default 1)");
+  verb.option("--warp", options.warp,
+              ".obj with a material: where the warp runs, x,y,z for the whole mesh, or uv, along v "
+              "of the texture coordinates (default: along edges of cells, else y)");
   verb.option_or_flag("--ropes", options.ropes, "",
                       "what only pulls, all or diagonals (of four-sided faces; without a "
                       "material only ropes join them); alone: built-in scenes all, .obj diagonals");

@@ -30,6 +30,7 @@ struct SceneOptions {
   std::optional<double> weld;
   std::vector<std::string> seams;
   std::optional<std::string> rest;
+  std::optional<std::string> warp;
   std::optional<std::string> ropes;
   MaterialOptions material;
   WorldOptions world;

@@ -4,6 +4,7 @@
 #include <compare>
 
 #include "engine/mesh/mesh_input.h"
+#include "engine/mesh/warp.h"
 
 namespace weft::mesh {
 namespace {
@@ -44,7 +45,10 @@ std::array<double, 4> turns(const Face& quad) {
 
 class Collector {
  public:
-  void add(const Face& face) {
+  explicit Collector(const MeshDescription& mesh) : mesh_(mesh) {}
+  /// number: of the face in the mesh that this is all or a part of.
+  void add(const Face& face, std::size_t number) {
+    number_ = number;
     if (face.is_quad()) {
       add_quad(face);
     } else {
@@ -57,23 +61,36 @@ class Collector {
  private:
   void add_triangle(const Face& face) {
     if (has_repeated_particle(face) || !has_area(face)) return add_degenerate();
-    found_.faces.push_back(face);
+    found_.faces.push_back(with_warp(face));
   }
 
-  /// What is not convex is cut at its innermost corner.
+  Face with_warp(Face face) const {
+    face.warp = given_warp(mesh_, number_, unit(area_vector(face)));
+    return face;
+  }
+
+  /// What is not convex is cut at its innermost corner, and what is no cell of yarns by its shorter
+  /// diagonal.
   void add_quad(const Face& quad) {
     const auto at_corner = turns(quad);
     const auto least = std::ranges::min_element(at_corner);
     const double longest = longest_side(quad);
-    if (!has_repeated_particle(quad) && *least > kFlattest * longest * longest) {
-      found_.faces.push_back(quad);
+    if (has_repeated_particle(quad) || !(*least > kFlattest * longest * longest)) {
+      const auto i = static_cast<std::size_t>(least - at_corner.begin());
+      add_triangle(triangle_of(quad, {i, (i + 1) % 4, (i + 2) % 4}));
+      add_triangle(triangle_of(quad, {i, (i + 2) % 4, (i + 3) % 4}));
       return;
     }
-    const auto i = static_cast<std::size_t>(least - at_corner.begin());
-    add_triangle(triangle_of(quad, {i, (i + 1) % 4, (i + 2) % 4}));
-    add_triangle(triangle_of(quad, {i, (i + 2) % 4, (i + 3) % 4}));
+    const Face woven = with_warp(quad);
+    if (follows(woven, woven.warp)) {
+      found_.faces.push_back(woven);
+    } else {
+      for (const auto& corners : cut(quad)) add_triangle(triangle_of(quad, corners));
+    }
   }
 
+  const MeshDescription& mesh_;
+  std::size_t number_ = 0;
   Faces found_;
 };
 
@@ -213,15 +230,20 @@ double extent(const std::vector<Face>& faces) {
 }
 
 Faces faces_of(const MeshDescription& mesh, const std::vector<std::uint32_t>& particle_of_vertex) {
-  Collector collector;
-  for_each_face(mesh, [&](std::size_t first, std::span<const std::uint32_t> vertices) {
-    const Polygon polygon = polygon_of(mesh, particle_of_vertex, first, vertices);
+  Collector collector(mesh);
+  std::size_t number = 0;
+  const auto add = [&](const Polygon& polygon) {
     const std::size_t size = polygon.particles.size();
     if (size < 3) return collector.add_degenerate();
-    if (size == 4) return collector.add(face_of(polygon, std::array<std::size_t, 4>{0, 1, 2, 3}));
+    if (size == 4)
+      return collector.add(face_of(polygon, std::array<std::size_t, 4>{0, 1, 2, 3}), number);
     for (std::size_t i = 1; i + 1 < size; ++i) {
-      collector.add(face_of(polygon, std::array<std::size_t, 3>{0, i, i + 1}));
+      collector.add(face_of(polygon, std::array<std::size_t, 3>{0, i, i + 1}), number);
     }
+  };
+  for_each_face(mesh, [&](std::size_t first, std::span<const std::uint32_t> vertices) {
+    add(polygon_of(mesh, particle_of_vertex, first, vertices));
+    ++number;
   });
   Faces found = collector.take();
   remove_doubles(mesh.weld_distance, found);

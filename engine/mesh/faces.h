@@ -15,6 +15,7 @@ struct Face {
   std::size_t size = 0;  ///< 3 or 4
   std::array<std::uint32_t, 4> particles{};
   std::array<Vec3, 4> places{};
+  Vec3 warp;  ///< as given_warp (warp.h)
 
   std::size_t next(std::size_t i) const { return i + 1 < size ? i + 1 : 0; }
   std::size_t previous(std::size_t i) const { return i > 0 ? i - 1 : size - 1; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/mesh/edges.h"
+#include "engine/mesh/warp.h"
 
 namespace weft::mesh {
 namespace {
@@ -37,6 +38,7 @@ Face joined(const Face& first, std::size_t side, const Face& other, std::size_t 
   const std::size_t corners[] = {side, first.next(side), first.previous(side)};
   Face quad;
   quad.size = 4;
+  quad.warp = first.warp;
   const auto put = [&](std::size_t at, const Face& face, std::size_t corner) {
     quad.particles[at] = face.particles[corner];
     quad.places[at] = face.places[corner];
@@ -63,7 +65,8 @@ std::vector<Cell> possible_cells(const std::vector<Face>& faces, const Edges& ed
     if (faces[f].is_quad() || faces[g].is_quad() || f == g) continue;
     if (!is_longest(faces[f], side) || !is_longest(faces[g], other_side)) continue;
     const Face quad = joined(faces[f], side, faces[g], other_side);
-    if (quad.particles[1] != quad.particles[3] && is_near_rectangle(quad)) {
+    if (quad.particles[1] == quad.particles[3] || !is_near_rectangle(quad)) continue;
+    if (follows(quad, faces[f].warp) && follows(quad, faces[g].warp)) {
       cells.push_back({f, g, quad});
     }
   }

@@ -92,12 +92,17 @@ Result<void> check_faces(const MeshDescription& mesh) {
   return {};
 }
 
-/// Whether any triangle from the first corner of the face has an area.
-bool has_area(std::span<const Vec3> face) {
-  for (std::size_t i = 2; i < face.size(); ++i) {
-    if (mesh::has_area(face[0], face[i - 1], face[i])) return true;
+Result<void> check_warp(const MeshDescription& mesh) {
+  const std::size_t faces = face_count(mesh);
+  if (mesh.warp.size() > 1 && mesh.warp.size() != faces) {
+    return refuse("warp", "needs one for all, or as many as faces, " + std::to_string(faces),
+                  std::to_string(mesh.warp.size()));
   }
-  return false;
+  for (std::size_t i = 0; i < mesh.warp.size(); ++i) {
+    if (finite(mesh.warp[i])) continue;
+    return refuse(element("warp", i), "must be finite", text(mesh.warp[i]));
+  }
+  return {};
 }
 
 Result<void> check_rest_areas(const MeshDescription& mesh) {
@@ -137,6 +142,7 @@ Result<void> check_input(const MeshDescription& mesh) {
   if (auto r = check_faces(mesh); !r) return r;
   if (auto r = check_rest(mesh); !r) return r;
   if (auto r = check_rest_areas(mesh); !r) return r;
+  if (auto r = check_warp(mesh); !r) return r;
   if (auto r = check_pairs("lines", mesh.lines, mesh); !r) return r;
   if (mesh.corners.empty() && mesh.lines.empty()) {
     return Error{"corners: the mesh has no face and no line"};
@@ -160,6 +166,13 @@ void for_each_face(
     call(first, std::span(mesh.corners).subspan(first, size));
     first += size;
   }
+}
+
+bool has_area(std::span<const Vec3> face) {
+  for (std::size_t i = 2; i < face.size(); ++i) {
+    if (has_area(face[0], face[i - 1], face[i])) return true;
+  }
+  return false;
 }
 
 Vec3 rest_of_corner(const MeshDescription& mesh, std::size_t corner) {

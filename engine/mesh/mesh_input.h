@@ -14,6 +14,8 @@ std::size_t face_count(const MeshDescription& mesh);
 void for_each_face(
     const MeshDescription& mesh,
     const std::function<void(std::size_t first, std::span<const std::uint32_t> vertices)>& call);
+/// Whether any triangle from the first corner of the face has an area.
+bool has_area(std::span<const Vec3> face);
 /// Where a corner of a face lies at rest; a flat place (u, v) is (u, v, 0).
 Vec3 rest_of_corner(const MeshDescription& mesh, std::size_t corner);
 /// Where a vertex of a line lies at rest.

@@ -102,6 +102,12 @@ struct MeshDescription {
   /// weft and m along the warp. Where two faces have an edge in different places there is a seam
   /// between two panels. Lines are as long as at the beginning.
   std::vector<std::array<double, 2>> rest_corners;
+  /// Where the warp of a material runs, in the shape at rest (with flat places (u, v, 0)): one
+  /// direction for all faces, or one per face, of any length. What lies in the plane of the face
+  /// counts. Four-sided faces whose sides do not follow it are cut into triangles, and triangles
+  /// that do not are no cells. Empty, or 0, or across the face: as said above; with flat places
+  /// along v.
+  std::vector<Vec3> warp;
   std::vector<std::uint32_t> pins;   ///< vertices whose particles are fixed
   std::optional<Material> material;  ///< none: rigid edges
   double mass = 1;                   ///< kg of the whole, shared equally; used without a material
@@ -140,6 +146,12 @@ struct MeshCloth {
   std::vector<std::uint32_t> particle_of_vertex;  ///< kNoIndex: none, in no face and no line
   MeshCounts counts;
 };
+
+/// Per face, for MeshDescription::warp: the direction in which v of texture coordinates grows and u
+/// stays, in the shape at rest. texture: one (u, v) per entry of `corners`, in any unit; a face
+/// that has an area must have one in it.
+WEFT_API Result<std::vector<Vec3>> warp_from_texture(
+    const MeshDescription& mesh, std::span<const std::array<double, 2>> texture);
 
 /// On error, one line that names the field, the index and the value, nothing is made.
 WEFT_API Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh);

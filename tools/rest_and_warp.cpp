@@ -1,4 +1,4 @@
-#include "tools/rest_option.h"
+#include "tools/rest_and_warp.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,10 @@
 namespace weft::tools {
 namespace {
 
+constexpr std::string_view kTexture = "uv";
+
 /// "uv" or "uv:SCALE"; nothing if it is neither.
 std::optional<double> texture_scale(std::string_view given) {
-  constexpr std::string_view kTexture = "uv";
   if (!given.starts_with(kTexture)) return std::nullopt;
   given.remove_prefix(kTexture.size());
   if (given.empty()) return 1;
@@ -21,17 +22,10 @@ std::optional<double> texture_scale(std::string_view given) {
 }
 
 Result<void> rest_from_texture(const ObjFile& file, double scale, MeshDescription& description) {
-  std::size_t corner = 0;
-  for (std::size_t face = 0; face < file.mesh.faces.size(); ++face) {
-    for (std::size_t i = 0; i < file.mesh.faces[face].size(); ++i, ++corner) {
-      const auto& place = file.texture[corner];
-      if (!place) {
-        return Error{fmt::format(
-            "--rest: face {}, counted from 0, has a corner without texture coordinates", face)};
-      }
-      description.rest_corners.push_back({scale * (*place)[0], scale * (*place)[1]});
-    }
-  }
+  auto texture = whole_texture(file);
+  if (!texture) return Error{"--rest: " + texture.error()};
+  for (auto& [u, v] : texture.value()) u *= scale, v *= scale;
+  description.rest_corners = std::move(texture.value());
   return {};
 }
 
@@ -75,6 +69,21 @@ Result<void> give_rest(std::string_view given, const ObjFile& file, double scale
   const std::string path(given);
   if (file_ending(path) == ".obj") return rest_from_file(path, file.mesh, scale, description);
   return Error{fmt::format("--rest: '{}' is not an .obj file, uv, or uv:SCALE", given)};
+}
+
+Result<void> give_warp(std::string_view given, const ObjFile& file, MeshDescription& description) {
+  if (given != kTexture) {
+    const auto direction = parse_vector("--warp", given);
+    if (!direction) return Error{fmt::format("--warp: '{}' is not x,y,z, or uv", given)};
+    description.warp = {direction.value()};
+    return {};
+  }
+  const auto texture = whole_texture(file);
+  if (!texture) return Error{"--warp: " + texture.error()};
+  auto warp = warp_from_texture(description, texture.value());
+  if (!warp) return Error{"--warp: " + warp.error()};
+  description.warp = std::move(warp.value());
+  return {};
 }
 
 }  // namespace weft::tools

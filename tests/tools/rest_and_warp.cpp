@@ -100,6 +100,39 @@ TEST_CASE("a rest shape that does not fit the mesh is refused in one line") {
         "weft: --rest: only for .obj meshes, not for 'hang'\n");
 }
 
+TEST_CASE("the warp runs where the program is told, or along v of the texture") {
+  const Written written;
+  const std::string sheet =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 0 1\nvt 1 1\nvt 1 0\nvt 0.7 1.7\n"
+      "f 1/1 2/2 3/3 4/4\n";
+  const auto first_is_warp = [&](const std::string& warp) {
+    const SceneDescription scene = written(sheet, "--material cotton --shear 0 " + warp);
+    REQUIRE(scene.constraints.size() == 4);
+    return scene.constraints[0].compliance < scene.constraints[1].compliance;
+  };
+  CHECK_FALSE(first_is_warp(""));
+  CHECK_FALSE(first_is_warp("--warp 0,-2,0"));
+  CHECK(first_is_warp("--warp 1,0,0"));
+  CHECK(first_is_warp("--warp uv"));
+  CHECK(first_is_warp("--rest uv"));
+  CHECK_FALSE(first_is_warp("--rest uv --warp 1,0,0"));  // along u
+}
+
+TEST_CASE("a warp that means nothing is refused in one line") {
+  const Written written;
+  const std::string start = "weft: " + written.folder().file("mesh.obj") + ": ";
+  CHECK(written.error(kFlat, "--material silk --warp uv") ==
+        start + "--warp: face 0, counted from 0, has a corner without texture coordinates\n");
+  CHECK(written.error(kFolded + "f 1/1 2/1 3/1\n", "--material silk --warp uv") ==
+        start + "--warp: texture: face 2 has no area\n");
+  for (const std::string given : {"x", "1,2", "uv:2"}) {
+    CAPTURE(given);
+    CHECK(written.error(kFlat, "--material silk --warp " + given) ==
+          start + "--warp: '" + given + "' is not x,y,z, or uv\n");
+  }
+  CHECK(written.error(kFlat, "--warp 0,1,0") == "weft: --warp: only cloth of a material has one\n");
+}
+
 TEST_CASE("texture coordinates that nobody asks for may be anything") {
   const Written written;
   CHECK(written(kFlat + "vt x\nvt\nf 1/7 2 3/1\n", "").positions.size() == 6);

@@ -1,0 +1,111 @@
+#include "engine/mesh/warp.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/mesh/mesh_input.h"
+#include "engine/model/validation.h"
+#include "engine/tuning.h"
+
+namespace weft {
+namespace mesh {
+namespace {
+
+/// A direction is across a plane if less than this share of it lies in the plane.
+constexpr double kInPlane = 1e-3;
+
+Vec3 side_direction(const Face& face, std::size_t side) {
+  return unit(face.places[face.next(side)] - face.places[side]);
+}
+
+Vec3 direction_of(const MeshDescription& mesh, std::size_t face) {
+  if (mesh.warp.empty()) return {0, 1, 0};  // of flat places
+  return mesh.warp[mesh.warp.size() == 1 ? 0 : face];
+}
+
+}  // namespace
+
+Vec3 given_warp(const MeshDescription& mesh, std::size_t face, Vec3 normal) {
+  if (mesh.warp.empty() && mesh.rest_corners.empty()) return {};
+  const Vec3 direction = unit(direction_of(mesh, face));
+  const Vec3 in_plane = direction - dot(direction, normal) * normal;
+  return length(in_plane) > kInPlane ? unit(in_plane) : Vec3{};
+}
+
+std::uint32_t side_along(const Face& quad, Vec3 warp) {
+  const auto along = [&](std::size_t side) {
+    return std::abs(dot(side_direction(quad, side), warp)) +
+           std::abs(dot(side_direction(quad, side + 2), warp));
+  };
+  return along(1) > along(0) ? 1 : 0;
+}
+
+bool follows(const Face& quad, Vec3 warp) {
+  if (!is_given(warp)) return true;
+  const Vec3 weft = cross(unit(area_vector(quad)), warp);
+  const std::uint32_t first = side_along(quad, warp);
+  for (std::size_t side = 0; side < 4; ++side) {
+    const Vec3 across = side % 2 == first ? weft : warp;
+    if (std::abs(dot(side_direction(quad, side), across)) > tuning::kMostDeviation) return false;
+  }
+  return true;
+}
+
+namespace {
+
+/// The direction in which v grows and u stays, where the places of a face are as linear in u and v
+/// as they can be; 0 where the texture has no area.
+Vec3 along_v(std::span<const Vec3> places, std::span<const std::array<double, 2>> texture) {
+  const double share = 1 / static_cast<double>(places.size());
+  Vec3 middle;
+  double middle_u = 0, middle_v = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    middle = middle + share * places[i];
+    middle_u += share * texture[i][0];
+    middle_v += share * texture[i][1];
+  }
+  double uu = 0, uv = 0, vv = 0;
+  Vec3 pu, pv;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double u = texture[i][0] - middle_u, v = texture[i][1] - middle_v;
+    const Vec3 place = places[i] - middle;
+    uu += u * u, uv += u * v, vv += v * v;
+    pu = pu + u * place;
+    pv = pv + v * place;
+  }
+  const double determinant = uu * vv - uv * uv;
+  const double least = kFlattest * (uu + vv);
+  return determinant > least * least ? unit(uu * pv - uv * pu) : Vec3{};
+}
+
+/// The error names the first face that has an area, but none in the texture.
+Result<std::vector<Vec3>> directions(const MeshDescription& mesh,
+                                     std::span<const std::array<double, 2>> texture) {
+  std::vector<Vec3> warp, places;
+  std::size_t refused = face_count(mesh);
+  for_each_face(mesh, [&](std::size_t first, std::span<const std::uint32_t> vertices) {
+    places.clear();
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      places.push_back(rest_of_corner(mesh, first + i));
+    const Vec3 direction = along_v(places, texture.subspan(first, vertices.size()));
+    if (!is_given(direction) && has_area(places)) refused = std::min(refused, warp.size());
+    warp.push_back(direction);
+  });
+  if (refused == face_count(mesh)) return warp;
+  return Error{"texture: face " + std::to_string(refused) + " has no area"};
+}
+
+}  // namespace
+}  // namespace mesh
+
+Result<std::vector<Vec3>> warp_from_texture(const MeshDescription& mesh,
+                                            std::span<const std::array<double, 2>> texture) {
+  if (auto r = mesh::check_input(mesh); !r) return Error{r.error()};
+  if (texture.size() != mesh.corners.size()) {
+    return refuse("texture", "needs as many as corners, " + std::to_string(mesh.corners.size()),
+                  std::to_string(texture.size()));
+  }
+  return mesh::directions(mesh, texture);
+}
+
+}  // namespace weft
