@@ -4,11 +4,18 @@
 ///     f_u = span_u + u_1 (x_1 - x_0) + u_2 (x_2 - x_0),   f_v likewise,
 ///
 /// span being the same sum over the base; then warp, weft and shear change f_u and f_v one after
-/// the other in registers, and corners are moved once, by the sum of the three impulses.
+/// the other, and corners are moved once, by the sum of the three impulses.
+///
+/// Each law needs what the one before it made of f, so the laws of one vector of elements are a
+/// long chain of operations that wait for each other. Therefore a visit takes a strip of blocks
+/// through one law after the other: while one vector waits, others are worked on. What a law leaves
+/// for the next one stands in a small buffer.
 ///
 /// Inverse masses are over W, the larger one of W_uu and W_vv, and multipliers and stiffnesses
 /// times W: so impulses are strains, whatever the masses and the size of a triangle.
 #pragma once
+
+#include <algorithm>
 
 #include "kernels/simd/quads.h"
 
@@ -20,178 +27,225 @@ struct DeformationLanes {
   FloatVector u, v;
 };
 
-/// Of a block's lanes from `lane` on.
-struct CornerQuads {
-  FloatVector x[3];
-
-  [[gnu::always_inline]] CornerQuads(const float* from, const MembraneBlock& block,
-                                     std::uint32_t lane) {
-    for (std::size_t k = 0; k < 3; ++k) x[k] = QuadLanes{}.get(from, block.slot[k] + lane);
+/// Of a block's lanes from `lane` on, as far as it comes from the quads `from`.
+[[gnu::always_inline]] inline DeformationLanes deformation_from(const float* from,
+                                                                const MembraneBlock& block,
+                                                                std::uint32_t lane) {
+  Floats d1[4], d2[4];
+#pragma GCC unroll 4
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const Floats x0 = load_quads(from, QuadPlaces{block.place[0] + lane + k});
+    d1[k] = load_quads(from, QuadPlaces{block.place[1] + lane + k}) - x0;
+    d2[k] = load_quads(from, QuadPlaces{block.place[2] + lane + k}) - x0;
   }
-  [[gnu::always_inline]] DeformationLanes deformation(const MembraneBlock& block,
-                                                      std::uint32_t lane) const {
-    FloatVector d1 = x[1] - x[0], d2 = x[2] - x[0];
-    return {fused(load(block.u[0] + lane), d1, load(block.u[1] + lane) * d2),
-            fused(load(block.v[0] + lane), d1, load(block.v[1] + lane) * d2)};
-  }
-  [[gnu::always_inline]] void move(float* to, const MembraneBlock& block, std::uint32_t lane,
-                                   const DeformationLanes& push) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      x[k] = fused_from(load(block.share_u[k] + lane), push.u, x[k]);
-      x[k] = fused_from(load(block.share_v[k] + lane), push.v, x[k]);
-      QuadLanes{}.put(to, block.slot[k] + lane, x[k]);
-    }
-  }
-};
+  FloatVector to_1 = transposed(d1[0], d1[1], d1[2], d1[3]);
+  FloatVector to_2 = transposed(d2[0], d2[1], d2[2], d2[3]);
+  return {fused(load(block.u[0] + lane), to_1, load(block.u[1] + lane) * to_2),
+          fused(load(block.v[0] + lane), to_1, load(block.v[1] + lane) * to_2)};
+}
+[[gnu::always_inline]] inline DeformationLanes load(const MembraneSpans& spans,
+                                                    std::uint32_t lane) {
+  return {load(spans.u, lane), load(spans.v, lane)};
+}
+[[gnu::always_inline]] inline void store(MembraneSpans& spans, std::uint32_t lane,
+                                         const DeformationLanes& f) {
+  store(spans.u, lane, f.u);
+  store(spans.v, lane, f.v);
+}
 
 void measure_membrane(const MembraneBlock* blocks, MembraneSpans* spans, const float* base,
                       std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      DeformationLanes f = CornerQuads(base, blocks[i], lane).deformation(blocks[i], lane);
-      store(spans[i].u, lane, f.u);
-      store(spans[i].v, lane, f.v);
-    }
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats)
+      store(spans[i], lane, deformation_from(base, blocks[i], lane));
   }
 }
 
-/// |f|, and by how much it is off 1, damped.
-struct LengthLanes {
-  Floats length, error;
+[[gnu::always_inline]] inline DeformationLanes deformation_at(const Membrane& m, const float* u,
+                                                              std::size_t i, std::uint32_t lane) {
+  DeformationLanes moved = deformation_from(u, m.blocks[i], lane);
+  return {load(m.spans[i].u, lane) + moved.u, load(m.spans[i].v, lane) + moved.v};
+}
 
-  template <bool kDamped>
-  [[gnu::always_inline]] static LengthLanes at(const FloatVector& f, const FloatVector& start,
-                                               Floats damping) {
-    const Floats tiny(1e-30f);
-    LengthLanes s;
-    s.length = xsimd::sqrt(dot(f, f) + tiny);
-    s.error = s.length - Floats(1.f);
-    if constexpr (kDamped)
-      s.error = fused(damping, s.length - xsimd::sqrt(dot(start, start) + tiny), s.error);
-    return s;
+[[gnu::always_inline]] inline Floats length_of(const FloatVector& f) {
+  const Floats tiny(1e-30f);
+  return xsimd::sqrt(fused(f.x, f.x, fused(f.y, f.y, fused(f.z, f.z, tiny))));
+}
+
+/// Of the directions of warp and weft.
+struct AngleLanes {
+  Floats uu, uv, vv;  // products of f_u and f_v
+  Floats area;        // |f_u|^2 |f_v|^2
+  Floats over;        // 1 / (|f_u| |f_v|)
+
+  [[gnu::always_inline]] static AngleLanes of(const DeformationLanes& f) {
+    AngleLanes angle;
+    angle.uu = dot(f.u, f.u);
+    angle.vv = dot(f.v, f.v);
+    angle.uv = dot(f.u, f.v);
+    angle.area = xsimd::max(angle.uu * angle.vv, Floats(1e-12f));
+    angle.over = Floats(1.f) / xsimd::sqrt(angle.area);
+    return angle;
+  }
+  [[gnu::always_inline]] Floats cosine() const { return over * uv; }
+};
+
+/// The left sides of the laws when the substep began: |f_u|, |f_v| and the cosine of their angle.
+struct MembraneStart {
+  Floats value[3];
+
+  [[gnu::always_inline]] static MembraneStart of(const DeformationLanes& f) {
+    return {{length_of(f.u), length_of(f.v), AngleLanes::of(f).cosine()}};
   }
 };
 
-/// The cosine of the angle between the directions, what it is made of, and it damped.
-struct AngleLanes {
-  Floats over, u, v;  // 1 / (|f_u| |f_v|), and of 1 / |f_u|^2, 1 / |f_v|^2
-  Floats cosine, error;
+/// What a strip of blocks has between two laws, at the places of its lanes.
+struct alignas(64) MembraneStrip {
+  static constexpr std::size_t kBlocks = 4;
 
-  template <bool kDamped>
-  [[gnu::always_inline]] static AngleLanes at(const DeformationLanes& f,
-                                              const DeformationLanes& start, Floats damping) {
-    AngleLanes s;
-    const Floats uu = dot(f.u, f.u), vv = dot(f.v, f.v);
-    s.over = over_product(uu, vv);
-    s.cosine = s.error = s.over * dot(f.u, f.v);
-    s.u = vv * s.over * s.over;
-    s.v = uu * s.over * s.over;
+  MembraneSpans f[kBlocks];
+  MembraneSpans push[kBlocks];  // impulses of warp along f_u, of weft along f_v
+  // What shear adds to push: across f_v - along_u f_u, and across f_u - along_v f_v.
+  LaneVectors shear[kBlocks];  // across, along_u, along_v
+  LaneVectors start[kBlocks];  // MembraneStart
+};
+
+/// A sweep's visits. What they share is loaded once, since it stands apart from the strip, to which
+/// they store.
+template <bool kRope, bool kDamped>
+struct MembraneVisit {
+  const Membrane m;
+  const Floats give, damping, looseness;  // looseness: (1 + damping) / omega
+  const bool continues;
+  MembraneStrip& strip;
+
+  [[gnu::always_inline]] MembraneVisit(const Membrane& membrane, float omega, bool goes_on,
+                                       MembraneStrip& between)
+      : m(membrane),
+        give(membrane.give),
+        damping(membrane.damping),
+        looseness((1 + membrane.damping) / omega),
+        continues(goes_on),
+        strip(between) {}
+
+  /// k: of block i in the strip.
+  [[gnu::always_inline]] void begin(std::size_t i, std::size_t k, std::uint32_t lane) {
     if constexpr (kDamped) {
-      const Floats over_start = over_product(dot(start.u, start.u), dot(start.v, start.v));
-      s.error = fused(damping, s.cosine - over_start * dot(start.u, start.v), s.error);
+      const MembraneStart s = MembraneStart::of(deformation_at(m, m.u_start, i, lane));
+      store(strip.start[k], lane, {s.value[0], s.value[1], s.value[2]});
     }
-    return s;
+    DeformationLanes f = deformation_at(m, m.u, i, lane);
+    FloatVector push = relax_stretch<0>(i, lane, strip.start[k].x + lane, f.u, f.v);
+    store(strip.f[k], lane, f);
+    store(strip.push[k].u, lane, push);
+  }
+  [[gnu::always_inline]] void weft(std::size_t i, std::size_t k, std::uint32_t lane) {
+    DeformationLanes f = load(strip.f[k], lane);
+    FloatVector push = relax_stretch<1>(i, lane, strip.start[k].y + lane, f.v, f.u);
+    store(strip.f[k], lane, f);
+    store(strip.push[k].v, lane, push);
+  }
+
+  /// The law's impulse is p = (s C - mu) / (s looseness w + 1), w being the inverse mass; here both
+  /// sides of the fraction are times |f_u|^2 |f_v|^2, so that w needs no quotient.
+  [[gnu::always_inline]] void shear(std::size_t i, std::size_t k, std::uint32_t lane) {
+    const MembraneBlock& block = m.blocks[i];
+    AngleLanes angle = AngleLanes::of(load(strip.f[k], lane));
+    Floats error = angle.cosine();
+    if constexpr (kDamped) error = fused(damping, error - load(strip.start[k].z + lane), error);
+    const Floats size =
+        fused(load(block.mobility[0] + lane), angle.vv, load(block.mobility[2] + lane) * angle.uu);
+    const Floats inverse_mass =
+        xsimd::max(fused_from(angle.uv + angle.uv, load(block.mobility[1] + lane), size),
+                   Floats(0x1p-20f) * size);
+    const Floats stiffness = give * load(block.stiffness[2] + lane);
+    const Floats share = angle.area / fused(stiffness * looseness, inverse_mass, angle.area);
+    const Floats before = multiplier(2, i, lane);
+    const Floats impulse = fused(stiffness, error, Floats(0.f) - before) * share;
+    keep_multiplier(2, i, lane, before + impulse);
+    const Floats along = angle.cosine() * (angle.over * angle.over);
+    store(strip.shear[k], lane,
+          {impulse * angle.over, impulse * (along * angle.vv), impulse * (along * angle.uu)});
+  }
+
+  [[gnu::always_inline]] void move_corners(std::size_t i, std::size_t k, std::uint32_t lane) {
+    const MembraneBlock& block = m.blocks[i];
+    DeformationLanes f = load(strip.f[k], lane), push = load(strip.push[k], lane);
+    FloatVector shear = load(strip.shear[k], lane);
+    push.u = fused_from(shear.y, f.u, fused(shear.x, f.v, push.u));
+    push.v = fused_from(shear.z, f.v, fused(shear.x, f.u, push.v));
+#pragma GCC unroll 3
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Quads by = transposed(fused(load(block.share_u[corner] + lane), push.u,
+                                        load(block.share_v[corner] + lane) * push.v));
+      const std::uint32_t* const place = block.place[corner] + lane;
+      subtract_quads(m.u, QuadPlaces{place}, by.q0);
+      subtract_quads(m.u, QuadPlaces{place + 1}, by.q1);
+      subtract_quads(m.u, QuadPlaces{place + 2}, by.q2);
+      subtract_quads(m.u, QuadPlaces{place + 3}, by.q3);
+    }
   }
 
  private:
-  [[gnu::always_inline]] static Floats over_product(Floats uu, Floats vv) {
-    return Floats(1.f) / xsimd::sqrt(xsimd::max(uu * vv, Floats(1e-12f)));
+  [[gnu::always_inline]] Floats multiplier(std::size_t law, std::size_t i,
+                                           std::uint32_t lane) const {
+    if (!continues) return Floats(0.f);
+    return load(m.multiplier + (3 * i + law) * kernels::kLanes + lane);
   }
-};
+  [[gnu::always_inline]] void keep_multiplier(std::size_t law, std::size_t i, std::uint32_t lane,
+                                              Floats to) const {
+    to.store_unaligned(m.multiplier + (3 * i + law) * kernels::kLanes + lane);
+  }
 
-/// An element of a block: its deformation, the multipliers of warp, weft and shear, and their
-/// stiffnesses times (b h)^2.
-template <bool kDamped>
-struct ElementLanes {
-  DeformationLanes f, start;
-  Floats multiplier[3], stiffness[3];
-
-  [[gnu::always_inline]] ElementLanes(const Membrane& m, const CornerQuads& corners, std::size_t i,
-                                      std::uint32_t lane) {
+  /// Law 0 or 1, of the direction whose vector is f; the other one's moves along with it. Returns
+  /// the impulse, along f.
+  template <std::size_t kLaw>
+  [[gnu::always_inline]] FloatVector relax_stretch(std::size_t i, std::uint32_t lane,
+                                                   const float* start_length, FloatVector& f,
+                                                   FloatVector& other) const {
     const MembraneBlock& block = m.blocks[i];
-    f = corners.deformation(block, lane);
-    f = {load(m.spans[i].u, lane) + f.u, load(m.spans[i].v, lane) + f.v};
-    start = {no_vector(), no_vector()};
-    if constexpr (kDamped) {
-      start = CornerQuads(m.u_start, block, lane).deformation(block, lane);
-      start = {load(m.spans[i].u, lane) + start.u, load(m.spans[i].v, lane) + start.v};
-    }
-    const float* const from = m.multiplier + 3 * kernels::kLanes * i + lane;
-    for (std::size_t k = 0; k < 3; ++k) {
-      multiplier[k] = load(from + k * kernels::kLanes);
-      stiffness[k] = Floats(m.give) * load(block.stiffness[k] + lane);
-    }
+    const Floats length = length_of(f);
+    Floats error = length - Floats(1.f);
+    if constexpr (kDamped) error = fused(damping, length - load(start_length), error);
+    const Floats stiffness = give * load(block.stiffness[kLaw] + lane);
+    const Floats mobility = load(block.mobility[2 * kLaw] + lane);
+    const Floats before = multiplier(kLaw, i, lane);
+    const Floats divisor = fused(stiffness * looseness, mobility, Floats(1.f));
+    Floats lack = fused(stiffness, error, Floats(0.f) - before);
+    if constexpr (kRope) lack = xsimd::max(lack, Floats(0.f) - before * divisor);
+    const Floats along = lack / (divisor * length);  // the impulse over |f|
+    keep_multiplier(kLaw, i, lane, fused(along, length, before));
+    FloatVector push = along * f;
+    other = fused_from(along * load(block.mobility[1] + lane), f, other);
+    f = fused_from(along * mobility, f, f);
+    return push;
   }
 };
 
-/// What the visits of a sweep have in common.
-struct MembraneSweep {
-  Floats damping, looseness;  // looseness: (1 + damping) / omega
-};
-
-/// The law of one direction, whose vector is f; the other one's moves by `cross` of what f does.
-/// push is along f.
-template <bool kRope, bool kDamped>
-[[gnu::always_inline]] inline void relax_stretch(const MembraneSweep& s, Floats stiffness,
-                                                 Floats mobility, Floats cross, FloatVector& f,
-                                                 FloatVector& other, const FloatVector& start,
-                                                 Floats& multiplier, FloatVector& push) {
-  const LengthLanes law = LengthLanes::at<kDamped>(f, start, s.damping);
-  Floats lack = stiffness * law.error - multiplier;
-  const Floats divisor = fused(stiffness * s.looseness, mobility, Floats(1.f));
-  if constexpr (kRope) lack = xsimd::max(lack, Floats(0.f) - multiplier * divisor);
-  const Floats along = lack / (divisor * law.length);  // the impulse over |f|
-  multiplier = fused(along, law.length, multiplier);
-  push = fused(along, f, push);
-  other = fused_from(along * cross, f, other);
-  f = fused_from(along * mobility, f, f);
-}
-
-/// mobility: W_uu, W_uv and W_vv.
-template <bool kDamped>
-[[gnu::always_inline]] inline void relax_shear(const MembraneSweep& s, Floats stiffness,
-                                               const Floats* mobility, const DeformationLanes& f,
-                                               const DeformationLanes& start, Floats& multiplier,
-                                               DeformationLanes& push) {
-  const AngleLanes law = AngleLanes::at<kDamped>(f, start, s.damping);
-  const Floats size = fused(mobility[0], law.u, mobility[2] * law.v);
-  const Floats twice = (law.cosine + law.cosine) * law.over;
-  const Floats inverse = xsimd::max(fused_from(twice, mobility[1], size), Floats(0x1p-20f) * size);
-  const Floats impulse =
-      (stiffness * law.error - multiplier) / fused(stiffness * s.looseness, inverse, Floats(1.f));
-  multiplier = multiplier + impulse;
-  const Floats across = impulse * law.over, along = impulse * law.cosine;
-  push.u = fused_from(along * law.u, f.u, fused(across, f.v, push.u));
-  push.v = fused_from(along * law.v, f.v, fused(across, f.u, push.v));
+/// work(i, i - first, lane) for the vectors of blocks first ... last - 1.
+template <class Work>
+[[gnu::always_inline]] inline void for_vectors(std::size_t first, std::size_t last, Work&& work) {
+  for (std::size_t i = first; i < last; ++i) {
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) work(i, i - first, lane);
+  }
 }
 
 template <bool kRope, bool kDamped>
 [[gnu::always_inline]] inline void relax_elements(const Membrane& membrane, float omega,
                                                   bool continues, std::size_t first,
                                                   std::size_t last) {
-  const Membrane m = membrane;  // Stores could be to what references lead to.
-  const MembraneSweep sweep{Floats(m.damping), Floats((1 + m.damping) / omega)};
-  for (std::size_t i = first; i < last; ++i) {
-    const MembraneBlock& block = m.blocks[i];
-    float* const multipliers = m.multiplier + 3 * kernels::kLanes * i;
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      CornerQuads corners(m.u, block, lane);
-      ElementLanes<kDamped> e(m, corners, i, lane);
-      Floats mobility[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        mobility[k] = load(block.mobility[k] + lane);
-        if (!continues) e.multiplier[k] = Floats(0.f);
-      }
-      DeformationLanes push{no_vector(), no_vector()};
-      relax_stretch<kRope, kDamped>(sweep, e.stiffness[0], mobility[0], mobility[1], e.f.u, e.f.v,
-                                    e.start.u, e.multiplier[0], push.u);
-      relax_stretch<kRope, kDamped>(sweep, e.stiffness[1], mobility[2], mobility[1], e.f.v, e.f.u,
-                                    e.start.v, e.multiplier[1], push.v);
-      relax_shear<kDamped>(sweep, e.stiffness[2], mobility, e.f, e.start, e.multiplier[2], push);
-      for (std::size_t k = 0; k < 3; ++k)
-        e.multiplier[k].store_unaligned(multipliers + k * kernels::kLanes + lane);
-      corners.move(m.u, block, lane, push);
-    }
+  MembraneStrip strip;
+  MembraneVisit<kRope, kDamped> visit(membrane, omega, continues, strip);
+  for (std::size_t from = first; from < last; from += MembraneStrip::kBlocks) {
+    const std::size_t to = std::min(from + MembraneStrip::kBlocks, last);
+    for_vectors(
+        from, to, [&](auto... at) __attribute__((always_inline)) { visit.begin(at...); });
+    for_vectors(
+        from, to, [&](auto... at) __attribute__((always_inline)) { visit.weft(at...); });
+    for_vectors(
+        from, to, [&](auto... at) __attribute__((always_inline)) { visit.shear(at...); });
+    for_vectors(
+        from, to, [&](auto... at) __attribute__((always_inline)) { visit.move_corners(at...); });
   }
 }
 
@@ -208,18 +262,25 @@ template <bool kRope, bool kDamped>
 [[gnu::always_inline]] inline void judge_elements(const Membrane& membrane, float tolerance,
                                                   std::uint16_t* out, std::size_t first,
                                                   std::size_t last) {
-  const Membrane m = membrane;
-  const Floats damping(m.damping), strain(tolerance);
+  const Membrane m = membrane;  // Stores could be to what references lead to.
+  const Floats give(m.give), damping(m.damping), strain(tolerance), one(1.f);
   for (std::size_t i = first; i < last; ++i) {
     std::uint32_t lanes = 0;
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      const ElementLanes<kDamped> e(m, CornerQuads(m.u, m.blocks[i], lane), i, lane);
-      const Floats warp = LengthLanes::at<kDamped>(e.f.u, e.start.u, damping).error;
-      const Floats weft = LengthLanes::at<kDamped>(e.f.v, e.start.v, damping).error;
-      const Floats shear = AngleLanes::at<kDamped>(e.f, e.start, damping).error;
-      lanes |= (bits(is_broken<kRope>(e.stiffness[0], warp, e.multiplier[0], strain)) |
-                bits(is_broken<kRope>(e.stiffness[1], weft, e.multiplier[1], strain)) |
-                bits(is_broken<false>(e.stiffness[2], shear, e.multiplier[2], strain)))
+      MembraneStart now = MembraneStart::of(deformation_at(m, m.u, i, lane));
+      Floats error[3] = {now.value[0] - one, now.value[1] - one, now.value[2]};
+      if constexpr (kDamped) {
+        MembraneStart start = MembraneStart::of(deformation_at(m, m.u_start, i, lane));
+        for (std::size_t k = 0; k < 3; ++k)
+          error[k] = fused(damping, now.value[k] - start.value[k], error[k]);
+      }
+      const auto broken = [&]<bool kOneSided>(std::size_t k) __attribute__((always_inline)) {
+        const float* const multiplier = m.multiplier + (3 * i + k) * kernels::kLanes + lane;
+        return bits(is_broken<kOneSided>(give * load(m.blocks[i].stiffness[k] + lane), error[k],
+                                         load(multiplier), strain));
+      };
+      lanes |= (broken.template operator()<kRope>(0) | broken.template operator()<kRope>(1) |
+                broken.template operator()<false>(2))
                << lane;
     }
     out[i] = static_cast<std::uint16_t>(lanes);

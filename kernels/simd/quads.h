@@ -15,20 +15,34 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
+/// Where quads stand, in floats: of slots, or of places, which are slots times four.
+struct QuadSlots {
+  const std::uint32_t* slot;
+  [[gnu::always_inline]] std::size_t operator[](std::size_t k) const {
+    return 4 * std::size_t{slot[k]};
+  }
+};
+struct QuadPlaces {
+  const std::uint32_t* place;
+  [[gnu::always_inline]] std::size_t operator[](std::size_t k) const { return place[k]; }
+};
+
 #if defined(__AVX512F__)
 
-[[gnu::always_inline]] inline Floats load_quads(const float* u, const std::uint32_t* slot) {
-  const auto quad = [&](std::uint32_t k) { return _mm_load_ps(u + 4 * std::size_t{slot[k]}); };
+template <class At>
+[[gnu::always_inline]] inline Floats load_quads(const float* u, At at) {
+  const auto quad = [&](std::uint32_t k) { return _mm_load_ps(u + at[k]); };
   __m512 v = _mm512_castps128_ps512(quad(0));
   v = _mm512_mask_broadcast_f32x4(v, 0x00f0, quad(4));
   v = _mm512_mask_broadcast_f32x4(v, 0x0f00, quad(8));
   return Floats(_mm512_mask_broadcast_f32x4(v, 0xf000, quad(12)));
 }
-[[gnu::always_inline]] inline void store_quads(float* u, const std::uint32_t* slot, Floats q) {
-  _mm_store_ps(u + 4 * std::size_t{slot[0]}, _mm512_castps512_ps128(q));
-  _mm_store_ps(u + 4 * std::size_t{slot[4]}, _mm512_extractf32x4_ps(q, 1));
-  _mm_store_ps(u + 4 * std::size_t{slot[8]}, _mm512_extractf32x4_ps(q, 2));
-  _mm_store_ps(u + 4 * std::size_t{slot[12]}, _mm512_extractf32x4_ps(q, 3));
+template <class At>
+[[gnu::always_inline]] inline void store_quads(float* u, At at, Floats q) {
+  _mm_store_ps(u + at[0], _mm512_castps512_ps128(q));
+  _mm_store_ps(u + at[4], _mm512_extractf32x4_ps(q, 1));
+  _mm_store_ps(u + at[8], _mm512_extractf32x4_ps(q, 2));
+  _mm_store_ps(u + at[12], _mm512_extractf32x4_ps(q, 3));
 }
 [[gnu::always_inline]] inline Floats unpack_low(Floats a, Floats b) {
   return Floats(_mm512_unpacklo_ps(a, b));
@@ -52,13 +66,15 @@ namespace {
 
 #elif defined(__AVX2__)
 
-[[gnu::always_inline]] inline Floats load_quads(const float* u, const std::uint32_t* slot) {
-  const auto quad = [&](std::uint32_t k) { return _mm_load_ps(u + 4 * std::size_t{slot[k]}); };
+template <class At>
+[[gnu::always_inline]] inline Floats load_quads(const float* u, At at) {
+  const auto quad = [&](std::uint32_t k) { return _mm_load_ps(u + at[k]); };
   return Floats(_mm256_insertf128_ps(_mm256_castps128_ps256(quad(0)), quad(4), 1));
 }
-[[gnu::always_inline]] inline void store_quads(float* u, const std::uint32_t* slot, Floats q) {
-  _mm_store_ps(u + 4 * std::size_t{slot[0]}, _mm256_castps256_ps128(q));
-  _mm_store_ps(u + 4 * std::size_t{slot[4]}, _mm256_extractf128_ps(q, 1));
+template <class At>
+[[gnu::always_inline]] inline void store_quads(float* u, At at, Floats q) {
+  _mm_store_ps(u + at[0], _mm256_castps256_ps128(q));
+  _mm_store_ps(u + at[4], _mm256_extractf128_ps(q, 1));
 }
 [[gnu::always_inline]] inline Floats unpack_low(Floats a, Floats b) {
   return Floats(_mm256_unpacklo_ps(a, b));
@@ -83,11 +99,13 @@ namespace {
 
 #else
 
-[[gnu::always_inline]] inline Floats load_quads(const float* u, const std::uint32_t* slot) {
-  return Floats(_mm_load_ps(u + 4 * std::size_t{slot[0]}));
+template <class At>
+[[gnu::always_inline]] inline Floats load_quads(const float* u, At at) {
+  return Floats(_mm_load_ps(u + at[0]));
 }
-[[gnu::always_inline]] inline void store_quads(float* u, const std::uint32_t* slot, Floats q) {
-  _mm_store_ps(u + 4 * std::size_t{slot[0]}, q);
+template <class At>
+[[gnu::always_inline]] inline void store_quads(float* u, At at, Floats q) {
+  _mm_store_ps(u + at[0], q);
 }
 [[gnu::always_inline]] inline Floats unpack_low(Floats a, Floats b) {
   return Floats(_mm_unpacklo_ps(a, b));
@@ -106,6 +124,11 @@ namespace {
 [[gnu::always_inline]] inline Floats out_of_order(Floats v) { return v; }
 
 #endif
+
+template <class At>
+[[gnu::always_inline]] inline void subtract_quads(float* u, At at, Floats q) {
+  store_quads(u, at, load_quads(u, at) - q);
+}
 
 /// Four vectors of quads and the vectors of their components: a transpose of 4 x 4 in each 128
 /// bits.
@@ -130,8 +153,8 @@ struct QuadLanes {
     return get(u.x, slot);
   }
   [[gnu::always_inline]] FloatVector get(const float* u, const std::uint32_t* slot) const {
-    return transposed(load_quads(u, slot), load_quads(u, slot + 1), load_quads(u, slot + 2),
-                      load_quads(u, slot + 3));
+    return transposed(load_quads(u, QuadSlots{slot}), load_quads(u, QuadSlots{slot + 1}),
+                      load_quads(u, QuadSlots{slot + 2}), load_quads(u, QuadSlots{slot + 3}));
   }
   [[gnu::always_inline]] void put(const Displacements& u, const std::uint32_t* slot,
                                   const FloatVector& v) const {
@@ -139,10 +162,10 @@ struct QuadLanes {
   }
   [[gnu::always_inline]] void put(float* u, const std::uint32_t* slot, const FloatVector& v) const {
     Quads q = transposed(v);
-    store_quads(u, slot, q.q0);
-    store_quads(u, slot + 1, q.q1);
-    store_quads(u, slot + 2, q.q2);
-    store_quads(u, slot + 3, q.q3);
+    store_quads(u, QuadSlots{slot}, q.q0);
+    store_quads(u, QuadSlots{slot + 1}, q.q1);
+    store_quads(u, QuadSlots{slot + 2}, q.q2);
+    store_quads(u, QuadSlots{slot + 3}, q.q3);
   }
 };
 

@@ -321,8 +321,8 @@ struct Bending {
 /// Triangles of fabric (membrane.h), in blocks of kLanes, of one kind each; particles in quads.
 /// Padding: spare slots, and zeros.
 struct alignas(64) MembraneBlock {
-  std::uint32_t slot[3][kernels::kLanes];
-  float u[2][kernels::kLanes];        // 1/m, weights of corners 1 and 2 along the warp
+  std::uint32_t place[3][kernels::kLanes];  // of the corners' quads: 4 slot
+  float u[2][kernels::kLanes];              // 1/m, weights of corners 1 and 2 along the warp
   float v[2][kernels::kLanes];        // likewise along the weft; those of corner 0 make sums 0
   float share_u[3][kernels::kLanes];  // m, w_k u_k / W
   float share_v[3][kernels::kLanes];

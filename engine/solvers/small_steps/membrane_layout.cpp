@@ -42,7 +42,7 @@ class Builder {
   void add_block(std::span<const std::uint32_t> elements) {
     simd::MembraneBlock& block = layout_.blocks.emplace_back();
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      for (auto& slot : block.slot) slot[lane] = model_.spare_slots + lane;
+      for (auto& place : block.place) place[lane] = 4 * (model_.spare_slots + lane);
       const bool holds = lane < elements.size();
       if (holds) {
         fill(block, lane, elements[lane]);
@@ -57,7 +57,7 @@ class Builder {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t slot = store_.slots[i][k];
       const double share = model_.inverse_mass[slot] / most;
-      block.slot[k][lane] = slot;
+      block.place[k][lane] = 4 * slot;
       block.share_u[k][lane] = static_cast<float>(share * shape.u[k]);
       block.share_v[k][lane] = static_cast<float>(share * shape.v[k]);
       block.stiffness[k][lane] =

@@ -66,9 +66,9 @@ struct Block {
   std::vector<float> multiplier;
   std::uint16_t out = 0;
 
-  explicit Block(bool is_rope) : multiplier(3 * kLanes) {
+  explicit Block(bool is_rope, std::uint32_t seed = 7) : multiplier(3 * kLanes) {
     for (auto* array : {&base, &u, &start}) array->resize(4 * kParticles);
-    Random random(7);
+    Random random(seed);
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
       triangles.emplace_back(random, is_rope);
       fill(lane);
@@ -79,7 +79,7 @@ struct Block {
     const auto& [shape, mobility, stiffness, is_rope] = triangles[lane].element;
     const double most = mobility.most();
     for (std::uint32_t k = 0; k < 3; ++k) {
-      block.slot[k][lane] = 3 * lane + k;
+      block.place[k][lane] = 4 * (3 * lane + k);
       block.share_u[k][lane] = static_cast<float>(triangles[lane].w[k] * shape.u[k] / most);
       block.share_v[k][lane] = static_cast<float>(triangles[lane].w[k] * shape.v[k] / most);
       block.stiffness[k][lane] = static_cast<float>(stiffness[k] * shape.area * most);
@@ -204,6 +204,49 @@ TEST_CASE("AVX2 and AVX-512 move corners to the same bits") {
     CHECK(narrow.u == wide.u);
     CHECK(narrow.multiplier == wide.multiplier);
     CHECK(narrow.out == wide.out);
+  });
+}
+
+/// Blocks that share no particle, in the arrays of a cloth.
+struct Blocks {
+  std::vector<simd::MembraneBlock> blocks;
+  std::vector<simd::MembraneSpans> spans;
+  kernels::AlignedVector<float> u, start;
+  std::vector<float> multiplier;
+
+  void add(const Block& from) {
+    simd::MembraneBlock& block = blocks.emplace_back(from.block);
+    for (auto& corner : block.place) {
+      for (std::uint32_t& place : corner) place += static_cast<std::uint32_t>(u.size());
+    }
+    spans.push_back(from.spans);
+    u.insert(u.end(), from.u.begin(), from.u.end());
+    start.insert(start.end(), from.start.begin(), from.start.end());
+    multiplier.insert(multiplier.end(), from.multiplier.begin(), from.multiplier.end());
+  }
+};
+
+TEST_CASE("blocks that are visited together move as each of them alone, to the last bit") {
+  for_all_kinds([](bool is_rope, bool continues, double damping) {
+    for (const simd::Isa isa : supported_isas()) {
+      CAPTURE(text(isa));
+      const simd::Table& table = simd::table(isa);
+      Blocks together, alone;
+      for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+        Block block(is_rope, seed);
+        table.measure_membrane(&block.block, &block.spans, block.base.data(), 0, 1);
+        together.add(block);
+        block.relax(table, {kGive, damping}, continues, is_rope);
+        alone.add(block);
+      }
+      const simd::Membrane membrane{together.u.data(),          together.start.data(),
+                                    together.blocks.data(),     together.spans.data(),
+                                    together.multiplier.data(), static_cast<float>(kGive),
+                                    static_cast<float>(damping)};
+      table.relax_membrane(membrane, 0.8f, continues, is_rope, 0, together.blocks.size());
+      CHECK(together.u == alone.u);
+      CHECK(together.multiplier == alone.multiplier);
+    }
   });
 }
 
