@@ -45,7 +45,8 @@ void hash_bits(std::uint64_t& hash, const Model& model, const kernels::Vectors& 
 
 bool is_empty(const Changes& changes) {
   return changes.fix.empty() && changes.release.empty() && changes.masses.empty() &&
-         changes.rest_lengths.empty() && changes.compliances.empty();
+         changes.rest_lengths.empty() && changes.compliances.empty() && changes.membrane.empty() &&
+         changes.bending.empty() && !changes.damping && !changes.air;
 }
 
 /// What is used for a model: asked is valid in itself, and its isa is chosen.
@@ -73,12 +74,19 @@ struct Cloth::Impl : State {
     if (!resolved) return Error{resolved.error()};
     return std::make_unique<Impl>(other, asked, resolved.value());
   }
+  /// That goes on from this one.
+  Result<std::unique_ptr<Impl>> going_on(const std::shared_ptr<const Model>& other) const {
+    auto next = of(other);
+    if (next) next.value()->go_on_from(*this);
+    return next;
+  }
   std::uint32_t slot(std::uint32_t particle) const { return model->ordering.slot_of[particle]; }
+  Result<void> take_along(const RigidMotion& motion, double share);
   /// Of a fixed particle that is to be moved.
   Result<std::uint32_t> pin_slot(std::uint32_t particle, Vec3 to) const {
     if (auto r = validate_particle("particle", particle, model->particles); !r)
       return Error{r.error()};
-    if (model->inverse_mass[slot(particle)] != 0)
+    if (model->inverse_mass[slot(particle)] != 0 || model->is_attached(slot(particle)))
       return refuse("particle", "is not fixed", std::to_string(particle));
     if (auto r = validate_vector("position", particle, to); !r) return Error{r.error()};
     return slot(particle);
@@ -127,9 +135,8 @@ Result<void> Cloth::copy_state(const Cloth& from) {
 Result<void> Cloth::change(const Changes& changes) {
   if (auto valid = validate(changes, *impl_->model); !valid) return valid;
   if (is_empty(changes)) return {};
-  auto changed = impl_->of(weft::changed(*impl_->model, changes));
+  auto changed = impl_->going_on(weft::changed(*impl_->model, changes));
   if (!changed) return Error{changed.error()};
-  changed.value()->go_on_from(*impl_);
   impl_ = std::move(changed).value();
   return {};
 }
@@ -240,13 +247,54 @@ Result<void> Cloth::move_anchors(std::span<const Vec3> points, std::span<const V
   return {};
 }
 
+Result<void> Cloth::limit_anchors(std::span<const AnchorLimit> limits) {
+  const Model& model = *impl_->model;
+  if (auto r = validate_anchor_limits(model, limits); !r) return r;
+  bool changes_sides = false;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const bool was_attached = model.anchors.limits[i].most == 0;
+    changes_sides = changes_sides || was_attached != (limits[i].max_distance == 0);
+  }
+  if (changes_sides) {
+    auto changed = impl_->going_on(with_anchor_distances(model, limits));
+    if (!changed) return Error{changed.error()};
+    impl_ = std::move(changed).value();
+  }
+  impl_->anchors.limit(limits);
+  return {};
+}
+
+Result<void> Cloth::limit_anchor(std::uint32_t anchor, const AnchorLimit& limit) {
+  if (auto r = validate_anchor_limit(*impl_->model, anchor, limit); !r) return r;
+  std::vector<AnchorLimit> limits = impl_->anchors.limits();
+  limits[anchor] = limit;
+  return limit_anchors(limits);
+}
+
+Result<void> Cloth::scale_anchors(double scale) {
+  if (auto r = validate_not_negative("scale", scale); !r) return r;
+  impl_->anchors.scale(scale);
+  return {};
+}
+
 Result<void> Cloth::carry(const RigidMotion& motion, double share) {
   if (auto r = validate_motion(motion, share); !r) return r;
   if (share == 0) return {};
-  const std::uint32_t lost = weft::carry(*impl_, Carriage(motion, share));
+  if (auto r = impl_->take_along(motion, share); !r) return r;
+  impl_->way.add(motion, share);
+  return {};
+}
+
+Result<void> Cloth::teleport(const RigidMotion& motion) {
+  if (auto r = validate_motion(motion, 1); !r) return r;
+  return impl_->take_along(motion, 1);
+}
+
+Result<void> Cloth::Impl::take_along(const RigidMotion& motion, double share) {
+  const std::uint32_t lost = weft::carry(*this, Carriage(motion, share));
   if (lost == kNoIndex) return {};
   return Error{"motion: takes a particle out of the range of numbers (" +
-               std::to_string(impl_->model->ordering.particle_at[lost]) + ")"};
+               std::to_string(model->ordering.particle_at[lost]) + ")"};
 }
 
 Strain Cloth::strain() const {

@@ -28,6 +28,18 @@ std::vector<std::uint32_t> pinned(const MeshDescription& mesh, const Welded& wel
   return {particles.begin(), particles.end()};
 }
 
+/// Those that are drawn together; vertices that are one particle, or in no face, need no thread.
+std::vector<Seam> seams_of(const MeshDescription& mesh, const Welded& welded) {
+  std::vector<Seam> seams;
+  if (mesh.seam_time == 0) return seams;
+  for (const auto& [one, other] : mesh.seams) {
+    const std::uint32_t a = welded.particle_of_vertex[one], b = welded.particle_of_vertex[other];
+    if (a != b && a != kNoIndex && b != kNoIndex)
+      seams.push_back({a, b, mesh.seam_time, mesh.seam_force});
+  }
+  return seams;
+}
+
 MeshCounts count_all(const MeshDescription& mesh, const Welded& welded,
                      const std::vector<Face>& faces, const Edges& edges) {
   MeshCounts counts;
@@ -143,6 +155,7 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
   SceneDescription& scene = cloth.scene;
   scene.positions = welded.positions;
   scene.fixed = pinned(mesh, welded);
+  scene.seams = seams_of(mesh, welded);
   if (!mesh.material) {
     add_rigid_edges(mesh, welded, scene);
   } else if (auto r = add_material(mesh, welded, found.faces, edges, scene); !r) {

@@ -149,6 +149,9 @@ Result<void> check_input(const MeshDescription& mesh) {
   }
   if (auto r = check_pins(mesh); !r) return r;
   if (auto r = check_pairs("seams", mesh.seams, mesh); !r) return r;
+  if (auto r = validate_not_negative("seam_time", mesh.seam_time); !r) return r;
+  if (!(mesh.seam_force > 0))
+    return refuse("seam_force", "must be greater than 0, or infinite", number(mesh.seam_force));
   if (auto r = validate_not_negative("weld_distance", mesh.weld_distance); !r) return r;
   return mesh.material ? check_material(*mesh.material) : validate_positive("mass", mesh.mass);
 }

@@ -21,6 +21,7 @@ void for_each_joint(const SceneDescription& scene, Join join) {
     join(element.particles[0], element.particles[1]);
     join(element.particles[0], element.particles[2]);
   }
+  for (const Seam& seam : scene.seams) join(seam.a, seam.b);
 }
 
 /// Spheres that are joined to nothing.

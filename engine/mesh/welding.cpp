@@ -92,7 +92,7 @@ Welded weld(const MeshDescription& mesh) {
   } else {
     join_equal(mesh, used, parts);
   }
-  join_sewn(mesh, used, parts);
+  if (mesh.seam_time == 0) join_sewn(mesh, used, parts);
 
   Welded welded;
   welded.particle_of_vertex.assign(used.size(), kNoIndex);

@@ -21,6 +21,7 @@ class Describer {
     describe_bending();
     describe_air();
     description_.anchors = model_.anchors.described;
+    describe_seams();
     description_.damping = model_.damping;
     description_.gravity = to_public(model_.gravity);
     return std::move(description_);
@@ -98,6 +99,13 @@ class Describer {
     }
   }
 
+  void describe_seams() {
+    const SeamStore& s = model_.seams;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      description_.seams.push_back({particle(s.a[i]), particle(s.b[i]), s.time[i], s.force[i]});
+    }
+  }
+
   void describe_air() {
     const AirStore& air = model_.air;
     Air& to = description_.air;
@@ -118,6 +126,19 @@ void apply(const Changes& changes, SceneDescription& d) {
   for (const ChangedValue& c : changes.masses) d.masses[c.index] = c.value;
   for (const ChangedValue& c : changes.rest_lengths) d.constraints[c.index].rest_length = c.value;
   for (const ChangedValue& c : changes.compliances) d.constraints[c.index].compliance = c.value;
+  for (const ChangedMembrane& c : changes.membrane) {
+    MembraneElement& element = d.membrane[c.index];
+    element.warp = c.warp;
+    element.weft = c.weft;
+    element.shear = c.shear;
+  }
+  for (const ChangedValue& c : changes.bending) d.bending[c.index].compliance = c.value;
+  if (changes.damping) d.damping = *changes.damping;
+  if (changes.air) {
+    d.air.density = changes.air->density;
+    d.air.drag = changes.air->drag;
+    d.air.lift = changes.air->lift;
+  }
   std::vector<std::uint8_t> released(d.positions.size());
   for (const std::uint32_t i : changes.release) released[i] = 1;
   std::erase_if(d.fixed, [&](std::uint32_t i) { return released[i] != 0; });
@@ -127,6 +148,14 @@ void apply(const Changes& changes, SceneDescription& d) {
 }  // namespace
 
 SceneDescription description_of(const Model& model) { return Describer(model).description(); }
+
+std::shared_ptr<const Model> with_anchor_distances(const Model& model,
+                                                   std::span<const AnchorLimit> limits) {
+  SceneDescription description = description_of(model);
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    description.anchors[i].max_distance = limits[i].max_distance;
+  return std::make_shared<Model>(description, &model);
+}
 
 std::shared_ptr<const Model> changed(const Model& model, const Changes& changes) {
   SceneDescription description = description_of(model);

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/model/model.h"
@@ -20,6 +21,10 @@ SceneDescription description_of(const Model& model);
 
 /// The changes must be valid for the model.
 std::shared_ptr<const Model> changed(const Model& model, const Changes& changes);
+
+/// With other largest distances, one for each anchor.
+std::shared_ptr<const Model> with_anchor_distances(const Model& model,
+                                                   std::span<const AnchorLimit> limits);
 
 /// Whether both come from one model by changes.
 inline bool are_related(const Model& a, const Model& b) { return a.origin == b.origin; }

@@ -22,12 +22,16 @@ std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a
 /// What is known of the description, by its numbers, while the model is built.
 struct Model::Draft {
   const SceneDescription& description;
-  std::vector<std::uint8_t> fixed, hub;         // per particle
+  std::vector<std::uint8_t> fixed, held, hub;   // per particle; held: fixed, or attached
   std::vector<std::uint32_t> described_link{};  // link -> constraint
 
   explicit Draft(const SceneDescription& d)
       : description(d), fixed(d.positions.size()), hub(d.positions.size()) {
     for (const std::uint32_t i : d.fixed) fixed[i] = 1;
+    held = fixed;
+    for (const Anchor& anchor : d.anchors) {
+      if (anchor.max_distance == 0) held[anchor.particle] = 1;
+    }
     std::vector<std::uint32_t> degree(hub.size());
     for (const Constraint& c : d.constraints) {
       ++degree[c.a];
@@ -36,7 +40,7 @@ struct Model::Draft {
     for (std::size_t i = 0; i < hub.size(); ++i) hub[i] = degree[i] > reference::kHubDegree;
     for (const std::uint32_t s : d.spheres) hub[s] = 1;
   }
-  bool is_inert(const Constraint& c) const { return fixed[c.a] && fixed[c.b]; }
+  bool is_inert(const Constraint& c) const { return held[c.a] && held[c.b]; }
   bool is_at_hub(const Constraint& c) const { return hub[c.a] || hub[c.b]; }
 };
 
@@ -50,6 +54,7 @@ Model::Model(const SceneDescription& description, const Model* like)
   store_membrane(description);
   store_bending(description);
   store_anchors(description);
+  store_seams(description);
   store_air(description);
   damping = description.damping;
   find_holds();
@@ -102,11 +107,11 @@ void Model::store_particles(const Draft& draft) {
     const std::uint32_t i = ordering.particle_at[slot];
     if (i == kNoIndex) continue;
     initial_position.set(slot, {d.positions[i].x, d.positions[i].y, d.positions[i].z});
-    if (!d.velocities.empty() && !draft.fixed[i]) {
+    if (!d.velocities.empty() && !draft.held[i]) {
       initial_velocity.set(slot, {d.velocities[i].x, d.velocities[i].y, d.velocities[i].z});
     }
     mass[slot] = d.masses[i];
-    inverse_mass[slot] = draft.fixed[i] ? 0 : 1 / d.masses[i];
+    inverse_mass[slot] = draft.held[i] ? 0 : 1 / d.masses[i];
     if (!radius.empty()) radius[slot] = d.radii[i];
     if (draft.fixed[i]) pins.push_back(slot);
     hub[slot] = draft.hub[i];
@@ -190,6 +195,15 @@ void Model::store_anchors(const SceneDescription& d) {
   }
 }
 
+void Model::store_seams(const SceneDescription& d) {
+  for (const Seam& seam : d.seams) {
+    seams.a.push_back(ordering.slot_of[seam.a]);
+    seams.b.push_back(ordering.slot_of[seam.b]);
+    seams.time.push_back(seam.time);
+    seams.force.push_back(seam.max_force);
+  }
+}
+
 void Model::store_air(const SceneDescription& d) {
   air.density = d.air.density;
   air.drag = d.air.drag;
@@ -206,16 +220,18 @@ void Model::store_air(const SceneDescription& d) {
   });
 }
 
-/// Inert constraints are not in the store: another end is free.
+/// Inert constraints are not in the store: another end is free. Points of anchors count by
+/// themselves (engine/step/pin_work.h).
 void Model::find_holds() {
+  const auto is_fixed = [&](std::uint32_t s) { return inverse_mass[s] == 0 && !is_attached(s); };
   for (const auto* ends : {&constraints.a, &constraints.b}) {
     for (const std::uint32_t s : *ends) {
-      if (inverse_mass[s] == 0) holds.push_back(s);
+      if (is_fixed(s)) holds.push_back(s);
     }
   }
   for (const auto& corners : membrane.slots) {
     for (const std::uint32_t s : corners) {
-      if (inverse_mass[s] == 0) holds.push_back(s);
+      if (is_fixed(s)) holds.push_back(s);
     }
   }
 }
@@ -322,6 +338,10 @@ std::size_t BendingStore::bytes() const {
   return bytes_of(slots) + bytes_of(weights) + bytes_of(rest) + bytes_of(compliance);
 }
 
+std::size_t SeamStore::bytes() const {
+  return bytes_of(a) + bytes_of(b) + bytes_of(time) + bytes_of(force);
+}
+
 std::size_t AnchorStore::bytes() const {
   return bytes_of(slot) + bytes_of(limits) + bytes_of(described) + bytes_of(at);
 }
@@ -346,10 +366,10 @@ std::size_t Model::bytes() const {
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + ordering.bytes() + constraints.bytes() + membrane.bytes() +
-         bending.bytes() + inert.bytes() + anchors.bytes() + bytes_of(air.triangles) +
-         air.at.bytes() + bytes_if_made(reference_) + bytes_if_made(simd_) +
-         bytes_if_made(chunk_neighbours_) + bytes_if_made(pulls_) + bytes_if_made(direct_) +
-         bytes_if_made(yarns_) + bytes_if_made(small_steps_);
+         bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() +
+         bytes_of(air.triangles) + air.at.bytes() + bytes_if_made(reference_) +
+         bytes_if_made(simd_) + bytes_if_made(chunk_neighbours_) + bytes_if_made(pulls_) +
+         bytes_if_made(direct_) + bytes_if_made(yarns_) + bytes_if_made(small_steps_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {
@@ -368,6 +388,7 @@ ModelInfo describe(const Model& model) {
           .membrane_elements = model.membrane.size(),
           .bending_elements = model.bending.size(),
           .anchors = model.anchors.size(),
+          .seams = model.seams.size(),
           .air_triangles = model.air.triangles.size(),
           .spheres = model.spheres.size(),
           .colours = model.ordering.colours,

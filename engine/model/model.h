@@ -120,6 +120,14 @@ struct AnchorStore {
   std::size_t bytes() const;
 };
 
+/// Seams (weft.h) in the order of the description.
+struct SeamStore {
+  std::vector<std::uint32_t> a, b;  // slots
+  std::vector<double> time, force;  // s, N
+  std::size_t size() const { return a.size(); }
+  std::size_t bytes() const;
+};
+
 /// Of the first `count` constraints, between slots.
 std::vector<Link> links_of(const ConstraintStore& store, std::size_t count);
 
@@ -139,7 +147,7 @@ class Model {
 
   // Per slot; padding: at the origin, without mass and fixed.
   kernels::Vectors initial_position, initial_velocity;
-  kernels::AlignedVector<double> mass, inverse_mass;  // inverse_mass 0: fixed
+  kernels::AlignedVector<double> mass, inverse_mass;  // inverse_mass 0: fixed, or attached
   kernels::AlignedVector<double> radius;              // empty without spheres
   std::vector<std::uint8_t> hub;
   std::vector<std::uint32_t> hubs;
@@ -153,6 +161,7 @@ class Model {
   MembraneStore membrane;
   BendingStore bending;
   AnchorStore anchors;
+  SeamStore seams;
   AirStore air;
   Damping damping;
   Unevenness uneven;
@@ -161,6 +170,17 @@ class Model {
   /// One object for a model and all that changes (engine/model/change.h) make of it.
   std::shared_ptr<const int> origin;
 
+  /// Whether an anchor holds the particle as if it were fixed: it has no limit to move within.
+  bool is_attached(std::uint32_t slot) const {
+    const std::uint32_t anchor = anchors.at.empty() ? kNoIndex : anchors.at[slot];
+    return anchor != kNoIndex && anchors.limits[anchor].most == 0;
+  }
+  bool has_attached() const {
+    for (const reference::AnchorLimits& limits : anchors.limits) {
+      if (limits.most == 0) return true;
+    }
+    return false;
+  }
   /// Whether anything obeys a law with a compliance: springs or triangles of fabric.
   bool has_laws() const { return constraints.has_springs() || membrane.size() > 0; }
   bool has_contacts() const { return !spheres.empty(); }
@@ -195,6 +215,7 @@ class Model {
   void store_membrane(const SceneDescription& description);
   void store_bending(const SceneDescription& description);
   void store_anchors(const SceneDescription& description);
+  void store_seams(const SceneDescription& description);
   void store_air(const SceneDescription& description);
   void find_holds();
   void find_joined();

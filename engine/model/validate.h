@@ -17,9 +17,14 @@ Result<void> validate_for_solver(const Settings& resolved, const Model& model);
 /// What a description says besides particles, constraints and spheres.
 Result<void> validate_material(const SceneDescription& description);
 Result<void> validate_anchors(const SceneDescription& description);
+Result<void> validate_damping(const Damping& damping);
+Result<void> validate_seams(const SceneDescription& description);
 /// Of all anchors; normals: or none.
 Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> points,
                                   std::span<const Vec3> normals);
+Result<void> validate_anchor_limits(const Model& model, std::span<const AnchorLimit> limits);
+Result<void> validate_anchor_limit(const Model& model, std::uint32_t anchor,
+                                   const AnchorLimit& limit);
 Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_wind(Vec3 wind);
 Result<void> validate_motion(const RigidMotion& motion, double share);

@@ -8,14 +8,11 @@
 namespace weft {
 namespace {
 
-/// Of a normal, off 1.
-constexpr double kLengthRounding = 1e-3;
-
 Result<void> validate_normal(const std::string& field, Vec3 normal) {
   if (!finite(normal)) return refuse(field, "must be finite", text(normal));
   const double length = std::hypot(normal.x, normal.y, normal.z);
-  if (std::abs(length - 1) <= kLengthRounding) return {};
-  return refuse(field, "must be of length 1, to 1e-3", text(normal));
+  if (length > 0 && std::isfinite(length)) return {};
+  return refuse(field, "must have a length", text(normal));
 }
 
 Result<void> validate_distance(const std::string& field, double value) {
@@ -57,6 +54,24 @@ Result<void> validate_anchors(const SceneDescription& d) {
     if (auto r = validate_anchor(field, d.anchors[i]); !r) return r;
   }
   return {};
+}
+
+Result<void> validate_anchor_limits(const Model& model, std::span<const AnchorLimit> limits) {
+  if (auto r = validate_size("limits", limits.size(), model.anchors.size()); !r) return r;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const std::string field = element("limits", i) + ".max_distance";
+    if (auto r = validate_distance(field, limits[i].max_distance); !r) return r;
+  }
+  return {};
+}
+
+Result<void> validate_anchor_limit(const Model& model, std::uint32_t anchor,
+                                   const AnchorLimit& limit) {
+  if (anchor >= model.anchors.size()) {
+    return refuse("anchor", "no such anchor, the scene has " + std::to_string(model.anchors.size()),
+                  std::to_string(anchor));
+  }
+  return validate_distance("limit.max_distance", limit.max_distance);
 }
 
 Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> points,

@@ -1,3 +1,4 @@
+#include <utility>
 #include <vector>
 
 #include "engine/model/model.h"
@@ -36,13 +37,13 @@ Result<void> validate_particles(std::string_view field, const std::vector<std::u
   Listed particles("particle", model.particles);
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (auto r = particles.take(element(field, i), list[i]); !r) return r;
+    if (model.anchor_of(list[i]) != kNoIndex)
+      return refuse(element(field, i), "has an anchor", std::to_string(list[i]));
     const bool is_fixed = model.inverse_mass[model.ordering.slot_of[list[i]]] == 0;
     if (is_fixed != are_fixed) {
       return refuse(element(field, i), is_fixed ? "is fixed already" : "is not fixed",
                     std::to_string(list[i]));
     }
-    if (!is_fixed && model.anchor_of(list[i]) != kNoIndex)
-      return refuse(element(field, i), "has an anchor", std::to_string(list[i]));
   }
   return {};
 }
@@ -62,6 +63,26 @@ Result<void> validate_positive_square(const std::string& field, double value) {
   return validate_square(field, value);
 }
 
+Result<void> validate_membrane(const std::vector<ChangedMembrane>& list, const Model& model) {
+  Listed what("triangle", model.membrane.size() + model.inert.membrane.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string field = element("membrane", i);
+    if (auto r = what.take(field, list[i].index); !r) return r;
+    for (const auto& [name, value] :
+         {std::pair{".warp", list[i].warp}, std::pair{".weft", list[i].weft},
+          std::pair{".shear", list[i].shear}}) {
+      if (auto r = validate_not_negative(field + name, value); !r) return r;
+    }
+  }
+  return {};
+}
+
+Result<void> validate_air(const ChangedAir& air) {
+  if (auto r = validate_not_negative("air.density", air.density); !r) return r;
+  if (auto r = validate_not_negative("air.drag", air.drag); !r) return r;
+  return validate_not_negative("air.lift", air.lift);
+}
+
 }  // namespace
 
 Result<void> validate(const Changes& changes, const Model& model) {
@@ -76,8 +97,20 @@ Result<void> validate(const Changes& changes, const Model& model) {
                                validate_positive_square);
       !r)
     return r;
-  return validate_values("compliances", changes.compliances, {"constraint", constraints},
-                         validate_not_negative);
+  if (auto r = validate_values("compliances", changes.compliances, {"constraint", constraints},
+                               validate_not_negative);
+      !r)
+    return r;
+  const std::size_t bending = model.bending.size() + model.inert.bending.size();
+  if (auto r = validate_values("bending", changes.bending, {"bending element", bending},
+                               validate_positive_square);
+      !r)
+    return r;
+  if (auto r = validate_membrane(changes.membrane, model); !r) return r;
+  if (changes.damping) {
+    if (auto r = validate_damping(*changes.damping); !r) return r;
+  }
+  return changes.air ? validate_air(*changes.air) : Result<void>();
 }
 
 }  // namespace weft

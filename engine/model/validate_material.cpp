@@ -101,17 +101,32 @@ Result<void> validate_air(const Air& air, std::size_t particles) {
   return validate_wind(air.wind);
 }
 
+}  // namespace
+
+Result<void> validate_wind(Vec3 wind) {
+  if (finite(wind)) return {};
+  return refuse("air.wind", "must be finite", text(wind));
+}
+
 Result<void> validate_damping(const Damping& damping) {
   if (auto r = validate_not_negative("damping.stretch", damping.stretch); !r) return r;
   if (auto r = validate_not_negative("damping.bending", damping.bending); !r) return r;
   return validate_not_negative("damping.motion", damping.motion);
 }
 
-}  // namespace
-
-Result<void> validate_wind(Vec3 wind) {
-  if (finite(wind)) return {};
-  return refuse("air.wind", "must be finite", text(wind));
+Result<void> validate_seams(const SceneDescription& d) {
+  for (std::size_t i = 0; i < d.seams.size(); ++i) {
+    const Seam& seam = d.seams[i];
+    const std::string field = element("seams", i);
+    if (auto r = validate_particle(field + ".a", seam.a, d.positions.size()); !r) return r;
+    if (auto r = validate_particle(field + ".b", seam.b, d.positions.size()); !r) return r;
+    if (seam.a == seam.b) return refuse(field, "sews a particle to itself", std::to_string(seam.a));
+    if (auto r = validate_positive(field + ".time", seam.time); !r) return r;
+    if (!(seam.max_force > 0))
+      return refuse(field + ".max_force", "must be greater than 0, or infinite",
+                    number(seam.max_force));
+  }
+  return {};
 }
 
 Result<void> validate_material(const SceneDescription& d) {

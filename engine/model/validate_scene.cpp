@@ -159,6 +159,7 @@ Result<void> validate(const SceneDescription& d) {
   if (auto r = validate_constraints(d.constraints, particles); !r) return r;
   if (auto r = validate_material(d); !r) return r;
   if (auto r = validate_anchors(d); !r) return r;
+  if (auto r = validate_seams(d); !r) return r;
   return validate_contacts(d);
 }
 

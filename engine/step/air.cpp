@@ -21,11 +21,11 @@ Resistance resistance_of(const AirStore& air, Vector area2, Vector v3) {
 void find_resistances(State& s, std::size_t first, std::size_t last) {
   const AirStore& air = s.model->air;
   const kernels::VectorsView x = s.position.view(), v = s.velocity.view();
-  const Vector wind3 = 3.0 * s.wind;
   for (std::size_t i = first; i < last; ++i) {
     const auto [a, b, c] = air.triangles[i];
     const Vector from = x[a], area2 = cross(x[b] - from, x[c] - from);
-    s.resistances[i] = resistance_of(air, area2, v[a] + v[b] + v[c] - wind3);
+    const Vector wind = s.wind_at((1. / 3) * (x[a] + x[b] + x[c]));
+    s.resistances[i] = resistance_of(air, area2, v[a] + v[b] + v[c] - 3.0 * wind);
   }
 }
 
@@ -59,7 +59,7 @@ Vector resisted_acceleration(const State& s, std::size_t slot, double c, double 
   if (s.force.size() > 0) load = load + w * s.force[slot];
   if (!model.has_air()) return q * (load + lost);
   const Resistance r = resistance_at(s, slot);
-  const Vector v = s.velocity[slot] - s.wind, spin = w * r.spin;
+  const Vector v = s.velocity[slot] - s.wind_at(s.position[slot]), spin = w * r.spin;
   load = load - (w * r.rate) * v - cross(spin, v);
   return q * (solve(1 + q * h * w * r.rate, (q * h) * spin, load) + lost);
 }

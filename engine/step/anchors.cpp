@@ -1,6 +1,7 @@
 #include "engine/step/anchors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -16,8 +17,41 @@ bool same(kernels::Vector a, kernels::Vector b) { return a.x == b.x && a.y == b.
 Anchors::Anchors(const Model& model) {
   for (const Anchor& anchor : model.anchors.described) {
     from_.push_back(pose_of(anchor.point, anchor.normal));
+    asked_.push_back({.max_distance = anchor.max_distance});
+    most_to_.push_back(anchor.max_distance);
   }
   to_ = from_;
+  most_from_ = most_to_;
+  has_backstop_.assign(asked_.size(), 1);
+}
+
+/// 0 and infinity stay.
+double Anchors::most(const AnchorLimit& limit) const {
+  return std::isfinite(limit.max_distance) ? scale_ * limit.max_distance : limit.max_distance;
+}
+
+void Anchors::limit(std::uint32_t anchor, const AnchorLimit& limit) {
+  asked_[anchor] = limit;
+  most_to_[anchor] = most(limit);
+  has_backstop_[anchor] = limit.backstop;
+  limited_ = true;
+}
+
+void Anchors::limit(std::span<const AnchorLimit> limits) {
+  for (std::uint32_t i = 0; i < limits.size(); ++i) limit(i, limits[i]);
+}
+
+void Anchors::scale(double scale) {
+  scale_ = scale;
+  limit(std::vector(asked_));
+}
+
+void Anchors::depart(const AnchorStore& store, const kernels::Vectors& x) {
+  for (std::size_t i = 0; i < most_to_.size(); ++i) {
+    if (std::isinf(most_from_[i]) && std::isfinite(most_to_[i]))
+      most_from_[i] = std::max(most_to_[i], length(x[store.slot[i]] - from_[i].point));
+    if (std::isinf(most_to_[i])) most_from_[i] = most_to_[i];
+  }
 }
 
 void Anchors::move(std::span<const Vec3> points, std::span<const Vec3> normals) {
@@ -37,6 +71,7 @@ void Anchors::put_down() {
 void Anchors::arrive() {
   moved_ = std::exchange(moves_, false);
   if (moved_) from_ = to_;
+  most_from_ = most_to_;
 }
 
 double Anchors::largest_excess(const AnchorStore& store, const kernels::Vectors& x,
@@ -45,11 +80,17 @@ double Anchors::largest_excess(const AnchorStore& store, const kernels::Vectors&
   for (std::size_t i = 0; i < store.size(); ++i) {
     const reference::AnchorPose& pose = ends ? to_[i] : from_[i];
     const reference::AnchorMotion at{.point = pose.point, .normal = pose.normal};
-    most = std::max(most, reference::excess(store.limits[i], at, x[store.slot[i]]));
+    reference::AnchorLimits limits = store.limits[i];
+    limits.most = ends ? most_to_[i] : most_from_[i];
+    limits.has_backstop = limits.has_backstop && has_backstop_[i] != 0;
+    most = std::max(most, reference::excess(limits, at, x[store.slot[i]]));
   }
   return most;
 }
 
-std::size_t Anchors::bytes() const { return bytes_of(from_) + bytes_of(to_); }
+std::size_t Anchors::bytes() const {
+  return bytes_of(from_) + bytes_of(to_) + bytes_of(asked_) + bytes_of(most_from_) +
+         bytes_of(most_to_) + bytes_of(has_backstop_);
+}
 
 }  // namespace weft

@@ -26,20 +26,38 @@ class Anchors {
       for (auto& pose : *poses) pose = {moved(pose.point), turned(pose.normal)};
     }
   }
+  /// What all ask for from the next step on.
+  void limit(std::span<const AnchorLimit> limits);
+  void limit(std::uint32_t anchor, const AnchorLimit& limit);
+  void scale(double scale);
+  const std::vector<AnchorLimit>& limits() const { return asked_; }
+  /// Before a step: what was let go and is held again begins where it is.
+  void depart(const AnchorStore& store, const kernels::Vectors& x);
   /// A step was done.
   void arrive();
 
-  AnchorTravel travel() const { return {from_, to_, moving()}; }
+  AnchorTravel travel() const {
+    return {from_, to_, most_from_, most_to_, has_backstop_, moving(), limited_};
+  }
   /// They stand where they are.
-  AnchorTravel standing() const { return {from_, from_, false}; }
+  AnchorTravel standing() const {
+    return {from_, from_, most_from_, most_from_, has_backstop_, false, limited_};
+  }
   /// m, the largest by which a limit is exceeded: where a step ends, or begins.
   double largest_excess(const AnchorStore& store, const kernels::Vectors& x, bool ends) const;
   /// Whether one moves in this step or has moved in the last.
-  bool moving() const { return moves_ || moved_; }
+  bool moving() const { return moves_ || moved_ || most_from_ != most_to_; }
   std::size_t bytes() const;
 
  private:
+  double most(const AnchorLimit& limit) const;
+
   std::vector<reference::AnchorPose> from_, to_;
+  std::vector<AnchorLimit> asked_;
+  std::vector<double> most_from_, most_to_;  // m, scaled
+  std::vector<std::uint8_t> has_backstop_;
+  double scale_ = 1;
+  bool limited_ = false;                // something was asked for that the description did not
   bool moves_ = false, moved_ = false;  // in the next step, in the last one
 };
 

@@ -38,6 +38,7 @@ struct Trial {
   Status status = Status::converged;
   double pin_work = 0;                       // J
   double energy_lost = 0;                    // J
+  double seam_work = 0;                      // J
   double motion_error = 0;                   // m/s
   double refinement = 0;                     // that the next step is to begin with
   int substeps = 1;                          // that it took

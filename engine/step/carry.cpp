@@ -33,6 +33,15 @@ Carriage::Carriage(const RigidMotion& motion, double share) {
   to = about + share * Vector{motion.translation.x, motion.translation.y, motion.translation.z};
 }
 
+void CarriedWay::add(const RigidMotion& motion, double share) {
+  const auto of = [&](Vec3 v) { return share * Vector{v.x, v.y, v.z}; };
+  const Vector to = {motion.about.x + share * motion.translation.x,
+                     motion.about.y + share * motion.translation.y,
+                     motion.about.z + share * motion.translation.z};
+  moved = moved + of(motion.translation) - cross(of(motion.rotation), to);
+  turned = turned + of(motion.rotation);
+}
+
 std::uint32_t carry(State& s, const Carriage& by) {
   const Model& model = *s.model;
   s.solved = s.position;  // padding stays at the origin

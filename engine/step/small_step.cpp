@@ -138,12 +138,14 @@ class Frame {
         solver_(*s.small_steps),
         report_(report),
         team_(team),
-        edges_(static_cast<std::int64_t>(s.model->constraints.size() + s.model->membrane.size())) {}
+        edges_(static_cast<std::int64_t>(s.model->constraints.size() + s.model->membrane.size() +
+                                         s.model->seams.size())) {}
 
   void begin(const FramePlan& plan) {
     plan_ = plan;
     passes_left_ = plan.passes;
     plan_.anchors = plan.projects ? s_.anchors.standing() : s_.anchors.travel();
+    plan_.seams = s_.seams.states();
     kernels::Vectors& velocity = plan.projects ? s_.next_velocity : s_.velocity;
     if (plan.projects) velocity = kernels::Vectors(velocity.size());  // at rest
     const kernels::VectorsView force =
@@ -177,6 +179,7 @@ class Frame {
       count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest)));
       beyond_ = plan_.passes - passes_left_;
     }
+    solver_.end_seams();
     if (s_.model->has_contacts()) watch_crossings();
   }
 
@@ -210,6 +213,9 @@ class Frame {
   bool is_within_tolerance() {
     timed(report_, Stage::report, [&] {
       report_errors(s_, s_.solved, !plan_.projects, report_, team_);
+      const SeamGaps gaps = measure_seams(*s_.model, solver_.seams().states(), s_.solved);
+      report_.open_seams = gaps.open;
+      report_.max_seam_gap = gaps.largest;
       if (s_.model->has_laws()) {
         const double of_rigid = s_.model->constraints.has_springs() ? 0 : report_.max_error;
         report_.max_error = std::max(of_rigid, solver_.law_error());
@@ -217,7 +223,8 @@ class Frame {
     });
     return report_.max_error <= s_.settings.tolerance &&
            report_.max_penetration <= s_.settings.contact_tolerance &&
-           report_.max_anchor_error <= s_.settings.contact_tolerance;
+           report_.max_anchor_error <= s_.settings.contact_tolerance &&
+           report_.max_seam_gap <= s_.settings.contact_tolerance;
   }
 
   std::uint32_t passed_particle = kNoIndex;  // the description's number
@@ -233,7 +240,8 @@ class Frame {
       if (is_within_tolerance()) return Status::converged;
       if (s_.settings.iterations > 0) return Status::fixed_iterations;
       if (round >= tuning::kMostRounds || passes_left_ < 1) return Status::iteration_limit;
-      const double distance = std::max(report_.max_penetration, report_.max_anchor_error);
+      const double distance =
+          std::max({report_.max_penetration, report_.max_anchor_error, report_.max_seam_gap});
       const double error = std::max(report_.max_error / s_.settings.tolerance,
                                     distance / s_.settings.contact_tolerance);
       if (stall.has_stalled(error)) return Status::infeasible;
@@ -293,6 +301,7 @@ class Frame {
     s_.solved = s_.position;
     solver_.read_positions(s_.solved.view(), team_);
     place_pins();
+    place_attached();
   }
   /// Exactly where they travel to: lanes round their way.
   void place_pins() {
@@ -300,6 +309,17 @@ class Frame {
     const double time = plan_.h * substeps_done_;
     for (const std::uint32_t pin : s_.model->pins) {
       s_.solved.set(pin, s_.position[pin] + time * s_.velocity[pin]);
+    }
+  }
+  /// Where the points of their anchors are.
+  void place_attached() {
+    const AnchorStore& anchors = s_.model->anchors;
+    const double share = static_cast<double>(substeps_done_) / plan_.substeps;
+    for (std::size_t i = 0; i < anchors.size(); ++i) {
+      if (anchors.limits[i].most > 0) continue;
+      const kernels::Vector from = plan_.anchors.from[i].point, to = plan_.anchors.to[i].point;
+      s_.solved.set(anchors.slot[i],
+                    substeps_done_ == plan_.substeps ? to : from + share * (to - from));
     }
   }
   void find_contacts() {
@@ -324,7 +344,7 @@ class Frame {
 
   double passes_left_ = 0;    // beyond a sweep for each substep, in the time of sweeps
   double local_passes_ = 0;   // done
-  const std::int64_t edges_;  // all constraints and triangles of fabric
+  const std::int64_t edges_;  // all constraints, triangles of fabric and seams
   FramePlan plan_;
   int substeps_done_ = 0;
   double beyond_ = 0;                 // of the passes, in substeps
@@ -379,7 +399,9 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     if (takes_over_in(s)) s.lost_energy = 0;
     s.give_per_mass = give_per_mass(s, plan);
     if (s.laws) s.elastic_energy = energy_of_springs(*s.model, s.solved, s.give_per_mass);
-    const double released = frame.released();
+    s.seams.take(s.small_steps->seams().states());
+    trial.seam_work = s.small_steps->seams().work();
+    const double released = frame.released() + trial.seam_work;
     if (!fixed) guard_springs(s, change, released, h);
     if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
     trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;

@@ -17,6 +17,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     : model(std::move(shared)),
       settings(chosen),
       anchors(*model),
+      seams(*model),
       kernels(&simd::table(to_kernel(chosen.isa))),
       measure(std::make_unique<Measure>(*model, chosen, *kernels)) {
   settings.scheme = scheme_of(settings);
@@ -88,6 +89,7 @@ void State::copy(const State& from) {
   kernels::Vectors its_force = from.force;
   Pins its_pins = from.pins;
   Anchors its_anchors = from.anchors;
+  Seams its_seams = from.seams;
   if (same && small_steps) small_steps->take_past(*from.small_steps);
   if (!same && small_steps) small_steps->forget_past();
   position = from.position;
@@ -95,12 +97,14 @@ void State::copy(const State& from) {
   force = std::move(its_force);
   pins = std::move(its_pins);
   anchors = std::move(its_anchors);
+  seams = std::move(its_seams);
   copy_scalars(from, same);
 }
 
 void State::copy_scalars(const State& from, bool same) {
   gravity = from.gravity;
   wind = from.wind;
+  way = from.way;
   placed = !same || from.placed;
   displaced = from.displaced;
   rests_differ = from.rests_differ;
@@ -122,10 +126,12 @@ void State::go_on_from(const State& from) {
     same_masses = same_masses && model->inverse_mass[slot] == its_model.inverse_mass[its_slot];
     const bool is_free = model->inverse_mass[slot] > 0;
     if (is_free == (its_model.inverse_mass[its_slot] > 0)) return;
+    if (its_model.is_attached(its_slot)) return;  // it has the velocity of its point
     velocity.set(slot, is_free ? from.pins.last_velocity(its_slot) : kernels::Vector{0, 0, 0});
   });
   pins.go_on_from(from.pins, its_model, *model, position);
   anchors = from.anchors;
+  seams = from.seams;
   const bool same = alike(settings, from.settings);
   copy_scalars(from, same);
   displaced = true;
@@ -142,7 +148,7 @@ std::size_t State::bytes() const {
     sum += v->bytes();
   }
   sum += contacts.bytes() + bytes_of(impulses) + bytes_of(resistances) + pins.bytes() +
-         anchors.bytes() + measure->bytes();
+         anchors.bytes() + seams.bytes() + measure->bytes();
   sum += sizeof(Team::SharedState);
   if (laws) sum += laws->bytes();
   if (sweeps) sum += sweeps->bytes();

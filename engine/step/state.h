@@ -29,6 +29,7 @@
 #include "engine/solvers/yarn/yarn_solver.h"
 #include "engine/step/anchors.h"
 #include "engine/step/pins.h"
+#include "engine/step/seams.h"
 #include "kernels/impulse_energy.h"
 #include "kernels/vectors.h"
 
@@ -46,6 +47,16 @@ struct Checkpoint {
   double lost_energy = 0, elastic_energy = 0;
 };
 
+/// What carry has taken a cloth along since the last step, as a motion of all space: at x it is
+/// moved + turned x x. It is slow, since it is of a frame: squares of angles are left out.
+struct CarriedWay {
+  kernels::Vector moved{};   // m
+  kernels::Vector turned{};  // rad
+
+  void add(const RigidMotion& motion, double share);
+  kernels::Vector at(kernels::Vector x) const { return moved + cross(turned, x); }
+};
+
 struct State {
   std::shared_ptr<const Model> model;
   Settings settings;  // isa, solver, substeps and velocity_correction resolved
@@ -56,6 +67,10 @@ struct State {
   kernels::Vectors total_force;  // besides gravity (air.h); empty where velocities cause none
   std::vector<Resistance> resistances;  // per triangle
   kernels::Vector gravity, wind;
+  CarriedWay way;             // through the air
+  double way_per_second = 0;  // 1 over the length of the present step
+  /// m/s, of the air about x, as the cloth sees it.
+  kernels::Vector wind_at(kernels::Vector x) const { return wind - way_per_second * way.at(x); }
   kernels::Vectors solved;  // where the position loop works; the next positions
   kernels::Vectors next_velocity;
   Checkpoint step_start;
@@ -63,6 +78,7 @@ struct State {
   ContactStore contacts;
   Pins pins;
   Anchors anchors;
+  Seams seams;
   bool placed = true;         // positions were given, not stepped to: they may violate constraints
   bool displaced = false;     // they may, though stepped to: a pin was put down, the model changed
   bool rests_differ = false;  // the rest of fast springs has changed since (fast_springs.h)

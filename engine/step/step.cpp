@@ -81,7 +81,10 @@ class Step {
       transaction_.begin();
       project(s_, misplaced, dt, report_, team_);
     }
-    if (s_.placed) s_.longest_substep = 0;
+    if (s_.placed) {
+      s_.longest_substep = 0;
+      s_.seams.begin(*s_.model, s_.position, s_.settings.contact_tolerance);
+    }
     plan_ = plan_for(s_, dt, report_, team_);
     if (s_.laws && (s_.placed || s_.displaced)) find_elastic_energy(s_, dt / plan_.substeps);
     for (int left = plan_.substeps; left > 0; --left) {
@@ -168,6 +171,7 @@ class Step {
     report_.substeps += trial.substeps;
     report_.pin_work += trial.pin_work;
     report_.energy_lost += trial.energy_lost;
+    report_.seam_work += trial.seam_work;
     report_.motion_error += trial.motion_error;
     refinement_ = trial.refinement;
     if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
@@ -205,12 +209,15 @@ StepReport step(State& s, double dt) {
   StepReport report;
   Team team(threads_worth_having(s), s.team_state);
   bool done = false;
+  s.way_per_second = 1 / dt;
   {
     Travel travel(s, dt);
+    s.anchors.depart(s.model->anchors, s.position);
     done = Step(s, report, team).run(dt);
     if (done) {
       travel.arrive();
       s.anchors.arrive();
+      s.way = {};
     }
   }
   // Small steps have measured what they committed.

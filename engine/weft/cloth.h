@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -88,11 +89,15 @@ struct StepReport {
   std::uint32_t worst_element = kNoIndex;     ///< likewise, of the largest strain or shear
   double max_penetration = 0;                 ///< m, 0 without contacts
   double max_anchor_error = 0;  ///< m, by which an anchor's limits are exceeded; 0 without anchors
+  int open_seams = 0;           ///< whose particles have not come together yet (Seam)
+  double max_seam_gap = 0;  ///< m, between particles of closed seams: bounded by contact_tolerance
+  double seam_work = 0;     ///< J, that open seams did in this step
   /// m/s, by which this step is estimated to lead a particle away from its true motion, at most:
   /// of small_steps (by the last substep alone without a motion_tolerance); by other solvers 0.
   double motion_error = 0;
-  /// J, by which kinetic, potential and elastic energy fell, beyond the work of moved pins, forces,
-  /// air and Damping::motion: by the scheme, damped springs and contacts. 0 by gauss_seidel.
+  /// J, by which kinetic, potential and elastic energy fell, beyond the work of moved pins, seams,
+  /// forces, air and Damping::motion: by the scheme, damped springs and contacts. 0 by
+  /// gauss_seidel.
   double energy_lost = 0;
   double pin_work = 0;  ///< J, work that moved pins did in this step: exact where they move as one
                         ///< rigid body, else that of the rigid motion nearest to theirs. Jumps do
@@ -128,6 +133,18 @@ struct ChangedValue {
   double value = 0;
 };
 
+/// New stiffnesses of a triangle of fabric, by its number in the description; as MembraneElement.
+struct ChangedMembrane {
+  std::uint32_t index = 0;
+  double warp = 0, weft = 0, shear = 0;  ///< N/m
+};
+
+/// New numbers of the air; as in Air.
+struct ChangedAir {
+  double density = 0;  ///< kg/m^3
+  double drag = 0, lift = 0;
+};
+
 /// What becomes different while a cloth moves; what is not listed stays as it is.
 struct Changes {
   std::vector<std::uint32_t> fix = {};      ///< particles: fixed where they are, at rest
@@ -135,6 +152,16 @@ struct Changes {
   std::vector<ChangedValue> masses = {};    ///< kg, of particles
   std::vector<ChangedValue> rest_lengths = {};  ///< m, of constraints
   std::vector<ChangedValue> compliances = {};   ///< m/N, of constraints
+  std::vector<ChangedMembrane> membrane = {};
+  std::vector<ChangedValue> bending = {};  ///< m/N, compliances of bending elements
+  std::optional<Damping> damping = {};
+  std::optional<ChangedAir> air = {};  ///< of the triangles that the description has
+};
+
+/// What an anchor asks for from now on.
+struct AnchorLimit {
+  double max_distance = 0;  ///< m, as Anchor::max_distance; infinite: the particle is let go
+  bool backstop = true;     ///< whether the backstop of the description, if it has one, counts
 };
 
 /// x -> about + R (x - about) + translation; R turns by |rotation| rad about the axis `rotation`.
@@ -215,17 +242,29 @@ class WEFT_API Cloth {
   /// Moves the points of all anchors, in the order of the description: they travel there in
   /// straight lines during the next step, as evenly as normals turn. The last move before a step
   /// counts. Call move_anchors before write_positions, and anchors jump instead of travelling.
-  /// normals: one per anchor, of length 1 where there is a backstop; empty: as they are.
+  /// normals: one per anchor, of any length but 0 where there is a backstop; empty: as they are.
   Result<void> move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals = {});
+  /// Loosens, tightens, lets go or takes hold again of all anchors, in the order of the
+  /// description. A largest distance changes evenly during the next step, and puts nobody in
+  /// motion; one that was infinite begins where the particle is. From 0, which holds as a fixed
+  /// particle does, to more, and back, takes as long as change().
+  Result<void> limit_anchors(std::span<const AnchorLimit> limits);
+  /// The same of one of them.
+  Result<void> limit_anchor(std::uint32_t anchor, const AnchorLimit& limit);
+  /// From the next step on all largest distances count `scale` times (finite, at least 0): how much
+  /// of a character's cloth moves by itself. 0 and infinite ones stay.
+  Result<void> scale_anchors(double scale);
 
   /// Takes the whole cloth along by the share of a rigid motion (of its translation and its angle),
-  /// 0 to 1, at once and without its feeling so: positions, fixed particles, anchors, and what the
-  /// solver remembers move and turn, velocities turn and gain nothing. Gravity, forces and wind are
-  /// the world's, and stay. With share 1 this is a teleport. To let the cloth feel only the
-  /// fraction s of its character's acceleration, call carry(motion, 1 - s) before each step, then
-  /// move pins and anchors to where they really are. (Velocities are then relative to the
-  /// character.)
-  Result<void> carry(const RigidMotion& motion, double share = 1);
+  /// 0 to 1, at once and without its feeling the acceleration: positions, fixed particles, anchors,
+  /// and what the solver remembers move and turn, velocities turn and gain nothing. Gravity,
+  /// forces, wind and the air are the world's, and stay: the next step drags at the cloth as if it
+  /// had come this way in its time. To let the cloth feel only the fraction s of its character's
+  /// acceleration, call carry(motion, 1 - s) before each step, then move pins and anchors to where
+  /// they really are. (Velocities are then relative to the character.)
+  Result<void> carry(const RigidMotion& motion, double share);
+  /// The same with share 1 and without a way through the air.
+  Result<void> teleport(const RigidMotion& motion);
 
   /// Changes what was described: all of it or, on an error and where memory runs out, nothing.
   /// model() is another one from then on, as build_model makes it of the changed description; other

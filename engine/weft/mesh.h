@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -120,6 +121,11 @@ struct MeshDescription {
   /// a seam, that is an edge whose faces lie apart at rest, the cloth bends as elsewhere and is
   /// flat at rest.
   std::vector<std::array<std::uint32_t, 2>> seams;
+  /// s. Greater than 0: the vertices of each pair remain two particles, which a seam of the scene
+  /// draws together in this time (Seam), with seam_force, N, at most. For panels that begin apart.
+  /// Across such a seam nothing bends. 0: sewn from the beginning, as above.
+  double seam_time = 0;
+  double seam_force = std::numeric_limits<double>::infinity();
   Ropes ropes = Ropes::none;
 };
 

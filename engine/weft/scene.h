@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -109,15 +110,28 @@ struct Air {
 /// Both hold one particle alone and cost far less than a constraint: the particle is put within its
 /// limits, to Settings::contact_tolerance, and loses what of its velocity leads out of them as they
 /// move. That is a rope which becomes taut, and a floor without bounce and friction. A max_distance
-/// of 0 attaches the particle to the point; where that alone holds cloth, a fixed particle that is
-/// moved does so at far fewer substeps, if the cloth is woven. Solver small_steps only.
+/// of 0 attaches the particle to the point, as a fixed particle that is moved is.
+/// Constraints between such particles are inert, as between fixed ones. Cloth::limit_anchors
+/// changes limits later. Solver small_steps only.
 struct Anchor {
   std::uint32_t particle = 0;    ///< one that is not fixed, in at most one anchor
   Vec3 point{};                  ///< m, where it begins
-  Vec3 normal{};                 ///< of length 1 (to 1e-3), out of the backstop; used with one
+  Vec3 normal{};                 ///< out of the backstop, of any length but 0; used with one
   double max_distance = 0;       ///< m, at least 0; infinite: no limit
   double backstop_distance = 0;  ///< m, of the surface of the backstop behind the point; >= 0
   double backstop_radius = 0;    ///< m; 0: there is no backstop; infinite: it is a plane
+};
+
+/// Two particles that are sewn together while the cloth moves, wherever they begin. They come
+/// together along the straight line between them, in the time `time` or, where max_force is too
+/// little for that, later, but never faster. Then they are held together whatever the force, for
+/// good. Until then the seam is open, which breaks no law (StepReport::open_seams). Positions that
+/// are written apart from each other open it again. Solver small_steps only.
+struct Seam {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  double time = 1;                                             ///< s, > 0
+  double max_force = std::numeric_limits<double>::infinity();  ///< N, > 0, while it is open
 };
 
 /// What is simulated. Lengths in m, masses in kg, times in s.
@@ -133,6 +147,7 @@ struct SceneDescription {
   std::vector<MembraneElement> membrane;
   std::vector<BendingElement> bending;
   std::vector<Anchor> anchors;
+  std::vector<Seam> seams;
   Damping damping;
   Air air;
   Vec3 gravity{0, -10, 0};
@@ -162,6 +177,7 @@ struct ModelInfo {
   std::size_t membrane_elements = 0;  ///< active ones, likewise
   std::size_t bending_elements = 0;
   std::size_t anchors = 0;
+  std::size_t seams = 0;
   std::size_t air_triangles = 0;
   std::size_t spheres = 0;
   std::size_t colours = 0;

@@ -36,6 +36,18 @@ SceneDescription with(SceneDescription scene, const Changes& changes) {
   for (const ChangedValue& c : changes.rest_lengths)
     scene.constraints[c.index].rest_length = c.value;
   for (const ChangedValue& c : changes.compliances) scene.constraints[c.index].compliance = c.value;
+  for (const ChangedMembrane& c : changes.membrane) {
+    scene.membrane[c.index].warp = c.warp;
+    scene.membrane[c.index].weft = c.weft;
+    scene.membrane[c.index].shear = c.shear;
+  }
+  for (const ChangedValue& c : changes.bending) scene.bending[c.index].compliance = c.value;
+  if (changes.damping) scene.damping = *changes.damping;
+  if (changes.air) {
+    scene.air.density = changes.air->density;
+    scene.air.drag = changes.air->drag;
+    scene.air.lift = changes.air->lift;
+  }
   return scene;
 }
 

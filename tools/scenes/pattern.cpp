@@ -95,7 +95,7 @@ void add_panel(const Triangulation& triangles, std::size_t panel, CutPattern& cu
     cut.faces.push_back({first + a, first + b, first + c});
 }
 
-void sew(const Seam& seam, CutPattern& cut) {
+void sew(const PanelSeam& seam, CutPattern& cut) {
   const auto& one = cut.edges[seam.one.panel][seam.one.edge];
   const auto& other = cut.edges[seam.other.panel][seam.other.edge];
   for (std::size_t i = 0; i < one.size(); ++i)
@@ -135,7 +135,7 @@ Result<CutPattern> cut(const Pattern& pattern, double spacing) {
     result.edges.push_back(edges_of_border(segments[panel], first));
     add_panel(*triangles, panel, result);
   }
-  for (const Seam& seam : pattern.seams) sew(seam, result);
+  for (const PanelSeam& seam : pattern.seams) sew(seam, result);
   return result;
 }
 

@@ -30,14 +30,14 @@ using Panel = std::vector<Curve>;
 struct PanelEdge {
   std::size_t panel = 0, edge = 0;
 };
-struct Seam {
+struct PanelSeam {
   PanelEdge one, other;
   bool opposite = false;  ///< the start of one is sewn to the end of the other
 };
 
 struct Pattern {
   std::vector<Panel> panels;  ///< m; y is along the warp
-  std::vector<Seam> seams;
+  std::vector<PanelSeam> seams;
 };
 
 /// Panels cut into triangles. Each panel has its own vertices.

@@ -12,7 +12,16 @@ namespace weft {
 /// In the order of the model's anchors.
 struct AnchorTravel {
   std::span<const reference::AnchorPose> from, to;
-  bool moving = false;  // in this step, or in the last
+  std::span<const double> most_from, most_to;  // m, largest distances
+  std::span<const std::uint8_t> has_backstop;
+  bool moving = false;   // points or normals, in this step or in the last
+  bool limited = false;  // limits are not those of the model
+
+  /// m, in a share of the step.
+  double most(std::uint32_t anchor, double share) const {
+    const double from = most_from[anchor], to = most_to[anchor];
+    return from == to ? to : from + share * (to - from);
+  }
 };
 
 class AnchorClock {
@@ -35,8 +44,14 @@ class AnchorClock {
     return reference::AnchorMotion::between(travel_.from[anchor], travel_.to[anchor], share(),
                                             per_second_);
   }
+  reference::AnchorLimits limits(std::uint32_t anchor) const {
+    reference::AnchorLimits limits = store_.limits[anchor];
+    limits.most = travel_.most(anchor, share());
+    limits.has_backstop = limits.has_backstop && travel_.has_backstop[anchor] != 0;
+    return limits;
+  }
   reference::Held hold(std::uint32_t anchor, kernels::Vector x, kernels::Vector v) const {
-    return reference::hold(store_.limits[anchor], motion(anchor), x, v);
+    return reference::hold(limits(anchor), motion(anchor), x, v);
   }
 
  private:

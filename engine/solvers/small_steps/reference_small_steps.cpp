@@ -89,6 +89,8 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
       layout_(model.small_steps()),
       settings_(settings),
       passes_(model),
+      seams_(model),
+      has_attached_(model.has_attached()),
       paces_(paces_of(layout_.bending, model.damping.bending)),
       anchors_(model.anchors),
       at_limit_(model.anchors.size()),
@@ -118,6 +120,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   softest_ = plan.softest;
   is_begun_ = false;
   passes_.forget();
+  seams_.begin(plan.seams, plan.projects ? 0 : plan.h);
   departures_.begin();
   for (BendingPace& pace : paces_) pace.begin(plan);
   touched_.clear();
@@ -177,6 +180,7 @@ void ReferenceSmallSteps::advance(Team&) {
   anchors_.advance();
   at_limit_before_.swap(at_limit_);
   at_limit_.assign(at_limit_.size(), false);
+  if (has_attached_) hold_anchors();
 }
 
 SubstepFormula ReferenceSmallSteps::formula_after(double h_before) const {
@@ -239,6 +243,7 @@ void ReferenceSmallSteps::sweep(Team&) {
   for (const std::uint32_t c : layout_.serial) relax_edge(c);
   relax_membrane();
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors();
+  draw_seams();
   is_begun_ = true;
 }
 
@@ -365,6 +370,22 @@ void ReferenceSmallSteps::judge_membrane() {
   }
 }
 
+void ReferenceSmallSteps::draw_seams() {
+  if (seams_.empty()) return;
+  Points points = this->points(false);
+  points.share = 0;
+  seams_.draw(points, 1 / law_step().springs.scale, !is_begun_);
+}
+
+void ReferenceSmallSteps::end_seams() {
+  if (seams_.empty()) return;
+  seams_.end_substep(this->points(false), 1 / law_step().springs.scale, settings_.contact_tolerance,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                       touched_.push_back(a);
+                       touched_.push_back(b);
+                     });
+}
+
 LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
   Points points = this->points(true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
@@ -372,7 +393,9 @@ LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int
                            .omega = tuning::kOmega,
                            .most_visits = most_visits,
                            .laws = law_step()};
-  return passes_.run(points, contacts, limits);
+  const LocalWork work = passes_.run(points, contacts, limits);
+  draw_seams();
+  return work;
 }
 
 LocalWork ReferenceSmallSteps::repair(const ContactStore& contacts, std::int64_t most_visits) {
@@ -469,7 +492,7 @@ void ReferenceSmallSteps::turn(const Turn& by) {
 
 std::size_t ReferenceSmallSteps::bytes() const {
   return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + bytes_of(arrived_) +
-         bytes_of(multiplier_) + bytes_of(membrane_multiplier_) + passes_.bytes();
+         bytes_of(multiplier_) + bytes_of(membrane_multiplier_) + passes_.bytes() + seams_.bytes();
 }
 
 std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,

@@ -39,6 +39,8 @@ class ReferenceSmallSteps final : public SmallSteps {
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
   double law_error() override;
+  void end_seams() override;
+  const SeamThreads& seams() const override { return seams_; }
   void read_positions(kernels::VectorsView x, Team& team) const override;
   double bending_energy(double give, Team& team) override;
   void settle(Team& team) override;
@@ -81,6 +83,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   void relax_spring(std::uint32_t constraint);
   void relax_membrane();
   void judge_membrane();
+  void draw_seams();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
   void hold_anchors();
   void end_motions();
@@ -91,6 +94,8 @@ class ReferenceSmallSteps final : public SmallSteps {
   const SmallStepsLayout& layout_;
   const Settings settings_;
   LocalPasses passes_;
+  SeamThreads seams_;
+  const bool has_attached_;  // which are where they belong before constraints are swept
   std::vector<BendingPace> paces_;
   AnchorClock anchors_;
   Past past_;

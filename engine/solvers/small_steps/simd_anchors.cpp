@@ -18,8 +18,9 @@ void set(simd::LaneVectors& v, std::size_t lane, Vector to) {
   v.z[lane] = static_cast<float>(to.z);
 }
 
-/// Beyond, a backstop is out of reach, or a point.
-float to_float(double number) { return static_cast<float>(std::min(number, 1e18)); }
+/// m. Beyond, a backstop is out of reach, or a point.
+constexpr double kOutOfReach = 1e18;
+float to_float(double number) { return static_cast<float>(std::min(number, kOutOfReach)); }
 
 /// work(place in blocks and lanes, anchor)
 template <class Work>
@@ -68,7 +69,21 @@ void SimdAnchors::begin(const AnchorTravel& travel, double h, int substeps,
   clock_.begin(travel, h, substeps);
   std::ranges::fill(at_limit_, std::uint16_t{0});
   if (!before.empty() && !travel.moving) std::ranges::copy(before, at_limit_.begin());
+  if (travel.limited || limited_) write_limits();
+  limited_ = travel.limited;
   write_backstops();
+}
+
+/// Where a substep ends. What has no backstop any more has it out of reach.
+void SimdAnchors::write_limits() {
+  for_each_anchor(layout_, [&](std::size_t i, std::uint32_t anchor) {
+    const reference::AnchorLimits limits = clock_.limits(anchor);
+    simd::AnchorBlock& block = blocks_[i / kLanes];
+    block.most[i % kLanes] = static_cast<float>(limits.most);
+    if (!model_.anchors.limits[anchor].has_backstop) return;
+    backstops_[static_cast<std::size_t>(block.backstop)].distance[i % kLanes] =
+        to_float(limits.has_backstop ? limits.distance : kOutOfReach);
+  });
 }
 
 void SimdAnchors::write_backstops() {
@@ -100,6 +115,7 @@ void SimdAnchors::measure_base(const float* base) {
 void SimdAnchors::advance() {
   if (empty()) return;
   clock_.advance();
+  if (clock_.travel().limited) write_limits();
   before_.swap(at_limit_);
   std::ranges::fill(at_limit_, std::uint16_t{0});
 }

@@ -39,6 +39,7 @@ class SimdAnchors {
 
  private:
   void write_backstops();
+  void write_limits();
 
   const Model& model_;
   const AnchorLayout& layout_;
@@ -46,6 +47,7 @@ class SimdAnchors {
   AnchorClock clock_;
   kernels::AlignedVector<simd::AnchorBlock> blocks_;
   kernels::AlignedVector<simd::BackstopBlock> backstops_;
+  bool limited_ = false;            // blocks have other limits than the model
   AtLimit at_limit_, before_;       // in this substep, in the last one
   AtLimit held_, arrived_, moved_;  // by the last sweep
 };

@@ -144,6 +144,8 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       settings_(settings),
       table_(table),
       passes_(model),
+      seams_(model),
+      has_attached_(model.has_attached()),
       membrane_(model, table),
       bending_(model, table),
       anchors_(model, settings, table),
@@ -280,6 +282,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   softest_ = plan.softest;
   is_begun_ = false;
   passes_.forget();
+  seams_.begin(plan.seams, plan.projects ? 0 : plan.h);
   departures_.begin();
   bending_.begin(plan);
   touched_.clear();
@@ -341,6 +344,7 @@ void SmallStepsSolver::advance(Team& team) {
                    static_cast<float>(formula_.slope)};
   bending_.bend(u_.data(), v_before_.data(), formula_.give(h_), team);
   anchors_.advance();
+  if (has_attached_) hold_anchors(team);
 }
 
 SubstepFormula SmallStepsSolver::formula_after(double h_before) const {
@@ -382,6 +386,7 @@ void SmallStepsSolver::sweep(Team& team) {
     sweep_serial();
   sweep_membrane(team);
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors(team);
+  draw_seams();
   is_begun_ = true;
 }
 
@@ -565,6 +570,21 @@ void SmallStepsSolver::look_near_what_was_out() {
       [&](std::uint32_t element) { passes_.look_near(passes_.item_of_element(element)); });
 }
 
+void SmallStepsSolver::draw_seams() {
+  if (seams_.empty()) return;
+  Points points = this->points(0, false);
+  seams_.draw(points, 1 / law_step().springs.scale, !is_begun_);
+}
+
+void SmallStepsSolver::end_seams() {
+  if (seams_.empty()) return;
+  seams_.end_substep(this->points(0, false), 1 / law_step().springs.scale,
+                     settings_.contact_tolerance, [&](std::uint32_t a, std::uint32_t b) {
+                       touched_.push_back(a);
+                       touched_.push_back(b);
+                     });
+}
+
 LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
   Points points = this->points(1 - formula_.part, true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
@@ -572,7 +592,9 @@ LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_
                            .omega = tuning::kOmega,
                            .most_visits = most_visits,
                            .laws = law_step()};
-  return passes_.run(points, contacts, limits);
+  const LocalWork work = passes_.run(points, contacts, limits);
+  draw_seams();
+  return work;
 }
 
 LocalWork SmallStepsSolver::repair(const ContactStore& contacts, std::int64_t most_visits) {
@@ -673,8 +695,8 @@ void SmallStepsSolver::keep(Team& team) {
 std::size_t SmallStepsSolver::bytes() const {
   return 11 * bytes_of(u_) + bytes_of(departure_) + bytes_of(spans_) + bytes_of(base_step_) +
          bytes_of(scratch_) + bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) +
-         bytes_of(arrived_) + bytes_of(multiplier_) + passes_.bytes() + membrane_.bytes() +
-         bending_.bytes() + anchors_.bytes();
+         bytes_of(arrived_) + bytes_of(multiplier_) + passes_.bytes() + seams_.bytes() +
+         membrane_.bytes() + bending_.bytes() + anchors_.bytes();
 }
 
 }  // namespace weft

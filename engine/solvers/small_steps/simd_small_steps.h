@@ -53,6 +53,8 @@ class SmallStepsSolver final : public SmallSteps {
   /// After the last: local passes that look at all constraints.
   LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
   double law_error() override;
+  void end_seams() override;
+  const SeamThreads& seams() const override { return seams_; }
   /// Where the particles are; x: where they were when the frame began.
   void read_positions(kernels::VectorsView x, Team& team) const override;
   double bending_energy(double give, Team& team) override;
@@ -104,6 +106,7 @@ class SmallStepsSolver final : public SmallSteps {
   template <class Work>
   void for_each_batch(Team& team, Work&& work);
   void look_near_what_was_out();
+  void draw_seams();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
   void hold_anchors(Team& team);
   void end_motions();
@@ -119,6 +122,8 @@ class SmallStepsSolver final : public SmallSteps {
   const Settings settings_;
   const simd::Table& table_;
   LocalPasses passes_;
+  SeamThreads seams_;
+  const bool has_attached_;  // which are where they belong before constraints are swept
   SimdMembrane membrane_;
   SimdBending bending_;
   SimdAnchors anchors_;

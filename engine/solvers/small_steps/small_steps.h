@@ -8,11 +8,13 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "engine/contacts/contacts.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
 #include "engine/solvers/small_steps/local_passes.h"
+#include "engine/solvers/small_steps/seams.h"
 #include "engine/turn.h"
 #include "kernels/vectors.h"
 
@@ -92,6 +94,7 @@ struct FramePlan {
   bool projects = false;  // a start is put right (engine/step/project.h): the past is kept
   double softest = 0;     // m/N; where it projects: springs that are softer are left as they are
   AnchorTravel anchors{};
+  std::span<const SeamState> seams{};
 };
 
 class SmallSteps {
@@ -113,6 +116,10 @@ class SmallSteps {
   /// Constraints that were found out of tolerance.
   virtual std::int64_t count_out() const = 0;
   virtual LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) = 0;
+  /// After each substep's repair: which seams it has closed.
+  virtual void end_seams() = 0;
+  /// What they have become in the frame, and have done (J).
+  virtual const SeamThreads& seams() const = 0;
   /// After the last: local passes that look at all constraints.
   virtual LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) = 0;
   /// What is left of the laws of all constraints, the largest, over rest_length, with springs only;

@@ -63,8 +63,12 @@ Blocks find_blocks(const Model& model, const SmallStepsLayout& layout,
   std::ranges::for_each(layout.constraint, add);
   std::ranges::for_each(layout.serial, add);
   for (const auto& corners : model.membrane.slots) blocks.slots_of.push_back(std::span(corners));
+  for (std::size_t i = 0; i < model.seams.size(); ++i)
+    blocks.slots_of.push_back(std::vector{model.seams.a[i], model.seams.b[i]});
   blocks.of_constraints = blocks.slots_of.size();
-  for (const std::uint32_t slot : anchored) blocks.slots_of.push_back(std::span(&slot, 1));
+  for (const std::uint32_t slot : anchored) {
+    if (model.inverse_mass[slot] > 0) blocks.slots_of.push_back(std::span(&slot, 1));
+  }
   blocks.at = make_lists(model.slots(), [&](auto&& add_at) {
     for (std::uint32_t i = 0; i < blocks.slots_of.size(); ++i) {
       for (const std::uint32_t slot : blocks.slots_of[i]) add_at(slot, i);
@@ -210,9 +214,11 @@ double median_stiffness(const BendingLayout& bending) {
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;
   load.bending = median_stiffness(layout.bending);
-  const std::vector<Join> joins = joins_of(model);
+  std::vector<Join> joins = joins_of(model);
   for (const Join& join : joins) load.mean_length += join.length;
   load.mean_length /= static_cast<double>(std::max<std::size_t>(1, joins.size()));
+  for (std::size_t i = 0; i < model.seams.size(); ++i)
+    joins.push_back({model.seams.a[i], model.seams.b[i], 0});
   const std::vector<std::uint32_t> anchored = anchors_that_hold(model, load.mean_length);
   const Blocks blocks = find_blocks(model, layout, anchored);
   const Way way = way_that_hangs(model, joins, anchored);
@@ -220,7 +226,8 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   const bool has_ropes =
       std::ranges::any_of(layout.batches, [](const EdgeBatch& batch) { return batch.rope; });
   const bool is_by_ways = (!layout.has_yarns() && !layout.blocks.empty()) || has_ropes ||
-                          !layout.membrane.empty() || model.holds.empty();
+                          !layout.membrane.empty() ||
+                          (model.holds.empty() && !model.has_attached());
   load.way = std::max(load.particles, way.joins - 1);
   if (is_by_ways) load.particles = load.way;
   load.reach = way.length;

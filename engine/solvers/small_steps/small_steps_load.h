@@ -18,9 +18,9 @@
 /// constraints one by one: there the way to the pin is counted in constraints. Cloth without pins,
 /// in a scene of spheres, may come to hang over one: its way is half of that across it.
 ///
-/// Anchors hold as pins do, those of the narrowest limits (anchors_that_hold). To a sweep an
-/// anchored particle is one that can move: it counts as a block of its own, and all that hangs on
-/// it as what that carries, the yarn that it is in too.
+/// Anchors hold as pins do, those of the narrowest limits (anchors_that_hold). One without a limit
+/// to move within is a pin. To a sweep another anchored particle is one that can move: it counts as
+/// a block of its own, and all that hangs on it as what that carries, the yarn that it is in too.
 ///
 /// A yarn between two pins whose length exceeds their distance by the share s sags with the slope
 /// sqrt(6 s). Its tension is its load divided by that slope, where the slope is below 1.

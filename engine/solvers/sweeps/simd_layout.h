@@ -31,7 +31,7 @@ struct Chunk {
 };
 
 /// Chunks of the first batch between tiles whose slots are in tiles first_tile and following.
-struct Seam {
+struct TileSeam {
   std::uint32_t first_chunk = 0, last_chunk = 0;
   std::uint32_t first_tile = 0;
 };
@@ -41,7 +41,7 @@ struct SimdLayout {
   std::vector<kernels::Run> runs;            // of the chunks, side by side
   std::vector<std::uint32_t> batch_chunks;   // batch i: chunks batch_chunks[i] ... [i + 1] - 1,
   std::vector<std::uint32_t> batch_singles;  // its singles from batch_singles[i] on
-  std::vector<Seam> seams;                   // by the last tile that they need; those of tile i are
+  std::vector<TileSeam> seams;               // by the last tile that they need; those of tile i are
   std::vector<std::uint32_t> seams_at;  // [i] ... [i + 1] - 1, of padding [number of tiles] ...
   bool seams_join_neighbours = true;    // or further tiles
 

@@ -179,7 +179,7 @@ kernels::Sweep SimdLoop::sweep_seams(std::size_t tile, std::size_t from, std::si
   kernels::Sweep sweep;
   const std::size_t batch = s_.model_.ordering.between_tiles;
   for (std::size_t i = layout_.seams_at[tile]; i < layout_.seams_at[tile + 1]; ++i) {
-    const Seam& seam = layout_.seams[i];
+    const TileSeam& seam = layout_.seams[i];
     if (seam.first_tile < from || seam.first_tile > to) continue;
     sweep += sweep_chunks(batch, seam.first_chunk, seam.last_chunk);
   }
@@ -199,11 +199,11 @@ void SimdLoop::sweep_open_seams(kernels::Sweep& sweep) {
   const std::size_t batch = s_.model_.ordering.between_tiles, count = layout_.seams.size();
   std::size_t open_chunks = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Seam& seam = layout_.seams[i];
+    const TileSeam& seam = layout_.seams[i];
     if (s_.open_seam_[i]) open_chunks += seam.last_chunk - seam.first_chunk;
   }
   const auto sweep_seam = [&](std::size_t i) {
-    const Seam& seam = layout_.seams[i];
+    const TileSeam& seam = layout_.seams[i];
     s_.sweeps_[i] = {s_.open_seam_[i] ? sweep_chunks(batch, seam.first_chunk, seam.last_chunk)
                                       : kernels::Sweep{}};
   };

@@ -1,4 +1,4 @@
-/// Cloth::carry: what is taken along moves on as if it had been there before.
+/// Cloth::carry and teleport: what is taken along moves on as if it had been there before.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/clothes.h"
+#include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
 namespace weft::test {
@@ -68,7 +69,7 @@ double difference(const SceneDescription& scene, const Settings& settings, int f
     frame(carried, t, false);
   }
   REQUIRE(stays.state_hash() == carried.state_hash());
-  REQUIRE(carried.carry(kMotion));
+  REQUIRE(carried.teleport(kMotion));
   REQUIRE(carried.set_gravity(turned(scene.gravity)));
   CHECK(largest_distance(positions(carried), mapped(positions(stays), moved)) < 1e-12);
   CHECK(largest_distance(velocities(carried), mapped(velocities(stays), turned)) < 1e-12);
@@ -114,8 +115,8 @@ TEST_CASE("moves of pins that were asked for before are carried along") {
     Cloth first = cloth_of(scene, on(backend, settings)), second = first.clone();
     const Vec3 by{0.05, 0, 0};
     for (const std::uint32_t i : scene.fixed) REQUIRE(first.move_fixed(i, scene.positions[i] + by));
-    REQUIRE(first.carry(kMotion));
-    REQUIRE(second.carry(kMotion));
+    REQUIRE(first.teleport(kMotion));
+    REQUIRE(second.teleport(kMotion));
     for (const std::uint32_t i : scene.fixed)
       REQUIRE(second.move_fixed(i, moved(scene.positions[i] + by)));
     run(first, 0.01, 3);
@@ -181,6 +182,65 @@ TEST_CASE("a motion that cannot be is refused, and nothing is changed") {
   check({.translation = {1.7e308, 0, 0}, .about = {1.7e308, 0, 0}}, 1, "range");
   REQUIRE(cloth.carry(kMotion, 0));
   CHECK(cloth.state_hash() == before);
+}
+
+/// Of cotton, 0.2 m x 1 m, that hangs from its first row.
+SceneDescription strip() {
+  MeshDescription mesh = sheet(
+      11, 3,
+      [](double row, double column) {
+        return 0.1 * Vec3{0, -row, column};
+      },
+      [](std::uint32_t, std::uint32_t) { return Cut::none; });
+  mesh.material = find_material("cotton").value();
+  mesh.pins = {0, 1, 2};
+  return made(mesh).scene;
+}
+
+/// A strip of cotton whose upper end walks at 3 m/s, carried along or moved: how far its hem comes
+/// to hang behind, m.
+double behind(double share, Backend backend) {
+  SceneDescription scene = strip();
+  Cloth cloth = cloth_of(scene, on(backend, {.solver = Solver::small_steps, .threads = 1}));
+  double x = 0;
+  for (int frame = 0; frame < 240; ++frame) {
+    const double way = 3. / 60;
+    x += way;
+    REQUIRE(cloth.carry({.translation = {way, 0, 0}}, share));
+    for (const std::uint32_t i : scene.fixed)
+      REQUIRE(cloth.move_fixed(i, scene.positions[i] + Vec3{x, 0, 0}));
+    step(cloth, 1. / 60);
+  }
+  return x - cloth.position(static_cast<std::uint32_t>(scene.positions.size() - 1)).x;
+}
+
+TEST_CASE("a steady walk blows at a cloth that is carried along as at one that is not") {
+  const double moved = behind(0, Backend::simd), carried = behind(1, Backend::simd);
+  CHECK(moved > 0.2);
+  CHECK(carried == doctest::Approx(moved).epsilon(0.1));
+  CHECK(behind(0.5, Backend::simd) == doctest::Approx(moved).epsilon(0.1));
+}
+
+TEST_CASE("a turn blows at what is far from its axis, and a teleport at nothing") {
+  SceneDescription scene;
+  scene.positions = {{2, 0, 0}, {2, 1, 0}, {2, 0, 1}};
+  scene.masses = {1, 1, 1};
+  scene.gravity = {0, 0, 0};
+  scene.constraints = {{0, 1, 1}, {0, 2, 1}, {1, 2, std::sqrt(2.)}};
+  scene.air.triangles = {{0, 1, 2}};
+  scene.air.drag = 1;
+  Cloth turned = cloth_of(scene, {.solver = Solver::small_steps}), jumped = turned.clone();
+  REQUIRE(turned.carry({.translation = {0.04, 0, 0}}, 1));
+  REQUIRE(jumped.teleport({.translation = {0.04, 0, 0}}));
+  step(turned, 0.01);
+  step(jumped, 0.01);
+  // 1/2 density area v^2 / m = 0.6 * 0.5 * 16 / 3 m/s^2
+  CHECK(turned.velocity(0).x == doctest::Approx(-0.016).epsilon(0.01));
+  CHECK(length(jumped.velocity(0)) == 0);
+  Cloth spun = cloth_of(scene, {.solver = Solver::small_steps});
+  REQUIRE(spun.carry({.rotation = {0, 0, -0.02}, .about = {2, -2, 0}}, 1));
+  step(spun, 0.01);  // 4 to 6 m/s along x
+  CHECK(spun.velocity(1).x < -0.016);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "tests/support/bending.h"
 #include "tests/support/clothes.h"
+#include "tests/support/membrane.h"
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
@@ -145,10 +146,16 @@ TEST_CASE("a change to what is so already changes no bit, and neither does an em
 /// A pin, and what is in the middle of all numbers, change sides; some of the rest becomes other.
 Changes some_changes(const SceneDescription& scene) {
   const auto middle = static_cast<std::uint32_t>(scene.positions.size() / 2);
-  return {.fix = {middle},
-          .release = {scene.fixed[0]},
-          .masses = {{middle + 1, 1.5 * scene.masses[middle + 1]}},
-          .rest_lengths = {{1, 0.999 * scene.constraints[1].rest_length}}};
+  Changes changes{.fix = {middle},
+                  .release = {scene.fixed[0]},
+                  .masses = {{middle + 1, 1.5 * scene.masses[middle + 1]}},
+                  .rest_lengths = {{1, 0.999 * scene.constraints[1].rest_length}}};
+  if (!scene.bending.empty()) {
+    changes.bending = {{0, 2 * scene.bending[0].compliance}};
+    changes.damping = {.stretch = 1e-4, .bending = 2e-3, .motion = 0.3};
+  }
+  if (!scene.air.triangles.empty()) changes.air = {.density = 1, .drag = 0.7, .lift = 0.4};
+  return changes;
 }
 
 TEST_CASE("a cloth that is changed before its first step is one of the changed description") {
@@ -458,6 +465,44 @@ TEST_CASE("a pin that is let go under tension gains no energy") {
       CHECK(gain_after_release(scene.scene, {}, frames) < 1e-6);
     }
   }
+}
+
+TEST_CASE("triangles of fabric hang by the stiffness that they were given last") {
+  for (const Backend backend : kBackends) {
+    SceneDescription scene = fabric_curtain({.warp = 40, .weft = 40, .shear = 4}, 6);
+    scene.damping.motion = 5;
+    Cloth cloth = cloth_of(scene, on(backend, {.solver = Solver::small_steps, .threads = 1}));
+    Changes softer;
+    for (std::uint32_t i = 0; i < scene.membrane.size(); ++i)
+      softer.membrane.push_back({i, 20, 20, 2});
+    const auto stretch = [&] {
+      run(cloth, 0.01, 300);
+      double least = 0;
+      for (const Vec3& x : positions(cloth)) least = std::min(least, x.y);
+      return -least - 0.3;
+    };
+    const double before = stretch();
+    REQUIRE(before > 1e-3);
+    REQUIRE(cloth.change(softer));
+    CHECK(stretch() == doctest::Approx(2 * before).epsilon(0.1));
+  }
+}
+
+TEST_CASE("a cloth that moves loses no place, speed or energy by new damping, bending and air") {
+  const SceneDescription scene = cotton_cape(12);
+  Cloth cloth = cloth_of(scene, {.threads = 1});
+  run(cloth, 0.01, 20);
+  const auto x = positions(cloth), v = velocities(cloth);
+  Changes changes{.damping = Damping{.stretch = 1e-4, .bending = 1e-2, .motion = 20},
+                  .air = ChangedAir{.density = 1.2, .drag = 0, .lift = 0}};
+  for (std::uint32_t i = 0; i < scene.bending.size(); ++i)
+    changes.bending.push_back({i, 0.5 * scene.bending[i].compliance});
+  REQUIRE(cloth.change(changes));
+  CHECK(positions(cloth).size() == x.size());
+  CHECK(largest_distance(positions(cloth), x) == 0);
+  CHECK(largest_distance(velocities(cloth), v) == 0);
+  run(cloth, 0.01, 100);
+  CHECK(cloth.energy().kinetic < 0.01);  // falls at g / 20 s^-1 at most
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST_CASE("fabric whose pins are put down elsewhere follows without becoming fas
         run(cloth, kFrame, 3);
         place_pins(cloth, scene, by);
         CHECK(step(cloth, kFrame).status == Status::converged);
-        CHECK(top_speed(cloth) <= (by.y > 0 ? 0.1 : 0.35));  // askew it gives way slowly
+        CHECK(top_speed(cloth) <= (by.y > 0 ? 0.1 : 0.4));  // askew it gives way slowly
         CHECK(step(cloth, kFrame).max_error <= c.settings.tolerance);
       }
     }

@@ -459,7 +459,7 @@ TEST_CASE("a stretched string between two anchors ends within both tolerances") 
 TEST_CASE("anchors that contradict constraints are reported, not resolved") {
   SceneDescription scene = scene_of("hang", 5);
   scene.fixed.clear();
-  anchor_all(scene, 0);
+  anchor_all(scene, 1e-9);
   for (Anchor& anchor : scene.anchors) anchor.point = 1.2 * anchor.point;
   Cloth cloth = cloth_of(scene, {});
   const StepReport report = step(cloth, 0.01);
@@ -477,6 +477,108 @@ TEST_CASE("anchors are for small steps, which automatic chooses; other solvers r
     REQUIRE_FALSE(cloth);
     CHECK(cloth.error().find("anchors") != std::string::npos);
   }
+}
+
+TEST_CASE("an anchor that is let go lets fall, and takes hold again without a blow") {
+  for (const Backend backend : kBackends) {
+    SceneDescription scene = one_particle({0, 0, 0}, {}, {.max_distance = 0.1});
+    scene.anchors[0].normal = {0, 5, 0};
+    scene.anchors[0].backstop_distance = 0.05;
+    scene.anchors[0].backstop_radius = kInfinity;
+    Cloth cloth = cloth_of(scene, small_steps(backend, 4));
+    run(cloth, 0.01, 20);
+    CHECK(cloth.position(0).y == doctest::Approx(-0.05).epsilon(1e-3));
+    REQUIRE(cloth.limit_anchor(0, {.max_distance = kInfinity, .backstop = false}));
+    run(cloth, 0.01, 50);
+    CHECK(cloth.position(0).y == doctest::Approx(-0.05 - 0.5 * 10 * 0.25).epsilon(0.01));
+    REQUIRE(cloth.write_velocities(std::vector<Vec3>(1)));
+    const double start = -cloth.position(0).y;
+    REQUIRE(cloth.limit_anchor(0, {.max_distance = 0.4, .backstop = false}));
+    step(cloth, 0.01);
+    CHECK(cloth.position(0).y == doctest::Approx(-0.4).epsilon(1e-6));
+    CHECK(length(cloth.velocity(0)) < 0.2);
+    CHECK(start > 1);
+  }
+}
+
+TEST_CASE("a scale for all anchors lets a cloth go and takes it back, and those of 0 hold") {
+  for (const Backend backend : kBackends) {
+    SceneDescription scene = scene_of("cape", 9);
+    scene.fixed.clear();
+    anchor_all(scene, 0.05);
+    for (Anchor& anchor : scene.anchors) {
+      if (anchor.point.x < 0.1) anchor.max_distance = 0;
+    }
+    Cloth cloth = cloth_of(scene, small_steps(backend));
+    const std::vector<Vec3> points = points_of(scene);
+    for (const double scale : {0., 0.5, 2., 1.}) {
+      REQUIRE(cloth.scale_anchors(scale));
+      for (int frame = 0; frame < 30; ++frame) {
+        const StepReport report = step(cloth, 0.01);
+        CHECK(report.max_anchor_error <= 1e-4);
+      }
+      const double reach = largest_reach(scene, cloth, points);
+      CAPTURE(scale);
+      CHECK(reach <= 0.05 * scale + 1e-4);
+      CHECK(reach >= 0.04 * scale);
+    }
+    for (const Anchor& anchor : scene.anchors) {
+      if (anchor.max_distance == 0)
+        CHECK(distance(cloth.position(anchor.particle), anchor.point) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("what anchors of 0 attach is held as by pins, by as many substeps, until it is let go") {
+  for (const Backend backend : kBackends) {
+    SceneDescription pinned = scene_of("hang", 17), attached = pinned;
+    attached.fixed.clear();
+    for (const std::uint32_t i : pinned.fixed)
+      attached.anchors.push_back({.particle = i, .point = pinned.positions[i]});
+    Cloth by_pins = cloth_of(pinned, small_steps(backend)),
+          by_anchors = cloth_of(attached, small_steps(backend));
+    std::vector<Vec3> points = points_of(attached);
+    for (int frame = 0; frame < 20; ++frame) {
+      for (Vec3& p : points) p.z += 0.01;
+      REQUIRE(by_anchors.move_anchors(points));
+      for (std::size_t i = 0; i < points.size(); ++i)
+        REQUIRE(by_pins.move_fixed(pinned.fixed[i], points[i]));
+      const StepReport pins = step(by_pins, 0.01), anchors = step(by_anchors, 0.01);
+      CHECK(anchors.substeps == pins.substeps);
+      CHECK(anchors.status == Status::converged);
+      CHECK(anchors.pin_work == doctest::Approx(pins.pin_work).epsilon(0.05));
+    }
+    CHECK(largest_distance(positions(by_pins), positions(by_anchors)) < 1e-3);
+    const std::uint32_t edge = pinned.fixed[0];
+    CHECK(distance(by_anchors.velocity(edge), {0, 0, 1}) < 1e-3);
+    const std::vector<AnchorLimit> let_go(points.size(), {.max_distance = kInfinity});
+    REQUIRE(by_anchors.limit_anchors(let_go));
+    const double height = by_anchors.position(edge).y;
+    run(by_anchors, 0.01, 30);
+    CHECK(by_anchors.position(edge).y < height - 0.3);
+    std::vector<AnchorLimit> held(points.size(), {.max_distance = 0});
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points[i] = by_anchors.position(attached.anchors[i].particle);
+    REQUIRE(by_anchors.move_anchors(points));
+    REQUIRE(by_anchors.limit_anchors(held));
+    CHECK(step(by_anchors, 0.01).max_anchor_error <= 1e-4);
+    CHECK(distance(by_anchors.position(edge), points[0]) < 1e-6);
+  }
+}
+
+TEST_CASE("limits of anchors that make no sense are refused, and change nothing") {
+  SceneDescription scene = one_particle({0, 0, 0}, {}, {.max_distance = 0.1});
+  Cloth cloth = cloth_of(scene, small_steps(Backend::simd));
+  const auto error = [](const Result<void>& result) {
+    return result ? std::string() : result.error();
+  };
+  CHECK(error(cloth.limit_anchor(1, {})).find("anchor: no such anchor") == 0);
+  CHECK(error(cloth.limit_anchor(0, {.max_distance = -1})).find("max_distance") !=
+        std::string::npos);
+  CHECK(error(cloth.limit_anchors({})).find("limits") == 0);
+  CHECK(error(cloth.scale_anchors(-1)).find("scale") == 0);
+  CHECK(error(cloth.scale_anchors(kInfinity)).find("scale") == 0);
+  CHECK(error(cloth.move_fixed(0, {})).find("is not fixed") != std::string::npos);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST_CASE("seams have every chunk of the first batch between tiles once, behind 
     std::size_t widest = 0;  // seam, in tiles
     for (std::size_t tile = 0; tile <= tiles; ++tile) {
       for (std::size_t i = layout.seams_at[tile]; i < layout.seams_at[tile + 1]; ++i) {
-        const Seam& seam = layout.seams[i];
+        const TileSeam& seam = layout.seams[i];
         widest = std::max(widest, tile - seam.first_tile);
         for (std::uint32_t k = seam.first_chunk; k < seam.last_chunk; ++k) {
           ++found[k];

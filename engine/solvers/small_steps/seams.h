@@ -1,0 +1,89 @@
+/// The seams of small steps (kernels/reference/seams.h), one after the other, on either backend.
+///
+/// points: difference(a, b), start_difference(a, b) and move(slot, by) as for constraints (laws.h).
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/model/model.h"
+#include "kernels/reference/seams.h"
+
+namespace weft {
+
+/// What becomes of a seam as a cloth moves.
+struct SeamState {
+  double speed = 0;  // m/s, at which it closes
+  bool is_closed = false;
+};
+
+class SeamThreads {
+ public:
+  explicit SeamThreads(const Model& model) : model_(model), multiplier_(model.seams.size()) {}
+
+  bool empty() const { return multiplier_.empty(); }
+  /// A frame of substeps of h. 0: no time passes, and open seams stay as they are.
+  void begin(std::span<const SeamState> states, double h) {
+    states_.assign(states.begin(), states.end());
+    h_ = h;
+    work_ = 0;
+  }
+
+  /// The end of a sweep, or of local passes. give: (b h)^2 of the substep. is_first: nothing of it
+  /// was swept before.
+  template <class Points>
+  void draw(const Points& points, double give, bool is_first) {
+    for (std::size_t i = 0; i < multiplier_.size(); ++i) {
+      if (is_first) multiplier_[i] = {};
+      const std::uint32_t a = model_.seams.a[i], b = model_.seams.b[i];
+      const double wa = model_.inverse_mass[a], wb = model_.inverse_mass[b];
+      if (wa + wb == 0) continue;
+      const kernels::Vector by = reference::seam_impulse(
+          task(points, i, give), points.difference(a, b), wa + wb, multiplier_[i]);
+      multiplier_[i] = multiplier_[i] + by;
+      points.move(a, -wa * by);
+      points.move(b, wb * by);
+    }
+  }
+
+  /// The end of a substep. closed(slot, slot): these two have come together, as near as the
+  /// tolerance, m.
+  template <class Points, class Closed>
+  void end_substep(const Points& points, double give, double tolerance, Closed&& closed) {
+    for (std::size_t i = 0; i < multiplier_.size(); ++i) {
+      if (states_[i].is_closed) continue;
+      const std::uint32_t a = model_.seams.a[i], b = model_.seams.b[i];
+      const kernels::Vector d = points.difference(a, b);
+      work_ += dot(multiplier_[i], points.start_difference(a, b) - d) / give;
+      if (length(d) > tolerance) continue;
+      states_[i].is_closed = true;
+      closed(a, b);
+    }
+  }
+
+  std::span<const SeamState> states() const { return states_; }
+  /// J, that open seams have done in the frame.
+  double work() const { return work_; }
+  std::size_t bytes() const {
+    return multiplier_.capacity() * sizeof(kernels::Vector) +
+           states_.capacity() * sizeof(SeamState);
+  }
+
+ private:
+  template <class Points>
+  reference::SeamTask task(const Points& points, std::size_t i, double give) const {
+    if (states_[i].is_closed) return {{0, 0, 0}, std::numeric_limits<double>::infinity()};
+    const SeamStore& s = model_.seams;
+    return reference::SeamTask::of_open(points.start_difference(s.a[i], s.b[i]), states_[i].speed,
+                                        h_, s.force[i] * give);
+  }
+
+  const Model& model_;
+  std::vector<kernels::Vector> multiplier_;  // kg m
+  std::vector<SeamState> states_;
+  double h_ = 0, work_ = 0;
+};
+
+}  // namespace weft

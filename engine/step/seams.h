@@ -1,0 +1,37 @@
+/// Which seams of a cloth are closed, and how fast the others close.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/model/model.h"
+#include "engine/solvers/small_steps/seams.h"
+
+namespace weft {
+
+class Seams {
+ public:
+  Seams() = default;
+  explicit Seams(const Model& model) : states_(model.seams.size()) {}
+
+  /// Positions were given: a gap that they leave, m, closes in the time of its seam.
+  void begin(const Model& model, const kernels::Vectors& x, double tolerance);
+  /// A step was done.
+  void take(std::span<const SeamState> states) { states_.assign(states.begin(), states.end()); }
+
+  std::span<const SeamState> states() const { return states_; }
+  std::size_t bytes() const { return states_.capacity() * sizeof(SeamState); }
+
+ private:
+  std::vector<SeamState> states_;
+};
+
+/// Of some states at x: how many are open, and the largest gap of closed ones, m.
+struct SeamGaps {
+  int open = 0;
+  double largest = 0;
+};
+SeamGaps measure_seams(const Model& model, std::span<const SeamState> states,
+                       const kernels::Vectors& x);
+
+}  // namespace weft
