@@ -260,11 +260,15 @@ class Frame {
     read_positions();
   }
   void sweep_beyond() {
-    sweep();
+    plan_.projects ? solver_.sweep(team_) : solver_.mend(team_);
+    count_sweep();
     passes_left_ -= 1;
   }
   void sweep() {
     solver_.sweep(team_);
+    count_sweep();
+  }
+  void count_sweep() {
     ++report_.iterations;
     ++report_.direction_updates;
     report_.visits += edges_;

@@ -51,8 +51,8 @@ enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, auto
 ///   the same state by the paper's scheme with velocity correction; StepReport::scheme_fallbacks
 ///   counts these. With Settings::iterations nothing is redone. Takes no springs.
 /// implicit, bdf2: of small_steps alone. The implicit Euler method, first order, and the second
-///   order BDF2 with variable steps; particles that a contact or a local pass has moved go on from
-///   there at first order. Whoever writes velocities changes the step before alike; written
+///   order BDF2 with variable steps; particles that a contact has moved go on from there at first
+///   order. Whoever writes velocities changes the step before alike; written
 ///   positions have no past.
 /// automatic: bdf2 with small_steps, else paper. Cloth::settings() tells.
 enum class Scheme : std::uint8_t { paper, rattle, implicit, bdf2, automatic };

@@ -20,6 +20,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "kernels/reference/small_steps.h"
 #include "kernels/vectors.h"
 
 namespace weft::reference {
@@ -171,16 +172,17 @@ inline double violation(const MembraneElement& e, const MembraneStep& step, cons
 }
 
 /// Visits the laws one after the other. The multipliers of a substep begin at zero. Corner k moves
-/// by -w_k (u_k push.u + v_k push.v), push being what this returns.
+/// by -w_k (u_k push.u + v_k push.v), push being what this returns. What is left of a law up to the
+/// strain `left` is left.
 inline Deformation relax(const MembraneElement& e, const MembraneStep& step, double omega,
-                         Deformation f, const Deformation& start,
-                         MembraneMultipliers& multipliers) {
+                         Deformation f, const Deformation& start, MembraneMultipliers& multipliers,
+                         double left = 0) {
   Deformation push{};
   for (std::size_t k = 0; k < kMembraneLaws; ++k) {
     const MembraneLaw law = step.law(e, k);
     const MembraneTerm at = term(e, f, k);
     const double change = step.damping > 0 ? at.error - term(e, start, k).error : 0;
-    const double lack = law.lack(at.error, change, multipliers[k]);
+    const double lack = beyond(law.lack(at.error, change, multipliers[k]), left * law.stiffness);
     const double p = law.impulse(lack, multipliers[k], at.inverse_mass, omega);
     multipliers[k] += p;
     const Deformation& g = at.gradient;

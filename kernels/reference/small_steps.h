@@ -56,11 +56,16 @@ inline void advance(const Flight& f, std::size_t i, kernels::Vector a, double c,
   f.x.set(i, x_next);
 }
 
+/// What of an error exceeds `most`, in either direction.
+inline double beyond(double error, double most) { return error - std::clamp(error, -most, most); }
+
 /// Newton's step for C = (l^2 - L^2) / 2 of one constraint, d its vector, relaxed: the impulse over
-/// d, with the mean of l^2 and L^2 for l^2 in the divisor.
-inline double relaxed_impulse(kernels::Vector d, double rest, double inverse_masses, double omega) {
+/// d, with the mean of l^2 and L^2 for l^2 in the divisor. Of l^2 / L^2 - 1 what is within `left`
+/// is left.
+inline double relaxed_impulse(kernels::Vector d, double rest, double inverse_masses, double omega,
+                              double left = 0) {
   const double square = rest * rest, error = dot(d, d) - square;
-  return omega * error / ((error + 2 * square) * inverse_masses);
+  return omega * beyond(error, left * square) / ((error + 2 * square) * inverse_masses);
 }
 
 /// The law of a constraint in a substep, with the multiplier mu = (b h)^2 f of its tension f:

@@ -3,20 +3,22 @@
 /// As in yarns.h a yarn is solved exactly, here Newton's step for C = (l^2 - L^2) / 2 of each of
 /// its constraints, whose gradient is d: no root is taken. The right side is relaxed by omega; the
 /// diagonal has a compliance, the share YarnBlock::compliance of it, since the matrix of a straight
-/// yarn between two fixed ends is singular.
+/// yarn between two fixed ends is singular. Where kLeaves the right side is only what exceeds
+/// r.left.
 #pragma once
 
+#include "kernels/simd/small_steps.h"
 #include "kernels/simd/yarns.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-template <Base kBase, class At>
+template <bool kLeaves, Base kBase, class At>
 [[gnu::always_inline]] inline void relax_block(const Yarns& y, const YarnBlock& block, At at,
                                                At base, const Scratch& all,
                                                const YarnRelaxation& r) {
-  const Floats half_omega(0.5f * r.omega), tolerance(r.tolerance);
+  const Floats half_omega(0.5f * r.omega), tolerance(r.tolerance), left(r.left);
   std::uint32_t* const out = r.out + block.first;
   for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) {
     ScratchRow* scratch = all.of(lane);
@@ -29,7 +31,8 @@ template <Base kBase, class At>
           const Floats square = rest * rest;
           const Floats error =
               fused(d.x, d.x, fused(d.y, d.y, fused(d.z, d.z, Floats(0.f) - square)));
-          return YarnLink{d, half_omega * error, stiff * (error + square), d, error};
+          const Floats taken = kLeaves ? beyond(error, left * square) : error;
+          return YarnLink{d, half_omega * taken, stiff * (error + square), d, error};
         },
         [&](std::uint32_t k, const FloatVector& here, const YarnLink& link, const Factors& f)
             __attribute__((always_inline)) {
@@ -55,7 +58,10 @@ void relax_yarns(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* 
   with_rows(y, block, u, scratch, [&](auto at) {
     with_base(y, block, [&](auto where) {
       const auto base = rows_of_base(y, block, at, scratch);
-      relax_block<where>(y, block, at, base, Scratch(scratch, block), relaxation);
+      if (relaxation.left > 0)
+        relax_block<true, where>(y, block, at, base, Scratch(scratch, block), relaxation);
+      else
+        relax_block<false, where>(y, block, at, base, Scratch(scratch, block), relaxation);
     });
   });
 }

@@ -171,6 +171,11 @@ void renew_base(const Flight& flight, float* base, float cell, std::size_t first
       });
 }
 
+/// What of an error exceeds `most`, in either direction.
+[[gnu::always_inline]] inline Floats beyond(Floats error, Floats most) {
+  return error - xsimd::max(Floats(0.f) - most, xsimd::min(most, error));
+}
+
 void measure_edges(const EdgeBlock* blocks, EdgeSpans* spans, const float* base, std::size_t first,
                    std::size_t last) {
   QuadLanes at;
@@ -189,12 +194,14 @@ void measure_edges(const EdgeBlock* blocks, EdgeSpans* spans, const float* base,
 /// mean of l^2 and L^2: the same to first order in the strain, and finite where the ends coincide.
 ///
 ///     q = omega (l^2 - L^2) / (l^2 + L^2),   x_a -= w_a / (w_a + w_b) q d,   x_b += ...
-template <bool kRope>
+///
+/// Where kLeaves the numerator is only what exceeds r.left.
+template <bool kRope, bool kLeaves>
 [[gnu::always_inline]] inline void relax_edges(const EdgeRelaxation& r, std::size_t first,
                                                std::size_t last) {
   QuadLanes at;
   float* const u = r.u;
-  const Floats omega(r.omega), tolerance(r.tolerance), none(0.f);
+  const Floats omega(r.omega), tolerance(r.tolerance), left(r.left), none(0.f);
   for (std::size_t i = first; i < last; ++i) {
     const EdgeBlock& block = r.blocks[i];
     const EdgeSpans& span = r.spans[i];
@@ -208,6 +215,7 @@ template <bool kRope>
       const Floats divisor = fused(Floats(2.f), square, error);
       if constexpr (kRope) error = xsimd::max(error, none);
       out |= bits(xsimd::abs(error) > tolerance * square) << lane;
+      if constexpr (kLeaves) error = beyond(error, left * square);
       const Floats q = omega * error / divisor;
       a = fused(none - q * load(block.share_a + lane), d, a);
       b = fused(q * load(block.share_b + lane), d, b);
@@ -219,10 +227,10 @@ template <bool kRope>
 }
 
 void relax_distances(const EdgeRelaxation& r, std::size_t first, std::size_t last) {
-  relax_edges<false>(r, first, last);
+  r.left > 0 ? relax_edges<false, true>(r, first, last) : relax_edges<false, false>(r, first, last);
 }
 void relax_ropes(const EdgeRelaxation& r, std::size_t first, std::size_t last) {
-  relax_edges<true>(r, first, last);
+  r.left > 0 ? relax_edges<true, true>(r, first, last) : relax_edges<true, false>(r, first, last);
 }
 
 }  // namespace

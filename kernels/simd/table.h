@@ -273,6 +273,7 @@ struct EdgeRelaxation {
   std::uint16_t* out = nullptr;  // per block, a bit per lane: was out of tolerance
   float omega = 1;
   float tolerance = 0;  // of l^2 / rest^2 - 1
+  float left = 0;       // of the same: errors up to here are left, and larger ones taken to it
 };
 
 /// Of an edge block whose constraints may be springs (reference::ConstraintLaw).
@@ -373,6 +374,7 @@ struct YarnRelaxation {
   float omega = 1;
   float tolerance = 0;           // as above
   std::uint32_t* out = nullptr;  // per row, a bit per lane, likewise
+  float left = 0;                // as above
 };
 
 /// Of yarns whose links may be springs, in quads (small_step_springs.h).

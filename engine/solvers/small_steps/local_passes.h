@@ -3,9 +3,10 @@
 /// An item is a constraint, or a triangle of fabric with its three laws; items are numbered in this
 /// order. Each particle has a mask of 64 bits, one for each of its items. An item is looked at if
 /// its bit is set at one of its ends, which clears all of them; where it is out of tolerance it is
-/// relaxed, and the bits of all items at its ends are set for the next pass. It ends when no bit is
-/// set. A particle with more items has no mask: these have their bits at their other ends, or,
-/// where none of those has a mask either, are looked at in every pass.
+/// taken back to `mended`, which is within, and the bits of all items at its ends are set for the
+/// next pass. It ends when no bit is set. A particle with more items has no mask: these have their
+/// bits at their other ends, or, where none of those has a mask either, are looked at in every
+/// pass.
 #pragma once
 
 #include <bit>
@@ -32,7 +33,7 @@ struct LocalWork {
 struct LocalLimits {
   double tolerance = 0;          // strain
   double contact_tolerance = 0;  // m
-  double omega = 1;
+  double mended = 0;             // strain
   std::int64_t most_visits = 0;  // besides one of each contact, by which a run begins
   LawStep laws{};                // with springs
 };
@@ -117,8 +118,8 @@ bool LocalPasses::relax_constraint(Points& points, std::uint32_t c, const LocalL
   const bool out =
       c < s.bilateral ? std::abs(error) > limits.tolerance * rest : error > limits.tolerance * rest;
   if (!out) return false;
-  const kernels::Vector by =
-      (limits.omega * error * s.effective_mass[c]) * kernels::direction(d, l);
+  const double beyond = reference::beyond(error, limits.mended * rest);
+  const kernels::Vector by = (beyond * s.effective_mass[c]) * kernels::direction(d, l);
   points.move(a, -model_.inverse_mass[a] * by);
   points.move(b, model_.inverse_mass[b] * by);
   return true;
@@ -128,9 +129,10 @@ template <class Points>
 bool LocalPasses::relax_by_law(Points& points, std::uint32_t c, const LocalLimits& limits) {
   const ConstraintStore& s = model_.constraints;
   if (!limits.laws.is_kept(s, c)) return false;
-  const LawVisit visit = visit_law(s, points, limits.laws.springs, c);
+  LawVisit visit = visit_law(s, points, limits.laws.springs, c);
   if (!(std::abs(visit.violation()) > limits.tolerance * s.rest_length[c])) return false;
-  apply_law(model_, points, visit, limits.omega, c);
+  visit.residual = reference::beyond(visit.residual, limits.mended * s.rest_length[c]);
+  apply_law(model_, points, visit, 1, c);
   return true;
 }
 
@@ -138,7 +140,7 @@ template <class Points>
 bool LocalPasses::relax_triangle(Points& points, std::uint32_t element, const LocalLimits& limits) {
   const MembraneStore& s = model_.membrane;
   if (!(violation_of_element(s, points, limits.laws, element) > limits.tolerance)) return false;
-  relax_element(model_, points, limits.laws, limits.omega, element);
+  relax_element(model_, points, limits.laws, 1, element, limits.mended);
   return true;
 }
 

@@ -55,17 +55,17 @@ double largest_violation(const MembraneStore& s, const Points& points, const Law
   return most;
 }
 
-/// Goes on from the multipliers that points have.
+/// Goes on from the multipliers that points have. Strains up to `left` are left.
 template <class Points>
 void relax_element(const Model& model, Points& points, const LawStep& laws, double omega,
-                   std::uint32_t i) {
+                   std::uint32_t i, double left = 0) {
   const MembraneStore& s = model.membrane;
   const reference::MembraneStep step = membrane_step(laws);
   const MembraneLook look = look_at_element(s, points, step, i);
   reference::MembraneMultipliers multipliers = points.membrane_multipliers(i);
   const reference::MembraneElement& element = s.element[i];
   const reference::Deformation push =
-      relax(element, step, omega, look.now, look.start, multipliers);
+      relax(element, step, omega, look.now, look.start, multipliers, left);
   points.set_membrane_multipliers(i, multipliers);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t slot = s.slots[i][k];

@@ -17,7 +17,6 @@ using kernels::Vector;
 
 struct ReferenceSmallSteps::Points {
   kernels::VectorsView x, predicted, start;
-  double share;  // of what a local pass does, that the prediction takes: 1 - b
   std::vector<std::uint32_t>& touched;
   std::vector<double>& multipliers;
   kernels::VectorsView v;
@@ -29,7 +28,6 @@ struct ReferenceSmallSteps::Points {
   Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
   void move(std::uint32_t slot, Vector by) const {
     x.add(slot, by);
-    predicted.add(slot, share * by);
     if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
   }
   bool hold(std::uint32_t slot, std::uint32_t anchor) const {
@@ -61,7 +59,6 @@ ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_anchors) {
   return {.x = x_.view(),
           .predicted = predicted_.view(),
           .start = before_.view(),
-          .share = 1 - formula_.part,
           .touched = touched_,
           .multipliers = multiplier_,
           .v = v_.view(),
@@ -101,6 +98,7 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
   }
   if (model.constraints.has_springs()) multiplier_.resize(model.constraints.size());
   membrane_multiplier_.resize(model.membrane.size());
+  if (model.has_laws()) aside_.resize(model.slots());
 }
 
 double ReferenceSmallSteps::substep_length(kernels::VectorsView x, double acceleration) const {
@@ -118,7 +116,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   omega_ = plan.omega;
   projects_ = plan.projects;
   softest_ = plan.softest;
-  is_begun_ = false;
+  is_begun_ = is_aside_ = false;
   passes_.forget();
   seams_.begin(plan.seams, plan.projects ? 0 : plan.h);
   departures_.begin();
@@ -165,6 +163,7 @@ void ReferenceSmallSteps::measure_departure() {
 }
 
 void ReferenceSmallSteps::advance(Team&) {
+  take_past_along();
   end_motions();
   if (settings_.motion_tolerance > 0) measure_departure();
   is_begun_ = false;
@@ -229,6 +228,36 @@ double ReferenceSmallSteps::bending_energy(double give, Team&) {
   return sum;
 }
 
+void ReferenceSmallSteps::mend(Team& team) {
+  if (model_.has_laws()) set_aside();
+  mends_ = true;
+  sweep(team);
+  mends_ = false;
+}
+
+/// Of l^2 / rest^2 - 1.
+double ReferenceSmallSteps::left_by_sweep() const {
+  const double strain = tuning::kMended * settings_.tolerance;
+  return mends_ ? strain * (2 + strain) : 0;
+}
+
+void ReferenceSmallSteps::set_aside() {
+  if (std::exchange(is_aside_, true)) return;
+  aside_ = x_;
+}
+
+void ReferenceSmallSteps::take_past_along() {
+  if (!std::exchange(is_aside_, false)) return;
+  for (const std::uint32_t slot : touched_) aside_.set(slot, x_[slot]);
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    const bool is_held = length(x_[i] - predicted_[i]) == 0;
+    if (is_held) continue;
+    const Vector by = x_[i] - aside_[i];
+    predicted_.view().add(i, by);
+    before_.view().add(i, by);
+  }
+}
+
 void ReferenceSmallSteps::sweep(Team&) {
   out_.clear();
   for (std::size_t family = 0; family < layout_.yarns.families(); ++family) {
@@ -286,9 +315,10 @@ void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
     if (std::abs(length(d) - rest) > tuning::kLocalShare * settings_.tolerance * rest)
       out_.push_back(links[k]);
     system.d.push_back(d);
-    system.error.push_back(0.5 * (dot(d, d) - rest * rest));
+    system.error.push_back(
+        0.5 * reference::beyond(dot(d, d) - rest * rest, left_by_sweep() * rest * rest));
   }
-  system.solve(omega_, compliance_of_yarn(model_, slots));
+  system.solve(mends_ ? 1 : omega_, compliance_of_yarn(model_, slots));
   apply_impulses(slots);
 }
 
@@ -340,21 +370,20 @@ void ReferenceSmallSteps::relax_edge(std::uint32_t c) {
   if ((rope ? error : std::abs(error)) > tuning::kLocalShare * settings_.tolerance * rest)
     out_.push_back(c);
   if (rope && error <= 0) return;
-  const double impulse = reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c], omega_);
+  const double impulse = reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c],
+                                                    mends_ ? 1 : omega_, left_by_sweep());
   x_.view().add(a, (-model_.inverse_mass[a] * impulse) * d);
   x_.view().add(b, (model_.inverse_mass[b] * impulse) * d);
 }
 
 void ReferenceSmallSteps::relax_spring(std::uint32_t c) {
   Points points = this->points(false);
-  points.share = 0;
   sweep_law(model_, points, law_step(), !is_begun_, omega_, c);
 }
 
 void ReferenceSmallSteps::relax_membrane() {
   if (law_step().leaves_triangles()) return;
   Points points = this->points(false);
-  points.share = 0;
   if (!is_begun_) std::ranges::fill(membrane_multiplier_, reference::MembraneMultipliers{});
   for (const std::uint32_t i : layout_.membrane.element) {
     if (i != kNoIndex) relax_element(model_, points, law_step(), omega_, i);
@@ -373,7 +402,6 @@ void ReferenceSmallSteps::judge_membrane() {
 void ReferenceSmallSteps::draw_seams() {
   if (seams_.empty()) return;
   Points points = this->points(false);
-  points.share = 0;
   seams_.draw(points, 1 / law_step().springs.scale, !is_begun_);
 }
 
@@ -387,10 +415,11 @@ void ReferenceSmallSteps::end_seams() {
 }
 
 LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
+  if (model_.has_laws()) set_aside();
   Points points = this->points(true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
-                           .omega = tuning::kOmega,
+                           .mended = tuning::kMended * settings_.tolerance,
                            .most_visits = most_visits,
                            .laws = law_step()};
   const LocalWork work = passes_.run(points, contacts, limits);
@@ -446,6 +475,7 @@ void ReferenceSmallSteps::read_positions(kernels::VectorsView x, Team&) const {
 }
 
 void ReferenceSmallSteps::settle(Team&) {
+  take_past_along();
   end_motions();
   measure_departure();
   settle_velocities();
@@ -492,7 +522,8 @@ void ReferenceSmallSteps::turn(const Turn& by) {
 
 std::size_t ReferenceSmallSteps::bytes() const {
   return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + bytes_of(arrived_) +
-         bytes_of(multiplier_) + bytes_of(membrane_multiplier_) + passes_.bytes() + seams_.bytes();
+         bytes_of(multiplier_) + bytes_of(membrane_multiplier_) + aside_.bytes() + passes_.bytes() +
+         seams_.bytes();
 }
 
 std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,

@@ -34,6 +34,7 @@ class ReferenceSmallSteps final : public SmallSteps {
              kernels::VectorsView force, const FramePlan& plan, Team& team) override;
   void advance(Team& team) override;
   void sweep(Team& team) override;
+  void mend(Team& team) override;
   void judge(Team& team) override;
   std::int64_t count_out() const override { return std::ssize(out_); }
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
@@ -82,6 +83,9 @@ class ReferenceSmallSteps final : public SmallSteps {
   void relax_edge(std::uint32_t constraint);
   void relax_spring(std::uint32_t constraint);
   void relax_membrane();
+  void set_aside();
+  void take_past_along();
+  double left_by_sweep() const;
   void judge_membrane();
   void draw_seams();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
@@ -113,6 +117,9 @@ class ReferenceSmallSteps final : public SmallSteps {
   std::vector<double> multiplier_;                // per constraint; with springs only
   std::vector<reference::MembraneMultipliers> membrane_multiplier_;  // per triangle of fabric
   bool is_begun_ = false;                                            // the substep has been swept
+  bool mends_ = false;                                               // the present sweep
+  kernels::Vectors aside_;  // x_ before mending, with laws only
+  bool is_aside_ = false;   // aside_ is that of this substep
   bool projects_ = false;
   double softest_ = 0;  // m/N, where it projects
 };

@@ -16,25 +16,24 @@ namespace {
 constexpr std::size_t kMostShares = 16;      // of the blocks of a family, each with its scratch
 constexpr std::size_t kPart = 4 * kStretch;  // floats that a thread takes at a time
 
+/// l^2 / rest^2 - 1 at this strain.
+float squared(double strain) { return static_cast<float>(2 * strain + strain * strain); }
 float squared_tolerance(const Settings& settings) {
-  const double strain = tuning::kLocalShare * settings.tolerance;
-  return static_cast<float>(2 * strain + strain * strain);
+  return squared(tuning::kLocalShare * settings.tolerance);
+}
+float squared_mended(const Settings& settings) {
+  return squared(tuning::kMended * settings.tolerance);
 }
 
 }  // namespace
 
 /// Positions for local passes: differences of base and of u, which are nearly exact.
-///
-/// What local passes do is no part of a smooth motion. In the velocity by BDF2 it would count 1 / b
-/// times, half as much again, and where much is left to do in each substep errors would grow. It
-/// counts once, since the prediction takes its share 1 - b.
 struct SmallStepsSolver::Points {
   const YarnPlaces& places;
   const float* base;
   float* u;
   float* predicted;
   const float* u_start;
-  float share;  // 1 - b
   std::vector<std::uint32_t>& touched;
   const std::vector<std::uint32_t>& multiplier_place;
   float* multipliers;
@@ -75,9 +74,7 @@ struct SmallStepsSolver::Points {
   void move(std::uint32_t slot, kernels::Vector by) const {
     std::size_t at = places.of(slot);
     for (const double change : {by.x, by.y, by.z}) {
-      const float moved = u[at] + static_cast<float>(change);
-      predicted[at] += share * (moved - u[at]);
-      u[at] = moved;
+      u[at] += static_cast<float>(change);
       at += places.stride;
     }
     if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
@@ -107,13 +104,12 @@ struct SmallStepsSolver::Points {
   }
 };
 
-SmallStepsSolver::Points SmallStepsSolver::points(double share, bool with_anchors) {
+SmallStepsSolver::Points SmallStepsSolver::points(bool with_anchors) {
   return {.places = layout_.places(),
           .base = base_.data(),
           .u = u_.data(),
           .predicted = predicted_.data(),
           .u_start = u_before_.data(),
-          .share = static_cast<float>(share),
           .touched = touched_,
           .multiplier_place = layout_.multiplier_place,
           .multipliers = multiplier_.data(),
@@ -130,7 +126,7 @@ LawStep SmallStepsSolver::law_step() const {
 }
 
 double SmallStepsSolver::law_error() {
-  Points points = this->points(0, false);
+  Points points = this->points(false);
   double most = largest_violation(model_.membrane, points, law_step());
   if (model_.constraints.has_springs())
     most = std::max(most, largest_violation(model_.constraints, points, law_step()));
@@ -159,6 +155,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
   }
   for (auto* array : {&past_.v, &past_.v_before, &past_.moved, &past_.base})
     array->resize(layout_.floats);
+  if (model.has_laws()) aside_.resize(layout_.floats);
   past_.at_limit = anchors_.at_limit();
   arrived_.reserve(model.anchors.size());
   multiplier_.resize(layout_.multipliers());
@@ -280,7 +277,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   omega_ = plan.omega;
   projects_ = plan.projects;
   softest_ = plan.softest;
-  is_begun_ = false;
+  is_begun_ = is_aside_ = false;
   passes_.forget();
   seams_.begin(plan.seams, plan.projects ? 0 : plan.h);
   departures_.begin();
@@ -320,6 +317,7 @@ void SmallStepsSolver::renew_base(Team& team) {
 }
 
 void SmallStepsSolver::advance(Team& team) {
+  take_past_along(team);
   end_motions();
   is_begun_ = false;
   if (since_renewal_++ == tuning::kRenewal) {  // never where the base is the past's
@@ -377,7 +375,15 @@ void SmallStepsSolver::decay(double to, Team& team) {
   }
 }
 
-void SmallStepsSolver::sweep(Team& team) {
+void SmallStepsSolver::sweep(Team& team) { sweep(false, team); }
+
+void SmallStepsSolver::mend(Team& team) {
+  if (model_.has_laws()) set_aside();
+  sweep(true, team);
+}
+
+void SmallStepsSolver::sweep(bool mends, Team& team) {
+  mends_ = mends;
   if (layout_.has_yarns()) sweep_yarns(team);
   sweep_edges(team);
   if (model_.constraints.has_springs())
@@ -388,6 +394,45 @@ void SmallStepsSolver::sweep(Team& team) {
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors(team);
   draw_seams();
   is_begun_ = true;
+}
+
+/// What mending does to laws is no motion: a sweep leaves some of their load as an error, and the
+/// next one would have it again.
+void SmallStepsSolver::set_aside() {
+  if (std::exchange(is_aside_, true)) return;
+  std::ranges::copy(u_, aside_.begin());
+}
+
+/// By a limit, which has put it where it is predicted to be.
+bool SmallStepsSolver::is_held(std::uint32_t slot) const {
+  const YarnPlaces& places = layout_.places();
+  std::size_t at = places.of(slot);
+  bool is_held = true;
+  for (int axis = 0; axis < 3; ++axis, at += places.stride)
+    is_held = is_held && u_[at] == predicted_[at];
+  return is_held;
+}
+
+/// Where mending has moved a particle its past is moved alike. Particles that a contact or a limit
+/// has stopped begin a new one.
+void SmallStepsSolver::take_past_along(Team& team) {
+  if (!std::exchange(is_aside_, false)) return;
+  const YarnPlaces& places = layout_.places();
+  const auto leave = [&](std::uint32_t slot) {
+    std::size_t at = places.of(slot);
+    for (int axis = 0; axis < 3; ++axis, at += places.stride) aside_[at] = u_[at];
+  };
+  for (const std::uint32_t slot : touched_) leave(slot);
+  for (const std::uint32_t slot : model_.anchors.slot) {
+    if (is_held(slot)) leave(slot);
+  }
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const float by = u_[i] - aside_[i];
+      predicted_[i] += by;
+      u_before_[i] += by;
+    }
+  });
 }
 
 void SmallStepsSolver::judge(Team& team) {
@@ -405,7 +450,7 @@ void SmallStepsSolver::judge_springs(Team& team) {
                         table_.judge_spring_yarns(yarns(), block, u_.data(), scratch,
                                                   relaxation_of_spring_yarns());
                       });
-  const Points points = this->points(0, false);
+  const Points points = this->points(false);
   const double tolerance = tuning::kLocalShare * settings_.tolerance;
   for (const std::uint32_t c : layout_.serial) {
     if (breaks_law(model_.constraints, points, law_step(), tolerance, c)) passes_.look_near(c);
@@ -420,13 +465,22 @@ void SmallStepsSolver::hold_anchors(Team& team) {
 }
 
 simd::YarnRelaxation SmallStepsSolver::relaxation_of_yarns() {
-  return {static_cast<float>(omega_), squared_tolerance(settings_), yarns_out_.data()};
+  return {static_cast<float>(mends_ ? 1 : omega_), squared_tolerance(settings_), yarns_out_.data(),
+          left_by_sweep()};
 }
 
 simd::EdgeRelaxation SmallStepsSolver::relaxation_of_edges() {
-  return {u_.data(),         layout_.blocks.data(),      spans_.data(),
-          edges_out_.data(), static_cast<float>(omega_), squared_tolerance(settings_)};
+  return {u_.data(),
+          layout_.blocks.data(),
+          spans_.data(),
+          edges_out_.data(),
+          static_cast<float>(mends_ ? 1 : omega_),
+          squared_tolerance(settings_),
+          left_by_sweep()};
 }
+
+/// Springs are swept as ever.
+float SmallStepsSolver::left_by_sweep() const { return mends_ ? squared_mended(settings_) : 0; }
 
 simd::SpringLaws SmallStepsSolver::spring_laws() const {
   const LawStep step = law_step();
@@ -513,21 +567,23 @@ void SmallStepsSolver::sweep_edges(Team& team) {
 
 void SmallStepsSolver::sweep_serial() {
   const ConstraintStore& s = model_.constraints;
-  Points points = this->points(0, false);
+  Points points = this->points(false);
+  const double omega = mends_ ? 1 : omega_, left = static_cast<double>(left_by_sweep());
   for (const std::uint32_t c : layout_.serial) {
     const kernels::Vector d = points.difference(s.a[c], s.b[c]);
-    const double square = s.rest_length[c] * s.rest_length[c], error = dot(d, d) - square;
+    const double rest = s.rest_length[c], square = rest * rest, error = dot(d, d) - square;
     if (std::abs(error) > static_cast<double>(squared_tolerance(settings_)) * square)
       passes_.look_near(c);
     if (c >= s.bilateral && error <= 0) continue;
-    const kernels::Vector by = (omega_ * error / (error + 2 * square) * s.effective_mass[c]) * d;
+    const kernels::Vector by =
+        reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c], omega, left) * d;
     points.move(s.a[c], -model_.inverse_mass[s.a[c]] * by);
     points.move(s.b[c], model_.inverse_mass[s.b[c]] * by);
   }
 }
 
 void SmallStepsSolver::sweep_serial_springs() {
-  Points points = this->points(0, false);
+  Points points = this->points(false);
   for (const std::uint32_t c : layout_.serial) {
     sweep_law(model_, points, law_step(), !is_begun_, omega_, c);
   }
@@ -572,24 +628,25 @@ void SmallStepsSolver::look_near_what_was_out() {
 
 void SmallStepsSolver::draw_seams() {
   if (seams_.empty()) return;
-  Points points = this->points(0, false);
+  Points points = this->points(false);
   seams_.draw(points, 1 / law_step().springs.scale, !is_begun_);
 }
 
 void SmallStepsSolver::end_seams() {
   if (seams_.empty()) return;
-  seams_.end_substep(this->points(0, false), 1 / law_step().springs.scale,
-                     settings_.contact_tolerance, [&](std::uint32_t a, std::uint32_t b) {
+  seams_.end_substep(this->points(false), 1 / law_step().springs.scale, settings_.contact_tolerance,
+                     [&](std::uint32_t a, std::uint32_t b) {
                        touched_.push_back(a);
                        touched_.push_back(b);
                      });
 }
 
 LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
-  Points points = this->points(1 - formula_.part, true);
+  if (model_.has_laws()) set_aside();
+  Points points = this->points(true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
-                           .omega = tuning::kOmega,
+                           .mended = tuning::kMended * settings_.tolerance,
                            .most_visits = most_visits,
                            .laws = law_step()};
   const LocalWork work = passes_.run(points, contacts, limits);
@@ -654,6 +711,7 @@ double SmallStepsSolver::bending_energy(double give, Team& team) {
 }
 
 void SmallStepsSolver::settle(Team& team) {
+  take_past_along(team);
   end_motions();
   settle_velocities(true, team);
 }
@@ -695,8 +753,8 @@ void SmallStepsSolver::keep(Team& team) {
 std::size_t SmallStepsSolver::bytes() const {
   return 11 * bytes_of(u_) + bytes_of(departure_) + bytes_of(spans_) + bytes_of(base_step_) +
          bytes_of(scratch_) + bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) +
-         bytes_of(arrived_) + bytes_of(multiplier_) + passes_.bytes() + seams_.bytes() +
-         membrane_.bytes() + bending_.bytes() + anchors_.bytes();
+         bytes_of(arrived_) + bytes_of(multiplier_) + bytes_of(aside_) + passes_.bytes() +
+         seams_.bytes() + membrane_.bytes() + bending_.bytes() + anchors_.bytes();
 }
 
 }  // namespace weft

@@ -46,6 +46,7 @@ class SmallStepsSolver final : public SmallSteps {
   /// The stages of a substep.
   void advance(Team& team) override;
   void sweep(Team& team) override;
+  void mend(Team& team) override;
   void judge(Team& team) override;
   /// Constraints that the last sweep found out of tolerance.
   std::int64_t count_out() const override;
@@ -74,7 +75,7 @@ class SmallStepsSolver final : public SmallSteps {
 
  private:
   struct Points;
-  Points points(double share, bool with_anchors);
+  Points points(bool with_anchors);
   LawStep law_step() const;
   simd::Flight flight();
   simd::Yarns yarns();
@@ -89,6 +90,11 @@ class SmallStepsSolver final : public SmallSteps {
   void split(kernels::VectorsView x, int substeps, Team& team);
   void measure_base(Team& team);
   void renew_base(Team& team);
+  void sweep(bool mends, Team& team);
+  void set_aside();
+  void take_past_along(Team& team);
+  bool is_held(std::uint32_t slot) const;
+  float left_by_sweep() const;
   void sweep_yarns(Team& team);
   void sweep_edges(Team& team);
   void judge_springs(Team& team);
@@ -152,6 +158,9 @@ class SmallStepsSolver final : public SmallSteps {
   std::vector<std::uint32_t> arrived_;                     // slots that came to an anchor's limit
   kernels::AlignedVector<float> multiplier_;               // in places of the layout
   bool is_begun_ = false;                                  // the substep has been swept
+  bool mends_ = false;                                     // the present sweep
+  kernels::AlignedVector<float> aside_;                    // u_ before mending, with laws only
+  bool is_aside_ = false;                                  // aside_ is that of this substep
   bool projects_ = false;
   double softest_ = 0;  // m/N, where it projects
 };

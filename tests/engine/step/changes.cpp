@@ -86,7 +86,7 @@ std::vector<NamedScene> rigid_scenes() {
           {"sphere", scene_of("hang_sphere", 17)}};
 }
 std::vector<NamedScene> soft_scenes() {
-  return {{"flag", scene_of("flag", 12)},
+  return {{"flag", scene_of("flag", 8)},
           {"bending", with_rows(scene_of("hang", 12), 12, 1e-4)},
           {"anchors", with_anchors(scene_of("hang", 12))},
           {"cotton", cotton_cape(16)}};

@@ -112,7 +112,7 @@ TEST_CASE("energy from what a start violates says nothing about halves") {
 
 TEST_CASE("where other methods had to do, what they leave brings in little energy") {
   CHECK(most_gained(15, 1, 1, 0.06) < 1);
-  CHECK(most_gained(10, 30, 2, 0.04) < 2.5);
+  CHECK(most_gained(10, 30, 2, 0.04) < 3);
 }
 
 TEST_CASE("a cloth that is given a state goes on like a new one, whatever its steps came to") {

@@ -35,7 +35,7 @@ struct Points {
 };
 
 constexpr LocalLimits kLimits{
-    .tolerance = 0.01, .contact_tolerance = 1e-4, .omega = 0.8, .most_visits = 1'000'000};
+    .tolerance = 0.01, .contact_tolerance = 1e-4, .mended = 0.008, .most_visits = 1'000'000};
 
 double largest_strain(const Model& model, const Points& points) {
   double largest = 0;

@@ -1,0 +1,113 @@
+/// Cloth whose motion decays comes to rest: it moves by nothing that can be seen, and says so.
+#include <doctest/doctest.h>
+#include <weft/mesh.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "tests/support/clothes.h"
+#include "tests/support/motion.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+/// A sheet of triangles, 2 m wide, level where it begins and held at two corners.
+MeshDescription held_sheet(std::uint32_t size) {
+  MeshDescription mesh;
+  const double cell = 2.0 / (size - 1);
+  for (std::uint32_t i = 0; i < size * size; ++i)
+    mesh.positions.push_back({cell * (i % size), 0, cell * (i / size)});
+  for (std::uint32_t j = 0; j + 1 < size; ++j) {
+    for (std::uint32_t i = 0; i + 1 < size; ++i) {
+      const std::uint32_t a = j * size + i, b = a + 1, c = a + size + 1, d = a + size;
+      for (const std::uint32_t corner : {a, b, c, a, c, d}) mesh.corners.push_back(corner);
+      mesh.face_sizes.insert(mesh.face_sizes.end(), {3, 3});
+    }
+  }
+  mesh.pins = {0, size - 1};
+  return mesh;
+}
+
+SceneDescription scene_of(const MeshDescription& mesh, double decay) {
+  auto cloth = cloth_from_mesh(mesh);
+  REQUIRE(cloth);
+  SceneDescription scene = std::move(cloth.value().scene);
+  scene.damping.motion = decay;
+  return scene;
+}
+
+SceneDescription sheet_of_ropes(std::uint32_t size, double decay) {
+  MeshDescription mesh = held_sheet(size);
+  mesh.ropes = Ropes::all;
+  return scene_of(mesh, decay);
+}
+
+SceneDescription sheet_of(const char* material, std::uint32_t size, double decay) {
+  MeshDescription mesh = held_sheet(size);
+  mesh.material = find_material(material).value();
+  return scene_of(mesh, decay);
+}
+
+/// Ten frames, after `seconds`.
+struct Rest {
+  double moved = 0;  ///< m, the largest of a frame
+  double speed = 0;  ///< m/s, the largest that is reported
+};
+
+Rest rest_after(double seconds, const SceneDescription& scene, double dt,
+                const Settings& settings = {}) {
+  Cloth cloth = cloth_of(scene, settings);
+  run(cloth, dt, static_cast<int>(seconds / dt));
+  Rest rest;
+  for (int frame = 0; frame < 10; ++frame) {
+    const std::vector<Vec3> before = positions(cloth);
+    run(cloth, dt, 1);
+    for (std::uint32_t i = 0; i < before.size(); ++i) {
+      rest.moved = std::max(rest.moved, distance(before[i], cloth.position(i)));
+      rest.speed = std::max(rest.speed, length(cloth.velocity(i)));
+    }
+  }
+  return rest;
+}
+
+void check_rest(const Rest& rest) {
+  CHECK(rest.moved < 1e-5);
+  CHECK(rest.speed < 1e-3);
+}
+
+// With mending that took whole errors: 0.8 to 3 mm a frame, 0.5 to 1.2 m/s.
+TEST_CASE("a sheet of ropes comes to rest, at any frame rate, though some of it is mended") {
+  for (const double rate : {30., 60., 240.}) {
+    CAPTURE(rate);
+    check_rest(rest_after(12, sheet_of_ropes(14, 3), 1 / rate));
+  }
+  check_rest(rest_after(12, sheet_of_ropes(14, 3), 1 / 60., {.substeps = 24}));
+  check_rest(rest_after(40, sheet_of_ropes(14, 0.5), 1 / 60.));
+}
+
+TEST_CASE("so does one that is mended everywhere, by sweeps") {
+  scenes::Options options;
+  options.size = 15;
+  options.ropes = true;
+  auto scene = scenes::make("four_pins", options);
+  REQUIRE(scene);
+  scene.value().damping.motion = 3;
+  check_rest(rest_after(12, scene.value(), 1 / 60.));
+}
+
+TEST_CASE("fabric comes to rest") {
+  for (const char* material : {"cotton", "silk"}) {
+    CAPTURE(material);
+    const Rest rest = rest_after(12, sheet_of(material, 12, 3), 1 / 60.);
+    check_rest(rest);
+  }
+}
+
+TEST_CASE("in doubles, too") {
+  check_rest(rest_after(12, sheet_of_ropes(8, 3), 1 / 60.,
+                        {.solver = Solver::small_steps, .backend = Backend::reference}));
+}
+
+}  // namespace
+}  // namespace weft::test
