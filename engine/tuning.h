@@ -238,10 +238,6 @@ inline constexpr double kProductTime = 0.12;
 
 // --------------------------------------------------------------------------------- meshes
 
-/// Sine of the largest angle by which sides of a cell may leave the warp that a mesh gives, or the
-/// weft: then they are its yarns. Across that angle cloth is softer by its square times warp /
-/// shear: 0.7 % for cotton, 2 % for silk.
-inline constexpr double kMostDeviation = 0.01;
 /// How often the energies that bending stores around particles become means over neighbours, before
 /// elements get their factors; and how often all of that is done. More rings leave a sheet stiffer
 /// as a whole and its parts less alike (perf/tried.md).
@@ -262,5 +258,12 @@ inline constexpr double kSettlingShare = 0.4;
 /// Where the mesh around a particle bends in some direction by more than this fraction too much or
 /// too little, elements are added. A smaller one makes it more even, and steps slower.
 inline constexpr double kBendingUneven = 0.1;
+/// The largest share by which a quad whose sides are springs may be softer in shear than its
+/// material. A larger one makes more quads of curved grids yarns, which are several times as fast
+/// as triangles.
+inline constexpr double kWovenError = 0.03;
+/// Of warp or weft: the shear that kWovenError is at least measured by. Without it cloth that has
+/// no shear would be yarns on exact rectangles alone.
+inline constexpr double kFeltShear = 0.01;
 
 }  // namespace weft::tuning

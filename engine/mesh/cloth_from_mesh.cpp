@@ -125,7 +125,9 @@ Result<void> add_material(const MeshDescription& mesh, const Welded& welded,
   const Material& material = *mesh.material;
   scene.masses = masses_of(faces, material.density, scene.positions.size());
   if (auto r = check_masses(mesh, welded, scene.masses); !r) return r;
-  scene.constraints = elastic_constraints(mesh, welded, faces, edges);
+  Fabric fabric = fabric_of(mesh, welded, faces, edges);
+  scene.constraints = std::move(fabric.constraints);
+  scene.membrane = std::move(fabric.membrane);
   scene.bending = bending_of(faces, scene.positions.size(), mesh);
   scene.damping = {material.damping_stretch, material.damping_bending, material.damping_motion};
   scene.air = air_of(faces, material);
@@ -161,7 +163,9 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
   } else if (auto r = add_material(mesh, welded, found.faces, edges, scene); !r) {
     return Error{r.error()};
   }
-  if (scene.constraints.empty()) return Error{"every edge of the mesh has length 0"};
+  if (scene.constraints.empty() && scene.membrane.empty()) {
+    return Error{"every edge of the mesh has length 0"};
+  }
   count_pieces(scene, cloth.counts);
   cloth.particle_of_vertex = std::move(welded.particle_of_vertex);
   return cloth;

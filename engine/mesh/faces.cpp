@@ -69,24 +69,18 @@ class Collector {
     return face;
   }
 
-  /// What is not convex is cut at its innermost corner, and what is no cell of yarns by its shorter
-  /// diagonal.
+  /// What is not convex is cut at its innermost corner.
   void add_quad(const Face& quad) {
     const auto at_corner = turns(quad);
     const auto least = std::ranges::min_element(at_corner);
     const double longest = longest_side(quad);
-    if (has_repeated_particle(quad) || !(*least > kFlattest * longest * longest)) {
-      const auto i = static_cast<std::size_t>(least - at_corner.begin());
-      add_triangle(triangle_of(quad, {i, (i + 1) % 4, (i + 2) % 4}));
-      add_triangle(triangle_of(quad, {i, (i + 2) % 4, (i + 3) % 4}));
+    if (!has_repeated_particle(quad) && *least > kFlattest * longest * longest) {
+      found_.faces.push_back(with_warp(quad));
       return;
     }
-    const Face woven = with_warp(quad);
-    if (follows(woven, woven.warp)) {
-      found_.faces.push_back(woven);
-    } else {
-      for (const auto& corners : cut(quad)) add_triangle(triangle_of(quad, corners));
-    }
+    const auto i = static_cast<std::size_t>(least - at_corner.begin());
+    add_triangle(triangle_of(quad, {i, (i + 1) % 4, (i + 2) % 4}));
+    add_triangle(triangle_of(quad, {i, (i + 2) % 4, (i + 3) % 4}));
   }
 
   const MeshDescription& mesh_;

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "engine/mesh/warp.h"
-
 namespace weft::mesh {
 namespace {
 
@@ -60,10 +58,6 @@ bool second_is_warp(const std::vector<std::uint32_t>& quads, const std::vector<F
 
 std::vector<std::uint32_t> warp_sides(const std::vector<Face>& faces, const Edges& edges) {
   std::vector<std::uint32_t> first_side(faces.size(), kUnknown);
-  for (std::uint32_t face = 0; face < faces.size(); ++face) {
-    const Vec3 warp = faces[face].warp;
-    if (faces[face].is_quad() && is_given(warp)) first_side[face] = side_along(faces[face], warp);
-  }
   for (std::uint32_t face = 0; face < faces.size(); ++face) {
     if (!faces[face].is_quad() || first_side[face] != kUnknown) continue;
     const auto quads = spread(face, faces, edges, first_side);

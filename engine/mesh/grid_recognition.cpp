@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/mesh/edges.h"
-#include "engine/mesh/warp.h"
 
 namespace weft::mesh {
 namespace {
@@ -65,8 +64,7 @@ std::vector<Cell> possible_cells(const std::vector<Face>& faces, const Edges& ed
     if (faces[f].is_quad() || faces[g].is_quad() || f == g) continue;
     if (!is_longest(faces[f], side) || !is_longest(faces[g], other_side)) continue;
     const Face quad = joined(faces[f], side, faces[g], other_side);
-    if (quad.particles[1] == quad.particles[3] || !is_near_rectangle(quad)) continue;
-    if (follows(quad, faces[f].warp) && follows(quad, faces[g].warp)) {
+    if (quad.particles[1] != quad.particles[3] && is_near_rectangle(quad)) {
       cells.push_back({f, g, quad});
     }
   }

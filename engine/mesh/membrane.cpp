@@ -1,10 +1,8 @@
 #include "engine/mesh/membrane.h"
 
-#include <algorithm>
-
-#include "engine/mesh/families.h"
 #include "engine/mesh/mesh_input.h"
 #include "engine/mesh/pair_numbers.h"
+#include "engine/mesh/weave.h"
 
 namespace weft::mesh {
 namespace {
@@ -93,47 +91,44 @@ double side_length(const Face& face, std::size_t side) {
 /// fraction e with the energy k e^2 / 2 per area.
 double spring(double k, double area, double length) { return k * area / square(length); }
 
-/// A quad with sides a along the warp and b along the weft, of area A = a b, and what it has of
-/// stiffness.
-///
-/// A shear by the angle g makes one diagonal of length l longer by g A / l and the other shorter:
-/// two springs s store s (g A / l)^2, which is G g^2 A / 2 with s = G l^2 / (2 A). A stretch of the
-/// warp by e makes both longer by e a^2 / l, which stores G (a / b)^2 e^2 A / 2: diagonals carry
-/// G (a / b)^2 of the warp, and G (b / a)^2 of the weft. Sides carry the rest. In narrow quads
-/// diagonals would carry more than there is: G is at most what leaves half of it to the sides.
-struct Shares {
-  double warp = 0, weft = 0;  ///< N/m, of the sides
-  double shear = 0;           ///< N/m, of the diagonals
-};
-Shares shares_of(const Face& quad, std::uint32_t warp_side, const Material& material) {
-  const std::size_t weft_side = 1 - warp_side;
-  const double a = (side_length(quad, warp_side) + side_length(quad, warp_side + 2)) / 2;
-  const double b = (side_length(quad, weft_side) + side_length(quad, weft_side + 2)) / 2;
-  const double along = square(a / b), across = square(b / a);
-  const double shear =
-      std::min({material.shear, material.warp / (2 * along), material.weft / (2 * across)});
-  return {material.warp - shear * along, material.weft - shear * across, shear};
-}
-
-void add_sides(const Face& quad, std::uint32_t warp_side, const Shares& shares, Springs& springs) {
+void add_sides(const Face& quad, const WovenCell& cell, Springs& springs) {
   for (std::size_t side = 0; side < 4; ++side) {
-    const double k = side % 2 == warp_side ? shares.warp : shares.weft;
+    const double k = side % 2 == cell.warp_side ? cell.warp : cell.weft;
     springs.add(quad, side, quad.next(side), spring(k, area(quad) / 2, side_length(quad, side)));
   }
 }
 
-void add_diagonals(const Face& quad, const Shares& shares, Springs& springs) {
+void add_diagonals(const Face& quad, const WovenCell& cell, Springs& springs) {
   for (const std::size_t corner : {std::size_t{0}, std::size_t{1}}) {
-    const double across = length(quad.places[corner + 2] - quad.places[corner]);
-    springs.add(quad, corner, corner + 2, shares.shear * square(across) / (2 * area(quad)));
+    const double size = length(quad.places[corner + 2] - quad.places[corner]);
+    springs.add(quad, corner, corner + 2, cell.shear * square(size) / (2 * area(quad)));
   }
 }
 
-void add_triangle(const Face& triangle, const Material& material, Springs& springs) {
-  const double k = (material.warp + material.weft) / 2;
-  for (std::size_t side = 0; side < 3; ++side) {
-    const double stiffness = spring(k, area(triangle), side_length(triangle, side));
-    springs.add(triangle, side, triangle.next(side), stiffness);
+/// A triangle whose corners at rest are seen along the warp, as far as it lies in the plane, and
+/// along the weft.
+MembraneElement triangle_element(const Face& triangle, Vec3 face_warp, const Material& material,
+                                 ConstraintKind kind) {
+  const Vec3 normal = unit(area_vector(triangle));
+  const Vec3 weft = unit(cross(normal, face_warp)), warp = cross(weft, normal);
+  MembraneElement element;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 from_first = triangle.places[i] - triangle.places[0];
+    element.particles[i] = triangle.particles[i];
+    element.rest[i] = {dot(from_first, warp), dot(from_first, weft)};
+  }
+  element.warp = material.warp;
+  element.weft = material.weft;
+  element.shear = material.shear;
+  element.kind = kind;
+  return element;
+}
+
+void add_triangles(const Face& face, Vec3 warp, const Material& material, ConstraintKind kind,
+                   std::vector<MembraneElement>& elements) {
+  if (!face.is_quad()) return elements.push_back(triangle_element(face, warp, material, kind));
+  for (const auto& corners : cut(face)) {
+    elements.push_back(triangle_element(triangle_of(face, corners), warp, material, kind));
   }
 }
 
@@ -157,30 +152,32 @@ std::vector<Constraint> rigid_constraints(const MeshDescription& mesh, const Wel
   return joiner.take();
 }
 
-std::vector<Constraint> elastic_constraints(const MeshDescription& mesh, const Welded& welded,
-                                            const std::vector<Face>& faces, const Edges& edges) {
+Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::vector<Face>& faces,
+                 const Edges& edges) {
   const Material& material = *mesh.material;
-  const auto warp_side = warp_sides(faces, edges);
-  Springs springs(kind_of_edges(mesh.ropes));
+  const Weave weave = weave_of(mesh, faces, edges);
+  const ConstraintKind kind = kind_of_edges(mesh.ropes);
+  Fabric fabric;
+  Springs springs(kind);
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (faces[f].is_quad()) {
-      add_sides(faces[f], warp_side[f], shares_of(faces[f], warp_side[f], material), springs);
+    if (weave.cells[f]) {
+      add_sides(faces[f], *weave.cells[f], springs);
     } else {
-      add_triangle(faces[f], material, springs);
+      add_triangles(faces[f], weave.warp[f], material, kind, fabric.membrane);
     }
   }
   springs.set_kind(kind_of_diagonals(mesh.ropes));
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (!faces[f].is_quad()) continue;
-    add_diagonals(faces[f], shares_of(faces[f], warp_side[f], material), springs);
+    if (weave.cells[f]) add_diagonals(faces[f], *weave.cells[f], springs);
   }
-  std::vector<Constraint> constraints = springs.take();
+  fabric.constraints = springs.take();
   Joiner joiner(mesh, welded);
-  for (const Constraint& constraint : constraints) joiner.skip(constraint);
+  for (const Constraint& constraint : fabric.constraints) joiner.skip(constraint);
+  for (const Edge& edge : edges.all()) joiner.skip({edge.a, edge.b});
   join_lines(mesh, joiner);
   const auto lines = joiner.take();
-  constraints.insert(constraints.end(), lines.begin(), lines.end());
-  return constraints;
+  fabric.constraints.insert(fabric.constraints.end(), lines.begin(), lines.end());
+  return fabric;
 }
 
 }  // namespace weft::mesh

@@ -12,8 +12,15 @@ namespace weft::mesh {
 /// join the same particles the first counts.
 std::vector<Constraint> rigid_constraints(const MeshDescription& mesh, const Welded& welded);
 
-/// Springs: edges in the order of the faces, then diagonals; then lines, which are rigid.
-std::vector<Constraint> elastic_constraints(const MeshDescription& mesh, const Welded& welded,
-                                            const std::vector<Face>& faces, const Edges& edges);
+/// What a material makes of faces and lines.
+struct Fabric {
+  /// Of woven cells: springs, edges in the order of the faces, then diagonals; then lines, which
+  /// are rigid.
+  std::vector<Constraint> constraints;
+  /// Of other faces: one for each triangle, two for each quad, in the order of the faces.
+  std::vector<MembraneElement> membrane;
+};
+Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::vector<Face>& faces,
+                 const Edges& edges);
 
 }  // namespace weft::mesh

@@ -5,7 +5,6 @@
 
 #include "engine/mesh/mesh_input.h"
 #include "engine/model/validation.h"
-#include "engine/tuning.h"
 
 namespace weft {
 namespace mesh {
@@ -13,10 +12,6 @@ namespace {
 
 /// A direction is across a plane if less than this share of it lies in the plane.
 constexpr double kInPlane = 1e-3;
-
-Vec3 side_direction(const Face& face, std::size_t side) {
-  return unit(face.places[face.next(side)] - face.places[side]);
-}
 
 Vec3 direction_of(const MeshDescription& mesh, std::size_t face) {
   if (mesh.warp.empty()) return {0, 1, 0};  // of flat places
@@ -30,25 +25,6 @@ Vec3 given_warp(const MeshDescription& mesh, std::size_t face, Vec3 normal) {
   const Vec3 direction = unit(direction_of(mesh, face));
   const Vec3 in_plane = direction - dot(direction, normal) * normal;
   return length(in_plane) > kInPlane ? unit(in_plane) : Vec3{};
-}
-
-std::uint32_t side_along(const Face& quad, Vec3 warp) {
-  const auto along = [&](std::size_t side) {
-    return std::abs(dot(side_direction(quad, side), warp)) +
-           std::abs(dot(side_direction(quad, side + 2), warp));
-  };
-  return along(1) > along(0) ? 1 : 0;
-}
-
-bool follows(const Face& quad, Vec3 warp) {
-  if (!is_given(warp)) return true;
-  const Vec3 weft = cross(unit(area_vector(quad)), warp);
-  const std::uint32_t first = side_along(quad, warp);
-  for (std::size_t side = 0; side < 4; ++side) {
-    const Vec3 across = side % 2 == first ? weft : warp;
-    if (std::abs(dot(side_direction(quad, side), across)) > tuning::kMostDeviation) return false;
-  }
-  return true;
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "engine/contacts/crossings.h"
 #include "engine/measure/state_measure.h"
 #include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/solvers/stall.h"
 #include "engine/step/energy.h"
 #include "engine/step/exact_substep.h"
@@ -49,13 +50,15 @@ double length_for_onset(const State& s, double a, double dt) {
 }
 
 /// s, of the longest substep that the strain tolerance and the motion tolerance allow. What a frame
-/// will be like is not known: State::refinement says what the last ones were.
+/// will be like is not known: State::refinement says what the last ones were. Where that is below 0
+/// the cloth pulls less than at the bottom of a swing.
 double usual_length(State& s, const SmallSteps& solver, double dt) {
   const double a = mean_acceleration(s);
+  const double weights = kWeightsOfSwing * std::exp2(2 * std::min(0.0, s.refinement));
   const double length =
-      std::min(tuning::kLongestSubstep, solver.substep_length(s.position.view(), a));
+      std::min(tuning::kLongestSubstep, solver.substep_length(s.position.view(), a, weights));
   if (!refines_substeps(s)) return length;
-  const double shorter = std::exp2(-s.refinement);
+  const double shorter = std::exp2(-std::max(0.0, s.refinement));
   if (s.settings.motion_tolerance == 0) return length * shorter;
   return std::min(length, length_for_onset(s, a, dt)) * shorter;
 }
@@ -120,14 +123,16 @@ double next_refinement(const State& s, const FramePlan& plan, double error, cons
 
 /// The same for fabric without a motion tolerance. Its load may come from any side, and what
 /// carries it sideways is swept one by one: substeps are shorter where the last one of a frame left
-/// much to put right, which took the time of `beyond` sweeps.
+/// much to put right, which took the time of `beyond` sweeps, and longer where it left little, down
+/// to those of cloth that hangs at rest.
 double refinement_for_laws(const State& s, const FramePlan& plan, double beyond,
                            const Budget& budget) {
   constexpr double kLevel = 0.25;
   const double share = beyond / plan.substeps;
   if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget))
     return s.refinement + kLevel;
-  return share < tuning::kLittleMended ? std::max(0.0, s.refinement - kLevel) : s.refinement;
+  const double least = -std::log2(kWeightsOfSwing) / 2;
+  return share < tuning::kLittleMended ? std::max(least, s.refinement - kLevel) : s.refinement;
 }
 
 /// The frame that is being done.

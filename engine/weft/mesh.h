@@ -69,19 +69,19 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 /// Without a material every edge of a face becomes a rigid constraint at its length, faces in their
 /// order, and then every line. Diagonals join four-sided faces only where they are asked for.
 ///
-/// With a material edges are springs, and faces bend:
+/// With a material faces stretch, shear and bend as it says, whatever their shapes and sizes.
 ///
-/// In four-sided faces two families of edges are warp and weft, from face to face: opposite edges
-/// are of one family. In each connected part the warp is the family that runs more along y; where
-/// both do alike, more along x. An edge carries the stiffness of half the width to its neighbours
-/// on both sides, diagonals carry shear. (In cells so narrow that diagonals would carry more than
-/// half of warp or weft, shear falls short.)
+/// Four-sided faces that are nearly rectangles, along warp and weft, become springs: edges carry
+/// warp and weft, and diagonals shear, within 3 % of the material. Chains of such edges are solved
+/// as yarns, several times as fast as other cloth. All other faces become triangles, each a
+/// MembraneElement. Pairs of right-angled triangles that make up a grid of near-rectangles are
+/// taken as the four-sided faces that they were cut from.
 ///
-/// Triangles have no yarns: their edges carry k, the mean of warp and weft. Where they are
-/// equilateral that is k in all directions with a Poisson ratio of 1/3, and so 3/8 k of shear;
-/// where they are not, it is so in the mean over directions (Van Gelder, "Approximate Simulation of
-/// Elastic Membranes by Triangulated Spring Meshes", 1998). Pairs of right-angled triangles that
-/// make up a grid of near-rectangles are taken as the four-sided faces that they were cut from.
+/// In four-sided faces two families of edges cross, from face to face: opposite edges are of one
+/// family. The warp is the family that runs more along y; where both do alike, more along x. It is
+/// so in each connected part that consists of near-rectangles by more than half, and what lies
+/// between those continues them. In other parts the warp runs along y, as far as y lies in the
+/// plane of each face; in parts that lie level, along x.
 ///
 /// Faces of five and more corners are cut into triangles around the first; they should be convex.
 /// Lines are threads that do not stretch, and have no mass of their own. An edge of more than two
@@ -105,8 +105,7 @@ struct MeshDescription {
   std::vector<std::array<double, 2>> rest_corners;
   /// Where the warp of a material runs, in the shape at rest (with flat places (u, v, 0)): one
   /// direction for all faces, or one per face, of any length. What lies in the plane of the face
-  /// counts. Four-sided faces whose sides do not follow it are cut into triangles, and triangles
-  /// that do not are no cells. Empty, or 0, or across the face: as said above; with flat places
+  /// counts. Empty, or 0, or across the face: as said above; with flat places
   /// along v.
   std::vector<Vec3> warp;
   std::vector<std::uint32_t> pins;   ///< vertices whose particles are fixed

@@ -137,10 +137,15 @@ struct MembraneLaw {
     if (stiffness == 0) return 0;
     return (is_rope ? std::max(lack, -multiplier) : lack) / stiffness;
   }
-  /// Newton's step for the multiplier of this law alone, relaxed as that of a spring is
-  /// (reference::ConstraintLaw).
+  /// A step for the multiplier, such that the law holds at the end of the sweep in a cloth at rest.
+  /// There a sweep brings an element back to where it was: visits of its neighbours undo what its
+  /// own visit moved it, half of that on average before the sweep ends. So the law is to hold where
+  /// the element is then, at half of its own way. (Newton's step would make it hold right after the
+  /// visit, and the cloth too soft by that half.) A law too stiff for that is relaxed as that of a
+  /// rigid spring is (reference::ConstraintLaw).
   double impulse(double lack, double multiplier, double inverse_mass, double omega) const {
-    const double change = lack / (stiffness * (1 + damping) * inverse_mass / omega + 1);
+    const double own = stiffness * (1 + damping) * inverse_mass;
+    const double change = lack / std::max(own / omega, 0.5 * own + 1);
     return is_rope ? std::max(change, -multiplier) : change;
   }
 };

@@ -115,7 +115,7 @@ struct alignas(64) MembraneStrip {
 template <bool kRope, bool kDamped>
 struct MembraneVisit {
   const Membrane m;
-  const Floats give, damping, looseness;  // looseness: (1 + damping) / omega
+  const Floats give, damping, looseness, half;  // looseness: (1 + damping) / omega; half: of omega
   const bool continues;
   MembraneStrip& strip;
 
@@ -125,6 +125,7 @@ struct MembraneVisit {
         give(membrane.give),
         damping(membrane.damping),
         looseness((1 + membrane.damping) / omega),
+        half(0.5f * omega),
         continues(goes_on),
         strip(between) {}
 
@@ -146,8 +147,9 @@ struct MembraneVisit {
     store(strip.push[k].v, lane, push);
   }
 
-  /// The law's impulse is p = (s C - mu) / (s looseness w + 1), w being the inverse mass; here both
-  /// sides of the fraction are times |f_u|^2 |f_v|^2, so that w needs no quotient.
+  /// The law's impulse is p = (s C - mu) / max(q, omega q / 2 + 1), q = s looseness w, w being the
+  /// inverse mass (reference::MembraneLaw); here both sides of the fraction are times |f_u|^2
+  /// |f_v|^2, so that w needs no quotient.
   [[gnu::always_inline]] void shear(std::size_t i, std::size_t k, std::uint32_t lane) {
     const MembraneBlock& block = m.blocks[i];
     AngleLanes angle = AngleLanes::of(load(strip.f[k], lane));
@@ -159,7 +161,8 @@ struct MembraneVisit {
         xsimd::max(fused_from(angle.uv + angle.uv, load(block.mobility[1] + lane), size),
                    Floats(0x1p-20f) * size);
     const Floats stiffness = give * load(block.stiffness[2] + lane);
-    const Floats share = angle.area / fused(stiffness * looseness, inverse_mass, angle.area);
+    const Floats own = stiffness * looseness * inverse_mass;
+    const Floats share = angle.area / xsimd::max(own, fused(own, half, angle.area));
     const Floats before = multiplier(2, i, lane);
     const Floats impulse = fused(stiffness, error, Floats(0.f) - before) * share;
     keep_multiplier(2, i, lane, before + impulse);
@@ -210,7 +213,8 @@ struct MembraneVisit {
     const Floats stiffness = give * load(block.stiffness[kLaw] + lane);
     const Floats mobility = load(block.mobility[2 * kLaw] + lane);
     const Floats before = multiplier(kLaw, i, lane);
-    const Floats divisor = fused(stiffness * looseness, mobility, Floats(1.f));
+    const Floats own = stiffness * looseness * mobility;
+    const Floats divisor = xsimd::max(own, fused(own, half, Floats(1.f)));
     Floats lack = fused(stiffness, error, Floats(0.f) - before);
     if constexpr (kRope) lack = xsimd::max(lack, Floats(0.f) - before * divisor);
     const Floats along = lack / (divisor * length);  // the impulse over |f|

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/membrane.h"
+
 namespace weft::test {
 namespace {
 
@@ -102,7 +104,7 @@ double membrane_energy(const SceneDescription& scene, const std::vector<Vec3>& p
     const double longer = distance(positions[c.a], positions[c.b]) - c.rest_length;
     energy += longer * longer / (2 * c.compliance);
   }
-  return energy;
+  return energy + fabric_energy(scene, positions);
 }
 
 double bending_energy(const SceneDescription& scene, const std::vector<Vec3>& positions) {

@@ -33,7 +33,7 @@ Material plain_material();
 MeshCloth made(const MeshDescription& mesh);
 std::string refusal(const MeshDescription& mesh);
 
-/// J, of all springs or all bending elements at these positions.
+/// J, of all springs and triangles of fabric, or all bending elements, at these positions.
 double membrane_energy(const SceneDescription& scene, const std::vector<Vec3>& positions);
 double bending_energy(const SceneDescription& scene, const std::vector<Vec3>& positions);
 

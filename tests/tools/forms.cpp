@@ -53,7 +53,7 @@ TEST_CASE("frequency and decrement of samples") {
 }
 
 FormResult made_up(std::vector<double> measured) {
-  FormResult result{"a form", "formula", "mm", 0.02, {}};
+  FormResult result{"a form", "formula", "mm", 0.02, true, {}};
   for (const double m : measured) {
     result.readings.push_back({.size = "1 cell", .expected = 1, .measured = m, .ms_per_frame = 2});
   }
@@ -67,6 +67,10 @@ TEST_CASE("a form holds if its finest error is within the bound, and small or fa
   CHECK_FALSE(made_up({1.01, 1.01, 1.015}).holds());
   CHECK_FALSE(made_up({1, 1, std::nan("")}).holds());
   CHECK(made_up({1.1, 1.05}).holds());  // the finest was left out
+  FormResult same = made_up({1.01, 1.01, 1.015}), off = made_up({1.1, 1.01, 1.01});
+  same.converges = off.converges = false;
+  CHECK(same.holds());
+  CHECK_FALSE(off.holds());
   FormResult missed = made_up({1, 1, 1});
   missed.readings[1].missed = 1;
   CHECK_FALSE(missed.holds());

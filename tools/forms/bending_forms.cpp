@@ -206,12 +206,12 @@ std::vector<Form> bending_forms() {
   }
   forms.push_back({fmt::format("a cantilever sags, {}", name(Pattern::irregular)),
                    "rho g L^4 / 8 k_b", "mm",
-                   [=](int r) { return cantilever(Pattern::irregular, r); }, 0.06});
+                   [=](int r) { return cantilever(Pattern::irregular, r); }, 0.06, false});
   for (const Pattern pattern :
        {Pattern::quads, Pattern::right_angled, Pattern::equilateral, Pattern::irregular}) {
     forms.push_back({fmt::format("cylinders, {}", name(pattern)), "k_b kappa^2 / 2 per area", "uJ",
                      [=](int r) { return cylinder(pattern, r); },
-                     pattern == Pattern::irregular ? 0.1 : 0.05});
+                     pattern == Pattern::irregular ? 0.1 : 0.05, pattern != Pattern::irregular});
   }
   return forms;
 }

@@ -25,24 +25,19 @@ Settings by_one_thread(Settings settings) {
 
 }  // namespace
 
-namespace {
-
-/// Bounds above this are of errors that do not vanish as the mesh becomes finer.
-constexpr double kRough = 0.05;
-
-}  // namespace
-
 bool FormResult::holds() const {
   const auto converged = [](const Reading& r) { return r.missed == 0; };
   if (readings.empty() || !std::ranges::all_of(readings, converged)) return false;
   if (std::ssize(readings) < kRefinements) return true;
+  const auto is_within = [&](const Reading& r) { return std::abs(r.error()) <= bound; };
   const double finest = std::abs(readings.back().error());
   const double coarsest = std::abs(readings.front().error());
-  return finest <= bound && (finest <= kSmall || finest < coarsest || bound > kRough);
+  if (!converges) return std::ranges::all_of(readings, is_within);
+  return is_within(readings.back()) && (finest <= kSmall || finest < coarsest);
 }
 
 FormResult measure(const Form& form, int refinements) {
-  FormResult result{form.name, form.formula, form.unit, form.bound, {}};
+  FormResult result{form.name, form.formula, form.unit, form.bound, form.converges, {}};
   for (int i = 0; i < refinements; ++i) result.readings.push_back(form.measure(i));
   return result;
 }

@@ -17,8 +17,9 @@ namespace {
 
 constexpr std::uint64_t kSeed = 1697;
 constexpr double kMoved = 0.25;  // of a cell
-constexpr int kKept = 2;         // rows of vertices behind the first one are not moved
-constexpr double kNear = 1e-9;   // m
+constexpr double kJitter = 0.08;
+constexpr int kKept = 2;        // rows of vertices behind the first one are not moved
+constexpr double kNear = 1e-9;  // m
 
 /// The first diagonal of a cell joins its corners (row, column) and (row + 1, column + 1).
 enum class Cut { none, first, second };
@@ -62,14 +63,44 @@ MeshDescription equilateral(const Sheet& sheet) {
   return mesh;
 }
 
+bool is_in_the_middle(const Sheet& sheet, int i, int j) {
+  return 4 * i > sheet.along && 4 * i < 3 * sheet.along && 4 * j > sheet.across &&
+         4 * j < 3 * sheet.across;
+}
+
+bool is_moved(const Sheet& sheet, int i, int j) {
+  switch (sheet.pattern) {
+    case Pattern::jittered:
+    case Pattern::irregular:
+      return true;
+    case Pattern::patchwork:
+      return is_in_the_middle(sheet, i, j);
+    default:
+      return false;
+  }
+}
+
+bool is_cut(const Sheet& sheet, int i, int j) {
+  switch (sheet.pattern) {
+    case Pattern::right_angled:
+    case Pattern::irregular:
+      return true;
+    case Pattern::patchwork:
+      return is_in_the_middle(sheet, i, j) || is_in_the_middle(sheet, i + 1, j + 1);
+    default:
+      return false;
+  }
+}
+
 MeshDescription grid(const Sheet& sheet) {
   MeshDescription mesh;
   scenes::SplitMix random(kSeed);
   const double dx = sheet.length / sheet.along, dz = sheet.width / sheet.across;
-  const auto moved = [&] { return kMoved * (2 * random.unit() - 1); };
+  const double by = sheet.pattern == Pattern::jittered ? kJitter : kMoved;
+  const auto moved = [&] { return by * (2 * random.unit() - 1); };
   for (int i = 0; i <= sheet.along; ++i) {
     for (int j = 0; j <= sheet.across; ++j) {
-      const bool moves = sheet.pattern == Pattern::irregular;
+      const bool moves = is_moved(sheet, i, j);
       const double x = moves && i > kKept && i < sheet.along ? moved() : 0;
       const double z = moves && j > 0 && j < sheet.across ? moved() : 0;
       mesh.positions.push_back({dx * (i + x), 0, dz * (j + z)});
@@ -79,7 +110,7 @@ MeshDescription grid(const Sheet& sheet) {
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(sheet.along); ++i) {
     for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(sheet.across); ++j) {
       const Cut cut = random.below(2) == 0 ? Cut::first : Cut::second;
-      faces.add(i, j, sheet.pattern == Pattern::quads ? Cut::none : cut);
+      faces.add(i, j, is_cut(sheet, static_cast<int>(i), static_cast<int>(j)) ? cut : Cut::none);
     }
   }
   return mesh;
@@ -93,10 +124,14 @@ std::string_view name(Pattern pattern) {
       return "quads";
     case Pattern::right_angled:
       return "right-angled triangles";
+    case Pattern::jittered:
+      return "jittered quads";
     case Pattern::equilateral:
       return "equilateral triangles";
     case Pattern::irregular:
       return "irregular triangles";
+    case Pattern::patchwork:
+      return "a patchwork";
   }
   return {};
 }

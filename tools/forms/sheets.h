@@ -13,8 +13,10 @@ namespace weft::tools::forms {
 
 /// right_angled: cells cut in two, by chance; they are recognised as the grid that they were cut
 /// from. equilateral: columns of triangles with edges along the sheet, and halves at its ends.
-/// irregular: cells cut by chance whose inner corners are moved by up to a quarter of them.
-enum class Pattern { quads, right_angled, equilateral, irregular };
+/// jittered: quads whose inner corners are moved by up to 8 % of a cell. irregular: cells cut by
+/// chance whose inner corners are moved by up to a quarter of them. patchwork: irregular in the
+/// middle, quads around.
+enum class Pattern { quads, right_angled, jittered, equilateral, irregular, patchwork };
 std::string_view name(Pattern);
 
 /// Level, from x = 0 to `length` and from z = 0 to `width`.

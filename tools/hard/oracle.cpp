@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "tools/fabric_laws.h"
+
 namespace weft::tools::hard {
 namespace {
 
@@ -56,13 +58,27 @@ double strain_over(const SceneDescription& scene, const Snapshot& state, bool sp
   return most;
 }
 
+double strain_of_triangles(const SceneDescription& scene, const Snapshot& state) {
+  const std::vector<bool> fixed = fixed_particles(scene);
+  double most = 0;
+  for (const MembraneElement& m : scene.membrane) {
+    const auto& [a, b, c] = m.particles;
+    if (fixed[a] && fixed[b] && fixed[c]) continue;
+    const auto& x = state.positions;
+    const FabricStrain strain = fabric_strain(m, x[a], x[b], x[c]);
+    for (const double stretch : {strain.warp, strain.weft})
+      most = std::max(most, m.kind == ConstraintKind::rope ? stretch : std::abs(stretch));
+  }
+  return most;
+}
+
 }  // namespace
 
 double max_rigid_strain(const SceneDescription& scene, const Snapshot& state) {
   return strain_over(scene, state, false);
 }
 double max_strain(const SceneDescription& scene, const Snapshot& state) {
-  return strain_over(scene, state, true);
+  return std::max(strain_over(scene, state, true), strain_of_triangles(scene, state));
 }
 
 double max_penetration(const SceneDescription& scene, const Snapshot& state) {

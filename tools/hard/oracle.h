@@ -18,6 +18,7 @@ bool all_finite(const Snapshot& state);
 /// particles.
 /// Springs may be strained: they are left out here.
 double max_rigid_strain(const SceneDescription& scene, const Snapshot& state);
+/// The same with springs, and with warp and weft of triangles of fabric.
 double max_strain(const SceneDescription& scene, const Snapshot& state);
 /// m, the deepest overlap of a sphere with anything that it may touch.
 double max_penetration(const SceneDescription& scene, const Snapshot& state);

@@ -138,6 +138,7 @@ class Rattle {
 
 Result<void> check(const SceneDescription& scene) {
   if (!scene.spheres.empty()) return Error{"the reference solution knows no contacts"};
+  if (!scene.membrane.empty()) return Error{"the reference solution knows no triangles of fabric"};
   for (const Constraint& c : scene.constraints) {
     if (c.kind == ConstraintKind::rope) return Error{"the reference solution knows no ropes"};
     if (c.compliance > 0) return Error{"the reference solution knows no springs"};

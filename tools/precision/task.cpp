@@ -31,7 +31,10 @@ Result<SceneDescription> describe_scene(const std::string& scene, int size,
 
 }  // namespace
 
-bool Task::has_material() const { return describe(*model).compliant > 0; }
+bool Task::has_material() const {
+  const ModelInfo info = describe(*model);
+  return info.compliant + info.membrane_elements > 0;
+}
 
 Result<Task> make_task(const std::string& scene, int size, const std::string& material) {
   auto description = describe_scene(scene, size, material);

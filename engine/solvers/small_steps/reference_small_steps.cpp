@@ -101,8 +101,9 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
   if (model.has_laws()) aside_.resize(model.slots());
 }
 
-double ReferenceSmallSteps::substep_length(kernels::VectorsView x, double acceleration) const {
-  return weft::substep_length(layout_.load, x, acceleration, settings_.tolerance);
+double ReferenceSmallSteps::substep_length(kernels::VectorsView x, double acceleration,
+                                           double weights) const {
+  return weft::substep_length(layout_.load, x, acceleration, weights, settings_.tolerance);
 }
 
 reference::Flight ReferenceSmallSteps::flight() {

@@ -226,7 +226,6 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   const bool has_ropes =
       std::ranges::any_of(layout.batches, [](const EdgeBatch& batch) { return batch.rope; });
   const bool is_by_ways = (!layout.has_yarns() && !layout.blocks.empty()) || has_ropes ||
-                          !layout.membrane.empty() ||
                           (model.holds.empty() && !model.has_attached());
   load.way = std::max(load.particles, way.joins - 1);
   if (is_by_ways) load.particles = load.way;
@@ -242,24 +241,24 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
 }
 
 double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double acceleration,
-                      double tolerance) {
+                      double weights, double tolerance) {
   double over_slope = 1;
   for (const SmallStepsLoad::Span& span : load.spans) {
     const double distance = length(x[span.first_slot] - x[span.last_slot]);
     const double slack = std::max(0.0, span.length / distance - 1) + tolerance;
     over_slope = std::max(over_slope, 1 / std::sqrt(6 * slack));
   }
-  const auto length_for = [&](double particles) {
-    const double pull = 6 * acceleration * particles * over_slope;
+  const auto length_for = [&](double particles, double of_weights) {
+    const double pull = 2 * of_weights * acceleration * particles * over_slope;
     return pull > 0 ? std::sqrt(tuning::kOmega * tolerance * load.mean_length / pull)
                     : std::numeric_limits<double>::infinity();
   };
   const double speed = std::sqrt(2 * acceleration * load.reach);
-  double h = length_for(load.particles);
+  double h = length_for(load.particles, weights);
   if (speed > 0) h = std::min(h, tuning::kPassing * load.mean_length / speed);
   if (load.bending > 0) {
     const double bent = std::sqrt(tuning::kBendingPace / load.bending);
-    h = std::min(h, std::max(bent, length_for(2 * load.way)));
+    h = std::min(h, std::max(bent, length_for(2 * load.way, kWeightsOfSwing)));
   }
   return h;
 }

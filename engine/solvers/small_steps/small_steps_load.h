@@ -62,8 +62,12 @@ struct SmallStepsLoad {
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
 
-/// s; infinite where nothing hangs on a pin or an anchor, or could come to hang over a sphere.
+/// How many times its weight a cloth pulls at its pins at the bottom of a swing.
+inline constexpr double kWeightsOfSwing = 3;
+
+/// s, where the cloth pulls at its pins with so many times its weight; infinite where nothing hangs
+/// on a pin or an anchor, or could come to hang over a sphere.
 double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double acceleration,
-                      double tolerance);
+                      double weights, double tolerance);
 
 }  // namespace weft

@@ -89,7 +89,7 @@ std::vector<NamedScene> soft_scenes() {
   return {{"flag", scene_of("flag", 8)},
           {"bending", with_rows(scene_of("hang", 12), 12, 1e-4)},
           {"anchors", with_anchors(scene_of("hang", 12))},
-          {"cotton", cotton_cape(16)}};
+          {"cotton", with_inert(cotton_cape(16))}};
 }
 
 template <class F>

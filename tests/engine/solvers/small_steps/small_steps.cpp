@@ -232,7 +232,7 @@ TEST_CASE("a substep's length: shorter under a load, on taut spans, for tight to
   const auto length_for = [](const SceneDescription& scene, double tolerance) {
     const auto model = model_of(scene);
     kernels::Vectors x = model->initial_position;
-    return substep_length(model->small_steps().load, x.view(), 10, tolerance);
+    return substep_length(model->small_steps().load, x.view(), 10, kWeightsOfSwing, tolerance);
   };
   const SceneDescription corners = make("corners", {.size = 21});
   CHECK(length_for(corners, 0.01) / length_for(corners, 0.0025) ==
