@@ -91,6 +91,8 @@ Result<MeshDescription> description_of(const ObjFile& file, const ObjOptions& op
   for (const std::string& seam : options.seams) {
     if (auto sewn = sew(seam, description); !sewn) return Error{sewn.error()};
   }
+  description.seam_time = options.seam_time;
+  description.seam_force = options.seam_force.value_or(description.seam_force);
   return description;
 }
 

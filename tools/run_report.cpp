@@ -153,6 +153,7 @@ Json to_json(const RunReport& report) {
       {"membrane_elements", summary.model.membrane_elements},
       {"bending_elements", summary.model.bending_elements},
       {"anchors", summary.model.anchors},
+      {"seams", summary.model.seams},
       {"air_triangles", summary.model.air_triangles},
       {"spheres", summary.model.spheres},
       {"solver", name(settings.solver)},
@@ -181,6 +182,9 @@ Json to_json(const RunReport& report) {
       {"rms_strain", summary.rms_strain},
       {"max_penetration", summary.max_penetration},
       {"max_anchor_error", summary.max_anchor_error},
+      {"open_seams", summary.open_seams},
+      {"max_seam_gap", summary.max_seam_gap},
+      {"seam_work", summary.seam_work},
       {"max_contacts", summary.max_contacts},
       {"iterations_per_step", summary.iterations_per_step()},
       {"velocity_iterations_per_step", mean(summary.velocity_iterations, summary.frames)},
@@ -249,6 +253,11 @@ std::string to_table(const RunReport& report) {
   if (summary.model.anchors > 0) {
     row("anchors", fmt::format("{}, {:.3g} m beyond their limits at most", summary.model.anchors,
                                summary.max_anchor_error));
+  }
+  if (summary.model.seams > 0) {
+    row("seams", fmt::format("{}, {} open in the end, closed ones {:.3g} m apart at most, {:.3g} J",
+                             summary.model.seams, summary.open_seams, summary.max_seam_gap,
+                             summary.seam_work));
   }
   row("work",
       fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {}, {}",

@@ -57,6 +57,9 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
   summary.max_error = std::max(summary.max_error, report.max_error);
   summary.max_anchor_error = std::max(summary.max_anchor_error, report.max_anchor_error);
+  summary.open_seams = report.open_seams;
+  summary.max_seam_gap = std::max(summary.max_seam_gap, report.max_seam_gap);
+  summary.seam_work += report.seam_work;
   summary.pin_work += report.pin_work;
   summary.energy_lost += report.energy_lost;
   summary.max_motion_error = std::max(summary.max_motion_error, report.motion_error);

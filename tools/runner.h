@@ -90,6 +90,9 @@ struct RunSummary {
   double rms_strain = 0;        ///< over all frames and constraints
   double max_penetration = 0;   ///< m, over all frames and sphere pairs
   double max_anchor_error = 0;  ///< m, over all frames and anchors
+  int open_seams = 0;           ///< in the end
+  double max_seam_gap = 0;      ///< m, over all frames and closed seams
+  double seam_work = 0;         ///< J
 
   double energy_start = 0;  ///< J, before the first frame
   double energy_end = 0;    ///< J, after the last frame

@@ -97,6 +97,8 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.bending = read_array(json, key, read_bending);
   } else if (key == "anchors") {
     scene.anchors = read_array(json, key, read_anchor);
+  } else if (key == "seams") {
+    scene.seams = read_array(json, key, read_seam);
   } else if (key == "damping") {
     scene.damping = read_damping(json, key);
   } else if (key == "air") {
@@ -204,6 +206,7 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   add_rows(text, "membrane", scene.membrane, membrane_row);
   add_rows(text, "bending", scene.bending, bending_row);
   add_rows(text, "anchors", scene.anchors, anchor_row);
+  add_rows(text, "seams", scene.seams, seam_row);
   if (has_damping(scene.damping)) {
     text += fmt::format(",\n\"damping\": {}", damping_text(scene.damping));
   }

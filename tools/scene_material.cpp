@@ -142,6 +142,23 @@ Anchor read_anchor(const Json& json, const std::string& place) {
   return anchor;
 }
 
+Seam read_seam(const Json& json, const std::string& place) {
+  check_keys(json, place, {"a", "b", "time", "max_force"});
+  check_given(json, place, {"a", "b"});
+  Seam seam;
+  seam.a = read_index(json["a"], within(place, "a"));
+  seam.b = read_index(json["b"], within(place, "b"));
+  read_if_given(json, place, "time", seam.time);
+  read_distance_if_given(json, place, "max_force", seam.max_force);
+  return seam;
+}
+
+std::string seam_row(const Seam& seam) {
+  Json row{{"a", seam.a}, {"b", seam.b}, {"time", seam.time}};
+  if (std::isfinite(seam.max_force)) row["max_force"] = seam.max_force;
+  return row.dump();
+}
+
 std::string anchor_row(const Anchor& anchor) {
   const auto vector = [](Vec3 v) { return Json{v.x, v.y, v.z}; };
   Json row{{"particle", anchor.particle},

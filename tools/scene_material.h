@@ -1,4 +1,5 @@
-/// What a scene file says of fabric: triangles of it, bending elements, damping, air and anchors.
+/// What a scene file says of fabric: triangles of it, bending elements, damping, air, anchors and
+/// seams.
 #pragma once
 
 #include <weft/weft.h>
@@ -16,10 +17,12 @@ BendingElement read_bending(const Json& json, const std::string& place);
 Damping read_damping(const Json& json, const std::string& place);
 Air read_air(const Json& json, const std::string& place);
 Anchor read_anchor(const Json& json, const std::string& place);
+Seam read_seam(const Json& json, const std::string& place);
 
 std::string membrane_row(const MembraneElement& element);
 std::string bending_row(const BendingElement& element);
 std::string anchor_row(const Anchor& anchor);
+std::string seam_row(const Seam& seam);
 /// Whether they differ from what a description has by itself.
 bool has_damping(const Damping& damping);
 bool has_air(const Air& air);

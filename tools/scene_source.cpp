@@ -63,6 +63,8 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--up", options.up.has_value(), kObj},
       {"--weld", options.weld.has_value(), kObj},
       {"--seam", !options.seams.empty(), kObj},
+      {"--seam-time", options.seam_time.has_value(), kObj},
+      {"--seam-force", options.seam_force.has_value(), kObj},
       {"--rest", options.rest.has_value(), kObj},
       {"--warp", options.warp.has_value(), kObj},
       {"--ropes", options.ropes.has_value(), kCloth},
@@ -191,6 +193,10 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   values.scale = options.scale.value_or(values.scale);
   values.weld_distance = options.weld.value_or(values.weld_distance);
   values.seams = options.seams;
+  values.seam_time = options.seam_time.value_or(values.seam_time);
+  values.seam_force = options.seam_force;
+  if (options.seam_force && !options.seam_time)
+    return Error{"--seam-force: is for seams that close in a --seam-time"};
   values.rest = options.rest;
   values.warp = options.warp;
   const auto up = up_of(options.up);
@@ -270,6 +276,12 @@ void add_scene_options(Verb verb, SceneOptions& options) {
   verb.repeated("--seam", options.seams,
                 ".obj: vertices that are sewn together, two lists from 0 like 0-9:29-20; may be "
                 "repeated");
+  verb.option(
+      "--seam-time", options.seam_time,
+      ".obj: s, in which seams draw their vertices together, which then are held (default 0: "
+      "they are one from the beginning)");
+  verb.option("--seam-force", options.seam_force,
+              ".obj: N, of a seam while it closes, at most (default: no limit)");
   verb.option("--rest", options.rest,
               ".obj: the shape at rest: FILE.obj with the same vertices and faces, or uv:SCALE, "
               "texture coordinates times SCALE in m (default 1)");

@@ -29,6 +29,7 @@ struct SceneOptions {
   std::optional<std::string> up;
   std::optional<double> weld;
   std::vector<std::string> seams;
+  std::optional<double> seam_time, seam_force;
   std::optional<std::string> rest;
   std::optional<std::string> warp;
   std::optional<std::string> ropes;

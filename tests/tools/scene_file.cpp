@@ -152,6 +152,24 @@ TEST_CASE("faces survive writing and reading, and those that cannot be are refus
   CHECK(error_with(R"("faces": [[0,1,"a"]])").starts_with("faces[0][2]: expected"));
 }
 
+TEST_CASE("seams survive writing and reading to the last bit") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  scene.masses = {1, 1, 1};
+  scene.seams = {{0, 1, 1.0 / 3, 0.7}, {1, 2}};
+  const auto read = parse_scene(scene_text(scene));
+  REQUIRE_MESSAGE(read, read.error());
+  const std::vector<Seam>& seams = read.value().description.seams;
+  REQUIRE(seams.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(seams[i].a == scene.seams[i].a);
+    CHECK(seams[i].b == scene.seams[i].b);
+    CHECK(seams[i].time == scene.seams[i].time);
+    CHECK(seams[i].max_force == scene.seams[i].max_force);
+  }
+  CHECK(error_with(R"("seams": [{"a": 0}])") == "seams[0]: the key 'b' is missing");
+}
+
 TEST_CASE("anchors survive writing and reading to the last bit; what is infinite is null") {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   SceneDescription scene;
