@@ -13,12 +13,14 @@ Vec3 side_vector(const Face& face, std::size_t side) {
 
 /// Numbers the first family that it meets 0; returns the quads that it reached.
 std::vector<std::uint32_t> spread(std::uint32_t start, const std::vector<Face>& faces,
-                                  const Edges& edges, std::vector<std::uint32_t>& first_side) {
+                                  const Edges& edges, double weld_distance,
+                                  std::vector<std::uint32_t>& first_side) {
   std::vector<std::uint32_t> reached{start};
   first_side[start] = 0;
   for (std::size_t i = 0; i < reached.size(); ++i) {
     const std::uint32_t face = reached[i];
     for (std::uint32_t side = 0; side < 4; ++side) {
+      if (is_seam(edges.at(face, side), faces, weld_distance)) continue;
       for (const auto& [other, other_side] : edges.at(face, side).faces) {
         if (!faces[other].is_quad() || first_side[other] != kUnknown) continue;
         first_side[other] = (first_side[face] + side + other_side) % 2;
@@ -56,11 +58,12 @@ bool second_is_warp(const std::vector<std::uint32_t>& quads, const std::vector<F
 
 }  // namespace
 
-std::vector<std::uint32_t> warp_sides(const std::vector<Face>& faces, const Edges& edges) {
+std::vector<std::uint32_t> warp_sides(const std::vector<Face>& faces, const Edges& edges,
+                                      double weld_distance) {
   std::vector<std::uint32_t> first_side(faces.size(), kUnknown);
   for (std::uint32_t face = 0; face < faces.size(); ++face) {
     if (!faces[face].is_quad() || first_side[face] != kUnknown) continue;
-    const auto quads = spread(face, faces, edges, first_side);
+    const auto quads = spread(face, faces, edges, weld_distance, first_side);
     if (!second_is_warp(quads, faces, first_side)) continue;
     for (const std::uint32_t quad : quads) first_side[quad] ^= 1;
   }

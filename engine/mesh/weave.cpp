@@ -57,11 +57,12 @@ Vec3 carried_over(Vec3 v, const SideFrame& from, const SideFrame& to, bool alike
 struct Parts {
   Partition of_faces;
   std::vector<double> area, woven, along_y;  ///< m^2, of the first face of each
+  std::vector<bool> is_given;                ///< the mesh gives a warp to a face of it, likewise
 };
 
 Parts find_parts(const std::vector<Face>& faces, const Edges& edges, const Weave& weave,
                  double weld_distance) {
-  Parts parts{Partition(faces.size()), {}, {}, {}};
+  Parts parts{Partition(faces.size()), {}, {}, {}, std::vector<bool>(faces.size(), false)};
   for (auto* sums : {&parts.area, &parts.woven, &parts.along_y}) sums->resize(faces.size());
   for (const Edge& edge : edges.all()) {
     if (is_seam(edge, faces, weld_distance)) continue;
@@ -70,6 +71,7 @@ Parts find_parts(const std::vector<Face>& faces, const Edges& edges, const Weave
   for (std::uint32_t f = 0; f < faces.size(); ++f) {
     const std::uint32_t part = parts.of_faces.first(f);
     const double size = area(faces[f]);
+    if (is_given(faces[f].warp)) parts.is_given[part] = true;
     parts.area[part] += size;
     if (weave.cells[f]) parts.woven[part] += size;
     parts.along_y[part] += size * length(in_plane(kAxes[0], normal_of(faces[f])));
@@ -77,15 +79,11 @@ Parts find_parts(const std::vector<Face>& faces, const Edges& edges, const Weave
   return parts;
 }
 
-/// From the faces whose warp is known to those beside them in their part, and on from there, where
-/// none is given.
+/// From the faces whose warp is known to those beside them in their part, and on from there.
 void continue_from(std::vector<std::uint32_t> known, const std::vector<Face>& faces,
                    const Edges& edges, double weld_distance, std::vector<Vec3>& warp) {
   std::vector<bool> is_known(faces.size(), false);
   for (const std::uint32_t f : known) is_known[f] = true;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (is_given(faces[f].warp)) is_known[f] = true;
-  }
   for (std::size_t i = 0; i < known.size(); ++i) {
     const std::uint32_t from = known[i];
     for (std::size_t side = 0; side < faces[from].size; ++side) {
@@ -107,20 +105,22 @@ void continue_from(std::vector<std::uint32_t> known, const std::vector<Face>& fa
 
 Weave weave_of(const MeshDescription& mesh, const std::vector<Face>& faces, const Edges& edges) {
   const Material& material = *mesh.material;
-  const std::vector<std::uint32_t> warp_side = warp_sides(faces, edges);
+  const std::vector<std::uint32_t> warp_side = warp_sides(faces, edges, mesh.weld_distance);
   Weave weave{std::vector<Vec3>(faces.size()), std::vector<std::optional<WovenCell>>(faces.size())};
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const bool given = is_given(faces[f].warp);
-    if (given) weave.warp[f] = faces[f].warp;
+    weave.warp[f] = faces[f].warp;
     if (!faces[f].is_quad()) continue;
-    if (!given) weave.warp[f] = along_sides(faces[f], warp_side[f]);
+    if (!is_given(faces[f].warp)) weave.warp[f] = along_sides(faces[f], warp_side[f]);
     weave.cells[f] = woven_cell(faces[f], weave.warp[f], material);
   }
   Parts parts = find_parts(faces, edges, weave, mesh.weld_distance);
   std::vector<std::uint32_t> known;
   for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    if (is_given(faces[f].warp)) continue;
     const std::uint32_t part = parts.of_faces.first(f);
+    if (parts.is_given[part]) {
+      if (is_given(faces[f].warp)) known.push_back(f);
+      continue;
+    }
     if (2 * parts.woven[part] > parts.area[part]) {
       if (weave.cells[f]) known.push_back(f);
       continue;
@@ -130,6 +130,11 @@ Weave weave_of(const MeshDescription& mesh, const std::vector<Face>& faces, cons
     if (faces[f].is_quad()) weave.cells[f] = woven_cell(faces[f], weave.warp[f], material);
   }
   continue_from(std::move(known), faces, edges, mesh.weld_distance, weave.warp);
+  for (std::uint32_t f = 0; f < faces.size(); ++f) {
+    if (!faces[f].is_quad() || is_given(faces[f].warp)) continue;
+    if (parts.is_given[parts.of_faces.first(f)])
+      weave.cells[f] = woven_cell(faces[f], weave.warp[f], material);
+  }
   return weave;
 }
 

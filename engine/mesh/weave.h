@@ -18,10 +18,11 @@ struct Weave {
   std::vector<std::optional<WovenCell>> cells;
 };
 
-/// Where the mesh gives a warp (warp.h), that is it. Other faces make up parts, which end at seams.
-/// A part that consists of woven cells by more than half is woven along its quads, and
-/// faces between those continue what is beside them. In other parts the warp runs along y, as far
-/// as y lies in the plane of the face; in parts that lie level, along x.
+/// A mesh consists of parts, which end at seams. In a part with faces that the mesh gives a warp to
+/// (warp.h), as in flat panels, other faces continue what is beside them. Another part that
+/// consists of woven cells by more than half is woven along its quads, and faces between those
+/// continue what is beside them. In other parts the warp runs along y, as far as y lies in the
+/// plane of the face; in parts that lie level, along x.
 Weave weave_of(const MeshDescription& mesh, const std::vector<Face>& faces, const Edges& edges);
 
 }  // namespace weft::mesh

@@ -105,8 +105,8 @@ struct MeshDescription {
   std::vector<std::array<double, 2>> rest_corners;
   /// Where the warp of a material runs, in the shape at rest (with flat places (u, v, 0)): one
   /// direction for all faces, or one per face, of any length. What lies in the plane of the face
-  /// counts. Empty, or 0, or across the face: as said above; with flat places
-  /// along v.
+  /// counts. A face to which no direction is given, or one across it, continues what is beside it.
+  /// Empty: as said above; with flat places along v.
   std::vector<Vec3> warp;
   std::vector<std::uint32_t> pins;   ///< vertices whose particles are fixed
   std::optional<Material> material;  ///< none: rigid edges
