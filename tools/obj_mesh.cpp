@@ -83,6 +83,7 @@ Result<MeshDescription> description_of(const ObjFile& file, const ObjOptions& op
   }
   description.material = options.material;
   description.mass = options.mass;
+  description.thread_density = options.thread_density;
   description.ropes = options.ropes;
   description.weld_distance = options.weld_distance;
   auto pins = pinned_vertices(options.pin, mesh, options.up);

@@ -29,10 +29,11 @@ struct ObjOptions {
   double weld_distance = 0;     ///< m, as that of MeshDescription
   /// Vertices that are sewn, in lists of the same length: "0-9:29-20" sews 0 to 29, 1 to 28, ...
   std::vector<std::string> seams = {};
-  double seam_time = 0;                   ///< s, as that of MeshDescription
-  std::optional<double> seam_force = {};  ///< N, likewise; none: no limit
-  std::optional<std::string> rest = {};   ///< as rest_and_warp.h says
-  std::optional<std::string> warp = {};   ///< likewise
+  double seam_time = 0;                                      ///< s, as that of MeshDescription
+  std::optional<double> seam_force = {};                     ///< N, likewise; none: no limit
+  std::optional<std::string> rest = {};                      ///< as rest_and_warp.h says
+  std::optional<std::string> warp = {};                      ///< likewise
+  double thread_density = MeshDescription{}.thread_density;  ///< kg/m, of lines; with a material
   double mass = 1;   ///< kg, shared equally by all particles; without a material
   double scale = 1;  ///< multiplies all coordinates
   Ropes ropes = Ropes::none;

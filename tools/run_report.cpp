@@ -116,6 +116,7 @@ constexpr MeshCount kMeshCounts[] = {
     {"unused_vertices", "vertex", " in no face and no line", &MeshCounts::unused_vertices},
     {"degenerate_faces", "face", " without area", &MeshCounts::degenerate_faces},
     {"double_faces", "face", " twice, used once", &MeshCounts::double_faces},
+    {"thread_lines", "line", " that are threads", &MeshCounts::thread_lines},
     {"non_manifold_edges", "edge", " of more than two faces", &MeshCounts::non_manifold_edges},
 };
 

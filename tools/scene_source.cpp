@@ -67,6 +67,7 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--seam-force", options.seam_force.has_value(), kObj},
       {"--rest", options.rest.has_value(), kObj},
       {"--warp", options.warp.has_value(), kObj},
+      {"--thread-density", options.thread_density.has_value(), kObj},
       {"--ropes", options.ropes.has_value(), kCloth},
       {"--diagonals", options.diagonals, kBuiltInCloth},
       {given_option(options.material), is_given(options.material), kCloth},
@@ -199,6 +200,7 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
     return Error{"--seam-force: is for seams that close in a --seam-time"};
   values.rest = options.rest;
   values.warp = options.warp;
+  values.thread_density = options.thread_density.value_or(values.thread_density);
   const auto up = up_of(options.up);
   if (!up) return Error{up.error()};
   values.up = up.value();
@@ -206,7 +208,12 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   if (!cloth) return Error{cloth.error()};
   values.ropes = cloth.value().ropes;
   values.material = cloth.value().material;
-  if (options.warp && !values.material) return Error{"--warp: only cloth of a material has one"};
+  for (const auto& [option, is_given] :
+       {std::pair{"--warp", options.warp.has_value()},
+        {"--thread-density", options.thread_density.has_value()}}) {
+    if (is_given && !values.material)
+      return Error{fmt::format("{}: only cloth of a material has one", option)};
+  }
   if (options.mass && values.material) return Error{"--mass: a material has a density instead"};
   auto scene = read_obj_file(options.scene, values);
   if (!scene) return Error{scene.error()};
@@ -214,6 +221,11 @@ Result<SceneSource> load_obj(const SceneOptions& options) {
   if (auto blown = blow(cloth.value().wind, obj.description); !blown) return Error{blown.error()};
   SceneSource source{options.scene, {}, {}};
   source.notes = notes_of(obj, values);
+  if (obj.counts.thread_lines > 0 && !options.thread_density) {
+    source.notes.push_back(
+        fmt::format("lines are threads of {:g} g/m: --thread-density says otherwise, in kg/m",
+                    1e3 * values.thread_density));
+  }
   source.up = values.up;
   source.counts = obj.counts;
   source.description = std::move(obj.description);
@@ -288,6 +300,8 @@ void add_scene_options(Verb verb, SceneOptions& options) {
   verb.option("--warp", options.warp,
               ".obj with a material: where the warp runs, x,y,z for the whole mesh, or uv, along v "
               "of the texture coordinates (default: along edges of cells, else y)");
+  verb.option("--thread-density", options.thread_density,
+              ".obj with a material: kg/m of its lines, which are threads (default 0.001)");
   verb.option_or_flag("--ropes", options.ropes, "",
                       "what only pulls, all or diagonals (of four-sided faces; without a "
                       "material only ropes join them); alone: built-in scenes all, .obj diagonals");

@@ -32,6 +32,7 @@ struct SceneOptions {
   std::optional<double> seam_time, seam_force;
   std::optional<std::string> rest;
   std::optional<std::string> warp;
+  std::optional<double> thread_density;
   std::optional<std::string> ropes;
   MaterialOptions material;
   WorldOptions world;

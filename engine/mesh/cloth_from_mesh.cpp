@@ -106,28 +106,32 @@ Air air_of(const std::vector<Face>& faces, const Material& material) {
   return air;
 }
 
-/// What is only in lines and in faces without area has no mass.
+/// What is only in faces without area and in lines without length has no mass.
 Result<void> check_masses(const MeshDescription& mesh, const Welded& welded,
                           const std::vector<double>& masses) {
   for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
     const std::uint32_t particle = welded.particle_of_vertex[vertex];
     if (particle == kNoIndex || masses[particle] > 0) continue;
-    return refuse(element("positions", vertex),
-                  "a material gives no mass to what is in no face with an area",
-                  text(mesh.positions[vertex]));
+    return refuse(
+        element("positions", vertex),
+        "a material gives no mass to what is in no face with an area and no line with a length",
+        text(mesh.positions[vertex]));
   }
   return {};
 }
 
 Result<void> add_material(const MeshDescription& mesh, const Welded& welded,
-                          const std::vector<Face>& faces, const Edges& edges,
-                          SceneDescription& scene) {
+                          const std::vector<Face>& faces, const Edges& edges, MeshCloth& cloth) {
   const Material& material = *mesh.material;
-  scene.masses = masses_of(faces, material.density, scene.positions.size());
-  if (auto r = check_masses(mesh, welded, scene.masses); !r) return r;
+  SceneDescription& scene = cloth.scene;
   Fabric fabric = fabric_of(mesh, welded, faces, edges);
-  scene.constraints = std::move(fabric.constraints);
+  scene.masses = masses_of(faces, material.density, scene.positions.size());
+  add_masses(fabric.threads, mesh.thread_density, scene.masses);
+  if (auto r = check_masses(mesh, welded, scene.masses); !r) return r;
+  scene.constraints = std::move(fabric.springs);
+  scene.constraints.insert(scene.constraints.end(), fabric.threads.begin(), fabric.threads.end());
   scene.membrane = std::move(fabric.membrane);
+  cloth.counts.thread_lines = fabric.threads.size();
   scene.bending = bending_of(faces, scene.positions.size(), mesh);
   scene.damping = {material.damping_stretch, material.damping_bending, material.damping_motion};
   scene.air = air_of(faces, material);
@@ -160,7 +164,7 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
   scene.seams = seams_of(mesh, welded);
   if (!mesh.material) {
     add_rigid_edges(mesh, welded, scene);
-  } else if (auto r = add_material(mesh, welded, found.faces, edges, scene); !r) {
+  } else if (auto r = add_material(mesh, welded, found.faces, edges, cloth); !r) {
     return Error{r.error()};
   }
   if (scene.constraints.empty() && scene.membrane.empty()) {

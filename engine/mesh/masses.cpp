@@ -12,4 +12,12 @@ std::vector<double> masses_of(const std::vector<Face>& faces, double density,
   return masses;
 }
 
+void add_masses(const std::vector<Constraint>& threads, double density,
+                std::vector<double>& masses) {
+  for (const Constraint& thread : threads) {
+    for (const std::uint32_t end : {thread.a, thread.b})
+      masses[end] += density * thread.rest_length / 2;
+  }
+}
+
 }  // namespace weft::mesh

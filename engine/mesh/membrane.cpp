@@ -170,13 +170,12 @@ Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::v
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (weave.cells[f]) add_diagonals(faces[f], *weave.cells[f], springs);
   }
-  fabric.constraints = springs.take();
+  fabric.springs = springs.take();
   Joiner joiner(mesh, welded);
-  for (const Constraint& constraint : fabric.constraints) joiner.skip(constraint);
+  for (const Constraint& spring : fabric.springs) joiner.skip(spring);
   for (const Edge& edge : edges.all()) joiner.skip({edge.a, edge.b});
   join_lines(mesh, joiner);
-  const auto lines = joiner.take();
-  fabric.constraints.insert(fabric.constraints.end(), lines.begin(), lines.end());
+  fabric.threads = joiner.take();
   return fabric;
 }
 

@@ -14,11 +14,11 @@ std::vector<Constraint> rigid_constraints(const MeshDescription& mesh, const Wel
 
 /// What a material makes of faces and lines.
 struct Fabric {
-  /// Of woven cells: springs, edges in the order of the faces, then diagonals; then lines, which
-  /// are rigid.
-  std::vector<Constraint> constraints;
+  /// Of woven cells: springs, edges in the order of the faces, then diagonals.
+  std::vector<Constraint> springs;
   /// Of other faces: one for each triangle, two for each quad, in the order of the faces.
   std::vector<MembraneElement> membrane;
+  std::vector<Constraint> threads;  ///< rigid: lines, but those along an edge or a diagonal
 };
 Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::vector<Face>& faces,
                  const Edges& edges);

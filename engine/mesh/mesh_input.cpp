@@ -153,6 +153,7 @@ Result<void> check_input(const MeshDescription& mesh) {
   if (!(mesh.seam_force > 0))
     return refuse("seam_force", "must be greater than 0, or infinite", number(mesh.seam_force));
   if (auto r = validate_not_negative("weld_distance", mesh.weld_distance); !r) return r;
+  if (auto r = validate_positive("thread_density", mesh.thread_density); !r) return r;
   return mesh.material ? check_material(*mesh.material) : validate_positive("mass", mesh.mass);
 }
 

@@ -84,10 +84,13 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 /// plane of each face; in parts that lie level, along x.
 ///
 /// Faces of five and more corners are cut into triangles around the first; they should be convex.
-/// Lines are threads that do not stretch, and have no mass of their own. An edge of more than two
-/// faces stretches as the sum of them, and does not bend. Faces without area are left out, and of
-/// faces with the same corners, as files of two-sided surfaces have them, all but the first:
-/// corners at other places at rest are others, so that two layers of panels remain two.
+/// Lines are threads that do not stretch. A line along the edge of a face counts for nothing.
+/// Threads may hang off the cloth, and may be all that there is.
+///
+/// An edge of more than two faces stretches as the sum of them, and does not bend. Faces without
+/// area are left out, and of faces with the same corners, as files of two-sided surfaces have them,
+/// all but the first: corners at other places at rest are others, so that two layers of panels
+/// remain two.
 struct MeshDescription {
   std::vector<Vec3> positions;            ///< m, one per vertex
   std::vector<std::uint32_t> corners;     ///< vertices, face after face, in order around each
@@ -111,6 +114,9 @@ struct MeshDescription {
   std::vector<std::uint32_t> pins;   ///< vertices whose particles are fixed
   std::optional<Material> material;  ///< none: rigid edges
   double mass = 1;                   ///< kg of the whole, shared equally; used without a material
+  /// kg/m, of lines that are threads; with a material. The default is that of a thick yarn, as
+  /// fringes and tassels have it: 1 g/m, or 1,000 tex.
+  double thread_density = 1e-3;
   /// m. Vertices as near as this become one particle, and so do those that a chain of such
   /// vertices joins. 0: those at exactly equal positions, as files repeat them along seams of
   /// texture coordinates.
@@ -139,6 +145,7 @@ struct MeshCounts {
   std::size_t degenerate_faces = 0;    ///< without area, left out
   std::size_t double_faces = 0;        ///< that an earlier face has all corners of, left out
   std::size_t non_manifold_edges = 0;  ///< of more than two faces
+  std::size_t thread_lines = 0;        ///< that became threads beside a material
   std::size_t pieces = 0;              ///< that nothing joins to one another
   std::size_t loose_pieces = 0;        ///< of these, without a pin
   /// m, a power of ten: as weld_distance it would join loose pieces to what they lie against, with

@@ -72,6 +72,26 @@ TEST_CASE("faces that a file has twice, as two-sided surfaces, are used once and
   CHECK(twice["state_hash"] == once["state_hash"]);
 }
 
+TEST_CASE("a fringe hangs from a cloth of a material, and its mass is said or given") {
+  const TemporaryFolder folder;
+  const std::string mesh =
+      folder.write("tassel.obj",
+                   "v 0 0 0\nv 1 0 0\nv 1 -1 0\nv 0 -1 0\nv 0 -1.1 0\nv 0 -1.2 0\n"
+                   "f 1 2 3 4\nl 4 5 6\n") +
+      " --pin top --material cotton --steps 60 --dt 1/60";
+  const Outcome usual = run_program(folder, "run " + mesh);
+  CHECK(usual.exit_code == 0);
+  CHECK(usual.err ==
+        "weft: lines are threads of 1 g/m: --thread-density says otherwise, in kg/m\n");
+  CHECK(usual.out.find("2 lines that are threads") != std::string::npos);
+  const auto report = report_of(folder, mesh + " --thread-density 0.5");
+  CHECK(report["status"] == "converged");
+  CHECK(report["lowest_y"] == doctest::Approx(-1.2).epsilon(0.02));
+  CHECK(run_program(folder, "run " + mesh + " --thread-density 0.5").err.empty());
+  CHECK(run_program(folder, "run " + mesh + " --thread-density 0").err.find("thread_density") !=
+        std::string::npos);
+}
+
 TEST_CASE("cloth that nothing holds at all was meant to fall") {
   const TemporaryFolder folder;
   CHECK(run_program(folder, "run drape --size 5 --steps 1").err.empty());

@@ -236,5 +236,33 @@ TEST_CASE("lines are threads: rigid, unless a face has the same edge") {
   CHECK(scene.constraints.back().b == 8);
 }
 
+TEST_CASE("threads hang off the cloth by their own mass, half of it at either end") {
+  MeshDescription mesh = with_material(quads(3));
+  const std::vector<double> cloth = made(mesh).scene.masses;
+  mesh.positions.push_back({0, -2, 0});
+  mesh.positions.push_back({0, -2, 1});
+  mesh.lines = {{0, 9}, {9, 10}, {0, 1}};
+  mesh.thread_density = 0.01;
+  const MeshCloth made_of = made(mesh);
+  CHECK(made_of.counts.thread_lines == 2);
+  CHECK(made_of.counts.pieces == 1);
+  const auto& masses = made_of.scene.masses;
+  CHECK(masses[0] == doctest::Approx(cloth[0] + 0.01));
+  CHECK(masses[1] == cloth[1]);
+  CHECK(masses[9] == doctest::Approx(0.015));
+  CHECK(masses[10] == doctest::Approx(0.005));
+  CHECK(build_model(made_of.scene));
+}
+
+TEST_CASE("threads may be all that there is") {
+  MeshDescription mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  mesh.lines = {{0, 1}, {1, 2}};
+  mesh.material = plain_material();
+  CHECK(made(mesh).scene.masses == std::vector<double>{0.5e-3, 1e-3, 0.5e-3});
+  mesh.thread_density = 0;
+  CHECK(refusal(mesh) == "thread_density: must be finite and greater than 0 (0)");
+}
+
 }  // namespace
 }  // namespace weft::test

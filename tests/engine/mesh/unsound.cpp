@@ -39,7 +39,9 @@ TEST_CASE("faces without area are left out") {
   mesh.corners.insert(mesh.corners.end(), {0, 4, 2});
   mesh.face_sizes.push_back(3);
   CHECK(refusal(mesh) ==
-        "positions[4]: a material gives no mass to what is in no face with an area (0.5, 0.5, 0)");
+        "positions[4]: a material gives no mass to what is in no face with an area and no line "
+        "with a "
+        "length (0.5, 0.5, 0)");
   mesh.material.reset();
   CHECK(sound(mesh).counts.degenerate_faces == 4);
 }
