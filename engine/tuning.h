@@ -114,6 +114,9 @@ inline constexpr double kLeastTolerance = 1e-3;
 /// Newton's method; from the second on the direct solver stands by behind yarns.
 inline constexpr double kNearlyEqualMasses = 100;
 inline constexpr double kUnequalMasses = 1e4;
+/// A free sphere is light if it has at most this many times the mass of a particle that it may
+/// meet: what a heavier one gives a cloth when it lands takes small steps long to pass on.
+inline constexpr double kLightSphere = 10;
 
 // -------------------------------------------------------------------------------- the control
 

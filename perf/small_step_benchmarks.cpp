@@ -59,7 +59,8 @@ struct Falling {
   }
   /// From its beginning, each time, to the velocities in its end.
   void frame() {
-    const double h = std::min(0.005, solver.substep_length(x.view(), 10, kWeightsOfSwing));
+    const double h = std::min(0.005, substep_length(model->small_steps().load, x.view(),
+                                                    {.acceleration = 10}, settings.tolerance));
     solver.begin(x.view(), v.view(), model->gravity, {},
                  {.h = h, .substeps = kSubsteps, .omega = tuning::kOmega, .placed = true}, team);
     for (int k = 0; k < kSubsteps; ++k) {

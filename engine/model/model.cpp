@@ -283,6 +283,11 @@ bool Model::joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const {
   return std::ranges::binary_search(joined_, pair_of(sphere, slot));
 }
 
+bool Model::is_sphere_joined(std::uint32_t sphere) const {
+  const auto next = std::ranges::lower_bound(joined_, pair_of(sphere, 0));
+  return next != joined_.end() && *next < pair_of(sphere + 1, 0);
+}
+
 void Model::append(const Constraint& c, std::uint32_t described, std::uint32_t a, std::uint32_t b) {
   ConstraintStore& s = constraints;
   s.a.push_back(a);

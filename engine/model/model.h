@@ -193,6 +193,8 @@ class Model {
   }
   /// Whether a constraint or a triangle of fabric joins the two; slots.
   bool joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const;
+  /// To anything.
+  bool is_sphere_joined(std::uint32_t sphere) const;
   bool is_particle(std::size_t slot) const { return ordering.particle_at[slot] != kNoIndex; }
   std::size_t bytes() const;
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <numeric>
 
 #include "engine/ordering/placement.h"
 
@@ -11,12 +10,12 @@ namespace {
 class Bisection {
  public:
   Bisection(const Lists& incidence, std::span<const Link> links)
-      : incidence_(incidence),
-        links_(links),
-        order_(incidence.size()),
-        piece_of_(incidence.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
+      : incidence_(incidence), links_(links), piece_of_(incidence.size()) {
+    for (std::uint32_t p = 0; p < incidence.size(); ++p) {
+      if (!incidence[p].empty()) order_.push_back(p);
+    }
   }
+  std::size_t joined() const { return order_.size(); }
 
   std::vector<std::vector<std::uint32_t>> cut(std::uint32_t tiles) {
     struct Piece {
@@ -83,8 +82,12 @@ Placement place_nearby(const Lists& incidence, std::span<const Link> links,
   Placement placement;
   placement.colour_class.assign(links.size(), kNoIndex);
   if (incidence.size() == 0) return placement;
-  const std::uint32_t tiles = tile_count(incidence.size(), tile_particles);
-  placement.tiles = Bisection(incidence, links).cut(tiles);
+  Bisection bisection(incidence, links);
+  placement.tiles = bisection.cut(tile_count(bisection.joined(), tile_particles));
+  // Who is joined to nobody stands behind the others, and changes nothing about their order.
+  for (std::uint32_t p = 0; p < incidence.size(); ++p) {
+    if (incidence[p].empty()) placement.tiles.back().push_back(p);
+  }
   return placement;
 }
 

@@ -23,6 +23,7 @@ struct Attempt {
   Scheme scheme = Scheme::paper;
   int parts = 1;         // it does one of so many of a substep, or what is left
   bool is_last = false;  // nothing is tried after it: its result is accepted with its error
+  bool in_vain = false;  // no state keeps the constraints: it may take little time
 
   /// In finest parts of the substep, like begin.
   int end_of(int begin) const { return std::min(kFinest, begin + kFinest / parts); }

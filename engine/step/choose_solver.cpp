@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include "engine/model/model.h"
 #include "engine/solvers/direct/direct_bodies.h"
+#include "engine/step/sphere_paths.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -30,25 +32,36 @@ bool has_ropes(const ConstraintStore& constraints) {
   return constraints.size() > constraints.bilateral;
 }
 
-std::size_t free_spheres(const Model& model) {
-  const auto is_free = [&](std::uint32_t slot) { return model.inverse_mass[slot] > 0; };
-  return static_cast<std::size_t>(std::ranges::count_if(model.spheres, is_free));
+/// What touches nothing changes nothing.
+std::vector<std::uint32_t> free_spheres_that_matter(const Model& model) {
+  std::vector<std::uint32_t> spheres;
+  std::ranges::copy_if(model.spheres, std::back_inserter(spheres), [&](std::uint32_t slot) {
+    return model.inverse_mass[slot] > 0 && may_come_to_cloth(model, slot);
+  });
+  return spheres;
 }
 
-/// Sweeps crawl where masses are unequal, and where spheres fly. Tighter tolerances take more
+bool are_light(const Model& model, const std::vector<std::uint32_t>& spheres) {
+  const double most = tuning::kLightSphere / model.uneven.lightness;
+  return std::ranges::all_of(spheres, [&](std::uint32_t s) { return model.mass[s] <= most; });
+}
+
+/// Sweeps crawl where masses are unequal, and under heavy spheres. Tighter tolerances take more
 /// substeps than an exact solution costs.
-bool takes_small_steps(const Model& model, const Settings& settings) {
+bool takes_small_steps(const Model& model, const Settings& settings,
+                       const std::vector<std::uint32_t>& spheres) {
   return settings.scheme == Scheme::automatic && !settings.velocity_correction &&
          settings.tolerance >= tuning::kLeastTolerance &&
-         model.uneven.ratio <= tuning::kNearlyEqualMasses && free_spheres(model) == 0;
+         model.uneven.ratio <= tuning::kNearlyEqualMasses && are_light(model, spheres);
 }
 
 /// Sweeps leave a rope too long by up to the tolerance, and so do yarns, to which ropes are single
 /// constraints; the direct solver has all lengths of a chain right at once. Its bodies are few.
 Solver solver_for(const Model& model, const Settings& settings) {
   const bool chain = is_a_chain(model);
-  if (!chain && takes_small_steps(model, settings)) return Solver::small_steps;
-  const bool few_bodies = free_spheres(model) <= tuning::kMostBodies;
+  const std::vector<std::uint32_t> spheres = free_spheres_that_matter(model);
+  if (!chain && takes_small_steps(model, settings, spheres)) return Solver::small_steps;
+  const bool few_bodies = spheres.size() <= tuning::kMostBodies;
   return chain && has_ropes(model.constraints) && few_bodies ? Solver::direct : Solver::yarn;
 }
 

@@ -17,12 +17,20 @@ Vector middle(const State& s, std::size_t slot) {
   return 0.5 * (s.position[slot] + s.solved[slot]);
 }
 
+/// Whether it takes part in no impulse: what flies by itself neither gains energy nor gives any.
+bool flies_free(const State& s, std::uint32_t slot) {
+  if (!s.model->has_contacts() || !s.model->is_sphere[slot]) return false;
+  const auto is_it = [slot](std::uint32_t other) { return other == slot; };
+  return std::ranges::none_of(s.contacts.sphere, is_it) &&
+         std::ranges::none_of(s.contacts.particle, is_it) && !s.model->is_sphere_joined(slot);
+}
+
 /// Twice the kinetic energy of the motion that differs from the pins', sum m |v' - u|^2.
 double twice_kinetic(const State& s, const PinMotion& pins) {
   double sum = 0;
   for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
     const double w = s.model->inverse_mass[slot];
-    if (w == 0) continue;
+    if (w == 0 || flies_free(s, slot)) continue;
     const Vector apart = s.next_velocity[slot] - pins.at(middle(s, slot));
     sum += dot(apart, apart) / w;
   }
@@ -34,7 +42,7 @@ double slow_down(State& s, const PinMotion& pins, double factor) {
   double fall = 0;
   for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
     const double w = s.model->inverse_mass[slot];
-    if (w == 0) continue;
+    if (w == 0 || flies_free(s, slot)) continue;
     const Vector u = pins.at(middle(s, slot)), v = s.next_velocity[slot];
     const Vector slowed = u + factor * (v - u);
     fall += (dot(v, v) - dot(slowed, slowed)) / w;

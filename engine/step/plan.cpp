@@ -118,12 +118,21 @@ int substeps_wanted(State& s, double dt, Team& team) {
   return wanted < most ? std::max(1, static_cast<int>(wanted)) : most;
 }
 
+/// Whether that is known of the places that pins come to in this step.
+bool is_in_vain(const State& s, double dt) {
+  if (!s.small_steps || s.settings.iterations > 0) return false;
+  return are_pins_too_far_apart(
+      s.model->small_steps().load, s.settings.tolerance,
+      [&](std::uint32_t slot) { return s.position[slot] + dt * s.velocity[slot]; });
+}
+
 void add(Plan& plan, const Attempt& attempt) { plan.attempts[plan.count++] = attempt; }
 
-void list_attempts(const State& s, Plan& plan) {
+void list_attempts(const State& s, double dt, Plan& plan) {
   const Settings& settings = s.settings;
+  const bool in_vain = is_in_vain(s, dt);
   if (settings.solver == Solver::small_steps) {
-    add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme});
+    add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme, .in_vain = in_vain});
   } else {
     const bool fixed = settings.iterations > 0;
     if (settings.scheme == Scheme::rattle) add(plan, {.scheme = Scheme::rattle});
@@ -133,7 +142,7 @@ void list_attempts(const State& s, Plan& plan) {
       const auto first = static_cast<int>(std::lround(s.refinement));
       for (int i = first; i <= tuning::kMostDoublings; ++i) add(plan, {.parts = 1 << i});
       if (s.stand_in != nullptr) add(plan, {.method = Method::by_stand_in});
-      add(plan, {.method = Method::by_small_steps});
+      if (!in_vain) add(plan, {.method = Method::by_small_steps});
       add(plan, {.method = Method::by_sweeps});
     }
   }
@@ -144,7 +153,7 @@ void list_attempts(const State& s, Plan& plan) {
 
 Plan plan_for(State& s, double dt, StepReport& report, Team& team) {
   Plan plan;
-  list_attempts(s, plan);
+  list_attempts(s, dt, plan);
   if (s.settings.solver == Solver::small_steps) return plan;
   if (s.settings.substeps != kAutomaticSubsteps) {
     plan.substeps = s.settings.substeps;

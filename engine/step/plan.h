@@ -13,8 +13,11 @@
 /// So a substep that is rejected, and then in its second half, is done as a half and two quarters.
 /// Small steps, sweeps and the direct solver behind yarns do all that is left of the substep.
 ///
+/// Where pins are farther apart than the constraints between them reach, small steps are left out.
+///
 /// The paper's loop (gauss_seidel) and a fixed number of iterations have nothing but the scheme
-/// that was asked for and, behind rattle, the paper's. A step by small steps is one attempt.
+/// that was asked for and, behind rattle, the paper's. A step by small steps is one attempt, whose
+/// work is bounded where pins are too far apart: no frame takes long in vain.
 #pragma once
 
 #include <array>

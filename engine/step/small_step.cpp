@@ -11,6 +11,7 @@
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/solvers/stall.h"
+#include "engine/step/burden.h"
 #include "engine/step/energy.h"
 #include "engine/step/exact_substep.h"
 #include "engine/step/motion.h"
@@ -21,18 +22,6 @@
 
 namespace weft {
 namespace {
-
-/// m/s^2, of gravity and forces: the mean magnitude, by mass.
-double mean_acceleration(const State& s) {
-  if (s.forces().size() == 0) return length(s.gravity);
-  double sum = 0, mass = 0;
-  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
-    if (s.model->inverse_mass[slot] == 0) continue;
-    mass += s.model->mass[slot];
-    sum += s.model->mass[slot] * length(acceleration(s, slot));
-  }
-  return mass > 0 ? sum / mass : 0;
-}
 
 bool takes_over_in(const State& s) { return s.settings.solver != Solver::small_steps; }
 
@@ -52,15 +41,16 @@ double length_for_onset(const State& s, double a, double dt) {
 /// s, of the longest substep that the strain tolerance and the motion tolerance allow. What a frame
 /// will be like is not known: State::refinement says what the last ones were. Where that is below 0
 /// the cloth pulls less than at the bottom of a swing.
-double usual_length(State& s, const SmallSteps& solver, double dt) {
-  const double a = mean_acceleration(s);
-  const double weights = kWeightsOfSwing * std::exp2(2 * std::min(0.0, s.refinement));
-  const double length =
-      std::min(tuning::kLongestSubstep, solver.substep_length(s.position.view(), a, weights));
+double usual_length(State& s, double dt) {
+  Burden burden = burden_of(s, dt);
+  burden.weights *= std::exp2(2 * std::min(0.0, s.refinement));
+  const double length = std::min(
+      tuning::kLongestSubstep,
+      substep_length(s.model->small_steps().load, s.position.view(), burden, s.settings.tolerance));
   if (!refines_substeps(s)) return length;
   const double shorter = std::exp2(-std::max(0.0, s.refinement));
   if (s.settings.motion_tolerance == 0) return length * shorter;
-  return std::min(length, length_for_onset(s, a, dt)) * shorter;
+  return std::min(length, length_for_onset(s, burden.acceleration, dt)) * shorter;
 }
 
 /// The compliance of a sweep, over w_a + w_b.
@@ -89,10 +79,11 @@ double passes_beyond(int substeps, double automatic_substeps) {
 
 /// Substeps are about as long as the load allows. Whoever takes over from another solver has no
 /// past, and no energy in springs. A step that is far shorter than the load allows is no stiffer.
-FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& budget) {
+/// What is done in vain is bounded as where a number of substeps was given.
+FramePlan plan_for(State& s, const Attempt& attempt, double dt, const Budget& budget) {
   const bool takes_over = takes_over_in(s);
   FramePlan plan{.h = dt, .omega = tuning::kOmega, .placed = s.placed || takes_over};
-  const double usual = usual_length(s, solver, dt);
+  const double usual = usual_length(s, dt);
   const double wanted = std::max(1.0, std::ceil(dt / usual));
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
     plan.substeps = s.settings.substeps;
@@ -106,6 +97,8 @@ FramePlan plan_for(State& s, const SmallSteps& solver, double dt, const Budget& 
     const double part = 2 * plan.h / usual;
     if (part < 1) plan.omega *= part * part;
   }
+  if (attempt.in_vain)
+    plan.passes = std::min<double>(plan.passes, tuning::kPassesBeyond * plan.substeps);
   return plan;
 }
 
@@ -375,7 +368,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   Frame frame(s, report, team);
   FramePlan plan;
   timed(report, Stage::predict, [&] {
-    plan = plan_for(s, *s.small_steps, h, budget);
+    plan = plan_for(s, attempt, h, budget);
     frame.begin(plan);
   });
   timed(report, Stage::solve_positions, [&] {

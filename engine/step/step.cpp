@@ -141,7 +141,7 @@ class Step {
                             ? small_step(s_, attempt, h, budget, report_, team_)
                             : exact_substep(s_, attempt, h, budget, is_predicted, report_, team_);
     if (trial.outcome == Outcome::accepted)
-      accept(trial);
+      accept(attempt, trial);
     else
       reject(attempt);
     return trial.outcome;
@@ -164,10 +164,11 @@ class Step {
       ++(attempt.scheme == Scheme::rattle ? report_.scheme_fallbacks : report_.halvings);
   }
 
-  void accept(const Trial& trial) {
+  void accept(const Attempt& attempt, const Trial& trial) {
     std::swap(s_.position, s_.solved);
     std::swap(s_.velocity, s_.next_velocity);
-    worsen(report_, trial.status);
+    const bool in_vain = attempt.in_vain && trial.status == Status::iteration_limit;
+    worsen(report_, in_vain ? Status::infeasible : trial.status);
     report_.substeps += trial.substeps;
     report_.pin_work += trial.pin_work;
     report_.energy_lost += trial.energy_lost;

@@ -30,7 +30,7 @@ Outcome run_scene(const Setup& setup, const SceneDescription& scene, int whole, 
 
 /// Random graphs may be infeasible: they must say so, and stay finite.
 Outcome run_random(const Setup& setup) {
-  const int graphs = setup.steps(40, 6);
+  const int graphs = setup.steps(30, 6);
   Outcome sum{0, "", {}, 0};
   int missed = 0;
   for (int seed = 1; seed <= graphs; ++seed) {

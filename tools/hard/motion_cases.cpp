@@ -130,7 +130,7 @@ Vec3 centre_of_mass(const SceneDescription& scene, const Snapshot& state) {
 Trial free_flight(const Setup& setup) {
   Trial trial{spinning_sheet(10), setup.settings(kStrain)};
   trial.settings.backend = Backend::reference;
-  trial.steps = setup.steps(10'000, 1'000);
+  trial.steps = setup.steps(5'000, 1'000);
   return trial;
 }
 

@@ -101,11 +101,6 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
   if (model.has_laws()) aside_.resize(model.slots());
 }
 
-double ReferenceSmallSteps::substep_length(kernels::VectorsView x, double acceleration,
-                                           double weights) const {
-  return weft::substep_length(layout_.load, x, acceleration, weights, settings_.tolerance);
-}
-
 reference::Flight ReferenceSmallSteps::flight() {
   return {x_.view(), before_.view(), predicted_.view(), v_.view(), v_before_.view()};
 }

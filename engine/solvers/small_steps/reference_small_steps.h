@@ -29,7 +29,6 @@ class ReferenceSmallSteps final : public SmallSteps {
 
   ReferenceSmallSteps(const Model& model, const Settings& settings);
 
-  double substep_length(kernels::VectorsView x, double acceleration, double weights) const override;
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
              kernels::VectorsView force, const FramePlan& plan, Team& team) override;
   void advance(Team& team) override;

@@ -165,11 +165,6 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
     scratch_.resize(layout_.yarns.scratch_rows() * std::min(wanted, kMostShares));
 }
 
-double SmallStepsSolver::substep_length(kernels::VectorsView x, double acceleration,
-                                        double weights) const {
-  return weft::substep_length(layout_.load, x, acceleration, weights, settings_.tolerance);
-}
-
 simd::Flight SmallStepsSolver::flight() {
   return {u_.data(), u_before_.data(), predicted_.data(),
           v_.data(), v_before_.data(), acceleration_.data()};

@@ -37,9 +37,6 @@ class SmallStepsSolver final : public SmallSteps {
  public:
   SmallStepsSolver(const Model& model, const Settings& settings, const simd::Table& table);
 
-  /// s, of the longest substep that leaves little to local passes.
-  double substep_length(kernels::VectorsView x, double acceleration, double weights) const override;
-
   /// A frame from x, with velocities v.
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
              kernels::VectorsView force, const FramePlan& plan, Team& team) override;

@@ -101,11 +101,6 @@ class SmallSteps {
  public:
   virtual ~SmallSteps() = default;
 
-  /// s, of the longest substep that leaves little to local passes where the cloth pulls at its pins
-  /// with so many times its weight (small_steps_load.h).
-  virtual double substep_length(kernels::VectorsView x, double acceleration,
-                                double weights) const = 0;
-
   /// A frame from x, with velocities v.
   virtual void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
                      kernels::VectorsView force, const FramePlan& plan, Team& team) = 0;

@@ -148,7 +148,8 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
                       layout.membrane.empty() && layout.bending.empty();
   const YarnMemory memory = weaves ? YarnMemory::woven_if_possible : YarnMemory::quads;
   const std::vector<std::uint32_t> in_yarns = constraints_of_yarns(model);
-  layout.yarns = in_yarns.empty() ? no_yarns(model) : make_yarn_layout(model, in_yarns, memory);
+  layout.yarns =
+      in_yarns.empty() ? no_yarns(model) : make_yarn_layout(model, in_yarns, memory, true);
   set_compliances(model, layout.yarns);
   Builder(model, in_yarns, layout).add_batches();
   for (const auto* hubs : {&store.hub_distances, &store.hub_ropes}) {
@@ -196,7 +197,7 @@ std::size_t SmallStepsLayout::bytes() const {
   return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(used) +
          bytes_of(springs) + bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) +
          bytes_of(serial) + membrane.bytes() + bending.bytes() + anchors.bytes() +
-         bytes_of(load.spans);
+         bytes_of(load.spans) + bytes_of(load.ways);
 }
 
 }  // namespace weft

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <queue>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "engine/lists.h"
@@ -50,12 +54,30 @@ void add_spans(const Model& model, const std::vector<bool>& holds,
   }
 }
 
+/// Per constraint: whether it is a rope that joins a pin to a particle past others, being longer
+/// than another constraint of that particle by half.
+std::vector<bool> find_tethers(const Model& model) {
+  const ConstraintStore& s = model.constraints;
+  std::vector<bool> tethers(s.size());
+  std::vector<double> shortest(model.slots(), std::numeric_limits<double>::infinity());
+  for (std::size_t c = 0; c < s.size(); ++c) {
+    for (const std::uint32_t slot : {s.a[c], s.b[c]})
+      shortest[slot] = std::min(shortest[slot], s.rest_length[c]);
+  }
+  for (std::size_t c = s.bilateral; c < s.size(); ++c) {
+    const bool from_pin = model.inverse_mass[s.a[c]] == 0 || model.inverse_mass[s.b[c]] == 0;
+    const std::uint32_t end = model.inverse_mass[s.a[c]] == 0 ? s.b[c] : s.a[c];
+    tethers[c] = from_pin && s.rest_length[c] > 1.5 * shortest[end];
+  }
+  return tethers;
+}
+
 Blocks find_blocks(const Model& model, const SmallStepsLayout& layout,
-                   std::span<const std::uint32_t> anchored) {
+                   std::span<const std::uint32_t> anchored, const std::vector<bool>& tethers) {
   Blocks blocks;
   const ConstraintStore& s = model.constraints;
   const auto add = [&](std::uint32_t c) {
-    if (c != kNoIndex) blocks.slots_of.push_back(std::vector{s.a[c], s.b[c]});
+    if (c != kNoIndex && !tethers[c]) blocks.slots_of.push_back(std::vector{s.a[c], s.b[c]});
   };
   for_each_yarn(layout.yarns, [&](std::span<const std::uint32_t> links) {
     blocks.slots_of.push_back(slots_of(s, links));
@@ -83,23 +105,25 @@ class Levels {
   Levels(const Model& model, const Blocks& blocks)
       : model_(model), blocks_(blocks), reached_(blocks.slots_of.size()), held_(model.slots()) {}
 
+  /// kg, of the particles on blocks at pins, after carried().
+  double held_mass() const { return first_mass_; }
   /// Particles on a block at a pin; 0: nothing is at a pin.
   double carried() {
     std::vector<std::uint32_t> level, next;
     for (std::uint32_t i = 0; i < reached_.size(); ++i) {
       if (is_pinned(i)) reach(i, level);
     }
-    double first_mass = 0, mass = 0, depth = 0;
+    double mass = 0, depth = 0;
     for (; !level.empty(); level.swap(next)) {
       next.clear();
       double held = 0;
       for (const std::uint32_t i : level) held += hold(i, next);
       if (held > 0) ++depth;
       mass += held;
-      if (first_mass == 0) first_mass = mass;
+      if (first_mass_ == 0) first_mass_ = mass;
     }
     constexpr double kOwn = (1 - tuning::kOmega) / 2;
-    return depth == 0 ? 0 : std::max(mass / first_mass, depth) - 1 + kOwn;
+    return depth == 0 ? 0 : std::max(mass / first_mass_, depth) - 1 + kOwn;
   }
 
  private:
@@ -129,6 +153,7 @@ class Levels {
   const Model& model_;
   const Blocks& blocks_;
   std::vector<bool> reached_, held_;
+  double first_mass_ = 0;
 };
 
 /// A constraint, or a side of a triangle of fabric.
@@ -137,15 +162,22 @@ struct Join {
   double length = 0;
 };
 
-std::vector<Join> joins_of(const Model& model) {
+std::vector<Join> joins_of(const Model& model, const std::vector<bool>& tethers) {
   std::vector<Join> joins;
   const auto add = [&](std::uint32_t a, std::uint32_t b, double length) {
     joins.push_back({a, b, length});
   };
   const ConstraintStore& s = model.constraints;
-  for (std::size_t c = 0; c < s.size(); ++c) add(s.a[c], s.b[c], s.rest_length[c]);
+  for (std::size_t c = 0; c < s.size(); ++c) {
+    if (!tethers[c]) add(s.a[c], s.b[c], s.rest_length[c]);
+  }
   model.membrane.for_each_side(add);
   return joins;
+}
+
+void add_seams(const Model& model, std::vector<Join>& joins) {
+  for (std::size_t i = 0; i < model.seams.size(); ++i)
+    joins.push_back({model.seams.a[i], model.seams.b[i], 0});
 }
 
 /// Along joins from the nearest of some particles, nearest by their number, to the farthest.
@@ -153,6 +185,7 @@ struct Way {
   double joins = 0;
   double length = 0;  // m
   std::uint32_t end = kNoIndex;
+  std::size_t reached = 0;  // particles
 };
 
 Way longest_way(const Model& model, std::span<const Join> joins,
@@ -172,7 +205,7 @@ Way longest_way(const Model& model, std::span<const Join> joins,
   Way longest;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const Way here = way[queue[i]];
-    longest = {here.joins, std::max(longest.length, here.length), queue[i]};
+    longest = {here.joins, std::max(longest.length, here.length), queue[i], i + 1};
     for (const std::uint32_t k : at[queue[i]]) {
       const std::uint32_t other = joins[k].a == queue[i] ? joins[k].b : joins[k].a;
       if (way[other].joins >= 0) continue;
@@ -196,7 +229,94 @@ Way way_that_hangs(const Model& model, std::span<const Join> joins,
   }
   const Way out = longest_way(model, joins, std::span(&joins.front().a, 1));
   const Way across = longest_way(model, joins, std::span(&out.end, 1));
-  return {across.joins / 2, across.length / 2};
+  return {across.joins / 2, across.length / 2, across.end, across.reached};
+}
+
+/// Where all that hangs does so without them.
+void leave_tethers_out(const Model& model, std::span<const std::uint32_t> anchored,
+                       std::vector<bool>& tethers, std::vector<Join>& joins, Way& way) {
+  const std::vector<bool> found = find_tethers(model);
+  if (std::ranges::count(found, true) == 0) return;
+  std::vector<Join> without = joins_of(model, found);
+  add_seams(model, without);
+  const Way other = way_that_hangs(model, without, anchored);
+  if (other.reached < way.reached) return;
+  tethers = found;
+  joins = std::move(without);
+  way = other;
+}
+
+/// Who is nearest to a particle, along constraints that cannot become longer.
+struct Nearest {
+  double length = std::numeric_limits<double>::infinity();  // m
+  std::uint32_t pin = kNoIndex;
+};
+
+/// work(a, b, length), of rigid constraints and ropes without a compliance
+template <class Work>
+void for_each_rigid(const ConstraintStore& s, Work&& work) {
+  for (std::uint32_t c = 0; c < s.size(); ++c) {
+    if (s.compliance[c] == 0) work(s.a[c], s.b[c], s.rest_length[c]);
+  }
+}
+
+std::vector<Nearest> find_nearest_pins(const Model& model) {
+  struct Step {
+    std::uint32_t to = 0;
+    double length = 0;
+  };
+  std::vector<Step> steps;
+  for_each_rigid(model.constraints, [&](std::uint32_t a, std::uint32_t b, double length) {
+    steps.push_back({b, length});
+    steps.push_back({a, length});
+  });
+  const Lists at = make_lists(model.slots(), [&](auto&& add) {
+    for (std::uint32_t i = 0; i < steps.size(); ++i) add(steps[i ^ 1].to, i);
+  });
+  std::vector<Nearest> nearest(model.slots());
+  using Entry = std::pair<double, std::uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  for (const std::uint32_t pin : model.holds) {
+    nearest[pin] = {0, pin};
+    queue.push({0, pin});
+  }
+  while (!queue.empty()) {
+    const auto [length, slot] = queue.top();
+    queue.pop();
+    if (length > nearest[slot].length) continue;
+    for (const std::uint32_t i : at[slot]) {
+      const double there = length + steps[i].length;
+      if (there >= nearest[steps[i].to].length) continue;
+      nearest[steps[i].to] = {there, nearest[slot].pin};
+      queue.push({there, steps[i].to});
+    }
+  }
+  return nearest;
+}
+
+/// Between pins whose nearest particles meet: what is out of reach of a pin is out of reach of one
+/// of these, too, or of several on the way.
+std::vector<SmallStepsLoad::Span> find_ways(const Model& model) {
+  std::vector<SmallStepsLoad::Span> ways;
+  if (model.holds.size() < 2) return ways;
+  const std::vector<Nearest> nearest = find_nearest_pins(model);
+  for_each_rigid(model.constraints, [&](std::uint32_t a, std::uint32_t b, double length) {
+    const std::uint32_t first = nearest[a].pin, last = nearest[b].pin;
+    if (first == last || first == kNoIndex || last == kNoIndex) return;
+    ways.push_back({std::min(first, last), std::max(first, last),
+                    nearest[a].length + length + nearest[b].length});
+  });
+  const auto key = [](const SmallStepsLoad::Span& way) {
+    return std::tuple(way.first_slot, way.last_slot, way.length);
+  };
+  const auto pins = [](const SmallStepsLoad::Span& way) {
+    return std::pair(way.first_slot, way.last_slot);
+  };
+  std::ranges::sort(ways, {}, key);
+  const auto rest = std::ranges::unique(ways, {}, pins);
+  ways.erase(rest.begin(), rest.end());
+  ways.shrink_to_fit();
+  return ways;
 }
 
 /// That of the class which has the median element.
@@ -214,22 +334,28 @@ double median_stiffness(const BendingLayout& bending) {
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;
   load.bending = median_stiffness(layout.bending);
-  std::vector<Join> joins = joins_of(model);
+  std::vector<bool> tethers(model.constraints.size());
+  std::vector<Join> joins = joins_of(model, tethers);
   for (const Join& join : joins) load.mean_length += join.length;
   load.mean_length /= static_cast<double>(std::max<std::size_t>(1, joins.size()));
-  for (std::size_t i = 0; i < model.seams.size(); ++i)
-    joins.push_back({model.seams.a[i], model.seams.b[i], 0});
+  add_seams(model, joins);
   const std::vector<std::uint32_t> anchored = anchors_that_hold(model, load.mean_length);
-  const Blocks blocks = find_blocks(model, layout, anchored);
-  const Way way = way_that_hangs(model, joins, anchored);
-  load.particles = Levels(model, blocks).carried();
-  const bool has_ropes =
-      std::ranges::any_of(layout.batches, [](const EdgeBatch& batch) { return batch.rope; });
-  const bool is_by_ways = (!layout.has_yarns() && !layout.blocks.empty()) || has_ropes ||
-                          (model.holds.empty() && !model.has_attached());
+  Way way = way_that_hangs(model, joins, anchored);
+  leave_tethers_out(model, anchored, tethers, joins, way);
+  const Blocks blocks = find_blocks(model, layout, anchored, tethers);
+  Levels levels(model, blocks);
+  load.particles = levels.carried();
+  load.held_mass = levels.held_mass();
+  const bool has_ropes = std::ranges::any_of(layout.constraint, [&](std::uint32_t c) {
+    return c != kNoIndex && c >= model.constraints.bilateral && !tethers[c];
+  });
+  const bool has_edges = !layout.has_yarns() && !layout.blocks.empty();
+  const bool hangs = !model.holds.empty() || model.has_attached();
+  const bool is_by_ways = has_edges || has_ropes || !hangs;
   load.way = std::max(load.particles, way.joins - 1);
   if (is_by_ways) load.particles = load.way;
   load.reach = way.length;
+  load.ways = find_ways(model);
   std::vector<bool> holds(model.slots());
   for (const auto* slots : {&model.pins, &anchored}) {
     for (const std::uint32_t slot : *slots) holds[slot] = true;
@@ -240,21 +366,22 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   return load;
 }
 
-double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double acceleration,
-                      double weights, double tolerance) {
+double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, const Burden& burden,
+                      double tolerance) {
   double over_slope = 1;
   for (const SmallStepsLoad::Span& span : load.spans) {
     const double distance = length(x[span.first_slot] - x[span.last_slot]);
     const double slack = std::max(0.0, span.length / distance - 1) + tolerance;
     over_slope = std::max(over_slope, 1 / std::sqrt(6 * slack));
   }
+  const double more = load.held_mass > 0 ? burden.mass / load.held_mass : 0;
   const auto length_for = [&](double particles, double of_weights) {
-    const double pull = 2 * of_weights * acceleration * particles * over_slope;
+    const double pull = 2 * of_weights * burden.acceleration * (particles + more) * over_slope;
     return pull > 0 ? std::sqrt(tuning::kOmega * tolerance * load.mean_length / pull)
                     : std::numeric_limits<double>::infinity();
   };
-  const double speed = std::sqrt(2 * acceleration * load.reach);
-  double h = length_for(load.particles, weights);
+  const double speed = std::sqrt(2 * burden.acceleration * load.reach);
+  double h = length_for(load.particles, burden.weights);
   if (speed > 0) h = std::min(h, tuning::kPassing * load.mean_length / speed);
   if (load.bending > 0) {
     const double bent = std::sqrt(tuning::kBendingPace / load.bending);

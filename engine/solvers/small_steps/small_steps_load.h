@@ -25,6 +25,10 @@
 /// A yarn between two pins whose length exceeds their distance by the share s sags with the slope
 /// sqrt(6 s). Its tension is its load divided by that slope, where the slope is below 1.
 ///
+/// Ropes from a pin to the midst of a cloth (tethers) are slack where the constraints between hold,
+/// so they count as nothing, unless some particle hangs on them alone. Free spheres that come to
+/// lie on a cloth are more to carry.
+///
 /// What a cloth carries by its bending each element gives anew in every substep, so that it is
 /// softer than it should be by the share h^2 W / compliance (kernels/simd/bending.h). This stays
 /// within the bound at which elements are visited less often, for half of them at least; but a
@@ -35,6 +39,7 @@
 /// from its pins, D, has the speed sqrt(2 g D), and h is at most a part of L over that speed.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -47,17 +52,19 @@ struct SmallStepsLayout;
 
 /// What hangs on the pins.
 struct SmallStepsLoad {
-  /// A yarn between two pins.
+  /// A yarn, or another way along constraints, between two pins.
   struct Span {
     std::uint32_t first_slot = 0, last_slot = 0;
     double length = 0;  // m, of its constraints
   };
   double particles = 0;    // that a block at a pin carries besides its own
+  double held_mass = 0;    // kg, of the particles of all blocks at pins
   double mean_length = 0;  // m, of the constraints and sides of triangles of fabric
   double reach = 0;        // m, the longest way from a particle to its nearest pin
   double bending = 0;      // 1/s^2, W / compliance of the median bending element, or somewhat more
   double way = 0;          // particles, on the longest way of constraints from a pin
   std::vector<Span> spans;
+  std::vector<Span> ways;  // the shortest between neighbouring pins, along what cannot lengthen
 };
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
@@ -65,9 +72,25 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
 /// How many times its weight a cloth pulls at its pins at the bottom of a swing.
 inline constexpr double kWeightsOfSwing = 3;
 
-/// s, where the cloth pulls at its pins with so many times its weight; infinite where nothing hangs
-/// on a pin or an anchor, or could come to hang over a sphere.
-double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, double acceleration,
-                      double weights, double tolerance);
+/// Of all that accelerates a cloth.
+struct Burden {
+  double acceleration = 0;           // m/s^2
+  double mass = 0;                   // kg, of what lies on it
+  double weights = kWeightsOfSwing;  // with so many times its weight it pulls at its pins
+};
+
+/// s; infinite where nothing hangs on a pin or an anchor, or could come to hang over a sphere.
+double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, const Burden& burden,
+                      double tolerance);
+
+/// Whether two pins are farther apart than the constraints between them can be within tolerance: no
+/// state keeps these. place(slot): where it is.
+template <class Place>
+bool are_pins_too_far_apart(const SmallStepsLoad& load, double tolerance, Place&& place) {
+  return std::ranges::any_of(load.ways, [&](const SmallStepsLoad::Span& way) {
+    const double distance = length(place(way.first_slot) - place(way.last_slot));
+    return distance > (1 + tolerance) * way.length;
+  });
+}
 
 }  // namespace weft

@@ -69,11 +69,8 @@ void for_each_span(const Model& model, const Chain& chain, Work&& work) {
 }
 
 /// The family with most links in spans that are not braced becomes the first, which linear systems
-/// eliminate exactly: a span that is almost straight is too stiff for conjugate gradients. In
-/// scenes with spheres the order stays, because there the change saves no iterations and gains
-/// energy.
+/// eliminate exactly: a span that is almost straight is too stiff for conjugate gradients.
 void begin_with_spans(const Model& model, Braces& braces, std::vector<Chain>& chains) {
-  if (model.has_contacts()) return;
   std::vector<std::size_t> count;  // per family
   for (const Chain& chain : chains) {
     count.resize(std::max<std::size_t>(count.size(), chain.family + 1));
@@ -303,16 +300,16 @@ std::vector<Vec3> initial_positions(const Model& model) {
 YarnLayout make_yarn_layout(const Model& model) {
   std::vector<std::uint32_t> all(model.constraints.plain);
   std::iota(all.begin(), all.end(), 0u);
-  return make_yarn_layout(model, all, YarnMemory::woven_if_possible);
+  return make_yarn_layout(model, all, YarnMemory::woven_if_possible, !model.has_contacts());
 }
 
 YarnLayout make_yarn_layout(const Model& model, std::span<const std::uint32_t> constraints,
-                            YarnMemory memory) {
+                            YarnMemory memory, bool spans_first) {
   YarnLayout layout;
   layout.cell = cell_of(model.constraints);
   std::vector<Chain> chains = open_chains(find_yarns_of(model, constraints), model.slots());
   Braces braces(model);
-  begin_with_spans(model, braces, chains);
+  if (spans_first) begin_with_spans(model, braces, chains);
   sort(chains);
   layout.longest_at = find_longest_at(model, chains);
   Builder builder(model, braces, layout);

@@ -141,5 +141,40 @@ TEST_CASE("a loop that is merely slow is not taken for one that gets nowhere") {
   for (int k = 0; k < 10; ++k) CHECK(step(cloth, 1. / 60).status == Status::converged);
 }
 
+/// `work`, the largest of a frame in units of its substeps' sweeps; local passes take eight times
+/// as long for a visit.
+double most_work(Cloth& cloth, int frames, const auto& before_frame) {
+  const auto constraints = static_cast<double>(describe(*cloth.model()).constraints);
+  double most = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    before_frame(frame);
+    const StepReport report = step(cloth, 1. / 60);
+    const auto sweeps = static_cast<double>(report.direction_updates);
+    const double local = static_cast<double>(report.visits) / constraints - sweeps;
+    most = std::max(most, (sweeps + 8 * local) / report.substeps);
+    CHECK(report.status == Status::infeasible);
+  }
+  return most;
+}
+
+TEST_CASE("small steps take little longer where two pins are too far apart") {
+  const Backend backend = each_backend();
+  SceneDescription scene = scene_of("banner", 15);
+  Cloth cloth = cloth_of(scene, {.solver = Solver::small_steps, .backend = backend});
+  const std::uint32_t pin = scene.fixed.back();
+  const Vec3 away = 0.03 * (cloth.position(pin) - cloth.position(scene.fixed.front()));
+  const auto move = [&](double by) {
+    REQUIRE(cloth.move_fixed(pin, cloth.position(pin) + by * away));
+  };
+  run(cloth, 1. / 60, 10);
+  CHECK(most_work(cloth, 12, [&](int) { move(1); }) < 8);
+  for (int k = 0; k < 14; ++k) {
+    move(-1);
+    step(cloth, 1. / 60);
+  }
+  run(cloth, 1. / 60, 20);
+  CHECK(step(cloth, 1. / 60).status == Status::converged);
+}
+
 }  // namespace
 }  // namespace weft::test

@@ -304,5 +304,45 @@ TEST_CASE(
   }
 }
 
+SceneDescription with_free_sphere(SceneDescription scene, Vec3 at, double mass) {
+  scene.spheres = {static_cast<std::uint32_t>(scene.positions.size())};
+  scene.radii.assign(scene.positions.size(), 0);
+  scene.positions.push_back(at);
+  scene.masses.push_back(mass);
+  scene.radii.push_back(0.2);
+  if (!scene.velocities.empty()) scene.velocities.push_back({0, 0, 0});
+  return scene;
+}
+
+TEST_CASE("a free sphere that is far away changes no bit of a sheet") {
+  for (const char* name : {"hang", "corners"}) {
+    CAPTURE(std::string(name));
+    const SceneDescription scene = scene_of(name, 21);
+    Cloth alone = cloth_of(scene, {});
+    Cloth with_sphere = cloth_of(with_free_sphere(scene, {100, 0, 0}, 5), {});
+    REQUIRE(with_sphere.settings().solver == alone.settings().solver);
+    for (int k = 0; k < 40; ++k) {
+      CHECK(step(alone, 1. / 60).status == step(with_sphere, 1. / 60).status);
+      std::vector<Vec3> x = positions(with_sphere);
+      x.pop_back();
+      CHECK(largest_distance(positions(alone), x) == 0);
+    }
+  }
+}
+
+TEST_CASE("the way of a free sphere decides whether it matters to the choice of a solver") {
+  const auto solver_with = [](Vec3 at, Vec3 velocity, double mass) {
+    SceneDescription scene = with_free_sphere(scene_of("corners", 21), at, mass);
+    scene.velocities.assign(scene.positions.size(), {0, 0, 0});
+    scene.velocities.back() = velocity;
+    return cloth_of(scene, {}).settings().solver;
+  };
+  CHECK(solver_with({0.5, 20, 0.5}, {0, 0, 0}, 5) == Solver::yarn);           // falls onto it
+  CHECK(solver_with({0.5, 20, 0.5}, {8, 0, 0}, 5) == Solver::small_steps);    // falls beside it
+  CHECK(solver_with({-20, 0, 0.5}, {20, 5, 0}, 5) == Solver::yarn);           // is thrown at it
+  CHECK(solver_with({-20, 0, 0.5}, {20, 50, 0}, 5) == Solver::small_steps);   // and over it
+  CHECK(solver_with({0.5, 1, 0.5}, {0, 0, 0}, 0.01) == Solver::small_steps);  // is light
+}
+
 }  // namespace
 }  // namespace weft::test

@@ -13,6 +13,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
+#include "tests/support/vectors.h"
 
 namespace weft::test {
 namespace {
@@ -232,7 +233,7 @@ TEST_CASE("a substep's length: shorter under a load, on taut spans, for tight to
   const auto length_for = [](const SceneDescription& scene, double tolerance) {
     const auto model = model_of(scene);
     kernels::Vectors x = model->initial_position;
-    return substep_length(model->small_steps().load, x.view(), 10, kWeightsOfSwing, tolerance);
+    return substep_length(model->small_steps().load, x.view(), {.acceleration = 10}, tolerance);
   };
   const SceneDescription corners = make("corners", {.size = 21});
   CHECK(length_for(corners, 0.01) / length_for(corners, 0.0025) ==
@@ -291,6 +292,50 @@ TEST_CASE("cloth that no pin holds has the load of what may hang over a sphere")
   const SmallStepsLoad free = load_of(scene);
   CHECK(free.particles <= 0);
   CHECK(free.reach == 0);
+}
+
+/// Ropes from every particle to its pin above it.
+SceneDescription tethered(SceneDescription scene, std::uint32_t columns) {
+  for (std::uint32_t i = 2 * columns; i < scene.positions.size(); ++i) {
+    const std::uint32_t pin = i % columns;
+    scene.constraints.push_back(
+        {pin, i, distance(scene.positions[i], scene.positions[pin]), ConstraintKind::rope});
+  }
+  return scene;
+}
+
+TEST_CASE("ropes to pins change nothing about the substeps of what hangs without them") {
+  for (const bool diagonals : {false, true}) {
+    const SceneDescription scene = make("hang", {.size = 21, .diagonals = diagonals});
+    const SmallStepsLoad& load = model_of(scene)->small_steps().load;
+    const SmallStepsLoad& with_ropes = model_of(tethered(scene, 21))->small_steps().load;
+    CHECK(with_ropes.particles == doctest::Approx(load.particles));
+    CHECK(with_ropes.mean_length == doctest::Approx(load.mean_length));
+    CHECK(with_ropes.reach == doctest::Approx(load.reach));
+  }
+}
+
+TEST_CASE("the ways between pins are the shortest along rigid constraints and ropes") {
+  const auto model = model_of(make("four_pins", {.size = 21}));
+  const std::vector<SmallStepsLoad::Span>& ways = model->small_steps().load.ways;
+  CHECK(ways.size() >= 4);
+  for (const SmallStepsLoad::Span& way : ways) {
+    const kernels::Vector d =
+        model->initial_position[way.first_slot] - model->initial_position[way.last_slot];
+    CHECK(way.length == doctest::Approx(std::abs(d.x) + std::abs(d.y) + std::abs(d.z)));
+  }
+  CHECK(model_of(make("flag", {.size = 21}))->small_steps().load.ways.empty());
+}
+
+TEST_CASE("a sphere that lies on a cloth asks for shorter substeps") {
+  const auto model = model_of(make("four_pins", {.size = 21}));
+  kernels::Vectors x = model->initial_position;
+  const auto length_under = [&](double mass) {
+    return substep_length(model->small_steps().load, x.view(), {.acceleration = 10, .mass = mass},
+                          0.01);
+  };
+  CHECK(length_under(1) < 0.9 * length_under(0));
+  CHECK(length_under(100) / length_under(400) == doctest::Approx(2).epsilon(0.1));
 }
 
 }  // namespace

@@ -1,0 +1,16 @@
+/// What pulls at the cloth in a step, as far as is known when it begins: small steps choose their
+/// length by it.
+#pragma once
+
+#include "engine/solvers/small_steps/small_steps_load.h"
+#include "engine/step/state.h"
+
+namespace weft {
+
+/// m/s^2, of gravity and forces: the mean magnitude, by mass.
+double mean_acceleration(const State& s);
+
+/// A step of dt. It writes over solved and, with free spheres, contacts.
+Burden burden_of(State& s, double dt);
+
+}  // namespace weft
