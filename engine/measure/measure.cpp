@@ -22,6 +22,12 @@ double Measure::max_strain(kernels::VectorsView x, Team& team) {
   return lanes_ ? lanes_->max_strain(x, team) : measure_strain(model_, x).max;
 }
 
+double Measure::spring_energy(kernels::VectorsView x, double give_per_mass, Team& team) {
+  if (!model_.constraints.has_springs()) return 0;
+  return lanes_ ? lanes_->spring_energy(x, give_per_mass, team)
+                : energy_of_springs(model_, x, give_per_mass);
+}
+
 double Measure::penetration(kernels::VectorsView x, ContactStore& contacts) const {
   return model_.has_contacts() ? max_penetration(model_, table_, x, contacts) : 0;
 }

@@ -22,6 +22,8 @@ class Measure {
   /// Over all active constraints.
   Strain strain(kernels::VectorsView x, Team& team);
   double max_strain(kernels::VectorsView x, Team& team);
+  /// J (energy_of_springs).
+  double spring_energy(kernels::VectorsView x, double give_per_mass, Team& team);
   /// m; the search writes into the scratch of the store.
   double penetration(kernels::VectorsView x, ContactStore& contacts) const;
   /// The larger of the largest strain and the deepest penetration, each in its tolerance. With

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "engine/bytes_of.h"
 #include "engine/measure/state_measure.h"
@@ -13,7 +15,22 @@ SimdMeasure::SimdMeasure(const Model& model, const simd::Table& table)
       layout_(model.simd()),
       table_(table),
       strains_(layout_.chunks.size()),
-      stretches_(model.ordering.tiles.size() + layout_.chunks.size() / kPiece + 1) {}
+      stretches_(model.ordering.tiles.size() + layout_.chunks.size() / kPiece + 1) {
+  if (model.constraints.has_springs()) find_stiffness();
+}
+
+void SimdMeasure::find_stiffness() {
+  const ConstraintStore& store = model_.constraints;
+  energies_.resize(layout_.chunks.size());
+  compliance_.assign(layout_.constraint_slots, std::numeric_limits<double>::infinity());
+  inverse_masses_.assign(layout_.constraint_slots, 0);
+  for (std::size_t slot = 0; slot < layout_.constraint_slots; ++slot) {
+    const std::uint32_t c = layout_.constraint_at[slot];
+    if (c == kNoIndex || store.compliance[c] == 0) continue;
+    compliance_[slot] = store.compliance[c];
+    inverse_masses_[slot] = 1 / store.effective_mass[c];
+  }
+}
 
 simd::Geometry SimdMeasure::geometry(kernels::VectorsView x) const {
   return {x,       layout_.rest_length.data(), layout_.inverse_square.data(),
@@ -108,6 +125,23 @@ Strain SimdMeasure::strain(kernels::VectorsView x, Team& team) {
   return strain;
 }
 
+double SimdMeasure::spring_energy(kernels::VectorsView x, double give_per_mass, Team& team) {
+  const simd::Geometry g = geometry(x);
+  const simd::SpringStiffness s{compliance_.data(), inverse_masses_.data(), give_per_mass};
+  team.for_each_part(layout_.chunks.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [run, real, singles, rope] = layout_.chunks[i];
+      energies_[i] = singles ? table_.spring_energy_singles(g, s, run.constraint,
+                                                            run.constraint + run.length, rope)
+                             : table_.spring_energy_run(g, s, run, rope);
+    }
+  });
+  double sum = std::accumulate(energies_.begin(), energies_.end(), 0.);
+  for (std::uint32_t c = layout_.hub_first; c < layout_.hub_last; ++c)
+    sum += energy_of_spring(model_, x, layout_.constraint_at[c], give_per_mass);
+  return sum;
+}
+
 double SimdMeasure::strain_of(kernels::VectorsView x, std::uint32_t slot) const {
   return weft::strain_of(model_, x, layout_.constraint_at[slot]);
 }
@@ -137,6 +171,9 @@ void SimdMeasure::finish_strain(kernels::VectorsView x, std::size_t worst_chunk,
   if (store.size() > 0) strain.rms = std::sqrt(squares / static_cast<double>(store.size()));
 }
 
-std::size_t SimdMeasure::bytes() const { return bytes_of(strains_) + bytes_of(stretches_); }
+std::size_t SimdMeasure::bytes() const {
+  return bytes_of(strains_) + bytes_of(stretches_) + bytes_of(energies_) + bytes_of(compliance_) +
+         bytes_of(inverse_masses_);
+}
 
 }  // namespace weft

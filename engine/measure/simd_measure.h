@@ -28,9 +28,13 @@ class SimdMeasure {
   /// The largest strain, and nothing besides.
   double max_strain(kernels::VectorsView x, Team& team, const BeforeTile& before_tile = {});
 
+  /// J (energy_of_springs). Only where there are springs.
+  double spring_energy(kernels::VectorsView x, double give_per_mass, Team& team);
+
   std::size_t bytes() const;
 
  private:
+  void find_stiffness();
   simd::Geometry geometry(kernels::VectorsView x) const;
   simd::StrainSums sums(const simd::Geometry& g, const Chunk& chunk) const;
   simd::StretchRange stretch(const simd::Geometry& g, std::size_t first, std::size_t last) const;
@@ -41,7 +45,9 @@ class SimdMeasure {
   const Model& model_;
   const SimdLayout& layout_;
   const simd::Table& table_;
-  std::vector<simd::StrainSums> strains_;      // per chunk
+  std::vector<simd::StrainSums> strains_;                       // per chunk
+  std::vector<double> energies_;                                // likewise; of springs only
+  kernels::AlignedVector<double> compliance_, inverse_masses_;  // likewise: simd::SpringStiffness
   std::vector<simd::StretchRange> stretches_;  // per tile, then per piece between tiles
 };
 

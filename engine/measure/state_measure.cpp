@@ -62,19 +62,6 @@ Strain strain_over_all(const Model& m, const Vectors& x) {
 Strain measure_strain(const Model& m, const kernels::Vectors& x) { return strain_over_all(m, x); }
 Strain measure_strain(const Model& m, kernels::VectorsView x) { return strain_over_all(m, x); }
 
-/// C^2 / (2 compliance)
-double energy_of_springs(const Model& m, const kernels::Vectors& x, double give_per_mass) {
-  const ConstraintStore& s = m.constraints;
-  double sum = 0;
-  for (std::size_t c = 0; c < s.compliance.size(); ++c) {
-    if (s.compliance[c] == 0) continue;
-    const double stretch = s.rest_length[c] * strain_of(m, x, c);
-    const double compliance = s.compliance[c] + give_per_mass / s.effective_mass[c];
-    sum += stretch * stretch / (2 * compliance);
-  }
-  return sum;
-}
-
 double energy_of_membrane(const Model& m, const kernels::Vectors& x, double give_per_mass) {
   double sum = 0;
   for (std::size_t i = 0; i < m.membrane.size(); ++i)

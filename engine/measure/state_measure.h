@@ -39,8 +39,21 @@ Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels
 ///     compliance + give_per_mass (w_a + w_b)
 ///
 /// 0: its own. Without this what a solver leaves of a stiff spring's law would count as energy.
-double energy_of_springs(const Model& model, const kernels::Vectors& position,
-                         double give_per_mass = 0);
+template <class Vectors>
+double energy_of_spring(const Model& m, const Vectors& x, std::size_t c, double give_per_mass) {
+  const ConstraintStore& s = m.constraints;
+  if (s.compliance[c] == 0) return 0;
+  const double stretch = s.rest_length[c] * strain_of(m, x, c);
+  return stretch * stretch / (2 * (s.compliance[c] + give_per_mass / s.effective_mass[c]));
+}
+/// Of all.
+template <class Vectors>
+double energy_of_springs(const Model& m, const Vectors& x, double give_per_mass = 0) {
+  double sum = 0;
+  for (std::size_t c = 0; c < m.constraints.compliance.size(); ++c)
+    sum += energy_of_spring(m, x, c, give_per_mass);
+  return sum;
+}
 double energy_of_membrane(const Model& model, const kernels::Vectors& position,
                           double give_per_mass = 0);
 double energy_of_bending(const Model& model, const kernels::Vectors& position,

@@ -228,8 +228,8 @@ class Frame {
   std::uint32_t passed_particle = kNoIndex;  // the description's number
 
  private:
-  double elastic_energy(const kernels::Vectors& x, double give) {
-    return energy_of_springs(*s_.model, x, give) + energy_of_membrane(*s_.model, x, give) +
+  double elastic_energy(kernels::Vectors& x, double give) {
+    return s_.measure->spring_energy(x.view(), give, team_) + energy_of_membrane(*s_.model, x, give) +
            solver_.bending_energy(give, team_);
   }
   Status put_right_what_is_left() {

@@ -122,6 +122,8 @@ constexpr Table make_table() {
           .judge_spring_yarns = as_wide_as_block<judge_spring_yarns, &Table::judge_spring_yarns>(),
           .strain_run = strain_run,
           .strain_singles = strain_singles,
+          .spring_energy_run = spring_energy_run,
+          .spring_energy_singles = spring_energy_singles,
           .stretch_runs = stretch_runs,
           .stretch_singles = stretch_singles,
           .eliminate_front = eliminate_front,

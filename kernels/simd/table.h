@@ -99,6 +99,13 @@ struct Geometry {
   const std::uint32_t* b = nullptr;
 };
 
+/// The springs among the constraints of a Geometry, for their energy.
+struct SpringStiffness {
+  const double* compliance = nullptr;      // m/N; of what is no spring, and of padding: infinite
+  const double* inverse_masses = nullptr;  // 1/kg, w_a + w_b
+  double give = 0;                         // s^2: it adds give (w_a + w_b) to each compliance
+};
+
 /// The particles of a step, per slot; padding slots have inverse mass 0.
 struct Motion {
   const double* inverse_mass = nullptr;
@@ -587,6 +594,10 @@ struct Table {
 
   StrainSums (*strain_run)(const Geometry&, const Run&, bool rope);
   StrainSums (*strain_singles)(const Geometry&, std::uint32_t first, std::uint32_t last, bool rope);
+  /// J, of the springs of a run or of singles.
+  double (*spring_energy_run)(const Geometry&, const SpringStiffness&, const Run&, bool rope);
+  double (*spring_energy_singles)(const Geometry&, const SpringStiffness&, std::uint32_t first,
+                                  std::uint32_t last, bool rope);
   StretchRange (*stretch_runs)(const Geometry&, const Run*, std::size_t count, bool rope);
   StretchRange (*stretch_singles)(const Geometry&, std::uint32_t first, std::uint32_t last,
                                   bool rope);

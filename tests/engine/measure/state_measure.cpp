@@ -3,8 +3,14 @@
 
 #include <cmath>
 
+#include "engine/measure/measure.h"
+#include "engine/model/model.h"
+#include "engine/parallel/team.h"
+#include "kernels/simd/isa.h"
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
+#include "tests/support/random.h"
+#include "tests/support/vectors.h"
 
 namespace weft::test {
 namespace {
@@ -55,6 +61,29 @@ TEST_CASE("the worst constraint is named by its number in the description") {
   scene.constraints[20].rest_length *= 2;
   CHECK(cloth_of(scene, on(backend)).strain().worst_constraint == 20);
   CHECK(cloth_of(scene, on(backend)).strain().max == doctest::Approx(0.5).epsilon(1e-12));
+}
+
+TEST_CASE(
+    "the energy of springs is the same in lanes, of rigid constraints, ropes and hubs beside") {
+  SceneDescription scene = scene_of("hang", 12);
+  Random random(5);
+  const auto particles = static_cast<std::uint32_t>(scene.positions.size());
+  for (std::uint32_t k = 1; k <= 80; ++k)
+    scene.constraints.push_back({0, particles - k, 0.5, ConstraintKind::rope});
+  for (Constraint& c : scene.constraints) {
+    if (random.below(4) > 0) c.compliance = random.between(1e-6, 1e-3);
+  }
+  for (Vec3& x : scene.positions) x = x + random.in_box(0.02);
+  const auto model = model_of(scene);
+  const simd::Table& table = simd::table(simd::best_isa());
+  kernels::Vectors x = model->initial_position;
+  Team team{1};
+  Measure lanes(*model, on(Backend::simd), table), plain(*model, on(Backend::reference), table);
+  for (const double give : {0., 1e-6, 1e-3}) {
+    const double energy = plain.spring_energy(x.view(), give, team);
+    CHECK(energy > 0);
+    CHECK(lanes.spring_energy(x.view(), give, team) == doctest::Approx(energy).epsilon(1e-12));
+  }
 }
 
 TEST_CASE("penetration is measured over all sphere pairs") {

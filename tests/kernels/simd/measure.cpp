@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <vector>
+
 #include "tests/support/kernel_data.h"
 
 namespace weft::test {
@@ -60,6 +62,60 @@ TEST_CASE("strains are those of the positions, ropes' and padding's left out whe
           CHECK(sums.squares == wanted.squares);
           CHECK(sums.largest > 0);
           CHECK(same(data, before));
+        }
+      }
+    }
+  }
+}
+
+/// Every third constraint is no spring.
+struct Stiffness {
+  std::vector<double> compliance, inverse_masses;
+
+  explicit Stiffness(const KernelData& data) {
+    for (std::uint32_t c = 0; c < data.last; ++c) {
+      const bool is_spring = !data.is_padding(c) && c % 3 != 0;
+      compliance.push_back(is_spring ? 1e-4 * (1 + c % 7)
+                                     : std::numeric_limits<double>::infinity());
+      inverse_masses.push_back(is_spring ? 10. * (1 + c % 5) : 0);
+    }
+  }
+};
+
+double expected_energy(const Rounding& rounding, const KernelData& data, const Stiffness& s,
+                       double give, bool singles, bool rope) {
+  double columns[kLanes] = {}, sum = 0;
+  for (std::uint32_t c = data.first; c < data.last; ++c) {
+    const Vector d = between_ends(data, c, singles);
+    double stretch = std::sqrt(rounding.dot(d, d)) - data.rest_length[c];
+    if (rope) stretch = std::max(stretch, 0.);
+    const double compliance = rounding.fused(give, s.inverse_masses[c], s.compliance[c]);
+    columns[(c - data.first) % kLanes] += 0.5 * stretch * stretch / compliance;
+  }
+  for (const double column : columns) sum += column;
+  return sum;
+}
+
+TEST_CASE("the energy of springs is stretch^2 / (2 compliance), of what is rigid nothing") {
+  constexpr double kGive = 1e-5;
+  for (const simd::Isa isa : supported_isas()) {
+    for (const std::uint32_t length : kLengths) {
+      for (const bool singles : {false, true}) {
+        for (const bool rope : {false, true}) {
+          CAPTURE(text(isa));
+          CAPTURE(length);
+          CAPTURE(singles);
+          CAPTURE(rope);
+          KernelData data(length, length + 3);
+          const Stiffness stiffness(data);
+          const simd::SpringStiffness s{stiffness.compliance.data(),
+                                        stiffness.inverse_masses.data(), kGive};
+          const simd::Table& table = simd::table(isa);
+          const double energy =
+              singles ? table.spring_energy_singles(data.geometry(), s, data.first, data.last, rope)
+                      : table.spring_energy_run(data.geometry(), s, data.run, rope);
+          CHECK(energy == expected_energy(Rounding(isa), data, stiffness, kGive, singles, rope));
+          CHECK(energy > 0);
         }
       }
     }
