@@ -229,8 +229,8 @@ class Frame {
 
  private:
   double elastic_energy(kernels::Vectors& x, double give) {
-    return s_.measure->spring_energy(x.view(), give, team_) + energy_of_membrane(*s_.model, x, give) +
-           solver_.bending_energy(give, team_);
+    return s_.measure->spring_energy(x.view(), give, team_) +
+           energy_of_membrane(*s_.model, x, give) + solver_.bending_energy(give, team_);
   }
   Status put_right_what_is_left() {
     Stall stall(tuning::kRoundPatience);

@@ -1,5 +1,6 @@
 #include "tests/support/membrane.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/random.h"
@@ -129,6 +130,21 @@ Vec3 Affine::operator()(Vec3 p) const { return p.x * x + p.y * y + Vec3{0, 0, p.
 std::array<double, 3> laws_of(const Fabric& fabric, const Affine& deformation) {
   const double c = std::cos(fabric.angle), s = std::sin(fabric.angle);
   return laws_of(c * deformation.x + s * deformation.y, c * deformation.y - s * deformation.x);
+}
+
+std::vector<std::array<double, 3>> fabric_laws(const SceneDescription& scene,
+                                               const std::vector<Vec3>& positions) {
+  std::vector<std::array<double, 3>> all;
+  for (const MembraneElement& e : scene.membrane) {
+    const auto [u, v] = along_fabric(e, positions);
+    std::array<double, 3>& laws = all.emplace_back(laws_of(u, v));
+    for (const std::size_t k : {0u, 1u})
+      if (e.kind == ConstraintKind::rope) laws[k] = std::max(laws[k], 0.);
+    if (e.warp == 0) laws[0] = 0;
+    if (e.weft == 0) laws[1] = 0;
+    if (e.shear == 0) laws[2] = 0;
+  }
+  return all;
 }
 
 double energy_density(const Fabric& fabric, const Affine& deformation) {

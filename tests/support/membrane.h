@@ -34,6 +34,10 @@ struct Affine {
 
 /// |f_u| - 1, |f_v| - 1 and the cosine of the angle between, of fabric that is deformed so.
 std::array<double, 3> laws_of(const Fabric& fabric, const Affine& deformation);
+/// The laws of each triangle at these positions; 0 where it has no such law, and of ropes that are
+/// slack.
+std::vector<std::array<double, 3>> fabric_laws(const SceneDescription& scene,
+                                               const std::vector<Vec3>& positions);
 /// J/m^2, likewise.
 double energy_density(const Fabric& fabric, const Affine& deformation);
 /// m^2

@@ -132,6 +132,41 @@ SceneDescription scene_of(const Mesh& mesh, double size, const Ranges& ranges, R
   return scene;
 }
 
+/// One corner at the origin of the fabric, the sides to the others as long as their constraints and
+/// at any angle, turned.
+MembraneElement element_of(std::uint32_t at, const Constraint& one, const Constraint& two,
+                           Random& random) {
+  const auto stiffness = [&] { return random.below(6) == 0 ? 0 : decades(-1, 8, random); };
+  MembraneElement e{.particles = {at, one.a == at ? one.b : one.a, two.a == at ? two.b : two.a},
+                    .warp = stiffness(),
+                    .weft = stiffness(),
+                    .shear = stiffness()};
+  const double turn = random.between(0, 6.2), angle = turn + random.between(0.4, 2.6);
+  e.rest[1] = {one.rest_length * std::cos(turn), one.rest_length * std::sin(turn)};
+  e.rest[2] = {two.rest_length * std::cos(angle), two.rest_length * std::sin(angle)};
+  if (random.below(3) == 0) e.kind = ConstraintKind::rope;
+  return e;
+}
+
+/// Between two constraints that meet, by chance.
+void add_fabric(SceneDescription& scene, Random& random) {
+  std::vector<std::vector<std::uint32_t>> at(scene.positions.size());
+  for (std::uint32_t i = 0; i < scene.constraints.size(); ++i) {
+    at[scene.constraints[i].a].push_back(i);
+    at[scene.constraints[i].b].push_back(i);
+  }
+  for (std::uint32_t particle = 0; particle < at.size(); ++particle) {
+    const auto count = static_cast<std::uint32_t>(at[particle].size());
+    for (std::uint32_t k = 0; count > 1 && k < 2; ++k) {
+      const std::uint32_t one = random.below(count);
+      const std::uint32_t two = (one + 1 + random.below(count - 1)) % count;
+      const MembraneElement e = element_of(particle, scene.constraints[at[particle][one]],
+                                           scene.constraints[at[particle][two]], random);
+      if (e.particles[1] != e.particles[2]) scene.membrane.push_back(e);
+    }
+  }
+}
+
 void draw_motion(RandomCase& c, const Ranges& ranges, Random& random) {
   const double way = ranges.reach * shortest(c.scene);
   c.dt = decades(-4, -1.5, random);
@@ -303,6 +338,33 @@ RandomCase random_case(std::uint32_t seed) {
   return c;
 }
 
+RandomCase softened_case(std::uint32_t seed) {
+  RandomCase c = random_case(seed);
+  Random random(seed);
+  for (Constraint& link : c.scene.constraints) {
+    if (random.below(3) > 0) link.compliance = std::pow(10, random.between(-12, 1));
+  }
+  if (random.below(3) == 0) c.scene.damping.stretch = std::pow(10, random.between(-4, 0));
+  c.settings.velocity_correction = c.settings.anticipate_products = false;
+  if (c.settings.scheme == Scheme::rattle) c.settings.scheme = Scheme::paper;
+  return c;
+}
+
+RandomCase fabric_case(std::uint32_t seed) {
+  Random random(seed + 1'000'003);
+  RandomCase c = random.below(2) == 0 ? random_case(seed) : softened_case(seed);
+  c.shape += " with fabric";
+  add_fabric(c.scene, random);
+  if (random.below(2) == 0) c.scene.constraints.clear();
+  if (random.below(3) == 0) c.scene.damping.stretch = decades(-4, 0, random);
+  c.settings.solver = random.below(4) == 0 ? Solver::automatic : Solver::small_steps;
+  c.settings.scheme = one_of(std::array{Scheme::implicit, Scheme::bdf2}, random);
+  if (c.settings.solver == Solver::automatic) c.settings.scheme = Scheme::automatic;
+  c.settings.velocity_correction = c.settings.anticipate_products = false;
+  if (random.below(2) == 0) c.settings.substeps = kAutomaticSubsteps;
+  return c;
+}
+
 RandomCase gentle_case(std::uint32_t seed) {
   Random random(seed);
   RandomCase c;
@@ -370,15 +432,15 @@ std::string text(const RandomCase& c) {
   const Settings& s = c.settings;
   std::ostringstream out;
   out << "WEFT_SEED=" << c.seed << " WEFT_CASES=1: " << c.shape << ", " << d.positions.size()
-      << " particles, " << d.constraints.size() << " constraints, " << d.fixed.size() << " fixed, "
-      << d.spheres.size() << " spheres; dt " << c.dt << (c.frames_vary() ? " at most; " : "; ")
-      << name(s.solver) << ", " << name(s.scheme) << ", " << name(s.backend) << ", "
-      << name(s.directions) << (s.anticipate ? ", anticipate" : "")
-      << (s.anticipate_products ? " through products" : "") << (s.skip ? ", skip" : "")
-      << (s.velocity_correction ? ", velocity correction" : "") << ", tolerance " << s.tolerance
-      << ", contacts " << s.contact_tolerance << ", velocities " << s.velocity_tolerance
-      << ", substeps " << s.substeps << ", iterations " << s.iterations << " of at most "
-      << s.max_iterations << ", renewed after " << s.renew_after;
+      << " particles, " << d.constraints.size() << " constraints, " << d.membrane.size()
+      << " triangles, " << d.fixed.size() << " fixed, " << d.spheres.size() << " spheres; dt "
+      << c.dt << (c.frames_vary() ? " at most; " : "; ") << name(s.solver) << ", " << name(s.scheme)
+      << ", " << name(s.backend) << ", " << name(s.directions)
+      << (s.anticipate ? ", anticipate" : "") << (s.anticipate_products ? " through products" : "")
+      << (s.skip ? ", skip" : "") << (s.velocity_correction ? ", velocity correction" : "")
+      << ", tolerance " << s.tolerance << ", contacts " << s.contact_tolerance << ", velocities "
+      << s.velocity_tolerance << ", substeps " << s.substeps << ", iterations " << s.iterations
+      << " of at most " << s.max_iterations << ", renewed after " << s.renew_after;
   return out.str();
 }
 

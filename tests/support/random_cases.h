@@ -31,6 +31,12 @@ struct RandomCase {
 
 /// Anything that build_model and Cloth::create take, except what they say they cannot do.
 RandomCase random_case(std::uint32_t seed);
+/// The same with springs of any stiffness among its constraints, some of them damped, by what takes
+/// springs.
+RandomCase softened_case(std::uint32_t seed);
+/// Triangles of fabric of any stiffness between particles that constraints join, with these and
+/// without, some softened, by small steps.
+RandomCase fabric_case(std::uint32_t seed);
 /// Bars alone, about at their lengths, of masses within a decade, no edge bent by much in the step,
 /// to a tight tolerance.
 RandomCase gentle_case(std::uint32_t seed);

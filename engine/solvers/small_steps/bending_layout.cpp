@@ -54,7 +54,9 @@ class Builder {
                          [&](std::uint32_t i) { return has_four(i) == four; });
     for (const auto& batch : batches_of(std::move(elements), model_.slots(),
                                         [&](std::uint32_t i) { return slots(i); })) {
-      add_batch(batch, four);
+      const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
+      for_each_block(batch, [&](std::span<const std::uint32_t> of_block) { add_block(of_block); });
+      layout_.batches.push_back({first, static_cast<std::uint32_t>(layout_.blocks.size()), four});
     }
   }
   bool has_four(std::uint32_t i) const { return store_.slots[i][3] != store_.slots[i][2]; }
@@ -79,13 +81,6 @@ class Builder {
       if (inverse_mass(i) > 0) all.push_back(i);
     }
     return all;
-  }
-  void add_batch(std::span<const std::uint32_t> batch, bool four) {
-    const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
-    for (std::size_t i = 0; i < batch.size(); i += kLanes) {
-      add_block(batch.subspan(i, std::min<std::size_t>(kLanes, batch.size() - i)));
-    }
-    layout_.batches.push_back({first, static_cast<std::uint32_t>(layout_.blocks.size()), four});
   }
   void add_block(std::span<const std::uint32_t> elements) {
     simd::BendingBlock& block = layout_.blocks.emplace_back();

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "kernels/runs.h"
 
 namespace weft {
 
@@ -35,6 +38,13 @@ std::vector<std::vector<std::uint32_t>> batches_of(std::vector<std::uint32_t> el
     later.clear();
   }
   return batches;
+}
+
+/// add_block(elements) for each kLanes of a batch; the last ones may be fewer.
+template <class AddBlock>
+void for_each_block(std::span<const std::uint32_t> batch, AddBlock&& add_block) {
+  for (std::size_t i = 0; i < batch.size(); i += kernels::kLanes)
+    add_block(batch.subspan(i, std::min<std::size_t>(kernels::kLanes, batch.size() - i)));
 }
 
 }  // namespace weft

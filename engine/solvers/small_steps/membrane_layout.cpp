@@ -31,9 +31,7 @@ class Builder {
     const auto slots_of = [&](std::uint32_t i) { return std::span(store_.slots[i]); };
     for (const auto& batch : batches_of(std::move(elements), model_.slots(), slots_of)) {
       const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
-      for (std::size_t i = 0; i < batch.size(); i += kLanes) {
-        add_block(std::span(batch).subspan(i, std::min<std::size_t>(kLanes, batch.size() - i)));
-      }
+      for_each_block(batch, [&](std::span<const std::uint32_t> of_block) { add_block(of_block); });
       layout_.batches.push_back({first, static_cast<std::uint32_t>(layout_.blocks.size()), rope});
     }
   }
