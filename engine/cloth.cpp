@@ -1,6 +1,8 @@
 #include <weft/weft.h>
 
+#include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "engine/contacts/contacts.h"
 #include "engine/isa.h"
@@ -41,6 +43,22 @@ void hash_bits(std::uint64_t& hash, const Model& model, const kernels::Vectors& 
     hash_bits(hash, vectors.y[slot]);
     hash_bits(hash, vectors.z[slot]);
   }
+}
+
+/// Gives `to` the value, and wakes the cloth if that is another one.
+void set(kernels::Vector& to, Vec3 value, Rest& rest) {
+  const kernels::Vector from = std::exchange(to, to_internal(value));
+  if (from.x != to.x || from.y != to.y || from.z != to.z) rest.wake();
+}
+void set(kernels::Vectors& vectors, std::size_t i, Vec3 value, Rest& rest) {
+  kernels::Vector vector = vectors[i];
+  set(vector, value, rest);
+  vectors.set(i, vector);
+}
+
+bool is_identity(const RigidMotion& motion) {
+  const auto is_none = [](Vec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; };
+  return is_none(motion.translation) && is_none(motion.rotation);
 }
 
 bool is_empty(const Changes& changes) {
@@ -180,6 +198,7 @@ Result<void> Cloth::write_positions(std::span<const Vec3> in) {
   for (std::uint32_t i = 0; i < in.size(); ++i) {
     impl_->position.set(impl_->slot(i), to_internal(in[i]));
   }
+  impl_->rest.wake();
   impl_->pins.put_down(impl_->position);
   impl_->anchors.put_down();
   impl_->placed = true;
@@ -195,32 +214,34 @@ Result<void> Cloth::write_velocities(std::span<const Vec3> in) {
     const bool fixed = impl_->model->inverse_mass[slot] == 0;
     impl_->velocity.set(slot, fixed ? kernels::Vector{0, 0, 0} : to_internal(in[i]));
   }
+  impl_->rest.wake();
   impl_->pins.rest();
   return {};
 }
 
 Result<void> Cloth::write_forces(std::span<const Vec3> in) {
   if (in.empty()) {
+    if (impl_->force.size() > 0) impl_->rest.wake();
     impl_->force.resize(0);
     return {};
   }
   if (auto r = validate_vectors("forces", in, particle_count()); !r) return r;
   if (impl_->force.size() == 0) impl_->force = kernels::Vectors(impl_->model->slots());
   for (std::uint32_t i = 0; i < in.size(); ++i) {
-    impl_->force.set(impl_->slot(i), to_internal(in[i]));
+    set(impl_->force, impl_->slot(i), in[i], impl_->rest);
   }
   return {};
 }
 
 Result<void> Cloth::set_gravity(Vec3 gravity) {
   if (auto r = validate_gravity(gravity); !r) return r;
-  impl_->gravity = to_internal(gravity);
+  set(impl_->gravity, gravity, impl_->rest);
   return {};
 }
 
 Result<void> Cloth::set_wind(Vec3 wind) {
   if (auto r = validate_wind(wind); !r) return r;
-  impl_->wind = to_internal(wind);
+  set(impl_->wind, wind, impl_->rest);
   return {};
 }
 
@@ -228,7 +249,7 @@ Result<void> Cloth::move_fixed(std::uint32_t particle, Vec3 position) {
   const auto slot = impl_->pin_slot(particle, position);
   if (!slot) return Error{slot.error()};
   impl_->pins.watch(*impl_->model, impl_->position);
-  impl_->position.set(slot.value(), to_internal(position));
+  set(impl_->position, slot.value(), position, impl_->rest);
   return {};
 }
 
@@ -238,12 +259,14 @@ Result<void> Cloth::place_fixed(std::uint32_t particle, Vec3 position) {
   impl_->pins.put_down(slot.value(), to_internal(position), impl_->position[slot.value()]);
   impl_->position.set(slot.value(), to_internal(position));
   impl_->displaced = true;
+  impl_->rest.wake();
   return {};
 }
 
 Result<void> Cloth::move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals) {
   if (auto r = validate_anchor_move(*impl_->model, points, normals); !r) return r;
   impl_->anchors.move(points, normals);
+  if (impl_->anchors.moving()) impl_->rest.wake();
   return {};
 }
 
@@ -260,6 +283,10 @@ Result<void> Cloth::limit_anchors(std::span<const AnchorLimit> limits) {
     if (!changed) return Error{changed.error()};
     impl_ = std::move(changed).value();
   }
+  const auto same = [](const AnchorLimit& a, const AnchorLimit& b) {
+    return a.max_distance == b.max_distance && a.backstop == b.backstop;
+  };
+  if (!std::ranges::equal(limits, impl_->anchors.limits(), same)) impl_->rest.wake();
   impl_->anchors.limit(limits);
   return {};
 }
@@ -274,12 +301,13 @@ Result<void> Cloth::limit_anchor(std::uint32_t anchor, const AnchorLimit& limit)
 Result<void> Cloth::scale_anchors(double scale) {
   if (auto r = validate_not_negative("scale", scale); !r) return r;
   impl_->anchors.scale(scale);
+  if (impl_->anchors.moving()) impl_->rest.wake();
   return {};
 }
 
 Result<void> Cloth::carry(const RigidMotion& motion, double share) {
   if (auto r = validate_motion(motion, share); !r) return r;
-  if (share == 0) return {};
+  if (share == 0 || is_identity(motion)) return {};
   if (auto r = impl_->take_along(motion, share); !r) return r;
   impl_->way.add(motion, share);
   return {};
@@ -291,6 +319,7 @@ Result<void> Cloth::teleport(const RigidMotion& motion) {
 }
 
 Result<void> Cloth::Impl::take_along(const RigidMotion& motion, double share) {
+  rest.wake();
   const std::uint32_t lost = weft::carry(*this, Carriage(motion, share));
   if (lost == kNoIndex) return {};
   return Error{"motion: takes a particle out of the range of numbers (" +

@@ -103,6 +103,16 @@ inline constexpr int kMostRounds = 64;
 /// Rounds of a frame, and parts of the paper's loop: then the constraints count as contradictory.
 inline constexpr Patience kRoundPatience{0.999, 16};
 
+/// The share of its velocity relative to the air that cloth across the wind may lose between two
+/// looks at the air (engine/step/air.h). A flag flutters too fast where it is larger; looks take
+/// time.
+inline constexpr double kAirShare = 0.3;
+/// s, and a share of the mean length of constraints. Cloth rests of which no particle comes farther
+/// than that in that time: 1e-4 m/s with constraints of 5 cm. Of sheets that rest rounding moves
+/// particles by a tenth of it. A longer time lets fewer slow swings fall asleep at a turning point.
+inline constexpr double kRestTime = 0.5;
+inline constexpr double kRestShare = 1e-3;
+
 // ----------------------------------------------------------------------- the choice of a solver
 
 /// The largest share of constraints that close a loop in chains, trees and bridges. Of a bridge a

@@ -168,6 +168,7 @@ Json to_json(const RunReport& report) {
       {"dt", report.plan.dt},
       {"steps", summary.frames},
       {"frames", summary.frames},
+      {"asleep_frames", summary.asleep_frames},
       {"substeps", substeps(report)},
       {"halvings", summary.halvings},
       {"tolerance", settings.tolerance},
@@ -235,8 +236,10 @@ std::string to_table(const RunReport& report) {
       settings.substeps != 1
           ? fmt::format(" in {:.3g} substeps each", mean(summary.substeps, summary.frames))
           : "";
-  row("frames", fmt::format("{} of {:.6g} s{}, status {}", summary.frames, report.plan.dt,
-                            in_substeps, name(summary.status)));
+  const auto asleep =
+      summary.asleep_frames > 0 ? fmt::format(", {} asleep", summary.asleep_frames) : "";
+  row("frames", fmt::format("{} of {:.6g} s{}{}, status {}", summary.frames, report.plan.dt,
+                            in_substeps, asleep, name(summary.status)));
   row("time",
       fmt::format("{:.4g} ms per frame, {:.3g} the longest, {} times real time, at max {} {}",
                   1e3 * summary.seconds_per_frame(), 1e3 * summary.longest_step_seconds,

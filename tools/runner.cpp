@@ -47,6 +47,7 @@ void look_for_miss(RunSummary& summary, const StepReport& report) {
 void add_work(RunSummary& summary, const StepReport& report) {
   summary.status = std::max(summary.status, report.status);
   summary.substeps += report.substeps;
+  summary.asleep_frames += report.asleep ? 1 : 0;
   summary.halvings += report.halvings;
   summary.iterations += report.iterations;
   summary.velocity_iterations += report.velocity_iterations;

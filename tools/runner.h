@@ -82,6 +82,7 @@ struct RunSummary {
   std::int64_t visits = 0;
   std::int64_t corrections = 0;
   std::int64_t scheme_fallbacks = 0;
+  int asleep_frames = 0;
   int max_contacts = 0;  ///< most pairs watched in one frame
 
   double max_error = 0;         ///< of the constraints' laws, over all frames (StepReport)

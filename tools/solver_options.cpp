@@ -86,6 +86,9 @@ void add_solver_options(Verb verb, SolverOptions& options) {
   verb.option(
       "--isa", options.isa,
       "--backend simd: sse2, avx2, avx512 or auto (default: WEFT_ISA, else the best there is)");
+  verb.option(
+      "--sleep", options.sleep,
+      "on or off (default): steps of a cloth that rests do nothing until something changes");
   verb.option("--threads", settings.threads,
               "most threads of a step (default 0: one for each processor)");
   verb.option("--substeps", options.substeps,
@@ -105,6 +108,7 @@ Result<Settings> settings_of(const SolverOptions& options) {
       choose("--directions", options.directions, parse_choice<Directions>, settings.directions),
       choose("--velocity-correction", options.velocity_correction, parse_switch,
              settings.velocity_correction),
+      choose("--sleep", options.sleep, parse_switch, settings.sleep),
       choose("--backend", options.backend, parse_choice<Backend>, settings.backend),
       choose("--isa", options.isa, parse_choice<Isa>, settings.isa),
       choose("--substeps", options.substeps, parse_substeps, settings.substeps),

@@ -17,6 +17,7 @@ struct SolverOptions {
   std::optional<std::string> scheme;
   std::optional<std::string> anticipate;
   std::optional<std::string> skip;
+  std::optional<std::string> sleep;
   std::optional<std::string> directions;
   std::optional<std::string> velocity_correction;
   std::optional<std::string> backend;

@@ -1,7 +1,10 @@
 #include "engine/step/air.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
@@ -18,9 +21,9 @@ Resistance resistance_of(const AirStore& air, Vector area2, Vector v3) {
   return corner;
 }
 
-void find_resistances(State& s, std::size_t first, std::size_t last) {
+void find_resistances(State& s, kernels::VectorsView x, kernels::VectorsView v, std::size_t first,
+                      std::size_t last) {
   const AirStore& air = s.model->air;
-  const kernels::VectorsView x = s.position.view(), v = s.velocity.view();
   for (std::size_t i = first; i < last; ++i) {
     const auto [a, b, c] = air.triangles[i];
     const Vector from = x[a], area2 = cross(x[b] - from, x[c] - from);
@@ -51,15 +54,16 @@ double share_of_decay(double rate, double h) {
 }
 
 /// During h, of which forces act for the share q, with the rate of decay c.
-Vector resisted_acceleration(const State& s, std::size_t slot, double c, double q, double h) {
+Vector resisted_acceleration(const State& s, std::size_t slot, Vector x, Vector v_here, double c,
+                             double q, double h) {
   const Model& model = *s.model;
   const double w = model.inverse_mass[slot];
-  const Vector lost = c * s.velocity[slot];
+  const Vector lost = c * v_here;
   Vector load = s.gravity - lost;
   if (s.force.size() > 0) load = load + w * s.force[slot];
   if (!model.has_air()) return q * (load + lost);
   const Resistance r = resistance_at(s, slot);
-  const Vector v = s.velocity[slot] - s.wind_at(s.position[slot]), spin = w * r.spin;
+  const Vector v = v_here - s.wind_at(x), spin = w * r.spin;
   load = load - (w * r.rate) * v - cross(spin, v);
   return q * (solve(1 + q * h * w * r.rate, (q * h) * spin, load) + lost);
 }
@@ -69,20 +73,44 @@ Vector resisted_acceleration(const State& s, std::size_t slot, double c, double 
 bool is_resisted(const Model& model) { return model.has_air() || model.damping.motion > 0; }
 
 void find_resistance(State& s, double c, double h, Team& team) {
+  find_resistance(s, s.position.view(), s.velocity.view(), c, h, team);
+}
+
+void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, double c, double h,
+                     Team& team) {
   const Model& model = *s.model;
   if (model.has_air()) {
     team.for_each_part(
         model.air.triangles.size(), kStretch,
-        [&](std::size_t first, std::size_t last) { find_resistances(s, first, last); });
+        [&](std::size_t first, std::size_t last) { find_resistances(s, x, v, first, last); });
   }
   const double q = share_of_decay(c, h);
   team.for_each_part(model.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     for (std::size_t slot = first; slot < last; ++slot) {
       if (model.inverse_mass[slot] == 0) continue;
-      const Vector a = resisted_acceleration(s, slot, c, q, h);
+      const Vector a = resisted_acceleration(s, slot, x[slot], v[slot], c, q, h);
       s.total_force.set(slot, model.mass[slot] * (a - s.gravity));
     }
   });
+}
+
+double parts_for_air(const State& s, double dt) {
+  const Model& model = *s.model;
+  if (!model.has_air()) return 1;
+  const AirStore& air = model.air;
+  double sum = 0, mass = 0;
+  for (const auto& [a, b, c] : air.triangles) {
+    const Vector from = s.position[a], way = s.position[b] - from, across = s.position[c] - from;
+    const Vector v = (1. / 3) * (s.velocity[a] + s.velocity[b] + s.velocity[c]) - s.wind_at(from);
+    const Vector area2 = cross(way, across);
+    sum += std::sqrt(dot(area2, area2) * dot(v, v));
+  }
+  for (std::size_t slot = 0; slot < model.slots(); ++slot) {
+    if (model.inverse_mass[slot] > 0) mass += model.mass[slot];
+  }
+  if (!(mass > 0)) return 1;
+  const double rate = 0.25 * air.density * (air.drag + air.lift) * sum / mass;
+  return std::max(1.0, std::ceil(rate * dt / tuning::kAirShare));
 }
 
 void decay(State& s, double h) {

@@ -1,9 +1,10 @@
 /// Forces that depend on velocities: of the air, and the decay of all motion. In small steps motion
 /// decays by itself (solvers/small_steps/small_steps.h): to them c is 0 here.
 ///
-/// They are found once where a time h begins and held during it: by small steps for a whole step,
-/// by the exact solvers for a substep. With v the mean velocity of its corners relative to the
-/// wind, a triangle of area A and unit normal n gives each corner, which moves with v_i, a third of
+/// They are found where a time h begins and held during it: by the exact solvers for a substep, by
+/// small steps for one or for a few (parts_for_air). With v the mean velocity of its corners
+/// relative to the wind, a triangle of area A and unit normal n gives each corner, which moves with
+/// v_i, a third of
 ///
 ///     f(v_i) = -(R v_i + S x v_i)
 ///     R = density / 2 drag A |n . v|
@@ -37,6 +38,14 @@ bool is_resisted(const Model& model);
 /// State::total_force during h from here on, with the rate of decay c. Only where velocities cause
 /// forces.
 void find_resistance(State& s, double c, double h, Team& team);
+/// The same for particles at x with the velocities v.
+void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, double c, double h,
+                     Team& team);
+/// In how many parts of dt the forces are to be found anew, 1 or more. What stands across the wind
+/// and is turned along it loses its force, at once and not at the end of a step: in a part the air
+/// is not to take more than the share tuning::kAirShare of the velocity that cloth which stands
+/// across it has relative to it.
+double parts_for_air(const State& s, double dt);
 /// State::velocity, before h.
 void decay(State& s, double h);
 

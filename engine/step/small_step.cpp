@@ -11,6 +11,7 @@
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/solvers/stall.h"
+#include "engine/step/air.h"
 #include "engine/step/burden.h"
 #include "engine/step/energy.h"
 #include "engine/step/exact_substep.h"
@@ -142,6 +143,7 @@ class Frame {
   void begin(const FramePlan& plan) {
     plan_ = plan;
     passes_left_ = plan.passes;
+    if (s_.model->has_air() && s_.air_parts > 1) begin_air();
     plan_.anchors = plan.projects ? s_.anchors.standing() : s_.anchors.travel();
     plan_.seams = s_.seams.states();
     kernels::Vectors& velocity = plan.projects ? s_.next_velocity : s_.velocity;
@@ -157,10 +159,24 @@ class Frame {
   /// J, by springs, triangles of fabric and bending elements, since the beginning: there those that
   /// have become stiffer because substeps are shorter had no more than before.
   double released() { return elastic_energy_before_ - elastic_energy(s_.solved, give_); }
+  /// Where the air was looked at more than once State::total_force becomes its mean of the frame.
+  /// Returns J, by which the work that was done differs from that of the mean.
+  double end_air() {
+    if (air_begun_ == 0) return 0;
+    end_air_part();
+    for (std::size_t slot = 0; slot < s_.model->slots(); ++slot) {
+      if (s_.model->inverse_mass[slot] == 0) continue;
+      const kernels::Vector mean = (1 / (plan_.h * plan_.substeps)) * s_.air_impulse[slot];
+      air_work_ -= dot(mean, s_.solved[slot] - s_.position[slot]);
+      s_.total_force.set(slot, mean);
+    }
+    return air_work_;
+  }
   /// What substeps took beyond a sweep each, in the time of sweeps.
   double beyond() const { return beyond_; }
 
   void substep() {
+    if (air_is_due()) look_at_air();
     solver_.advance(team_);
     const bool to_tolerance = s_.settings.iterations == 0;
     for (int i = 0; i < std::max(1, s_.settings.iterations); ++i) sweep();
@@ -228,6 +244,34 @@ class Frame {
   std::uint32_t passed_particle = kNoIndex;  // the description's number
 
  private:
+  void begin_air() {
+    air_every_ = std::max(1, static_cast<int>(plan_.substeps / s_.air_parts));
+    s_.air_from = s_.position;
+    for (std::size_t slot = 0; slot < s_.model->slots(); ++slot)
+      s_.air_impulse.set(slot, {0, 0, 0});
+  }
+  /// Of forces that were held since the air was looked at.
+  void end_air_part() {
+    const double h = plan_.h * (substeps_done_ - air_begun_);
+    for (std::size_t slot = 0; slot < s_.model->slots(); ++slot) {
+      if (s_.model->inverse_mass[slot] == 0) continue;
+      const kernels::Vector force = s_.total_force[slot];
+      air_work_ += dot(force, s_.solved[slot] - s_.air_from[slot]);
+      s_.air_impulse.view().add(slot, h * force);
+    }
+    air_begun_ = substeps_done_;
+  }
+  bool air_is_due() const { return air_every_ > 0 && substeps_done_ - air_begun_ == air_every_; }
+  void look_at_air() {
+    read_positions();
+    end_air_part();
+    s_.air_from = s_.solved;
+    solver_.settle(team_);
+    solver_.read_velocities(s_.next_velocity.view(), team_);
+    const double h = plan_.h * std::min(air_every_, plan_.substeps - substeps_done_);
+    find_resistance(s_, s_.solved.view(), s_.next_velocity.view(), 0, h, team_);
+    solver_.accelerate(s_.gravity, s_.total_force.view());
+  }
   double elastic_energy(kernels::Vectors& x, double give) {
     return s_.measure->spring_energy(x.view(), give, team_) +
            energy_of_membrane(*s_.model, x, give) + solver_.bending_energy(give, team_);
@@ -349,6 +393,9 @@ class Frame {
   const std::int64_t edges_;  // all constraints, triangles of fabric and seams
   FramePlan plan_;
   int substeps_done_ = 0;
+  int air_every_ = 0;                 // substeps; 0: the air was looked at when the frame began
+  int air_begun_ = 0;                 // of the present part, in substeps
+  double air_work_ = 0;               // J
   double beyond_ = 0;                 // of the passes, in substeps
   double give_ = 0;                   // s^2, of a sweep, per mass
   double elastic_energy_before_ = 0;  // J, in the beginning
@@ -386,7 +433,11 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     timed(report, Stage::correct_velocities,
           [&] { trial.worsen(correct_velocities(s, *s.sweeps, false, budget, report, team)); });
   }
-  timed(report, Stage::commit, [&] { change = measure_energy_change(s, team); });
+  timed(report, Stage::commit, [&] {
+    const double work = frame.end_air();
+    change = measure_energy_change(s, team);
+    change.gain -= 2 * work;
+  });
   // A position is no number only where the velocity is none.
   if (!std::isfinite(change.energy)) {
     trial.outcome = Outcome::not_finite;

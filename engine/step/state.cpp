@@ -18,6 +18,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
       settings(chosen),
       anchors(*model),
       seams(*model),
+      rest(*model),
       kernels(&simd::table(to_kernel(chosen.isa))),
       measure(std::make_unique<Measure>(*model, chosen, *kernels)) {
   settings.scheme = scheme_of(settings);
@@ -34,7 +35,11 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   if (settings.backend == Backend::reference) predicted.resize(model->slots());
   if (is_resisted(*model)) total_force.resize(model->slots());
   if (model->damping.motion > 0) velocity_before_decay.resize(model->slots());
-  if (model->has_air()) resistances.resize(model->air.triangles.size());
+  if (model->has_air()) {
+    resistances.resize(model->air.triangles.size());
+    air_from.resize(model->slots());
+    air_impulse.resize(model->slots());
+  }
   if (model->constraints.has_springs() && settings.solver != Solver::small_steps) {
     laws.emplace(model->constraints);
   }
@@ -99,9 +104,12 @@ void State::copy(const State& from) {
   anchors = std::move(its_anchors);
   seams = std::move(its_seams);
   copy_scalars(from, same);
+  rest = from.rest;
+  if (!same || !settings.sleep) rest.wake();
 }
 
 void State::copy_scalars(const State& from, bool same) {
+  asleep = from.asleep;
   gravity = from.gravity;
   wind = from.wind;
   way = from.way;
@@ -144,11 +152,12 @@ std::size_t State::bytes() const {
   std::size_t sum = 0;
   for (const kernels::Vectors* v :
        {&position, &velocity, &force, &total_force, &velocity_before_decay, &solved, &next_velocity,
-        &step_start.position, &step_start.velocity, &substep_positions, &predicted}) {
+        &step_start.position, &step_start.velocity, &substep_positions, &predicted, &air_from,
+        &air_impulse}) {
     sum += v->bytes();
   }
   sum += contacts.bytes() + bytes_of(impulses) + bytes_of(resistances) + pins.bytes() +
-         anchors.bytes() + seams.bytes() + measure->bytes();
+         anchors.bytes() + seams.bytes() + rest.bytes() + measure->bytes();
   sum += sizeof(Team::SharedState);
   if (laws) sum += laws->bytes();
   if (sweeps) sum += sweeps->bytes();

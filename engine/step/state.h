@@ -29,6 +29,7 @@
 #include "engine/solvers/yarn/yarn_solver.h"
 #include "engine/step/anchors.h"
 #include "engine/step/pins.h"
+#include "engine/step/rest.h"
 #include "engine/step/seams.h"
 #include "kernels/impulse_energy.h"
 #include "kernels/vectors.h"
@@ -65,8 +66,10 @@ struct State {
   kernels::Vectors force;                  // external; empty: none
   kernels::Vectors velocity_before_decay;  // for an attempt that is rejected; with decay only
   kernels::Vectors total_force;  // besides gravity (air.h); empty where velocities cause none
-  std::vector<Resistance> resistances;  // per triangle
+  std::vector<Resistance> resistances;     // per triangle
+  kernels::Vectors air_from, air_impulse;  // of small steps: in a part of a frame, m and N s
   kernels::Vector gravity, wind;
+  double air_parts = 1;       // of a frame of small steps, in which the air is looked at (air.h)
   CarriedWay way;             // through the air
   double way_per_second = 0;  // 1 over the length of the present step
   /// m/s, of the air about x, as the cloth sees it.
@@ -87,6 +90,9 @@ struct State {
   double give_per_mass = 0;   // s^2, of springs in the last step (measure/state_measure.h)
   double longest_substep = 0;  // s, of a solver, since positions were given
   double refinement = 0;       // log2 of the next step's parts, or how much shorter its substeps
+
+  Rest rest;
+  StepReport asleep;  // what its steps report while the cloth sleeps
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots
 

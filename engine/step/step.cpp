@@ -152,6 +152,10 @@ class Step {
   }
   void resist(const Attempt& attempt, double h) {
     const bool decays = decays_before(attempt);
+    if (attempt.method == Method::by_small_steps) {
+      s_.air_parts = parts_for_air(s_, h);
+      return find_resistance(s_, 0, h / s_.air_parts, team_);
+    }
     find_resistance(s_, decays ? s_.model->damping.motion : 0, h, team_);
     if (!decays) return;
     s_.velocity_before_decay = s_.velocity;
@@ -206,7 +210,35 @@ class Step {
 
 }  // namespace
 
+namespace {
+
+/// What moved so little that it rests is brought to rest. Its report is that of the steps to come,
+/// but for what this one did.
+void fall_asleep(State& s, StepReport& report) {
+  const auto still = [&](std::size_t slot) {
+    const double mass = s.model->inverse_mass[slot] > 0 ? s.model->mass[slot] : 0;
+    const kernels::Vector v = s.velocity[slot];
+    s.velocity.set(slot, {0, 0, 0});
+    return 0.5 * mass * dot(v, v);
+  };
+  for (std::size_t slot = 0; slot < s.model->slots(); ++slot) report.energy_lost += still(slot);
+  s.asleep = {.status = report.status,
+              .asleep = true,
+              .contacts = report.contacts,
+              .max_strain = report.max_strain,
+              .rms_strain = report.rms_strain,
+              .max_shear = report.max_shear,
+              .max_error = report.max_error,
+              .worst_constraint = report.worst_constraint,
+              .worst_element = report.worst_element,
+              .max_penetration = report.max_penetration,
+              .max_anchor_error = report.max_anchor_error};
+}
+
+}  // namespace
+
 StepReport step(State& s, double dt) {
+  if (s.rest.is_asleep()) return s.asleep;
   StepReport report;
   Team team(threads_worth_having(s), s.team_state);
   bool done = false;
@@ -225,6 +257,7 @@ StepReport step(State& s, double dt) {
   if (!done || s.settings.solver != Solver::small_steps) {
     timed(report, Stage::report, [&] { report_errors(s, s.position, done, report, team); });
   }
+  if (done && s.settings.sleep && s.rest.watch(s.position, dt)) fall_asleep(s, report);
   return report;
 }
 

@@ -9,6 +9,7 @@
 ///   energy         which attempts are rejected for the energy they gain, and the guard
 ///   pins, anchors  fixed particles and points of anchors that are moved
 ///   pin_work       the work that they do
+///   rest           whether a cloth rests, and sleeps
 #pragma once
 
 #include <weft/weft.h>

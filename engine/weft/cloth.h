@@ -64,7 +64,9 @@ WEFT_API std::string_view name(Stage);
 /// is the worst of them; errors are those at the end.
 struct StepReport {
   Status status = Status::converged;
-  int substeps = 0;                      ///< done; 0 where nothing is committed
+  bool asleep = false;                   ///< the cloth slept (Settings::sleep): errors are those
+                                         ///< of its last step, and no work was done
+  int substeps = 0;                      ///< done; 0 where nothing is committed, and asleep
   int halvings = 0;                      ///< attempts at a substep that were rejected (Solver)
   std::int64_t iterations = 0;           ///< passes over the position constraints; yarn: sweeps and
                                          ///< conjugate gradient iterations; direct: solves;

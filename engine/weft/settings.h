@@ -133,6 +133,13 @@ struct Settings {
   /// takes 1.3 to 2 times as long as by displacements, on irregular meshes 3 times (perf/tried.md).
   /// The reference backend anticipates by products, and refuses this; models with springs do, too.
   bool anticipate_products = false;
+  /// A cloth that rests sleeps: where for half a second no particle has come farther than a
+  /// thousandth of the mean length of its constraints, velocities are set to zero, and steps do
+  /// nothing but say so (StepReport::asleep), until it is given other positions, velocities,
+  /// forces, gravity, wind, pins, anchors, rigid motions or properties than it has. The same values
+  /// again do not wake it. A balance that is lost more slowly than that is kept. In steps of more
+  /// than 1/8 s nothing falls asleep.
+  bool sleep = false;
   bool skip = true;  ///< section 4.3: satisfied constraints are passed over
   /// Sections 3.2, 3.3: a second loop, on velocities; rattle has it always. Without it gauss_seidel
   /// gains energy in steps of a millisecond and less: errors left within a loose tolerance come

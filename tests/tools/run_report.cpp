@@ -70,7 +70,7 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
     "max_error": 0.25,
     "solver": "auto", "solver_used": "yarn", "scheme": "paper", "scheme_fallbacks": 8,
     "backend": "simd", "anticipate_products": false, "isa": "avx2", "threads": 3,
-    "dt": 0.5, "steps": 4, "frames": 4, "substeps": 5.5, "halvings": 7,
+    "dt": 0.5, "steps": 4, "frames": 4, "asleep_frames": 0, "substeps": 5.5, "halvings": 7,
     "tolerance": 0.0625, "iterations": 0, "status": "infeasible",
     "ms_per_frame": 250, "max_ms_per_frame": 500, "real_time_factor": 2,
     "max_strain": 0.125, "mean_max_strain": 0.03125, "rms_strain": 0.015625,

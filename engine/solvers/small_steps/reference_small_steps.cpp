@@ -126,12 +126,9 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   if (has_past_ && !plan.anchors.moving) at_limit_ = past_.at_limit;
   last_ = 0;
   const double push = h * decaying_share();
+  accelerate(gravity, force);
   for (std::size_t i = 0; i < model_.slots(); ++i) {
-    const double w = model_.inverse_mass[i];
-    const Vector a = w == 0               ? Vector{0, 0, 0}
-                     : force.x != nullptr ? gravity + w * force[i]
-                                          : gravity;
-    acceleration_.set(i, a);
+    const Vector a = acceleration_[i];
     x_.set(i, x[i]);
     v_.set(i, v[i]);
     if (!has_past_) {
@@ -144,6 +141,14 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     before_.set(i, x[i] - (past_.moved[i] + past_.h * jump));
   }
   next_formula_ = formula_after(has_past_ ? past_.h : h);
+}
+
+void ReferenceSmallSteps::accelerate(Vector gravity, kernels::VectorsView force) {
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    const double w = model_.inverse_mass[i];
+    const Vector pull = force.x != nullptr ? gravity + w * force[i] : gravity;
+    acceleration_.set(i, w == 0 ? Vector{0, 0, 0} : pull);
+  }
 }
 
 /// Of the last substep, if there was one.

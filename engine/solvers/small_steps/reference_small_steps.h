@@ -31,6 +31,7 @@ class ReferenceSmallSteps final : public SmallSteps {
 
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
              kernels::VectorsView force, const FramePlan& plan, Team& team) override;
+  void accelerate(kernels::Vector gravity, kernels::VectorsView force) override;
   void advance(Team& team) override;
   void sweep(Team& team) override;
   void mend(Team& team) override;

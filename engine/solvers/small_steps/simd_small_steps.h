@@ -40,6 +40,9 @@ class SmallStepsSolver final : public SmallSteps {
   /// A frame from x, with velocities v.
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
              kernels::VectorsView force, const FramePlan& plan, Team& team) override;
+  void accelerate(kernels::Vector gravity, kernels::VectorsView force) override {
+    write_acceleration(gravity, force);
+  }
   /// The stages of a substep.
   void advance(Team& team) override;
   void sweep(Team& team) override;

@@ -104,6 +104,8 @@ class SmallSteps {
   /// A frame from x, with velocities v.
   virtual void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
                      kernels::VectorsView force, const FramePlan& plan, Team& team) = 0;
+  /// Between two substeps: what acts from now on.
+  virtual void accelerate(kernels::Vector gravity, kernels::VectorsView force) = 0;
   /// The stages of a substep.
   virtual void advance(Team& team) = 0;
   virtual void sweep(Team& team) = 0;
