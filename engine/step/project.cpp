@@ -109,7 +109,7 @@ class Projection {
     }
     for (const double h : {tuning::kPlacing, tuning::kLongestSubstep}) {
       if (carries) drift = find_drift(before, softest, h);
-      for (int i = 0; i < tuning::kMostPlacings; ++i) {
+      for (int i = 0; i < tuning::kMostPlacings && left() > 0; ++i) {
         solve(softest, h);
         if (!all_finite(s_.solved)) return;
         if (carries) take_back(drift);

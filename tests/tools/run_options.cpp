@@ -19,7 +19,7 @@ TEST_CASE("every built-in scene runs with its default size and reaches its toler
     const Outcome outcome =
         run_program(folder, "run " + std::string(scene.name) + " --steps 3 --json -");
     CHECK(outcome.exit_code == 0);
-    CHECK(nlohmann::json::parse(outcome.out)["max_strain"] <= 0.01);
+    CHECK(nlohmann::json::parse(outcome.out)["max_error"] <= 0.01);
   }
 }
 

@@ -175,6 +175,12 @@ std::vector<Join> joins_of(const Model& model, const std::vector<bool>& tethers)
   return joins;
 }
 
+double mean_length(std::span<const Join> joins) {
+  double sum = 0;
+  for (const Join& join : joins) sum += join.length;
+  return sum / static_cast<double>(std::max<std::size_t>(1, joins.size()));
+}
+
 void add_seams(const Model& model, std::vector<Join>& joins) {
   for (std::size_t i = 0; i < model.seams.size(); ++i)
     joins.push_back({model.seams.a[i], model.seams.b[i], 0});
@@ -336,12 +342,11 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   load.bending = median_stiffness(layout.bending);
   std::vector<bool> tethers(model.constraints.size());
   std::vector<Join> joins = joins_of(model, tethers);
-  for (const Join& join : joins) load.mean_length += join.length;
-  load.mean_length /= static_cast<double>(std::max<std::size_t>(1, joins.size()));
+  const std::vector<std::uint32_t> anchored = anchors_that_hold(model, mean_length(joins));
   add_seams(model, joins);
-  const std::vector<std::uint32_t> anchored = anchors_that_hold(model, load.mean_length);
   Way way = way_that_hangs(model, joins, anchored);
   leave_tethers_out(model, anchored, tethers, joins, way);
+  load.mean_length = mean_length(joins_of(model, tethers));
   const Blocks blocks = find_blocks(model, layout, anchored, tethers);
   Levels levels(model, blocks);
   load.particles = levels.carried();
