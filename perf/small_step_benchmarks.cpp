@@ -225,7 +225,11 @@ void run_anchors(benchmark::State& state, const Shared& shared, simd::Isa isa, i
   for (const Anchor& anchor : model->anchors.described) {
     poses.push_back(pose_of(anchor.point, anchor.normal));
   }
-  anchors.begin({poses, poses, false}, 1e-4, 1, {});
+  std::vector<double> most;
+  for (const reference::AnchorLimits& limit : model->anchors.limits) most.push_back(limit.most);
+  const std::vector<std::uint8_t> has_backstop(poses.size(), 1);
+  const AnchorTravel standing{poses, poses, most, most, has_backstop};
+  anchors.begin(standing, 1e-4, 1, {});
   for (std::size_t i = 0; i < model->anchors.size(); ++i) {
     const std::size_t place = model->small_steps().places().of(model->anchors.slot[i]);
     const std::size_t next = model->small_steps().places().stride;
