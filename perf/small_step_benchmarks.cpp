@@ -164,7 +164,7 @@ void run_membrane(benchmark::State& state, const Shared& shared, simd::Isa isa, 
   SimdMembrane membrane(*model, simd::table(isa));
   kernels::AlignedVector<float> base = quads_of(*model), u(base.size());
   membrane.measure_base(base.data(), team);
-  const LawStep laws{{.scale = 1e7}, false};
+  const LawStep laws{{.scale = 1e7}};
   for (auto _ : state) {
     if (judges)
       membrane.judge(u.data(), nullptr, laws, 0.01, team);
