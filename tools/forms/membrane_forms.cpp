@@ -33,6 +33,28 @@ Reading weighed(Pattern pattern, int refinement) {
   return run.reading(size_of(strip.sheet), 1e3 * expected, 1e3 * (-1 - run.mean_y(strip.end)));
 }
 
+/// A strip whose warp runs at 45 degrees to it hangs from its end: how far what is away from the
+/// clamp by three times its width comes down beyond that place.
+Reading weighed_on_the_bias(int refinement) {
+  constexpr double kFrom = 0.375;
+  Material material = cotton();
+  material.damping_motion = 200;
+  MeshDescription mesh =
+      hanging_mesh(sheet_of(Pattern::irregular, 1, 0.125, 8 << refinement), material);
+  mesh.warp = {{1, 1, 0}};
+  const SceneDescription scene = scene_of(mesh);
+  const double half_cell = 0.0625 / (1 << refinement);
+  const auto from = particles_at(scene, [&](Vec3 p) { return std::abs(p.y + kFrom) < half_cell; });
+  const auto end = particles_at(scene, [](Vec3 p) { return p.y < -1 + 1e-9; });
+  Run run(scene, {.tolerance = 1e-4, .substeps = 128 << refinement});
+  const double rest = 1 + run.mean_y(from);  // m, of what hangs below
+  run.steps(30, kFrame);
+  const double softness = 1 / material.warp + 1 / material.weft + 1 / material.shear;
+  return run.reading(fmt::format("{} x {} cells", 8 << refinement, 1 << refinement),
+                     1e3 * material.density * kGravity * rest * rest / 2 * softness / 4,
+                     1e3 * (run.mean_y(from) - run.mean_y(end) - rest));
+}
+
 /// J, of a triangle of fabric.
 double energy_of(const MembraneElement& m, const Run& run) {
   const auto& [a, b, c] = m.particles;
@@ -182,6 +204,8 @@ std::vector<Form> membrane_forms() {
   std::vector<Form> forms;
   for (const Pattern pattern : {Pattern::quads, Pattern::equilateral, Pattern::irregular})
     add_strips(forms, pattern);
+  forms.push_back({"a strip hangs on the bias, irregular triangles",
+                   "rho g L^2 / 8 (1 / warp + 1 / weft + 1 / shear)", "mm", weighed_on_the_bias});
   for (const Pattern pattern :
        {Pattern::quads, Pattern::jittered, Pattern::irregular, Pattern::patchwork})
     add_patches(forms, pattern);

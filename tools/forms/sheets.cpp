@@ -176,11 +176,15 @@ std::vector<std::uint32_t> particles_at(const SceneDescription& scene, const Pla
   return found;
 }
 
-Strip hanging_strip(const Sheet& sheet, const Material& material) {
+MeshDescription hanging_mesh(const Sheet& sheet, const Material& material) {
   MeshDescription mesh = mesh_of(sheet, material);
   for (Vec3& p : mesh.positions) p = {p.z, -p.x, 0};
   pin(mesh, [](Vec3 p) { return p.y > -kNear; });
-  Strip strip{.sheet = sheet, .scene = scene_of(mesh)};
+  return mesh;
+}
+
+Strip hanging_strip(const Sheet& sheet, const Material& material) {
+  Strip strip{.sheet = sheet, .scene = scene_of(hanging_mesh(sheet, material))};
   strip.end = particles_at(strip.scene, [&](Vec3 p) { return p.y < kNear - sheet.length; });
   return strip;
 }

@@ -48,7 +48,8 @@ struct Strip {
   double clamp = 0;  ///< m, from the sheet's beginning
 };
 
-/// From its upper end down, along -y.
+/// From its upper end down, along -y, held by that end.
+MeshDescription hanging_mesh(const Sheet& sheet, const Material& material);
 Strip hanging_strip(const Sheet& sheet, const Material& material);
 
 /// Level, `length` from the clamp to the free end, in so many cells and a half. Three rows of
