@@ -251,6 +251,9 @@ inline constexpr double kProductTime = 0.12;
 
 // --------------------------------------------------------------------------------- meshes
 
+/// An edge over a thin triangle of fabric is flipped where that changes the area at rest, or what
+/// the material does, by at most this share: a third of what woven cells may be off.
+inline constexpr double kMostFabricChange = 0.01;
 /// How often the energies that bending stores around particles become means over neighbours, before
 /// elements get their factors; and how often all of that is done. More rings leave a sheet stiffer
 /// as a whole and its parts less alike (perf/tried.md).

@@ -1,6 +1,7 @@
 #include <weft/mesh.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "engine/mesh/bending.h"
@@ -74,7 +75,8 @@ BendingElement element_of(const Stencil& stencil, double stiffness) {
 std::vector<BendingElement> bending_of(const std::vector<Face>& faces, std::size_t particles,
                                        const MeshDescription& mesh) {
   if (!(mesh.material->bending > 0)) return {};
-  const std::vector<Face> bent = well_shaped(faces, mesh.weld_distance);
+  constexpr double kAnyChange = std::numeric_limits<double>::infinity();
+  const std::vector<Face> bent = well_shaped(faces, mesh.weld_distance, kAnyChange);
   const Edges edges(bent);
   Stencils stencils = bending_stencils(bent, edges, mesh.weld_distance);
   Calibrated calibrated = calibrate(bent, edges, stencils, mesh.weld_distance, particles);

@@ -1,5 +1,7 @@
 #include "engine/mesh/delaunay.h"
 
+#include <algorithm>
+
 #include "engine/mesh/edges.h"
 #include "engine/mesh/pair_numbers.h"
 
@@ -16,6 +18,12 @@ double cotangent_against(const Face& triangle, std::size_t side) {
   const Vec3 far = triangle.places[triangle.previous(side)];
   const Vec3 u = triangle.places[side] - far, v = triangle.places[triangle.next(side)] - far;
   return dot(u, v) / length(cross(u, v));
+}
+
+/// Of warps, or of faces without any, which are 0. Warps are lines: opposite ones are alike.
+Vec3 mean_warp(const Face& one, const Face& two) {
+  const double sign = dot(one.warp, two.warp) < 0 ? -1 : 1;
+  return unit(area(one) * one.warp + sign * area(two) * two.warp);
 }
 
 /// A corner of a face.
@@ -38,8 +46,11 @@ Face triangle(At a, At b, At c) {
 /// Flips edges, and then the edges around those that were flipped, until nothing is left to flip.
 class Flipper {
  public:
-  Flipper(std::vector<Face>& faces, double weld_distance)
-      : faces_(faces), weld_distance_(weld_distance), across_(faces.size()) {
+  Flipper(std::vector<Face>& faces, double weld_distance, double most_change)
+      : faces_(faces),
+        weld_distance_(weld_distance),
+        most_change_(most_change),
+        across_(faces.size()) {
     const Edges edges(faces);
     for (const Edge& edge : edges.all()) {
       joined_.add(edge.a, edge.b);
@@ -79,12 +90,26 @@ class Flipper {
     const std::size_t from = edge.side, to = one.next(from), far = one.previous(from);
     const std::size_t far_two = two.previous(across.side);
     if (one.particles[far] == two.particles[far_two] || !is_one_place(one, from, two) ||
-        !is_one_place(one, to, two) ||
+        !is_one_place(one, to, two) || changes_much(one, from, two, far_two) ||
         !joined_.add(one.particles[far], two.particles[far_two]).second) {
       return false;
     }
     replace(edge, across, one, two);
     return true;
+  }
+
+  /// The sum of both areas as vectors is that of the four-sided outline, whichever diagonal cuts
+  /// it: what the areas have beyond that is what a fold adds. Seen in its own plane a thin triangle
+  /// may have any warp.
+  bool changes_much(const Face& one, std::size_t from, const Face& two, std::size_t far_two) const {
+    const Vec3 a = one.places[from], b = one.places[one.next(from)];
+    const Vec3 c = one.places[one.previous(from)], d = two.places[far_two];
+    const double outline = length(cross(b - a, d - c)) / 2;
+    const double area_one = area(one), area_two = area(two), both = area_one + area_two;
+    const double flipped = triangle_area(a, c, d) + triangle_area(b, c, d);
+    const double turn = length(cross(one.warp, two.warp));
+    return std::max(both, flipped) - outline > most_change_ * both ||
+           std::min(area_one, area_two) * turn * turn > most_change_ * both;
   }
 
   /// Puts the triangles on both sides of the other diagonal in the place of both.
@@ -102,6 +127,7 @@ class Flipper {
     const EdgeOfFace two_to = starts_at_to ? before_side : after_side;
     faces_[edge.face] = triangle({one, far}, {one, from}, {two, far_two});
     faces_[across.face] = triangle({two, far_two}, {one, to}, {one, far});
+    faces_[edge.face].warp = faces_[across.face].warp = mean_warp(one, two);
     const std::uint32_t f = edge.face, g = across.face;
     put({f, 0}, at_far_from);
     put({f, 1}, two_from);
@@ -133,6 +159,7 @@ class Flipper {
 
   std::vector<Face>& faces_;
   const double weld_distance_;
+  const double most_change_;
   std::vector<Across> across_;       ///< by side: the same edge in the other face; kNoIndex: none
   std::vector<EdgeOfFace> waiting_;  ///< edges to look at
   PairNumbers joined_;               ///< particles
@@ -140,8 +167,8 @@ class Flipper {
 
 }  // namespace
 
-std::vector<Face> well_shaped(std::vector<Face> faces, double weld_distance) {
-  Flipper(faces, weld_distance).run();
+std::vector<Face> well_shaped(std::vector<Face> faces, double weld_distance, double most_change) {
+  Flipper(faces, weld_distance, most_change).run();
   return faces;
 }
 

@@ -1,8 +1,10 @@
 #include "engine/mesh/membrane.h"
 
+#include "engine/mesh/delaunay.h"
 #include "engine/mesh/mesh_input.h"
 #include "engine/mesh/pair_numbers.h"
 #include "engine/mesh/weave.h"
+#include "engine/tuning.h"
 
 namespace weft::mesh {
 namespace {
@@ -107,10 +109,10 @@ void add_diagonals(const Face& quad, const WovenCell& cell, Springs& springs) {
 
 /// A triangle whose corners at rest are seen along the warp, as far as it lies in the plane, and
 /// along the weft.
-MembraneElement triangle_element(const Face& triangle, Vec3 face_warp, const Material& material,
+MembraneElement triangle_element(const Face& triangle, const Material& material,
                                  ConstraintKind kind) {
   const Vec3 normal = unit(area_vector(triangle));
-  const Vec3 weft = unit(cross(normal, face_warp)), warp = cross(weft, normal);
+  const Vec3 weft = unit(cross(normal, triangle.warp)), warp = cross(weft, normal);
   MembraneElement element;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 from_first = triangle.places[i] - triangle.places[0];
@@ -124,12 +126,22 @@ MembraneElement triangle_element(const Face& triangle, Vec3 face_warp, const Mat
   return element;
 }
 
-void add_triangles(const Face& face, Vec3 warp, const Material& material, ConstraintKind kind,
-                   std::vector<MembraneElement>& elements) {
-  if (!face.is_quad()) return elements.push_back(triangle_element(face, warp, material, kind));
-  for (const auto& corners : cut(face)) {
-    elements.push_back(triangle_element(triangle_of(face, corners), warp, material, kind));
+/// Woven cells, and the triangles of all other faces, well shaped.
+std::vector<Face> cells_and_triangles(const std::vector<Face>& faces, const Weave& weave,
+                                      double weld_distance) {
+  std::vector<Face> parts;
+  const auto add = [&](Face part, std::size_t f) {
+    part.warp = weave.warp[f];
+    parts.push_back(part);
+  };
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (weave.cells[f] || !faces[f].is_quad()) {
+      add(faces[f], f);
+    } else {
+      for (const auto& corners : cut(faces[f])) add(triangle_of(faces[f], corners), f);
+    }
   }
+  return well_shaped(std::move(parts), weld_distance, tuning::kMostFabricChange);
 }
 
 }  // namespace
@@ -160,11 +172,10 @@ Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::v
   Fabric fabric;
   Springs springs(kind);
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (weave.cells[f]) {
-      add_sides(faces[f], *weave.cells[f], springs);
-    } else {
-      add_triangles(faces[f], weave.warp[f], material, kind, fabric.membrane);
-    }
+    if (weave.cells[f]) add_sides(faces[f], *weave.cells[f], springs);
+  }
+  for (const Face& part : cells_and_triangles(faces, weave, mesh.weld_distance)) {
+    if (!part.is_quad()) fabric.membrane.push_back(triangle_element(part, material, kind));
   }
   springs.set_kind(kind_of_diagonals(mesh.ropes));
   for (std::size_t f = 0; f < faces.size(); ++f) {

@@ -16,7 +16,8 @@ std::vector<Constraint> rigid_constraints(const MeshDescription& mesh, const Wel
 struct Fabric {
   /// Of woven cells: springs, edges in the order of the faces, then diagonals.
   std::vector<Constraint> springs;
-  /// Of other faces: one for each triangle, two for each quad, in the order of the faces.
+  /// Of other faces: one for each triangle, two for each quad, in the order of the faces. Edges
+  /// against which the angles are wide are flipped (delaunay.h).
   std::vector<MembraneElement> membrane;
   std::vector<Constraint> threads;  ///< rigid: lines, but those along an edge or a diagonal
 };

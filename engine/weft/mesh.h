@@ -74,8 +74,10 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 /// Four-sided faces that are nearly rectangles, along warp and weft, become springs: edges carry
 /// warp and weft, and diagonals shear, within 3 % of the material. Chains of such edges are solved
 /// as yarns, several times as fast as other cloth. All other faces become triangles, each a
-/// MembraneElement. Pairs of right-angled triangles that make up a grid of near-rectangles are
-/// taken as the four-sided faces that they were cut from.
+/// MembraneElement; where the angles against an edge between two of them are wide, the edge is
+/// flipped if the shape at rest and the warp stay nearly the same. Pairs of right-angled triangles
+/// that make up a grid of near-rectangles are taken as the four-sided faces that they were cut
+/// from.
 ///
 /// In four-sided faces two families of edges cross, from face to face: opposite edges are of one
 /// family. The warp is the family that runs more along y; where both do alike, more along x. It is
