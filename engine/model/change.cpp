@@ -157,7 +157,24 @@ std::shared_ptr<const Model> with_anchor_distances(const Model& model,
   return std::make_shared<Model>(description, &model);
 }
 
+namespace {
+
+/// Whether nothing changes that orderings, constraints and triangles of fabric are prepared for.
+bool keeps_constraints(const Changes& c) {
+  return c.fix.empty() && c.release.empty() && c.masses.empty() && c.rest_lengths.empty() &&
+         c.compliances.empty() && c.membrane.empty();
+}
+
+}  // namespace
+
 std::shared_ptr<const Model> changed(const Model& model, const Changes& changes) {
+  if (keeps_constraints(changes)) {
+    auto other = std::make_shared<Model>(model);
+    if (changes.damping) other->damping = *changes.damping;
+    if (changes.air) other->set_air(*changes.air);
+    if (!changes.bending.empty()) other->set_bending_compliances(changes.bending);
+    return other;
+  }
   SceneDescription description = description_of(model);
   apply(changes, description);
   return std::make_shared<Model>(description, &model);

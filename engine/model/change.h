@@ -1,8 +1,9 @@
 /// Models that differ from others in numbers (Cloth::change).
 ///
-/// What changes of a model make is the model that build_model makes of the changed description, so
-/// that whatever is known of models holds for it. Descriptions are not kept: a model holds
-/// all that it was made of, and tells it when it is asked.
+/// What is prepared from constraints is shared where none of them changes. What changes of a model
+/// make is the model that build_model makes of the changed description, so that whatever is known
+/// of models holds for it. Descriptions are not kept: a model holds all that it was made of, and
+/// tells it when it is asked.
 #pragma once
 
 #include <weft/weft.h>

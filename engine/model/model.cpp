@@ -212,12 +212,42 @@ void Model::store_air(const SceneDescription& d) {
   for (const auto& [a, b, c] : d.air.triangles) {
     air.triangles.push_back({ordering.slot_of[a], ordering.slot_of[b], ordering.slot_of[c]});
   }
-  if (!has_air()) return;
+  list_air_triangles();
+}
+
+void Model::list_air_triangles() {
+  if (!has_air() || air.at.size() > 0) return;
   air.at = make_lists(slots(), [&](auto&& add) {
     for (std::uint32_t i = 0; i < air.triangles.size(); ++i) {
       for (const std::uint32_t slot : air.triangles[i]) add(slot, i);
     }
   });
+}
+
+void Model::set_air(const ChangedAir& to) {
+  air.density = to.density;
+  air.drag = to.drag;
+  air.lift = to.lift;
+  list_air_triangles();
+}
+
+/// Inert elements keep their order among all.
+void Model::set_bending_compliances(std::span<const ChangedValue> compliances) {
+  std::vector<std::uint32_t> active(bending.size() + inert.bending.size(), kNoIndex);
+  for (const auto& [described, e] : inert.bending) active[described] = 0;
+  std::uint32_t next = 0;
+  for (std::uint32_t& i : active) i = i == 0 ? kNoIndex : next++;
+  for (const ChangedValue& c : compliances) {
+    if (active[c.index] != kNoIndex) {
+      bending.compliance[active[c.index]] = c.value;
+      continue;
+    }
+    const auto at =
+        std::ranges::find(inert.bending, c.index, &InertStore::Entry<BendingElement>::described);
+    at->entry.compliance = c.value;
+  }
+  if (const SmallStepsLayout* layout = small_steps_.if_made())
+    small_steps_.put(std::make_shared<const SmallStepsLayout>(with_bending_of(*this, *layout)));
 }
 
 /// Inert constraints are not in the store: another end is free. Points of anchors count by

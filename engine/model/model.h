@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/lists.h"
@@ -139,6 +140,11 @@ class Model {
   /// The description must be valid. like: a model of the same particles and constraints, which
   /// differ in numbers at most; it saves work.
   explicit Model(const SceneDescription& description, const Model* like = nullptr);
+  /// Another one that shares what backends and solvers need, until it is changed by the two below.
+  Model(const Model&) = default;
+  Model& operator=(const Model&) = delete;
+  void set_bending_compliances(std::span<const ChangedValue> compliances);
+  void set_air(const ChangedAir& air);
 
   std::size_t particles = 0;  // described
   Ordering ordering;
@@ -219,6 +225,7 @@ class Model {
   void store_anchors(const SceneDescription& description);
   void store_seams(const SceneDescription& description);
   void store_air(const SceneDescription& description);
+  void list_air_triangles();
   void find_holds();
   void find_joined();
   void append(const Constraint& constraint, std::uint32_t described, std::uint32_t a,

@@ -1,29 +1,47 @@
-/// A value that is made when it is first asked for, by whichever thread asks, once.
+/// A value that is made when it is first asked for, by whichever thread asks, once. Copies share it
+/// where it is made already.
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <mutex>
+#include <utility>
 
 namespace weft {
 
 template <class T>
 class OnDemand {
  public:
+  OnDemand() = default;
+  OnDemand(const OnDemand& other) : value_(other.made()), made_(value_ != nullptr) {}
+  OnDemand& operator=(const OnDemand&) = delete;
+
   template <class Make>
   const T& get(Make&& make) const {
     std::call_once(once_, [&] {
-      value_ = make();
+      if (value_ == nullptr) value_ = std::make_shared<const T>(make());
       made_.store(true, std::memory_order_release);
     });
-    return value_;
+    return *value_;
+  }
+  /// Before anybody asks: another value, or none yet.
+  void put(std::shared_ptr<const T> value) {
+    value_ = std::move(value);
+    made_ = value_ != nullptr;
   }
   /// Null as long as nobody has asked.
-  const T* if_made() const { return made_.load(std::memory_order_acquire) ? &value_ : nullptr; }
+  const T* if_made() const {
+    return made_.load(std::memory_order_acquire) ? value_.get() : nullptr;
+  }
 
  private:
+  std::shared_ptr<const T> made() const {
+    return made_.load(std::memory_order_acquire) ? value_ : nullptr;
+  }
+
   mutable std::once_flag once_;
+  mutable std::shared_ptr<const T> value_;
   mutable std::atomic<bool> made_{false};
-  mutable T value_;
 };
 
 }  // namespace weft

@@ -163,6 +163,12 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   return layout;
 }
 
+SmallStepsLayout with_bending_of(const Model& model, SmallStepsLayout layout) {
+  layout.bending = make_bending_layout(model);
+  layout.load.bending = median_stiffness(layout.bending);
+  return layout;
+}
+
 std::vector<std::uint32_t> slots_of(const ConstraintStore& s,
                                     std::span<const std::uint32_t> links) {
   const auto holds = [&](std::uint32_t c, std::uint32_t slot) {

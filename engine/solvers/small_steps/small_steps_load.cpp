@@ -325,7 +325,8 @@ std::vector<SmallStepsLoad::Span> find_ways(const Model& model) {
   return ways;
 }
 
-/// That of the class which has the median element.
+}  // namespace
+
 double median_stiffness(const BendingLayout& bending) {
   std::uint32_t lanes = 0;
   for (const BendingClass& c : bending.classes) {
@@ -334,8 +335,6 @@ double median_stiffness(const BendingLayout& bending) {
   }
   return 0;
 }
-
-}  // namespace
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;

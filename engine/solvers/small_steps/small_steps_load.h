@@ -49,6 +49,7 @@ namespace weft {
 
 class Model;
 struct SmallStepsLayout;
+struct BendingLayout;
 
 /// What hangs on the pins.
 struct SmallStepsLoad {
@@ -66,6 +67,9 @@ struct SmallStepsLoad {
   std::vector<Span> spans;
   std::vector<Span> ways;  // the shortest between neighbouring pins, along what cannot lengthen
 };
+
+/// 1/s^2, W / compliance of the class which has the median element.
+double median_stiffness(const BendingLayout& bending);
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
 
