@@ -1,9 +1,11 @@
-/// What a picture of a cloth needs beside its particles: which vertices and faces they carry. A
-/// mesh keeps the numbering of the file that it came from, so that saved frames fit that file.
+/// What pictures and measurements of a cloth need beside its particles: which vertices and faces
+/// they carry, and which cells they weave. A mesh keeps the numbering of the file that it came
+/// from, so that saved frames fit that file.
 #pragma once
 
 #include <weft/mesh.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +17,7 @@ struct Mesh {
   std::vector<std::uint32_t> particle_of_vertex;
   std::vector<std::vector<std::uint32_t>> faces;  ///< vertex numbers, in order around the face
   std::vector<std::vector<std::uint32_t>> lines;  ///< vertex numbers along each line
+  std::vector<std::array<std::uint32_t, 4>> cells = {};  ///< of particles, as MeshCloth::cells
 };
 
 /// Vertices and faces alone.

@@ -153,6 +153,7 @@ Result<ObjScene> parse_obj(const std::string& text, const ObjOptions& options) {
   auto cloth = cloth_from_mesh(description.value());
   if (!cloth) return Error{cloth.error()};
   scene.mesh.particle_of_vertex = std::move(cloth.value().particle_of_vertex);
+  scene.mesh.cells = std::move(cloth.value().cells);
   scene.description = std::move(cloth.value().scene);
   scene.description.gravity = {};
   scene.description.gravity.*options.up = -kGravity;

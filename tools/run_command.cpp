@@ -86,6 +86,7 @@ Result<Prepared> prepare(const RunOptions& options) {
   if (!model) return Error{model.error()};
   plan.value().moves = source.value().moves;
   plan.value().up = source.value().up;
+  plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
   Prepared prepared{std::move(source.value()), model.value(), settings.value(),
                     std::move(plan.value()), std::nullopt};
   if (options.json) {

@@ -208,6 +208,11 @@ Json to_json(const RunReport& report) {
       {"stages", stages_json(summary)},
       {"peak_rss_mb", peak_rss_mb()},
   };
+  if (summary.fabric) {
+    json["max_warp"] = summary.fabric->warp;
+    json["max_weft"] = summary.fabric->weft;
+    json["max_shear"] = summary.fabric->shear;
+  }
   if (report.mesh) add_mesh(*report.mesh, json);
   return json;
 }
@@ -251,6 +256,11 @@ std::string to_table(const RunReport& report) {
       fmt::format("max {}, mean of the frames' max {}, rms {}",
                   measured_percent(summary.max_strain), measured_percent(summary.mean_max_strain),
                   measured_percent(summary.rms_strain)));
+  if (summary.fabric) {
+    row("fabric", fmt::format("warp {}, weft {}, shear {:.3g} rad at most",
+                              measured_percent(summary.fabric->warp),
+                              measured_percent(summary.fabric->weft), summary.fabric->shear));
+  }
   if (summary.model.spheres > 0) {
     row("contacts", fmt::format("{:.3g} m deepest penetration", summary.max_penetration));
   }

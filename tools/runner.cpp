@@ -79,13 +79,15 @@ struct Errors {
   double square_strain_sum = 0;  ///< of the frames' mean squares
 };
 
-void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth, double Vec3::*up) {
+void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth, const RunPlan& plan) {
   const Strain strain = cloth.strain();
   summary.max_strain = std::max(summary.max_strain, strain.max);
   errors.strain_sum += strain.max;
   errors.square_strain_sum += strain.rms * strain.rms;
+  if (!plan.fabric.is_empty())
+    summary.fabric = largest(summary.fabric.value_or(FabricStrain{}), plan.fabric(cloth));
   summary.max_penetration = std::max(summary.max_penetration, cloth.max_penetration());
-  summary.lowest = std::min(summary.lowest, lowest_of(cloth, up));
+  summary.lowest = std::min(summary.lowest, lowest_of(cloth, plan.up));
   const double gain = cloth.energy().total() - summary.energy_start - summary.pin_work;
   summary.energy_gain = summary.frames == 1 ? gain : std::max(summary.energy_gain, gain);
 }
@@ -129,7 +131,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     add_frame(summary, report.value());
     summary.step_seconds += elapsed.count();
     summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
-    add_errors(summary, errors, cloth, plan.up);
+    add_errors(summary, errors, cloth, plan);
     summary.stopped = plan.stop && plan.stop();
     if (on_frame) on_frame(summary.frames, cloth, report.value());
   }

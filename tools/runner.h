@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/fabric_measure.h"
 #include "tools/pin_moves.h"
 
 namespace weft::tools {
@@ -32,6 +33,7 @@ struct RunPlan {
   /// are at its end.
   std::vector<PinMove> moves = {};
   double Vec3::*up = &Vec3::y;  ///< what RunSummary::lowest is measured along
+  FabricMeasure fabric = {};    ///< what RunSummary::fabric is measured by
 };
 
 /// Called once per frame, frames counted from 1, with the state that the frame reached.
@@ -85,15 +87,16 @@ struct RunSummary {
   int asleep_frames = 0;
   int max_contacts = 0;  ///< most pairs watched in one frame
 
-  double max_error = 0;         ///< of the constraints' laws, over all frames (StepReport)
-  double max_strain = 0;        ///< over all frames and constraints
-  double mean_max_strain = 0;   ///< mean over the frames of each frame's largest strain
-  double rms_strain = 0;        ///< over all frames and constraints
-  double max_penetration = 0;   ///< m, over all frames and sphere pairs
-  double max_anchor_error = 0;  ///< m, over all frames and anchors
-  int open_seams = 0;           ///< in the end
-  double max_seam_gap = 0;      ///< m, over all frames and closed seams
-  double seam_work = 0;         ///< J
+  double max_error = 0;                ///< of the constraints' laws, over all frames (StepReport)
+  double max_strain = 0;               ///< over all frames and constraints
+  double mean_max_strain = 0;          ///< mean over the frames of each frame's largest strain
+  double rms_strain = 0;               ///< over all frames and constraints
+  std::optional<FabricStrain> fabric;  ///< over all frames; none without a fabric
+  double max_penetration = 0;          ///< m, over all frames and sphere pairs
+  double max_anchor_error = 0;         ///< m, over all frames and anchors
+  int open_seams = 0;                  ///< in the end
+  double max_seam_gap = 0;             ///< m, over all frames and closed seams
+  double seam_work = 0;                ///< J
 
   double energy_start = 0;  ///< J, before the first frame
   double energy_end = 0;    ///< J, after the last frame

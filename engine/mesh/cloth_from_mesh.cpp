@@ -133,6 +133,7 @@ Result<void> add_material(const MeshDescription& mesh, const Welded& welded,
   scene.constraints = std::move(fabric.springs);
   scene.constraints.insert(scene.constraints.end(), fabric.threads.begin(), fabric.threads.end());
   scene.membrane = std::move(fabric.membrane);
+  cloth.cells = std::move(fabric.cells);
   cloth.counts.thread_lines = fabric.threads.size();
   scene.bending = bending_of(faces, scene.positions.size(), mesh);
   scene.damping = {material.damping_stretch, material.damping_bending, material.damping_motion};

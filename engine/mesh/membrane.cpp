@@ -1,5 +1,7 @@
 #include "engine/mesh/membrane.h"
 
+#include <algorithm>
+
 #include "engine/mesh/delaunay.h"
 #include "engine/mesh/mesh_input.h"
 #include "engine/mesh/pair_numbers.h"
@@ -172,7 +174,11 @@ Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::v
   Fabric fabric;
   Springs springs(kind);
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (weave.cells[f]) add_sides(faces[f], *weave.cells[f], springs);
+    if (!weave.cells[f]) continue;
+    add_sides(faces[f], *weave.cells[f], springs);
+    fabric.cells.push_back(faces[f].particles);
+    std::ranges::rotate(fabric.cells.back(),
+                        fabric.cells.back().begin() + weave.cells[f]->warp_side);
   }
   for (const Face& part : cells_and_triangles(faces, weave, mesh.weld_distance)) {
     if (!part.is_quad()) fabric.membrane.push_back(triangle_element(part, material, kind));

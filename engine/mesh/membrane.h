@@ -16,6 +16,7 @@ std::vector<Constraint> rigid_constraints(const MeshDescription& mesh, const Wel
 struct Fabric {
   /// Of woven cells: springs, edges in the order of the faces, then diagonals.
   std::vector<Constraint> springs;
+  std::vector<std::array<std::uint32_t, 4>> cells;  ///< their particles, as MeshCloth::cells
   /// Of other faces: one for each triangle, two for each quad, in the order of the faces. Edges
   /// against which the angles are wide are flipped (delaunay.h).
   std::vector<MembraneElement> membrane;

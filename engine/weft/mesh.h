@@ -159,6 +159,8 @@ struct MeshCloth {
   SceneDescription scene;  ///< particles in the order of their first vertices
   std::vector<std::uint32_t> particle_of_vertex;  ///< kNoIndex: none, in no face and no line
   MeshCounts counts;
+  /// Faces that became springs: particles in order around each, the first two along the warp.
+  std::vector<std::array<std::uint32_t, 4>> cells;
 };
 
 /// Per face, for MeshDescription::warp: the direction in which v of texture coordinates grows and u

@@ -141,6 +141,19 @@ TEST_CASE("the report of a mesh says what it turned out to be") {
   CHECK(json["non_manifold_edges"] == 1);
 }
 
+TEST_CASE("stretch of warp and weft stands beside shear where there is a fabric") {
+  RunReport of_fabric = report();
+  CHECK_FALSE(to_json(of_fabric).contains("max_shear"));
+  CHECK(to_table(of_fabric).find("\nfabric") == std::string::npos);
+  of_fabric.summary.fabric = FabricStrain{0.0625, 0.03125, 0.34};
+  CHECK(to_table(of_fabric).find("fabric    warp 6.25 %, weft 3.12 %, shear 0.34 rad at most\n") !=
+        std::string::npos);
+  const Json json = to_json(of_fabric);
+  CHECK(json["max_warp"] == 0.0625);
+  CHECK(json["max_weft"] == 0.03125);
+  CHECK(json["max_shear"] == 0.34);
+}
+
 TEST_CASE("a table tells of the work of pins where they did some") {
   RunReport at_rest = report();
   at_rest.summary.pin_work = 0;

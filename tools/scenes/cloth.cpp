@@ -128,6 +128,7 @@ Result<Scene> of_material(const Layout& layout, const Options& options) {
   if (!made) return Error{made.error()};
   Scene scene{std::move(made.value().scene), {}};
   scene.mesh.particle_of_vertex = std::move(made.value().particle_of_vertex);
+  scene.mesh.cells = std::move(made.value().cells);
   start_from(layout.start, scene.mesh.particle_of_vertex, scene.description);
   std::set<std::uint32_t> pinned;
   for (const std::uint32_t pin : layout.pins) {
