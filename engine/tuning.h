@@ -88,6 +88,11 @@ inline constexpr double kLittleMended = 0.04;
 /// s. Energy that the motion loses may come back for about this time, since constraints are
 /// springs.
 inline constexpr double kSpringTime = 0.1;
+/// Pairs of spheres and particles are looked at that may touch in the rest of a frame, while
+/// nothing moves faster than kNearbySpare times as fast as now, but none farther apart than
+/// kNearbyMost of the largest radius. More finds pairs less often, and more of them.
+inline constexpr double kNearbySpare = 1.5;
+inline constexpr double kNearbyMost = 0.25;
 /// Time of a visit of local passes, over that of a sweep's visit.
 inline constexpr double kLocalVisit = 8;
 /// Where at least as many substeps were given as automatic ones would be: the time beyond their

@@ -46,16 +46,25 @@ void make_room(ContactStore& contacts) {
   contacts.sphere.reserve(room);
 }
 
-void append(ContactStore& contacts, std::uint32_t s, std::uint32_t p, double distance) {
-  make_room(contacts);
-  contacts.next.push_back(contacts.first[p]);
-  contacts.first[p] = contacts.count();
-  contacts.sphere.push_back(s);
-  contacts.particle.push_back(p);
-  contacts.distance.push_back(distance);
+}  // namespace
+
+void ContactStore::clear() {
+  for (const std::uint32_t p : particle) first[p] = kNoIndex;
+  sphere.clear();
+  particle.clear();
+  distance.clear();
+  next.clear();
 }
 
-}  // namespace
+void ContactStore::add(ContactPair pair, double radii) {
+  make_room(*this);
+  next.push_back(first[pair.particle]);
+  first[pair.particle] = count();
+  sphere.push_back(pair.sphere);
+  particle.push_back(pair.particle);
+  distance.push_back(radii);
+  met[pair.sphere] = met[pair.particle] = 1;
+}
 
 bool may_touch(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
   if (particle == sphere || !m.is_particle(particle)) return false;
@@ -65,13 +74,14 @@ bool may_touch(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
 
 std::size_t ContactStore::bytes() const {
   return bytes_of(sphere) + bytes_of(particle) + bytes_of(distance) + bytes_of(first) +
-         bytes_of(next) + bytes_of(found) + boxes.bytes();
+         bytes_of(next) + bytes_of(met) + bytes_of(found) + boxes.bytes();
 }
 
 ContactStore make_contact_store(const Model& model) {
   ContactStore contacts;
   if (!model.has_contacts()) return contacts;
   contacts.first.assign(model.slots(), kNoIndex);
+  contacts.met.resize(model.slots());
   contacts.found.resize(model.slots());
   contacts.boxes = ContactBoxes(model);
   return contacts;
@@ -79,14 +89,31 @@ ContactStore make_contact_store(const Model& model) {
 
 void find_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
                    ContactStore& contacts) {
-  for (const std::uint32_t p : contacts.particle) contacts.first[p] = kNoIndex;
-  contacts.sphere.clear();
-  contacts.particle.clear();
-  contacts.distance.clear();
-  contacts.next.clear();
+  contacts.clear();
   for_each_pair(
       m, kernels, x, contacts, [](double radius) { return (1 + kMargin) * radius; },
-      [&](std::uint32_t s, std::uint32_t p, double distance) { append(contacts, s, p, distance); });
+      [&](std::uint32_t s, std::uint32_t p, double distance) {
+        contacts.add({s, p}, distance);
+      });
+}
+
+double reach_of(const Model& m, ContactPair pair) {
+  return m.radius[pair.particle] + (1 + kMargin) * m.radius[pair.sphere];
+}
+
+void find_pairs(const Model& m, const simd::Table& kernels, kernels::VectorsView x, double margin,
+                ContactStore& contacts, std::vector<ContactPair>& pairs) {
+  pairs.clear();
+  for_each_pair(
+      m, kernels, x, contacts,
+      [margin](double radius) { return (1 + kMargin) * radius + 2 * margin; },
+      [&](std::uint32_t s, std::uint32_t p, double) {
+        pairs.push_back({s, p});
+      });
+}
+
+bool touches_nothing(const Model& m, const ContactStore& contacts, std::uint32_t slot) {
+  return m.has_contacts() && m.is_sphere[slot] && !contacts.met[slot] && !m.is_sphere_joined(slot);
 }
 
 std::size_t add_missed_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
@@ -96,7 +123,7 @@ std::size_t add_missed_contacts(const Model& m, const simd::Table& kernels, kern
       m, kernels, x, contacts, [&](double radius) { return std::max(0.0, radius - tolerance); },
       [&](std::uint32_t s, std::uint32_t p, double distance) {
         const bool deep = distance - length(x[s] - x[p]) > tolerance;
-        if (deep && !listed(contacts, s, p)) append(contacts, s, p, distance);
+        if (deep && !listed(contacts, s, p)) contacts.add({s, p}, distance);
       });
   return contacts.count() - before;
 }

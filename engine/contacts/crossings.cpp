@@ -19,6 +19,11 @@ double least_distance(kernels::Vector from, kernels::Vector to) {
 
 }  // namespace
 
+bool may_have_crossed(const Model& m, double way) {
+  return std::ranges::any_of(m.spheres,
+                             [&](std::uint32_t s) { return !(2 * way < kShortest * m.radius[s]); });
+}
+
 std::uint32_t find_crossing(const Model& m, const simd::Table& kernels, kernels::VectorsView before,
                             kernels::VectorsView after, ContactStore& contacts) {
   std::uint32_t* const moved = contacts.found.data();

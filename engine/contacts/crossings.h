@@ -8,6 +8,9 @@
 
 namespace weft {
 
+/// Whether one of two things that moved by up to `way` (m) each may have gone through the other.
+bool may_have_crossed(const Model& model, double way);
+
 /// Contacts are found where particles are predicted, not on their way there: one that is in front
 /// of a sphere before the step and behind it afterwards was in no contact, or in one that pushed it
 /// out on the far side. This looks at the way, which is straight within a step. Returns the slot of

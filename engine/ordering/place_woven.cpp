@@ -39,6 +39,12 @@ struct Rows {
   std::vector<Row> rows;
 };
 
+std::vector<bool> joined_by(std::span<const Link> links, std::size_t particles) {
+  std::vector<bool> is_joined(particles);
+  for (const Link& link : links) is_joined[link.a] = is_joined[link.b] = true;
+  return is_joined;
+}
+
 /// Rows that are so wide that only few of them fit into a tile are cut into strips, which follow
 /// each other.
 std::vector<std::uint32_t> strip_widths(std::span<const Cell> cells, std::uint32_t tile_particles,
@@ -56,7 +62,8 @@ std::vector<std::uint32_t> strip_widths(std::span<const Cell> cells, std::uint32
   return width;
 }
 
-Rows list_rows(std::span<const Cell> cells, std::uint32_t tile_particles, std::uint32_t period) {
+Rows list_rows(std::span<const Cell> cells, const std::vector<bool>& is_joined,
+               std::uint32_t tile_particles, std::uint32_t period) {
   const std::vector<std::uint32_t> width = strip_widths(cells, tile_particles, period);
   using Key = std::tuple<std::uint32_t, std::uint32_t, std::int32_t>;  // part, strip, row
   const auto key = [&](std::uint32_t p) {
@@ -65,7 +72,9 @@ Rows list_rows(std::span<const Cell> cells, std::uint32_t tile_particles, std::u
   };
   std::vector<std::tuple<Key, std::int32_t, std::uint32_t>> sorted;
   sorted.reserve(cells.size());
-  for (std::uint32_t p = 0; p < cells.size(); ++p) sorted.push_back({key(p), cells[p].column, p});
+  for (std::uint32_t p = 0; p < cells.size(); ++p) {
+    if (is_joined[p]) sorted.push_back({key(p), cells[p].column, p});
+  }
   std::sort(sorted.begin(), sorted.end());
   Rows rows;
   rows.particles.reserve(cells.size());
@@ -210,6 +219,14 @@ class TileLayout {
   std::vector<std::uint32_t> particle_at_;
 };
 
+/// Who is joined to nobody stands behind the others, and changes nothing about their order.
+void append_lone(const std::vector<bool>& is_joined, Placement& placement) {
+  if (placement.tiles.empty() && !is_joined.empty()) placement.tiles.emplace_back();
+  for (std::uint32_t p = 0; p < is_joined.size(); ++p) {
+    if (!is_joined[p]) placement.tiles.back().push_back(p);
+  }
+}
+
 }  // namespace
 
 std::uint32_t tile_count(std::size_t particles, std::uint32_t tile_particles) {
@@ -227,12 +244,15 @@ Placement place_woven(std::span<const Cell> cells, std::span<const Link> links,
   const Steps steps(cells, links);
   for (const Link& link : links) placement.colour_class.push_back(steps.colour_class(link));
   const Steps::Period period = steps.period();
-  const Rows rows = list_rows(cells, tile_particles, period.columns);
-  const std::vector<std::size_t> begin = cut(rows, tile_count(cells.size(), tile_particles));
+  const std::vector<bool> is_joined = joined_by(links, cells.size());
+  const Rows rows = list_rows(cells, is_joined, tile_particles, period.columns);
+  const std::vector<std::size_t> begin =
+      cut(rows, tile_count(rows.particles.size(), tile_particles));
   for (std::size_t t = 0; t + 1 < begin.size(); ++t) {
     const std::span<const Row> tile(rows.rows.data() + begin[t], begin[t + 1] - begin[t]);
     placement.tiles.push_back(TileLayout(rows, tile, cells, period).particle_at());
   }
+  append_lone(is_joined, placement);
   return placement;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "engine/step/motion.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -106,7 +107,7 @@ double parts_for_air(const State& s, double dt) {
     sum += std::sqrt(dot(area2, area2) * dot(v, v));
   }
   for (std::size_t slot = 0; slot < model.slots(); ++slot) {
-    if (model.inverse_mass[slot] > 0) mass += model.mass[slot];
+    if (is_free_cloth(model, slot)) mass += model.mass[slot];
   }
   if (!(mass > 0)) return 1;
   const double rate = 0.25 * air.density * (air.drag + air.lift) * sum / mass;

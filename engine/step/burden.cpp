@@ -26,7 +26,7 @@ double acceleration_of_swing(const State& s) {
   const Vector of_pins = mean_velocity(s, model.holds);
   double energy = 0, mass = 0;
   for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
-    if (model.inverse_mass[slot] == 0 || (model.has_contacts() && model.is_sphere[slot])) continue;
+    if (!is_free_cloth(model, slot)) continue;
     const Vector v = s.velocity[slot] - of_pins;
     energy += 0.5 * model.mass[slot] * dot(v, v);
     mass += model.mass[slot];
@@ -50,13 +50,20 @@ double mass_of_spheres(State& s, double dt) {
   return mass;
 }
 
+/// (Spheres that touch nothing may move.)
+bool do_pins_move(const State& s) {
+  return s.pins.moving() && std::ranges::any_of(s.model->holds, [&](std::uint32_t slot) {
+           return dot(s.velocity[slot], s.velocity[slot]) > 0;
+         });
+}
+
 }  // namespace
 
 double mean_acceleration(const State& s) {
   if (s.forces().size() == 0) return length(s.gravity);
   double sum = 0, mass = 0;
   for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
-    if (s.model->inverse_mass[slot] == 0) continue;
+    if (!is_free_cloth(*s.model, slot)) continue;
     mass += s.model->mass[slot];
     sum += s.model->mass[slot] * length(acceleration(s, slot));
   }
@@ -66,7 +73,7 @@ double mean_acceleration(const State& s) {
 /// Under gravity a swing has no more than it gives, unless the pins whirl the cloth about.
 Burden burden_of(State& s, double dt) {
   Burden burden{.acceleration = mean_acceleration(s), .mass = mass_of_spheres(s, dt)};
-  if (burden.acceleration == 0 || s.pins.moving())
+  if (burden.acceleration == 0 || do_pins_move(s))
     burden.acceleration = std::max(burden.acceleration, acceleration_of_swing(s));
   return burden;
 }

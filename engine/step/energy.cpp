@@ -17,12 +17,9 @@ Vector middle(const State& s, std::size_t slot) {
   return 0.5 * (s.position[slot] + s.solved[slot]);
 }
 
-/// Whether it takes part in no impulse: what flies by itself neither gains energy nor gives any.
+/// What flies by itself neither gains energy nor gives any.
 bool flies_free(const State& s, std::uint32_t slot) {
-  if (!s.model->has_contacts() || !s.model->is_sphere[slot]) return false;
-  const auto is_it = [slot](std::uint32_t other) { return other == slot; };
-  return std::ranges::none_of(s.contacts.sphere, is_it) &&
-         std::ranges::none_of(s.contacts.particle, is_it) && !s.model->is_sphere_joined(slot);
+  return touches_nothing(*s.model, s.contacts, slot);
 }
 
 /// Twice the kinetic energy of the motion that differs from the pins', sum m |v' - u|^2.

@@ -35,6 +35,18 @@ simd::Motion simd_motion(State& s) {
   return m;
 }
 
+/// Per slot, 0 of free spheres that touch nothing: they fly by themselves, and of a fast and heavy
+/// one the rounding alone may be worth more than the energy of a cloth.
+const double* inverse_mass_of_met(State& s) {
+  const Model& model = *s.model;
+  if (model.heaviest_sphere == 0) return model.inverse_mass.data();
+  s.inverse_mass_of_met = model.inverse_mass;
+  for (const std::uint32_t slot : model.spheres) {
+    if (touches_nothing(model, s.contacts, slot)) s.inverse_mass_of_met[slot] = 0;
+  }
+  return s.inverse_mass_of_met.data();
+}
+
 kernels::ImpulseEnergy sum(std::span<const kernels::ImpulseEnergy> of_stretches) {
   kernels::ImpulseEnergy sum;
   for (const kernels::ImpulseEnergy& impulses : of_stretches) sum.add(impulses);
@@ -92,8 +104,14 @@ kernels::ImpulseEnergy measure_impulses(State& s, double h, Team& team) {
 }
 
 kernels::ImpulseEnergy measure_energy_change(State& s, Team& team) {
-  if (s.settings.backend == Backend::reference) return measure_impulses(s, 1, team);
-  const simd::Motion motion = simd_motion(s);
+  const double* inverse_mass = inverse_mass_of_met(s);
+  if (s.settings.backend == Backend::reference) {
+    reference::Motion motion = reference_motion(s);
+    motion.inverse_mass = inverse_mass;
+    return reference::measure_impulses(motion, 1, s.next_velocity.view());
+  }
+  simd::Motion motion = simd_motion(s);
+  motion.inverse_mass = inverse_mass;
   team.for_each_part(s.model->slots(), kStretch, [&](std::size_t first, std::size_t last) {
     s.impulses[first / kStretch] = s.kernels->measure_energy_change(motion, first, last);
   });

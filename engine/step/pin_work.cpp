@@ -11,11 +11,13 @@ namespace {
 
 using kernels::Vector;
 
-/// work(where it is halfway, its velocity)
+/// work(where it is halfway, its velocity); a sphere that touches nothing is left out.
 template <class Work>
 void for_each_pin(const State& s, const std::vector<std::uint32_t>& pins, double h, Work&& work) {
-  for (const std::uint32_t slot : pins)
+  for (const std::uint32_t slot : pins) {
+    if (touches_nothing(*s.model, s.contacts, slot)) continue;
     work(s.position[slot] + (0.5 * h) * s.velocity[slot], s.velocity[slot]);
+  }
   const AnchorTravel anchors = s.anchors.travel();
   for (std::size_t i = 0; i < anchors.from.size(); ++i) {
     const Vector from = anchors.from[i].point, to = anchors.to[i].point;
@@ -91,9 +93,9 @@ PinMotion motion_of_pins(const State& s, double h) {
 
 double work_of(const PinMotion& pins, const State& s, double h) {
   Vector linear{}, angular{};
-  for (std::size_t slot = 0; slot < s.model->slots(); ++slot) {
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
     const double w = s.model->inverse_mass[slot];
-    if (w == 0) continue;
+    if (w == 0 || touches_nothing(*s.model, s.contacts, slot)) continue;
     const Vector j =
         (1 / w) * (s.next_velocity[slot] - s.velocity[slot] - h * acceleration(s, slot));
     linear = linear + j;
@@ -104,7 +106,10 @@ double work_of(const PinMotion& pins, const State& s, double h) {
 
 double stray_energy(const PinMotion& pins, const State& s) {
   double mass = 0;
-  for (const double w : s.model->inverse_mass) mass += w > 0 ? 1 / w : 0;
+  for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
+    const double w = s.model->inverse_mass[slot];
+    if (w > 0 && !touches_nothing(*s.model, s.contacts, slot)) mass += 1 / w;
+  }
   return 0.5 * mass * pins.stray * pins.stray;
 }
 

@@ -9,8 +9,8 @@
 ///
 /// Of pins that move otherwise this is the work of the rigid motion nearest to theirs (least
 /// squares, each as often as it has constraints). What they do beyond that, and what moved spheres
-/// do, is not known: `stray` says how fast they do it. Points of anchors are pins that hold one
-/// constraint, whether or not their particle is at its limit.
+/// do that touch something, is not known: `stray` says how fast they do it. Points of anchors are
+/// pins that hold one constraint, whether or not their particle is at its limit.
 #pragma once
 
 #include "engine/step/state.h"

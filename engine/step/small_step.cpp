@@ -150,7 +150,7 @@ class Frame {
     if (plan.projects) velocity = kernels::Vectors(velocity.size());  // at rest
     const kernels::VectorsView force =
         s_.forces().size() > 0 ? s_.forces().view() : kernels::VectorsView{};
-    if (s_.model->has_contacts()) s_.substep_positions = s_.position;
+    s_.nearby.forget();
     solver_.begin(s_.position.view(), velocity.view(), s_.gravity, force, plan_, team_);
     give_ = give_per_mass(s_, plan_);
     const double give_before = plan_.placed ? 0 : s_.give_per_mass;
@@ -192,6 +192,8 @@ class Frame {
     if (mends) {
       count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest)));
       beyond_ = plan_.passes - passes_left_;
+    } else if (to_tolerance && s_.contacts.count() > 0) {
+      count(solver_.repair(s_.contacts, 0));
     }
     solver_.end_seams();
     if (s_.model->has_contacts()) watch_crossings();
@@ -317,11 +319,9 @@ class Frame {
     report_.corrections += edges_;
   }
   /// What a sweep leaves of a law the next one has again, and small steps bring it down faster than
-  /// local passes do: without contacts these wait for the last substep. What is left of a rigid
-  /// length would be let go as speed.
-  bool mends_now() const {
-    return !s_.model->has_laws() || s_.model->has_contacts() || substeps_done_ == plan_.substeps;
-  }
+  /// local passes do: these wait for the last substep, and before it contacts alone are put right.
+  /// What is left of a rigid length would be let go as speed.
+  bool mends_now() const { return !s_.model->has_laws() || substeps_done_ == plan_.substeps; }
   bool many_are_out() const {
     return static_cast<double>(solver_.count_out()) >
            tuning::kManyOut * static_cast<double>(edges_);
@@ -368,18 +368,36 @@ class Frame {
                     substeps_done_ == plan_.substeps ? to : from + share * (to - from));
     }
   }
+  /// Pairs that may touch are found anew when something may have come from beyond them.
   void find_contacts() {
-    read_positions();
-    weft::find_contacts(*s_.model, *s_.kernels, s_.solved.view(), s_.contacts);
+    const double way = solver_.largest_move(team_);
+    if (!s_.nearby.hold_after(way)) {
+      read_positions();
+      s_.nearby.find(*s_.model, *s_.kernels, s_.solved.view(), margin_for(way), s_.contacts);
+    } else if (!s_.nearby.slots().empty()) {
+      solver_.read_positions_of(s_.nearby.slots(), s_.solved.view());
+      place_pins();
+      place_attached();
+    }
+    s_.nearby.list_contacts(*s_.model, s_.solved.view(), s_.contacts);
+  }
+  /// m, for the substeps to come, if they go on as this one. Wider margins hold more pairs.
+  double margin_for(double way) const {
+    double radius = 0;
+    for (const std::uint32_t sphere : s_.model->spheres)
+      radius = std::max(radius, s_.model->radius[sphere]);
+    const double left = plan_.substeps - substeps_done_ + 1;
+    return std::min(tuning::kNearbySpare * way * left, tuning::kNearbyMost * radius);
   }
   void watch_crossings() {
+    const double way = solver_.largest_move(team_);
+    s_.nearby.move(way);
+    if (!may_have_crossed(*s_.model, way)) return;
+    solver_.read_starts(s_.substep_positions.view(), team_);
     read_positions();
     const std::uint32_t passed = find_crossing(*s_.model, *s_.kernels, s_.substep_positions.view(),
                                                s_.solved.view(), s_.contacts);
-    if (passed != kNoIndex) {
-      passed_particle = s_.model->ordering.particle_at[passed];
-    }
-    s_.substep_positions = s_.solved;
+    if (passed != kNoIndex) passed_particle = s_.model->ordering.particle_at[passed];
   }
 
   State& s_;

@@ -65,6 +65,7 @@ void State::make_solvers() {
     if (exact) own.scheme = Scheme::implicit;  // whoever takes over has no past
     small_steps = make_small_steps(*model, own, *kernels);
     if (model->has_contacts()) substep_positions.resize(model->slots());
+    if (model->heaviest_sphere > 0) inverse_mass_of_met = model->inverse_mass;
   }
   if (yarn) {
     solver = yarn.get();
@@ -156,8 +157,9 @@ std::size_t State::bytes() const {
         &air_impulse}) {
     sum += v->bytes();
   }
-  sum += contacts.bytes() + bytes_of(impulses) + bytes_of(resistances) + pins.bytes() +
-         anchors.bytes() + seams.bytes() + rest.bytes() + measure->bytes();
+  sum += contacts.bytes() + nearby.bytes() + bytes_of(impulses) + bytes_of(inverse_mass_of_met) +
+         bytes_of(resistances) + pins.bytes() + anchors.bytes() + seams.bytes() + rest.bytes() +
+         measure->bytes();
   sum += sizeof(Team::SharedState);
   if (laws) sum += laws->bytes();
   if (sweeps) sum += sweeps->bytes();

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "engine/contacts/contacts.h"
+#include "engine/contacts/nearby.h"
 #include "engine/measure/measure.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
@@ -77,8 +78,9 @@ struct State {
   kernels::Vectors solved;  // where the position loop works; the next positions
   kernels::Vectors next_velocity;
   Checkpoint step_start;
-  kernels::Vectors substep_positions;  // where a small step began; with contacts only
+  kernels::Vectors substep_positions;  // where a fast substep began; with contacts only
   ContactStore contacts;
+  NearbyPairs nearby;  // of the present frame of small steps
   Pins pins;
   Anchors anchors;
   Seams seams;
@@ -95,6 +97,8 @@ struct State {
   StepReport asleep;  // what its steps report while the cloth sleeps
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots
+  kernels::AlignedVector<double>
+      inverse_mass_of_met;  // scratch of motion.h; with free spheres only
 
   const simd::Table* kernels;
   std::unique_ptr<Measure> measure;

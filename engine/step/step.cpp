@@ -243,6 +243,7 @@ StepReport step(State& s, double dt) {
   Team team(threads_worth_having(s), s.team_state);
   bool done = false;
   s.way_per_second = 1 / dt;
+  std::ranges::fill(s.contacts.met, 0);
   {
     Travel travel(s, dt);
     s.anchors.depart(s.model->anchors, s.position);

@@ -101,6 +101,7 @@ constexpr Table make_table() {
           .advance = advance,
           .advance_measured = advance_measured,
           .settle = settle,
+          .largest_move = largest_move,
           .resume = resume,
           .keep_past = keep_past,
           .measure_energy_change = measure_energy_change,

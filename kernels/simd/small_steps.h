@@ -33,6 +33,12 @@ template <class Work>
   return fused(load(f.u + i) - load(f.predicted + i), rate, load(f.v + i));
 }
 
+inline float largest_lane(Floats floats) {
+  alignas(64) float lanes[kFloats];
+  floats.store_aligned(lanes);
+  return *std::max_element(lanes, lanes + kFloats);
+}
+
 /// The largest departure of floats that are settled one after the other.
 class Departure {
  public:
@@ -44,11 +50,7 @@ class Departure {
     const Floats led_to = fused_from(step_, load(f.acceleration + i), predicted - v_before);
     largest_ = xsimd::max(largest_, xsimd::abs(fused_from(slope_, led_to, v - v_before)));
   }
-  float largest() const {
-    alignas(64) float lanes[kFloats];
-    largest_.store_aligned(lanes);
-    return *std::max_element(lanes, lanes + kFloats);
-  }
+  float largest() const { return largest_lane(largest_); }
 
  private:
   const Floats step_, slope_;
@@ -98,6 +100,16 @@ float settle(const Flight& flight, const LastSubstep& substep, std::size_t first
         load(f.u + i).store_unaligned(f.predicted + i);
       });
   return departure.largest();
+}
+
+float largest_move(const Flight& flight, std::size_t first, std::size_t last) {
+  const Flight f = flight;
+  Floats largest(0.f);
+  for_floats(
+      first, last, [&](std::size_t i) __attribute__((always_inline)) {
+        largest = xsimd::max(largest, xsimd::abs(load(f.u + i) - load(f.u_before + i)));
+      });
+  return largest_lane(largest);
 }
 
 /// A change of velocity from outside between two frames changes the velocity a substep ago alike.

@@ -551,6 +551,8 @@ struct Table {
                             std::size_t last);
   /// v becomes the velocity, predicted u; returns the same.
   float (*settle)(const Flight&, const LastSubstep&, std::size_t first, std::size_t last);
+  /// The largest |u - u_before|.
+  float (*largest_move)(const Flight&, std::size_t first, std::size_t last);
   /// Begins a frame at u with the velocities v, which need not be the past's; h: of its last
   /// substep.
   void (*resume)(const Flight&, const Past&, float h, std::size_t first, std::size_t last);

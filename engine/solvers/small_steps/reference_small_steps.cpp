@@ -469,6 +469,22 @@ void ReferenceSmallSteps::begin_at_limit(std::size_t i) {
   before_.set(i, x_[i] - h_ * v + (0.5 * h_ * h_) * a);
 }
 
+void ReferenceSmallSteps::read_positions_of(std::span<const std::uint32_t> slots,
+                                            kernels::VectorsView x) const {
+  for (const std::uint32_t slot : slots) x.set(slot, x_[slot]);
+}
+
+void ReferenceSmallSteps::read_starts(kernels::VectorsView x, Team&) const {
+  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) x.set(slot, before_[slot]);
+}
+
+double ReferenceSmallSteps::largest_move(Team&) {
+  double most = 0;
+  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot)
+    most = std::max(most, length(x_[slot] - before_[slot]));
+  return most;
+}
+
 void ReferenceSmallSteps::read_positions(kernels::VectorsView x, Team&) const {
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     if (is_free(i)) x.set(i, x_[i]);

@@ -43,6 +43,10 @@ class ReferenceSmallSteps final : public SmallSteps {
   void end_seams() override;
   const SeamThreads& seams() const override { return seams_; }
   void read_positions(kernels::VectorsView x, Team& team) const override;
+  void read_positions_of(std::span<const std::uint32_t> slots,
+                         kernels::VectorsView x) const override;
+  void read_starts(kernels::VectorsView x, Team& team) const override;
+  double largest_move(Team& team) override;
   double bending_energy(double give, Team& team) override;
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;

@@ -149,7 +149,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       base_step_(layout_.yarns.rows()),
       edges_out_(layout_.blocks.size()),
       yarns_out_(layout_.yarns.rows()),
-      departure_((layout_.floats + kPart - 1) / kPart) {
+      largest_((layout_.floats + kPart - 1) / kPart) {
   for (auto* array : {&base_, &u_, &u_before_, &predicted_, &v_, &v_before_, &acceleration_}) {
     array->resize(layout_.floats);
   }
@@ -192,10 +192,13 @@ void SmallStepsSolver::for_floats(Team& team, Work&& work) {
 template <class Work>
 void SmallStepsSolver::settle_floats(Team& team, Work&& work) {
   for_floats(team, [&](std::size_t first, std::size_t last) {
-    departure_[first / kPart] = work(first, last);
+    largest_[first / kPart] = work(first, last);
   });
-  if (weights_.last.rate == 0 || departure_.empty()) return;
-  departures_.add(static_cast<double>(*std::ranges::max_element(departure_)), formula_.error_share);
+  if (weights_.last.rate != 0) departures_.add(largest_of_parts(), formula_.error_share);
+}
+
+double SmallStepsSolver::largest_of_parts() const {
+  return largest_.empty() ? 0 : static_cast<double>(*std::ranges::max_element(largest_));
 }
 
 /// Lengths of constraints are rounded to 2^-24, and their corrections are velocities over h. In
@@ -729,6 +732,31 @@ void SmallStepsSolver::read_positions(kernels::VectorsView x, Team& team) const 
   });
 }
 
+void SmallStepsSolver::read_positions_of(std::span<const std::uint32_t> slots,
+                                         kernels::VectorsView x) const {
+  const YarnPlaces& places = layout_.places();
+  for (const std::uint32_t slot : slots) {
+    const std::size_t at = places.of(slot), next = places.stride;
+    const auto axis = [&](std::size_t i) {
+      return static_cast<double>(base_[i]) + static_cast<double>(u_[i]);
+    };
+    x.set(slot, {axis(at), axis(at + next), axis(at + 2 * next)});
+  }
+}
+
+void SmallStepsSolver::read_starts(kernels::VectorsView x, Team& team) const {
+  team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    layout_.places().join(table_, x, first, last, base_.data(), u_before_.data());
+  });
+}
+
+double SmallStepsSolver::largest_move(Team& team) {
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    largest_[first / kPart] = table_.largest_move(flight(), first, last);
+  });
+  return std::sqrt(3.) * largest_of_parts();
+}
+
 void SmallStepsSolver::read_velocities(kernels::VectorsView v, Team& team) const {
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().widen(table_, v, first, last, v_.data());
@@ -747,7 +775,7 @@ void SmallStepsSolver::keep(Team& team) {
 }
 
 std::size_t SmallStepsSolver::bytes() const {
-  return 11 * bytes_of(u_) + bytes_of(departure_) + bytes_of(spans_) + bytes_of(base_step_) +
+  return 11 * bytes_of(u_) + bytes_of(largest_) + bytes_of(spans_) + bytes_of(base_step_) +
          bytes_of(scratch_) + bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) +
          bytes_of(arrived_) + bytes_of(multiplier_) + bytes_of(aside_) + passes_.bytes() +
          seams_.bytes() + membrane_.bytes() + bending_.bytes() + anchors_.bytes();

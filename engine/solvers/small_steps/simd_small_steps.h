@@ -58,6 +58,10 @@ class SmallStepsSolver final : public SmallSteps {
   const SeamThreads& seams() const override { return seams_; }
   /// Where the particles are; x: where they were when the frame began.
   void read_positions(kernels::VectorsView x, Team& team) const override;
+  void read_positions_of(std::span<const std::uint32_t> slots,
+                         kernels::VectorsView x) const override;
+  void read_starts(kernels::VectorsView x, Team& team) const override;
+  double largest_move(Team& team) override;
   double bending_energy(double give, Team& team) override;
   /// After the last substep.
   void settle(Team& team) override;
@@ -122,6 +126,7 @@ class SmallStepsSolver final : public SmallSteps {
   void for_floats(Team& team, Work&& work);
   template <class Work>
   void settle_floats(Team& team, Work&& work);
+  double largest_of_parts() const;
 
   const Model& model_;
   const SmallStepsLayout& layout_;
@@ -154,7 +159,7 @@ class SmallStepsSolver final : public SmallSteps {
   std::vector<std::uint16_t> edges_out_;                   // per edge block, a bit per lane
   std::vector<std::uint32_t> yarns_out_;                   // per row of yarns, likewise
   std::vector<std::uint32_t> touched_;                     // slots that contacts have pushed
-  std::vector<float> departure_;                           // the largest, per part of the floats
+  std::vector<float> largest_;                             // departure or move, per part of floats
   std::vector<std::uint32_t> arrived_;                     // slots that came to an anchor's limit
   kernels::AlignedVector<float> multiplier_;               // in places of the layout
   bool is_begun_ = false;                                  // the substep has been swept

@@ -131,6 +131,13 @@ class SmallSteps {
   virtual double law_error() = 0;
   /// Where the particles are; x: where they were when the frame began.
   virtual void read_positions(kernels::VectorsView x, Team& team) const = 0;
+  /// Where these slots alone are.
+  virtual void read_positions_of(std::span<const std::uint32_t> slots,
+                                 kernels::VectorsView x) const = 0;
+  /// Where the particles were when the present substep began.
+  virtual void read_starts(kernels::VectorsView x, Team& team) const = 0;
+  /// m; since the present substep began no particle has moved farther.
+  virtual double largest_move(Team& team) = 0;
   /// J, of the bending elements, where the particles are. An element that is too stiff for the
   /// substeps has no more energy than they resolve: those of the frame that a sweep gives by `give`
   /// in, (b h)^2 / omega.

@@ -101,6 +101,19 @@ TEST_CASE("advance and settle are the formulas in double, rounded") {
   }
 }
 
+TEST_CASE("the largest move is that of a substep, along one axis") {
+  Flying f;
+  for (const std::size_t mover : {std::size_t{0}, kCount / 2 + 3, kCount - 1}) {
+    f.before = f.u;
+    f.before[mover] -= 0.25f;
+    f.before[7] += 0.125f;
+    for (const simd::Isa isa : supported_isas()) {
+      CAPTURE(text(isa));
+      CHECK(simd::table(isa).largest_move(f.flight(), 0, kCount) == f.u[mover] - f.before[mover]);
+    }
+  }
+}
+
 TEST_CASE("what is not moved stays to the last bit: the spare float of a quad, and what is fixed") {
   for (const simd::Isa isa : supported_isas()) {
     const simd::Table& table = simd::table(isa);
