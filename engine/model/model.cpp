@@ -23,25 +23,34 @@ std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a
 struct Model::Draft {
   const SceneDescription& description;
   std::vector<std::uint8_t> fixed, held, hub;   // per particle; held: fixed, or attached
+  std::vector<std::uint8_t> knot;               // hub of its distances, too (ConstraintStore)
   std::vector<std::uint32_t> described_link{};  // link -> constraint
 
   explicit Draft(const SceneDescription& d)
-      : description(d), fixed(d.positions.size()), hub(d.positions.size()) {
+      : description(d), fixed(d.positions.size()), hub(d.positions.size()), knot(hub.size()) {
     for (const std::uint32_t i : d.fixed) fixed[i] = 1;
     held = fixed;
     for (const Anchor& anchor : d.anchors) {
       if (anchor.max_distance == 0) held[anchor.particle] = 1;
     }
-    std::vector<std::uint32_t> degree(hub.size());
+    std::vector<std::uint32_t> degree(hub.size()), distances(hub.size());
     for (const Constraint& c : d.constraints) {
-      ++degree[c.a];
-      ++degree[c.b];
+      for (const std::uint32_t end : {c.a, c.b}) {
+        ++degree[end];
+        distances[end] += c.kind == ConstraintKind::distance;
+      }
     }
-    for (std::size_t i = 0; i < hub.size(); ++i) hub[i] = degree[i] > reference::kHubDegree;
-    for (const std::uint32_t s : d.spheres) hub[s] = 1;
+    for (std::size_t i = 0; i < hub.size(); ++i) {
+      hub[i] = degree[i] > reference::kHubDegree;
+      knot[i] = held[i] ? distances[i] > reference::kHubDegree : hub[i];
+    }
+    for (const std::uint32_t s : d.spheres) hub[s] = knot[s] = 1;
   }
   bool is_inert(const Constraint& c) const { return held[c.a] && held[c.b]; }
-  bool is_at_hub(const Constraint& c) const { return hub[c.a] || hub[c.b]; }
+  bool is_at_hub(const Constraint& c) const {
+    const auto& of = c.kind == ConstraintKind::distance ? knot : hub;
+    return of[c.a] || of[c.b];
+  }
 };
 
 Model::Model(const SceneDescription& description, const Model* like)
@@ -65,8 +74,22 @@ Model::Model(const SceneDescription& description, const Model* like)
   find_joined();
 }
 
+namespace {
+
+/// The constraints that are not at hubs, ascending.
+std::vector<std::uint32_t> linked(const ConstraintStore& s) {
+  std::vector<std::uint32_t> described;
+  for (std::size_t c = 0; c < s.size(); ++c) {
+    if (s.slot[c] != kNoIndex) described.push_back(s.described[c]);
+  }
+  std::ranges::sort(described);
+  return described;
+}
+
+}  // namespace
+
 /// Constraints at hubs take no part: they are solved one after the other anyway. The ordering
-/// depends on positions, links and triangles of fabric alone: where the same constraints are inert
+/// depends on positions, links and triangles of fabric alone: where the same constraints are links
 /// it is the same.
 void Model::order_particles(Draft& draft, const Model* like) {
   const SceneDescription& d = draft.description;
@@ -78,9 +101,7 @@ void Model::order_particles(Draft& draft, const Model* like) {
     links.push_back({c.a, c.b, c.kind});
     draft.described_link.push_back(i);
   }
-  const auto described = [](const auto& entry) { return entry.described; };
-  if (like != nullptr &&
-      std::ranges::equal(like->inert.constraints, inert.constraints, {}, described, described)) {
+  if (like != nullptr && linked(like->constraints) == draft.described_link) {
     ordering = like->ordering;
     spare_slots = like->spare_slots;
     return;

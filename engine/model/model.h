@@ -36,7 +36,10 @@ namespace weft {
 ///   [plain, bilateral)  distance, at a hub
 ///   [bilateral, size)   ropes
 ///
-/// A hub is a particle of more than kHubDegree constraints, or a sphere.
+/// A hub is a particle of more than kHubDegree constraints, or a sphere. What is held does not
+/// move, so that its distances need no turns among its ropes: there it counts as a hub by its
+/// distances alone. Cloth whose particles all have a rope to their pin hangs on it by its yarns as
+/// before.
 struct ConstraintStore {
   std::size_t plain = 0, bilateral = 0;
   std::vector<std::uint32_t> a, b;  // slots

@@ -305,13 +305,16 @@ SceneDescription tethered(SceneDescription scene, std::uint32_t columns) {
 }
 
 TEST_CASE(
-    "ropes to pins change neither the size of what hangs without them nor how far it reaches") {
+    "ropes to pins change neither the size of what hangs without them, nor how far it reaches, nor "
+    "what its yarns carry") {
   for (const bool diagonals : {false, true}) {
     const SceneDescription scene = make("hang", {.size = 21, .diagonals = diagonals});
     const SmallStepsLoad load = model_of(scene)->small_steps().load;
     const SmallStepsLoad with_ropes = model_of(tethered(scene, 21))->small_steps().load;
     CHECK(with_ropes.mean_length == doctest::Approx(load.mean_length));
     CHECK(with_ropes.reach == doctest::Approx(load.reach));
+    CHECK(with_ropes.particles == doctest::Approx(load.particles));
+    CHECK(with_ropes.held_mass == doctest::Approx(load.held_mass));
   }
 }
 
