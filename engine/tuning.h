@@ -21,8 +21,9 @@ inline constexpr double kOmega = 0.8;
 /// room for what corrections of its neighbours add.
 inline constexpr double kLocalShare = 0.99;
 /// The share of the tolerance to which mending, local passes and sweeps beyond the first of a
-/// substep, takes what is out of it. Less makes fewer visits, and a larger blow of each: cloth that
-/// is mended in every substep does not come to rest.
+/// substep, takes what is out of it (sweeps after the last substep take it all the way). Less makes
+/// fewer visits, and a larger blow of each: cloth that is mended in every substep does not come to
+/// rest.
 inline constexpr double kMended = 0.8;
 /// Compliance of a yarn's constraints in a sweep, relative to the diagonal of its matrix. That of a
 /// yarn that two fixed particles hold is singular where it is straight: a smaller compliance lifts

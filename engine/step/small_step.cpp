@@ -185,7 +185,7 @@ class Frame {
     const bool mends = to_tolerance && mends_now();
     if (mends) solver_.judge(team_);
     while (mends && passes_left_ - rest >= 1 && many_are_out()) {
-      sweep_beyond();
+      sweep_beyond(tuning::kMended);
       solver_.judge(team_);
     }
     if (s_.model->has_contacts()) find_contacts();
@@ -216,7 +216,7 @@ class Frame {
   }
   /// From where the particles are, without a substep.
   void put_right_at_once() {
-    if (passes_left_ >= 1) sweep_beyond();
+    if (passes_left_ >= 1) sweep_beyond(0);
     finish();
   }
 
@@ -297,14 +297,16 @@ class Frame {
     const double share = passes_left_ / (plan_.substeps - substeps_done_ + 1);
     return std::clamp(share, 0.0, kMostOfSubstep);
   }
+  /// By whole sweeps: where the last substep has left so much, as under what falls into the cloth,
+  /// a share of the tolerance would not carry the load to the pins.
   void put_right() {
-    sweep_beyond();
+    sweep_beyond(0);
     const double most = std::min(passes_left_, kMostOfSubstep);
     count(solver_.repair_everywhere(s_.contacts, most_visits(most)));
     read_positions();
   }
-  void sweep_beyond() {
-    plan_.projects ? solver_.sweep(team_) : solver_.mend(team_);
+  void sweep_beyond(double to) {
+    plan_.projects ? solver_.sweep(team_) : solver_.mend(to, team_);
     count_sweep();
     passes_left_ -= 1;
   }

@@ -229,8 +229,9 @@ double ReferenceSmallSteps::bending_energy(double give, Team&) {
   return sum;
 }
 
-void ReferenceSmallSteps::mend(Team& team) {
+void ReferenceSmallSteps::mend(double to, Team& team) {
   if (model_.has_laws()) set_aside();
+  mends_to_ = to;
   mends_ = true;
   sweep(team);
   mends_ = false;
@@ -238,7 +239,7 @@ void ReferenceSmallSteps::mend(Team& team) {
 
 /// Of l^2 / rest^2 - 1.
 double ReferenceSmallSteps::left_by_sweep() const {
-  const double strain = tuning::kMended * settings_.tolerance;
+  const double strain = mends_to_ * settings_.tolerance;
   return mends_ ? strain * (2 + strain) : 0;
 }
 

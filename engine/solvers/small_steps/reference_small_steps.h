@@ -34,7 +34,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   void accelerate(kernels::Vector gravity, kernels::VectorsView force) override;
   void advance(Team& team) override;
   void sweep(Team& team) override;
-  void mend(Team& team) override;
+  void mend(double to, Team& team) override;
   void judge(Team& team) override;
   std::int64_t count_out() const override { return std::ssize(out_); }
   LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
@@ -121,6 +121,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   std::vector<double> multiplier_;                // per constraint; with springs only
   std::vector<reference::MembraneMultipliers> membrane_multiplier_;  // per triangle of fabric
   bool is_begun_ = false;                                            // the substep has been swept
+  double mends_to_ = 0;                                              // share of the tolerance
   bool mends_ = false;                                               // the present sweep
   kernels::Vectors aside_;  // x_ before mending, with laws only
   bool is_aside_ = false;   // aside_ is that of this substep

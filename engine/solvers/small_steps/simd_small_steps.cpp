@@ -21,9 +21,6 @@ float squared(double strain) { return static_cast<float>(2 * strain + strain * s
 float squared_tolerance(const Settings& settings) {
   return squared(tuning::kLocalShare * settings.tolerance);
 }
-float squared_mended(const Settings& settings) {
-  return squared(tuning::kMended * settings.tolerance);
-}
 
 }  // namespace
 
@@ -376,8 +373,9 @@ void SmallStepsSolver::decay(double to, Team& team) {
 
 void SmallStepsSolver::sweep(Team& team) { sweep(false, team); }
 
-void SmallStepsSolver::mend(Team& team) {
+void SmallStepsSolver::mend(double to, Team& team) {
   if (model_.has_laws()) set_aside();
+  mends_to_ = to;
   sweep(true, team);
 }
 
@@ -479,7 +477,9 @@ simd::EdgeRelaxation SmallStepsSolver::relaxation_of_edges() {
 }
 
 /// Springs are swept as ever.
-float SmallStepsSolver::left_by_sweep() const { return mends_ ? squared_mended(settings_) : 0; }
+float SmallStepsSolver::left_by_sweep() const {
+  return mends_ ? squared(mends_to_ * settings_.tolerance) : 0;
+}
 
 simd::SpringLaws SmallStepsSolver::spring_laws() const {
   const LawStep step = law_step();

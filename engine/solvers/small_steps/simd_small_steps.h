@@ -46,7 +46,7 @@ class SmallStepsSolver final : public SmallSteps {
   /// The stages of a substep.
   void advance(Team& team) override;
   void sweep(Team& team) override;
-  void mend(Team& team) override;
+  void mend(double to, Team& team) override;
   void judge(Team& team) override;
   /// Constraints that the last sweep found out of tolerance.
   std::int64_t count_out() const override;
@@ -163,6 +163,7 @@ class SmallStepsSolver final : public SmallSteps {
   std::vector<std::uint32_t> arrived_;                     // slots that came to an anchor's limit
   kernels::AlignedVector<float> multiplier_;               // in places of the layout
   bool is_begun_ = false;                                  // the substep has been swept
+  double mends_to_ = 0;                                    // share of the tolerance
   bool mends_ = false;                                     // the present sweep
   kernels::AlignedVector<float> aside_;                    // u_ before mending, with laws only
   bool is_aside_ = false;                                  // aside_ is that of this substep

@@ -109,11 +109,11 @@ class SmallSteps {
   /// The stages of a substep.
   virtual void advance(Team& team) = 0;
   virtual void sweep(Team& team) = 0;
-  /// Another sweep, which takes what is out of tolerance to the share tuning::kMended of it and
-  /// leaves the rest. Springs and triangles of fabric are swept as before. So what is mended in
-  /// each substep is a force that grows with the error, and comes to rest; a whole sweep more would
-  /// release what other constraints hold.
-  virtual void mend(Team& team) = 0;
+  /// Another sweep, which takes what is out of tolerance to the share `to` of it and leaves the
+  /// rest. Springs and triangles of fabric are swept as before. So what is mended in each substep,
+  /// to tuning::kMended, is a force that grows with the error, and comes to rest; a whole sweep
+  /// more (to = 0) would release what other constraints hold.
+  virtual void mend(double to, Team& team) = 0;
   /// After a sweep: finds the springs and triangles of fabric that are out of tolerance, and rigid
   /// constraints beside springs. Where all are rigid a sweep has found them.
   virtual void judge(Team& team) = 0;
