@@ -127,6 +127,8 @@ TEST_CASE("any change wakes it, the same values again do not") {
        [](Cloth& c) {
          REQUIRE(c.change({.masses = {{20, 0.04}}}));
        }},
+      {"decay", [](Cloth&) {},
+       [](Cloth& c) { REQUIRE(c.change({.damping = Damping{.motion = 4}})); }},
   };
   for (const Touch& touch : touches) {
     CAPTURE(std::string(touch.name));
@@ -137,6 +139,21 @@ TEST_CASE("any change wakes it, the same values again do not") {
     CHECK_FALSE(step(cloth, kDt).asleep);
     CHECK(falls_asleep(cloth, 1200));
   }
+}
+
+TEST_CASE("a sphere that is moved wakes it") {
+  SceneDescription scene = decaying("hang", 6, 8);
+  const auto sphere = static_cast<std::uint32_t>(scene.positions.size());
+  scene.positions.push_back({5, 0, 0});
+  scene.masses.push_back(1);
+  scene.fixed.push_back(sphere);
+  scene.spheres = {sphere};
+  scene.radii.assign(scene.positions.size(), 0);
+  scene.radii.back() = 0.1;
+  Cloth cloth = cloth_of(scene, {.sleep = true});
+  REQUIRE(falls_asleep(cloth, 600));
+  REQUIRE(cloth.move_fixed(sphere, {4, 0, 0}));
+  CHECK_FALSE(step(cloth, kDt).asleep);
 }
 
 TEST_CASE("a clone of one that sleeps sleeps, and wakes by itself") {
