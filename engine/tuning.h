@@ -69,6 +69,10 @@ inline constexpr double kPlacedSpeed = 0.005;
 /// (engine/solvers/small_steps/bending_pace.h), and the largest n. Fewer visits are cheaper; more
 /// are closer to the true stiffness.
 inline constexpr double kBendingPace = 0.05;
+/// The bound on h^2 W / compliance of the median element, where what bends asks for substeps. A
+/// visit makes its law hold in the end of the sweep, so that statics are the same up to here
+/// (perf/tried.md).
+inline constexpr double kBendingSubsteps = 0.2;
 inline constexpr int kLongestGroup = 8;
 /// Elements are visited in at most kMostClasses classes, each at a pace of its own; those of one
 /// class differ in stiffness by less than the factor kLikeStiffness, if there are fewer. More

@@ -388,7 +388,7 @@ double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, const 
   double h = length_for(load.particles, burden.weights);
   if (speed > 0) h = std::min(h, tuning::kPassing * load.mean_length / speed);
   if (load.bending > 0) {
-    const double bent = std::sqrt(tuning::kBendingPace / load.bending);
+    const double bent = std::sqrt(tuning::kBendingSubsteps / load.bending);
     h = std::min(h, std::max(bent, length_for(2 * load.way, kWeightsOfSwing)));
   }
   return h;

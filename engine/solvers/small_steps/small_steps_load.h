@@ -29,11 +29,11 @@
 /// so they count as nothing, unless some particle hangs on them alone. Free spheres that come to
 /// lie on a cloth are more to carry.
 ///
-/// What a cloth carries by its bending each element gives anew in every substep, so that it is
-/// softer than it should be by the share h^2 W / compliance (kernels/simd/bending.h). This stays
-/// within the bound at which elements are visited less often, for half of them at least; but a
-/// cloth that is as stiff as a board gets no more substeps for it than twice its load would ask for
-/// along constraints.
+/// What a cloth carries by its bending each element gives anew in every substep. Elements all alike
+/// give it in the sweep's end (kernels/simd/bending.h), others are softer than they should be by a
+/// part of the share h^2 W / compliance. This stays within tuning::kBendingSubsteps, for half of
+/// the elements at least; but a cloth that is as stiff as a board gets no more substeps for it than
+/// twice its load would ask for along constraints.
 ///
 /// No constraint should turn over within a substep. What has fallen as far as the cloth reaches
 /// from its pins, D, has the speed sqrt(2 g D), and h is at most a part of L over that speed.
