@@ -98,6 +98,22 @@ struct Cloth::Impl : State {
     if (next) next.value()->go_on_from(*this);
     return next;
   }
+  /// That goes on from this one by small steps, which an automatic solver may become.
+  Result<std::unique_ptr<Impl>> by_small_steps() const {
+    if (asked.solver != Solver::automatic)
+      return refuse("body", "needs solver small_steps", std::string(name(settings.solver)));
+    Settings wanted = asked;
+    wanted.solver = Solver::small_steps;
+    auto resolved = resolve(wanted, *model);
+    if (!resolved) return Error{resolved.error()};
+    auto next = std::make_unique<Impl>(model, wanted, resolved.value());
+    next->go_on_from(*this);
+    return next;
+  }
+  Result<void> validate_body(std::uint32_t id) const {
+    if (bodies.has(id)) return {};
+    return refuse("body", "no such body", std::to_string(id));
+  }
   std::uint32_t slot(std::uint32_t particle) const { return model->ordering.slot_of[particle]; }
   Result<void> take_along(const RigidMotion& motion, double share);
   /// Of a fixed particle that is to be moved.
@@ -303,6 +319,68 @@ Result<void> Cloth::scale_anchors(double scale) {
   impl_->anchors.scale(scale);
   if (impl_->anchors.moving()) impl_->rest.wake();
   return {};
+}
+
+Result<std::uint32_t> Cloth::add_body(const Body& body) {
+  if (auto valid = validate(body); !valid) return Error{valid.error()};
+  if (impl_->settings.solver != Solver::small_steps) {
+    auto changed = impl_->by_small_steps();
+    if (!changed) return Error{changed.error()};
+    impl_ = std::move(changed).value();
+  }
+  impl_->rest.wake();
+  return impl_->bodies.add(body);
+}
+
+Result<void> Cloth::move_body(std::uint32_t id, const Pose& pose) {
+  if (auto r = impl_->validate_body(id); !r) return r;
+  if (auto r = validate(pose); !r) return r;
+  if (impl_->bodies.move(id, pose)) impl_->rest.wake();
+  return {};
+}
+
+Result<void> Cloth::place_body(std::uint32_t id, const Pose& pose) {
+  if (auto r = impl_->validate_body(id); !r) return r;
+  if (auto r = validate(pose); !r) return r;
+  if (impl_->bodies.place(id, pose)) impl_->rest.wake();
+  return {};
+}
+
+Result<void> Cloth::switch_body(std::uint32_t id, bool on) {
+  if (auto r = impl_->validate_body(id); !r) return r;
+  if (impl_->bodies.switch_on(id, on)) impl_->rest.wake();
+  return {};
+}
+
+Result<void> Cloth::remove_body(std::uint32_t id) {
+  if (auto r = impl_->validate_body(id); !r) return r;
+  impl_->bodies.remove(id);
+  impl_->rest.wake();
+  return {};
+}
+
+Result<BodyLoad> Cloth::body_load(std::uint32_t id) const {
+  if (auto r = impl_->validate_body(id); !r) return Error{r.error()};
+  return impl_->bodies.load(id);
+}
+
+std::vector<BodyContact> Cloth::body_contacts() const {
+  std::vector<BodyContact> contacts;
+  if (impl_->settings.solver != Solver::small_steps) return contacts;
+  std::vector<BodyTouch> touches;
+  impl_->small_steps->read_contacts(touches);
+  for (const BodyTouch& touch : touches) {
+    const kernels::Vector x = impl_->position[touch.slot];
+    const reference::BodyMotion& body = touch.motion;
+    const reference::Gap gap = gap_of(body.solid, 0, body.to.from_place(x));
+    const kernels::Vector normal = body.to.turned(gap.normal);
+    contacts.push_back({.particle = impl_->model->ordering.particle_at[touch.slot],
+                        .body = touch.body,
+                        .point = to_public(x - gap.gap * normal),
+                        .normal = to_public(normal),
+                        .push = touch.push});
+  }
+  return contacts;
 }
 
 Result<void> Cloth::carry(const RigidMotion& motion, double share) {

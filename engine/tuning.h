@@ -25,6 +25,11 @@ inline constexpr double kLocalShare = 0.99;
 /// fewer visits, and a larger blow of each: cloth that is mended in every substep does not come to
 /// rest.
 inline constexpr double kMended = 0.8;
+/// s. So often it is looked for which particles may meet a body: a search costs a tenth of a
+/// substep, and what lies between two of them makes for more pairs.
+inline constexpr double kContactInterval = 2e-3;
+/// In ways that a particle is predicted to take until the next search: what it may go beyond.
+inline constexpr double kContactReach = 0.5;
 /// Compliance of a yarn's constraints in a sweep, relative to the diagonal of its matrix. That of a
 /// yarn that two fixed particles hold is singular where it is straight: a smaller compliance lifts
 /// banners, a larger one is softer, and farther from the true motion. All other yarns have only

@@ -41,7 +41,6 @@ constexpr Change kChanges[] = {
     {"--shear", &MaterialOptions::shear, {&Material::shear, &Material::shear}},
     {"--bend", &MaterialOptions::bend, {&Material::bending, &Material::bending}},
     {"--density", &MaterialOptions::density, {&Material::density, &Material::density}},
-    {"--thickness", &MaterialOptions::thickness, {&Material::thickness, &Material::thickness}},
     {"--damping",
      &MaterialOptions::damping,
      {&Material::damping_stretch, &Material::damping_bending}},
@@ -106,7 +105,6 @@ void add_material_options(Verb verb, MaterialOptions& options) {
   verb.option("--shear", options.shear, "material: N/m");
   verb.option("--bend", options.bend, "material: N m");
   verb.option("--density", options.density, "material: kg/m^2");
-  verb.option("--thickness", options.thickness, "material: m");
   verb.option("--damping", options.damping, "material: s, of stretch and bending");
   verb.option("--drag", options.drag, "material: drag of the air");
   verb.option("--lift", options.lift, "material: lift of the air");

@@ -14,7 +14,7 @@ namespace weft::tools {
 struct MaterialOptions {
   std::optional<std::string> material;  ///< a name, or a .json file of the fields of Material
   std::optional<double> stretch;        ///< N/m, of warp and weft
-  std::optional<double> shear, bend, density, thickness;
+  std::optional<double> shear, bend, density;
   std::optional<double> damping;  ///< s, of stretch and bending
   std::optional<double> drag, lift;
   std::optional<std::string> wind;  ///< x,y,z in m/s

@@ -41,17 +41,17 @@ Result<void> Outputs::add(const std::string& path) {
 Result<void> Outputs::add_series(const NumberedName& name, Format format) {
   series_.push_back({name, format});
   const SceneDescription& scene = source_->description;
-  return write_file(name.with(0),
-                    format == Format::mesh
-                        ? obj_text(source_->mesh, scene, scene.positions)
-                        : scene_text(scene, source_->moves, particle_faces(source_->mesh)));
+  return write_file(name.with(0), format == Format::mesh
+                                      ? obj_text(source_->mesh, scene, scene.positions)
+                                      : scene_text(scene, source_->moves,
+                                                   particle_faces(source_->mesh), source_->bodies));
 }
 
 std::string Outputs::text(Format format, const Cloth& cloth, double elapsed) const {
   const SceneDescription& scene = source_->description;
   if (format == Format::mesh) return obj_text(source_->mesh, scene, particle_positions(cloth));
   return scene_text(present_scene(scene, cloth), present_moves(source_->moves, scene, elapsed),
-                    particle_faces(source_->mesh));
+                    particle_faces(source_->mesh), present_bodies(source_->bodies, elapsed));
 }
 
 void Outputs::add_frame(const Cloth& cloth, int frame, double elapsed) {

@@ -69,6 +69,8 @@ Vec3 place_at(const PinMove& move, double time, Vec3 without) {
   return place(move, pose_at(move, time), without);
 }
 
+Vec3 rotation_at(const PinMove& move, double time) { return pose_at(move, time).rotation; }
+
 MovedPins::MovedPins(std::span<const PinMove> moves, const Cloth& cloth) : moves_(moves) {
   for (const PinMove& move : moves) {
     std::vector<Vec3> from = move.from;

@@ -30,6 +30,9 @@ struct PinMove {
 /// Where a particle is at a time.
 Vec3 place_at(const PinMove& move, double time, Vec3 without);
 
+/// The rotation vector of the motion at a time.
+Vec3 rotation_at(const PinMove& move, double time);
+
 /// Moves of the pins of one cloth, which must stand where its scene has them.
 class MovedPins {
  public:

@@ -85,6 +85,7 @@ Result<Prepared> prepare(const RunOptions& options) {
   const auto model = model_of(source.value());
   if (!model) return Error{model.error()};
   plan.value().moves = source.value().moves;
+  plan.value().bodies = source.value().bodies;
   plan.value().up = source.value().up;
   plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
   Prepared prepared{std::move(source.value()), model.value(), settings.value(),

@@ -188,6 +188,10 @@ Json to_json(const RunReport& report) {
       {"max_seam_gap", summary.max_seam_gap},
       {"seam_work", summary.seam_work},
       {"max_contacts", summary.max_contacts},
+      {"bodies", report.plan.bodies.size()},
+      {"body_contacts", summary.max_body_contacts},
+      {"friction_work", summary.friction_work},
+      {"body_work", summary.body_work},
       {"iterations_per_step", summary.iterations_per_step()},
       {"velocity_iterations_per_step", mean(summary.velocity_iterations, summary.frames)},
       {"direction_updates_per_step", mean(summary.direction_updates, summary.frames)},
@@ -263,6 +267,15 @@ std::string to_table(const RunReport& report) {
   }
   if (summary.model.spheres > 0) {
     row("contacts", fmt::format("{:.3g} m deepest penetration", summary.max_penetration));
+  }
+  if (!report.plan.bodies.empty()) {
+    row("bodies", fmt::format("{}, {} at most, {:.3g} m deepest penetration, {:.3g} J by friction, "
+                              "{:.3g} J by moved ones",
+                              report.plan.bodies.size() == 1
+                                  ? "1 body"
+                                  : fmt::format("{} bodies", report.plan.bodies.size()),
+                              counted(summary.max_body_contacts, "contact"),
+                              summary.max_penetration, summary.friction_work, summary.body_work));
   }
   if (summary.model.anchors > 0) {
     row("anchors", fmt::format("{}, {:.3g} m beyond their limits at most", summary.model.anchors,

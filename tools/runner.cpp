@@ -62,6 +62,10 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.max_seam_gap = std::max(summary.max_seam_gap, report.max_seam_gap);
   summary.seam_work += report.seam_work;
   summary.pin_work += report.pin_work;
+  summary.max_body_contacts = std::max(summary.max_body_contacts, report.body_contacts);
+  summary.body_work += report.body_work;
+  summary.friction_work += report.friction_work;
+  summary.max_penetration = std::max(summary.max_penetration, report.max_penetration);
   summary.energy_lost += report.energy_lost;
   summary.max_motion_error = std::max(summary.max_motion_error, report.motion_error);
   summary.mean_motion_error += (report.motion_error - summary.mean_motion_error) / summary.frames;
@@ -88,7 +92,8 @@ void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth, const R
     summary.fabric = largest(summary.fabric.value_or(FabricStrain{}), plan.fabric(cloth));
   summary.max_penetration = std::max(summary.max_penetration, cloth.max_penetration());
   summary.lowest = std::min(summary.lowest, lowest_of(cloth, plan.up));
-  const double gain = cloth.energy().total() - summary.energy_start - summary.pin_work;
+  const double gain =
+      cloth.energy().total() - summary.energy_start - summary.pin_work - summary.body_work;
   summary.energy_gain = summary.frames == 1 ? gain : std::max(summary.energy_gain, gain);
 }
 
@@ -113,6 +118,8 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
 
   const MovedPins pins(plan.moves, cloth);
   if (auto placed = pins.place(cloth); !placed) return Error{placed.error()};
+  auto bodies = MovedBodies::add(plan.bodies, cloth);
+  if (!bodies) return Error{bodies.error()};
   RunSummary summary;
   Errors errors;
   summary.energy_start = cloth.energy().total();
@@ -120,6 +127,9 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   while (summary.frames < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
          committed(summary.status) && !summary.stopped) {
     if (auto sent = pins.send(cloth, (summary.frames + 1) * plan.dt); !sent) {
+      return Error{sent.error()};
+    }
+    if (auto sent = bodies.value().send(cloth, (summary.frames + 1) * plan.dt); !sent) {
       return Error{sent.error()};
     }
     const double cpu_start = cpu_seconds();

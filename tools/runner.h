@@ -16,6 +16,7 @@
 
 #include "tools/fabric_measure.h"
 #include "tools/pin_moves.h"
+#include "tools/scene_bodies.h"
 
 namespace weft::tools {
 
@@ -32,6 +33,7 @@ struct RunPlan {
   /// Of fixed particles, each in one move at most. Before each frame they are sent to where they
   /// are at its end.
   std::vector<PinMove> moves = {};
+  std::vector<SceneBody> bodies = {};
   double Vec3::*up = &Vec3::y;  ///< what RunSummary::lowest is measured along
   FabricMeasure fabric = {};    ///< what RunSummary::fabric is measured by
 };
@@ -97,6 +99,9 @@ struct RunSummary {
   int open_seams = 0;                  ///< in the end
   double max_seam_gap = 0;             ///< m, over all frames and closed seams
   double seam_work = 0;                ///< J
+  int max_body_contacts = 0;           ///< in one frame
+  double body_work = 0;                ///< J, done by moved bodies
+  double friction_work = 0;            ///< J
 
   double energy_start = 0;  ///< J, before the first frame
   double energy_end = 0;    ///< J, after the last frame

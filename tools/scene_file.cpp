@@ -107,7 +107,9 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.spheres = read_array(json, key, read_index);
   } else if (key == "radii") {
     scene.radii = read_array(json, key, read_number);
-  } else if (key != "total_mass" && key != "moves" && key != "faces") {
+  } else if (key == "friction") {
+    scene.friction = read_number(json, key);
+  } else if (key != "total_mass" && key != "moves" && key != "faces" && key != "bodies") {
     throw Refused{fmt::format("unknown key {}", in_quotes(key))};
   }
 }
@@ -127,6 +129,7 @@ SceneFile read_scene(const Json& json) {
   SceneFile file;
   if (json.contains("moves")) file.moves = read_moves(json["moves"], scene);
   if (json.contains("faces")) file.faces = read_faces(json["faces"], scene.positions.size());
+  if (json.contains("bodies")) file.bodies = read_bodies(json["bodies"]);
   file.description = std::move(scene);
   return file;
 }
@@ -196,7 +199,7 @@ Result<SceneFile> read_scene_file(const std::string& path) {
 }
 
 std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves,
-                       const Faces& faces) {
+                       const Faces& faces, const std::vector<SceneBody>& bodies) {
   std::string text = fmt::format("{{\n\"gravity\": {}", vector_row(scene.gravity));
   add_rows(text, "positions", scene.positions, vector_row);
   add_rows(text, "velocities", scene.velocities, vector_row);
@@ -213,6 +216,9 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   if (has_air(scene.air)) text += fmt::format(",\n\"air\": {}", air_text(scene.air));
   add_numbers(text, "spheres", scene.spheres);
   add_numbers(text, "radii", scene.radii);
+  if (scene.friction != SceneDescription{}.friction)
+    text += fmt::format(",\n\"friction\": {}", Json(scene.friction).dump());
+  add_rows(text, "bodies", bodies, body_row);
   add_rows(text, "moves", moves, move_row);
   add_rows(text, "faces", faces, [](const auto& face) { return Json(face).dump(); });
   return text + "\n}\n";

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tools/pin_moves.h"
+#include "tools/scene_bodies.h"
 
 namespace weft::tools {
 
@@ -22,6 +23,7 @@ struct SceneFile {
   SceneDescription description;
   std::vector<PinMove> moves;
   Faces faces;
+  std::vector<SceneBody> bodies;
 };
 
 Result<SceneFile> parse_scene(std::string_view text);
@@ -29,7 +31,7 @@ Result<SceneFile> read_scene_file(const std::string& path);
 
 /// The file's text. One row of the arrays per line, so that files can be read and compared.
 std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves = {},
-                       const Faces& faces = {});
+                       const Faces& faces = {}, const std::vector<SceneBody>& bodies = {});
 
 /// The scene with the cloth's present positions and velocities, to be continued from there. With
 /// moves: present_moves(), whose times begin anew and which say where their pins come "from".

@@ -141,9 +141,10 @@ Result<SceneSource> load_scene_file(const SceneOptions& options) {
   if (auto checked = check_options(options, {}); !checked) return Error{checked.error()};
   auto read = read_scene_file(options.scene);
   if (!read) return Error{read.error()};
-  auto& [description, moves, faces] = read.value();
+  auto& [description, moves, faces, bodies] = read.value();
   Mesh mesh = face_mesh(description, std::move(faces));
-  return SceneSource{options.scene, std::move(description), std::move(mesh), std::move(moves)};
+  return SceneSource{options.scene, std::move(description), std::move(mesh), std::move(moves),
+                     std::move(bodies)};
 }
 
 /// Whether edges are rigid and enclose triangles, more of them than quads.
@@ -314,7 +315,7 @@ void add_scene_options(Verb verb, SceneOptions& options) {
 Result<SceneSource> load_scene(const SceneOptions& options) {
   auto source = load_as_it_is(options);
   if (!source) return source;
-  auto surrounded = surround(options.world, source.value().description);
+  auto surrounded = surround(options.world, source.value().description, source.value().bodies);
   if (!surrounded) return Error{surrounded.error()};
   return source;
 }

@@ -12,6 +12,7 @@
 #include "tools/material_options.h"
 #include "tools/mesh.h"
 #include "tools/pin_moves.h"
+#include "tools/scene_bodies.h"
 #include "tools/world_options.h"
 
 namespace weft::tools {
@@ -46,6 +47,7 @@ struct SceneSource {
   SceneDescription description;
   Mesh mesh;
   std::vector<PinMove> moves = {};
+  std::vector<SceneBody> bodies = {};
   std::optional<MeshCounts> counts = {};  ///< of a mesh that was read
   std::vector<std::string> notes = {};    ///< for whoever runs it, a line each
   double Vec3::*up = &Vec3::y;            ///< what heights are measured along

@@ -28,6 +28,34 @@ Result<void> add_sphere(const std::string& text, SceneDescription& scene) {
   return {};
 }
 
+Result<void> add_plane(const std::string& text, std::vector<SceneBody>& bodies) {
+  const auto numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 4)
+    return Error{fmt::format("--plane: '{}' is not nx,ny,nz,d", text)};
+  const std::vector<double>& n = *numbers;
+  const Plane plane{{n[0], n[1], n[2]}, n[3]};
+  if (const auto built = build_shape(plane); !built)
+    return Error{fmt::format("--plane: '{}': {}", text, built.error())};
+  bodies.push_back({.shape = plane});
+  return {};
+}
+
+Result<void> set_surfaces(const WorldOptions& options, SceneDescription& scene,
+                          std::vector<SceneBody>& bodies) {
+  for (const auto& [option, value] :
+       {std::pair{"--friction", options.friction}, {"--thickness", options.thickness}}) {
+    if (!value) continue;
+    if (bodies.empty()) return Error{fmt::format("{}: only scenes with bodies have it", option)};
+    if (!(*value >= 0)) return Error{fmt::format("{}: {} is below 0", option, *value)};
+  }
+  scene.friction = options.friction.value_or(scene.friction);
+  for (SceneBody& body : bodies) {
+    body.friction = options.friction.value_or(body.friction);
+    body.thickness = options.thickness.value_or(body.thickness);
+  }
+  return {};
+}
+
 }  // namespace
 
 void add_world_options(Verb verb, WorldOptions& options) {
@@ -36,12 +64,19 @@ void add_world_options(Verb verb, WorldOptions& options) {
   verb.repeated("--sphere", options.spheres,
                 "x,y,z,radius in m: a fixed sphere; x,y,z,radius,mass: a free one of so many kg; "
                 "may be repeated");
+  verb.repeated("--plane", options.planes,
+                "nx,ny,nz,d: a solid plane, free where nx x + ny y + nz z >= d; may be repeated");
+  verb.option("--friction", options.friction,
+              "Coulomb's, between the cloth and all bodies (default 0.3, or what they have)");
+  verb.option("--thickness", options.thickness,
+              "m, at which all bodies keep the cloth (default 0.001, or what they have)");
   verb.option("--damping-motion", options.damping_motion,
               "1/s: velocities fall by exp(-this t) (default: what the material or the .json scene "
               "has)");
 }
 
-Result<void> surround(const WorldOptions& options, SceneDescription& scene) {
+Result<void> surround(const WorldOptions& options, SceneDescription& scene,
+                      std::vector<SceneBody>& bodies) {
   if (options.gravity) {
     const auto gravity = parse_vector("--gravity", *options.gravity);
     if (!gravity) return Error{gravity.error()};
@@ -56,7 +91,10 @@ Result<void> surround(const WorldOptions& options, SceneDescription& scene) {
   for (const std::string& sphere : options.spheres) {
     if (auto added = add_sphere(sphere, scene); !added) return added;
   }
-  return {};
+  for (const std::string& plane : options.planes) {
+    if (auto added = add_plane(plane, bodies); !added) return added;
+  }
+  return set_surfaces(options, scene, bodies);
 }
 
 }  // namespace weft::tools

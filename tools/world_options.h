@@ -1,4 +1,4 @@
-/// What surrounds a cloth: gravity, spheres and the decay of its motion.
+/// What surrounds a cloth: gravity, spheres, planes, friction and the decay of its motion.
 #pragma once
 
 #include <weft/weft.h>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/command_line.h"
+#include "tools/scene_bodies.h"
 
 namespace weft::tools {
 
@@ -15,12 +16,17 @@ struct WorldOptions {
   std::optional<std::string> gravity = {};    ///< x,y,z in m/s^2
   std::vector<std::string> spheres = {};      ///< x,y,z,radius in m, and perhaps a mass in kg
   std::optional<double> damping_motion = {};  ///< 1/s
+  std::vector<std::string> planes = {};       ///< x,y,z,offset
+  std::optional<double> friction = {};
+  std::optional<double> thickness = {};  ///< m
 };
 
 void add_world_options(Verb verb, WorldOptions& options);
 
 /// Replaces gravity and the decay of motion where they are given, and adds the spheres as the last
-/// particles. Spheres without a mass are fixed.
-Result<void> surround(const WorldOptions& options, SceneDescription& scene);
+/// particles, and the planes as the last bodies. Spheres without a mass are fixed. Friction and
+/// thickness are those of all bodies, and of the cloth.
+Result<void> surround(const WorldOptions& options, SceneDescription& scene,
+                      std::vector<SceneBody>& bodies);
 
 }  // namespace weft::tools

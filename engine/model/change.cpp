@@ -23,6 +23,7 @@ class Describer {
     description_.anchors = model_.anchors.described;
     describe_seams();
     description_.damping = model_.damping;
+    description_.friction = model_.friction;
     description_.gravity = to_public(model_.gravity);
     return std::move(description_);
   }

@@ -66,6 +66,7 @@ Model::Model(const SceneDescription& description, const Model* like)
   store_seams(description);
   store_air(description);
   damping = description.damping;
+  friction = description.friction;
   find_holds();
   for (const std::uint32_t s : spheres) {
     if (inverse_mass[s] > 0) heaviest_sphere = std::max(heaviest_sphere, 1 / inverse_mass[s]);

@@ -166,6 +166,7 @@ class Model {
   std::vector<std::uint8_t> is_sphere;  // empty without spheres
 
   kernels::Vector gravity{};
+  double friction = 0;  // of the cloth beside bodies
   ConstraintStore constraints;
   MembraneStore membrane;
   BendingStore bending;

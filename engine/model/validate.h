@@ -25,6 +25,8 @@ Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> poin
 Result<void> validate_anchor_limits(const Model& model, std::span<const AnchorLimit> limits);
 Result<void> validate_anchor_limit(const Model& model, std::uint32_t anchor,
                                    const AnchorLimit& limit);
+Result<void> validate(const Body& body);
+Result<void> validate(const Pose& pose);
 Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_wind(Vec3 wind);
 Result<void> validate_motion(const RigidMotion& motion, double share);

@@ -137,6 +137,7 @@ Result<void> validate_material(const SceneDescription& d) {
     if (auto r = validate_bending(i, d.bending[i], d.positions.size()); !r) return r;
   }
   if (auto r = validate_damping(d.damping); !r) return r;
+  if (auto r = validate_not_negative("friction", d.friction); !r) return r;
   return validate_air(d.air, d.positions.size());
 }
 

@@ -101,6 +101,10 @@ double work_of(const PinMotion& pins, const State& s, double h) {
     linear = linear + j;
     angular = angular + cross(0.5 * (s.position[slot] + s.solved[slot]) - pins.centre, j);
   }
+  for (const BodyImpulse& body : s.body_report.impulses) {
+    linear = linear - body.linear;
+    angular = angular - body.angular - cross(body.centre - pins.centre, body.linear);
+  }
   return dot(pins.velocity, linear) + dot(pins.spin, angular);
 }
 

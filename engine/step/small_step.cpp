@@ -146,6 +146,8 @@ class Frame {
     if (s_.model->has_air() && s_.air_parts > 1) begin_air();
     plan_.anchors = plan.projects ? s_.anchors.standing() : s_.anchors.travel();
     plan_.seams = s_.seams.states();
+    plan_.bodies = s_.bodies.travelling(s_.model->friction);
+    plan_.bodies_move = s_.bodies.moving();
     kernels::Vectors& velocity = plan.projects ? s_.next_velocity : s_.velocity;
     if (plan.projects) velocity = kernels::Vectors(velocity.size());  // at rest
     const kernels::VectorsView force =
@@ -218,6 +220,14 @@ class Frame {
   void put_right_at_once() {
     if (passes_left_ >= 1) sweep_beyond(0);
     finish();
+  }
+
+  /// What is under the surface of a body comes out by and by: no round would bring it out sooner.
+  /// Returns whether something is deeper than the tolerance.
+  bool is_in_body() {
+    const double depth = solver_.deepest_in_body();
+    report_.max_penetration = std::max(report_.max_penetration, depth);
+    return depth > s_.settings.contact_tolerance;
   }
 
   void read_velocities() {
@@ -443,12 +453,16 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   });
   trial.substeps = plan.substeps;
   trial.status = frame.finish();
+  const bool is_in_body = frame.is_in_body();
   if (trial.status != Status::converged && !attempt.is_last) {
     trial.outcome = Outcome::rejected;
     return trial;
   }
   kernels::ImpulseEnergy change;
-  timed(report, Stage::commit, [&] { frame.read_velocities(); });
+  timed(report, Stage::commit, [&] {
+    frame.read_velocities();
+    s.small_steps->report_bodies(s.body_report);
+  });
   if (s.settings.velocity_correction) {
     timed(report, Stage::correct_velocities,
           [&] { trial.worsen(correct_velocities(s, *s.sweeps, false, budget, report, team)); });
@@ -463,7 +477,10 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     trial.outcome = Outcome::not_finite;
     return trial;
   }
-  if (fixed) trial.worsen(Status::fixed_iterations);
+  if (fixed)
+    trial.worsen(Status::fixed_iterations);
+  else if (is_in_body)
+    trial.worsen(Status::iteration_limit);
   if (frame.passed_particle != kNoIndex) {
     trial.passed_particle = frame.passed_particle;
     trial.worsen(Status::passed_through);
@@ -474,7 +491,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     if (s.laws) s.elastic_energy = energy_of_springs(*s.model, s.solved, s.give_per_mass);
     s.seams.take(s.small_steps->seams().states());
     trial.seam_work = s.small_steps->seams().work();
-    const double released = frame.released() + trial.seam_work;
+    const double released = frame.released() + trial.seam_work + s.body_report.work;
     if (!fixed) guard_springs(s, change, released, h);
     if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
     trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;

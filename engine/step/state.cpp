@@ -96,6 +96,7 @@ void State::copy(const State& from) {
   Pins its_pins = from.pins;
   Anchors its_anchors = from.anchors;
   Seams its_seams = from.seams;
+  Bodies its_bodies = from.bodies;
   if (same && small_steps) small_steps->take_past(*from.small_steps);
   if (!same && small_steps) small_steps->forget_past();
   position = from.position;
@@ -104,6 +105,7 @@ void State::copy(const State& from) {
   pins = std::move(its_pins);
   anchors = std::move(its_anchors);
   seams = std::move(its_seams);
+  bodies = std::move(its_bodies);
   copy_scalars(from, same);
   rest = from.rest;
   if (!same || !settings.sleep) rest.wake();
@@ -141,6 +143,7 @@ void State::go_on_from(const State& from) {
   pins.go_on_from(from.pins, its_model, *model, position);
   anchors = from.anchors;
   seams = from.seams;
+  bodies = from.bodies;
   const bool same = alike(settings, from.settings);
   copy_scalars(from, same);
   displaced = true;
@@ -158,8 +161,8 @@ std::size_t State::bytes() const {
     sum += v->bytes();
   }
   sum += contacts.bytes() + nearby.bytes() + bytes_of(impulses) + bytes_of(inverse_mass_of_met) +
-         bytes_of(resistances) + pins.bytes() + anchors.bytes() + seams.bytes() + rest.bytes() +
-         measure->bytes();
+         bytes_of(resistances) + pins.bytes() + anchors.bytes() + seams.bytes() + bodies.bytes() +
+         rest.bytes() + measure->bytes();
   sum += sizeof(Team::SharedState);
   if (laws) sum += laws->bytes();
   if (sweeps) sum += sweeps->bytes();

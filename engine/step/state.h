@@ -17,6 +17,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/bodies/bodies.h"
 #include "engine/contacts/contacts.h"
 #include "engine/contacts/nearby.h"
 #include "engine/measure/measure.h"
@@ -84,6 +85,8 @@ struct State {
   Pins pins;
   Anchors anchors;
   Seams seams;
+  Bodies bodies;
+  BodyReport body_report;     // of the present attempt by small steps
   bool placed = true;         // positions were given, not stepped to: they may violate constraints
   bool displaced = false;     // they may, though stepped to: a pin was put down, the model changed
   bool rests_differ = false;  // the rest of fast springs has changed since (fast_springs.h)

@@ -251,6 +251,10 @@ StepReport step(State& s, double dt) {
     if (done) {
       travel.arrive();
       s.anchors.arrive();
+      s.bodies.arrive(s.body_report.impulses, dt);
+      report.body_contacts = s.body_report.contacts;
+      report.body_work = s.body_report.work;
+      report.friction_work = s.body_report.friction;
       s.way = {};
     }
   }

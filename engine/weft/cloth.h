@@ -1,6 +1,7 @@
 /// A cloth that moves, and what each of its steps reports. Part of weft.h.
 #pragma once
 
+#include <weft/body.h>
 #include <weft/result.h>
 #include <weft/scene.h>
 #include <weft/settings.h>
@@ -89,7 +90,8 @@ struct StepReport {
   double max_error = 0;
   std::uint32_t worst_constraint = kNoIndex;  ///< the description's index
   std::uint32_t worst_element = kNoIndex;     ///< likewise, of the largest strain or shear
-  double max_penetration = 0;                 ///< m, 0 without contacts
+  double max_penetration = 0;                 ///< m, into spheres and bodies, beyond the thickness
+  int body_contacts = 0;                      ///< pairs of a particle and a body that touch
   double max_anchor_error = 0;  ///< m, by which an anchor's limits are exceeded; 0 without anchors
   int open_seams = 0;           ///< whose particles have not come together yet (Seam)
   double max_seam_gap = 0;  ///< m, between particles of closed seams: bounded by contact_tolerance
@@ -101,10 +103,12 @@ struct StepReport {
   /// forces, air and Damping::motion: by the scheme, damped springs and contacts. 0 by
   /// gauss_seidel.
   double energy_lost = 0;
-  double pin_work = 0;  ///< J, work that moved pins did in this step: exact where they move as one
-                        ///< rigid body, else that of the rigid motion nearest to theirs. Jumps do
-                        ///< none. Impulses of fixed spheres count as if they were the pins' own;
-                        ///< what moved spheres do is not in it.
+  double pin_work = 0;   ///< J, work that moved pins did in this step: exact where they move as one
+                         ///< rigid body, else that of the rigid motion nearest to theirs. Jumps do
+                         ///< none. Impulses of fixed spheres count as if they were the pins' own;
+                         ///< what moved spheres do is not in it.
+  double body_work = 0;  ///< J, that bodies which move did on the cloth in this step
+  double friction_work = 0;                  ///< J, that friction with bodies took
   std::uint32_t failed_particle = kNoIndex;  ///< non_finite, non_finite_input: one of those
   std::uint32_t passed_particle = kNoIndex;  ///< passed_through: one that did
   std::array<double, kStageCount> stage_seconds{};
@@ -267,6 +271,24 @@ class WEFT_API Cloth {
   Result<void> carry(const RigidMotion& motion, double share);
   /// The same with share 1 and without a way through the air.
   Result<void> teleport(const RigidMotion& motion);
+
+  /// Adds a body, which is there from the next step on, and returns its id; ids are not used again.
+  /// Other solvers than small_steps refuse bodies; an automatic one becomes small_steps, at the
+  /// cost of a change().
+  Result<std::uint32_t> add_body(const Body& body);
+  /// Gives a body another pose: it travels there during the next step, in a straight line, turning
+  /// evenly about one axis by half a turn at most, and takes cloth along. A body that is not moved
+  /// before a step stands still in it. The last move before a step counts.
+  Result<void> move_body(std::uint32_t id, const Pose& pose);
+  /// The same without a way between: cloth that it is put into comes out slowly.
+  Result<void> place_body(std::uint32_t id, const Pose& pose);
+  /// A body that is off is not there.
+  Result<void> switch_body(std::uint32_t id, bool on);
+  Result<void> remove_body(std::uint32_t id);
+  Result<BodyLoad> body_load(std::uint32_t id) const;
+  /// Those that were in contact when the last step of this cloth ended; an empty list after clone()
+  /// and change().
+  std::vector<BodyContact> body_contacts() const;
 
   /// Changes what was described: all of it or, on an error and where memory runs out, nothing.
   /// model() is another one from then on, as build_model makes it of the changed description; other

@@ -150,6 +150,7 @@ struct SceneDescription {
   std::vector<Seam> seams;
   Damping damping;
   Air air;
+  double friction = 0.3;  ///< Coulomb's, of the cloth beside bodies (body.h); at least 0
   Vec3 gravity{0, -10, 0};
 
   /// Contacts exist only for the particles listed in `spheres`. Each collides with every other

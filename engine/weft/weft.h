@@ -1,5 +1,6 @@
 /// weft: a cloth simulation library. This header includes the whole public interface of
-/// simulation: scene.h (describe and build), settings.h (create) and cloth.h (step and read).
+/// simulation: scene.h (describe and build), settings.h (create), body.h (what cloth touches) and
+/// cloth.h (step and read).
 /// mesh.h, which it does not include, makes a SceneDescription of a mesh and a material.
 ///
 ///   describe -> build -> create -> step -> read
@@ -35,6 +36,7 @@
 /// and the bits of results; a new patch changes neither, but for mistakes.
 #pragma once
 
+#include <weft/body.h>
 #include <weft/cloth.h>
 #include <weft/result.h>
 #include <weft/scene.h>

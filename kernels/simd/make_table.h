@@ -4,6 +4,7 @@
 #include "kernels/simd/anchors.h"
 #include "kernels/simd/anticipate.h"
 #include "kernels/simd/bending.h"
+#include "kernels/simd/bodies.h"
 #include "kernels/simd/contacts.h"
 #include "kernels/simd/directions.h"
 #include "kernels/simd/fronts.h"
@@ -118,6 +119,8 @@ constexpr Table make_table() {
           .relax_membrane = relax_membrane,
           .judge_membrane = judge_membrane,
           .hold_anchors = hold_anchors,
+          .grip_bodies = grip_bodies,
+          .deepest_in_bodies = deepest_in_bodies,
           .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),
           .relax_spring_yarns = as_wide_as_block<relax_spring_yarns, &Table::relax_spring_yarns>(),
           .judge_spring_yarns = as_wide_as_block<judge_spring_yarns, &Table::judge_spring_yarns>(),

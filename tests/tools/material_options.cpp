@@ -58,14 +58,12 @@ TEST_CASE("options change a named material, or are one by themselves") {
   options = {};
   options.stretch = 10;
   options.density = 2;
-  options.thickness = 3;
   options.shear = 4;
   options.drag = 5;
   options.lift = 6;
   const Material own = *material_of(options).value();
   CHECK(own.weft == 10);
   CHECK(own.density == 2);
-  CHECK(own.thickness == 3);
   CHECK(own.shear == 4);
   CHECK(own.drag == 5);
   CHECK(own.lift == 6);

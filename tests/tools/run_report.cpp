@@ -35,6 +35,9 @@ RunReport report() {
   summary.corrections = 103;
   summary.scheme_fallbacks = 8;
   summary.max_contacts = 19;
+  summary.max_body_contacts = 31;
+  summary.body_work = 0.125;
+  summary.friction_work = 0.0625;
   summary.max_error = 0.25;
   summary.max_strain = 0.125;
   summary.mean_max_strain = 0.03125;
@@ -75,6 +78,7 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
     "ms_per_frame": 250, "max_ms_per_frame": 500, "real_time_factor": 2,
     "max_strain": 0.125, "mean_max_strain": 0.03125, "rms_strain": 0.015625,
     "max_penetration": 0.75, "max_anchor_error": 0.5, "max_contacts": 19,
+    "bodies": 0, "body_contacts": 31, "body_work": 0.125, "friction_work": 0.0625,
     "iterations_per_step": 5, "velocity_iterations_per_step": 3, "direction_updates_per_step": 9,
     "visits": 101, "corrections": 103, "ns_per_constraint_iteration": 3125000,
     "energy_start": -1.5, "energy_end": -2.5, "pin_work": 0.875, "energy_gain": 0.25,

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "temporary_folder.h"
@@ -150,6 +151,49 @@ TEST_CASE("faces survive writing and reading, and those that cannot be are refus
         "faces[0]: expected three particles or more, not [0,1]");
   CHECK(error_with(R"("faces": [[0,1,2]])") == "faces[0][2]: there is no particle 2");
   CHECK(error_with(R"("faces": [[0,1,"a"]])").starts_with("faces[0][2]: expected"));
+}
+
+TEST_CASE("bodies survive writing and reading, and move as they are told") {
+  SceneDescription scene;
+  scene.positions = {{0, 1, 0}};
+  scene.masses = {1};
+  scene.friction = 0.45;
+  const std::vector<SceneBody> bodies{{.shape = Plane{{0, 2, 0}, -0.5}, .friction = 0.1},
+                                      {.shape = Capsule{{0, 0, 0}, {0, 1, 0}, 0.2, 0.1},
+                                       .pose = {.position = {1, 2, 3}},
+                                       .thickness = 0.002,
+                                       .move = PinMove{.times = {0, 2},
+                                                       .translations = {{0, 0, 0}, {4, 0, 0}},
+                                                       .rotations = {{0, 0, 0}, {0, 0, 0.5}},
+                                                       .about = {1, 2, 3}}},
+                                      {.shape = box({1, 2, 3})},
+                                      {.shape = Ball{{0, 1, 0}, 0.25}}};
+  const std::string text = scene_text(scene, {}, {}, bodies);
+  const auto read = parse_scene(text);
+  REQUIRE_MESSAGE(read, (read ? "" : read.error()));
+  CHECK(read.value().description.friction == 0.45);
+  REQUIRE(read.value().bodies.size() == 4);
+  CHECK(scene_text(read.value().description, {}, {}, read.value().bodies) == text);
+  const Pose pose = pose_at(read.value().bodies[1], 1);
+  CHECK(pose.position.x == 3);
+  CHECK(pose.rotation.z == doctest::Approx(std::sin(0.125)));
+  CHECK(pose_at(present_bodies(read.value().bodies, 1)[1], 0).position.x == 3);
+}
+
+TEST_CASE("errors of bodies name their place") {
+  const auto error_of = [](const std::string& bodies) {
+    const auto read =
+        parse_scene(R"({"positions": [[0, 0, 0]], "masses": [1], "bodies": )" + bodies + "}");
+    return read ? std::string() : read.error();
+  };
+  CHECK(error_of(R"([{"shape": "cone"}])") ==
+        R"(bodies[0].shape: expected plane, sphere, capsule, box or hull, not "cone")");
+  CHECK(error_of(R"([{"shape": "sphere"}])") == "bodies[0]: the key 'radius' is missing");
+  CHECK(error_of(R"([{"shape": "sphere", "radius": 0}])") ==
+        "bodies[0].radius: must be finite and greater than 0 (0)");
+  CHECK(error_of(R"([{"shape": "plane", "size": 1}])") == "bodies[0]: unknown key 'size'");
+  CHECK(error_of(R"([{"shape": "plane", "moves": {"times": [0]}}])") ==
+        "bodies[0].moves: the key 'translations' is missing");
 }
 
 TEST_CASE("seams survive writing and reading to the last bit") {

@@ -18,8 +18,9 @@ SceneDescription two_particles() {
 
 TEST_CASE("without options a scene stays what it is") {
   SceneDescription scene = two_particles();
+  std::vector<SceneBody> bodies;
   scene.damping.motion = 3;
-  REQUIRE(surround({}, scene));
+  REQUIRE(surround({}, scene, bodies));
   CHECK(scene.gravity.y == -10);
   CHECK(scene.damping.motion == 3);
   CHECK(scene.positions.size() == 2);
@@ -28,7 +29,8 @@ TEST_CASE("without options a scene stays what it is") {
 
 TEST_CASE("gravity and the decay of motion are replaced") {
   SceneDescription scene = two_particles();
-  REQUIRE(surround({.gravity = "1,-2,3.5", .damping_motion = 0.5}, scene));
+  std::vector<SceneBody> bodies;
+  REQUIRE(surround({.gravity = "1,-2,3.5", .damping_motion = 0.5}, scene, bodies));
   CHECK(scene.gravity.x == 1);
   CHECK(scene.gravity.y == -2);
   CHECK(scene.gravity.z == 3.5);
@@ -37,8 +39,9 @@ TEST_CASE("gravity and the decay of motion are replaced") {
 
 TEST_CASE("spheres are the last particles, fixed if they have no mass") {
   SceneDescription scene = two_particles();
+  std::vector<SceneBody> bodies;
   scene.velocities = {{}, {1, 2, 3}};
-  REQUIRE(surround({.spheres = {"0,-1,0,0.5", "2,-1,0,0.25,7"}}, scene));
+  REQUIRE(surround({.spheres = {"0,-1,0,0.5", "2,-1,0,0.25,7"}}, scene, bodies));
   CHECK(scene.spheres == std::vector<std::uint32_t>{2, 3});
   CHECK(scene.radii == std::vector<double>{0, 0, 0.5, 0.25});
   CHECK(scene.fixed == std::vector<std::uint32_t>{2});
@@ -47,14 +50,33 @@ TEST_CASE("spheres are the last particles, fixed if they have no mass") {
   CHECK(build_model(scene));
 }
 
+TEST_CASE("planes are the last bodies, and friction and thickness are those of all") {
+  SceneDescription scene = two_particles();
+  std::vector<SceneBody> bodies{{.shape = Ball{.radius = 1}}};
+  REQUIRE(surround({.planes = {"0,2,0,-1"}, .friction = 0.5, .thickness = 0.002}, scene, bodies));
+  REQUIRE(bodies.size() == 2);
+  CHECK(std::get<Plane>(bodies[1].shape).offset == -1);
+  CHECK(scene.friction == 0.5);
+  for (const SceneBody& body : bodies) {
+    CHECK(body.friction == 0.5);
+    CHECK(body.thickness == 0.002);
+  }
+}
+
 TEST_CASE("what is wrong with the surroundings is refused by option and value") {
   const auto error_of = [](const WorldOptions& options) {
     SceneDescription scene = two_particles();
-    const auto surrounded = surround(options, scene);
+    std::vector<SceneBody> bodies;
+    const auto surrounded = surround(options, scene, bodies);
     REQUIRE_FALSE(surrounded);
     return surrounded.error();
   };
   CHECK(error_of({.gravity = "1,2"}) == "--gravity: '1,2' is not x,y,z");
+  CHECK(error_of({.planes = {"1,2,3"}}) == "--plane: '1,2,3' is not nx,ny,nz,d");
+  CHECK(error_of({.planes = {"0,0,0,1"}}) ==
+        "--plane: '0,0,0,1': normal: has no direction (0, 0, 0)");
+  CHECK(error_of({.friction = 1}) == "--friction: only scenes with bodies have it");
+  CHECK(error_of({.planes = {"0,1,0,0"}, .thickness = -1}) == "--thickness: -1 is below 0");
   CHECK(error_of({.damping_motion = -1}) == "--damping-motion: -1 is below 0");
   CHECK(error_of({.spheres = {"1,2,3"}}) ==
         "--sphere: '1,2,3' is not x,y,z,radius or x,y,z,radius,mass");

@@ -8,6 +8,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/model/change.h"
+#include "engine/solvers/small_steps/body_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/tuning.h"
 
@@ -24,11 +25,14 @@ struct ReferenceSmallSteps::Points {
   const std::uint32_t* anchor_at;  // per slot, or null: anchors are left
   const AnchorClock& anchors;
   std::vector<reference::MembraneMultipliers>& of_membrane;
+  ReferenceBodies* bodies;  // or null: they are left
+  std::vector<std::uint32_t>& arrived;
 
   Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
   void move(std::uint32_t slot, Vector by) const {
     x.add(slot, by);
     if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
+    if (bodies != nullptr) grip(slot);
   }
   bool hold(std::uint32_t slot, std::uint32_t anchor) const {
     const Vector settled = v[slot] + rate * (x[slot] - predicted[slot]);
@@ -37,6 +41,15 @@ struct ReferenceSmallSteps::Points {
     x.set(slot, held.x);
     predicted.set(slot, held.x);
     v.set(slot, held.v);
+    return true;
+  }
+  bool grip(std::uint32_t slot) const {
+    Vector to = x[slot], settled = v[slot] + rate * (x[slot] - predicted[slot]);
+    if (!bodies->hold(slot, start[slot], to, settled)) return false;
+    x.set(slot, to);
+    predicted.set(slot, to);
+    v.set(slot, settled);
+    if (bodies->begins_to_touch(slot)) arrived.push_back(slot);
     return true;
   }
   void push(std::uint32_t slot, Vector by) const {
@@ -55,7 +68,7 @@ struct ReferenceSmallSteps::Points {
   }
 };
 
-ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_anchors) {
+ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_limits) {
   return {.x = x_.view(),
           .predicted = predicted_.view(),
           .start = before_.view(),
@@ -63,9 +76,11 @@ ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_anchors) {
           .multipliers = multiplier_,
           .v = v_.view(),
           .rate = last_ > 0 ? 1 / last_ : 0,
-          .anchor_at = with_anchors && !at_limit_.empty() ? model_.anchors.at.data() : nullptr,
+          .anchor_at = with_limits && !at_limit_.empty() ? model_.anchors.at.data() : nullptr,
           .anchors = anchors_,
-          .of_membrane = membrane_multiplier_};
+          .of_membrane = membrane_multiplier_,
+          .bodies = with_limits && !bodies_.empty() ? &bodies_ : nullptr,
+          .arrived = arrived_};
 }
 
 LawStep ReferenceSmallSteps::law_step() const {
@@ -90,6 +105,8 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
       has_attached_(model.has_attached()),
       paces_(paces_of(layout_.bending, model.damping.bending)),
       anchors_(model.anchors),
+      bodies_(model),
+      shortest_(shortest_lengths(model)),
       at_limit_(model.anchors.size()),
       at_limit_before_(model.anchors.size()) {
   for (auto* vectors : {&x_, &before_, &predicted_, &v_, &v_before_, &acceleration_, &past_.v,
@@ -122,6 +139,8 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   has_past_ = !plan.placed && h <= SubstepFormula::kLargestRatio * past_.h;
   if (!has_past_ && !plan.projects) past_.h = 0;
   anchors_.begin(plan.anchors, h, plan.substeps);
+  bodies_.begin(plan.bodies, h, plan.substeps, plan.projects,
+                has_past_ && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{});
   at_limit_.assign(at_limit_.size(), false);
   if (has_past_ && !plan.anchors.moving) at_limit_ = past_.at_limit;
   last_ = 0;
@@ -178,6 +197,7 @@ void ReferenceSmallSteps::advance(Team&) {
   last_ = bh;
   bend();
   anchors_.advance();
+  bodies_.advance(formula_.part);
   at_limit_before_.swap(at_limit_);
   at_limit_.assign(at_limit_.size(), false);
   if (has_attached_) hold_anchors();
@@ -275,6 +295,7 @@ void ReferenceSmallSteps::sweep(Team&) {
   relax_membrane();
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors();
   draw_seams();
+  hold_bodies();
   is_begun_ = true;
 }
 
@@ -301,6 +322,19 @@ void ReferenceSmallSteps::hold_anchors() {
     if (!at_limit_before_[i] && !at_limit_[i]) arrived_.push_back(slot);
     at_limit_[i] = true;
     if (length(x_[slot] - from) > strain * layout_.anchors.shortest[i]) passes_.look_at(slot);
+  }
+}
+
+/// Contacts come last.
+void ReferenceSmallSteps::hold_bodies() {
+  if (bodies_.empty()) return;
+  const Points points = this->points(true);
+  const double strain = tuning::kLocalShare * settings_.tolerance;
+  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
+    if (!is_free(slot)) continue;
+    const Vector from = x_[slot];
+    if (points.grip(slot) && length(x_[slot] - from) > strain * shortest_[slot])
+      passes_.look_at(slot);
   }
 }
 
@@ -513,6 +547,7 @@ void ReferenceSmallSteps::keep(Team&) {
   past_.v = v_;
   past_.v_before = v_before_;
   past_.at_limit = at_limit_;
+  past_.touching = bodies_.touching();
   for (std::size_t i = 0; i < model_.slots(); ++i) past_.moved.set(i, x_[i] - before_[i]);
 }
 

@@ -13,6 +13,7 @@
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/bending_pace.h"
 #include "engine/solvers/small_steps/local_passes.h"
+#include "engine/solvers/small_steps/reference_bodies.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "kernels/reference/small_steps.h"
@@ -25,6 +26,7 @@ class ReferenceSmallSteps final : public SmallSteps {
     double h = 0;  // of the last substep; 0: there was none
     kernels::Vectors v, v_before, moved;
     std::vector<bool> at_limit;  // per anchor
+    ReferenceBodies::Touching touching;
   };
 
   ReferenceSmallSteps(const Model& model, const Settings& settings);
@@ -42,6 +44,11 @@ class ReferenceSmallSteps final : public SmallSteps {
   double law_error() override;
   void end_seams() override;
   const SeamThreads& seams() const override { return seams_; }
+  void report_bodies(BodyReport& report) const override { bodies_.sum(report); }
+  double deepest_in_body() override { return bodies_.deepest(before_, x_); }
+  void read_contacts(std::vector<BodyTouch>& contacts) const override {
+    bodies_.read_contacts(contacts);
+  }
   void read_positions(kernels::VectorsView x, Team& team) const override;
   void read_positions_of(std::span<const std::uint32_t> slots,
                          kernels::VectorsView x) const override;
@@ -64,7 +71,8 @@ class ReferenceSmallSteps final : public SmallSteps {
 
  private:
   struct Points;
-  Points points(bool with_anchors);
+  /// with_limits: anchors and bodies hold what is moved.
+  Points points(bool with_limits);
   LawStep law_step() const;
   reference::Flight flight();
   bool is_free(std::size_t slot) const { return model_.inverse_mass[slot] > 0; }
@@ -94,6 +102,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   void draw_seams();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
   void hold_anchors();
+  void hold_bodies();
   void end_motions();
   void stop_at_contact(std::size_t slot);
   void begin_at_limit(std::size_t slot);
@@ -106,6 +115,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   const bool has_attached_;  // which are where they belong before constraints are swept
   std::vector<BendingPace> paces_;
   AnchorClock anchors_;
+  ReferenceBodies bodies_;
   Past past_;
   reference::ChainSystem system_;
 
@@ -117,6 +127,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_;
   std::vector<std::uint32_t> out_;  // items (local_passes.h) that a sweep found out of tolerance
   std::vector<std::uint32_t> touched_, arrived_;
+  const std::vector<double> shortest_;            // m, per slot: of its constraints
   std::vector<bool> at_limit_, at_limit_before_;  // per anchor, in this substep and in the last
   std::vector<double> multiplier_;                // per constraint; with springs only
   std::vector<reference::MembraneMultipliers> membrane_multiplier_;  // per triangle of fabric

@@ -24,84 +24,7 @@ float squared_tolerance(const Settings& settings) {
 
 }  // namespace
 
-/// Positions for local passes: differences of base and of u, which are nearly exact.
-struct SmallStepsSolver::Points {
-  const YarnPlaces& places;
-  const float* base;
-  float* u;
-  float* predicted;
-  const float* u_start;
-  std::vector<std::uint32_t>& touched;
-  const std::vector<std::uint32_t>& multiplier_place;
-  float* multipliers;
-  float* v;
-  double rate;                     // by which it settles
-  const std::uint32_t* anchor_at;  // per slot, or null: anchors are left
-  const AnchorClock& anchors;
-  SimdMembrane& membrane;
-
-  double axis(const float* from, std::size_t a, std::size_t b) const {
-    return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
-           (static_cast<double>(from[a]) - static_cast<double>(from[b]));
-  }
-  kernels::Vector between(const float* from, std::uint32_t slot_a, std::uint32_t slot_b) const {
-    const std::size_t a = places.of(slot_a), b = places.of(slot_b), next = places.stride;
-    return {axis(from, a, b), axis(from, a + next, b + next),
-            axis(from, a + 2 * next, b + 2 * next)};
-  }
-  kernels::Vector difference(std::uint32_t slot_a, std::uint32_t slot_b) const {
-    return between(u, slot_a, slot_b);
-  }
-  kernels::Vector start_difference(std::uint32_t slot_a, std::uint32_t slot_b) const {
-    return between(u_start, slot_a, slot_b);
-  }
-  double multiplier(std::uint32_t c) const {
-    return static_cast<double>(multipliers[multiplier_place[c]]);
-  }
-  void set_multiplier(std::uint32_t c, double to) const {
-    multipliers[multiplier_place[c]] = static_cast<float>(to);
-  }
-  reference::MembraneMultipliers membrane_multipliers(std::uint32_t element) const {
-    return membrane.multipliers(element);
-  }
-  void set_membrane_multipliers(std::uint32_t element,
-                                const reference::MembraneMultipliers& to) const {
-    membrane.set_multipliers(element, to);
-  }
-  void move(std::uint32_t slot, kernels::Vector by) const {
-    std::size_t at = places.of(slot);
-    for (const double change : {by.x, by.y, by.z}) {
-      u[at] += static_cast<float>(change);
-      at += places.stride;
-    }
-    if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
-  }
-  void hold(std::uint32_t slot, std::uint32_t anchor) const {
-    const std::size_t x = places.of(slot), y = x + places.stride, z = y + places.stride;
-    const auto place = [&](std::size_t at) {
-      return static_cast<double>(base[at]) + static_cast<double>(u[at]);
-    };
-    const auto settled = [&](std::size_t at) {
-      return static_cast<double>(v[at]) + rate * static_cast<double>(u[at] - predicted[at]);
-    };
-    const reference::Held held =
-        anchors.hold(anchor, {place(x), place(y), place(z)}, {settled(x), settled(y), settled(z)});
-    if (!held.is_at_limit) return;
-    const auto put = [&](std::size_t at, double position, double velocity) {
-      u[at] = predicted[at] = static_cast<float>(position - static_cast<double>(base[at]));
-      v[at] = static_cast<float>(velocity);
-    };
-    put(x, held.x.x, held.v.x);
-    put(y, held.x.y, held.v.y);
-    put(z, held.x.z, held.v.z);
-  }
-  void push(std::uint32_t slot, kernels::Vector by) const {
-    move(slot, by);
-    touched.push_back(slot);
-  }
-};
-
-SmallStepsSolver::Points SmallStepsSolver::points(bool with_anchors) {
+LanePoints SmallStepsSolver::points(bool with_limits) {
   return {.places = layout_.places(),
           .base = base_.data(),
           .u = u_.data(),
@@ -112,9 +35,11 @@ SmallStepsSolver::Points SmallStepsSolver::points(bool with_anchors) {
           .multipliers = multiplier_.data(),
           .v = v_.data(),
           .rate = static_cast<double>(weights_.last.rate),
-          .anchor_at = with_anchors && !anchors_.empty() ? model_.anchors.at.data() : nullptr,
+          .anchor_at = with_limits && !anchors_.empty() ? model_.anchors.at.data() : nullptr,
           .anchors = anchors_.clock(),
-          .membrane = membrane_};
+          .membrane = membrane_,
+          .bodies = with_limits && !bodies_.empty() ? &bodies_ : nullptr,
+          .arrived = arrived_};
 }
 
 LawStep SmallStepsSolver::law_step() const {
@@ -123,7 +48,7 @@ LawStep SmallStepsSolver::law_step() const {
 }
 
 double SmallStepsSolver::law_error() {
-  Points points = this->points(false);
+  LanePoints points = this->points(false);
   double most = largest_violation(model_.membrane, points, law_step());
   if (model_.constraints.has_springs())
     most = std::max(most, largest_violation(model_.constraints, points, law_step()));
@@ -142,6 +67,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       membrane_(model, table),
       bending_(model, table),
       anchors_(model, settings, table),
+      bodies_(model, settings, table),
       spans_(layout_.blocks.size()),
       base_step_(layout_.yarns.rows()),
       edges_out_(layout_.blocks.size()),
@@ -286,6 +212,8 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   anchors_.begin(plan.anchors, plan.h, plan.substeps,
                  has_past_ ? past_.at_limit : std::span<const std::uint16_t>{});
   anchors_.measure_base(base_.data());
+  bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects,
+                has_past_ && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{});
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());
   });
@@ -338,6 +266,7 @@ void SmallStepsSolver::advance(Team& team) {
                    static_cast<float>(formula_.slope)};
   bending_.bend(u_.data(), v_before_.data(), formula_.give(h_), team);
   anchors_.advance();
+  bodies_.advance(flight(), base_.data(), formula_.part);
   if (has_attached_) hold_anchors(team);
 }
 
@@ -390,6 +319,7 @@ void SmallStepsSolver::sweep(bool mends, Team& team) {
   sweep_membrane(team);
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors(team);
   draw_seams();
+  hold_bodies(team);
   is_begun_ = true;
 }
 
@@ -423,6 +353,9 @@ void SmallStepsSolver::take_past_along(Team& team) {
   for (const std::uint32_t slot : model_.anchors.slot) {
     if (is_held(slot)) leave(slot);
   }
+  bodies_.for_each_touching([&](std::uint32_t slot) {
+    if (is_held(slot)) leave(slot);
+  });
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const float by = u_[i] - aside_[i];
@@ -447,7 +380,7 @@ void SmallStepsSolver::judge_springs(Team& team) {
                         table_.judge_spring_yarns(yarns(), block, u_.data(), scratch,
                                                   relaxation_of_spring_yarns());
                       });
-  const Points points = this->points(false);
+  const LanePoints points = this->points(false);
   const double tolerance = tuning::kLocalShare * settings_.tolerance;
   for (const std::uint32_t c : layout_.serial) {
     if (breaks_law(model_.constraints, points, law_step(), tolerance, c)) passes_.look_near(c);
@@ -459,6 +392,27 @@ void SmallStepsSolver::hold_anchors(Team& team) {
   anchors_.hold(flight(), weights_.last.rate, team);
   anchors_.report([&](std::uint32_t slot) { arrived_.push_back(slot); },
                   [&](std::uint32_t slot) { passes_.look_at(slot); });
+}
+
+/// Contacts come last.
+void SmallStepsSolver::hold_bodies(Team& team) {
+  if (bodies_.empty()) return;
+  bodies_.hold(flight(), base_.data(), weights_.last.rate, team);
+  const LanePoints points = this->points(true);
+  bodies_.report([&](std::uint32_t slot) { arrived_.push_back(slot); },
+                 [&](std::uint32_t slot) { passes_.look_at(slot); },
+                 [&](std::uint32_t slot) { points.grip(slot); });
+}
+
+void SmallStepsSolver::report_bodies(BodyReport& report) const { bodies_.sum(report); }
+
+double SmallStepsSolver::deepest_in_body() { return bodies_.deepest(flight(), base_.data()); }
+
+void SmallStepsSolver::read_contacts(std::vector<BodyTouch>& contacts) const {
+  bodies_.for_each_contact(
+      [&](std::uint32_t slot, const reference::BodyMotion& body, std::uint32_t id, double push) {
+        contacts.push_back({.slot = slot, .body = id, .push = push, .motion = body});
+      });
 }
 
 simd::YarnRelaxation SmallStepsSolver::relaxation_of_yarns() {
@@ -566,7 +520,7 @@ void SmallStepsSolver::sweep_edges(Team& team) {
 
 void SmallStepsSolver::sweep_serial() {
   const ConstraintStore& s = model_.constraints;
-  Points points = this->points(false);
+  LanePoints points = this->points(false);
   const double omega = mends_ ? 1 : omega_, left = static_cast<double>(left_by_sweep());
   for (const std::uint32_t c : layout_.serial) {
     const kernels::Vector d = points.difference(s.a[c], s.b[c]);
@@ -582,7 +536,7 @@ void SmallStepsSolver::sweep_serial() {
 }
 
 void SmallStepsSolver::sweep_serial_springs() {
-  Points points = this->points(false);
+  LanePoints points = this->points(false);
   for (const std::uint32_t c : layout_.serial) {
     sweep_law(model_, points, law_step(), !is_begun_, omega_, c);
   }
@@ -627,7 +581,7 @@ void SmallStepsSolver::look_near_what_was_out() {
 
 void SmallStepsSolver::draw_seams() {
   if (seams_.empty()) return;
-  Points points = this->points(false);
+  LanePoints points = this->points(false);
   seams_.draw(points, 1 / law_step().springs.scale, !is_begun_);
 }
 
@@ -642,7 +596,7 @@ void SmallStepsSolver::end_seams() {
 
 LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
   if (model_.has_laws()) set_aside();
-  Points points = this->points(true);
+  LanePoints points = this->points(true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
                            .contact_tolerance = tuning::kLocalShare * settings_.contact_tolerance,
                            .mended = tuning::kMended * settings_.tolerance,
@@ -767,6 +721,7 @@ void SmallStepsSolver::keep(Team& team) {
   past_.h = h_;
   past_.since_renewal = since_renewal_;
   past_.at_limit = anchors_.at_limit();
+  past_.touching = bodies_.touching();
   is_new_ = false;
   const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -778,7 +733,8 @@ std::size_t SmallStepsSolver::bytes() const {
   return 11 * bytes_of(u_) + bytes_of(largest_) + bytes_of(spans_) + bytes_of(base_step_) +
          bytes_of(scratch_) + bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) +
          bytes_of(arrived_) + bytes_of(multiplier_) + bytes_of(aside_) + passes_.bytes() +
-         seams_.bytes() + membrane_.bytes() + bending_.bytes() + anchors_.bytes();
+         seams_.bytes() + membrane_.bytes() + bending_.bytes() + anchors_.bytes() +
+         bodies_.bytes() + bytes_of(past_.touching);
 }
 
 }  // namespace weft

@@ -14,9 +14,11 @@
 #include "engine/contacts/contacts.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/lane_points.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/simd_anchors.h"
 #include "engine/solvers/small_steps/simd_bending.h"
+#include "engine/solvers/small_steps/simd_bodies.h"
 #include "engine/solvers/small_steps/simd_membrane.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
@@ -31,6 +33,7 @@ struct SmallStepsPast {
   kernels::AlignedVector<float> v, v_before, moved;
   kernels::AlignedVector<float> base;  // of a frame that is kept
   SimdAnchors::AtLimit at_limit;
+  SimdBodies::Touching touching;
 };
 
 class SmallStepsSolver final : public SmallSteps {
@@ -56,6 +59,9 @@ class SmallStepsSolver final : public SmallSteps {
   double law_error() override;
   void end_seams() override;
   const SeamThreads& seams() const override { return seams_; }
+  void report_bodies(BodyReport& report) const override;
+  double deepest_in_body() override;
+  void read_contacts(std::vector<BodyTouch>& contacts) const override;
   /// Where the particles are; x: where they were when the frame began.
   void read_positions(kernels::VectorsView x, Team& team) const override;
   void read_positions_of(std::span<const std::uint32_t> slots,
@@ -78,8 +84,8 @@ class SmallStepsSolver final : public SmallSteps {
   std::size_t bytes() const override;
 
  private:
-  struct Points;
-  Points points(bool with_anchors);
+  /// with_limits: anchors and bodies hold what is moved.
+  LanePoints points(bool with_limits);
   LawStep law_step() const;
   simd::Flight flight();
   simd::Yarns yarns();
@@ -119,6 +125,7 @@ class SmallStepsSolver final : public SmallSteps {
   void draw_seams();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
   void hold_anchors(Team& team);
+  void hold_bodies(Team& team);
   void end_motions();
   void stop_at_contact(std::uint32_t slot);
   void begin_at_limit(std::uint32_t slot);
@@ -138,6 +145,7 @@ class SmallStepsSolver final : public SmallSteps {
   SimdMembrane membrane_;
   SimdBending bending_;
   SimdAnchors anchors_;
+  SimdBodies bodies_;
   SmallStepsPast past_;
 
   bool has_past_ = false;  // past_ is that of the present frame

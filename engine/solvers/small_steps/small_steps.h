@@ -13,6 +13,7 @@
 #include "engine/contacts/contacts.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
+#include "engine/solvers/small_steps/body_report.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/seams.h"
 #include "engine/turn.h"
@@ -95,6 +96,8 @@ struct FramePlan {
   double softest = 0;     // m/N; where it projects: springs that are softer are left as they are
   AnchorTravel anchors{};
   std::span<const SeamState> seams{};
+  std::span<const TravellingBody> bodies{};
+  bool bodies_move = false;  // in this step, or in the last, or there are other ones
 };
 
 class SmallSteps {
@@ -124,6 +127,11 @@ class SmallSteps {
   virtual void end_seams() = 0;
   /// What they have become in the frame, and have done (J).
   virtual const SeamThreads& seams() const = 0;
+  /// What contacts with bodies have done in the frame.
+  virtual void report_bodies(BodyReport& report) const = 0;
+  /// m, by which a particle is under the surface of a body.
+  virtual double deepest_in_body() = 0;
+  virtual void read_contacts(std::vector<BodyTouch>& contacts) const = 0;
   /// After the last: local passes that look at all constraints.
   virtual LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) = 0;
   /// What is left of the laws of all constraints, the largest, over rest_length, with springs only;

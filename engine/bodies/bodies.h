@@ -1,0 +1,66 @@
+/// The bodies of a cloth: where they are, where they travel to, and what the cloth does to them.
+#pragma once
+
+#include <weft/body.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/bodies/body_shape.h"
+#include "engine/bodies/pose.h"
+
+namespace weft {
+
+/// A body that is there in a step.
+struct TravellingBody {
+  std::uint32_t id = 0;
+  const BodyShape* shape = nullptr;
+  PoseTravel travel;
+  double thickness = 0;
+  double friction = 0;  // with the cloth
+};
+
+/// The momentum that a body gave to the cloth, and its moment about the body's centre.
+struct BodyImpulse {
+  std::uint32_t id = 0;
+  kernels::Vector linear{}, angular{};
+  kernels::Vector centre{};  // where the step ends
+};
+
+class Bodies {
+ public:
+  /// Returns its id.
+  std::uint32_t add(const Body& body);
+  bool has(std::uint32_t id) const { return id < bodies_.size() && bodies_[id].shape != nullptr; }
+  void remove(std::uint32_t id);
+  /// Whether this changes something, as do those below.
+  bool move(std::uint32_t id, const Pose& pose);
+  bool place(std::uint32_t id, const Pose& pose);
+  bool switch_on(std::uint32_t id, bool on);
+
+  /// Those that are there; valid until one is changed.
+  std::span<const TravellingBody> travelling(double friction_of_cloth);
+  bool any() const;
+  /// Whether one of them is under way, or was in the last step, or there are other ones.
+  bool moving() const;
+  /// A step of dt was done.
+  void arrive(std::span<const BodyImpulse> impulses, double dt);
+  BodyLoad load(std::uint32_t id) const { return bodies_[id].load; }
+  std::size_t bytes() const;
+
+ private:
+  struct Entry {
+    std::shared_ptr<const BodyShape> shape;  // null: removed
+    Pose from{}, to{};
+    double thickness = 0, friction = 0;
+    bool is_on = true, moves = false, moved = false;
+    BodyLoad load{};
+  };
+  std::vector<Entry> bodies_;  // by id
+  bool are_others_ = false;    // than in the last step
+  std::vector<TravellingBody> travelling_;
+};
+
+}  // namespace weft

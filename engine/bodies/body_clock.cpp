@@ -1,0 +1,63 @@
+#include "engine/bodies/body_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace weft {
+
+using kernels::Vector;
+
+void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands) {
+  bodies_ = bodies;
+  h_ = h;
+  substeps_ = substeps;
+  done_ = 0;
+  stands_ = stands;
+  motions_.resize(bodies.size());
+  const double per_second = stands ? 0 : 1 / (h * substeps);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const TravellingBody& body = bodies[i];
+    motions_[i] = {.solid = body.shape->solid(),
+                   .to = body.travel.at(0),
+                   .velocity = per_second * body.travel.way(),
+                   .spin = per_second * body.travel.turn(),
+                   .thickness = body.thickness,
+                   .friction = stands ? 0 : body.friction,
+                   .h = h};
+  }
+}
+
+void BodyClock::advance() {
+  ++done_;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    motions_[i].from = motions_[i].to;
+    motions_[i].to = bodies_[i].travel.at(share(done_));
+  }
+}
+
+/// A corner that turns by an angle stays within length * angle^2 / 8 of the line between its ends.
+BodyClock::Box BodyClock::box(std::size_t body, int substeps) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const TravellingBody& b = bodies_[body];
+  const BodyShape& shape = *b.shape;
+  if (!shape.is_bounded())
+    return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+  const double to = share(std::min(substeps_, done_ + substeps));
+  const double angle = length(b.travel.turn()) * (to - share(done_));
+  const reference::Placement ends[] = {b.travel.at(share(done_)), b.travel.at(to)};
+  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const Vector corner : shape.corners()) {
+    const double wide = shape.radius() + b.thickness + length(corner) * angle * angle / 8;
+    for (const reference::Placement& end : ends) {
+      const Vector at = end.placed(corner);
+      box.low = {std::min(box.low.x, at.x - wide), std::min(box.low.y, at.y - wide),
+                 std::min(box.low.z, at.z - wide)};
+      box.high = {std::max(box.high.x, at.x + wide), std::max(box.high.y, at.y + wide),
+                  std::max(box.high.z, at.z + wide)};
+    }
+  }
+  return box;
+}
+
+}  // namespace weft

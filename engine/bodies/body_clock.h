@@ -1,0 +1,42 @@
+/// Where bodies are in each substep of a step.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/bodies/bodies.h"
+#include "kernels/reference/bodies.h"
+
+namespace weft {
+
+class BodyClock {
+ public:
+  /// stands: bodies stay where they begin, and have no friction.
+  void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands);
+  /// To the next substep.
+  void advance();
+
+  std::span<const TravellingBody> bodies() const { return bodies_; }
+  /// In the present substep, in the order of the bodies.
+  std::span<const reference::BodyMotion> motions() const { return motions_; }
+  /// Of a body, from now to the end of some substeps.
+  struct Box {
+    kernels::Vector low{}, high{};
+  };
+  Box box(std::size_t body, int substeps) const;
+  int substeps_left() const { return substeps_ - done_; }
+  std::size_t bytes() const { return motions_.capacity() * sizeof(motions_[0]); }
+
+ private:
+  double share(int substeps) const {
+    return stands_ ? 0 : static_cast<double>(substeps) / substeps_;
+  }
+
+  std::span<const TravellingBody> bodies_;
+  std::vector<reference::BodyMotion> motions_;
+  double h_ = 0;
+  int substeps_ = 1, done_ = 0;
+  bool stands_ = false;
+};
+
+}  // namespace weft

@@ -1,0 +1,113 @@
+#include "engine/bodies/body_shape.h"
+
+#include <cmath>
+#include <string>
+
+#include "engine/bodies/convex_hull.h"
+#include "engine/model/validation.h"
+
+namespace weft {
+namespace {
+
+using kernels::Vector;
+using Shared = Result<std::shared_ptr<const BodyShape>>;
+
+Vector to_vector(Vec3 v) { return {v.x, v.y, v.z}; }
+
+Result<void> validate_finite(std::string_view field, Vec3 v) {
+  if (finite(v)) return {};
+  return refuse(field, "must be finite", text(v));
+}
+
+Shared build(const Plane& plane) {
+  if (auto r = validate_finite("normal", plane.normal); !r) return Error{r.error()};
+  const Vector normal = to_vector(plane.normal);
+  const double l = length(normal);
+  if (!(l > 0) || !std::isfinite(l))
+    return refuse("normal", "has no direction", text(plane.normal));
+  if (!std::isfinite(plane.offset)) return refuse("offset", "must be finite", number(plane.offset));
+  return std::make_shared<const BodyShape>(
+      std::vector{reference::Face{(1 / l) * normal, plane.offset / l}}, std::vector<Vector>{});
+}
+
+Shared build(const Capsule& capsule) {
+  for (const auto& [field, at] : {std::pair{"a", capsule.a}, std::pair{"b", capsule.b}}) {
+    if (auto r = validate_finite(field, at); !r) return Error{r.error()};
+  }
+  for (const auto& [field, radius] :
+       {std::pair{"radius_a", capsule.radius_a}, std::pair{"radius_b", capsule.radius_b}}) {
+    if (auto r = validate_positive(field, radius); !r) return Error{r.error()};
+  }
+  reference::Solid solid{.a = to_vector(capsule.a), .radius = capsule.radius_a};
+  const Vector along = to_vector(capsule.b) - solid.a;
+  const double l = length(along), fall = capsule.radius_a - capsule.radius_b;
+  if (l > std::abs(fall)) {
+    solid.axis = (1 / l) * along;
+    solid.length = l;
+    solid.taper = fall / l;
+  } else if (fall < 0) {  // the ball at b holds that at a
+    solid.a = to_vector(capsule.b);
+    solid.radius = capsule.radius_b;
+  }
+  return std::make_shared<const BodyShape>(solid);
+}
+
+Shared build(const Ball& ball) {
+  if (auto r = validate_finite("centre", ball.centre); !r) return Error{r.error()};
+  if (auto r = validate_positive("radius", ball.radius); !r) return Error{r.error()};
+  return std::make_shared<const BodyShape>(
+      reference::Solid{.a = to_vector(ball.centre), .radius = ball.radius});
+}
+
+/// Triangles in one plane have one face.
+std::vector<reference::Face> faces_of(const std::vector<Vector>& points) {
+  constexpr double kSame = 1e-9;  // of normals, as unit vectors
+  std::vector<reference::Face> faces;
+  for (const auto& [a, b, c] : convex_hull(points)) {
+    const Vector across = cross(points[b] - points[a], points[c] - points[a]);
+    const Vector normal = kernels::direction(across, length(across));
+    const auto is_same = [&](const reference::Face& face) {
+      return length(face.normal - normal) < kSame;
+    };
+    if (std::ranges::none_of(faces, is_same)) faces.push_back({normal, dot(normal, points[a])});
+  }
+  return faces;
+}
+
+Shared build(const Hull& hull) {
+  std::vector<Vector> points;
+  for (std::size_t i = 0; i < hull.points.size(); ++i) {
+    if (auto r = validate_finite(element("points", i), hull.points[i]); !r) return Error{r.error()};
+    points.push_back(to_vector(hull.points[i]));
+  }
+  std::vector<reference::Face> faces = faces_of(points);
+  if (faces.empty()) {
+    return refuse("points", "must be four or more that are not in a plane",
+                  std::to_string(points.size()));
+  }
+  return std::make_shared<const BodyShape>(std::move(faces), std::move(points));
+}
+
+}  // namespace
+
+BodyShape::BodyShape(const reference::Solid& capsule)
+    : corners_{capsule.a, capsule.a + capsule.length * capsule.axis},
+      radius_(std::max(capsule.radius, capsule.radius - capsule.taper * capsule.length)),
+      solid_(capsule) {}
+
+Result<std::shared_ptr<const BodyShape>> build_shape(const ShapeDescription& shape) {
+  return std::visit([](const auto& one) { return build(one); }, shape);
+}
+
+Hull box(Vec3 size) {
+  Hull hull;
+  for (const double x : {-0.5, 0.5}) {
+    for (const double y : {-0.5, 0.5}) {
+      for (const double z : {-0.5, 0.5})
+        hull.points.push_back({x * size.x, y * size.y, z * size.z});
+    }
+  }
+  return hull;
+}
+
+}  // namespace weft

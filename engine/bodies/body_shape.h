@@ -1,0 +1,37 @@
+/// Shapes of bodies, prepared for contacts.
+#pragma once
+
+#include <weft/body.h>
+
+#include <vector>
+
+#include "kernels/reference/bodies.h"
+
+namespace weft {
+
+/// In coordinates of the body. Of a plane, or the inside of several; or a capsule.
+class BodyShape {
+ public:
+  BodyShape(std::vector<reference::Face> faces, std::vector<kernels::Vector> corners)
+      : faces_(std::move(faces)), corners_(std::move(corners)) {
+    solid_.faces = faces_;
+  }
+  explicit BodyShape(const reference::Solid& capsule);
+  BodyShape(const BodyShape&) = delete;
+  BodyShape& operator=(const BodyShape&) = delete;
+
+  const reference::Solid& solid() const { return solid_; }
+  /// A plane reaches to infinity.
+  bool is_bounded() const { return !corners_.empty(); }
+  /// Balls of radius() around these hold all of it.
+  const std::vector<kernels::Vector>& corners() const { return corners_; }
+  double radius() const { return radius_; }
+
+ private:
+  std::vector<reference::Face> faces_;
+  std::vector<kernels::Vector> corners_;
+  double radius_ = 0;
+  reference::Solid solid_;
+};
+
+}  // namespace weft

@@ -1,0 +1,32 @@
+/// How a pose becomes another one in the time of a step.
+#pragma once
+
+#include <weft/body.h>
+
+#include "kernels/reference/bodies.h"
+
+namespace weft {
+
+/// From one pose to another, in a straight line, and by turning about one axis by less than half a
+/// turn.
+class PoseTravel {
+ public:
+  PoseTravel() = default;
+  /// Rotations are unit quaternions.
+  PoseTravel(const Pose& from, const Pose& to);
+
+  /// At a share of the way.
+  reference::Placement at(double share) const;
+  kernels::Vector way() const { return way_; }             // m
+  kernels::Vector turn() const { return angle_ * axis_; }  // rad
+
+ private:
+  Rotation begins_{};
+  kernels::Vector start_{}, way_{}, axis_{};
+  double angle_ = 0;
+};
+
+/// Of the length 1.
+Rotation normalized(const Rotation& rotation);
+
+}  // namespace weft

@@ -1,0 +1,30 @@
+/// What contacts with bodies did in a frame.
+#pragma once
+
+#include <vector>
+
+#include "engine/bodies/bodies.h"
+
+namespace weft {
+
+/// A particle that touches a body where the last substep ended.
+struct BodyTouch {
+  std::uint32_t slot = 0, body = 0;  // the body's id
+  double push = 0;                   // m, along the normal, in that substep
+  reference::BodyMotion motion{};
+};
+
+struct BodyReport {
+  std::vector<BodyImpulse> impulses;  // per body, of what it gave to the cloth
+  double work = 0;                    // J, that bodies did on the cloth
+  double friction = 0;                // J, that friction took
+  int contacts = 0;                   // when the last substep ended
+
+  void clear() {
+    impulses.clear();
+    work = friction = 0;
+    contacts = 0;
+  }
+};
+
+}  // namespace weft

@@ -1,0 +1,114 @@
+/// Particles of small steps in lanes, one by one: what local passes move.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "engine/model/model.h"
+#include "engine/solvers/small_steps/anchor_travel.h"
+#include "engine/solvers/small_steps/simd_bodies.h"
+#include "engine/solvers/small_steps/simd_membrane.h"
+#include "engine/solvers/yarn/yarn_places.h"
+#include "kernels/vectors.h"
+
+namespace weft {
+
+/// Positions for local passes: differences of base and of u, which are nearly exact.
+struct LanePoints {
+  const YarnPlaces& places;
+  const float* base;
+  float* u;
+  float* predicted;
+  const float* u_start;
+  std::vector<std::uint32_t>& touched;
+  const std::vector<std::uint32_t>& multiplier_place;
+  float* multipliers;
+  float* v;
+  double rate;                     // by which it settles
+  const std::uint32_t* anchor_at;  // per slot, or null: anchors are left
+  const AnchorClock& anchors;
+  SimdMembrane& membrane;
+  SimdBodies* bodies;  // or null: they are left
+  std::vector<std::uint32_t>& arrived;
+
+  double axis(const float* from, std::size_t a, std::size_t b) const {
+    return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
+           (static_cast<double>(from[a]) - static_cast<double>(from[b]));
+  }
+  kernels::Vector between(const float* from, std::uint32_t slot_a, std::uint32_t slot_b) const {
+    const std::size_t a = places.of(slot_a), b = places.of(slot_b), next = places.stride;
+    return {axis(from, a, b), axis(from, a + next, b + next),
+            axis(from, a + 2 * next, b + 2 * next)};
+  }
+  kernels::Vector difference(std::uint32_t slot_a, std::uint32_t slot_b) const {
+    return between(u, slot_a, slot_b);
+  }
+  kernels::Vector start_difference(std::uint32_t slot_a, std::uint32_t slot_b) const {
+    return between(u_start, slot_a, slot_b);
+  }
+  double multiplier(std::uint32_t c) const {
+    return static_cast<double>(multipliers[multiplier_place[c]]);
+  }
+  void set_multiplier(std::uint32_t c, double to) const {
+    multipliers[multiplier_place[c]] = static_cast<float>(to);
+  }
+  reference::MembraneMultipliers membrane_multipliers(std::uint32_t element) const {
+    return membrane.multipliers(element);
+  }
+  void set_membrane_multipliers(std::uint32_t element,
+                                const reference::MembraneMultipliers& to) const {
+    membrane.set_multipliers(element, to);
+  }
+  void move(std::uint32_t slot, kernels::Vector by) const {
+    std::size_t at = places.of(slot);
+    for (const double change : {by.x, by.y, by.z}) {
+      u[at] += static_cast<float>(change);
+      at += places.stride;
+    }
+    if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
+    if (bodies != nullptr) grip(slot);
+  }
+  /// At the end of the substep, and its velocity there.
+  kernels::Vector place(const float* from, std::uint32_t slot) const {
+    const std::size_t x = places.of(slot), y = x + places.stride, z = y + places.stride;
+    const auto sum = [&](std::size_t at) {
+      return static_cast<double>(base[at]) + static_cast<double>(from[at]);
+    };
+    return {sum(x), sum(y), sum(z)};
+  }
+  kernels::Vector settled(std::uint32_t slot) const {
+    const std::size_t x = places.of(slot), y = x + places.stride, z = y + places.stride;
+    const auto velocity = [&](std::size_t at) {
+      return static_cast<double>(v[at]) + rate * static_cast<double>(u[at] - predicted[at]);
+    };
+    return {velocity(x), velocity(y), velocity(z)};
+  }
+  /// What has stopped it is no motion: it is predicted to be there.
+  void put(std::uint32_t slot, kernels::Vector position, kernels::Vector velocity) const {
+    std::size_t at = places.of(slot);
+    for (const auto& [to, speed] :
+         {std::pair{position.x, velocity.x}, std::pair{position.y, velocity.y},
+          std::pair{position.z, velocity.z}}) {
+      u[at] = predicted[at] = static_cast<float>(to - static_cast<double>(base[at]));
+      v[at] = static_cast<float>(speed);
+      at += places.stride;
+    }
+  }
+  void hold(std::uint32_t slot, std::uint32_t anchor) const {
+    const reference::Held held = anchors.hold(anchor, place(u, slot), settled(slot));
+    if (held.is_at_limit) put(slot, held.x, held.v);
+  }
+  void grip(std::uint32_t slot) const {
+    SimdBodies::Particle particle{place(u_start, slot), place(u, slot), settled(slot)};
+    if (!bodies->hold(slot, particle)) return;
+    put(slot, particle.x, particle.v);
+    if (bodies->begins_to_touch(slot)) arrived.push_back(slot);
+  }
+  void push(std::uint32_t slot, kernels::Vector by) const {
+    move(slot, by);
+    touched.push_back(slot);
+  }
+};
+
+}  // namespace weft

@@ -1,0 +1,92 @@
+#include "engine/solvers/small_steps/reference_bodies.h"
+
+#include <algorithm>
+
+namespace weft {
+
+using kernels::Vector;
+
+void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps,
+                            bool stands, const Touching& before) {
+  clock_.begin(bodies, h, substeps, stands);
+  if (bodies.empty()) return;
+  on_.assign(model_.slots(), false);
+  if (before.size() == on_.size()) on_ = before;
+  impulses_.clear();
+  for (const TravellingBody& body : bodies) impulses_.push_back({.id = body.id});
+  friction_ = 0;
+}
+
+void ReferenceBodies::advance(double part) {
+  if (empty()) return;
+  clock_.advance();
+  stays_ = 1 / part;
+  grips_.assign(model_.slots() * clock_.bodies().size(), {});
+  before_.swap(on_);
+  on_.assign(model_.slots(), false);
+}
+
+bool ReferenceBodies::hold(std::uint32_t slot, Vector start, Vector& x, Vector& v) {
+  bool is_touching = false;
+  for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
+    const reference::BodyMotion& body = clock_.motions()[i];
+    reference::Grip& grip = grips_[slot * clock_.bodies().size() + i];
+    const reference::Gripped gripped = reference::grip(body, start, x, v, radius(slot), grip);
+    if (!gripped.is_touching) continue;
+    const double momentum = model_.mass[slot] * (before_[slot] ? stays_ : 1);
+    const Vector impulse = momentum * (gripped.v - v);
+    impulses_[i].linear = impulses_[i].linear + impulse;
+    impulses_[i].angular = impulses_[i].angular + cross(gripped.x - body.to.centre, impulse);
+    friction_ += 0.5 * momentum * gripped.friction;
+    x = gripped.x;
+    v = gripped.v;
+    is_touching = true;
+  }
+  return is_touching;
+}
+
+bool ReferenceBodies::begins_to_touch(std::uint32_t slot) {
+  const bool begins = !on_[slot] && !before_[slot];
+  on_[slot] = true;
+  return begins;
+}
+
+double ReferenceBodies::deepest(const kernels::Vectors& start, const kernels::Vectors& x) const {
+  double deepest = 0;
+  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
+    if (model_.inverse_mass[slot] == 0) continue;
+    for (const reference::BodyMotion& body : clock_.motions()) {
+      const reference::Touch touch = find_touch(body, start[slot], x[slot], radius(slot));
+      if (touch.is_near) deepest = std::max(deepest, -touch.gap);
+    }
+  }
+  return deepest;
+}
+
+void ReferenceBodies::sum(BodyReport& report) const {
+  report.clear();
+  if (empty()) return;
+  report.impulses = impulses_;
+  report.friction = friction_;
+  for (std::size_t i = 0; i < impulses_.size(); ++i) {
+    const reference::BodyMotion& motion = clock_.motions()[i];
+    report.impulses[i].centre = motion.to.centre;
+    report.work +=
+        dot(impulses_[i].linear, motion.velocity) + dot(impulses_[i].angular, motion.spin);
+  }
+  report.contacts = static_cast<int>(
+      std::ranges::count_if(grips_, [](const reference::Grip& grip) { return grip.pushed > 0; }));
+}
+
+void ReferenceBodies::read_contacts(std::vector<BodyTouch>& contacts) const {
+  const std::size_t count = clock_.bodies().size();
+  for (std::size_t i = 0; i < grips_.size(); ++i) {
+    if (!(grips_[i].pushed > 0)) continue;
+    contacts.push_back({.slot = static_cast<std::uint32_t>(i / count),
+                        .body = clock_.bodies()[i % count].id,
+                        .push = grips_[i].pushed,
+                        .motion = clock_.motions()[i % count]});
+  }
+}
+
+}  // namespace weft

@@ -1,0 +1,349 @@
+#include "engine/solvers/small_steps/simd_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/bytes_of.h"
+#include "engine/tuning.h"
+
+namespace weft {
+namespace {
+
+using kernels::kLanes;
+using kernels::Vector;
+using reference::BodyMotion;
+
+void set(float (&to)[3], Vector v) {
+  to[0] = static_cast<float>(v.x);
+  to[1] = static_cast<float>(v.y);
+  to[2] = static_cast<float>(v.z);
+}
+
+void set_face(float (&to)[4], const reference::Placement& at, const reference::Face& face,
+              double thickness, Vector origin) {
+  const Vector n = at.turned(face.normal);
+  to[0] = static_cast<float>(n.x);
+  to[1] = static_cast<float>(n.y);
+  to[2] = static_cast<float>(n.z);
+  to[3] = static_cast<float>(face.offset + thickness + dot(n, at.centre - origin));
+}
+
+/// The columns of the rotation from one placement to another, less 1.
+void set_turn(float (&to)[9], const BodyMotion& body) {
+  const Vector unit[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector column = body.to.turned(body.from.turned_back(unit[k])) - unit[k];
+    to[3 * k] = static_cast<float>(column.x);
+    to[3 * k + 1] = static_cast<float>(column.y);
+    to[3 * k + 2] = static_cast<float>(column.z);
+  }
+}
+
+}  // namespace
+
+/// Where the particles of a block are, and where they are going in an interval.
+struct SimdBodies::Extent {
+  Vector low{}, high{};
+  double reach = 0;  // m, beyond
+
+  Vector middle() const { return 0.5 * (low + high); }
+  double radius() const { return 0.5 * length(high - low) + reach; }
+  bool meets(const BodyClock::Box& box) const {
+    return low.x - reach <= box.high.x && high.x + reach >= box.low.x &&
+           low.y - reach <= box.high.y && high.y + reach >= box.low.y &&
+           low.z - reach <= box.high.z && high.z + reach >= box.low.z;
+  }
+};
+
+void SimdBodies::make_room() {
+  if (!layout_.blocks.empty()) return;
+  layout_ = make_body_layout(model_, model_.small_steps().places(), far_);
+  const std::size_t count = layout_.blocks.size();
+  for (Touching* bits : {&on_, &before_, &held_, &arrived_}) bits->assign(count, 0);
+  weight_.assign(count * kLanes, 1);
+}
+
+void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
+                       std::span<const std::uint16_t> before) {
+  clock_.begin(bodies, h, substeps, stands);
+  pairs_.clear();
+  first_pair_.clear();
+  if (bodies.empty()) return;
+  make_room();
+  h_ = h;
+  until_search_ = 0;
+  std::ranges::fill(on_, std::uint16_t{0});
+  if (before.size() == on_.size()) std::ranges::copy(before, on_.begin());
+  impulses_.clear();
+  for (const TravellingBody& body : bodies) impulses_.push_back({.id = body.id});
+  friction_ = 0;
+}
+
+void SimdBodies::advance(const simd::Flight& flight, const float* base, double part) {
+  if (empty()) return;
+  if (until_search_ == 0) search(flight, base);
+  --until_search_;
+  clock_.advance();
+  write_frames();
+  before_.swap(on_);
+  std::ranges::fill(on_, std::uint16_t{0});
+  const auto stays = static_cast<float>(1 / part);
+  for (std::size_t active = 0; active + 1 < first_pair_.size(); ++active) {
+    const std::size_t block = pairs_[first_pair_[active]].block;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      weight_[block * kLanes + lane] = (before_[block] >> lane & 1) != 0 ? stays : 1.f;
+  }
+  for (simd::BodyGrips& grips : grips_) {
+    for (float* lanes : {grips.pushed, grips.held, grips.stopped, grips.slowed})
+      std::fill_n(lanes, kLanes, 0.f);
+  }
+  for (auto* bits : {&touching_, &moved_, &quick_}) std::ranges::fill(*bits, std::uint16_t{0});
+}
+
+SimdBodies::Extent SimdBodies::extent_of(std::size_t block, const simd::Flight& flight,
+                                         const float* base) const {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const YarnPlaces& places = model_.small_steps().places();
+  const std::size_t step = places.woven() ? 1 : 4, axis = places.stride;
+  const simd::BodyBlock& b = layout_.blocks[block];
+  float low[3] = {kInfinity, kInfinity, kInfinity}, high[3] = {-kInfinity, -kInfinity, -kInfinity};
+  float longest = 0, widest = 0, largest = 0;
+  const auto ahead = static_cast<float>(until_search_);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    if (!(b.mass[lane] > 0)) continue;
+    float square = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t at = b.place + step * lane + k * axis;
+      const float from = base[at] + flight.u_before[at];
+      const float way = ahead * (flight.u[at] - flight.u_before[at]), to = from + way;
+      low[k] = std::min({low[k], from, to});
+      high[k] = std::max({high[k], from, to});
+      largest = std::max(largest, std::abs(to));
+      square += way * way;
+    }
+    longest = std::max(longest, square);
+    widest = std::max(widest, b.radius[lane]);
+  }
+  const auto as_vector = [](const float(&v)[3]) {
+    return Vector{static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+  };
+  constexpr double kRounding = 0x1p-22;
+  const double reach = tuning::kContactReach * std::sqrt(static_cast<double>(longest)) +
+                       static_cast<double>(widest) + kRounding * static_cast<double>(largest) +
+                       contact_tolerance_;
+  return {as_vector(low), as_vector(high), reach};
+}
+
+/// Which blocks may meet which bodies until the next search.
+void SimdBodies::search(const simd::Flight& flight, const float* base) {
+  flush(impulses_, friction_);
+  const double interval = std::max(1.0, std::floor(tuning::kContactInterval / h_));
+  until_search_ = static_cast<int>(std::min<double>(interval, clock_.substeps_left()));
+  pairs_.clear();
+  first_pair_.clear();
+  pairs_of_.clear();
+  std::vector<BodyClock::Box>& boxes = boxes_;
+  boxes.clear();
+  for (std::size_t body = 0; body < clock_.bodies().size(); ++body)
+    boxes.push_back(clock_.box(body, until_search_));
+  const double share = static_cast<double>(until_search_) * h_;
+  Vector sum{};
+  for (std::uint32_t block = 0; block < layout_.blocks.size(); ++block) {
+    const Extent extent = extent_of(block, flight, base);
+    const Vector middle = extent.middle();
+    sum = sum + middle;
+    pairs_of_.push_back(static_cast<std::uint32_t>(pairs_.size()));
+    for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+      if (!extent.meets(boxes[body])) continue;
+      const BodyMotion& motion = clock_.motions()[body];
+      const double moves = share * (length(motion.velocity) +
+                                    length(motion.spin) * length(middle - motion.to.centre));
+      const reference::Gap gap =
+          gap_of(motion.solid, motion.thickness, motion.to.from_place(middle));
+      if (gap.gap > extent.radius() + moves) continue;
+      if (first_pair_.empty() || pairs_.back().block != block)
+        first_pair_.push_back(static_cast<std::uint32_t>(pairs_.size()));
+      pairs_.push_back({block, body});
+    }
+  }
+  pairs_of_.push_back(static_cast<std::uint32_t>(pairs_.size()));
+  first_pair_.push_back(static_cast<std::uint32_t>(pairs_.size()));
+  grips_.assign(pairs_.size(), {});
+  for (auto* bits : {&touching_, &moved_, &quick_}) bits->assign(pairs_.size(), 0);
+  const Vector middle = (1 / static_cast<double>(layout_.blocks.size())) * sum;
+  const auto rounded = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  origin_ = {rounded(middle.x), rounded(middle.y), rounded(middle.z)};
+}
+
+void SimdBodies::write_frames() {
+  frames_.resize(clock_.bodies().size());
+  faces_.clear();
+  for (const BodyMotion& body : clock_.motions()) {
+    if (body.solid.faces.empty()) continue;
+    for (const reference::Face& face : body.solid.faces) {
+      simd::BodyFace& to = faces_.emplace_back();
+      set_face(to.from, body.from, face, body.thickness, origin_);
+      set_face(to.to, body.to, face, body.thickness, origin_);
+    }
+  }
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const BodyMotion& body = clock_.motions()[i];
+    simd::BodyFrame& frame = frames_[i];
+    const reference::Solid& solid = body.solid;
+    set(frame.origin, origin_);
+    frame.faces = faces_.data() + first;
+    frame.face_count = static_cast<std::uint32_t>(solid.faces.size());
+    first += solid.faces.size();
+    set(frame.a, body.to.placed(solid.a) - origin_);
+    set(frame.axis, body.to.turned(solid.axis));
+    const double thin = std::min(solid.radius, solid.radius - solid.taper * solid.length);
+    const double short_way = (thin + body.thickness) / 4;
+    frame.length = static_cast<float>(solid.length);
+    frame.radius = static_cast<float>(solid.radius + body.thickness);
+    frame.taper = static_cast<float>(solid.taper);
+    frame.lean = static_cast<float>(solid.taper / std::sqrt(1 - solid.taper * solid.taper));
+    frame.short_way = static_cast<float>(short_way * short_way);
+    set(frame.centre_from, body.from.centre - origin_);
+    set(frame.way, body.to.centre - body.from.centre);
+    set_turn(frame.turn, body);
+    set(frame.centre_to, body.to.centre - origin_);
+    set(frame.velocity, body.velocity);
+    set(frame.spin, body.spin);
+    frame.friction = static_cast<float>(body.friction);
+  }
+}
+
+simd::BodyHold SimdBodies::hold_of(const simd::Flight& flight, const float* base,
+                                   float rate) const {
+  return {.flight = flight,
+          .base = base,
+          .blocks = layout_.blocks.data(),
+          .weights = weight_.data(),
+          .pairs = pairs_.data(),
+          .frames = frames_.data(),
+          .woven = model_.small_steps().places().woven(),
+          .rate = rate,
+          .h = static_cast<float>(h_)};
+}
+
+void SimdBodies::hold(const simd::Flight& flight, const float* base, float rate, Team& team) {
+  if (pairs_.empty()) return;
+  simd::BodyHold hold = hold_of(flight, base, rate);
+  hold.grips = grips_.data();
+  std::vector<std::uint16_t>& now = now_;
+  now.assign(pairs_.size(), 0);
+  hold.touching = now.data();
+  hold.moved = moved_.data();
+  hold.quick = quick_.data();
+  team.for_each_share(first_pair_.size() - 1, [&](std::size_t first, std::size_t last) {
+    table_.grip_bodies(hold, first_pair_[first], first_pair_[last]);
+  });
+  std::ranges::fill(held_, std::uint16_t{0});
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const std::size_t block = pairs_[i].block;
+    touching_[i] = static_cast<std::uint16_t>(touching_[i] | now[i]);
+    held_[block] = static_cast<std::uint16_t>(held_[block] | now[i]);
+  }
+  for (std::size_t active = 0; active + 1 < first_pair_.size(); ++active) {
+    const std::size_t block = pairs_[first_pair_[active]].block;
+    const std::uint32_t known = on_[block] | std::uint32_t{before_[block]};
+    arrived_[block] = static_cast<std::uint16_t>(held_[block] & ~known);
+    on_[block] = static_cast<std::uint16_t>(on_[block] | held_[block]);
+  }
+}
+
+bool SimdBodies::hold(std::uint32_t slot, Particle& particle) {
+  const std::uint32_t place = layout_.place_of[slot];
+  if (place == kNoIndex || pairs_.empty()) return false;
+  const std::size_t block = place / kLanes, lane = place % kLanes;
+  bool is_touching = false;
+  for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
+    const BodyMotion& body = clock_.motions()[pairs_[i].body];
+    simd::BodyGrips& lanes = grips_[i];
+    const auto number = [](float x) { return static_cast<double>(x); };
+    reference::Grip grip{number(lanes.pushed[lane]), number(lanes.held[lane]),
+                         number(lanes.stopped[lane]), number(lanes.slowed[lane])};
+    const reference::Gripped gripped =
+        reference::grip(body, particle.start, particle.x, particle.v,
+                        number(layout_.blocks[block].radius[lane]), grip);
+    if (!gripped.is_touching) continue;
+    lanes.pushed[lane] = static_cast<float>(grip.pushed);
+    lanes.held[lane] = static_cast<float>(grip.held);
+    lanes.stopped[lane] = static_cast<float>(grip.stopped);
+    lanes.slowed[lane] = static_cast<float>(grip.slowed);
+    const double momentum = model_.mass[slot] * number(weight_[place]);
+    const Vector impulse = momentum * (gripped.v - particle.v);
+    const Vector moment = cross(gripped.x - body.to.centre, impulse);
+    const auto add = [&](simd::LaneVectors& sum, Vector v) {
+      sum.x[lane] += static_cast<float>(v.x);
+      sum.y[lane] += static_cast<float>(v.y);
+      sum.z[lane] += static_cast<float>(v.z);
+    };
+    add(lanes.linear, impulse);
+    add(lanes.angular, moment);
+    lanes.friction[lane] += static_cast<float>(momentum * gripped.friction);
+    const auto bit = static_cast<std::uint16_t>(1u << lane);
+    touching_[i] = static_cast<std::uint16_t>(touching_[i] | bit);
+    particle.x = gripped.x;
+    particle.v = gripped.v;
+    is_touching = true;
+  }
+  return is_touching;
+}
+
+bool SimdBodies::begins_to_touch(std::uint32_t slot) {
+  const std::uint32_t place = layout_.place_of[slot];
+  const std::size_t block = place / kLanes;
+  const auto bit = static_cast<std::uint16_t>(1u << place % kLanes);
+  const bool begins = ((on_[block] | before_[block]) & bit) == 0;
+  on_[block] = static_cast<std::uint16_t>(on_[block] | bit);
+  return begins;
+}
+
+double SimdBodies::deepest(const simd::Flight& flight, const float* base) const {
+  if (pairs_.empty()) return 0;
+  return static_cast<double>(table_.deepest_in_bodies(hold_of(flight, base, 0), 0, pairs_.size()));
+}
+
+void SimdBodies::flush(std::vector<BodyImpulse>& impulses, double& friction) const {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const simd::BodyGrips& grips = grips_[i];
+    BodyImpulse& sum = impulses[pairs_[i].body];
+    const auto add = [](Vector& to, const simd::LaneVectors& lanes) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        to = to + Vector{static_cast<double>(lanes.x[lane]), static_cast<double>(lanes.y[lane]),
+                         static_cast<double>(lanes.z[lane])};
+      }
+    };
+    add(sum.linear, grips.linear);
+    add(sum.angular, grips.angular);
+    for (const float lost : grips.friction) friction += 0.5 * static_cast<double>(lost);
+  }
+}
+
+void SimdBodies::sum(BodyReport& report) const {
+  report.clear();
+  if (empty()) return;
+  report.impulses = impulses_;
+  report.friction = friction_;
+  flush(report.impulses, report.friction);
+  for (std::size_t body = 0; body < report.impulses.size(); ++body) {
+    const BodyMotion& motion = clock_.motions()[body];
+    report.impulses[body].centre = motion.to.centre;
+    report.work += dot(report.impulses[body].linear, motion.velocity) +
+                   dot(report.impulses[body].angular, motion.spin);
+  }
+  for (const std::uint16_t bits : touching_) report.contacts += std::popcount(bits);
+}
+
+std::size_t SimdBodies::bytes() const {
+  return clock_.bytes() + layout_.bytes() + bytes_of(frames_) + bytes_of(faces_) +
+         bytes_of(pairs_) + bytes_of(first_pair_) + bytes_of(pairs_of_) + bytes_of(grips_) +
+         bytes_of(touching_) + bytes_of(moved_) + bytes_of(quick_) + bytes_of(weight_) +
+         bytes_of(on_) + bytes_of(before_) + bytes_of(held_) + bytes_of(arrived_) +
+         bytes_of(impulses_) + bytes_of(boxes_) + bytes_of(now_);
+}
+
+}  // namespace weft

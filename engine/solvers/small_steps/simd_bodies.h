@@ -1,0 +1,135 @@
+/// Particles beside bodies, in lanes (kernels/simd/bodies.h).
+///
+/// Which blocks of particles a body may meet is looked for once an interval of some substeps, from
+/// boxes around where they are and where they are going; contacts are found, and gripped, in every
+/// substep, after each sweep.
+#pragma once
+
+#include <bit>
+#include <span>
+#include <vector>
+
+#include "engine/bodies/body_clock.h"
+#include "engine/model/model.h"
+#include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/body_layout.h"
+#include "engine/solvers/small_steps/body_report.h"
+#include "engine/tuning.h"
+#include "kernels/simd/table.h"
+
+namespace weft {
+
+class SimdBodies {
+ public:
+  SimdBodies(const Model& model, const Settings& settings, const simd::Table& table)
+      : model_(model),
+        far_(tuning::kLocalShare * settings.tolerance),
+        contact_tolerance_(settings.contact_tolerance),
+        table_(table) {}
+
+  /// Who touched a body when the last substep of a frame ended, per block.
+  using Touching = std::vector<std::uint16_t>;
+  /// A particle in a substep, in coordinates of the world; v settled.
+  struct Particle {
+    kernels::Vector start{}, x{}, v{};
+  };
+
+  bool empty() const { return clock_.bodies().empty(); }
+  /// before: of the frame before; empty: nothing is known of it.
+  void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
+             std::span<const std::uint16_t> before);
+  /// Of a substep, whose flights are predicted. part: of h, by the scheme.
+  void advance(const simd::Flight& flight, const float* base, double part);
+  /// After a sweep; v settles by `rate`.
+  void hold(const simd::Flight& flight, const float* base, float rate, Team& team);
+  /// Of one particle. Returns whether it touches a body.
+  bool hold(std::uint32_t slot, Particle& particle);
+  /// After that: whether it did not in this substep before, and not when the last one ended.
+  bool begins_to_touch(std::uint32_t slot);
+  /// arrived(slot): it touches a body, and did not when the last substep ended. moved(slot): it was
+  /// moved as far as a constraint of its own may be in error. quick(slot): it is to be held by
+  /// itself.
+  template <class Arrived, class Moved, class Quick>
+  void report(Arrived&& arrived, Moved&& moved, Quick&& quick) const;
+  const Touching& touching() const { return on_; }
+
+  /// m, by which a particle is under a surface where the last substep ended.
+  double deepest(const simd::Flight& flight, const float* base) const;
+  /// What was done in the frame.
+  void sum(BodyReport& report) const;
+  template <class Visit>
+  void for_each_contact(Visit&& visit) const;
+  /// visit(slot), of those that touch a body in the present substep.
+  template <class Visit>
+  void for_each_touching(Visit&& visit) const {
+    for_each_contact([&](std::uint32_t slot, const auto&, std::uint32_t, double) { visit(slot); });
+  }
+  std::size_t bytes() const;
+
+ private:
+  struct Extent;
+  void make_room();
+  void search(const simd::Flight& flight, const float* base);
+  Extent extent_of(std::size_t block, const simd::Flight& flight, const float* base) const;
+  void flush(std::vector<BodyImpulse>& impulses, double& friction) const;
+  void write_frames();
+  simd::BodyHold hold_of(const simd::Flight& flight, const float* base, float rate) const;
+
+  const Model& model_;
+  const double far_;                // of a constraint's length
+  const double contact_tolerance_;  // m
+  const simd::Table& table_;
+  BodyClock clock_;
+  BodyLayout layout_;  // made when the first body is there
+  double h_ = 0;
+  int until_search_ = 0;      // substeps
+  kernels::Vector origin_{};  // of frames
+
+  std::vector<simd::BodyFrame> frames_;            // per body
+  std::vector<simd::BodyFace> faces_;              // of all of them
+  std::vector<simd::BodyPair> pairs_;              // by blocks, then by bodies
+  std::vector<std::uint32_t> first_pair_;          // per block that has some, and the end
+  std::vector<std::uint32_t> pairs_of_;            // per block: where its pairs begin; and the end
+  kernels::AlignedVector<simd::BodyGrips> grips_;  // per pair
+  std::vector<std::uint16_t> touching_, moved_, quick_;  // per pair
+  kernels::AlignedVector<float> weight_;                 // per block and lane
+  Touching on_, before_;                                 // per block, in this substep and the last
+  Touching held_, arrived_;                              // by the last sweep
+  std::vector<BodyImpulse> impulses_;                    // before the last search
+  double friction_ = 0;                                  // J, likewise
+  std::vector<BodyClock::Box> boxes_;                    // scratch
+  std::vector<std::uint16_t> now_;                       // likewise
+};
+
+template <class Arrived, class Moved, class Quick>
+void SimdBodies::report(Arrived&& arrived, Moved&& moved, Quick&& quick) const {
+  const auto for_each = [&](std::size_t block, std::uint32_t bits, auto&& work) {
+    for (; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      work(layout_.slot_at[block * kernels::kLanes + lane]);
+    }
+  };
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    for_each(pairs_[i].block, moved_[i], moved);
+    for_each(pairs_[i].block, quick_[i], quick);
+  }
+  for (std::size_t active = 0; active + 1 < first_pair_.size(); ++active) {
+    const std::uint32_t block = pairs_[first_pair_[active]].block;
+    for_each(block, arrived_[block], arrived);
+  }
+}
+
+/// visit(slot, motion of the body, its id, m by which the last substep pushed it)
+template <class Visit>
+void SimdBodies::for_each_contact(Visit&& visit) const {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    for (std::uint32_t bits = touching_[i]; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      visit(layout_.slot_at[pairs_[i].block * kernels::kLanes + lane],
+            clock_.motions()[pairs_[i].body], clock_.bodies()[pairs_[i].body].id,
+            static_cast<double>(grips_[i].pushed[lane]));
+    }
+  }
+}
+
+}  // namespace weft

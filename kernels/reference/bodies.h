@@ -1,0 +1,230 @@
+/// A particle against a body that moves, in double: what the vector kernel (kernels/simd/bodies.h)
+/// is held against, and what local passes do.
+///
+/// In a substep a particle goes from `start` to x, and the body from one placement to another. Both
+/// ways are looked at in the coordinates of the body, so that only the particle moves, in a
+/// straight line. If it ends under the surface, or has come through it, it is pushed out along the
+/// normal n by what is missing of the gap, p. Friction takes of its way s along the surface what it
+/// may, mu p, and of its velocity likewise: the normal velocity into the body, j, is taken, and
+/// mu j of the velocity along the surface (Coulomb). So a position is moved by forces of this
+/// substep alone, and no speed comes from being pushed out: a position and a velocity of a
+/// particle that stays in contact obey BDF2 of the equations of motion with a multiplier each
+/// (Gear, Leimkuhler and Gupta, 1985), as with anchors (anchors.h).
+///
+/// What was deeper when the substep began comes out slowly, and this has no friction.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "kernels/vectors.h"
+
+namespace weft::reference {
+
+using kernels::Vector;
+
+/// A rotation by the columns of its matrix, and where the origin comes to lie.
+struct Placement {
+  Vector x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  Vector centre{};
+
+  Vector turned(Vector v) const { return v.x * x + v.y * y + v.z * z; }
+  Vector turned_back(Vector v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
+  Vector placed(Vector v) const { return centre + turned(v); }
+  Vector from_place(Vector v) const { return turned_back(v - centre); }
+};
+
+/// Points with normal . x < offset are inside.
+struct Face {
+  Vector normal{};
+  double offset = 0;
+};
+
+/// Either the inside of faces, or the balls around a segment, in coordinates of the body.
+struct Solid {
+  std::span<const Face> faces{};  // empty: a capsule
+  Vector a{}, axis{};             // where it begins, and the unit vector along it
+  double length = 0;              // m; 0: a ball
+  double radius = 0;              // m, at a
+  double taper = 0;               // by which the radius falls, per length; |taper| < 1
+};
+
+/// How a body moves in a substep.
+struct BodyMotion {
+  Solid solid{};
+  Placement from{}, to{};
+  Vector velocity{}, spin{};  // m/s of its centre, rad/s
+  double thickness = 0;       // m
+  double friction = 0;        // with the cloth
+  double h = 0;               // s
+
+  Vector velocity_at(Vector x) const { return velocity + cross(spin, x - to.centre); }
+};
+
+/// m, per second, and s: what is under the surface comes out at this speed, and by its depth in
+/// this time, whichever is faster.
+inline constexpr double kRecovery = 0.05, kRecoveryTime = 3e-3;
+
+/// The surface where a particle touches it, in coordinates of the world.
+struct Touch {
+  bool is_near = false;  // it is under the surface, or came through it
+  Vector normal{};
+  double gap = 0;  // m, over the surface's plane there; negative: under it
+};
+
+struct Gap {
+  double gap = std::numeric_limits<double>::infinity();
+  Vector normal{};
+};
+
+/// The ball of the capsule that is nearest to y is at the height y_axis - k d / sqrt(1 - k^2) over
+/// a, with k the taper and d the distance from the axis.
+inline Gap gap_of_capsule(const Solid& s, double thickness, Vector y) {
+  const Vector from_a = y - s.a;
+  const double height = dot(from_a, s.axis);
+  const double across = std::sqrt(std::max(0.0, dot(from_a, from_a) - height * height));
+  const double lean = s.taper / std::sqrt(1 - s.taper * s.taper);
+  const double at = std::clamp(height - lean * across, 0.0, s.length);
+  const Vector d = from_a - at * s.axis;
+  const double l = length(d);
+  return {l - (s.radius - at * s.taper) - thickness, kernels::direction(d, l)};
+}
+
+inline Gap gap_of_faces(const Solid& s, double thickness, Vector y) {
+  Gap largest{-std::numeric_limits<double>::infinity(), {}};
+  for (const Face& face : s.faces) {
+    const double gap = dot(face.normal, y) - face.offset - thickness;
+    if (gap > largest.gap) largest = {gap, face.normal};
+  }
+  return largest;
+}
+
+inline Gap gap_of(const Solid& s, double thickness, Vector y) {
+  return s.faces.empty() ? gap_of_capsule(s, thickness, y) : gap_of_faces(s, thickness, y);
+}
+
+/// The face through which the way from y0 to y1 enters the inside of all; of a way that begins and
+/// ends there the face that is nearest to where it begins.
+inline Touch touch_faces(const Solid& s, double thickness, Vector y0, Vector y1) {
+  double enters = -1, leaves = std::numeric_limits<double>::infinity();
+  const Face* entry = nullptr;
+  Touch inside{.gap = 0};
+  double nearest = -std::numeric_limits<double>::infinity();
+  bool ends_inside = true;
+  for (const Face& face : s.faces) {
+    const double g0 = dot(face.normal, y0) - face.offset - thickness;
+    const double g1 = dot(face.normal, y1) - face.offset - thickness;
+    if (g0 > 0 && g1 > 0) return {};
+    ends_inside = ends_inside && g1 <= 0;
+    if (g0 > nearest) {
+      nearest = g0;
+      inside = {true, face.normal, g1};
+    }
+    if (g0 <= 0 && g1 <= 0) continue;
+    const double at = g0 / (g0 - g1);
+    if (g1 > 0) {
+      leaves = std::min(leaves, at);
+    } else if (at > enters) {
+      enters = at;
+      entry = &face;
+    }
+  }
+  if (entry == nullptr) return ends_inside ? inside : Touch{};
+  if (enters > leaves) return {};
+  return {true, entry->normal, dot(entry->normal, y1) - entry->offset - thickness};
+}
+
+/// Of a way that is as long as a quarter of the capsule is thick the first point under the surface
+/// is looked for: a step by the gap never goes too far. Of shorter ways the end is looked at.
+inline Touch touch_capsule(const Solid& s, double thickness, Vector y0, Vector y1) {
+  const Gap end = gap_of_capsule(s, thickness, y1);
+  const Vector way = y1 - y0;
+  const double l = length(way);
+  const double thin = std::min(s.radius, s.radius - s.taper * s.length) + thickness;
+  if (4 * l <= thin) return {end.gap < 0, end.normal, end.gap};
+  Gap here = gap_of_capsule(s, thickness, y0);
+  if (here.gap < 0) return {end.gap < 0, end.normal, end.gap};
+  const double near = 1e-6 * thin;
+  double at = 0;
+  for (int i = 0; i < 64 && here.gap > near; ++i) {
+    at += here.gap / l;
+    if (at >= 1) return {end.gap < 0, end.normal, end.gap};
+    here = gap_of_capsule(s, thickness, y0 + at * way);
+  }
+  const double gap = here.gap + (1 - at) * dot(here.normal, way);
+  return {gap < 0, here.normal, gap};
+}
+
+/// Where a particle of a radius touches the body that goes from start to x.
+inline Touch find_touch(const BodyMotion& body, Vector start, Vector x, double radius) {
+  const Vector y0 = body.from.from_place(start), y1 = body.to.from_place(x);
+  const double thickness = body.thickness + radius;
+  Touch touch = body.solid.faces.empty() ? touch_capsule(body.solid, thickness, y0, y1)
+                                         : touch_faces(body.solid, thickness, y0, y1);
+  touch.normal = body.to.turned(touch.normal);
+  return touch;
+}
+
+/// The way of the particle beside the material of the body that was where it began.
+inline Vector slip_of(const BodyMotion& body, Vector start, Vector x) {
+  return x - body.to.placed(body.from.from_place(start));
+}
+
+/// What contacts of a particle and a body have done in a substep.
+struct Grip {
+  double pushed = 0, held = 0;     // m: along the normal, without what came out, and by friction
+  double stopped = 0, slowed = 0;  // m/s, likewise
+};
+
+struct Gripped {
+  bool is_touching = false;
+  Vector x{}, v{};      // where it is, and its velocity there
+  Vector normal{};      // of the surface
+  double push = 0;      // m
+  double friction = 0;  // (m/s)^2, twice the energy that friction took, per mass
+};
+
+/// Shortens `along` by what friction may still hold. Returns the share that is taken.
+inline double held_share(double along, double may, double& held) {
+  const double left = std::max(0.0, may - held);
+  const double share = along > left ? left / along : 1;
+  held += share * along;
+  return share;
+}
+
+/// v: the velocity at x.
+inline Gripped grip(const BodyMotion& body, Vector start, Vector x, Vector v, double radius,
+                    Grip& done) {
+  const Touch touch = find_touch(body, start, x, radius);
+  Gripped gripped{.x = x, .v = v};
+  if (!touch.is_near) return gripped;
+  const Vector n = touch.normal;
+  const Vector slip = slip_of(body, start, x);
+  const double approach = -dot(n, slip), began = touch.gap + approach;
+  const double comes_out = body.h * (kRecovery - began / kRecoveryTime);
+  const double target = std::min(0.0, began < 0 ? began + comes_out : 0.0);
+  const double push = target - touch.gap;
+  if (!(push > 0)) return gripped;
+  done.pushed += std::min(push, std::max(0.0, approach));
+  const Vector along = slip + approach * n;
+  const double held = held_share(length(along), body.friction * done.pushed, done.held);
+  gripped.x = x + push * n - held * along;
+  gripped.push = push;
+
+  const Vector surface = body.velocity_at(gripped.x), relative = v - surface;
+  const double into = std::max(0.0, -dot(n, relative));
+  done.stopped += into;
+  const Vector sliding = relative - dot(n, relative) * n;
+  const double slowed = held_share(length(sliding), body.friction * done.stopped, done.slowed);
+  gripped.v = v + into * n - slowed * sliding;
+  const double slid = (1 - held) * length(along) / body.h;
+  gripped.friction = 2 * slowed * length(sliding) * slid;
+  gripped.normal = n;
+  gripped.is_touching = true;
+  return gripped;
+}
+
+}  // namespace weft::reference

@@ -1,0 +1,205 @@
+#include "tools/scene_bodies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "tools/json_reading.h"
+
+namespace weft::tools {
+namespace {
+
+std::string within(const std::string& place, std::string_view key) {
+  return fmt::format("{}.{}", place, key);
+}
+
+Rotation quaternion(Vec3 r) {
+  const double angle = std::hypot(r.x, r.y, r.z);
+  const double part = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
+  return {part * r.x, part * r.y, part * r.z, std::cos(angle / 2)};
+}
+
+/// First b, then a.
+Rotation product(const Rotation& a, const Rotation& b) {
+  return {
+      a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z,
+      a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+
+Vec3 rotation_vector(const Rotation& q) {
+  const double sine = std::hypot(q.x, q.y, q.z);
+  const double factor = sine > 0 ? 2 * std::atan2(sine, q.w) / sine : 0;
+  return {factor * q.x, factor * q.y, factor * q.z};
+}
+
+/// The keys of an entry, of which each is to be asked for or is unknown.
+class Entry {
+ public:
+  Entry(const Json& json, std::string place) : json_(json), place_(std::move(place)) {
+    if (!json.is_object()) refuse(place_, "an object", json);
+  }
+  bool has(std::string_view key) {
+    known_.emplace_back(key);
+    return json_.contains(key);
+  }
+  const Json& needed(std::string_view key) {
+    if (!has(key)) throw Refused{fmt::format("{}: the key '{}' is missing", place_, key)};
+    return json_[std::string(key)];
+  }
+  std::string place(std::string_view key) const { return within(place_, key); }
+  double number(std::string_view key) { return read_number(needed(key), place(key)); }
+  double number(std::string_view key, double without) { return has(key) ? number(key) : without; }
+  Vec3 vector(std::string_view key) { return read_vector(needed(key), place(key)); }
+  Vec3 vector(std::string_view key, Vec3 without) { return has(key) ? vector(key) : without; }
+  void check_keys() const {
+    for (const auto& [key, value] : json_.items()) {
+      if (std::ranges::find(known_, key) == known_.end())
+        throw Refused{fmt::format("{}: unknown key {}", place_, in_quotes(key))};
+    }
+  }
+
+ private:
+  const Json& json_;
+  std::string place_;
+  std::vector<std::string> known_;
+};
+
+PinMove read_move(const Json& json, const std::string& place) {
+  Entry entry(json, place);
+  PinMove move;
+  move.times = read_array(entry.needed("times"), entry.place("times"), read_number);
+  if (move.times.empty() || !std::ranges::is_sorted(move.times, std::ranges::less_equal()))
+    refuse(entry.place("times"), "times, each after the one before", json["times"]);
+  move.translations =
+      read_array(entry.needed("translations"), entry.place("translations"), read_vector);
+  if (entry.has("rotations"))
+    move.rotations = read_array(json["rotations"], entry.place("rotations"), read_vector);
+  move.about = entry.vector("about", {});
+  entry.check_keys();
+  for (const auto& [key, count] : {std::pair{"translations", move.translations.size()},
+                                   std::pair{"rotations", move.rotations.size()}}) {
+    if (count == move.times.size() || (key == std::string_view("rotations") && count == 0))
+      continue;
+    throw Refused{fmt::format("{}: expected as many as times, {}, not {}", within(place, key),
+                              move.times.size(), count)};
+  }
+  return move;
+}
+
+ShapeDescription read_shape(Entry& entry) {
+  const Json& name = entry.needed("shape");
+  if (name == "plane")
+    return Plane{entry.vector("normal", Plane{}.normal), entry.number("offset", 0)};
+  if (name == "sphere") return Ball{entry.vector("centre", {}), entry.number("radius")};
+  if (name == "capsule") {
+    const Vec3 a = entry.vector("a"), b = entry.vector("b");
+    if (entry.has("radius")) return Capsule{a, b, entry.number("radius"), entry.number("radius")};
+    return Capsule{a, b, entry.number("radius_a"), entry.number("radius_b")};
+  }
+  if (name == "box") return box(entry.vector("size"));
+  if (name == "hull")
+    return Hull{read_array(entry.needed("points"), entry.place("points"), read_vector)};
+  refuse(entry.place("shape"), "plane, sphere, capsule, box or hull", name);
+}
+
+SceneBody read_body(const Json& json, const std::string& place) {
+  Entry entry(json, place);
+  SceneBody body;
+  body.shape = read_shape(entry);
+  if (const auto built = build_shape(body.shape); !built)
+    throw Refused{fmt::format("{}.{}", place, built.error())};
+  body.pose = {entry.vector("position", {}), quaternion(entry.vector("rotation", {}))};
+  body.thickness = entry.number("thickness", body.thickness);
+  body.friction = entry.number("friction", body.friction);
+  if (entry.has("moves")) body.move = read_move(json["moves"], entry.place("moves"));
+  entry.check_keys();
+  return body;
+}
+
+Json row(Vec3 v) { return {v.x, v.y, v.z}; }
+Json rows(const std::vector<Vec3>& vectors) {
+  Json array = Json::array();
+  for (const Vec3 v : vectors) array.push_back(row(v));
+  return array;
+}
+
+Json shape_json(const Plane& plane) {
+  return {{"shape", "plane"}, {"normal", row(plane.normal)}, {"offset", plane.offset}};
+}
+Json shape_json(const Ball& ball) {
+  return {{"shape", "sphere"}, {"centre", row(ball.centre)}, {"radius", ball.radius}};
+}
+Json shape_json(const Capsule& c) {
+  return {{"shape", "capsule"},
+          {"a", row(c.a)},
+          {"b", row(c.b)},
+          {"radius_a", c.radius_a},
+          {"radius_b", c.radius_b}};
+}
+Json shape_json(const Hull& hull) { return {{"shape", "hull"}, {"points", rows(hull.points)}}; }
+
+}  // namespace
+
+Pose pose_at(const SceneBody& body, double time) {
+  if (!body.move) return body.pose;
+  return {place_at(*body.move, time, body.pose.position),
+          product(quaternion(rotation_at(*body.move, time)), body.pose.rotation)};
+}
+
+std::vector<SceneBody> read_bodies(const Json& json) {
+  return read_array(json, "bodies", read_body);
+}
+
+std::string body_row(const SceneBody& body) {
+  Json json = std::visit([](const auto& shape) { return shape_json(shape); }, body.shape);
+  json["position"] = row(body.pose.position);
+  json["rotation"] = row(rotation_vector(body.pose.rotation));
+  json["thickness"] = body.thickness;
+  json["friction"] = body.friction;
+  if (body.move) {
+    json["moves"] = {{"times", body.move->times},
+                     {"translations", rows(body.move->translations)},
+                     {"about", row(body.move->about)}};
+    if (!body.move->rotations.empty()) json["moves"]["rotations"] = rows(body.move->rotations);
+  }
+  return json.dump();
+}
+
+std::vector<SceneBody> present_bodies(std::span<const SceneBody> bodies, double elapsed) {
+  std::vector<SceneBody> present(bodies.begin(), bodies.end());
+  for (SceneBody& body : present) {
+    if (body.move) body.move = present_moves({&*body.move, 1}, {}, elapsed).front();
+  }
+  return present;
+}
+
+Result<MovedBodies> MovedBodies::add(std::span<const SceneBody> bodies, Cloth& cloth) {
+  MovedBodies added;
+  added.bodies_ = bodies;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto refused = [&](const std::string& why) {
+      return Error{fmt::format("bodies[{}].{}", i, why)};
+    };
+    const auto shape = build_shape(bodies[i].shape);
+    if (!shape) return refused(shape.error());
+    const auto id = cloth.add_body({.shape = shape.value(),
+                                    .pose = pose_at(bodies[i], 0),
+                                    .thickness = bodies[i].thickness,
+                                    .friction = bodies[i].friction});
+    if (!id) return refused(id.error());
+    added.ids_.push_back(id.value());
+  }
+  return added;
+}
+
+Result<void> MovedBodies::send(Cloth& cloth, double time) const {
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    if (!bodies_[i].move) continue;
+    if (auto sent = cloth.move_body(ids_[i], pose_at(bodies_[i], time)); !sent) return sent;
+  }
+  return {};
+}
+
+}  // namespace weft::tools

@@ -1,0 +1,48 @@
+/// Bodies of a scene: the key "bodies" of a scene file (scene_file.h), and how they move in a run.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/json_output.h"
+#include "tools/pin_moves.h"
+
+namespace weft::tools {
+
+/// A body that begins at a pose and moves as pins do: x goes to where place_at() takes it.
+struct SceneBody {
+  ShapeDescription shape;
+  Pose pose{};
+  double thickness = Body{}.thickness;  ///< m
+  double friction = Body{}.friction;
+  std::optional<PinMove> move = {};  ///< of no particles
+};
+
+Pose pose_at(const SceneBody& body, double time);
+
+/// Throws Refused (json_reading.h).
+std::vector<SceneBody> read_bodies(const Json& json);
+/// One entry of the array.
+std::string body_row(const SceneBody& body);
+
+/// The bodies of a scene that goes on from where this one is after `elapsed` seconds.
+std::vector<SceneBody> present_bodies(std::span<const SceneBody> bodies, double elapsed);
+
+/// Bodies of one cloth.
+class MovedBodies {
+ public:
+  /// Adds them where they are at time 0.
+  static Result<MovedBodies> add(std::span<const SceneBody> bodies, Cloth& cloth);
+  /// Sends those that move to where they are at `time`.
+  Result<void> send(Cloth& cloth, double time) const;
+
+ private:
+  std::span<const SceneBody> bodies_;
+  std::vector<std::uint32_t> ids_;
+};
+
+}  // namespace weft::tools
