@@ -90,6 +90,26 @@ inline kernels::Vector onto_rim(const AnchorLimits& limits, const AnchorMotion& 
   return anchor.point + (z - d) * anchor.normal + (radius / l) * across;
 }
 
+/// The velocity nearest to v of a particle on the rim, x, that leads out of neither limit. With the
+/// unit vectors u out of the ball and n out of the backstop it is v - a u + b n, and a and b are
+/// where a particle that both hold is held by both, or 0. To take one after the other would leave
+/// some of what the second pushes out of the first: what rests would have a speed.
+inline kernels::Vector along_rim(const AnchorLimits& limits, const AnchorMotion& anchor,
+                                 kernels::Vector x, kernels::Vector v) {
+  constexpr double kParallel = 0.01, kCentre = 1e-6;
+  const BackstopView view(limits, anchor, x);
+  const kernels::Vector u = (1 / limits.most) * (x - anchor.point);
+  const kernels::Vector n = view.size > kCentre ? (1 / view.size) * view.e : anchor.normal;
+  const kernels::Vector surface = anchor.velocity - limits.distance * anchor.turning;
+  const double rising = dot(view.w, anchor.turning) / std::max(view.size, kCentre);
+  const double out = dot(u, v - anchor.velocity), in = dot(n, surface - v) - rising;
+  const double cosine = dot(u, n);
+  const double both = (out + cosine * in) / std::max(1 - cosine * cosine, kParallel);
+  const double b = std::max(0.0, in + cosine * std::max(0.0, both));
+  const double a = std::max(0.0, out + cosine * b);
+  return v - a * u + b * n;
+}
+
 inline Held hold(const AnchorLimits& limits, const AnchorMotion& anchor, kernels::Vector x,
                  kernels::Vector v) {
   Held held{x, v};
@@ -112,8 +132,10 @@ inline Held hold(const AnchorLimits& limits, const AnchorMotion& anchor, kernels
   held.v = without(held.v, dot(unit, surface - held.v) - rising, -1 * unit);
   held.is_at_limit = true;
   constexpr double kRounding = 1e-6;
-  if (length(held.x - anchor.point) > (1 + kRounding) * most)
+  if (length(held.x - anchor.point) > (1 + kRounding) * most) {
     held.x = onto_rim(limits, anchor, held.x);
+    if (most > 0) held.v = along_rim(limits, anchor, held.x, v);
+  }
   return held;
 }
 

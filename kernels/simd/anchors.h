@@ -79,17 +79,46 @@ struct BackstopLanes {
   p.x = select(beyond, rim, p.x);
 }
 
+/// Lanes on the rim, whose velocity was v (reference::along_rim).
+[[gnu::always_inline]] inline void lead_along_rim(HeldLanes& p, const BackstopLanes& b,
+                                                  const FloatVector& turning, const FloatVector& v,
+                                                  FloatMask beyond) {
+  const Floats none(0.f), one(1.f), near(1e-6f), parallel(0.01f);
+  const Floats size = xsimd::sqrt(xsimd::max(none, fused(Floats(2.f) * b.curvature, b.g, one)));
+  const Floats over_size = one / xsimd::max(size, near);
+  FloatVector u = p.x - p.point;
+  u = over_length(u) * u;
+  FloatVector n = select(size > near, over_size * b.e, b.normal);
+  FloatVector surface = fused(none - b.distance, turning, p.motion);
+  const Floats out = dot(u, v - p.motion);
+  const Floats in = dot(n, surface - v) - dot(b.w, turning) * over_size;
+  const Floats cosine = dot(u, n);
+  const Floats both =
+      fused(cosine, in, out) / xsimd::max(fused_from(cosine, cosine, one), parallel);
+  const Floats pushed = xsimd::max(none, fused(cosine, xsimd::max(none, both), in));
+  const Floats pulled = xsimd::max(none, fused(cosine, pushed, out));
+  FloatVector along = fused(pushed, n, v);
+  along = fused(none - pulled, u, along);
+  p.v = select(beyond && (p.most > none), along, p.v);
+}
+
 [[gnu::always_inline]] inline void hold_behind(HeldLanes& p, const BackstopBlock& block,
-                                               const AnchorHold& h, std::uint32_t lane) {
-  const BackstopLanes b(block, lane, Floats(h.share), p.point, p.x);
+                                               const AnchorHold& h, const FloatVector& settled,
+                                               std::uint32_t lane) {
+  const Floats share(h.share);
+  const BackstopLanes b(block, lane, share, p.point, p.x);
   const FloatMask under = b.g < Floats(0.f);
   if (bits(under) == 0) return;
   p.at_limit = p.at_limit || under;
-  push_out(p, b, Floats(h.per_second) * load(block.turn, lane), under);
+  FloatVector turning = Floats(h.per_second) * load(block.turn, lane);
+  push_out(p, b, turning, under);
   FloatVector y = p.x - p.point;
   const Floats square = p.most * p.most, rounding(1 + 2e-6f);
   const FloatMask beyond = under && (dot(y, y) > rounding * square);
-  if (bits(beyond) != 0) put_onto_rim(p, b, beyond);
+  if (bits(beyond) == 0) return;
+  put_onto_rim(p, b, beyond);
+  const BackstopLanes there(block, lane, share, p.point, p.x);
+  lead_along_rim(p, there, turning, settled, beyond);
 }
 
 template <class At>
@@ -111,8 +140,9 @@ template <class At>
     p.v = fused(Floats(h.rate), p.x - predicted, v);
     p.motion = Floats(h.per_second) * load(block.way, lane);
     p.at_limit = out;
+    FloatVector settled = p.v;
     hold_in_ball(p, y, out);
-    if (backstop != nullptr) hold_behind(p, *backstop, h, lane);
+    if (backstop != nullptr) hold_behind(p, *backstop, h, settled, lane);
     if (bits(p.at_limit) == 0) continue;
     at.put(f.u, block.place, lane, p.x);
     at.put(f.predicted, block.place, lane, select(p.at_limit, p.x, predicted));

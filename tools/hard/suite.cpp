@@ -8,9 +8,10 @@ namespace weft::tools::hard {
 
 std::vector<Case> all_cases() {
   std::vector<Case> all;
-  for (const auto& cases : {mass_cases(), infeasible_cases(), start_cases(), step_cases(),
-                            place_cases(), motion_cases(), length_cases(), graph_cases(),
-                            material_cases(), input_cases(), sheet_cases(), budget_cases()}) {
+  for (const auto& cases :
+       {mass_cases(), infeasible_cases(), start_cases(), step_cases(), place_cases(),
+        motion_cases(), length_cases(), graph_cases(), material_cases(), input_cases(),
+        sheet_cases(), budget_cases(), rest_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

@@ -22,6 +22,7 @@ std::vector<Case> material_cases();
 std::vector<Case> input_cases();
 std::vector<Case> sheet_cases();
 std::vector<Case> budget_cases();
+std::vector<Case> rest_cases();
 
 std::vector<Case> all_cases();
 

@@ -156,6 +156,36 @@ TEST_CASE("a sphere that is moved wakes it") {
   CHECK_FALSE(step(cloth, kDt).asleep);
 }
 
+TEST_CASE(
+    "points that move wake a cloth that sleeps on its anchors, the same points again do not") {
+  for (const double reach : {0., 0.02}) {
+    SceneDescription scene = decaying("hang", 6, 8);
+    for (const std::uint32_t i : scene.fixed)
+      scene.anchors.push_back({.particle = i, .point = scene.positions[i], .max_distance = reach});
+    scene.fixed.clear();
+    std::vector<Vec3> points;
+    for (const Anchor& anchor : scene.anchors) points.push_back(anchor.point);
+    const auto asleep_on_anchors = [&] {
+      Cloth cloth = cloth_of(scene, {.sleep = true});
+      REQUIRE(falls_asleep(cloth, 900));
+      return cloth;
+    };
+    CAPTURE(reach);
+    Cloth cloth = asleep_on_anchors();
+    REQUIRE(cloth.move_anchors(points));
+    CHECK(step(cloth, kDt).asleep);
+    for (Vec3& point : points) point.z += 1e-3;
+    REQUIRE(cloth.move_anchors(points));
+    CHECK_FALSE(step(cloth, kDt).asleep);
+    CHECK(falls_asleep(cloth, 1200));
+    Cloth scaled = asleep_on_anchors(), let_go = asleep_on_anchors();
+    REQUIRE(scaled.scale_anchors(2));
+    CHECK(step(scaled, kDt).asleep == (reach == 0));
+    REQUIRE(let_go.limit_anchor(0, {.max_distance = 1}));
+    CHECK_FALSE(step(let_go, kDt).asleep);
+  }
+}
+
 TEST_CASE("a clone of one that sleeps sleeps, and wakes by itself") {
   Cloth cloth = asleep(), clone = cloth.clone();
   REQUIRE(clone.set_gravity({0, -5, 0}));
