@@ -44,7 +44,8 @@ FormResult measure(const Form& form, int refinements) {
 
 std::vector<Form> all_forms() {
   std::vector<Form> all;
-  for (std::vector<Form>& forms : std::array{membrane_forms(), bending_forms(), motion_forms()})
+  for (std::vector<Form>& forms :
+       std::array{membrane_forms(), bending_forms(), motion_forms(), body_forms()})
     std::ranges::move(forms, std::back_inserter(all));
   return all;
 }

@@ -57,6 +57,7 @@ std::vector<Form> all_forms();
 std::vector<Form> membrane_forms();
 std::vector<Form> bending_forms();
 std::vector<Form> motion_forms();
+std::vector<Form> body_forms();
 
 /// The cloth of a scene on its way by one thread, timed. Throws where weft refuses the scene, the
 /// settings or a step.
