@@ -48,7 +48,8 @@ BodyClock::Box BodyClock::box(std::size_t body, int substeps) const {
   const reference::Placement ends[] = {b.travel.at(share(done_)), b.travel.at(to)};
   Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   for (const Vector corner : shape.corners()) {
-    const double wide = shape.radius() + b.thickness + length(corner) * angle * angle / 8;
+    const double beyond = shape.spread() * b.thickness;
+    const double wide = shape.radius() + beyond + (length(corner) + beyond) * angle * angle / 8;
     for (const reference::Placement& end : ends) {
       const Vector at = end.placed(corner);
       box.low = {std::min(box.low.x, at.x - wide), std::min(box.low.y, at.y - wide),
@@ -58,6 +59,14 @@ BodyClock::Box BodyClock::box(std::size_t body, int substeps) const {
     }
   }
   return box;
+}
+
+double BodyClock::fastest(std::size_t body) const {
+  const BodyShape& shape = *bodies_[body].shape;
+  double farthest = 0;
+  for (const Vector corner : shape.corners()) farthest = std::max(farthest, length(corner));
+  const reference::BodyMotion& motion = motions_[body];
+  return length(motion.velocity) + length(motion.spin) * (farthest + shape.radius());
 }
 
 }  // namespace weft

@@ -24,6 +24,8 @@ class BodyClock {
     kernels::Vector low{}, high{};
   };
   Box box(std::size_t body, int substeps) const;
+  /// m/s: no point of the body is faster in this step; of what has no end, its centre.
+  double fastest(std::size_t body) const;
   int substeps_left() const { return substeps_ - done_; }
   std::size_t bytes() const { return motions_.capacity() * sizeof(motions_[0]); }
 

@@ -1,5 +1,6 @@
 #include "engine/bodies/body_shape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -94,6 +95,45 @@ BodyShape::BodyShape(const reference::Solid& capsule)
     : corners_{capsule.a, capsule.a + capsule.length * capsule.axis},
       radius_(std::max(capsule.radius, capsule.radius - capsule.taper * capsule.length)),
       solid_(capsule) {}
+
+namespace {
+
+/// How far from a corner faces meet that were moved out by 1: at m, where n . m = 1 for three of
+/// the normals n there, and at most 1 for the others.
+double spread_at(const std::vector<Vector>& normals) {
+  constexpr double kRounding = 1e-6;
+  double most = 1;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      for (std::size_t k = 0; k < j; ++k) {
+        const Vector a = normals[i], b = normals[j], c = normals[k];
+        const double volume = dot(a, cross(b, c));
+        if (std::abs(volume) < kRounding) continue;
+        const Vector m = (1 / volume) * (cross(b, c) + cross(c, a) + cross(a, b));
+        const bool is_outmost = std::ranges::all_of(
+            normals, [&](Vector n) { return dot(n, m) <= 1 + kRounding * length(m); });
+        if (is_outmost) most = std::max(most, length(m));
+      }
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+double BodyShape::spread_of(const std::vector<reference::Face>& faces,
+                            const std::vector<Vector>& corners) {
+  double extent = 0, most = 1;
+  for (const Vector corner : corners) extent = std::max(extent, length(corner - corners.front()));
+  for (const Vector corner : corners) {
+    std::vector<Vector> normals;
+    for (const reference::Face& face : faces) {
+      if (dot(face.normal, corner) - face.offset > -1e-9 * extent) normals.push_back(face.normal);
+    }
+    most = std::max(most, spread_at(normals));
+  }
+  return most;
+}
 
 Result<std::shared_ptr<const BodyShape>> build_shape(const ShapeDescription& shape) {
   return std::visit([](const auto& one) { return build(one); }, shape);

@@ -13,7 +13,9 @@ namespace weft {
 class BodyShape {
  public:
   BodyShape(std::vector<reference::Face> faces, std::vector<kernels::Vector> corners)
-      : faces_(std::move(faces)), corners_(std::move(corners)) {
+      : faces_(std::move(faces)),
+        corners_(std::move(corners)),
+        spread_(spread_of(faces_, corners_)) {
     solid_.faces = faces_;
   }
   explicit BodyShape(const reference::Solid& capsule);
@@ -26,11 +28,18 @@ class BodyShape {
   /// Balls of radius() around these hold all of it.
   const std::vector<kernels::Vector>& corners() const { return corners_; }
   double radius() const { return radius_; }
+  /// By as many thicknesses a thickness makes it reach beyond that: faces that are moved out meet
+  /// far beyond a sharp edge.
+  double spread() const { return spread_; }
 
  private:
+  static double spread_of(const std::vector<reference::Face>& faces,
+                          const std::vector<kernels::Vector>& corners);
+
   std::vector<reference::Face> faces_;
   std::vector<kernels::Vector> corners_;
   double radius_ = 0;
+  double spread_ = 1;
   reference::Solid solid_;
 };
 

@@ -106,8 +106,9 @@ inline Gap gap_of(const Solid& s, double thickness, Vector y) {
   return s.faces.empty() ? gap_of_capsule(s, thickness, y) : gap_of_faces(s, thickness, y);
 }
 
-/// The face through which the way from y0 to y1 enters the inside of all; of a way that begins and
-/// ends there the face that is nearest to where it begins.
+/// The face through which the way from y0 to y1 enters the inside of all. Of a way that begins
+/// there it is the face that is nearest to its beginning, where the way leads down from that or
+/// ends inside: what lies on a thin body, by rounding inside, does not leave it by the other side.
 inline Touch touch_faces(const Solid& s, double thickness, Vector y0, Vector y1) {
   double enters = -1, leaves = std::numeric_limits<double>::infinity();
   const Face* entry = nullptr;
@@ -132,13 +133,14 @@ inline Touch touch_faces(const Solid& s, double thickness, Vector y0, Vector y1)
       entry = &face;
     }
   }
-  if (entry == nullptr) return ends_inside ? inside : Touch{};
+  if (entry == nullptr) return ends_inside || inside.gap < nearest ? inside : Touch{};
   if (enters > leaves) return {};
   return {true, entry->normal, dot(entry->normal, y1) - entry->offset - thickness};
 }
 
 /// Of a way that is as long as a quarter of the capsule is thick the first point under the surface
-/// is looked for: a step by the gap never goes too far. Of shorter ways the end is looked at.
+/// is looked for: a step by the gap never goes too far. Of shorter ways the end is looked at, and
+/// of those that begin under the surface and lead out.
 inline Touch touch_capsule(const Solid& s, double thickness, Vector y0, Vector y1) {
   const Gap end = gap_of_capsule(s, thickness, y1);
   const Vector way = y1 - y0;
@@ -146,7 +148,7 @@ inline Touch touch_capsule(const Solid& s, double thickness, Vector y0, Vector y
   const double thin = std::min(s.radius, s.radius - s.taper * s.length) + thickness;
   if (4 * l <= thin) return {end.gap < 0, end.normal, end.gap};
   Gap here = gap_of_capsule(s, thickness, y0);
-  if (here.gap < 0) return {end.gap < 0, end.normal, end.gap};
+  if (here.gap < 0 && dot(here.normal, way) >= 0) return {end.gap < 0, end.normal, end.gap};
   const double near = 1e-6 * thin;
   double at = 0;
   for (int i = 0; i < 64 && here.gap > near; ++i) {

@@ -54,7 +54,8 @@ struct GripLanes {
   p.normal = splat(f.faces[0].to);
 }
 
-/// The face through which a way enters, or, where it begins inside, the one nearest to that.
+/// The face through which a way enters, or, where it begins inside, the one nearest to that: unless
+/// it leads up from that one, and out.
 [[gnu::always_inline]] inline void touch_hull(GripLanes& p, const BodyFrame& f, Floats radius) {
   const Floats none(0.f), far(1e30f);
   Floats enters = none - Floats(1.f), leaves = far, nearest = none - far, nearest_gap = none;
@@ -83,7 +84,8 @@ struct GripLanes {
   const FloatMask began_inside = enters < none;
   p.normal = select(began_inside, last, entry);
   p.gap = xsimd::select(began_inside, nearest_gap, entry_gap);
-  p.near = !outside && ((began_inside && !ends_outside) || (!began_inside && enters <= leaves));
+  const FloatMask stays = !ends_outside || nearest_gap < nearest;
+  p.near = !outside && ((began_inside && stays) || (!began_inside && enters <= leaves));
 }
 
 /// Shortens `along` by what friction may still hold; returns the share.

@@ -6,7 +6,9 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "tools/hard/body_oracle.h"
 #include "tools/hard/oracle.h"
 
 namespace weft::tools::hard {
@@ -19,6 +21,7 @@ struct Trial {
   std::function<double(int step)> varying_dt = {};               ///< instead of dt
   std::function<void(Cloth& cloth, int step)> before_step = {};  ///< moves pins, sets forces
   std::function<void(const Cloth& cloth, int step)> after_step = {};
+  std::vector<TrialBody> bodies = {};
 };
 
 /// Strains and penetrations are the oracle's, never the report's.
@@ -32,8 +35,11 @@ struct Observed {
   int false_claims = 0;  ///< steps said to converge, or an error reported, and it is not so
   bool finite = true;
   double max_strain = 0, end_strain = 0;
-  double max_penetration = 0;
+  double max_penetration = 0, end_penetration = 0;  ///< m, into spheres and bodies
+  bool went_through = false;  ///< a body, by the straight way of a step that does not turn
+  double body_work = 0;       ///< J, as the reports say
   double energy_start = 0, energy_gain = 0, energy_end = 0;  ///< J; gain: the largest over start
+                                                             ///< and the work of bodies
   double most_kinetic = 0, end_kinetic = 0;
   double seconds = 0;  ///< of the processor, in step()
   double longest_seconds = 0;

@@ -42,20 +42,6 @@ void set_turn(float (&to)[9], const BodyMotion& body) {
 
 }  // namespace
 
-/// Where the particles of a block are, and where they are going in an interval.
-struct SimdBodies::Extent {
-  Vector low{}, high{};
-  double reach = 0;  // m, beyond
-
-  Vector middle() const { return 0.5 * (low + high); }
-  double radius() const { return 0.5 * length(high - low) + reach; }
-  bool meets(const BodyClock::Box& box) const {
-    return low.x - reach <= box.high.x && high.x + reach >= box.low.x &&
-           low.y - reach <= box.high.y && high.y + reach >= box.low.y &&
-           low.z - reach <= box.high.z && high.z + reach >= box.low.z;
-  }
-};
-
 void SimdBodies::make_room() {
   if (!layout_.blocks.empty()) return;
   layout_ = make_body_layout(model_, model_.small_steps().places(), far_);
@@ -129,10 +115,9 @@ SimdBodies::Extent SimdBodies::extent_of(std::size_t block, const simd::Flight& 
     return Vector{static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
   };
   constexpr double kRounding = 0x1p-22;
-  const double reach = tuning::kContactReach * std::sqrt(static_cast<double>(longest)) +
-                       static_cast<double>(widest) + kRounding * static_cast<double>(largest) +
-                       contact_tolerance_;
-  return {as_vector(low), as_vector(high), reach};
+  const double reach =
+      static_cast<double>(widest) + kRounding * static_cast<double>(largest) + contact_tolerance_;
+  return {as_vector(low), as_vector(high), reach, std::sqrt(static_cast<double>(longest))};
 }
 
 /// Which blocks may meet which bodies until the next search.
@@ -149,8 +134,18 @@ void SimdBodies::search(const simd::Flight& flight, const float* base) {
     boxes.push_back(clock_.box(body, until_search_));
   const double share = static_cast<double>(until_search_) * h_;
   Vector sum{};
+  extents_.clear();
+  // What a body or the fabric takes along becomes as fast as that, whatever its own way was.
+  double longest = 0;
+  for (std::size_t body = 0; body < boxes.size(); ++body)
+    longest = std::max(longest, share * clock_.fastest(body));
   for (std::uint32_t block = 0; block < layout_.blocks.size(); ++block) {
-    const Extent extent = extent_of(block, flight, base);
+    extents_.push_back(extent_of(block, flight, base));
+    longest = std::max(longest, extents_.back().way);
+  }
+  for (std::uint32_t block = 0; block < layout_.blocks.size(); ++block) {
+    Extent& extent = extents_[block];
+    extent.reach += tuning::kContactReach * longest;
     const Vector middle = extent.middle();
     sum = sum + middle;
     pairs_of_.push_back(static_cast<std::uint32_t>(pairs_.size()));
@@ -343,7 +338,7 @@ std::size_t SimdBodies::bytes() const {
          bytes_of(pairs_) + bytes_of(first_pair_) + bytes_of(pairs_of_) + bytes_of(grips_) +
          bytes_of(touching_) + bytes_of(moved_) + bytes_of(quick_) + bytes_of(weight_) +
          bytes_of(on_) + bytes_of(before_) + bytes_of(held_) + bytes_of(arrived_) +
-         bytes_of(impulses_) + bytes_of(boxes_) + bytes_of(now_);
+         bytes_of(impulses_) + bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_);
 }
 
 }  // namespace weft

@@ -67,7 +67,20 @@ class SimdBodies {
   std::size_t bytes() const;
 
  private:
-  struct Extent;
+  /// Where the particles of a block are, and where they are going in an interval.
+  struct Extent {
+    kernels::Vector low{}, high{};
+    double reach = 0;  // m, beyond
+    double way = 0;    // m, the longest that is predicted
+
+    kernels::Vector middle() const { return 0.5 * (low + high); }
+    double radius() const { return 0.5 * length(high - low) + reach; }
+    bool meets(const BodyClock::Box& box) const {
+      return low.x - reach <= box.high.x && high.x + reach >= box.low.x &&
+             low.y - reach <= box.high.y && high.y + reach >= box.low.y &&
+             low.z - reach <= box.high.z && high.z + reach >= box.low.z;
+    }
+  };
   void make_room();
   void search(const simd::Flight& flight, const float* base);
   Extent extent_of(std::size_t block, const simd::Flight& flight, const float* base) const;
@@ -98,6 +111,7 @@ class SimdBodies {
   std::vector<BodyImpulse> impulses_;                    // before the last search
   double friction_ = 0;                                  // J, likewise
   std::vector<BodyClock::Box> boxes_;                    // scratch
+  std::vector<Extent> extents_;                          // likewise
   std::vector<std::uint16_t> now_;                       // likewise
 };
 

@@ -219,6 +219,23 @@ TEST_CASE("a fast body takes particles along, and nothing passes through it") {
   SUBCASE("a box") { push_particles(backend, box({0.05, 0.2, 0.2})); }
 }
 
+void press_on(Backend backend, const ShapeDescription& shape, double height) {
+  SceneDescription scene;
+  scene.positions = {{0, height - 1e-9, 0}};  // under the surface, by rounding
+  scene.masses = {0.01};
+  scene.gravity = {0, -5000, 0};  // in a substep it would come out on the other side
+  Cloth cloth = cloth_of(scene, small_steps(backend));
+  add(cloth, {.shape = shape_of(shape)});
+  run(cloth, 1.0 / 60, 10);
+  CHECK(cloth.position(0).y > height - 1e-5);
+}
+
+TEST_CASE("what is pressed onto a thin body does not leave it by the other side") {
+  const Backend backend = each_backend();
+  SUBCASE("a plate") { press_on(backend, box({1, 0.01, 1}), 0.006); }
+  SUBCASE("a ball") { press_on(backend, Ball{.radius = 0.01}, 0.011); }
+}
+
 TEST_CASE("friction of a drum that spins drives a particle as fast as its surface") {
   const Backend backend = each_backend();
   SceneDescription scene;
