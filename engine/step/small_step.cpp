@@ -129,6 +129,15 @@ double refinement_for_laws(const State& s, const FramePlan& plan, double beyond,
   return share < tuning::kLittleMended ? std::max(least, s.refinement - kLevel) : s.refinement;
 }
 
+/// Of local passes over everything, in visits of a sweep that take as long.
+double time_of_local_visit(const Model& model) {
+  const auto triangles = static_cast<double>(model.membrane.size());
+  const auto others = static_cast<double>(model.constraints.size() + model.seams.size());
+  if (triangles == 0) return tuning::kLocalVisit;
+  const double time = tuning::kLocalVisitOfTriangle * triangles + tuning::kLocalVisit * others;
+  return time / (triangles + others);
+}
+
 /// The frame that is being done.
 class Frame {
  public:
@@ -138,7 +147,8 @@ class Frame {
         report_(report),
         team_(team),
         edges_(static_cast<std::int64_t>(s.model->constraints.size() + s.model->membrane.size() +
-                                         s.model->seams.size())) {}
+                                         s.model->seams.size())),
+        local_visit_(time_of_local_visit(*s.model)) {}
 
   void begin(const FramePlan& plan) {
     plan_ = plan;
@@ -193,7 +203,7 @@ class Frame {
     if (s_.model->has_contacts()) find_contacts();
     if (mends) {
       count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest)));
-      beyond_ = plan_.passes - passes_left_;
+      beyond_ = mended_;
     } else if (to_tolerance && s_.contacts.count() > 0) {
       count(solver_.repair(s_.contacts, 0));
     }
@@ -305,13 +315,13 @@ class Frame {
   /// Of the passes that are left for each substep to come, and for what the last one leaves.
   double share_of_substep() const {
     const double share = passes_left_ / (plan_.substeps - substeps_done_ + 1);
-    return std::clamp(share, 0.0, kMostOfSubstep);
+    return std::clamp(share, 0.0, most_of_substep());
   }
   /// By whole sweeps: where the last substep has left so much, as under what falls into the cloth,
   /// a share of the tolerance would not carry the load to the pins.
   void put_right() {
     sweep_beyond(0);
-    const double most = std::min(passes_left_, kMostOfSubstep);
+    const double most = std::min(passes_left_, most_of_substep());
     count(solver_.repair_everywhere(s_.contacts, most_visits(most)));
     read_positions();
   }
@@ -319,6 +329,7 @@ class Frame {
     plan_.projects ? solver_.sweep(team_) : solver_.mend(to, team_);
     count_sweep();
     passes_left_ -= 1;
+    mended_ += 1;
   }
   void sweep() {
     solver_.sweep(team_);
@@ -344,7 +355,7 @@ class Frame {
     return std::max(1.0, static_cast<double>(edges_ + s_.contacts.count()));
   }
   std::int64_t most_visits(double passes) const {
-    const double most = passes * visits_of_a_pass() / tuning::kLocalVisit;
+    const double most = passes * visits_of_a_pass() / local_visit_;
     return static_cast<std::int64_t>(std::max(0.0, most));
   }
   void count(const LocalWork& work) {
@@ -353,7 +364,8 @@ class Frame {
     const double beyond = static_cast<double>(work.visits - s_.contacts.count());
     const double passes = std::max(0.0, beyond) / visits_of_a_pass();
     local_passes_ += passes;
-    passes_left_ -= tuning::kLocalVisit * passes;
+    passes_left_ -= local_visit_ * passes;
+    mended_ += tuning::kLocalVisit * passes;
   }
   void read_positions() {
     s_.solved = s_.position;
@@ -412,22 +424,25 @@ class Frame {
     if (passed != kNoIndex) passed_particle = s_.model->ordering.particle_at[passed];
   }
 
+  double most_of_substep() const { return local_visit_ * tuning::kMostVisits; }
+
   State& s_;
   SmallSteps& solver_;
   StepReport& report_;
   Team& team_;
-  static constexpr double kMostOfSubstep = tuning::kLocalVisit * tuning::kMostVisits;
 
   double passes_left_ = 0;    // beyond a sweep for each substep, in the time of sweeps
   double local_passes_ = 0;   // done
   const std::int64_t edges_;  // all constraints, triangles of fabric and seams
   FramePlan plan_;
+  const double local_visit_;  // in visits of a sweep
   int substeps_done_ = 0;
-  int air_every_ = 0;                 // substeps; 0: the air was looked at when the frame began
-  int air_begun_ = 0;                 // of the present part, in substeps
-  double air_work_ = 0;               // J
-  double beyond_ = 0;                 // of the passes, in substeps
-  double give_ = 0;                   // s^2, of a sweep, per mass
+  int air_every_ = 0;    // substeps; 0: the air was looked at when the frame began
+  int air_begun_ = 0;    // of the present part, in substeps
+  double air_work_ = 0;  // J
+  double mended_ = 0;    // beyond a sweep for each substep, any local visit as kLocalVisit
+  double beyond_ = 0;    // of that, in substeps
+  double give_ = 0;      // s^2, of a sweep, per mass
   double elastic_energy_before_ = 0;  // J, in the beginning
 };
 
