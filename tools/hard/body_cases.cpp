@@ -161,11 +161,10 @@ Outcome run_appears(const Setup& setup) {
 }
 
 /// A sheet falls onto a ball.
-Outcome run_far_away(const Setup& setup, double distance, Backend backend) {
-  const Vec3 there{distance, -distance, distance};
+Outcome run_far_away(const Setup& setup) {
+  const Vec3 there{1e4, -1e4, 1e4};
   Trial trial = trial_of(setup, cotton(25, 0.8, there + Vec3{0, 0.25, 0}),
                          {{Ball{.radius = 0.2}, 0.3, stays(there)}});
-  trial.settings.backend = backend;
   trial.steps = setup.steps(180, 40);
   return depth_outcome(observe(trial));
 }
@@ -208,8 +207,7 @@ std::vector<Case> body_cases() {
        [](const Setup& s) {
          return run_spins(s, box({0.4, 0.05, 0.05}));
        }},
-      {"body_1_km_away", [](const Setup& s) { return run_far_away(s, 1e3, Backend::simd); }},
-      {"body_10_km_away", [](const Setup& s) { return run_far_away(s, 1e4, Backend::reference); }},
+      {"body_10_km_away", run_far_away},
       {"body_appears_in_cloth", run_appears},
   };
   std::vector<Case> cases;

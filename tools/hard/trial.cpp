@@ -16,7 +16,7 @@ namespace {
 /// Two computations of one error may round differently.
 constexpr double kRounding = 1e-9;
 /// m: those of bodies are computed in floats.
-constexpr double kRoundingOfBodies = 5e-5;
+constexpr double kRoundingOfBodies = 5e-6;
 /// Of a body's thickness: what goes deeper than that below its own surface was on the way through.
 constexpr double kDeep = 2;
 

@@ -167,7 +167,8 @@ void SimdBodies::search(const simd::Flight& flight, const float* base) {
   grips_.assign(pairs_.size(), {});
   for (auto* bits : {&touching_, &moved_, &quick_}) bits->assign(pairs_.size(), 0);
   const Vector middle = (1 / static_cast<double>(layout_.blocks.size())) * sum;
-  const auto rounded = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  constexpr double kGrid = 0x1p-6;  // m: floats hold its multiples up to 262 km
+  const auto rounded = [](double x) { return kGrid * std::round(x / kGrid); };
   origin_ = {rounded(middle.x), rounded(middle.y), rounded(middle.z)};
 }
 
