@@ -64,9 +64,10 @@ struct BodyMotion {
   Vector velocity_at(Vector x) const { return velocity + cross(spin, x - to.centre); }
 };
 
-/// m, per second, and s: what is under the surface comes out at this speed, and by its depth in
-/// this time, whichever is faster.
-inline constexpr double kRecovery = 0.05, kRecoveryTime = 3e-3;
+/// What is under the surface comes out at the speed kRecovery + depth / kRecoveryTime, but not
+/// faster than kFastestRecovery.
+inline constexpr double kRecovery = 0.05, kFastestRecovery = 0.5;  // m/s
+inline constexpr double kRecoveryTime = 3e-3;                      // s
 
 /// The surface where a particle touches it, in coordinates of the world.
 struct Touch {
@@ -206,7 +207,7 @@ inline Gripped grip(const BodyMotion& body, Vector start, Vector x, Vector v, do
   const Vector n = touch.normal;
   const Vector slip = slip_of(body, start, x);
   const double approach = -dot(n, slip), began = touch.gap + approach;
-  const double comes_out = body.h * (kRecovery - began / kRecoveryTime);
+  const double comes_out = body.h * std::min(kFastestRecovery, kRecovery - began / kRecoveryTime);
   const double target = std::min(0.0, began < 0 ? began + comes_out : 0.0);
   const double push = target - touch.gap;
   if (!(push > 0)) return gripped;

@@ -4,6 +4,7 @@
 /// are left to the reference.
 #pragma once
 
+#include "kernels/reference/bodies.h"
 #include "kernels/simd/in_rows.h"
 
 namespace weft::simd {
@@ -124,7 +125,11 @@ template <class At>
 /// m, along the normal; 0 where nothing is to be done.
 [[gnu::always_inline]] inline Floats push_of(const GripLanes& p, Floats approach, float h) {
   const Floats none(0.f), began = p.gap + approach;
-  const Floats comes_out = Floats(h) * fused_from(Floats(1 / 3e-3f), began, Floats(0.05f));
+  using reference::kFastestRecovery, reference::kRecovery, reference::kRecoveryTime;
+  const Floats speed = fused_from(Floats(static_cast<float>(1 / kRecoveryTime)), began,
+                                  Floats(static_cast<float>(kRecovery)));
+  const Floats comes_out =
+      Floats(h) * xsimd::min(speed, Floats(static_cast<float>(kFastestRecovery)));
   const Floats target = xsimd::select(began < none, xsimd::min(none, began + comes_out), none);
   return xsimd::select(p.near, xsimd::max(none, target - p.gap), none);
 }

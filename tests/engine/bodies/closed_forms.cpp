@@ -236,6 +236,29 @@ TEST_CASE("what is pressed onto a thin body does not leave it by the other side"
   SUBCASE("a ball") { press_on(backend, Ball{.radius = 0.01}, 0.011); }
 }
 
+TEST_CASE("cloth that a body appears in comes out slowly, and is at rest then") {
+  const MeshCloth sheet = sheet_on_incline(12, 0, 0.05);
+  SceneDescription scene = sheet.scene;
+  scene.gravity = {0, 0, 0};
+  Cloth cloth = cloth_of(scene, small_steps(each_backend()));
+  add(cloth, {.shape = shape_of(box({2, 0.2, 2})), .thickness = 0});
+  double fastest = 0;
+  std::vector<Vec3> before = positions(cloth);
+  for (int i = 0; i < 60; ++i) {
+    const StepReport report = step(cloth, 1.0 / 60);
+    CHECK(report.energy_lost > -1e-6);
+    const std::vector<Vec3> now = positions(cloth);
+    fastest = std::max(fastest, 60 * largest_distance(before, now));
+    before = now;
+  }
+  CHECK(fastest < 0.51);
+  CHECK(cloth.max_penetration() < 1e-6);
+  for (std::uint32_t i = 0; i < before.size(); ++i) {
+    CHECK(std::abs(before[i].y - 0.1) < 2e-4);  // its way out is a part of its past
+    CHECK(length(cloth.velocity(i)) < 1e-4);
+  }
+}
+
 TEST_CASE("friction of a drum that spins drives a particle as fast as its surface") {
   const Backend backend = each_backend();
   SceneDescription scene;
