@@ -3,24 +3,14 @@
 
 #include <weft/weft.h>
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "tools/json_output.h"
-#include "tools/pin_moves.h"
+#include "tools/scene_body.h"
 
 namespace weft::tools {
-
-/// A body that begins at a pose and moves as pins do: x goes to where place_at() takes it.
-struct SceneBody {
-  ShapeDescription shape;
-  Pose pose{};
-  double thickness = Body{}.thickness;  ///< m
-  double friction = Body{}.friction;
-  std::optional<PinMove> move = {};  ///< of no particles
-};
 
 Pose pose_at(const SceneBody& body, double time);
 

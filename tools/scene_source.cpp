@@ -132,9 +132,11 @@ Result<SceneSource> load_built_in(const SceneOptions& options) {
   values.material = cloth.value().material;
   auto made = scenes::make_scene(options.scene, values);
   if (!made) return Error{made.error()};
-  auto& [description, mesh] = made.value();
+  auto& [description, mesh, bodies] = made.value();
   if (auto blown = blow(cloth.value().wind, description); !blown) return Error{blown.error()};
-  return SceneSource{options.scene, std::move(description), std::move(mesh)};
+  SceneSource source{options.scene, std::move(description), std::move(mesh)};
+  source.bodies = std::move(bodies);
+  return source;
 }
 
 Result<SceneSource> load_scene_file(const SceneOptions& options) {

@@ -8,6 +8,13 @@ namespace weft {
 
 using kernels::Vector;
 
+namespace {
+
+/// s, in which what is under a surface comes out wherever it is.
+constexpr double kAtOnce = 1e6;
+
+}  // namespace
+
 void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands) {
   bodies_ = bodies;
   h_ = h;
@@ -24,7 +31,7 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int subs
                    .spin = per_second * body.travel.turn(),
                    .thickness = body.thickness,
                    .friction = stands ? 0 : body.friction,
-                   .h = h};
+                   .h = stands ? kAtOnce : h};
   }
 }
 

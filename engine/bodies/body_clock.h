@@ -11,7 +11,8 @@ namespace weft {
 
 class BodyClock {
  public:
-  /// stands: bodies stay where they begin, and have no friction.
+  /// stands: bodies stay where they begin, have no friction, and what is under their surface comes
+  /// out at once. So positions are put right that were given.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands);
   /// To the next substep.
   void advance();

@@ -40,10 +40,13 @@ TEST_CASE("the list names what make() makes") {
     names += std::string(scene.name) + " ";
   }
   CHECK(names ==
-        "hang hang_sphere sphere_drop corners banner four_pins cape chain flag drape tunic skirt ");
+        "hang hang_sphere sphere_drop corners banner four_pins cape chain flag drape table tunic "
+        "skirt mannequin ");
 }
 
-bool is_sewn(std::string_view name) { return name == "tunic" || name == "skirt"; }
+bool is_sewn(std::string_view name) {
+  return name == "tunic" || name == "skirt" || name == "mannequin";
+}
 
 void check_at_rest(const SceneDescription& scene) {
   for (const Constraint& c : scene.constraints) {
@@ -61,7 +64,8 @@ TEST_CASE("every edge of what is not sewn starts at its rest length, and every m
       const SceneDescription description = made(scene.name, {.size = size});
       check_at_rest(description);
       const double rest = scene.name == "chain" ? 0.01 : 1.0 / (size - 1);
-      const bool is_mesh = scene.name == "cape" || scene.name == "flag" || scene.name == "drape";
+      const bool is_mesh = scene.name == "cape" || scene.name == "flag" || scene.name == "drape" ||
+                           scene.name == "table";
       for (const Constraint& c : description.constraints) {
         REQUIRE((c.rest_length == rest || is_mesh));
         REQUIRE(c.kind == ConstraintKind::distance);
@@ -260,7 +264,7 @@ TEST_CASE("the mesh of a scene is its faces; that of a chain is its line") {
     CAPTURE(std::string(entry.name));
     const auto scene = scenes::make_scene(entry.name, {.size = 11});
     REQUIRE(scene);
-    const auto& [description, mesh] = scene.value();
+    const auto& [description, mesh, bodies] = scene.value();
     const bool is_chain = entry.name == "chain";
     CHECK(mesh.vertices.size() == (is_chain ? 11 : 121));
     CHECK(mesh.faces.empty() == is_chain);

@@ -159,6 +159,7 @@ Result<Scene> cloth_of(const Layout& layout, const Options& options) {
   Scene& scene = made.value();
   scene.mesh.vertices = layout.start;
   scene.mesh.faces = layout.faces;
+  scene.bodies = layout.bodies;
   if (layout.sphere) add_sphere(*layout.sphere, scene.description);
   return made;
 }

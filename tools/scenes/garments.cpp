@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <set>
 #include <utility>
 
 namespace weft::scenes {
@@ -35,6 +37,7 @@ constexpr TunicEdge kSewn[] = {kRightSide, kRightUnderarm, kRightSleeve, kRightP
                                kLeftNeck,  kLeftPeg,       kLeftSleeve,  kLeftUnderarm, kLeftSide};
 
 Point mirrored(Point p) { return {-p.x, p.y}; }
+double distance(Point a, Point b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 /// Body and sleeves are of one piece. m, above the floor that its wearer stands on.
 Panel tunic_panel(double neckline_depth) {
@@ -60,17 +63,35 @@ Panel tunic_panel(double neckline_depth) {
           bent(mirrored(armpit), mirrored(waist), mirrored(hem))};
 }
 
+/// The nearest of some vertices of a panel, kNoIndex if there is none.
+std::uint32_t nearest_of(const CutPattern& cut, std::size_t v,
+                         const std::vector<std::uint32_t>& vertices) {
+  std::uint32_t nearest = kNoIndex;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t other : vertices) {
+    const double away = distance(cut.flat[v], cut.flat[other]);
+    if (cut.panel[other] != cut.panel[v] || away >= least) continue;
+    least = away;
+    nearest = other;
+  }
+  return nearest;
+}
+
+std::vector<std::uint32_t> sewn_vertices(const CutPattern& cut) {
+  std::vector<std::uint32_t> sewn;
+  for (const auto& edges : cut.edges) {
+    for (const TunicEdge edge : kSewn)
+      sewn.insert(sewn.end(), edges[edge].begin(), edges[edge].end());
+  }
+  return sewn;
+}
+
 /// m, from each vertex to the nearest one of its panel that is sewn.
 std::vector<double> distances_to_seams(const CutPattern& cut) {
-  std::vector<double> distances(cut.flat.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t v = 0; v < cut.flat.size(); ++v) {
-    for (const TunicEdge edge : kSewn) {
-      for (const std::uint32_t sewn : cut.edges[cut.panel[v]][edge]) {
-        const Point a = cut.flat[v], b = cut.flat[sewn];
-        distances[v] = std::min(distances[v], std::hypot(a.x - b.x, a.y - b.y));
-      }
-    }
-  }
+  const std::vector<std::uint32_t> sewn = sewn_vertices(cut);
+  std::vector<double> distances;
+  for (std::size_t v = 0; v < cut.flat.size(); ++v)
+    distances.push_back(distance(cut.flat[v], cut.flat[nearest_of(cut, v, sewn)]));
   return distances;
 }
 
@@ -82,6 +103,31 @@ std::vector<Vec3> laid_flat(const CutPattern& cut) {
   for (std::size_t v = 0; v < cut.flat.size(); ++v) {
     const double away = kHalfGap * std::min(1.0, distances[v] / kRamp);
     start.push_back({cut.flat[v].x, cut.flat[v].y, cut.panel[v] == kFront ? away : -away});
+  }
+  return start;
+}
+
+/// Like a pillow: its sides are quarters of a circle, for which seams come inwards, so that what
+/// leads across them keeps its length.
+std::vector<Vec3> laid_around(const CutPattern& cut) {
+  constexpr double kRadius = 0.055, kRound = kRadius * std::numbers::pi / 2;  // m
+  const std::vector<std::uint32_t> sewn = sewn_vertices(cut);
+  std::vector<std::uint32_t> inner(cut.flat.size());
+  std::iota(inner.begin(), inner.end(), 0u);
+  const std::set<std::uint32_t> border(sewn.begin(), sewn.end());
+  std::erase_if(inner, [&](std::uint32_t v) { return border.contains(v); });
+  std::vector<Vec3> start;
+  for (std::uint32_t v = 0; v < cut.flat.size(); ++v) {
+    const bool is_sewn = border.contains(v);
+    const Point here = cut.flat[v];
+    const Point other = cut.flat[nearest_of(cut, v, is_sewn ? inner : sewn)];
+    const double apart = distance(here, other), from_seam = is_sewn ? 0 : apart;
+    const double angle = std::min(from_seam, kRound) / kRadius;
+    const double inwards = kRound - kRadius * angle - kRadius * std::cos(angle);
+    const double share = (is_sewn ? inwards : -inwards) / apart;
+    const double away = kRadius * std::sin(angle);
+    start.push_back({here.x + share * (other.x - here.x), here.y + share * (other.y - here.y),
+                     cut.panel[v] == kFront ? away : -away});
   }
   return start;
 }
@@ -141,6 +187,15 @@ Layout layout_of(const CutPattern& cut, std::vector<Vec3> start) {
   return layout;
 }
 
+/// Outside is outside on the back, too.
+Layout tunic_layout(const CutPattern& cut, std::vector<Vec3> start) {
+  Layout layout = layout_of(cut, std::move(start));
+  for (Face& face : layout.faces) {
+    if (cut.panel[face[0]] == kBack) std::swap(face[1], face[2]);
+  }
+  return layout;
+}
+
 void pin_edge(const CutPattern& cut, PanelEdge edge, Layout& layout) {
   const auto& vertices = cut.edges[edge.panel][edge.edge];
   layout.pins.insert(layout.pins.end(), vertices.begin(), vertices.end());
@@ -163,14 +218,17 @@ Pattern skirt_pattern() {
   return pattern;
 }
 
+Result<Layout> worn_tunic(const Options& options) {
+  auto made = cut_for(tunic_pattern(), options);
+  if (!made) return Error{made.error()};
+  return tunic_layout(made.value(), laid_around(made.value()));
+}
+
 Result<Layout> tunic(const Options& options) {
   auto made = cut_for(tunic_pattern(), options);
   if (!made) return Error{"tunic: " + made.error()};
   const CutPattern& cut = made.value();
-  Layout layout = layout_of(cut, laid_flat(cut));
-  for (Face& face : layout.faces) {  // outside is outside on the back, too
-    if (cut.panel[face[0]] == kBack) std::swap(face[1], face[2]);
-  }
+  Layout layout = tunic_layout(cut, laid_flat(cut));
   pin_edge(cut, {kFront, kRightPeg}, layout);
   pin_edge(cut, {kFront, kLeftPeg}, layout);
   return layout;

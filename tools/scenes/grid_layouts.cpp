@@ -166,4 +166,14 @@ Layout drape(const Options& options) {
   return layout;
 }
 
+Layout table(const Options& options) {
+  constexpr double kHeight = 1e-3, kCovered = 0.4, kTable = 1;  // m
+  Layout layout = level_sheet(options.size);
+  for (Vec3& x : layout.start) x.y = kHeight;
+  layout.bodies.push_back({.shape = box({kTable, kTable, 1.4}),
+                           .pose = {.position = {kCovered - kTable / 2, -kTable / 2, 0.5}},
+                           .friction = 0.2});
+  return layout;
+}
+
 }  // namespace weft::scenes

@@ -15,5 +15,6 @@ Layout banner(const Options& options);
 Layout four_pins(const Options& options);
 Layout flag(const Options& options);
 Layout drape(const Options& options);
+Layout table(const Options& options);
 
 }  // namespace weft::scenes

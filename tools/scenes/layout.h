@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "tools/scene_body.h"
 #include "tools/scenes/irregular_mesh.h"
 
 namespace weft::scenes {
@@ -37,6 +38,7 @@ struct Layout {
   std::optional<Grid> grid;    ///< whose vertices these are: its edges have one length
   std::optional<Ball> sphere;  ///< a particle after those of the cloth
   Vec3 wind;                   ///< m/s; only cloth of a material feels it
+  std::vector<tools::SceneBody> bodies;
 };
 
 }  // namespace weft::scenes

@@ -14,6 +14,7 @@
 #include "tools/scenes/garments.h"
 #include "tools/scenes/grid_layouts.h"
 #include "tools/scenes/irregular_mesh.h"
+#include "tools/scenes/mannequin.h"
 
 namespace weft::scenes {
 namespace {
@@ -118,7 +119,7 @@ struct Entry {
   Result<Scene> (*make)(const Options&);
 };
 
-constexpr std::array<Entry, 12> kEntries{{
+constexpr std::array<Entry, 14> kEntries{{
     {{"hang", "a sheet with one fixed side swings down"}, 2, anything, cloth<hang>},
     {{"hang_sphere", "the same, swinging into a fixed sphere"}, 2, anything, cloth<hang_sphere>},
     {{"sphere_drop", "a heavy sphere drops into a sagging sheet"},
@@ -135,11 +136,16 @@ constexpr std::array<Entry, 12> kEntries{{
     {{"chain", "a line of particles with a heavy end"}, 2, check_chain, chain},
     {{"flag", "a sheet of cotton flies from a pole", true}, 2, anything, cloth<flag>},
     {{"drape", "a sheet of cotton falls over a fixed sphere", true}, 2, anything, cloth<drape>},
+    {{"table", "a sheet of cotton slides off a table", true}, 3, anything, cloth<table>},
     {{"tunic", "a sewn tunic of cotton hangs from two pegs", true}, 20, anything, garment<tunic>},
     {{"skirt", "a flared skirt of cotton falls from its waist", true},
      20,
      anything,
      garment<skirt>},
+    {{"mannequin", "a tunic of cotton on a body that walks", true},
+     20,
+     anything,
+     garment<mannequin>},
 }};
 
 constexpr auto kList = [] {

@@ -35,6 +35,10 @@
 ///              along shoulders, sleeves and sides (garments.cpp has the pattern, 0.9 m wide and
 ///              0.7 long). Vertices are about 1/(N-1) m apart. It hangs from 8 cm of each shoulder;
 ///              of cotton if no material is given.
+/// table        (i, j) at (i L, 0.001, j L), of cotton if no material is given: a sheet that lies
+/// on
+///              the top of a box of which it covers 0.4 m, and slides off its edge; friction 0.2.
+/// mannequin    The tunic, worn by a body of capsules that begins to walk after a second, 1 m/s.
 /// skirt        Likewise: a front and a back that make up a cone, 0.45 m long; its waist is fixed.
 #pragma once
 
@@ -43,8 +47,10 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "tools/mesh.h"
+#include "tools/scene_body.h"
 
 namespace weft::scenes {
 
@@ -67,13 +73,14 @@ struct BuiltIn {
   bool is_fabric = false;  ///< it always has a material
 };
 
-/// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain, flag, drape, tunic,
-/// skirt.
+/// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain, flag, drape, table,
+/// tunic, skirt, mannequin.
 std::span<const BuiltIn> list();
 
 struct Scene {
   SceneDescription description;
   tools::Mesh mesh;  ///< what pictures show: vertices and faces, or the lines of a chain
+  std::vector<tools::SceneBody> bodies = {};
 };
 
 /// An unknown name or an option out of range is an error.

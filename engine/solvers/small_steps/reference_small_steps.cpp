@@ -159,6 +159,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     v_before_.set(i, past_.v_before[i] + jump);
     before_.set(i, x[i] - (past_.moved[i] + past_.h * jump));
   }
+  if (projects_) bodies_.advance(1);
   next_formula_ = formula_after(has_past_ ? past_.h : h);
 }
 

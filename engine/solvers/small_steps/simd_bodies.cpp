@@ -221,7 +221,7 @@ simd::BodyHold SimdBodies::hold_of(const simd::Flight& flight, const float* base
           .frames = frames_.data(),
           .woven = model_.small_steps().places().woven(),
           .rate = rate,
-          .h = static_cast<float>(h_)};
+          .h = static_cast<float>(clock_.motions().front().h)};
 }
 
 void SimdBodies::hold(const simd::Flight& flight, const float* base, float rate, Team& team) {

@@ -219,6 +219,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   });
   write_acceleration(gravity, force);
   begin_past(team);
+  if (projects_) bodies_.advance(flight(), base_.data(), 1);
   next_formula_ = formula_after(has_past_ ? past_.h : h_);
   weights_.last.rate = 0;
 }

@@ -1,0 +1,14 @@
+/// The built-in scene of a tunic on a body that walks (scenes.h).
+#pragma once
+
+#include <weft/result.h>
+
+#include "tools/scenes/layout.h"
+#include "tools/scenes/scenes.h"
+
+namespace weft::scenes {
+
+/// The error says what is too coarse.
+Result<Layout> mannequin(const Options& options);
+
+}  // namespace weft::scenes
