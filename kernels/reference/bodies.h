@@ -66,8 +66,8 @@ struct BodyMotion {
 
 /// What is under the surface comes out at the speed kRecovery + depth / kRecoveryTime, but not
 /// faster than kFastestRecovery.
-inline constexpr double kRecovery = 0.05, kFastestRecovery = 0.5;  // m/s
-inline constexpr double kRecoveryTime = 3e-3;                      // s
+inline constexpr double kRecovery = 0.05, kFastestRecovery = 2;  // m/s
+inline constexpr double kRecoveryTime = 3e-3;                    // s
 
 /// The surface where a particle touches it, in coordinates of the world.
 struct Touch {
@@ -184,6 +184,7 @@ struct Grip {
 
 struct Gripped {
   bool is_touching = false;
+  Vector start{};       // where the substep began, moved by what came out: no speed is gained by it
   Vector x{}, v{};      // where it is, and its velocity there
   Vector normal{};      // of the surface
   double push = 0;      // m
@@ -202,7 +203,7 @@ inline double held_share(double along, double may, double& held) {
 inline Gripped grip(const BodyMotion& body, Vector start, Vector x, Vector v, double radius,
                     Grip& done) {
   const Touch touch = find_touch(body, start, x, radius);
-  Gripped gripped{.x = x, .v = v};
+  Gripped gripped{.start = start, .x = x, .v = v};
   if (!touch.is_near) return gripped;
   const Vector n = touch.normal;
   const Vector slip = slip_of(body, start, x);
@@ -211,7 +212,9 @@ inline Gripped grip(const BodyMotion& body, Vector start, Vector x, Vector v, do
   const double target = std::min(0.0, began < 0 ? began + comes_out : 0.0);
   const double push = target - touch.gap;
   if (!(push > 0)) return gripped;
-  done.pushed += std::min(push, std::max(0.0, approach));
+  const double stays_out = std::min(push, std::max(0.0, approach));
+  done.pushed += stays_out;
+  gripped.start = start + (push - stays_out) * n;
   const Vector along = slip + approach * n;
   const double held = held_share(length(along), body.friction * done.pushed, done.held);
   gripped.x = x + push * n - held * along;

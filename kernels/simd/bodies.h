@@ -161,7 +161,8 @@ template <class At>
     const Floats push = push_of(p, approach, h.h);
     const FloatMask on = push > none;
     if (bits(on) == 0) continue;
-    const Floats pushed = load(grips.pushed + lane) + xsimd::min(push, xsimd::max(none, approach));
+    const Floats stays_out = xsimd::min(push, xsimd::max(none, approach));
+    const Floats pushed = load(grips.pushed + lane) + stays_out;
     Floats held = load(grips.held + lane);
     FloatVector along = fused(approach, p.normal, p.slip);
     const Floats share =
@@ -200,6 +201,9 @@ template <class At>
 
     FloatVector to = u + by;
     at.put(flight.u, block.place, lane, select(on, to, u));
+    FloatVector before = at.get(flight.u_before, block.place, lane);
+    FloatVector start = fused(push - stays_out, p.normal, before);
+    at.put(flight.u_before, block.place, lane, select(on, start, before));
     at.put(flight.predicted, block.place, lane, select(on, to, predicted));
     at.put(flight.v, block.place, lane, select(on, v + change, v_before));
     touching |= bits(on) << lane;

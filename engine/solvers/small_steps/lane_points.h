@@ -20,7 +20,7 @@ struct LanePoints {
   const float* base;
   float* u;
   float* predicted;
-  const float* u_start;
+  float* u_start;
   std::vector<std::uint32_t>& touched;
   const std::vector<std::uint32_t>& multiplier_place;
   float* multipliers;
@@ -95,6 +95,13 @@ struct LanePoints {
       at += places.stride;
     }
   }
+  void put_start(std::uint32_t slot, kernels::Vector position) const {
+    std::size_t at = places.of(slot);
+    for (const double to : {position.x, position.y, position.z}) {
+      u_start[at] = static_cast<float>(to - static_cast<double>(base[at]));
+      at += places.stride;
+    }
+  }
   void hold(std::uint32_t slot, std::uint32_t anchor) const {
     const reference::Held held = anchors.hold(anchor, place(u, slot), settled(slot));
     if (held.is_at_limit) put(slot, held.x, held.v);
@@ -103,6 +110,7 @@ struct LanePoints {
     SimdBodies::Particle particle{place(u_start, slot), place(u, slot), settled(slot)};
     if (!bodies->hold(slot, particle)) return;
     put(slot, particle.x, particle.v);
+    put_start(slot, particle.start);
     if (bodies->begins_to_touch(slot)) arrived.push_back(slot);
   }
   void push(std::uint32_t slot, kernels::Vector by) const {

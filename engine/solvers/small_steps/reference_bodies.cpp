@@ -26,7 +26,7 @@ void ReferenceBodies::advance(double part) {
   on_.assign(model_.slots(), false);
 }
 
-bool ReferenceBodies::hold(std::uint32_t slot, Vector start, Vector& x, Vector& v) {
+bool ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& x, Vector& v) {
   bool is_touching = false;
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
     const reference::BodyMotion& body = clock_.motions()[i];
@@ -38,6 +38,7 @@ bool ReferenceBodies::hold(std::uint32_t slot, Vector start, Vector& x, Vector& 
     impulses_[i].linear = impulses_[i].linear + impulse;
     impulses_[i].angular = impulses_[i].angular + cross(gripped.x - body.to.centre, impulse);
     friction_ += 0.5 * momentum * gripped.friction;
+    start = gripped.start;
     x = gripped.x;
     v = gripped.v;
     is_touching = true;

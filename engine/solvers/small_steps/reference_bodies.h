@@ -25,7 +25,7 @@ class ReferenceBodies {
   void advance(double part);
   /// Moves a particle that went from start to x, with the velocity v there. Returns whether it
   /// touches a body.
-  bool hold(std::uint32_t slot, kernels::Vector start, kernels::Vector& x, kernels::Vector& v);
+  bool hold(std::uint32_t slot, kernels::Vector& start, kernels::Vector& x, kernels::Vector& v);
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
   const Touching& touching() const { return on_; }

