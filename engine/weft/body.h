@@ -1,16 +1,22 @@
 /// Bodies that cloth lies on, slides over and is pushed by: the caller moves them. Part of weft.h.
 ///
-///   auto leg = weft::build_shape(weft::Capsule{.a = {0, 0.5, 0}, .radius_a = 0.09, .radius_b =
-///   0.06}); auto id = cloth.add_body({.shape = leg.value(), .pose = hip, .friction = 0.4});
-///   cloth.move_body(id.value(), next_hip);  // it travels there during the next step
+///   auto leg = weft::build_shape(weft::Capsule{hip, knee, 0.09, 0.06});  // m, in its coordinates
+///
+///   auto id = cloth.add_body({.shape = leg.value(), .pose = pose, .friction = 0.4});
+///
+///   cloth.move_body(id.value(), next_pose);  // it travels there during the next step
+///
 ///   auto report = cloth.step(1.0 / 60);
+///
 ///   weft::BodyLoad load = cloth.body_load(id.value()).value();  // what the cloth did to it
 ///
 /// Each particle is kept at the thickness from the surface, by a contact in closed form in every
 /// substep, with Coulomb friction of the same substep. Bodies are solid: a particle that is inside
-/// when a step begins comes out slowly and gains no speed. What would pass through a body within a
-/// substep is stopped. Edges and corners of a body between the particles of a coarse cloth are not
-/// seen. Solver small_steps only; `automatic` chooses it when the first body is added.
+/// when a step begins comes out by 2 m/s at most and gains no speed. What would pass through a body
+/// within a substep is stopped, if it was near enough when particles were last looked for: every
+/// 2 ms, by the ways that are predicted (tests/README.md has what outruns that). Edges and corners
+/// of a body between the particles of a coarse cloth are not seen. Solver small_steps only;
+/// `automatic` chooses it when the first body is added.
 #pragma once
 
 #include <weft/result.h>

@@ -65,7 +65,8 @@ struct BodyMotion {
 };
 
 /// What is under the surface comes out at the speed kRecovery + depth / kRecoveryTime, but not
-/// faster than kFastestRecovery.
+/// faster than kFastestRecovery. By 0.5 m/s what was found late stayed deep for a frame (3 mm, of a
+/// ball at 10 m/s); without a limit cloth 30 cm deep was thrown out at 100 m/s.
 inline constexpr double kRecovery = 0.05, kFastestRecovery = 2;  // m/s
 inline constexpr double kRecoveryTime = 3e-3;                    // s
 
