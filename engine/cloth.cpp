@@ -151,13 +151,16 @@ Cloth Cloth::clone() const {
 }
 
 Result<void> Cloth::copy_state(const Cloth& from) {
-  if (from.impl_->model == impl_->model) {
-    impl_->copy(*from.impl_);
-    return {};
-  }
   if (!are_related(*from.impl_->model, *impl_->model)) {
     return Error{"from: is a cloth of another model (" + std::to_string(from.particle_count()) +
                  " particles)"};
+  }
+  if (from.impl_->bodies.any()) {
+    if (auto prepared = prepare_for_bodies(); !prepared) return prepared;
+  }
+  if (from.impl_->model == impl_->model) {
+    impl_->copy(*from.impl_);
+    return {};
   }
   auto changed = impl_->of(from.impl_->model);
   if (!changed) return Error{changed.error()};
@@ -321,13 +324,17 @@ Result<void> Cloth::scale_anchors(double scale) {
   return {};
 }
 
+Result<void> Cloth::prepare_for_bodies() {
+  if (impl_->settings.solver == Solver::small_steps) return {};
+  auto changed = impl_->by_small_steps();
+  if (!changed) return Error{changed.error()};
+  impl_ = std::move(changed).value();
+  return {};
+}
+
 Result<std::uint32_t> Cloth::add_body(const Body& body) {
   if (auto valid = validate(body); !valid) return Error{valid.error()};
-  if (impl_->settings.solver != Solver::small_steps) {
-    auto changed = impl_->by_small_steps();
-    if (!changed) return Error{changed.error()};
-    impl_ = std::move(changed).value();
-  }
+  if (auto prepared = prepare_for_bodies(); !prepared) return Error{prepared.error()};
   impl_->rest.wake();
   return impl_->bodies.add(body);
 }

@@ -70,7 +70,7 @@ std::span<const TravellingBody> Bodies::travelling(double friction_of_cloth) {
     const Entry& entry = bodies_[id];
     if (entry.shape == nullptr || !entry.is_on) continue;
     travelling_.push_back({.id = id,
-                           .shape = entry.shape.get(),
+                           .shape = entry.shape,
                            .travel = PoseTravel(entry.from, entry.to),
                            .thickness = entry.thickness,
                            .friction = std::sqrt(entry.friction * friction_of_cloth)});
@@ -79,7 +79,7 @@ std::span<const TravellingBody> Bodies::travelling(double friction_of_cloth) {
 }
 
 bool Bodies::any() const {
-  return std::ranges::any_of(bodies_, [](const Entry& e) { return e.shape != nullptr && e.is_on; });
+  return std::ranges::any_of(bodies_, [](const Entry& e) { return e.shape != nullptr; });
 }
 
 bool Bodies::moving() const {

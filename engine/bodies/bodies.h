@@ -16,7 +16,7 @@ namespace weft {
 /// A body that is there in a step.
 struct TravellingBody {
   std::uint32_t id = 0;
-  const BodyShape* shape = nullptr;
+  std::shared_ptr<const BodyShape> shape;
   PoseTravel travel;
   double thickness = 0;
   double friction = 0;  // with the cloth
@@ -42,6 +42,7 @@ class Bodies {
 
   /// Those that are there; valid until one is changed.
   std::span<const TravellingBody> travelling(double friction_of_cloth);
+  /// Whether there is one, on or off.
   bool any() const;
   /// Whether one of them is under way, or was in the last step, or there are other ones.
   bool moving() const;

@@ -16,7 +16,7 @@ constexpr double kAtOnce = 1e6;
 }  // namespace
 
 void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands) {
-  bodies_ = bodies;
+  bodies_.assign(bodies.begin(), bodies.end());
   h_ = h;
   substeps_ = substeps;
   done_ = 0;

@@ -28,14 +28,16 @@ class BodyClock {
   /// m/s: no point of the body is faster in this step; of what has no end, its centre.
   double fastest(std::size_t body) const;
   int substeps_left() const { return substeps_ - done_; }
-  std::size_t bytes() const { return motions_.capacity() * sizeof(motions_[0]); }
+  std::size_t bytes() const {
+    return motions_.capacity() * sizeof(motions_[0]) + bodies_.capacity() * sizeof(bodies_[0]);
+  }
 
  private:
   double share(int substeps) const {
     return stands_ ? 0 : static_cast<double>(substeps) / substeps_;
   }
 
-  std::span<const TravellingBody> bodies_;
+  std::vector<TravellingBody> bodies_;  // their own: contacts are read when bodies may be gone
   std::vector<reference::BodyMotion> motions_;
   double h_ = 0;
   int substeps_ = 1, done_ = 0;

@@ -322,6 +322,7 @@ class WEFT_API Cloth {
  private:
   struct Impl;
   explicit Cloth(std::unique_ptr<Impl> impl);
+  Result<void> prepare_for_bodies();
   std::unique_ptr<Impl> impl_;
 };
 
