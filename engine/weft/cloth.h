@@ -191,10 +191,11 @@ class WEFT_API Cloth {
   /// A second cloth of the same model and settings, which continues bit for bit as this one does.
   Cloth clone() const;
   /// Takes over from `from`, a cloth of the same Model or of one that changes made of the same:
-  /// that model, state, forces, gravity, wind, pending pin moves, and the solver's memory of its
-  /// last steps. This cloth keeps its own settings, and refuses what they do not go with. If
-  /// solver, scheme, backend, iterations or a tolerance (but for velocity_tolerance) differ, that
-  /// memory is dropped, and positions out of tolerance are projected as if newly written.
+  /// that model, state, forces, gravity, wind, pending pin moves, bodies (which make an automatic
+  /// solver small_steps), and the solver's memory of its last steps. This cloth keeps its settings,
+  /// and refuses what they do not go with. If solver, scheme, backend, iterations or a tolerance
+  /// (but for velocity_tolerance) differ, that memory is dropped, and positions out of tolerance
+  /// are projected as if newly written.
   Result<void> copy_state(const Cloth& from);
 
   /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
