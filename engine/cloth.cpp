@@ -14,6 +14,7 @@
 #include "engine/step/choose_solver.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"
+#include "engine/step/step_in_team.h"
 
 namespace weft {
 namespace {
@@ -178,10 +179,13 @@ Result<void> Cloth::change(const Changes& changes) {
   return {};
 }
 
-Result<StepReport> Cloth::step(double dt) {
+Result<StepReport> Cloth::step(double dt, const JobSystem& jobs) {
   if (auto valid = validate_time_step(dt); !valid) return Error{valid.error()};
-  return weft::step(*impl_, dt);
+  if (auto valid = validate(jobs); !valid) return Error{valid.error()};
+  return step_in_team(*impl_, dt, jobs);
 }
+
+State* Cloth::state() { return impl_.get(); }
 
 std::size_t Cloth::particle_count() const { return impl_->model->particles; }
 const std::shared_ptr<const Model>& Cloth::model() const { return impl_->model; }

@@ -41,7 +41,7 @@ constexpr int kSubsteps = 16;
 /// A cloth that is let go, in substeps as long as its load allows at 1 %.
 struct Falling {
   std::shared_ptr<const Model> model;
-  Team team{1};
+  Team team;
   Settings settings;
   SmallStepsSolver solver;
   ContactStore contacts;
@@ -160,7 +160,7 @@ SceneDescription fabric_sheet(int size) {
 void run_membrane(benchmark::State& state, const Shared& shared, simd::Isa isa, int size,
                   bool judges) {
   const auto model = build_model(fabric_sheet(size)).value();
-  Team team{1};
+  Team team;
   SimdMembrane membrane(*model, simd::table(isa));
   kernels::AlignedVector<float> base = quads_of(*model), u(base.size());
   membrane.measure_base(base.data(), team);
@@ -183,7 +183,7 @@ void run_membrane(benchmark::State& state, const Shared& shared, simd::Isa isa, 
 void run_bending(benchmark::State& state, const Shared& shared, simd::Isa isa, int size,
                  bool four) {
   const auto model = build_model(bending_sheet(size, four)).value();
-  Team team{1};
+  Team team;
   SimdBending bending(*model, simd::table(isa));
   kernels::AlignedVector<float> base = quads_of(*model), u(base.size());
   bending.measure_base(base.data(), team);
@@ -218,7 +218,7 @@ void run_anchors(benchmark::State& state, const Shared& shared, simd::Isa isa, i
                  Limits limits) {
   const auto model = build_model(anchored_sheet(size, woven, limits)).value();
   const std::size_t floats = model->small_steps().floats;
-  Team team{1};
+  Team team;
   SimdAnchors anchors(*model, {}, simd::table(isa));
   kernels::AlignedVector<float> base(floats), u(floats, -1e-4f), predicted(floats), v(floats);
   std::vector<reference::AnchorPose> poses;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "engine/parallel/team.h"
+#include "engine/parallel/crew.h"
 #include "perf/benchmarks.h"
 
 namespace weft::perf {
@@ -22,18 +22,21 @@ void work(std::int64_t length) {
 /// costs to start and end a loop. `together` says in how many of the loops both threads took part.
 void run_loops(benchmark::State& state, int threads) {
   tbb::task_arena arena(threads);
+  Team::SharedState shared;
+  const auto arena_run = std::make_shared<ArenaRun>();
   std::int64_t together = 0, loops = 0;
   arena.execute([&] {
     for (auto _ : state) {
-      Team team(threads);
-      for (int i = 0; i < kLoops; ++i) {
-        std::thread::id by[2];
-        team.for_each(2, [&](std::size_t share) {
-          by[share] = std::this_thread::get_id();
-          work(state.range(0));
-        });
-        together += by[0] != by[1];
-      }
+      in_team(threads, shared, {}, arena_run, [&](Team& team) {
+        for (int i = 0; i < kLoops; ++i) {
+          std::thread::id by[2];
+          team.for_each(2, [&](std::size_t share) {
+            by[share] = std::this_thread::get_id();
+            work(state.range(0));
+          });
+          together += by[0] != by[1];
+        }
+      });
       loops += kLoops;
     }
   });

@@ -31,6 +31,7 @@ Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_wind(Vec3 wind);
 Result<void> validate_motion(const RigidMotion& motion, double share);
 Result<void> validate_time_step(double dt);
+Result<void> validate(const JobSystem& jobs);
 /// One finite vector per particle.
 Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vectors,
                               std::size_t particles);

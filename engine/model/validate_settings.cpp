@@ -171,4 +171,10 @@ Result<void> validate_for_lanes(const Settings& s, const Model& model) {
   return validate_membrane_for_lanes(model.membrane);
 }
 
+Result<void> validate(const JobSystem& jobs) {
+  const bool has_threads = jobs.threads != nullptr, has_run = jobs.run != nullptr;
+  if (has_threads == has_run) return {};
+  return refuse("jobs", "must have both functions or neither", has_run ? "run" : "threads");
+}
+
 }  // namespace weft

@@ -1,57 +1,14 @@
 #include "engine/parallel/team.h"
 
-#include <tbb/task_arena.h>
-#include <xmmintrin.h>
-
 #include <algorithm>
-#include <chrono>
-#include <new>
-#include <thread>
-#include <utility>
+
+#include "engine/parallel/waiting.h"
 
 namespace weft {
 namespace {
 
 /// Pauses before the leader claims shares that are not its own: some microseconds.
 constexpr int kPausesBeforeHelp = 100;
-/// Pauses before a waiting thread yields its processor: some tens of microseconds.
-constexpr int kPausesBeforeYield = 2000;
-/// Yields before a waiting thread sleeps, so that a long serial stage of a step does not keep the
-/// processors of the workers busy. With nothing else to run these are some tenths of a millisecond.
-constexpr int kYieldsBeforeSleep = 1000;
-constexpr std::chrono::microseconds kSleep{50};
-
-/// Pauses until ready() holds, at most so many times. Returns whether it does.
-template <class Ready>
-bool spin_until(int most, Ready&& ready) {
-  for (int pauses = 0; pauses < most; ++pauses) {
-    if (ready()) return true;
-    __builtin_ia32_pause();
-  }
-  return ready();
-}
-
-template <class Ready>
-void wait_until(Ready&& ready) {
-  if (spin_until(kPausesBeforeYield, ready)) return;
-  for (int yields = 0; yields < kYieldsBeforeSleep; ++yields) {
-    if (ready()) return;
-    std::this_thread::yield();
-  }
-  while (!ready()) std::this_thread::sleep_for(kSleep);
-}
-
-/// Sets how this thread rounds and treats denormal numbers, and restores it in the end.
-class Rounding {
- public:
-  explicit Rounding(std::uint32_t of_leader) { _mm_setcsr(of_leader); }
-  ~Rounding() { _mm_setcsr(before_); }
-  Rounding(const Rounding&) = delete;
-  Rounding& operator=(const Rounding&) = delete;
-
- private:
-  std::uint32_t before_ = _mm_getcsr();
-};
 
 }  // namespace
 
@@ -67,58 +24,28 @@ Team::SharedState::Loop Team::SharedState::publish(std::uint32_t shares) {
   return loop;
 }
 
-std::shared_ptr<Team::SharedState> Team::make_shared_state() {
-  return std::make_shared<SharedState>();
-}
-
-/// Workers are enqueued, not spawned into a task_group: a thread of the arena that had just run out
-/// of work overlooked spawned tasks for over a millisecond (oneTBB 2021.8), while enqueued ones
-/// start within 10 to 30 microseconds. Tasks of an earlier team that have not started serve this
-/// one. Either such a task sees that the team is open, or it no longer counts as pending here: the
-/// order of these four accesses is sequentially consistent.
-Team::Team(int threads, std::shared_ptr<SharedState> shared)
-    : shared_(std::move(shared)),
-      max_workers_(std::min({threads, kMaxSize, tbb::this_task_arena::max_concurrency()}) - 1) {
-  if (max_workers_ <= 0) return;
-  SharedState& s = *shared_;
-  s.departed.store(0, std::memory_order_relaxed);
-  s.max_workers.store(static_cast<std::uint32_t>(max_workers_), std::memory_order_relaxed);
-  s.rounding = _mm_getcsr();
-  s.publish(0);  // the end of the last team is no longer what workers see
-  s.joined.store(0);
-  while (s.pending.load() < max_workers_ && enqueue_worker()) continue;
-}
-
-/// Returns whether there was memory for the task. A worker that cannot be enqueued does not come.
-bool Team::enqueue_worker() {
-  shared_->pending.fetch_add(1);
-  try {
-    tbb::this_task_arena::enqueue([shared = shared_] { shared->run_task(); });
-  } catch (const std::bad_alloc&) {
-    shared_->pending.fetch_sub(1);
-    return false;
-  }
-  return true;
+Team::Team(int threads, SharedState& shared)
+    : shared_(&shared), max_workers_(std::clamp(threads, 1, kMaxSize) - 1) {
+  if (max_workers_ == 0) return;
+  shared.publish(0);  // the end of the last team is no longer what workers see
+  shared.workers.open(static_cast<std::uint32_t>(max_workers_));
 }
 
 /// Closes the team and waits until everybody who has joined departs.
 Team::~Team() {
-  if (max_workers_ <= 0) return;
-  SharedState& s = *shared_;
-  const std::uint32_t came = s.joined.exchange(SharedState::kClosed, std::memory_order_acq_rel);
-  s.publish(SharedState::kEndOfTeam);
-  wait_until([&] { return s.departed.load(std::memory_order_acquire) == came; });
+  if (max_workers_ == 0) return;
+  const std::uint32_t came = shared_->workers.close();
+  shared_->publish(SharedState::kEndOfTeam);
+  shared_->workers.wait_until_left(came);
 }
 
-std::uint32_t Team::joined() const {
-  return max_workers_ > 0 ? shared_->joined.load(std::memory_order_relaxed) : 0;
-}
+std::uint32_t Team::joined() const { return max_workers_ > 0 ? shared_->workers.joined() : 0; }
 
-void Team::run(const Job& job) {
-  const auto shares = static_cast<std::uint32_t>(std::min<std::size_t>(1 + joined(), job.count));
-  if (shares < 2) return job.work(job.context, 0, job.count);
+void Team::run(const LoopWork& work) {
+  const auto shares = static_cast<std::uint32_t>(std::min<std::size_t>(1 + joined(), work.count));
+  if (shares < 2) return work.function(work.context, 0, work.count);
   SharedState& s = *shared_;
-  s.published.job = job;
+  s.published.work = work;
   const SharedState::Loop loop = s.publish(shares);
   s.do_share(loop, 0);
   const auto done = [&] { return s.all_done(loop); };
@@ -127,22 +54,14 @@ void Team::run(const Job& job) {
   wait_until(done);
 }
 
-void Team::SharedState::run_task() {
-  pending.fetch_sub(1);
-  if (const std::uint32_t me = join()) work_until_end(me);
-}
-
-/// Returns the worker's number, from 1 on, or 0 if the team is closed or complete.
-std::uint32_t Team::SharedState::join() {
-  std::uint32_t before = joined.load();
-  do {
-    if (before == kClosed || before >= max_workers.load(std::memory_order_relaxed)) return 0;
-  } while (!joined.compare_exchange_weak(before, before + 1, std::memory_order_acq_rel));
-  return before + 1;
+bool Team::SharedState::help() {
+  const std::uint32_t me = workers.join();
+  if (me == 0) return false;
+  work_until_end(me);
+  return true;
 }
 
 void Team::SharedState::work_until_end(std::uint32_t me) {
-  const Rounding as_the_leader(rounding);
   std::uint64_t seen = 0;  // no loop has this word
   for (;;) {
     const std::uint64_t last = seen;
@@ -151,7 +70,7 @@ void Team::SharedState::work_until_end(std::uint32_t me) {
     if (loop.shares == kEndOfTeam) break;
     if (me < loop.shares) claim_and_do(loop, me);
   }
-  departed.fetch_add(1, std::memory_order_release);
+  workers.leave();
 }
 
 bool Team::SharedState::is_done(const Loop& loop, std::uint32_t share) const {
@@ -165,7 +84,7 @@ bool Team::SharedState::all_done(const Loop& loop) const {
 }
 
 /// Returns false if somebody else has claimed the share, or if the loop is over. The leader does
-/// not leave a loop while a share of it is claimed and not done, so the job stays what it is.
+/// not leave a loop while a share of it is claimed and not done, so the work stays what it is.
 bool Team::SharedState::claim(const Loop& loop, std::uint32_t share) {
   std::uint64_t before = progress[share].value.load(std::memory_order_relaxed);
   const std::uint64_t claimed = 2 * loop.number - 1;
@@ -174,8 +93,9 @@ bool Team::SharedState::claim(const Loop& loop, std::uint32_t share) {
 }
 
 void Team::SharedState::do_share(const Loop& loop, std::uint32_t share) {
-  const Job& job = published.job;
-  job.work(job.context, job.count * share / loop.shares, job.count * (share + 1) / loop.shares);
+  const LoopWork& work = published.work;
+  work.function(work.context, work.count * share / loop.shares,
+                work.count * (share + 1) / loop.shares);
 }
 
 void Team::SharedState::claim_and_do(const Loop& loop, std::uint32_t share) {

@@ -1,8 +1,8 @@
 /// Threads that carry out the parallel loops of a step together.
 ///
 /// A loop over the batches of a small cloth lasts a microsecond, and handing its parts to a task
-/// scheduler would take longer. So the threads are asked for once per step, as tasks in the
-/// caller's oneTBB arena. From then on loops are started and ended through atomics:
+/// scheduler would take longer. So threads come to a team once per step (crew.h). From then on
+/// loops are started and ended through atomics:
 ///
 ///     leader:  publishes a loop, does share 0, waits for the other shares
 ///     worker:  waits for the next loop, does its share
@@ -10,14 +10,10 @@
 /// Starting and ending a loop costs what it takes a cache line to cross between processors, twice.
 /// So everything that describes a loop is in one line, and every share has a line of its own.
 ///
-/// The leader never waits for a task that has not started. Shares are made for the workers that
+/// The leader never waits for a worker that has not come. Shares are made for the workers that
 /// have joined, and after some microseconds the leader does itself what no worker has claimed. It
 /// waits for claimed shares alone. Which thread does a share is left to chance, so results must not
 /// depend on it.
-///
-/// The threads remain the caller's: a worker returns to oneTBB when the team ends, and neither its
-/// priority nor the processors that it may run on are changed. Who waits spins for a bounded number
-/// of pauses, then yields, and sleeps in the end.
 #pragma once
 
 #include <algorithm>
@@ -25,8 +21,9 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <type_traits>
+
+#include "engine/parallel/gathering.h"
 
 namespace weft {
 
@@ -37,14 +34,14 @@ class Team {
   static constexpr int kMaxSize = 64;
   struct SharedState;
 
-  /// Asks for up to `threads` threads, this one included; at most what the arena has. What the
-  /// threads share may be used again by the next team when this one is gone.
-  explicit Team(int threads, std::shared_ptr<SharedState> shared = make_shared_state());
+  /// Of one thread.
+  Team() = default;
+  /// Of up to `threads` threads, this one included: others come by shared.help(). What they share
+  /// may be used again by the next team when this one is gone, and may outlive it.
+  Team(int threads, SharedState& shared);
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
-
-  static std::shared_ptr<SharedState> make_shared_state();
 
   /// The number of threads if all that were asked for come.
   std::size_t size() const { return static_cast<std::size_t>(std::max(1, 1 + max_workers_)); }
@@ -71,27 +68,24 @@ class Team {
   }
 
  private:
-  struct Job {
+  struct LoopWork {
     /// A share that threw would leave others at work on what is gone.
-    void (*work)(void* context, std::size_t first, std::size_t last) noexcept = nullptr;
+    void (*function)(void* context, std::size_t first, std::size_t last) noexcept = nullptr;
     void* context = nullptr;
     std::size_t count = 0;
   };
 
-  void run(const Job& job);
-  bool enqueue_worker();
+  void run(const LoopWork& work);
   std::uint32_t joined() const;
 
-  std::shared_ptr<SharedState> shared_;
+  SharedState* shared_ = nullptr;  // of several threads
   int max_workers_ = 0;
 };
 
-/// What leader and workers share. It outlives the team, since a task may start when the team is
-/// gone: it finds the team closed and returns.
+/// What leader and workers share.
 struct Team::SharedState {
   static constexpr std::size_t kCacheLine = 64;
-  static constexpr std::uint32_t kEndOfTeam = 0xffu;     // in place of the number of shares
-  static constexpr std::uint32_t kClosed = 0xffffffffu;  // in place of the number of workers
+  static constexpr std::uint32_t kEndOfTeam = 0xffu;  // in place of the number of shares
   /// One word, so that a worker cannot mistake one loop for the next. Loops are numbered through,
   /// from team to team.
   struct Loop {
@@ -103,7 +97,7 @@ struct Team::SharedState {
   };
   struct alignas(kCacheLine) Published {
     std::atomic<std::uint64_t> loop{0};
-    Job job;  // written by the leader between loops, read by whoever has claimed a share
+    LoopWork work;  // written by the leader between loops, read by whoever has claimed a share
   };
   /// 2 n - 1 when a share of loop n is claimed, 2 n when it is done.
   struct alignas(kCacheLine) Progress {
@@ -111,17 +105,14 @@ struct Team::SharedState {
   };
 
   Published published;
-  alignas(kCacheLine) std::atomic<std::uint32_t> joined{kClosed};  // workers
-  std::atomic<std::uint32_t> max_workers{0};
-  std::atomic<std::uint32_t> departed{0};  // workers that joined and have seen the end of the team
-  std::atomic<int> pending{0};             // tasks that have not started
-  std::uint32_t rounding = 0;              // the leader's MXCSR; written while the team is closed
-  std::uint64_t loops = 0;                 // how many the leader has published
+  alignas(kCacheLine) Gathering workers;  // who leaves has seen the end of the team
+  std::uint64_t loops = 0;                // how many the leader has published
   std::array<Progress, kMaxSize> progress;
 
+  /// Works with the team until its end. Returns false where there is none, or where it is complete.
+  bool help();
+
   Loop publish(std::uint32_t shares);
-  void run_task();
-  std::uint32_t join();
   void work_until_end(std::uint32_t me);
   bool is_done(const Loop& loop, std::uint32_t share) const;
   bool all_done(const Loop& loop) const;

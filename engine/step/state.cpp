@@ -44,6 +44,17 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     laws.emplace(model->constraints);
   }
   make_solvers();
+  if (threads_worth_having() > 1) {
+    team_state = std::make_unique<Team::SharedState>();
+    arena_run = std::make_shared<ArenaRun>();
+  }
+}
+
+int State::threads_worth_having() const {
+  if (settings.backend == Backend::reference) return 1;
+  const int most = settings.threads > 0 ? settings.threads : kMaxThreads;
+  const std::size_t worth = model->slots() / tuning::kLeastSlotsPerThread;
+  return std::max(1, static_cast<int>(std::min(worth, static_cast<std::size_t>(most))));
 }
 
 void State::make_solvers() {
@@ -163,7 +174,8 @@ std::size_t State::bytes() const {
   sum += contacts.bytes() + nearby.bytes() + bytes_of(impulses) + bytes_of(inverse_mass_of_met) +
          bytes_of(resistances) + pins.bytes() + anchors.bytes() + seams.bytes() + bodies.bytes() +
          rest.bytes() + measure->bytes();
-  sum += sizeof(Team::SharedState);
+  if (team_state) sum += sizeof(Team::SharedState);
+  if (arena_run) sum += sizeof(ArenaRun);
   if (laws) sum += laws->bytes();
   if (sweeps) sum += sweeps->bytes();
   if (yarn) sum += yarn->bytes();

@@ -23,6 +23,7 @@
 #include "engine/measure/measure.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
+#include "engine/parallel/arena.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/constraint_solver.h"
 #include "engine/solvers/direct/direct_solver.h"
@@ -114,7 +115,10 @@ struct State {
   std::unique_ptr<SmallSteps> small_steps;
   ConstraintSolver* solver = nullptr;    // the chosen one of sweeps, yarn and direct
   ConstraintSolver* stand_in = nullptr;  // direct, behind yarns of unequal masses
-  std::shared_ptr<Team::SharedState> team_state = Team::make_shared_state();
+  // Of a cloth that is worth several threads, or has led a batch; else null.
+  std::unique_ptr<Team::SharedState> team_state;
+  std::shared_ptr<ArenaRun> arena_run;
+  bool is_in_batch = false;  // and has not been stepped in it
 
   State(std::shared_ptr<const Model> model, const Settings& settings);
   /// What acts besides gravity; empty: nothing.
@@ -126,6 +130,8 @@ struct State {
   /// agree on, fixed ones are at rest, and free ones have the speed of their last move.
   void go_on_from(const State& from);
   std::size_t bytes() const;
+  /// How many threads a step of it is worth, where Settings::threads allows them.
+  int threads_worth_having() const;
 
  private:
   void make_solvers();

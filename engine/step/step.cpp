@@ -17,14 +17,6 @@
 namespace weft {
 namespace {
 
-int threads_worth_having(const State& s) {
-  if (s.settings.backend == Backend::reference) return 1;
-  const std::size_t most = s.model->slots() / tuning::kLeastSlotsPerThread;
-  const std::size_t wanted = s.settings.threads > 0 ? static_cast<std::size_t>(s.settings.threads)
-                                                    : static_cast<std::size_t>(kMaxThreads);
-  return static_cast<int>(std::min(most, wanted));
-}
-
 /// The state at the beginning of a step: it comes back unless the step is committed.
 class Transaction {
  public:
@@ -237,10 +229,9 @@ void fall_asleep(State& s, StepReport& report) {
 
 }  // namespace
 
-StepReport step(State& s, double dt) {
+StepReport step(State& s, double dt, Team& team) {
   if (s.rest.is_asleep()) return s.asleep;
   StepReport report;
-  Team team(threads_worth_having(s), s.team_state);
   bool done = false;
   s.way_per_second = 1 / dt;
   std::ranges::fill(s.contacts.met, 0);

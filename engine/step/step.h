@@ -20,6 +20,11 @@ namespace weft {
 
 /// Advances the state by dt > 0, or leaves it as it was: where committed(status) is false, and
 /// where it throws.
-StepReport step(State& state, double dt);
+StepReport step(State& state, double dt, Team& team);
+/// The same by this thread alone.
+inline StepReport step(State& state, double dt) {
+  Team alone;
+  return step(state, dt, alone);
+}
 
 }  // namespace weft

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <weft/body.h>
+#include <weft/jobs.h>
 #include <weft/result.h>
 #include <weft/scene.h>
 #include <weft/settings.h>
@@ -16,6 +17,8 @@
 #include <vector>
 
 namespace weft {
+
+struct State;
 
 /// converged: every constraint is within its tolerance. The state is committed.
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
@@ -202,8 +205,9 @@ class WEFT_API Cloth {
   /// is thrown and the state is unchanged. An error means that dt was refused. Meant for frames of
   /// 0.1 ms to 0.1 s: in shorter ones the rounding of yarns' floats shows up as velocity, and slows
   /// motion (rattle and velocity_correction undo that, direct works in double); the cost of longer
-  /// ones is limited by 1024 automatic substeps and max_iterations.
-  Result<StepReport> step(double dt);
+  /// ones is limited by 1024 automatic substeps and max_iterations. Large cloths are worth several
+  /// threads, which are those of `jobs`: any of them may lead the step, while this one waits.
+  Result<StepReport> step(double dt, const JobSystem& jobs = {});
 
   std::size_t particle_count() const;
   const std::shared_ptr<const Model>& model() const;
@@ -321,7 +325,9 @@ class WEFT_API Cloth {
   std::size_t bytes() const;  ///< held by this cloth, the shared model not included
 
  private:
+  friend class ClothBatch;
   struct Impl;
+  State* state();  // null where it was moved from
   explicit Cloth(std::unique_ptr<Impl> impl);
   Result<void> prepare_for_bodies();
   std::unique_ptr<Impl> impl_;

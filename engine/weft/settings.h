@@ -119,8 +119,8 @@ struct Settings {
   Scheme scheme = Scheme::automatic;
   Backend backend = Backend::simd;
   Isa isa = Isa::automatic;
-  /// Maximum threads of the caller's arena per step; 0: all that it offers, up to kMaxThreads.
-  /// Yarns use at most 16, small cloths one. Does not affect the result.
+  /// Maximum threads of the caller's arena or job system (jobs.h) per step; 0: all that it offers,
+  /// up to kMaxThreads. Yarns use at most 16, small cloths one. Does not affect the result.
   int threads = 0;
   Directions directions = Directions::frozen;
   /// Section 4.2: update errors instead of recomputing them. simd forms them from displacements

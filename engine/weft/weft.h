@@ -1,6 +1,6 @@
 /// weft: a cloth simulation library. This header includes the whole public interface of
-/// simulation: scene.h (describe and build), settings.h (create), body.h (what cloth touches) and
-/// cloth.h (step and read).
+/// simulation: scene.h (describe and build), settings.h (create), body.h (what cloth touches),
+/// cloth.h (step and read), batch.h (many cloths) and jobs.h (threads of a job system).
 /// mesh.h, which it does not include, makes a SceneDescription of a mesh and a material.
 ///
 ///   describe -> build -> create -> step -> read
@@ -18,12 +18,13 @@
 ///     velocity loop.
 ///  3. A Model is immutable and may be shared by any number of Cloths and threads. A Cloth is not
 ///     synchronised: one thread at a time, for functions that are const too.
-///  4. weft owns no threads, and no globals that affect results but WEFT_ISA in the environment
-///     (Isa). Parallel work runs in the caller's oneTBB arena, rounded as the calling thread
-///     rounds. Threads go back to the arena when the step ends, as they were; weft changes neither
-///     their priority nor the processors that they may run on. A task that the arena had no thread
-///     for may start when its step is over, and returns at once. So a plugin that holds weft must
-///     not be unloaded while tasks may still start: link it with -z nodelete.
+///  4. weft owns no threads, starts none, and has no globals that affect results but WEFT_ISA in
+///     the environment (Isa). Parallel work runs in the oneTBB arena that the calling thread is in,
+///     or in the caller's own job system (jobs.h), rounded as the calling thread rounds. Threads go
+///     back when the step ends, as they were; weft changes neither their priority nor the
+///     processors that they may run on. A task that an arena had no thread for may start when its
+///     step is over, and returns at once. So a plugin that holds weft must not be unloaded while
+///     tasks may still start: link it with -z nodelete.
 ///     Floating-point exceptions are to be masked: lanes compute what nobody takes (1 / 0).
 ///  5. A step allocates nothing once warm (contact lists grow to their largest size and stay).
 ///  6. Errors are values. Bad input yields one line that names the field, the index and the value,
@@ -36,8 +37,10 @@
 /// and the bits of results; a new patch changes neither, but for mistakes.
 #pragma once
 
+#include <weft/batch.h>
 #include <weft/body.h>
 #include <weft/cloth.h>
+#include <weft/jobs.h>
 #include <weft/result.h>
 #include <weft/scene.h>
 #include <weft/settings.h>

@@ -77,7 +77,7 @@ TEST_CASE(
   const auto model = model_of(scene);
   const simd::Table& table = simd::table(simd::best_isa());
   kernels::Vectors x = model->initial_position;
-  Team team{1};
+  Team team;
   Measure lanes(*model, on(Backend::simd), table), plain(*model, on(Backend::reference), table);
   for (const double give : {0., 1e-6, 1e-3}) {
     const double energy = plain.spring_energy(x.view(), give, team);

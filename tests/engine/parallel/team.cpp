@@ -3,9 +3,7 @@
 
 #include <doctest/doctest.h>
 #include <sched.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
@@ -14,15 +12,10 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/teams.h"
+
 namespace weft::test {
 namespace {
-
-/// In an arena of so many slots.
-template <class Work>
-void in_arena(int slots, Work&& work) {
-  tbb::task_arena arena(slots);
-  arena.execute(work);
-}
 
 /// How often each index was done, in a loop by a team of so many.
 std::vector<int> done_by(Team& team, std::size_t count) {
@@ -68,9 +61,9 @@ TEST_CASE("who helps rounds as its leader does, from team to team") {
   in_arena(2, [] {
     for (const unsigned rounding : {_MM_ROUND_UP, _MM_ROUND_NEAREST, _MM_ROUND_DOWN}) {
       const unsigned before = _MM_GET_ROUNDING_MODE();
+      unsigned of_helper = kNobody;
       _MM_SET_ROUNDING_MODE(rounding);
-      Team team(2);
-      const unsigned of_helper = rounding_of_helper(team);
+      in_team_of_arena(2, [&](Team& team) { of_helper = rounding_of_helper(team); });
       _MM_SET_ROUNDING_MODE(before);
       if (of_helper == kNobody) {
         MESSAGE("no second thread came within 30 s: not tested");
@@ -83,33 +76,31 @@ TEST_CASE("who helps rounds as its leader does, from team to team") {
 
 TEST_CASE("every index is done exactly once, few or many, by any team") {
   for (const int slots : {1, 2}) {
-    for (const int threads : {0, 1, 2, 3, 300}) {
+    for (const int threads : {1, 2, 3, 300}) {
       CAPTURE(slots);
       CAPTURE(threads);
       in_arena(slots, [&] {
-        Team team(threads);
-        for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 64u, 65u, 1000u, 100'000u}) {
-          CAPTURE(count);
-          REQUIRE(each_once(done_by(team, count)));
-        }
+        in_team_of_arena(threads, [](Team& team) {
+          for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 64u, 65u, 1000u, 100'000u}) {
+            CAPTURE(count);
+            CHECK(each_once(done_by(team, count)));
+          }
+        });
       });
     }
   }
 }
 
 TEST_CASE("indices come in ascending order within a share, all in order on one thread") {
-  in_arena(1, [] {
-    Team team(8);
-    std::vector<std::size_t> order;
-    team.for_each(1000, [&](std::size_t i) { order.push_back(i); });
-    CHECK(order.size() == 1000);
-    CHECK(std::ranges::is_sorted(order));
-  });
+  Team alone;
+  std::vector<std::size_t> order;
+  alone.for_each(1000, [&](std::size_t i) { order.push_back(i); });
+  CHECK(order.size() == 1000);
+  CHECK(std::ranges::is_sorted(order));
 }
 
 TEST_CASE("thousands of loops: what one wrote the next one reads, in whatever thread") {
-  in_arena(2, [] {
-    Team team(2);
+  in_team_of(2, [](Team& team) {
     constexpr std::size_t kCount = 64;
     constexpr int kLoops = 20'000;
     std::vector<int> here(kCount), there(kCount);
@@ -123,28 +114,26 @@ TEST_CASE("thousands of loops: what one wrote the next one reads, in whatever th
 
 /// The leader would hang here if it waited for shares that nobody has claimed.
 TEST_CASE("a leader does the shares of workers that have joined and claim nothing") {
-  in_arena(4, [] {
-    const auto shared = Team::make_shared_state();
-    shared->pending = 3;  // as if all tasks were enqueued already: no worker comes
-    Team team(4, shared);
-    REQUIRE(team.size() == 4);
-    shared->joined = 3;
-    for (const std::size_t count : {1u, 3u, 4u, 1000u}) CHECK(each_once(done_by(team, count)));
-    shared->departed = 3;
-  });
+  Team::SharedState shared;
+  Team team(4, shared);
+  REQUIRE(team.size() == 4);
+  for (const std::uint32_t worker : {1u, 2u, 3u}) CHECK(shared.workers.join() == worker);
+  CHECK(shared.workers.join() == 0);
+  for (const std::size_t count : {1u, 3u, 4u, 1000u}) CHECK(each_once(done_by(team, count)));
+  for (int worker = 0; worker < 3; ++worker) shared.workers.leave();
 }
 
 TEST_CASE("a worker that comes late to a loop does none of its shares") {
-  const auto shared = Team::make_shared_state();
-  const Team::SharedState::Loop loop = shared->publish(3);
-  CHECK(shared->claim(loop, 1));
-  CHECK_FALSE(shared->claim(loop, 1));
-  shared->progress[1].value = 2 * loop.number;
-  CHECK_FALSE(shared->claim(loop, 1));
-  const Team::SharedState::Loop next = shared->publish(3);
-  CHECK(shared->claim(next, 1));
-  CHECK(shared->claim(next, 2));
-  CHECK_FALSE(shared->claim(loop, 2));
+  Team::SharedState shared;
+  const Team::SharedState::Loop loop = shared.publish(3);
+  CHECK(shared.claim(loop, 1));
+  CHECK_FALSE(shared.claim(loop, 1));
+  shared.progress[1].value = 2 * loop.number;
+  CHECK_FALSE(shared.claim(loop, 1));
+  const Team::SharedState::Loop next = shared.publish(3);
+  CHECK(shared.claim(next, 1));
+  CHECK(shared.claim(next, 2));
+  CHECK_FALSE(shared.claim(loop, 2));
 }
 
 TEST_CASE("a second thread comes to help, if the arena has one") {
@@ -152,16 +141,14 @@ TEST_CASE("a second thread comes to help, if the arena has one") {
     MESSAGE("this machine has one processor: not tested");
     return;
   }
+  in_team_of(2, [](Team& team) { CHECK(threads_seen(team) == 2); });
   in_arena(2, [] {
-    Team team(2);
-    CHECK(threads_seen(team) == 2);
-  });
-  in_arena(2, [] {
-    Team team(1);
-    const auto leader = std::this_thread::get_id();
-    for (int loop = 0; loop < 1000; ++loop) {
-      team.for_each(2, [&](std::size_t) { REQUIRE(std::this_thread::get_id() == leader); });
-    }
+    in_team_of_arena(1, [](Team& team) {
+      const auto leader = std::this_thread::get_id();
+      for (int loop = 0; loop < 1000; ++loop) {
+        team.for_each(2, [&](std::size_t) { CHECK(std::this_thread::get_id() == leader); });
+      }
+    });
   });
 }
 
@@ -174,8 +161,7 @@ int processors_allowed() {
 TEST_CASE("the processors that a worker may run on stay as they are") {
   const int allowed = processors_allowed();
   std::atomic<int> changed{0};
-  in_arena(2, [allowed, &changed] {
-    Team team(2);
+  in_team_of(2, [allowed, &changed](Team& team) {
     threads_seen(team);
     for (int loop = 0; loop < 1000; ++loop) {
       team.for_each(2, [&](std::size_t) { changed += processors_allowed() != allowed; });
@@ -184,19 +170,8 @@ TEST_CASE("the processors that a worker may run on stay as they are") {
   CHECK(changed == 0);
 }
 
-TEST_CASE("a worker rounds as before when its team has ended") {
-  const auto shared = Team::make_shared_state();
-  const std::uint32_t before = _mm_getcsr();
-  shared->rounding = before | _MM_ROUND_UP;
-  shared->publish(Team::SharedState::kEndOfTeam);
-  shared->work_until_end(1);
-  CHECK(_mm_getcsr() == before);
-  CHECK(shared->departed == 1);
-}
-
 TEST_CASE("workers wait through a long serial stage, and work on") {
-  in_arena(2, [] {
-    Team team(2);
+  in_team_of(2, [](Team& team) {
     threads_seen(team);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     CHECK(each_once(done_by(team, 1000)));
@@ -206,21 +181,25 @@ TEST_CASE("workers wait through a long serial stage, and work on") {
 
 TEST_CASE("teams that follow each other with one shared state, or with two in turn") {
   in_arena(2, [] {
-    const auto first = Team::make_shared_state(), second = Team::make_shared_state();
-    for (int team = 0; team < 4000; ++team) {
-      Team one(2, team < 2000 || team % 2 == 0 ? first : second);
-      REQUIRE(each_once(done_by(one, 10)));
+    const auto first = std::make_shared<ArenaRun>(), second = std::make_shared<ArenaRun>();
+    Team::SharedState shared;
+    int failed = 0;
+    for (int k = 0; k < 4000; ++k) {
+      in_team(2, shared, {}, k < 2000 || k % 2 == 0 ? first : second,
+              [&](Team& team) { failed += each_once(done_by(team, 10)) ? 0 : 1; });
     }
+    CHECK(failed == 0);
   });
 }
 
 TEST_CASE("teams come and go") {
   in_arena(2, [] {
     std::size_t sum = 0;
-    for (int team = 0; team < 3000; ++team) {
-      Team brief(2);
-      if (team % 2 == 0) continue;  // nothing to do: the helper may not even have come
-      sum += done_by(brief, 10).size();
+    for (int k = 0; k < 3000; ++k) {
+      in_team_of_arena(2, [&](Team& brief) {
+        if (k % 2 == 0) return;  // nothing to do: the helper may not even have come
+        sum += done_by(brief, 10).size();
+      });
     }
     CHECK(sum == 15'000);
   });
@@ -232,10 +211,11 @@ TEST_CASE("teams in the tasks of one arena: more of them than it has threads") {
     in_arena(slots, [] {
       std::atomic<int> failed{0};
       tbb::parallel_for(0, 40, [&](int) {
-        Team team(2);
-        for (int loop = 0; loop < 50; ++loop) {
-          if (!each_once(done_by(team, 100))) ++failed;
-        }
+        in_team_of_arena(2, [&failed](Team& team) {
+          for (int loop = 0; loop < 50; ++loop) {
+            if (!each_once(done_by(team, 100))) ++failed;
+          }
+        });
       });
       CHECK(failed == 0);
     });
@@ -247,8 +227,7 @@ TEST_CASE("more threads than processors: leaders wait for no one who has lost hi
   std::vector<std::thread> threads;
   for (int k = 0; k < 6; ++k) {
     threads.emplace_back([&failed] {
-      in_arena(2, [&failed] {
-        Team team(2);
+      in_team_of(2, [&failed](Team& team) {
         for (int loop = 0; loop < 500; ++loop) {
           if (!each_once(done_by(team, 40))) ++failed;
         }
@@ -260,8 +239,7 @@ TEST_CASE("more threads than processors: leaders wait for no one who has lost hi
 }
 
 TEST_CASE("a share that takes long is waited for") {
-  in_arena(2, [] {
-    Team team(2);
+  in_team_of(2, [](Team& team) {
     threads_seen(team);
     std::vector<int> done(2);
     team.for_each(2, [&](std::size_t i) {

@@ -77,7 +77,7 @@ Vec3 to_public(kernels::Vector v) { return {v.x, v.y, v.z}; }
 /// N, of each particle besides gravity, in the time h to come.
 std::vector<Vec3> forces_of(const SceneDescription& scene, double h) {
   State state(model_of(scene), {.solver = Solver::gauss_seidel, .isa = Isa::sse2});
-  Team team(1);
+  Team team;
   find_resistance(state, state.model->damping.motion, h, team);
   std::vector<Vec3> forces;
   for (const std::uint32_t slot : state.model->ordering.slot_of) {

@@ -28,7 +28,7 @@ std::string text(const Attempt& attempt) {
 }
 
 std::string list_of(State& s) {
-  Team team(1);
+  Team team;
   StepReport report;
   const Plan plan = plan_for(s, 0.01, report, team);
   std::string list;

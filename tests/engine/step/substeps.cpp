@@ -54,7 +54,7 @@ TEST_CASE("automatic substeps end at 1024 a step") {
 }
 
 TEST_CASE("automatic substeps by yarns leave each at least eight of the step's iterations") {
-  Team team(1);
+  Team team;
   for (const int most : {1, 40, 400}) {
     State s(model_of(scene_of("hang", 5)), {.max_iterations = most, .solver = Solver::yarn});
     StepReport report;

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "engine/step/step.h"
+#include "engine/step/step_in_team.h"
 #include "tests/support/clothes.h"
 
 namespace weft::test {
@@ -68,9 +68,11 @@ TEST_CASE("a step asks for as many threads as the settings say") {
     State state(
         model,
         {.substeps = 1, .solver = Solver::gauss_seidel, .isa = Isa::sse2, .threads = threads});
-    arena.execute([&] { step(state, 0.001); });
+    arena.execute([&] { step_in_team(state, 0.001, {}); });
     const int expected = threads == 0 ? kSlots : std::min(threads, kSlots);
-    CHECK(state.team_state->max_workers.load() + 1 == static_cast<std::uint32_t>(expected));
+    const int asked =
+        state.team_state ? 1 + static_cast<int>(state.team_state->workers.places()) : 1;
+    CHECK(asked == expected);
   }
 }
 

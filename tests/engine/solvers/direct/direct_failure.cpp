@@ -35,7 +35,7 @@ struct Trial {
         contacts(make_contact_store(*model)),
         solver(*model, Settings{}, simd::table(simd::best_isa())) {}
   kernels::LoopResult solve() {
-    Team team(1);
+    Team team;
     return solver.solve_positions(
         {.x = x.view(), .start = {}, .contacts = contacts, .max_iterations = 1000}, team);
   }

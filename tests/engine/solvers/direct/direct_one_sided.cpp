@@ -252,7 +252,7 @@ TEST_CASE("a matrix made with a contact does not serve when that has let go") {
   ContactStore contacts = make_contact_store(*model);
   find_contacts(*model, table, x.view(), contacts);
   REQUIRE(contacts.count() == 1);
-  Team team(1);
+  Team team;
   DirectSolver solver(*model, direct(tight(1e-9)), table);
   const auto result = solver.correct_velocities(
       {.x = x.view(), .v = v.view(), .contacts = contacts, .max_iterations = 1000}, team);

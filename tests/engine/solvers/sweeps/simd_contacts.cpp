@@ -47,7 +47,7 @@ ContactStore in_order(const ContactStore& store, const std::vector<std::uint32_t
 TEST_CASE("contacts in any order push all the same") {
   const auto model = build_model(particles_in_fixed_spheres()).value();
   const simd::Table& table = simd::table(supported_isas().back());
-  Team team(1);
+  Team team;
   ContactStore found = make_contact_store(*model);
   kernels::Vectors start = model->initial_position;
   find_contacts(*model, table, start.view(), found);

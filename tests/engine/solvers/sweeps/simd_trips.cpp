@@ -1,7 +1,6 @@
 /// Passes in trips through memory against the same passes one by one, to the last bit.
 #include <doctest/doctest.h>
 #include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
@@ -10,6 +9,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/isas.h"
 #include "tests/support/mesh_scenes.h"
+#include "tests/support/teams.h"
 
 namespace weft::test {
 namespace {
@@ -29,9 +29,7 @@ Passed pass(const Model& model, int passes, bool in_trips, int threads, bool pro
   SimdSolver solver(model, settings, simd::table(supported_isas().back()));
   Passed passed{model.initial_position, {}};
   for (std::size_t i = 0; i < passed.x.size(); i += 7) passed.x.z[i] += 0.01;
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
-    Team team(threads);
+  in_team_of(threads, [&](Team& team) {
     SimdLoop loop(solver, {.x = passed.x.view()}, team);
     loop.renew();
     if (in_trips)

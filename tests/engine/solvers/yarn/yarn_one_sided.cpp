@@ -49,7 +49,7 @@ struct Trial {
   ContactStore contacts;
   SimdMeasure measure;
   YarnSolver solver;
-  Team team{1};
+  Team team;
 
   Trial(const SceneDescription& scene, double velocity_tolerance)
       : model(model_of(scene)),

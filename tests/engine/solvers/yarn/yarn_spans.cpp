@@ -75,7 +75,7 @@ struct Line {
   /// Where the middle is predicted to fall by so much, and the last particle to come so much
   /// nearer.
   void hold(HeldSpans& spans, double fall, double nearer) {
-    Team team(1);
+    Team team;
     kernels::Vectors start = model->initial_position, x = start;
     for (const std::uint32_t i : {3u, 4u}) x.y[model->ordering.slot_of[i]] -= fall;
     x.x[model->ordering.slot_of[5]] -= nearer;
