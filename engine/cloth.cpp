@@ -30,6 +30,20 @@ Result<void> read(const Model& model, const kernels::Vectors& from, std::span<Ve
   return {};
 }
 
+Result<void> read(const Model& model, const kernels::Vectors& from, FloatVectors out,
+                  kernels::Vector origin) {
+  if (auto r = validate_floats("out", out, model.particles); !r) return r;
+  const std::vector<std::uint32_t>& slot_of = model.ordering.slot_of;
+  for (std::size_t i = 0; i < slot_of.size(); ++i) {
+    float* const to = &out.floats[i * out.stride];
+    const kernels::Vector v = from[slot_of[i]] - origin;
+    to[0] = static_cast<float>(v.x);
+    to[1] = static_cast<float>(v.y);
+    to[2] = static_cast<float>(v.z);
+  }
+  return {};
+}
+
 void hash_bits(std::uint64_t& hash, double value) {
   const auto bits = std::bit_cast<std::uint64_t>(value);
   for (int byte = 0; byte < 8; ++byte) {
@@ -117,14 +131,22 @@ struct Cloth::Impl : State {
   }
   std::uint32_t slot(std::uint32_t particle) const { return model->ordering.slot_of[particle]; }
   Result<void> take_along(const RigidMotion& motion, double share);
-  /// Of a fixed particle that is to be moved.
-  Result<std::uint32_t> pin_slot(std::uint32_t particle, Vec3 to) const {
-    if (auto r = validate_particle("particle", particle, model->particles); !r)
-      return Error{r.error()};
-    if (model->inverse_mass[slot(particle)] != 0 || model->is_attached(slot(particle)))
-      return refuse("particle", "is not fixed", std::to_string(particle));
-    if (auto r = validate_vector("position", particle, to); !r) return Error{r.error()};
-    return slot(particle);
+  bool is_pin(std::uint32_t particle) const {
+    return particle < model->particles && model->inverse_mass[slot(particle)] == 0 &&
+           !model->is_attached(slot(particle));
+  }
+  Result<void> validate_pin(const std::string& field, std::uint32_t particle) const {
+    if (is_pin(particle)) return {};
+    if (auto r = validate_particle(field, particle, model->particles); !r) return r;
+    return refuse(field, "is not fixed", std::to_string(particle));
+  }
+  Result<void> validate_pins(std::span<const std::uint32_t> particles,
+                             std::span<const Vec3> to) const {
+    if (auto r = validate_vectors("positions", to, particles.size()); !r) return r;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      if (!is_pin(particles[i])) return validate_pin(element("particles", i), particles[i]);
+    }
+    return {};
   }
 };
 
@@ -205,15 +227,24 @@ Result<void> Cloth::read_velocities(std::span<Vec3> out) const {
   return read(*impl_->model, impl_->velocity, out);
 }
 
-Result<void> Cloth::read_positions(std::span<float> out) const {
-  if (auto r = validate_size("out", out.size(), 3 * particle_count()); !r) return r;
-  for (std::uint32_t i = 0; i < particle_count(); ++i) {
-    const kernels::Vector x = impl_->position[impl_->slot(i)];
-    out[3 * i] = static_cast<float>(x.x);
-    out[3 * i + 1] = static_cast<float>(x.y);
-    out[3 * i + 2] = static_cast<float>(x.z);
+Result<void> Cloth::read_positions(FloatVectors out, Vec3 origin) const {
+  if (auto r = validate_origin(origin); !r) return r;
+  return read(*impl_->model, impl_->position, out, to_internal(origin));
+}
+Result<void> Cloth::read_velocities(FloatVectors out) const {
+  return read(*impl_->model, impl_->velocity, out, {0, 0, 0});
+}
+
+Bounds Cloth::bounds() const {
+  Bounds bounds{position(0), position(0)};
+  for (const std::uint32_t slot : impl_->model->ordering.slot_of) {
+    const kernels::Vector x = impl_->position[slot];
+    bounds.least = {std::min(bounds.least.x, x.x), std::min(bounds.least.y, x.y),
+                    std::min(bounds.least.z, x.z)};
+    bounds.most = {std::max(bounds.most.x, x.x), std::max(bounds.most.y, x.y),
+                   std::max(bounds.most.z, x.z)};
   }
-  return {};
+  return bounds;
 }
 
 Result<void> Cloth::write_positions(std::span<const Vec3> in) {
@@ -269,18 +300,33 @@ Result<void> Cloth::set_wind(Vec3 wind) {
 }
 
 Result<void> Cloth::move_fixed(std::uint32_t particle, Vec3 position) {
-  const auto slot = impl_->pin_slot(particle, position);
-  if (!slot) return Error{slot.error()};
+  if (auto r = impl_->validate_pin("particle", particle); !r) return r;
+  if (auto r = validate_vector("position", particle, position); !r) return r;
+  return move_fixed({&particle, 1}, {&position, 1});
+}
+
+Result<void> Cloth::move_fixed(std::span<const std::uint32_t> particles,
+                               std::span<const Vec3> positions) {
+  if (auto r = impl_->validate_pins(particles, positions); !r) return r;
+  if (particles.empty()) return {};
   impl_->pins.watch(*impl_->model, impl_->position);
-  set(impl_->position, slot.value(), position, impl_->rest);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    set(impl_->position, impl_->slot(particles[i]), positions[i], impl_->rest);
+  }
   return {};
 }
 
 Result<void> Cloth::place_fixed(std::uint32_t particle, Vec3 position) {
-  const auto slot = impl_->pin_slot(particle, position);
-  if (!slot) return Error{slot.error()};
-  impl_->pins.put_down(slot.value(), to_internal(position), impl_->position[slot.value()]);
-  impl_->position.set(slot.value(), to_internal(position));
+  if (auto r = impl_->validate_pin("particle", particle); !r) return r;
+  if (auto r = validate_vector("position", particle, position); !r) return r;
+  return place_fixed({&particle, 1}, {&position, 1});
+}
+
+Result<void> Cloth::place_fixed(std::span<const std::uint32_t> particles,
+                                std::span<const Vec3> positions) {
+  if (auto r = impl_->validate_pins(particles, positions); !r) return r;
+  if (particles.empty()) return {};
+  impl_->pins.put_down(*impl_->model, particles, positions, impl_->position);
   impl_->displaced = true;
   impl_->rest.wake();
   return {};

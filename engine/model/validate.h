@@ -37,5 +37,9 @@ Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vect
                               std::size_t particles);
 Result<void> validate_vector(std::string_view field, std::size_t index, Vec3 vector);
 Result<void> validate_size(std::string_view field, std::size_t size, std::size_t expected);
+Result<void> validate_floats(std::string_view field, const FloatVectors& floats,
+                             std::size_t expected);
+/// Of what floats are relative to.
+Result<void> validate_origin(Vec3 origin);
 
 }  // namespace weft

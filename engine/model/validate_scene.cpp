@@ -103,6 +103,24 @@ Result<void> validate_size(std::string_view field, std::size_t size, std::size_t
   return refuse(field, "needs " + std::to_string(expected) + " elements", std::to_string(size));
 }
 
+Result<void> validate_floats(std::string_view field, const FloatVectors& floats,
+                             std::size_t expected) {
+  const std::size_t stride = floats.stride, size = floats.floats.size();
+  if (stride < 3) return refuse(field, "needs a stride of 3 at least", std::to_string(stride));
+  // Whole strides, and a part of one that holds a vector. No sum here can overflow.
+  const std::size_t vectors = size / stride + (size % stride >= 3);
+  if (vectors == expected) return {};
+  return refuse(field,
+                "needs " + std::to_string(expected) + " vectors of stride " +
+                    std::to_string(stride) + ", and is of the floats",
+                std::to_string(size));
+}
+
+Result<void> validate_origin(Vec3 origin) {
+  if (finite(origin)) return {};
+  return refuse("origin", "must be finite", text(origin));
+}
+
 Result<void> validate_vector(std::string_view field, std::size_t index, Vec3 vector) {
   if (finite(vector)) return {};
   return refuse(element(field, index), "must be finite", text(vector));

@@ -32,13 +32,25 @@ void Pins::put_down(const Vectors& position) {
   put_down_.clear();
 }
 
-void Pins::put_down(std::uint32_t slot, Vector position, Vector before) {
-  const std::size_t i = index_of(slot);
-  const bool is_watched = i < pins_.size();
-  const auto place = std::ranges::lower_bound(put_down_, slot, {}, &Place::slot);
-  if (place == put_down_.end() || place->slot != slot)
-    put_down_.insert(place, {slot, is_watched ? pins_[i].from : before});
-  if (is_watched) pins_[i].from = position;
+void Pins::put_down(const Model& model, std::span<const std::uint32_t> particles,
+                    std::span<const Vec3> places, Vectors& position) {
+  const auto slot_of = [&](std::size_t i) { return model.ordering.slot_of[particles[i]]; };
+  std::vector<Place> put_down = put_down_;  // all of them or, where memory runs out, none
+  put_down.reserve(put_down.size() + particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const std::size_t pin = index_of(slot_of(i));
+    put_down.push_back({slot_of(i), pin < pins_.size() ? pins_[pin].from : position[slot_of(i)]});
+  }
+  std::ranges::stable_sort(put_down, {}, &Place::slot);
+  const auto repeated = std::ranges::unique(put_down, {}, &Place::slot);  // the first one counts
+  put_down.erase(repeated.begin(), repeated.end());
+  put_down_ = std::move(put_down);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const Vector place{places[i].x, places[i].y, places[i].z};
+    const std::size_t pin = index_of(slot_of(i));
+    if (pin < pins_.size()) pins_[pin].from = place;
+    position.set(slot_of(i), place);
+  }
 }
 
 void Pins::take_back(Vectors& position) const {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/model/model.h"
@@ -19,8 +20,9 @@ class Pins {
   void watch(const Model& model, const kernels::Vectors& position);
   /// All positions were replaced: nobody travels, but who moved may go on at the same speed.
   void put_down(const kernels::Vectors& position);
-  /// That of this pin was replaced: it does not travel there. before: where it stands now.
-  void put_down(std::uint32_t slot, kernels::Vector position, kernels::Vector before);
+  /// Puts these fixed particles, one after the other, to other places, without a way there.
+  void put_down(const Model& model, std::span<const std::uint32_t> particles,
+                std::span<const Vec3> places, kernels::Vectors& position);
   /// Whether one was put down since the last step.
   bool were_put_down() const { return !put_down_.empty(); }
   /// Moves those that were put down to where they stood in the last step's end.

@@ -180,6 +180,27 @@ struct RigidMotion {
   Vec3 about{};        ///< m
 };
 
+/// Vectors in a buffer of floats that the caller owns, as vertex buffers have them: x, y and z of
+/// vector i are floats[i * stride] and the two after it. What lies between is left as it is.
+///
+///   std::vector<float> packed(3 * count);       // x y z, x y z, ...
+///   cloth.read_positions({packed});
+///   std::vector<float> vertices(8 * count);     // position, normal, texture coordinates
+///   cloth.read_positions({vertices, 8});
+///   cloth.read_velocities({std::span(vertices).subspan(3), 8});   // where normals are
+///
+/// The buffer must hold as many vectors as are read, and not one more. Behind the last vector there
+/// may be less than a stride.
+struct FloatVectors {
+  std::span<float> floats{};
+  std::size_t stride = 3;  ///< floats from one vector to the next, at least 3
+};
+
+/// An axis-aligned box.
+struct Bounds {
+  Vec3 least{}, most{};  ///< m
+};
+
 /// One moving cloth: the state of a Model and the workspace of its solver. Particle numbers are
 /// those of the description; position() and velocity() demand particle < particle_count(). A cloth
 /// that was moved from can only be assigned to or destroyed.
@@ -221,8 +242,13 @@ class WEFT_API Cloth {
   /// Copies one Vec3 per particle; out.size() must be particle_count() (else nothing is copied).
   Result<void> read_positions(std::span<Vec3> out) const;
   Result<void> read_velocities(std::span<Vec3> out) const;
-  /// Packed x y z floats for a vertex buffer; out.size() must be 3 * particle_count().
-  Result<void> read_positions(std::span<float> out) const;
+  /// The same as floats. Positions are relative to the origin (finite), which is subtracted before
+  /// they are rounded: near it they keep their precision, however far from 0 it is. To read by
+  /// vertex, with normals: surface.h.
+  Result<void> read_positions(FloatVectors out, Vec3 origin = {}) const;
+  Result<void> read_velocities(FloatVectors out) const;
+  /// Of all positions, of fixed particles too.
+  Bounds bounds() const;
 
   /// Replace the state; finite values, one per particle. Initial or written positions that are out
   /// of tolerance are projected onto the constraints as the next step begins, velocities unchanged
@@ -245,11 +271,17 @@ class WEFT_API Cloth {
   /// moved before a step stands still in it: where steps are shorter than the frames of an
   /// animation, interpolate.
   Result<void> move_fixed(std::uint32_t particle, Vec3 position);
+  /// The same of many, in their order: particles[i] to positions[i]. All or, on an error, none.
+  Result<void> move_fixed(std::span<const std::uint32_t> particles,
+                          std::span<const Vec3> positions);
   /// Puts a fixed particle down somewhere else, without a way between: it is there before the next
   /// step begins, and the cloth is projected after it, fabrics too (write_positions), velocities
   /// and what the fabric carries unchanged (with Settings::iterations nothing is projected: the
   /// jump becomes speed). What a sphere jumped over is not passed_through.
   Result<void> place_fixed(std::uint32_t particle, Vec3 position);
+  /// The same of many, as move_fixed. If memory runs out, nothing is changed.
+  Result<void> place_fixed(std::span<const std::uint32_t> particles,
+                           std::span<const Vec3> positions);
   /// Moves the points of all anchors, in the order of the description: they travel there in
   /// straight lines during the next step, as evenly as normals turn. The last move before a step
   /// counts. Call move_anchors before write_positions, and anchors jump instead of travelling.

@@ -1,7 +1,8 @@
 /// weft: a cloth simulation library. This header includes the whole public interface of
 /// simulation: scene.h (describe and build), settings.h (create), body.h (what cloth touches),
 /// cloth.h (step and read), batch.h (many cloths) and jobs.h (threads of a job system).
-/// mesh.h, which it does not include, makes a SceneDescription of a mesh and a material.
+/// It does not include mesh.h, which makes a SceneDescription of a mesh and a material, and
+/// surface.h, which tells a renderer what to draw.
 ///
 ///   describe -> build -> create -> step -> read
 ///

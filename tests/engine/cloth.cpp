@@ -187,18 +187,142 @@ TEST_CASE("automatic: particles that nothing joins have no say in it") {
   }
 }
 
-TEST_CASE("packed floats are the positions, x y z") {
+/// Whether the vectors stand in the buffer, and -7 between them.
+bool holds(const std::vector<float>& buffer, std::size_t stride, std::size_t offset,
+           const std::vector<Vec3>& vectors, Vec3 origin) {
+  std::vector<float> expected(buffer.size(), -7);
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const Vec3 v = vectors[i];
+    float* const to = &expected[offset + i * stride];
+    to[0] = static_cast<float>(v.x - origin.x);
+    to[1] = static_cast<float>(v.y - origin.y);
+    to[2] = static_cast<float>(v.z - origin.z);
+  }
+  return buffer == expected;
+}
+
+TEST_CASE("floats are the positions and velocities; what lies between them stays") {
   const Backend backend = each_backend();
   Cloth cloth = cloth_of(scene_of("corners", 5), on(backend));
   run(cloth, 0.01, 3);
-  std::vector<float> packed(75);
-  REQUIRE(cloth.read_positions(std::span<float>(packed)));
-  for (std::uint32_t i = 0; i < 25; ++i) {
-    const Vec3 p = cloth.position(i);
-    CHECK(packed[3 * i] == static_cast<float>(p.x));
-    CHECK(packed[3 * i + 1] == static_cast<float>(p.y));
-    CHECK(packed[3 * i + 2] == static_cast<float>(p.z));
+  for (const auto& [stride, offset] : {std::pair{3, 0}, {4, 0}, {4, 1}, {8, 0}, {8, 3}, {8, 5}}) {
+    CAPTURE(stride);
+    CAPTURE(offset);
+    const auto step = static_cast<std::size_t>(stride), first = static_cast<std::size_t>(offset);
+    std::vector<float> buffer(25 * step, -7);
+    const FloatVectors out{std::span(buffer).subspan(first), step};
+    REQUIRE(cloth.read_positions(out));
+    CHECK(holds(buffer, step, first, positions(cloth), {}));
+    REQUIRE(cloth.read_positions(out, {3, -4, 5}));
+    CHECK(holds(buffer, step, first, positions(cloth), {3, -4, 5}));
+    REQUIRE(cloth.read_velocities(out));
+    CHECK(holds(buffer, step, first, velocities(cloth), {}));
   }
+  std::vector<float> packed(75);
+  REQUIRE(cloth.read_positions({packed}));
+  CHECK(holds(packed, 3, 0, positions(cloth), {}));
+}
+
+TEST_CASE("floats relative to an origin keep their precision far away") {
+  SceneDescription scene = scene_of("hang", 5);
+  const Vec3 far{1e7, -2e7, 3e7};
+  std::vector<Vec3> moved = scene.positions;
+  for (Vec3& p : moved) p = p + far;
+  Cloth cloth = cloth_of(scene, {});
+  REQUIRE(cloth.write_positions(moved));
+  std::vector<float> near(75), rounded(75);
+  REQUIRE(cloth.read_positions({near}, far));
+  REQUIRE(cloth.read_positions({rounded}));
+  double worst = 0, worst_rounded = 0;
+  for (std::size_t i = 0; i < 25; ++i) {
+    const Vec3 p{near[3 * i], near[3 * i + 1], near[3 * i + 2]};
+    const Vec3 q{rounded[3 * i], rounded[3 * i + 1], rounded[3 * i + 2]};
+    worst = std::max(worst, distance(p, scene.positions[i]));
+    worst_rounded = std::max(worst_rounded, distance(q - far, scene.positions[i]));
+  }
+  CHECK(worst < 2e-7);
+  CHECK(worst_rounded > 0.1);
+}
+
+TEST_CASE("bounds are those of all particles, of fixed ones too") {
+  Cloth cloth = cloth_of(scene_of("hang", 9), {});
+  run(cloth, 0.01, 20);
+  REQUIRE(cloth.move_fixed(0, {-3, 4, 5}));
+  Vec3 least = cloth.position(0), most = least;
+  for (const Vec3& p : positions(cloth)) {
+    least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
+    most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
+  }
+  CHECK(distance(cloth.bounds().least, least) == 0);
+  CHECK(distance(cloth.bounds().most, most) == 0);
+  CHECK(least.x == -3);
+  CHECK(most.y == 4);
+}
+
+/// Pins of a sheet, some twice, and where each is to be at a time.
+struct PinPlan {
+  std::vector<std::uint32_t> pins;
+  std::vector<Vec3> places;
+};
+PinPlan pin_plan(const SceneDescription& scene, double time) {
+  PinPlan plan;
+  for (const std::uint32_t pin : scene.fixed) {
+    const Vec3 start = scene.positions[pin];
+    plan.pins.push_back(pin);
+    plan.places.push_back({start.x, start.y + 0.1 * std::sin(9 * time + pin), start.z});
+  }
+  plan.pins.push_back(scene.fixed[1]);
+  plan.places.push_back(scene.positions[scene.fixed[1]]);
+  return plan;
+}
+
+TEST_CASE("many pins are moved and placed as one after the other, bit for bit") {
+  const Backend backend = each_backend();
+  const SceneDescription scene = scene_of("hang", 8);
+  Cloth many = cloth_of(scene, on(backend)), single = many.clone();
+  for (int k = 0; k < 12; ++k) {
+    const PinPlan plan = pin_plan(scene, 0.01 * k);
+    const PinPlan first = pin_plan(scene, 0.02 * k + 0.3);
+    if (k % 4 == 2) {  // some frames move before they place, some only place
+      REQUIRE(many.move_fixed(first.pins, first.places));
+      for (std::size_t i = 0; i < first.pins.size(); ++i)
+        REQUIRE(single.move_fixed(first.pins[i], first.places[i]));
+    }
+    for (std::size_t i = 0; i < plan.pins.size(); ++i) {
+      REQUIRE((k % 2 == 0 ? single.place_fixed(plan.pins[i], plan.places[i])
+                          : single.move_fixed(plan.pins[i], plan.places[i])));
+    }
+    REQUIRE((k % 2 == 0 ? many.place_fixed(plan.pins, plan.places)
+                        : many.move_fixed(plan.pins, plan.places)));
+    REQUIRE(many.state_hash() == single.state_hash());
+    run(many, 0.01, 1);
+    run(single, 0.01, 1);
+    REQUIRE(many.state_hash() == single.state_hash());
+  }
+}
+
+TEST_CASE("of many pins all are moved and placed, or none") {
+  const SceneDescription scene = scene_of("hang", 8);
+  Cloth cloth = cloth_of(scene, {}), untouched = cloth.clone();
+  const std::uint32_t a = scene.fixed[0], b = scene.fixed[1];
+  const double nan = std::nan("");
+  const auto refused = [&](const std::vector<std::uint32_t>& pins, const std::vector<Vec3>& places,
+                           const std::string& line) {
+    CHECK(cloth.move_fixed(pins, places).error() == line);
+    CHECK(cloth.place_fixed(pins, places).error() == line);
+  };
+  refused({a, b}, {{}}, "positions: needs 2 elements (1)");
+  refused({a, b}, {{1, 2, 3}, {0, nan, 0}}, "positions[1]: must be finite (0, nan, 0)");
+  refused({a, 63}, {{1, 2, 3}, {}}, "particles[1]: is not fixed (63)");
+  refused({a, 64}, {{1, 2, 3}, {}}, "particles[1]: no such particle, the scene has 64 (64)");
+  run(cloth, 0.01, 3);
+  run(untouched, 0.01, 3);
+  CHECK(cloth.state_hash() == untouched.state_hash());
+  CHECK(cloth.move_fixed({}, {}));
+  CHECK(cloth.place_fixed({}, {}));
+  run(cloth, 0.01, 3);
+  run(untouched, 0.01, 3);
+  CHECK(cloth.state_hash() == untouched.state_hash());
 }
 
 TEST_CASE("a state that is read and written into another cloth goes on bit for bit") {

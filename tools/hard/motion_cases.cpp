@@ -28,12 +28,12 @@ Outcome run_twist(const Setup& setup) {
   trial.before_step = [=](Cloth& cloth, int step) {
     const double part = std::min(1.0, step / to_and_fro);
     const double angle = 2 * std::numbers::pi * kTurns * (1 - std::abs(2 * part - 1));
-    const auto put = step == 0 ? &Cloth::place_fixed : &Cloth::move_fixed;
+    Vec3 places[3];
     for (int k = 0; k < 3; ++k) {
       const double z = start[k].z - start[1].z;
-      (void)(cloth.*put)(bar[k],
-                         {start[k].x - 0.1, z * std::sin(angle), start[1].z + z * std::cos(angle)});
+      places[k] = {start[k].x - 0.1, z * std::sin(angle), start[1].z + z * std::cos(angle)};
     }
+    (void)(step == 0 ? cloth.place_fixed(bar, places) : cloth.move_fixed(bar, places));
   };
   const Observed o = observe(trial);
   Outcome result = outcome(o.end_strain, o, kAnyEnergy);

@@ -256,7 +256,8 @@ TEST_CASE("writes must be finite, one vector per particle, and fail as a whole")
 }
 
 TEST_CASE("only fixed particles are moved and placed, and only where one can be") {
-  for (const auto put : {&Cloth::move_fixed, &Cloth::place_fixed}) {
+  using Put = Result<void> (Cloth::*)(std::uint32_t, Vec3);
+  for (const Put put : {Put(&Cloth::move_fixed), Put(&Cloth::place_fixed)}) {
     const auto check = [&](std::uint32_t particle, Vec3 to, const std::vector<std::string>& words) {
       check_refusal([&](Cloth& c) { return (c.*put)(particle, to); }, words);
     };
@@ -356,11 +357,29 @@ TEST_CASE("reads into a span of the wrong size copy nothing") {
     check_message(v.error(), {"16", std::to_string(size).c_str()});
     for (const Vec3& x : out) CHECK((x.x == 7 && x.y == 7 && x.z == 7));
   }
-  std::vector<float> packed(47, 7.0f);
-  const auto f = cloth.read_positions(std::span<float>(packed));
-  REQUIRE_FALSE(f);
-  check_message(f.error(), {"48", "47"});
-  for (const float x : packed) CHECK(x == 7.0f);
+  const auto check_floats = [&](std::size_t size, std::size_t stride,
+                                const std::vector<std::string>& parts) {
+    std::vector<float> floats(size, 7.0f);
+    const auto p = cloth.read_positions({floats, stride});
+    const auto v = cloth.read_velocities({floats, stride});
+    REQUIRE_FALSE(p);
+    REQUIRE_FALSE(v);
+    check_message(p.error(), parts);
+    check_message(v.error(), parts);
+    for (const float x : floats) CHECK(x == 7.0f);
+  };
+  for (const std::size_t size : {0u, 45u, 47u, 51u})
+    check_floats(size, 3, {"out", "16 vectors of stride 3", std::to_string(size)});
+  for (const std::size_t size : {15u * 8, 15u * 8 + 2, 16u * 8 + 3})
+    check_floats(size, 8, {"out", "16 vectors of stride 8", std::to_string(size)});
+  for (const std::size_t stride : {0u, 1u, 2u})
+    check_floats(48, stride, {"out", "stride of 3 at least", std::to_string(stride)});
+  check_floats(48, ~std::size_t{0}, {"out", "16 vectors", "48"});
+  std::vector<float> packed(48, 7.0f);
+  const auto far = cloth.read_positions({packed}, {0, kInfinity, 0});
+  REQUIRE_FALSE(far);
+  check_message(far.error(), {"origin", "must be finite", "inf"});
+  CHECK(packed == std::vector<float>(48, 7.0f));
 }
 
 }  // namespace

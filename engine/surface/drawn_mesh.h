@@ -1,0 +1,39 @@
+/// A mesh as it is drawn: its triangles by vertex, and what normals are made of.
+#pragma once
+
+#include <weft/mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace weft::surface {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Faces whose corners are points: vertices at one place are one point. None is there twice.
+struct PointFaces {
+  std::vector<Triangle> triangles;
+  std::vector<std::array<std::uint32_t, 4>> quads;
+  std::size_t bytes() const;
+};
+
+struct DrawnVertex {
+  std::uint32_t point = kNoIndex;
+  float side = 1;  ///< -1: it has the normal of its point turned around
+};
+
+struct DrawnMesh {
+  std::vector<DrawnVertex> vertices;
+  std::vector<Triangle> triangles;  ///< corners are vertices
+  PointFaces faces;
+  std::size_t bytes() const;
+};
+
+/// point_of_vertex: of all corners of faces there is one.
+DrawnMesh drawn_mesh(const MeshDescription& mesh,
+                     const std::vector<std::uint32_t>& point_of_vertex);
+/// The triangles of the mesh with points as corners.
+std::vector<Triangle> point_triangles(const DrawnMesh& drawn);
+
+}  // namespace weft::surface
