@@ -129,6 +129,7 @@ struct Cloth::Impl : State {
     if (bodies.has(id)) return {};
     return refuse("body", "no such body", std::to_string(id));
   }
+  Result<void> validate_vertices(std::uint32_t id, std::span<const Vec3> vertices) const;
   std::uint32_t slot(std::uint32_t particle) const { return model->ordering.slot_of[particle]; }
   Result<void> take_along(const RigidMotion& motion, double share);
   bool is_pin(std::uint32_t particle) const {
@@ -403,6 +404,33 @@ Result<void> Cloth::place_body(std::uint32_t id, const Pose& pose) {
   return {};
 }
 
+Result<void> Cloth::Impl::validate_vertices(std::uint32_t id,
+                                            std::span<const Vec3> vertices) const {
+  if (auto r = validate_body(id); !r) return r;
+  const std::size_t count = bodies.vertices(id);
+  if (count == 0) return refuse("body", "is no triangle mesh", std::to_string(id));
+  if (vertices.size() != count)
+    return refuse("vertices", "must be as many as the mesh has, " + std::to_string(count),
+                  std::to_string(vertices.size()));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!finite(vertices[i]))
+      return refuse(element("vertices", i), "must be finite", text(vertices[i]));
+  }
+  return {};
+}
+
+Result<void> Cloth::move_body_vertices(std::uint32_t id, std::span<const Vec3> vertices) {
+  if (auto r = impl_->validate_vertices(id, vertices); !r) return r;
+  if (impl_->bodies.move_vertices(id, vertices)) impl_->rest.wake();
+  return {};
+}
+
+Result<void> Cloth::place_body_vertices(std::uint32_t id, std::span<const Vec3> vertices) {
+  if (auto r = impl_->validate_vertices(id, vertices); !r) return r;
+  if (impl_->bodies.place_vertices(id, vertices)) impl_->rest.wake();
+  return {};
+}
+
 Result<void> Cloth::switch_body(std::uint32_t id, bool on) {
   if (auto r = impl_->validate_body(id); !r) return r;
   if (impl_->bodies.switch_on(id, on)) impl_->rest.wake();
@@ -427,14 +455,10 @@ std::vector<BodyContact> Cloth::body_contacts() const {
   std::vector<BodyTouch> touches;
   impl_->small_steps->read_contacts(touches);
   for (const BodyTouch& touch : touches) {
-    const kernels::Vector x = impl_->position[touch.slot];
-    const reference::BodyMotion& body = touch.motion;
-    const reference::Gap gap = gap_of(body.solid, 0, body.to.from_place(x));
-    const kernels::Vector normal = body.to.turned(gap.normal);
     contacts.push_back({.particle = impl_->model->ordering.particle_at[touch.slot],
                         .body = touch.body,
-                        .point = to_public(x - gap.gap * normal),
-                        .normal = to_public(normal),
+                        .point = to_public(touch.point),
+                        .normal = to_public(touch.normal),
                         .push = touch.push});
   }
   return contacts;

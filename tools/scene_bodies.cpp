@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -51,6 +52,11 @@ class Entry {
   std::string place(std::string_view key) const { return within(place_, key); }
   double number(std::string_view key) { return read_number(needed(key), place(key)); }
   double number(std::string_view key, double without) { return has(key) ? number(key) : without; }
+  bool flag(std::string_view key) {
+    const Json& value = needed(key);
+    if (!value.is_boolean()) refuse(place(key), "true or false", value);
+    return value.get<bool>();
+  }
   Vec3 vector(std::string_view key) { return read_vector(needed(key), place(key)); }
   Vec3 vector(std::string_view key, Vec3 without) { return has(key) ? vector(key) : without; }
   void check_keys() const {
@@ -88,6 +94,12 @@ PinMove read_move(const Json& json, const std::string& place) {
   return move;
 }
 
+std::array<std::uint32_t, 3> read_corners(const Json& json, const std::string& place) {
+  const auto corners = read_array(json, place, read_index);
+  if (corners.size() != 3) refuse(place, "three vertices", json);
+  return {corners[0], corners[1], corners[2]};
+}
+
 ShapeDescription read_shape(Entry& entry) {
   const Json& name = entry.needed("shape");
   if (name == "plane")
@@ -101,7 +113,14 @@ ShapeDescription read_shape(Entry& entry) {
   if (name == "box") return box(entry.vector("size"));
   if (name == "hull")
     return Hull{read_array(entry.needed("points"), entry.place("points"), read_vector)};
-  refuse(entry.place("shape"), "plane, sphere, capsule, box or hull", name);
+  if (name == "mesh") {
+    TriangleMesh mesh;
+    mesh.vertices = read_array(entry.needed("vertices"), entry.place("vertices"), read_vector);
+    mesh.triangles = read_array(entry.needed("triangles"), entry.place("triangles"), read_corners);
+    if (entry.has("two_sided")) mesh.two_sided = entry.flag("two_sided");
+    return mesh;
+  }
+  refuse(entry.place("shape"), "plane, sphere, capsule, box, hull or mesh", name);
 }
 
 SceneBody read_body(const Json& json, const std::string& place) {
@@ -139,6 +158,12 @@ Json shape_json(const Capsule& c) {
           {"radius_b", c.radius_b}};
 }
 Json shape_json(const Hull& hull) { return {{"shape", "hull"}, {"points", rows(hull.points)}}; }
+Json shape_json(const TriangleMesh& mesh) {
+  return {{"shape", "mesh"},
+          {"vertices", rows(mesh.vertices)},
+          {"triangles", mesh.triangles},
+          {"two_sided", mesh.two_sided}};
+}
 
 }  // namespace
 

@@ -19,6 +19,8 @@ bool same(const Pose& a, const Pose& b) {
   return of(a) == of(b);
 }
 
+bool same(kernels::Vector a, kernels::Vector b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
 Vec3 over_time(kernels::Vector v, double dt) { return {-v.x / dt, -v.y / dt, -v.z / dt}; }
 
 }  // namespace
@@ -58,6 +60,35 @@ bool Bodies::place(std::uint32_t id, const Pose& pose) {
   return changes;
 }
 
+bool Bodies::move_vertices(std::uint32_t id, std::span<const Vec3> to) {
+  Entry& entry = bodies_[id];
+  const std::vector<kernels::Vector>& first = entry.shape->mesh()->vertices;
+  if (entry.vertices_from.empty()) entry.vertices_from = entry.vertices_to = first;
+  bool changes = false, moves = false;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const kernels::Vector at{to[i].x, to[i].y, to[i].z};
+    changes = changes || !same(at, entry.vertices_to[i]);
+    moves = moves || !same(at, entry.vertices_from[i]);
+    entry.vertices_to[i] = at;
+  }
+  entry.deforms = moves;
+  return changes;
+}
+
+bool Bodies::place_vertices(std::uint32_t id, std::span<const Vec3> at) {
+  const bool changes = move_vertices(id, at);
+  Entry& entry = bodies_[id];
+  const bool jumps = std::exchange(entry.deforms, false);
+  entry.vertices_from = entry.vertices_to;
+  are_others_ = are_others_ || jumps;
+  return changes || jumps;
+}
+
+std::size_t Bodies::vertices(std::uint32_t id) const {
+  const MeshShape* mesh = bodies_[id].shape->mesh();
+  return mesh != nullptr ? mesh->vertices.size() : 0;
+}
+
 bool Bodies::switch_on(std::uint32_t id, bool on) {
   const bool changes = std::exchange(bodies_[id].is_on, on) != on;
   are_others_ = are_others_ || changes;
@@ -69,9 +100,16 @@ std::span<const TravellingBody> Bodies::travelling(double friction_of_cloth) {
   for (std::uint32_t id = 0; id < bodies_.size(); ++id) {
     const Entry& entry = bodies_[id];
     if (entry.shape == nullptr || !entry.is_on) continue;
+    const MeshShape* mesh = entry.shape->mesh();
+    const auto vertices = [&](const std::vector<kernels::Vector>& given) {
+      if (mesh == nullptr) return std::span<const kernels::Vector>{};
+      return std::span<const kernels::Vector>(given.empty() ? mesh->vertices : given);
+    };
     travelling_.push_back({.id = id,
                            .shape = entry.shape,
                            .travel = PoseTravel(entry.from, entry.to),
+                           .from = vertices(entry.vertices_from),
+                           .to = vertices(entry.vertices_to),
                            .thickness = entry.thickness,
                            .friction = std::sqrt(entry.friction * friction_of_cloth)});
   }
@@ -83,7 +121,7 @@ bool Bodies::any() const {
 }
 
 bool Bodies::moving() const {
-  const auto is_under_way = [](const Entry& e) { return e.moves || e.moved; };
+  const auto is_under_way = [](const Entry& e) { return e.moves || e.deforms || e.moved; };
   return are_others_ || std::ranges::any_of(bodies_, is_under_way);
 }
 
@@ -91,7 +129,9 @@ void Bodies::arrive(std::span<const BodyImpulse> impulses, double dt) {
   are_others_ = false;
   for (Entry& entry : bodies_) {
     entry.from = entry.to;
-    entry.moved = std::exchange(entry.moves, false);
+    if (entry.deforms) entry.vertices_from = entry.vertices_to;
+    entry.moved = entry.moves || entry.deforms;
+    entry.moves = entry.deforms = false;
     entry.load = {};
   }
   for (const BodyImpulse& impulse : impulses) {
@@ -99,6 +139,11 @@ void Bodies::arrive(std::span<const BodyImpulse> impulses, double dt) {
   }
 }
 
-std::size_t Bodies::bytes() const { return bytes_of(bodies_) + bytes_of(travelling_); }
+std::size_t Bodies::bytes() const {
+  std::size_t bytes = bytes_of(bodies_) + bytes_of(travelling_);
+  for (const Entry& entry : bodies_)
+    bytes += bytes_of(entry.vertices_from) + bytes_of(entry.vertices_to);
+  return bytes;
+}
 
 }  // namespace weft

@@ -18,6 +18,7 @@ struct TravellingBody {
   std::uint32_t id = 0;
   std::shared_ptr<const BodyShape> shape;
   PoseTravel travel;
+  std::span<const kernels::Vector> from{}, to{};  // of a mesh: its vertices, in its coordinates
   double thickness = 0;
   double friction = 0;  // with the cloth
 };
@@ -38,7 +39,11 @@ class Bodies {
   /// Whether this changes something, as do those below.
   bool move(std::uint32_t id, const Pose& pose);
   bool place(std::uint32_t id, const Pose& pose);
+  bool move_vertices(std::uint32_t id, std::span<const Vec3> to);
+  bool place_vertices(std::uint32_t id, std::span<const Vec3> at);
   bool switch_on(std::uint32_t id, bool on);
+  /// Of a mesh, else 0.
+  std::size_t vertices(std::uint32_t id) const;
 
   /// Those that are there; valid until one is changed.
   std::span<const TravellingBody> travelling(double friction_of_cloth);
@@ -46,6 +51,8 @@ class Bodies {
   bool any() const;
   /// Whether one of them is under way, or was in the last step, or there are other ones.
   bool moving() const;
+  /// Whether one is there that was not in the last step, or was put elsewhere.
+  bool are_others() const { return are_others_; }
   /// A step of dt was done.
   void arrive(std::span<const BodyImpulse> impulses, double dt);
   BodyLoad load(std::uint32_t id) const { return bodies_[id].load; }
@@ -55,8 +62,9 @@ class Bodies {
   struct Entry {
     std::shared_ptr<const BodyShape> shape;  // null: removed
     Pose from{}, to{};
+    std::vector<kernels::Vector> vertices_from{}, vertices_to{};  // empty: those of the shape
     double thickness = 0, friction = 0;
-    bool is_on = true, moves = false, moved = false;
+    bool is_on = true, moves = false, deforms = false, moved = false;
     BodyLoad load{};
   };
   std::vector<Entry> bodies_;  // by id

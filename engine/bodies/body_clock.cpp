@@ -35,6 +35,11 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int subs
   }
 }
 
+int BodyClock::substeps_in(double time) const {
+  const double interval = std::max(1.0, std::floor(time / h_));
+  return static_cast<int>(std::min<double>(interval, substeps_left()));
+}
+
 void BodyClock::advance() {
   ++done_;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {

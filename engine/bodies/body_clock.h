@@ -28,6 +28,18 @@ class BodyClock {
   /// m/s: no point of the body is faster in this step; of what has no end, its centre.
   double fastest(std::size_t body) const;
   int substeps_left() const { return substeps_ - done_; }
+  /// Of those that are left as many as such a time has, one at least.
+  int substeps_in(double time) const;
+  /// Where a vertex of a body that is a mesh is at a share of the step, when its pose is `at`.
+  kernels::Vector vertex(std::size_t body, std::size_t vertex, const reference::Placement& at,
+                         double share) const {
+    const TravellingBody& b = bodies_[body];
+    return at.placed(b.from[vertex] + share * (b.to[vertex] - b.from[vertex]));
+  }
+  /// Of the step, when some substeps from now are over.
+  double share_after(int substeps) const { return share(done_ + substeps); }
+  bool stands() const { return stands_; }
+  double time() const { return h_ * substeps_; }  // s, of the step
   std::size_t bytes() const {
     return motions_.capacity() * sizeof(motions_[0]) + bodies_.capacity() * sizeof(bodies_[0]);
   }

@@ -89,6 +89,65 @@ Shared build(const Hull& hull) {
   return std::make_shared<const BodyShape>(std::move(faces), std::move(points));
 }
 
+/// Triangles with three corners of their own.
+std::vector<TriangleSurface::Triangle> proper(const TriangleMesh& mesh) {
+  std::vector<TriangleSurface::Triangle> triangles;
+  for (const TriangleSurface::Triangle& t : mesh.triangles) {
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+  }
+  return triangles;
+}
+
+/// Of a one-sided mesh: every side is run along once in each direction.
+Result<void> validate_sides(const TriangleMesh& mesh) {
+  std::vector<std::array<std::uint32_t, 3>> sides;  // from, to, triangle
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const TriangleSurface::Triangle& corners = mesh.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (corners[k] != corners[(k + 1) % 3])
+        sides.push_back({corners[k], corners[(k + 1) % 3], t});
+    }
+  }
+  std::ranges::sort(sides);
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    if (sides[i][0] != sides[i - 1][0] || sides[i][1] != sides[i - 1][1]) continue;
+    return refuse(element("triangles", sides[i][2]),
+                  "runs along an edge in the same direction as another triangle; turn it, or set "
+                  "two_sided",
+                  std::to_string(sides[i - 1][2]));
+  }
+  return {};
+}
+
+Shared build(const TriangleMesh& mesh) {
+  MeshShape shape{.two_sided = mesh.two_sided};
+  std::vector<std::array<double, 3>> places;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Vec3 v = mesh.vertices[i];
+    if (auto r = validate_finite(element("vertices", i), v); !r) return Error{r.error()};
+    shape.vertices.push_back(to_vector(v));
+    places.push_back({v.x, v.y, v.z});
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t corner = mesh.triangles[i][k];
+      if (corner < mesh.vertices.size()) continue;
+      return refuse(element(element("triangles", i), k),
+                    "no such vertex, the mesh has " + std::to_string(mesh.vertices.size()),
+                    std::to_string(corner));
+    }
+  }
+  const std::vector<TriangleSurface::Triangle> triangles = proper(mesh);
+  if (triangles.empty())
+    return refuse("triangles", "must be one or more with three corners",
+                  std::to_string(mesh.triangles.size()));
+  if (!mesh.two_sided) {
+    if (auto r = validate_sides(mesh); !r) return Error{r.error()};
+  }
+  shape.surface = make_triangle_surface(triangles, places, {});
+  return std::make_shared<const BodyShape>(std::move(shape));
+}
+
 }  // namespace
 
 BodyShape::BodyShape(const reference::Solid& capsule)

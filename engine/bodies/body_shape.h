@@ -3,13 +3,16 @@
 
 #include <weft/body.h>
 
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include "engine/bodies/mesh_shape.h"
 #include "kernels/reference/bodies.h"
 
 namespace weft {
 
-/// In coordinates of the body. Of a plane, or the inside of several; or a capsule.
+/// In coordinates of the body. Of a plane, or the inside of several; or a capsule; or a mesh.
 class BodyShape {
  public:
   BodyShape(std::vector<reference::Face> faces, std::vector<kernels::Vector> corners)
@@ -19,9 +22,12 @@ class BodyShape {
     solid_.faces = faces_;
   }
   explicit BodyShape(const reference::Solid& capsule);
+  explicit BodyShape(MeshShape mesh) : mesh_(std::make_unique<const MeshShape>(std::move(mesh))) {}
   BodyShape(const BodyShape&) = delete;
   BodyShape& operator=(const BodyShape&) = delete;
 
+  /// Null: it is none, but solid().
+  const MeshShape* mesh() const { return mesh_.get(); }
   const reference::Solid& solid() const { return solid_; }
   /// A plane reaches to infinity.
   bool is_bounded() const { return !corners_.empty(); }
@@ -41,6 +47,7 @@ class BodyShape {
   double radius_ = 0;
   double spread_ = 1;
   reference::Solid solid_;
+  std::unique_ptr<const MeshShape> mesh_;
 };
 
 }  // namespace weft

@@ -92,19 +92,25 @@ std::vector<BendingElement> bending_of(const std::vector<Face>& faces, std::size
   return elements;
 }
 
-Air air_of(const std::vector<Face>& faces, const Material& material) {
+std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<Face>& faces) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const Face& face : faces) {
+    const auto& p = face.particles;
+    if (!face.is_quad()) {
+      triangles.push_back({p[0], p[1], p[2]});
+      continue;
+    }
+    for (const auto& [i, j, k] : cut(face)) triangles.push_back({p[i], p[j], p[k]});
+  }
+  return triangles;
+}
+
+Air air_of(const SceneDescription& scene, const Material& material) {
   Air air;
   if (!(material.drag > 0 || material.lift > 0)) return air;
   air.drag = material.drag;
   air.lift = material.lift;
-  for (const Face& face : faces) {
-    const auto& p = face.particles;
-    if (!face.is_quad()) {
-      air.triangles.push_back({p[0], p[1], p[2]});
-      continue;
-    }
-    for (const auto& [i, j, k] : cut(face)) air.triangles.push_back({p[i], p[j], p[k]});
-  }
+  air.triangles = scene.surface;
   return air;
 }
 
@@ -137,7 +143,7 @@ Result<void> add_material(const MeshDescription& mesh, const Welded& welded,
   cloth.counts.thread_lines = fabric.threads.size();
   scene.bending = bending_of(faces, scene.positions.size(), mesh);
   scene.damping = {material.damping_stretch, material.damping_bending, material.damping_motion};
-  scene.air = air_of(faces, material);
+  scene.air = air_of(scene, material);
   return {};
 }
 
@@ -165,6 +171,7 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
   scene.positions = welded.positions;
   scene.fixed = pinned(mesh, welded);
   scene.seams = seams_of(mesh, welded);
+  scene.surface = triangles_of(found.faces);
   if (!mesh.material) {
     add_rigid_edges(mesh, welded, scene);
   } else if (auto r = add_material(mesh, welded, found.faces, edges, cloth); !r) {

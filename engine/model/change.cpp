@@ -19,6 +19,8 @@ class Describer {
     describe_constraints();
     describe_membrane();
     describe_bending();
+    for (const auto& [a, b, c] : model_.surface)
+      description_.surface.push_back({particle(a), particle(b), particle(c)});
     describe_air();
     description_.anchors = model_.anchors.described;
     describe_seams();

@@ -64,6 +64,7 @@ Model::Model(const SceneDescription& description, const Model* like)
   store_bending(description);
   store_anchors(description);
   store_seams(description);
+  store_surface(description);
   store_air(description);
   damping = description.damping;
   friction = description.friction;
@@ -226,6 +227,11 @@ void Model::store_seams(const SceneDescription& d) {
   }
 }
 
+void Model::store_surface(const SceneDescription& d) {
+  for (const auto& [a, b, c] : d.surface)
+    surface.push_back({ordering.slot_of[a], ordering.slot_of[b], ordering.slot_of[c]});
+}
+
 void Model::store_air(const SceneDescription& d) {
   air.density = d.air.density;
   air.drag = d.air.drag;
@@ -376,6 +382,23 @@ const YarnLayout& Model::yarns() const {
   return yarns_.get([this] { return make_yarn_layout(*this); });
 }
 
+const TriangleSurface& Model::touched_surface() const {
+  return touched_surface_.get([this] {
+    std::vector<std::array<double, 3>> places;
+    std::vector<std::uint32_t> loose;
+    std::vector<bool> is_in_triangle(slots());
+    for (const TriangleSurface::Triangle& triangle : surface) {
+      for (const std::uint32_t corner : triangle) is_in_triangle[corner] = true;
+    }
+    for (std::uint32_t slot = 0; slot < slots(); ++slot) {
+      const kernels::Vector x = initial_position[slot];
+      places.push_back({x.x, x.y, x.z});
+      if (!is_in_triangle[slot] && inverse_mass[slot] > 0) loose.push_back(slot);
+    }
+    return make_triangle_surface(surface, places, loose);
+  });
+}
+
 const SmallStepsLayout& Model::small_steps() const {
   return small_steps_.get([this] { return make_small_steps_layout(*this); });
 }
@@ -423,10 +446,11 @@ std::size_t Model::bytes() const {
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + ordering.bytes() + constraints.bytes() + membrane.bytes() +
-         bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() +
+         bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() + bytes_of(surface) +
          bytes_of(air.triangles) + air.at.bytes() + bytes_if_made(reference_) +
          bytes_if_made(simd_) + bytes_if_made(chunk_neighbours_) + bytes_if_made(pulls_) +
-         bytes_if_made(direct_) + bytes_if_made(yarns_) + bytes_if_made(small_steps_);
+         bytes_if_made(direct_) + bytes_if_made(yarns_) + bytes_if_made(small_steps_) +
+         bytes_if_made(touched_surface_);
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {
@@ -446,6 +470,7 @@ ModelInfo describe(const Model& model) {
           .bending_elements = model.bending.size(),
           .anchors = model.anchors.size(),
           .seams = model.seams.size(),
+          .surface_triangles = model.surface.size(),
           .air_triangles = model.air.triangles.size(),
           .spheres = model.spheres.size(),
           .colours = model.ordering.colours,

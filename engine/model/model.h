@@ -24,6 +24,7 @@
 #include "engine/solvers/sweeps/reference_layout.h"
 #include "engine/solvers/sweeps/simd_layout.h"
 #include "engine/solvers/yarn/yarn_layout.h"
+#include "engine/triangles/triangle_surface.h"
 #include "kernels/reference/anchors.h"
 #include "kernels/reference/membrane.h"
 #include "kernels/vectors.h"
@@ -172,6 +173,7 @@ class Model {
   BendingStore bending;
   AnchorStore anchors;
   SeamStore seams;
+  std::vector<std::array<std::uint32_t, 3>> surface;  // triangles, between slots
   AirStore air;
   Damping damping;
   Unevenness uneven;
@@ -216,6 +218,8 @@ class Model {
   const DirectLayout& direct() const;
   const YarnLayout& yarns() const;
   const SmallStepsLayout& small_steps() const;
+  /// The triangles of `surface`, and free particles that are in none.
+  const TriangleSurface& touched_surface() const;
 
  private:
   struct Draft;
@@ -228,6 +232,7 @@ class Model {
   void store_bending(const SceneDescription& description);
   void store_anchors(const SceneDescription& description);
   void store_seams(const SceneDescription& description);
+  void store_surface(const SceneDescription& description);
   void store_air(const SceneDescription& description);
   void list_air_triangles();
   void find_holds();
@@ -243,6 +248,7 @@ class Model {
   OnDemand<DirectLayout> direct_;
   OnDemand<YarnLayout> yarns_;
   OnDemand<SmallStepsLayout> small_steps_;
+  OnDemand<TriangleSurface> touched_surface_;
 };
 
 }  // namespace weft

@@ -136,6 +136,10 @@ Result<void> validate_material(const SceneDescription& d) {
   for (std::size_t i = 0; i < d.bending.size(); ++i) {
     if (auto r = validate_bending(i, d.bending[i], d.positions.size()); !r) return r;
   }
+  for (std::size_t i = 0; i < d.surface.size(); ++i) {
+    if (auto r = validate_corners(element("surface", i), d.surface[i], d.positions.size()); !r)
+      return r;
+  }
   if (auto r = validate_damping(d.damping); !r) return r;
   if (auto r = validate_not_negative("friction", d.friction); !r) return r;
   return validate_air(d.air, d.positions.size());

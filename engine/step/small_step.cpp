@@ -158,6 +158,7 @@ class Frame {
     plan_.seams = s_.seams.states();
     plan_.bodies = s_.bodies.travelling(s_.model->friction);
     plan_.bodies_move = s_.bodies.moving();
+    plan_.bodies_are_new = s_.bodies.are_others();
     kernels::Vectors& velocity = plan.projects ? s_.next_velocity : s_.velocity;
     if (plan.projects) velocity = kernels::Vectors(velocity.size());  // at rest
     const kernels::VectorsView force =
@@ -202,10 +203,10 @@ class Frame {
     }
     if (s_.model->has_contacts()) find_contacts();
     if (mends) {
-      count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest)));
+      count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest), team_));
       beyond_ = mended_;
     } else if (to_tolerance && s_.contacts.count() > 0) {
-      count(solver_.repair(s_.contacts, 0));
+      count(solver_.repair(s_.contacts, 0, team_));
     }
     solver_.end_seams();
     if (s_.model->has_contacts()) watch_crossings();
@@ -215,7 +216,11 @@ class Frame {
   /// that look at all constraints. If rounds no longer bring the error down it is there to stay.
   Status finish() {
     read_positions();
-    const Status status = put_right_what_is_left();
+    Status status = put_right_what_is_left();
+    if (solver_.end_contacts(team_)) {
+      read_positions();
+      if (!is_within_tolerance() && status == Status::converged) status = Status::iteration_limit;
+    }
     report_.iterations += static_cast<std::int64_t>(std::ceil(local_passes_));
     return status;
   }
@@ -235,7 +240,7 @@ class Frame {
   /// What is under the surface of a body comes out by and by: no round would bring it out sooner.
   /// Returns whether something is deeper than the tolerance.
   bool is_in_body() {
-    const double depth = solver_.deepest_in_body();
+    const double depth = solver_.deepest_in_body(team_);
     report_.max_penetration = std::max(report_.max_penetration, depth);
     return depth > s_.settings.contact_tolerance;
   }
@@ -322,7 +327,7 @@ class Frame {
   void put_right() {
     sweep_beyond(0);
     const double most = std::min(passes_left_, most_of_substep());
-    count(solver_.repair_everywhere(s_.contacts, most_visits(most)));
+    count(solver_.repair_everywhere(s_.contacts, most_visits(most), team_));
     read_positions();
   }
   void sweep_beyond(double to) {

@@ -246,6 +246,9 @@ StepReport step(State& s, double dt, Team& team) {
       report.body_contacts = s.body_report.contacts;
       report.body_work = s.body_report.work;
       report.friction_work = s.body_report.friction;
+      report.contact_failures = s.body_report.failures.failures;
+      report.zones = s.body_report.failures.zones;
+      report.intersecting = s.body_report.failures.left;
       s.way = {};
     }
   }

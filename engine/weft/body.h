@@ -10,18 +10,27 @@
 ///
 ///   weft::BodyLoad load = cloth.body_load(id.value()).value();  // what the cloth did to it
 ///
-/// Each particle is kept at the thickness from the surface, by a contact in closed form in every
-/// substep, with Coulomb friction of the same substep. Bodies are solid: a particle that is inside
-/// when a step begins comes out by 2 m/s at most and gains no speed. What would pass through a body
-/// within a substep is stopped, if it was near enough when particles were last looked for: every
-/// 2 ms, by the ways that are predicted (tests/README.md has what outruns that). Edges and corners
-/// of a body between the particles of a coarse cloth are not seen. Solver small_steps only;
-/// `automatic` chooses it when the first body is added.
+/// Cloth is kept at the thickness from the surface, in every substep, with Coulomb friction of the
+/// same substep. Bodies are solid: a particle that is inside when a step begins comes out by 2 m/s
+/// at most and gains no speed. Solver small_steps only; `automatic` chooses it when the first body
+/// is added.
+///
+/// Planes, balls, capsules and hulls touch the particles of the cloth, by a contact in closed form.
+/// What would pass through a body within a substep is stopped, if it was near enough when particles
+/// were last looked for: every 2 ms, by the ways that are predicted (tests/README.md has what
+/// outruns that). Edges and corners of a body between the particles of a coarse cloth are not seen.
+///
+/// Triangle meshes touch all of the cloth's surface (SceneDescription::surface): particles against
+/// triangles both ways, and edges against edges. Every 2 ms each pair that may have met is
+/// verified: a cloth that does not cross the mesh when a step begins does not cross it when the
+/// step ends. If that cannot be had, as between two bodies that close on each other, the report
+/// says so.
 #pragma once
 
 #include <weft/result.h>
 #include <weft/scene.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <variant>
@@ -65,7 +74,20 @@ struct Hull {
 /// A box around the origin of the body with these edges, as a hull.
 WEFT_API Hull box(Vec3 size);
 
-using ShapeDescription = std::variant<Plane, Ball, Capsule, Hull>;
+/// A surface of triangles, rigid, or deforming (Cloth::move_body_vertices).
+///
+/// One-sided ones, as bodies of characters are, keep cloth on the side from which their corners run
+/// counterclockwise; they need not be closed. What begins on the other side comes out where a
+/// vertex of the mesh, an edge or a triangle is nearest to it. Two triangles that share an edge
+/// must run along it in opposite directions. Two-sided ones keep cloth on the side where it is.
+struct TriangleMesh {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< those with two equal corners are left
+                                                        ///< out; others may have no area
+  bool two_sided = false;
+};
+
+using ShapeDescription = std::variant<Plane, Ball, Capsule, Hull, TriangleMesh>;
 
 /// A shape that is prepared. Immutable: cloths and threads may share it.
 class BodyShape;
@@ -89,11 +111,11 @@ struct BodyLoad {
 
 /// A particle that touched a body in the last substep of a step.
 struct BodyContact {
-  std::uint32_t particle = 0;
-  std::uint32_t body = 0;  ///< its id
-  Vec3 point{};            ///< m, on the surface
-  Vec3 normal{};           ///< out of the body
-  double push = 0;         ///< m, by which the substep moved the particle along the normal
+  std::uint32_t particle = 0;  ///< of an edge or a triangle of the cloth: the one nearest to point
+  std::uint32_t body = 0;      ///< its id
+  Vec3 point{};                ///< m, on the surface
+  Vec3 normal{};               ///< out of the body
+  double push = 0;             ///< m, by which the substep moved the particle along the normal
 };
 
 }  // namespace weft

@@ -95,6 +95,12 @@ struct StepReport {
   std::uint32_t worst_element = kNoIndex;     ///< likewise, of the largest strain or shear
   double max_penetration = 0;                 ///< m, into spheres and bodies, beyond the thickness
   int body_contacts = 0;                      ///< pairs of a particle and a body that touch
+  /// Pairs of features of the cloth and of bodies that are triangle meshes which would have met
+  /// within the step and were caught by its verification.
+  int contact_failures = 0;
+  int zones = 0;  ///< of these, how many had to be taken along by the body as if they stuck to it
+  int intersecting = 0;  ///< of these, how many cross when the step ends: 0, unless bodies close on
+                         ///< the cloth from both sides
   double max_anchor_error = 0;  ///< m, by which an anchor's limits are exceeded; 0 without anchors
   int open_seams = 0;           ///< whose particles have not come together yet (Seam)
   double max_seam_gap = 0;  ///< m, between particles of closed seams: bounded by contact_tolerance
@@ -319,6 +325,12 @@ class WEFT_API Cloth {
   Result<void> move_body(std::uint32_t id, const Pose& pose);
   /// The same without a way between: cloth that it is put into comes out slowly.
   Result<void> place_body(std::uint32_t id, const Pose& pose);
+  /// Gives a body that is a triangle mesh other vertices, in its own coordinates: they travel there
+  /// in straight lines during the next step, while its pose travels too. Vertices that are not
+  /// moved before a step stand still in it. The last move before a step counts.
+  Result<void> move_body_vertices(std::uint32_t id, std::span<const Vec3> vertices);
+  /// The same without a way between.
+  Result<void> place_body_vertices(std::uint32_t id, std::span<const Vec3> vertices);
   /// A body that is off is not there.
   Result<void> switch_body(std::uint32_t id, bool on);
   Result<void> remove_body(std::uint32_t id);

@@ -148,6 +148,9 @@ struct SceneDescription {
   std::vector<BendingElement> bending;
   std::vector<Anchor> anchors;
   std::vector<Seam> seams;
+  /// Triangles of the cloth, by their particles. Bodies that are triangle meshes touch its faces
+  /// and edges (body.h); without these they touch particles alone. cloth_from_mesh fills it.
+  std::vector<std::array<std::uint32_t, 3>> surface;
   Damping damping;
   Air air;
   double friction = 0.3;  ///< Coulomb's, of the cloth beside bodies (body.h); at least 0
@@ -179,6 +182,7 @@ struct ModelInfo {
   std::size_t bending_elements = 0;
   std::size_t anchors = 0;
   std::size_t seams = 0;
+  std::size_t surface_triangles = 0;
   std::size_t air_triangles = 0;
   std::size_t spheres = 0;
   std::size_t colours = 0;

@@ -183,6 +183,13 @@ struct Grip {
   double stopped = 0, slowed = 0;  // m/s, likewise
 };
 
+/// How a point of the cloth and the surface under it have come together in a substep.
+struct Encounter {
+  Vector normal{};  // out of the body
+  double gap = 0;   // m, at the end; negative: under the surface
+  Vector slip{};    // m, of the point beside the material of the body
+};
+
 struct Gripped {
   bool is_touching = false;
   Vector start{};       // where the substep began, moved by what came out: no speed is gained by it
@@ -200,6 +207,41 @@ inline double held_share(double along, double may, double& held) {
   return share;
 }
 
+/// What a contact makes of an encounter.
+struct Stop {
+  double push = 0;       // m, along the normal; 0: nothing touches
+  double comes_out = 0;  // m of it, that were deeper when the substep began
+  double slid = 0;       // m, along the surface, that friction has left
+  Vector by{};           // m, of the point, altogether
+};
+inline Stop stop(const Encounter& e, double friction, double h, Grip& done) {
+  const double approach = -dot(e.normal, e.slip), began = e.gap + approach;
+  const double recovers = h * std::min(kFastestRecovery, kRecovery - began / kRecoveryTime);
+  const double target = std::min(0.0, began < 0 ? began + recovers : 0.0);
+  const double push = target - e.gap;
+  if (!(push > 0)) return {};
+  const double stays_out = std::min(push, std::max(0.0, approach));
+  done.pushed += stays_out;
+  const Vector along = e.slip + approach * e.normal;
+  const double l = length(along);
+  const double held = held_share(l, friction * done.pushed, done.held);
+  return {push, push - stays_out, (1 - held) * l, push * e.normal - held * along};
+}
+
+/// What it makes of the velocity of the point beside the surface.
+struct Slowed {
+  Vector change{};   // m/s
+  double taken = 0;  // m/s, along the surface
+};
+inline Slowed slow(Vector normal, Vector relative, double friction, Grip& done) {
+  const double into = std::max(0.0, -dot(normal, relative));
+  done.stopped += into;
+  const Vector sliding = relative - dot(normal, relative) * normal;
+  const double l = length(sliding);
+  const double slowed = held_share(l, friction * done.stopped, done.slowed);
+  return {into * normal - slowed * sliding, slowed * l};
+}
+
 /// v: the velocity at x.
 inline Gripped grip(const BodyMotion& body, Vector start, Vector x, Vector v, double radius,
                     Grip& done) {
@@ -207,30 +249,16 @@ inline Gripped grip(const BodyMotion& body, Vector start, Vector x, Vector v, do
   Gripped gripped{.start = start, .x = x, .v = v};
   if (!touch.is_near) return gripped;
   const Vector n = touch.normal;
-  const Vector slip = slip_of(body, start, x);
-  const double approach = -dot(n, slip), began = touch.gap + approach;
-  const double comes_out = body.h * std::min(kFastestRecovery, kRecovery - began / kRecoveryTime);
-  const double target = std::min(0.0, began < 0 ? began + comes_out : 0.0);
-  const double push = target - touch.gap;
-  if (!(push > 0)) return gripped;
-  const double stays_out = std::min(push, std::max(0.0, approach));
-  done.pushed += stays_out;
-  gripped.start = start + (push - stays_out) * n;
-  const Vector along = slip + approach * n;
-  const double held = held_share(length(along), body.friction * done.pushed, done.held);
-  gripped.x = x + push * n - held * along;
-  gripped.push = push;
-
-  const Vector surface = body.velocity_at(gripped.x), relative = v - surface;
-  const double into = std::max(0.0, -dot(n, relative));
-  done.stopped += into;
-  const Vector sliding = relative - dot(n, relative) * n;
-  const double slowed = held_share(length(sliding), body.friction * done.stopped, done.slowed);
-  gripped.v = v + into * n - slowed * sliding;
-  const double slid = (1 - held) * length(along) / body.h;
-  gripped.friction = 2 * slowed * length(sliding) * slid;
-  gripped.normal = n;
+  const Stop stopped = stop({n, touch.gap, slip_of(body, start, x)}, body.friction, body.h, done);
+  if (!(stopped.push > 0)) return gripped;
   gripped.is_touching = true;
+  gripped.normal = n;
+  gripped.push = stopped.push;
+  gripped.start = start + stopped.comes_out * n;
+  gripped.x = x + stopped.by;
+  const Slowed slowed = slow(n, v - body.velocity_at(gripped.x), body.friction, done);
+  gripped.v = v + slowed.change;
+  gripped.friction = 2 * slowed.taken * (stopped.slid / body.h);
   return gripped;
 }
 

@@ -7,6 +7,7 @@
 #include "kernels/simd/bodies.h"
 #include "kernels/simd/contacts.h"
 #include "kernels/simd/directions.h"
+#include "kernels/simd/distances.h"
 #include "kernels/simd/fronts.h"
 #include "kernels/simd/integrate.h"
 #include "kernels/simd/masks.h"
@@ -121,6 +122,10 @@ constexpr Table make_table() {
           .hold_anchors = hold_anchors,
           .grip_bodies = grip_bodies,
           .deepest_in_bodies = deepest_in_bodies,
+          .measure_pairs = measure_pairs,
+          .touch_pairs = touch_pairs,
+          .find_moved_pairs = find_moved_pairs,
+          .find_met = find_met,
           .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),
           .relax_spring_yarns = as_wide_as_block<relax_spring_yarns, &Table::relax_spring_yarns>(),
           .judge_spring_yarns = as_wide_as_block<judge_spring_yarns, &Table::judge_spring_yarns>(),

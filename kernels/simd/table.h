@@ -428,6 +428,46 @@ struct BodyHold {
   float h = 0;
 };
 
+/// kLanes pairs of features (distances.h): a point and a triangle, or two edges, by their points.
+/// Lanes that are not used repeat another one.
+struct alignas(64) PairBlock {
+  std::uint32_t point[4][kernels::kLanes];
+};
+/// What is known of pairs when an interval begins.
+struct PairMeasure {
+  const PairBlock* pairs = nullptr;
+  const float* points = nullptr;  // in quads
+  const float* ways = nullptr;    // likewise: that the points are expected to take
+  float reach = 0;                // m: who may come nearer than this is near
+  float beyond = 0;               // of an edge: so far past its ends it may face another one
+  float (*distance)[kernels::kLanes] = nullptr;  // written, per block
+  std::uint16_t* near = nullptr;                 // written, per block, a bit per lane
+};
+/// On which side of each other the features of a block are.
+struct alignas(64) PairSide {
+  LaneVectors normal;  // from the second to the first, as last seen there
+  float thickness[kernels::kLanes];
+  std::uint32_t used = 0;  // a bit per lane
+};
+struct PairTouch {
+  const PairBlock* pairs = nullptr;
+  const float* points = nullptr;
+  PairSide* sides = nullptr;
+  std::uint16_t* touching = nullptr;  // written: nearer than the thickness, or on the other side
+};
+/// Whether features may have met between two states.
+struct PairMoves {
+  const PairBlock* pairs = nullptr;
+  const float* moves = nullptr;                        // of the points, in quads
+  const float (*distance)[kernels::kLanes] = nullptr;  // in the first state
+  float rounding = 0;                                  // m, of the distances
+  std::uint16_t* moved = nullptr;                      // written: by more than their distance
+};
+/// kLanes boxes; of those that are not used `low` is above `high`.
+struct alignas(64) BoxCluster {
+  float low[3][kernels::kLanes], high[3][kernels::kLanes];
+};
+
 struct YarnRelaxation {
   float omega = 1;
   float tolerance = 0;           // as above
@@ -640,6 +680,12 @@ struct Table {
   void (*grip_bodies)(const BodyHold&, std::size_t first, std::size_t last);
   /// m, by which the deepest is under a surface; at least 0.
   float (*deepest_in_bodies)(const BodyHold&, std::size_t first, std::size_t last);
+  /// Of blocks first ... last - 1. edges: pairs of edges, else of a point and a triangle.
+  void (*measure_pairs)(const PairMeasure&, bool edges, std::size_t first, std::size_t last);
+  void (*touch_pairs)(const PairTouch&, bool edges, std::size_t first, std::size_t last);
+  void (*find_moved_pairs)(const PairMoves&, bool edges, std::size_t first, std::size_t last);
+  /// Which of the boxes the one from low to high meets, a bit each.
+  std::uint32_t (*find_met)(const BoxCluster&, const float* low, const float* high);
   /// Scratch as above.
   void (*relax_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
                       const YarnRelaxation&);

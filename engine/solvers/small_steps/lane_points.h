@@ -106,13 +106,7 @@ struct LanePoints {
     const reference::Held held = anchors.hold(anchor, place(u, slot), settled(slot));
     if (held.is_at_limit) put(slot, held.x, held.v);
   }
-  void grip(std::uint32_t slot) const {
-    SimdBodies::Particle particle{place(u_start, slot), place(u, slot), settled(slot)};
-    if (!bodies->hold(slot, particle)) return;
-    put(slot, particle.x, particle.v);
-    put_start(slot, particle.start);
-    if (bodies->begins_to_touch(slot)) arrived.push_back(slot);
-  }
+  void grip(std::uint32_t slot) const;  // lane_particles.h
   void push(std::uint32_t slot, kernels::Vector by) const {
     move(slot, by);
     touched.push_back(slot);

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 
+#include "engine/solvers/small_steps/body_touches.h"
+
 namespace weft {
 
 using kernels::Vector;
 
 void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps,
-                            bool stands, const Touching& before) {
+                            bool stands, const Touching& before, bool is_new,
+                            std::span<const std::uint32_t> inside) {
   clock_.begin(bodies, h, substeps, stands);
+  meshes_.begin(clock_, is_new, inside);
   if (bodies.empty()) return;
   on_.assign(model_.slots(), false);
   if (before.size() == on_.size()) on_ = before;
@@ -17,9 +21,11 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
   friction_ = 0;
 }
 
-void ReferenceBodies::advance(double part) {
+void ReferenceBodies::advance(double part, ContactParticles& particles, Team& team) {
   if (empty()) return;
+  meshes_.predict(particles, clock_, team);
   clock_.advance();
+  meshes_.advance(clock_);
   stays_ = 1 / part;
   grips_.assign(model_.slots() * clock_.bodies().size(), {});
   before_.swap(on_);
@@ -29,6 +35,7 @@ void ReferenceBodies::advance(double part) {
 bool ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& x, Vector& v) {
   bool is_touching = false;
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
+    if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
     const reference::BodyMotion& body = clock_.motions()[i];
     reference::Grip& grip = grips_[slot * clock_.bodies().size() + i];
     const reference::Gripped gripped = reference::grip(body, start, x, v, radius(slot), grip);
@@ -52,11 +59,14 @@ bool ReferenceBodies::begins_to_touch(std::uint32_t slot) {
   return begins;
 }
 
-double ReferenceBodies::deepest(const kernels::Vectors& start, const kernels::Vectors& x) const {
-  double deepest = 0;
+double ReferenceBodies::deepest(const kernels::Vectors& start, const kernels::Vectors& x,
+                                ContactParticles& particles, Team& team) {
+  double deepest = meshes_.deepest(particles, clock_, team);
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
     if (model_.inverse_mass[slot] == 0) continue;
-    for (const reference::BodyMotion& body : clock_.motions()) {
+    for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
+      if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
+      const reference::BodyMotion& body = clock_.motions()[i];
       const reference::Touch touch = find_touch(body, start[slot], x[slot], radius(slot));
       if (touch.is_near) deepest = std::max(deepest, -touch.gap);
     }
@@ -77,17 +87,19 @@ void ReferenceBodies::sum(BodyReport& report) const {
   }
   report.contacts = static_cast<int>(
       std::ranges::count_if(grips_, [](const reference::Grip& grip) { return grip.pushed > 0; }));
+  add_report(meshes_, report);
 }
 
-void ReferenceBodies::read_contacts(std::vector<BodyTouch>& contacts) const {
+void ReferenceBodies::read_contacts(const ContactParticles& particles,
+                                    std::vector<BodyTouch>& contacts) const {
   const std::size_t count = clock_.bodies().size();
   for (std::size_t i = 0; i < grips_.size(); ++i) {
     if (!(grips_[i].pushed > 0)) continue;
-    contacts.push_back({.slot = static_cast<std::uint32_t>(i / count),
-                        .body = clock_.bodies()[i % count].id,
-                        .push = grips_[i].pushed,
-                        .motion = clock_.motions()[i % count]});
+    const auto slot = static_cast<std::uint32_t>(i / count);
+    contacts.push_back(
+        touch_of(clock_, i % count, slot, particles.position(slot), grips_[i].pushed));
   }
+  add_touches(meshes_, particles, clock_, contacts);
 }
 
 }  // namespace weft

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/bodies/body_clock.h"
+#include "engine/contact/mesh_contacts.h"
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/body_report.h"
 
@@ -13,25 +14,47 @@ namespace weft {
 
 class ReferenceBodies {
  public:
-  explicit ReferenceBodies(const Model& model) : model_(model) {}
+  ReferenceBodies(const Model& model, const simd::Table& table)
+      : model_(model), meshes_(model, table) {}
 
   using Touching = std::vector<bool>;  // per slot
 
   bool empty() const { return clock_.bodies().empty(); }
   /// before: who touched a body when the frame before ended; empty: nothing is known of it.
+  /// inside: likewise, of meshes; is_new: it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-             const Touching& before);
+             const Touching& before, bool is_new, std::span<const std::uint32_t> inside);
   /// part: of h, by the scheme.
-  void advance(double part);
+  void advance(double part, ContactParticles& particles, Team& team);
+  bool has_meshes() const { return !meshes_.empty(); }
+  MeshContacts& meshes() { return meshes_; }
+  const MeshContacts& meshes() const { return meshes_; }
+  const BodyClock& clock() const { return clock_; }
+  /// After the particles were held one by one, by meshes. moved(slot, by): by how much (m).
+  template <class Moved>
+  void hold_by_meshes(ContactParticles& particles, Team& team, Moved&& moved) {
+    if (clock_.stands()) {  // positions are put right, by any way: nobody knows how far
+      meshes_.predict(particles, clock_, team);
+      meshes_.advance(clock_);
+    }
+    meshes_.sweep(particles, clock_, team, moved);
+  }
+  /// Before the next substep, or after the last. Returns whether particles had to be moved.
+  bool end_interval(ContactParticles& particles, Team& team) {
+    return meshes_.end_interval(particles, clock_, team);
+  }
+  /// By which a change of velocity of a particle that touches counts as momentum.
+  double momentum_share(std::uint32_t slot) const { return before_[slot] ? stays_ : 1; }
   /// Moves a particle that went from start to x, with the velocity v there. Returns whether it
   /// touches a body.
   bool hold(std::uint32_t slot, kernels::Vector& start, kernels::Vector& x, kernels::Vector& v);
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
   const Touching& touching() const { return on_; }
-  double deepest(const kernels::Vectors& start, const kernels::Vectors& x) const;
+  double deepest(const kernels::Vectors& start, const kernels::Vectors& x,
+                 ContactParticles& particles, Team& team);
   void sum(BodyReport& report) const;
-  void read_contacts(std::vector<BodyTouch>& contacts) const;
+  void read_contacts(const ContactParticles& particles, std::vector<BodyTouch>& contacts) const;
 
  private:
   double radius(std::uint32_t slot) const {
@@ -40,6 +63,7 @@ class ReferenceBodies {
 
   const Model& model_;
   BodyClock clock_;
+  MeshContacts meshes_;
   double stays_ = 1;                    // of a change of velocity in contact, as momentum
   std::vector<reference::Grip> grips_;  // per slot and body
   Touching on_, before_;

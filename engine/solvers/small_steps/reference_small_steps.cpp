@@ -43,7 +43,8 @@ struct ReferenceSmallSteps::Points {
     v.set(slot, held.v);
     return true;
   }
-  bool grip(std::uint32_t slot) const {
+  bool grip(std::uint32_t slot) const;
+  bool grip_by_bodies(std::uint32_t slot) const {
     Vector to = x[slot], settled = v[slot] + rate * (x[slot] - predicted[slot]);
     Vector from = start[slot];
     if (!bodies->hold(slot, from, to, settled)) return false;
@@ -69,6 +70,40 @@ struct ReferenceSmallSteps::Points {
     of_membrane[element] = to;
   }
 };
+
+/// As contacts with meshes see them.
+class ReferenceSmallSteps::Particles final : public ContactParticles {
+ public:
+  explicit Particles(const Points& points) : points_(points) {}
+
+  Vector position(std::uint32_t slot) const override { return points_.x[slot]; }
+  Vector start(std::uint32_t slot) const override { return points_.start[slot]; }
+  ContactParticle read(std::uint32_t slot) const override {
+    const Vector v = points_.v[slot] + points_.rate * (points_.x[slot] - points_.predicted[slot]);
+    return {points_.start[slot], points_.x[slot], v};
+  }
+  void write(std::uint32_t slot, const ContactParticle& particle) override {
+    points_.start.set(slot, particle.start);
+    points_.x.set(slot, particle.x);
+    points_.predicted.set(slot, particle.x);
+    points_.v.set(slot, particle.v);
+  }
+  double touch(std::uint32_t slot) override {
+    if (points_.bodies->begins_to_touch(slot)) stop(slot);
+    return points_.bodies->momentum_share(slot);
+  }
+  void stop(std::uint32_t slot) override { points_.arrived.push_back(slot); }
+
+ private:
+  const Points& points_;
+};
+
+bool ReferenceSmallSteps::Points::grip(std::uint32_t slot) const {
+  const bool is_held = grip_by_bodies(slot);
+  if (!bodies->has_meshes()) return is_held;
+  Particles particles(*this);
+  return bodies->meshes().hold(particles, bodies->clock(), slot) || is_held;
+}
 
 ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_limits) {
   return {.x = x_.view(),
@@ -98,7 +133,8 @@ double ReferenceSmallSteps::law_error() {
   return most;
 }
 
-ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& settings)
+ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& settings,
+                                         const simd::Table& table)
     : model_(model),
       layout_(model.small_steps()),
       settings_(settings),
@@ -107,7 +143,7 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
       has_attached_(model.has_attached()),
       paces_(paces_of(layout_.bending, model.damping.bending)),
       anchors_(model.anchors),
-      bodies_(model),
+      bodies_(model, table),
       shortest_(shortest_lengths(model)),
       at_limit_(model.anchors.size()),
       at_limit_before_(model.anchors.size()) {
@@ -125,7 +161,7 @@ reference::Flight ReferenceSmallSteps::flight() {
 }
 
 void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, Vector gravity,
-                                kernels::VectorsView force, const FramePlan& plan, Team&) {
+                                kernels::VectorsView force, const FramePlan& plan, Team& team) {
   const double h = plan.h;
   h_ = h;
   omega_ = plan.omega;
@@ -142,7 +178,8 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   if (!has_past_ && !plan.projects) past_.h = 0;
   anchors_.begin(plan.anchors, h, plan.substeps);
   bodies_.begin(plan.bodies, h, plan.substeps, plan.projects,
-                has_past_ && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{});
+                has_past_ && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
+                plan.placed || plan.bodies_are_new, past_.inside);
   at_limit_.assign(at_limit_.size(), false);
   if (has_past_ && !plan.anchors.moving) at_limit_ = past_.at_limit;
   last_ = 0;
@@ -161,7 +198,9 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     v_before_.set(i, past_.v_before[i] + jump);
     before_.set(i, x[i] - (past_.moved[i] + past_.h * jump));
   }
-  if (projects_) bodies_.advance(1);
+  const Points points = this->points(true);
+  Particles particles(points);
+  if (projects_) bodies_.advance(1, particles, team);
   next_formula_ = formula_after(has_past_ ? past_.h : h);
 }
 
@@ -185,7 +224,8 @@ void ReferenceSmallSteps::measure_departure() {
   departures_.add(largest, formula_.error_share);
 }
 
-void ReferenceSmallSteps::advance(Team&) {
+void ReferenceSmallSteps::advance(Team& team) {
+  end_contacts(team);
   take_past_along();
   end_motions();
   if (settings_.motion_tolerance > 0) measure_departure();
@@ -200,7 +240,9 @@ void ReferenceSmallSteps::advance(Team&) {
   last_ = bh;
   bend();
   anchors_.advance();
-  bodies_.advance(formula_.part);
+  const Points points = this->points(true);
+  Particles particles(points);
+  bodies_.advance(formula_.part, particles, team);
   at_limit_before_.swap(at_limit_);
   at_limit_.assign(at_limit_.size(), false);
   if (has_attached_) hold_anchors();
@@ -283,7 +325,7 @@ void ReferenceSmallSteps::take_past_along() {
   }
 }
 
-void ReferenceSmallSteps::sweep(Team&) {
+void ReferenceSmallSteps::sweep(Team& team) {
   out_.clear();
   for (std::size_t family = 0; family < layout_.yarns.families(); ++family) {
     for_each_yarn(layout_.yarns, family, [&](std::span<const std::uint32_t> links) {
@@ -298,7 +340,7 @@ void ReferenceSmallSteps::sweep(Team&) {
   relax_membrane();
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors();
   draw_seams();
-  hold_bodies();
+  hold_bodies(team);
   is_begun_ = true;
 }
 
@@ -329,16 +371,47 @@ void ReferenceSmallSteps::hold_anchors() {
 }
 
 /// Contacts come last.
-void ReferenceSmallSteps::hold_bodies() {
+void ReferenceSmallSteps::hold_bodies(Team& team) {
   if (bodies_.empty()) return;
   const Points points = this->points(true);
   const double strain = tuning::kLocalShare * settings_.tolerance;
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
     if (!is_free(slot)) continue;
     const Vector from = x_[slot];
-    if (points.grip(slot) && length(x_[slot] - from) > strain * shortest_[slot])
+    if (points.grip_by_bodies(slot) && length(x_[slot] - from) > strain * shortest_[slot])
       passes_.look_at(slot);
   }
+  hold_by_meshes(team);
+}
+
+void ReferenceSmallSteps::hold_by_meshes(Team& team) {
+  if (!bodies_.has_meshes()) return;
+  const Points points = this->points(true);
+  Particles particles(points);
+  const double strain = tuning::kLocalShare * settings_.tolerance;
+  bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot, double by) {
+    if (by > strain * shortest_[slot]) passes_.look_at(slot);
+  });
+}
+
+bool ReferenceSmallSteps::end_contacts(Team& team) {
+  if (!bodies_.has_meshes()) return false;
+  const Points points = this->points(true);
+  Particles particles(points);
+  return bodies_.end_interval(particles, team);
+}
+
+double ReferenceSmallSteps::deepest_in_body(Team& team) {
+  if (bodies_.empty()) return 0;
+  const Points points = this->points(true);
+  Particles particles(points);
+  return bodies_.deepest(before_, x_, particles, team);
+}
+
+void ReferenceSmallSteps::read_contacts(std::vector<BodyTouch>& contacts) {
+  if (bodies_.empty()) return;
+  const Points points = this->points(true);
+  bodies_.read_contacts(Particles(points), contacts);
 }
 
 void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
@@ -453,7 +526,8 @@ void ReferenceSmallSteps::end_seams() {
                      });
 }
 
-LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
+LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits,
+                                          Team& team) {
   if (model_.has_laws()) set_aside();
   Points points = this->points(true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
@@ -463,18 +537,20 @@ LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int
                            .laws = law_step()};
   const LocalWork work = passes_.run(points, contacts, limits);
   draw_seams();
+  hold_by_meshes(team);
   return work;
 }
 
-LocalWork ReferenceSmallSteps::repair(const ContactStore& contacts, std::int64_t most_visits) {
+LocalWork ReferenceSmallSteps::repair(const ContactStore& contacts, std::int64_t most_visits,
+                                      Team& team) {
   for (const std::uint32_t item : out_) passes_.look_near(item);
-  return run_passes(contacts, most_visits);
+  return run_passes(contacts, most_visits, team);
 }
 
 LocalWork ReferenceSmallSteps::repair_everywhere(const ContactStore& contacts,
-                                                 std::int64_t most_visits) {
+                                                 std::int64_t most_visits, Team& team) {
   passes_.look_everywhere();
-  return run_passes(contacts, most_visits);
+  return run_passes(contacts, most_visits, team);
 }
 
 void ReferenceSmallSteps::end_motions() {
@@ -551,6 +627,7 @@ void ReferenceSmallSteps::keep(Team&) {
   past_.v_before = v_before_;
   past_.at_limit = at_limit_;
   past_.touching = bodies_.touching();
+  past_.inside = bodies_.meshes().inside();
   for (std::size_t i = 0; i < model_.slots(); ++i) past_.moved.set(i, x_[i] - before_[i]);
 }
 
@@ -559,6 +636,7 @@ void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsVie
   const auto& other = static_cast<const ReferenceSmallSteps&>(from);
   past_.h = other.past_.h;
   past_.at_limit = other.past_.at_limit;
+  past_.inside.clear();
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     const Past& its = other.past_;
     ParticlePast past{its.v[its_slot], its.v_before[its_slot], its.moved[its_slot]};
@@ -567,7 +645,9 @@ void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsVie
     past_.v.set(slot, past.v);
     past_.v_before.set(slot, past.v_before);
     past_.moved.set(slot, past.moved);
+    if (std::ranges::binary_search(its.inside, its_slot)) past_.inside.push_back(slot);
   });
+  std::ranges::sort(past_.inside);
 }
 
 void ReferenceSmallSteps::turn(const Turn& by) {
@@ -585,7 +665,7 @@ std::size_t ReferenceSmallSteps::bytes() const {
 std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,
                                              const simd::Table& table) {
   if (settings.backend == Backend::reference)
-    return std::make_unique<ReferenceSmallSteps>(model, settings);
+    return std::make_unique<ReferenceSmallSteps>(model, settings, table);
   return std::make_unique<SmallStepsSolver>(model, settings, table);
 }
 

@@ -27,9 +27,10 @@ class ReferenceSmallSteps final : public SmallSteps {
     kernels::Vectors v, v_before, moved;
     std::vector<bool> at_limit;  // per anchor
     ReferenceBodies::Touching touching;
+    std::vector<std::uint32_t> inside;  // of meshes, slots
   };
 
-  ReferenceSmallSteps(const Model& model, const Settings& settings);
+  ReferenceSmallSteps(const Model& model, const Settings& settings, const simd::Table& table);
 
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
              kernels::VectorsView force, const FramePlan& plan, Team& team) override;
@@ -39,16 +40,16 @@ class ReferenceSmallSteps final : public SmallSteps {
   void mend(double to, Team& team) override;
   void judge(Team& team) override;
   std::int64_t count_out() const override { return std::ssize(out_); }
-  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
-  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
+  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits, Team& team) override;
+  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits,
+                              Team& team) override;
   double law_error() override;
   void end_seams() override;
   const SeamThreads& seams() const override { return seams_; }
   void report_bodies(BodyReport& report) const override { bodies_.sum(report); }
-  double deepest_in_body() override { return bodies_.deepest(before_, x_); }
-  void read_contacts(std::vector<BodyTouch>& contacts) const override {
-    bodies_.read_contacts(contacts);
-  }
+  double deepest_in_body(Team& team) override;
+  bool end_contacts(Team& team) override;
+  void read_contacts(std::vector<BodyTouch>& contacts) override;
   void read_positions(kernels::VectorsView x, Team& team) const override;
   void read_positions_of(std::span<const std::uint32_t> slots,
                          kernels::VectorsView x) const override;
@@ -71,6 +72,7 @@ class ReferenceSmallSteps final : public SmallSteps {
 
  private:
   struct Points;
+  class Particles;
   /// with_limits: anchors and bodies hold what is moved.
   Points points(bool with_limits);
   LawStep law_step() const;
@@ -100,9 +102,10 @@ class ReferenceSmallSteps final : public SmallSteps {
   double left_by_sweep() const;
   void judge_membrane();
   void draw_seams();
-  LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
+  LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits, Team& team);
   void hold_anchors();
-  void hold_bodies();
+  void hold_bodies(Team& team);
+  void hold_by_meshes(Team& team);
   void end_motions();
   void stop_at_contact(std::size_t slot);
   void begin_at_limit(std::size_t slot);

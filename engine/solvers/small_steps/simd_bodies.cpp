@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/small_steps/body_touches.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -51,8 +52,10 @@ void SimdBodies::make_room() {
 }
 
 void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-                       std::span<const std::uint16_t> before) {
+                       std::span<const std::uint16_t> before, bool is_new,
+                       std::span<const std::uint32_t> inside) {
   clock_.begin(bodies, h, substeps, stands);
+  meshes_.begin(clock_, is_new, inside);
   pairs_.clear();
   first_pair_.clear();
   if (bodies.empty()) return;
@@ -66,15 +69,19 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
   friction_ = 0;
 }
 
-void SimdBodies::advance(const simd::Flight& flight, const float* base, double part) {
+void SimdBodies::advance(const simd::Flight& flight, const float* base, double part,
+                         ContactParticles& particles, Team& team) {
   if (empty()) return;
   if (until_search_ == 0) search(flight, base);
+  meshes_.predict(particles, clock_, team);
   --until_search_;
   clock_.advance();
+  meshes_.advance(clock_);
   write_frames();
   before_.swap(on_);
   std::ranges::fill(on_, std::uint16_t{0});
-  const auto stays = static_cast<float>(1 / part);
+  stays_ = 1 / part;
+  const auto stays = static_cast<float>(stays_);
   for (std::size_t active = 0; active + 1 < first_pair_.size(); ++active) {
     const std::size_t block = pairs_[first_pair_[active]].block;
     for (std::size_t lane = 0; lane < kLanes; ++lane)
@@ -123,15 +130,14 @@ SimdBodies::Extent SimdBodies::extent_of(std::size_t block, const simd::Flight& 
 /// Which blocks may meet which bodies until the next search.
 void SimdBodies::search(const simd::Flight& flight, const float* base) {
   flush(impulses_, friction_);
-  const double interval = std::max(1.0, std::floor(tuning::kContactInterval / h_));
-  until_search_ = static_cast<int>(std::min<double>(interval, clock_.substeps_left()));
+  until_search_ = clock_.substeps_in(tuning::kContactInterval);
   pairs_.clear();
   first_pair_.clear();
   pairs_of_.clear();
   std::vector<BodyClock::Box>& boxes = boxes_;
   boxes.clear();
   for (std::size_t body = 0; body < clock_.bodies().size(); ++body)
-    boxes.push_back(clock_.box(body, until_search_));
+    boxes.push_back(clock_.box(body, until_search_));  // of a mesh: nobody asks for it
   const double share = static_cast<double>(until_search_) * h_;
   Vector sum{};
   extents_.clear();
@@ -150,7 +156,7 @@ void SimdBodies::search(const simd::Flight& flight, const float* base) {
     sum = sum + middle;
     pairs_of_.push_back(static_cast<std::uint32_t>(pairs_.size()));
     for (std::uint32_t body = 0; body < boxes.size(); ++body) {
-      if (!extent.meets(boxes[body])) continue;
+      if (clock_.bodies()[body].shape->mesh() != nullptr || !extent.meets(boxes[body])) continue;
       const BodyMotion& motion = clock_.motions()[body];
       const double moves = share * (length(motion.velocity) +
                                     length(motion.spin) * length(middle - motion.to.centre));
@@ -299,9 +305,20 @@ bool SimdBodies::begins_to_touch(std::uint32_t slot) {
   return begins;
 }
 
-double SimdBodies::deepest(const simd::Flight& flight, const float* base) const {
-  if (pairs_.empty()) return 0;
-  return static_cast<double>(table_.deepest_in_bodies(hold_of(flight, base, 0), 0, pairs_.size()));
+double SimdBodies::deepest(const simd::Flight& flight, const float* base,
+                           ContactParticles& particles, Team& team) {
+  const double in_meshes = meshes_.deepest(particles, clock_, team);
+  if (pairs_.empty()) return in_meshes;
+  const float deepest = table_.deepest_in_bodies(hold_of(flight, base, 0), 0, pairs_.size());
+  return std::max(in_meshes, static_cast<double>(deepest));
+}
+
+void SimdBodies::read_contacts(const ContactParticles& particles,
+                               std::vector<BodyTouch>& contacts) const {
+  for_each_contact([&](std::uint32_t slot, std::size_t body, double push) {
+    contacts.push_back(touch_of(clock_, body, slot, particles.position(slot), push));
+  });
+  add_touches(meshes_, particles, clock_, contacts);
 }
 
 void SimdBodies::flush(std::vector<BodyImpulse>& impulses, double& friction) const {
@@ -332,11 +349,12 @@ void SimdBodies::sum(BodyReport& report) const {
     report.work += dot(report.impulses[body].linear, motion.velocity) +
                    dot(report.impulses[body].angular, motion.spin);
   }
+  add_report(meshes_, report);
   for (const std::uint16_t bits : touching_) report.contacts += std::popcount(bits);
 }
 
 std::size_t SimdBodies::bytes() const {
-  return clock_.bytes() + layout_.bytes() + bytes_of(frames_) + bytes_of(faces_) +
+  return clock_.bytes() + meshes_.bytes() + layout_.bytes() + bytes_of(frames_) + bytes_of(faces_) +
          bytes_of(pairs_) + bytes_of(first_pair_) + bytes_of(pairs_of_) + bytes_of(grips_) +
          bytes_of(touching_) + bytes_of(moved_) + bytes_of(quick_) + bytes_of(weight_) +
          bytes_of(on_) + bytes_of(before_) + bytes_of(held_) + bytes_of(arrived_) +

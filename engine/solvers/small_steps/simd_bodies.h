@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/bodies/body_clock.h"
+#include "engine/contact/mesh_contacts.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/body_layout.h"
@@ -25,7 +26,8 @@ class SimdBodies {
       : model_(model),
         far_(tuning::kLocalShare * settings.tolerance),
         contact_tolerance_(settings.contact_tolerance),
-        table_(table) {}
+        table_(table),
+        meshes_(model, table) {}
 
   /// Who touched a body when the last substep of a frame ended, per block.
   using Touching = std::vector<std::uint16_t>;
@@ -35,13 +37,34 @@ class SimdBodies {
   };
 
   bool empty() const { return clock_.bodies().empty(); }
-  /// before: of the frame before; empty: nothing is known of it.
+  bool has_meshes() const { return !meshes_.empty(); }
+  /// before: of the frame before; empty: nothing is known of it. inside: likewise, of meshes;
+  /// is_new: it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-             std::span<const std::uint16_t> before);
+             std::span<const std::uint16_t> before, bool is_new,
+             std::span<const std::uint32_t> inside);
   /// Of a substep, whose flights are predicted. part: of h, by the scheme.
-  void advance(const simd::Flight& flight, const float* base, double part);
+  void advance(const simd::Flight& flight, const float* base, double part,
+               ContactParticles& particles, Team& team);
+  /// Before the next substep, or after the last: verifies contacts with meshes where their interval
+  /// is over. Returns whether particles had to be moved.
+  bool end_interval(ContactParticles& particles, Team& team) {
+    return meshes_.end_interval(particles, clock_, team);
+  }
   /// After a sweep; v settles by `rate`.
   void hold(const simd::Flight& flight, const float* base, float rate, Team& team);
+  /// After that, by meshes. moved(slot): as in report.
+  template <class Moved>
+  void hold_by_meshes(ContactParticles& particles, Team& team, Moved&& moved);
+  void hold_by_meshes(std::uint32_t slot, ContactParticles& particles) {
+    meshes_.hold(particles, clock_, slot);
+  }
+  /// By which a change of velocity of a particle that touches counts as momentum.
+  double momentum_share(std::uint32_t slot) const {
+    const std::uint32_t place = layout_.place_of[slot];
+    return (before_[place / kernels::kLanes] >> place % kernels::kLanes & 1) != 0 ? stays_ : 1;
+  }
+  const MeshContacts& meshes() const { return meshes_; }
   /// Of one particle. Returns whether it touches a body.
   bool hold(std::uint32_t slot, Particle& particle);
   /// After that: whether it did not in this substep before, and not when the last one ended.
@@ -54,15 +77,16 @@ class SimdBodies {
   const Touching& touching() const { return on_; }
 
   /// m, by which a particle is under a surface where the last substep ended.
-  double deepest(const simd::Flight& flight, const float* base) const;
+  double deepest(const simd::Flight& flight, const float* base, ContactParticles& particles,
+                 Team& team);
   /// What was done in the frame.
   void sum(BodyReport& report) const;
-  template <class Visit>
-  void for_each_contact(Visit&& visit) const;
+  void read_contacts(const ContactParticles& particles, std::vector<BodyTouch>& contacts) const;
   /// visit(slot), of those that touch a body in the present substep.
   template <class Visit>
   void for_each_touching(Visit&& visit) const {
-    for_each_contact([&](std::uint32_t slot, const auto&, std::uint32_t, double) { visit(slot); });
+    for_each_contact([&](std::uint32_t slot, std::size_t, double) { visit(slot); });
+    for (const std::uint32_t slot : meshes_.touching()) visit(slot);
   }
   std::size_t bytes() const;
 
@@ -81,6 +105,8 @@ class SimdBodies {
              low.z - reach <= box.high.z && high.z + reach >= box.low.z;
     }
   };
+  template <class Visit>
+  void for_each_contact(Visit&& visit) const;
   void make_room();
   void search(const simd::Flight& flight, const float* base);
   Extent extent_of(std::size_t block, const simd::Flight& flight, const float* base) const;
@@ -93,8 +119,10 @@ class SimdBodies {
   const double contact_tolerance_;  // m
   const simd::Table& table_;
   BodyClock clock_;
+  MeshContacts meshes_;
   BodyLayout layout_;  // made when the first body is there
   double h_ = 0;
+  double stays_ = 1;          // of a change of velocity in contact, as momentum
   int until_search_ = 0;      // substeps
   kernels::Vector origin_{};  // of frames
 
@@ -133,17 +161,31 @@ void SimdBodies::report(Arrived&& arrived, Moved&& moved, Quick&& quick) const {
   }
 }
 
-/// visit(slot, motion of the body, its id, m by which the last substep pushed it)
+/// visit(slot, body of the clock, m by which the last substep pushed it)
 template <class Visit>
 void SimdBodies::for_each_contact(Visit&& visit) const {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     for (std::uint32_t bits = touching_[i]; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-      visit(layout_.slot_at[pairs_[i].block * kernels::kLanes + lane],
-            clock_.motions()[pairs_[i].body], clock_.bodies()[pairs_[i].body].id,
+      visit(layout_.slot_at[pairs_[i].block * kernels::kLanes + lane], std::size_t{pairs_[i].body},
             static_cast<double>(grips_[i].pushed[lane]));
     }
   }
+}
+
+template <class Moved>
+void SimdBodies::hold_by_meshes(ContactParticles& particles, Team& team, Moved&& moved) {
+  if (!has_meshes()) return;
+  if (clock_.stands()) {  // positions are put right, by any way: nobody knows how far
+    meshes_.predict(particles, clock_, team);
+    meshes_.advance(clock_);
+  }
+  meshes_.sweep(particles, clock_, team, [&](std::uint32_t slot, double by) {
+    const std::uint32_t place = layout_.place_of[slot];
+    if (place == kNoIndex) return;
+    const float far = layout_.blocks[place / kernels::kLanes].far[place % kernels::kLanes];
+    if (by * by > static_cast<double>(far)) moved(slot);
+  });
 }
 
 }  // namespace weft

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/small_steps/lane_particles.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/tuning.h"
 
@@ -213,13 +214,14 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
                  has_past_ ? past_.at_limit : std::span<const std::uint16_t>{});
   anchors_.measure_base(base_.data());
   bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects,
-                has_past_ && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{});
+                has_past_ && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
+                plan.placed || plan.bodies_are_new, past_.inside);
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());
   });
   write_acceleration(gravity, force);
   begin_past(team);
-  if (projects_) bodies_.advance(flight(), base_.data(), 1);
+  if (projects_) advance_bodies(1, team);
   next_formula_ = formula_after(has_past_ ? past_.h : h_);
   weights_.last.rate = 0;
 }
@@ -242,6 +244,7 @@ void SmallStepsSolver::renew_base(Team& team) {
 }
 
 void SmallStepsSolver::advance(Team& team) {
+  end_contacts(team);
   take_past_along(team);
   end_motions();
   is_begun_ = false;
@@ -267,7 +270,7 @@ void SmallStepsSolver::advance(Team& team) {
                    static_cast<float>(formula_.slope)};
   bending_.bend(u_.data(), v_before_.data(), formula_.give(h_), team);
   anchors_.advance();
-  bodies_.advance(flight(), base_.data(), formula_.part);
+  advance_bodies(formula_.part, team);
   if (has_attached_) hold_anchors(team);
 }
 
@@ -354,9 +357,11 @@ void SmallStepsSolver::take_past_along(Team& team) {
   for (const std::uint32_t slot : model_.anchors.slot) {
     if (is_held(slot)) leave(slot);
   }
-  bodies_.for_each_touching([&](std::uint32_t slot) {
+  const auto leave_if_held = [&](std::uint32_t slot) {
     if (is_held(slot)) leave(slot);
-  });
+  };
+  bodies_.for_each_touching(leave_if_held);
+  std::ranges::for_each(arrived_, leave_if_held);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const float by = u_[i] - aside_[i];
@@ -403,17 +408,43 @@ void SmallStepsSolver::hold_bodies(Team& team) {
   bodies_.report([&](std::uint32_t slot) { arrived_.push_back(slot); },
                  [&](std::uint32_t slot) { passes_.look_at(slot); },
                  [&](std::uint32_t slot) { points.grip(slot); });
+  hold_by_meshes(team);
+}
+
+void SmallStepsSolver::hold_by_meshes(Team& team) {
+  if (!bodies_.has_meshes()) return;
+  const LanePoints points = this->points(true);
+  LaneParticles particles(points);
+  bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot) { passes_.look_at(slot); });
+}
+
+void SmallStepsSolver::advance_bodies(double part, Team& team) {
+  if (bodies_.empty()) return;
+  const LanePoints points = this->points(true);
+  LaneParticles particles(points);
+  bodies_.advance(flight(), base_.data(), part, particles, team);
+}
+
+bool SmallStepsSolver::end_contacts(Team& team) {
+  if (!bodies_.has_meshes()) return false;
+  const LanePoints points = this->points(true);
+  LaneParticles particles(points);
+  return bodies_.end_interval(particles, team);
 }
 
 void SmallStepsSolver::report_bodies(BodyReport& report) const { bodies_.sum(report); }
 
-double SmallStepsSolver::deepest_in_body() { return bodies_.deepest(flight(), base_.data()); }
+double SmallStepsSolver::deepest_in_body(Team& team) {
+  if (bodies_.empty()) return 0;
+  const LanePoints points = this->points(true);
+  LaneParticles particles(points);
+  return bodies_.deepest(flight(), base_.data(), particles, team);
+}
 
-void SmallStepsSolver::read_contacts(std::vector<BodyTouch>& contacts) const {
-  bodies_.for_each_contact(
-      [&](std::uint32_t slot, const reference::BodyMotion& body, std::uint32_t id, double push) {
-        contacts.push_back({.slot = slot, .body = id, .push = push, .motion = body});
-      });
+void SmallStepsSolver::read_contacts(std::vector<BodyTouch>& contacts) {
+  if (bodies_.empty()) return;
+  const LanePoints points = this->points(true);
+  bodies_.read_contacts(LaneParticles(points), contacts);
 }
 
 simd::YarnRelaxation SmallStepsSolver::relaxation_of_yarns() {
@@ -595,7 +626,8 @@ void SmallStepsSolver::end_seams() {
                      });
 }
 
-LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits) {
+LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits,
+                                       Team& team) {
   if (model_.has_laws()) set_aside();
   LanePoints points = this->points(true);
   const LocalLimits limits{.tolerance = tuning::kLocalShare * settings_.tolerance,
@@ -605,18 +637,20 @@ LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_
                            .laws = law_step()};
   const LocalWork work = passes_.run(points, contacts, limits);
   draw_seams();
+  hold_by_meshes(team);
   return work;
 }
 
-LocalWork SmallStepsSolver::repair(const ContactStore& contacts, std::int64_t most_visits) {
+LocalWork SmallStepsSolver::repair(const ContactStore& contacts, std::int64_t most_visits,
+                                   Team& team) {
   look_near_what_was_out();
-  return run_passes(contacts, most_visits);
+  return run_passes(contacts, most_visits, team);
 }
 
 LocalWork SmallStepsSolver::repair_everywhere(const ContactStore& contacts,
-                                              std::int64_t most_visits) {
+                                              std::int64_t most_visits, Team& team) {
   passes_.look_everywhere();
-  return run_passes(contacts, most_visits);
+  return run_passes(contacts, most_visits, team);
 }
 
 /// A contact ends a motion, and so does a limit: from there a particle goes on at first order.
@@ -723,6 +757,7 @@ void SmallStepsSolver::keep(Team& team) {
   past_.since_renewal = since_renewal_;
   past_.at_limit = anchors_.at_limit();
   past_.touching = bodies_.touching();
+  past_.inside = bodies_.meshes().inside();
   is_new_ = false;
   const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -735,7 +770,7 @@ std::size_t SmallStepsSolver::bytes() const {
          bytes_of(scratch_) + bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) +
          bytes_of(arrived_) + bytes_of(multiplier_) + bytes_of(aside_) + passes_.bytes() +
          seams_.bytes() + membrane_.bytes() + bending_.bytes() + anchors_.bytes() +
-         bodies_.bytes() + bytes_of(past_.touching);
+         bodies_.bytes() + bytes_of(past_.touching) + bytes_of(past_.inside);
 }
 
 }  // namespace weft

@@ -34,6 +34,7 @@ struct SmallStepsPast {
   kernels::AlignedVector<float> base;  // of a frame that is kept
   SimdAnchors::AtLimit at_limit;
   SimdBodies::Touching touching;
+  std::vector<std::uint32_t> inside;  // of meshes, slots
 };
 
 class SmallStepsSolver final : public SmallSteps {
@@ -53,15 +54,17 @@ class SmallStepsSolver final : public SmallSteps {
   void judge(Team& team) override;
   /// Constraints that the last sweep found out of tolerance.
   std::int64_t count_out() const override;
-  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) override;
+  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits, Team& team) override;
   /// After the last: local passes that look at all constraints.
-  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) override;
+  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits,
+                              Team& team) override;
   double law_error() override;
   void end_seams() override;
   const SeamThreads& seams() const override { return seams_; }
   void report_bodies(BodyReport& report) const override;
-  double deepest_in_body() override;
-  void read_contacts(std::vector<BodyTouch>& contacts) const override;
+  double deepest_in_body(Team& team) override;
+  bool end_contacts(Team& team) override;
+  void read_contacts(std::vector<BodyTouch>& contacts) override;
   /// Where the particles are; x: where they were when the frame began.
   void read_positions(kernels::VectorsView x, Team& team) const override;
   void read_positions_of(std::span<const std::uint32_t> slots,
@@ -123,9 +126,11 @@ class SmallStepsSolver final : public SmallSteps {
   void for_each_batch(Team& team, Work&& work);
   void look_near_what_was_out();
   void draw_seams();
-  LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits);
+  LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits, Team& team);
   void hold_anchors(Team& team);
   void hold_bodies(Team& team);
+  void hold_by_meshes(Team& team);
+  void advance_bodies(double part, Team& team);
   void end_motions();
   void stop_at_contact(std::uint32_t slot);
   void begin_at_limit(std::uint32_t slot);

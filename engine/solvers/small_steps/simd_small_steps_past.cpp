@@ -27,6 +27,7 @@ void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v
   past_.h = its.h;
   past_.at_limit = its.at_limit;
   past_.since_renewal = layout_.cell == other.layout_.cell ? its.since_renewal : tuning::kRenewal;
+  past_.inside.clear();
   const YarnPlaces &places = layout_.places(), &its_places = other.layout_.places();
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     std::size_t to = places.of(slot), at = its_places.of(its_slot);
@@ -36,10 +37,12 @@ void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v
       past_.v_before[to] = its.v_before[at];
       past_.moved[to] = its.moved[at];
     }
+    if (std::ranges::binary_search(its.inside, its_slot)) past_.inside.push_back(slot);
     const bool is_free = model_.inverse_mass[slot] > 0;
     if (is_free == (other.model_.inverse_mass[its_slot] > 0)) return;
     write_past(slot, is_free ? ParticlePast::flight(v[slot], gravity, past_.h) : ParticlePast{});
   });
+  std::ranges::sort(past_.inside);
 }
 
 void SmallStepsSolver::write_past(std::uint32_t slot, const ParticlePast& past) {

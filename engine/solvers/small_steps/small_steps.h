@@ -97,7 +97,8 @@ struct FramePlan {
   AnchorTravel anchors{};
   std::span<const SeamState> seams{};
   std::span<const TravellingBody> bodies{};
-  bool bodies_move = false;  // in this step, or in the last, or there are other ones
+  bool bodies_move = false;     // in this step, or in the last, or there are other ones
+  bool bodies_are_new = false;  // there are other ones, or one was put elsewhere
 };
 
 class SmallSteps {
@@ -122,7 +123,7 @@ class SmallSteps {
   virtual void judge(Team& team) = 0;
   /// Constraints that were found out of tolerance.
   virtual std::int64_t count_out() const = 0;
-  virtual LocalWork repair(const ContactStore& contacts, std::int64_t most_visits) = 0;
+  virtual LocalWork repair(const ContactStore& contacts, std::int64_t most_visits, Team& team) = 0;
   /// After each substep's repair: which seams it has closed.
   virtual void end_seams() = 0;
   /// What they have become in the frame, and have done (J).
@@ -130,10 +131,14 @@ class SmallSteps {
   /// What contacts with bodies have done in the frame.
   virtual void report_bodies(BodyReport& report) const = 0;
   /// m, by which a particle is under the surface of a body.
-  virtual double deepest_in_body() = 0;
-  virtual void read_contacts(std::vector<BodyTouch>& contacts) const = 0;
+  virtual double deepest_in_body(Team& team) = 0;
+  /// After the last substep: verifies contacts with meshes. Returns whether particles had to be
+  /// moved.
+  virtual bool end_contacts(Team& team) = 0;
+  virtual void read_contacts(std::vector<BodyTouch>& contacts) = 0;
   /// After the last: local passes that look at all constraints.
-  virtual LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits) = 0;
+  virtual LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits,
+                                      Team& team) = 0;
   /// What is left of the laws of all constraints, the largest, over rest_length, with springs only;
   /// and of those of triangles of fabric.
   virtual double law_error() = 0;

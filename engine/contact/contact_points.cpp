@@ -1,0 +1,246 @@
+#include "engine/contact/contact_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/bytes_of.h"
+#include "engine/tuning.h"
+
+namespace weft {
+
+using kernels::Vector;
+
+namespace {
+
+/// m: the origin is a multiple of it, and changes seldom.
+constexpr double kGrid = 2;
+
+Vector rounded(Vector v) {
+  const auto round = [](double x) { return kGrid * std::round(x / kGrid); };
+  return {round(v.x), round(v.y), round(v.z)};
+}
+
+/// Of two places, from the origin, and all that is within `reach` of the way between them.
+Box box_around(Vector a, Vector b, double reach) {
+  const auto low = [&](double x, double y) { return static_cast<float>(std::min(x, y) - reach); };
+  const auto high = [&](double x, double y) { return static_cast<float>(std::max(x, y) + reach); };
+  return {{low(a.x, b.x), low(a.y, b.y), low(a.z, b.z)},
+          {high(a.x, b.x), high(a.y, b.y), high(a.z, b.z)}};
+}
+
+}  // namespace
+
+void ContactPoints::begin(const Model& model, const BodyClock& clock) {
+  slots_ = model.slots();
+  std::size_t count = 0, points = slots_;
+  largest_thickness_ = 0;
+  for (std::size_t body = 0; body < clock.bodies().size(); ++body) {
+    const TravellingBody& b = clock.bodies()[body];
+    if (b.shape->mesh() == nullptr) continue;
+    if (count == meshes_.size()) meshes_.emplace_back();
+    ContactMesh& mesh = meshes_[count++];
+    if (mesh.shape != b.shape) {
+      mesh.tree = BoxTree(b.shape->mesh()->surface.in_order);
+      mesh.shape = b.shape;
+      has_hulls_ = false;
+    }
+    mesh.body = body;
+    mesh.thickness = b.thickness;
+    mesh.first_point = static_cast<std::uint32_t>(points);
+    points += b.from.size();
+    largest_thickness_ = std::max(largest_thickness_, b.thickness);
+  }
+  has_hulls_ = has_hulls_ && count == meshes_.size();
+  meshes_.resize(count);
+  if (count == 0) return;
+  for (auto* vectors : {&start_, &end_}) vectors->resize(points);
+  for (auto* vectors : {&from_, &to_}) vectors->resize(points - slots_);
+  for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->resize(4 * points);
+  box_.resize(points);
+  hull_.resize(points);
+  mesh_of_.resize(points - slots_);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t first = meshes_[i].first_point - slots_;
+    std::fill_n(mesh_of_.begin() + static_cast<std::ptrdiff_t>(first),
+                meshes_[i].mesh().vertices.size(), i);
+  }
+}
+
+/// Whether meshes are where they were when the last interval began.
+void ContactPoints::note_moves(const BodyClock& clock) {
+  const double share = clock.share_after(0);
+  for (ContactMesh& mesh : meshes_) {
+    const TravellingBody& body = clock.bodies()[mesh.body];
+    const reference::Placement at = body.travel.at(share);
+    mesh.has_moved = false;
+    for (std::size_t i = 0; i < body.from.size() && !mesh.has_moved; ++i) {
+      const Vector d = clock.vertex(mesh.body, i, at, share) - start_[mesh.first_point + i];
+      mesh.has_moved = dot(d, d) > 0;
+    }
+  }
+}
+
+/// Of all meshes, when some substeps from now are over.
+void ContactPoints::place_vertices(const BodyClock& clock, int substeps,
+                                   std::vector<Vector>& to) const {
+  const double share = clock.share_after(substeps);
+  for (const ContactMesh& mesh : meshes_) {
+    const TravellingBody& body = clock.bodies()[mesh.body];
+    const reference::Placement at = body.travel.at(share);
+    for (std::size_t i = 0; i < body.from.size(); ++i)
+      to[mesh.first_point + i] = clock.vertex(mesh.body, i, at, share);
+  }
+}
+
+void ContactPoints::begin_interval(const Model& model, const ContactParticles& cloth,
+                                   const BodyClock& clock, int substeps) {
+  note_moves(clock);
+  place_vertices(clock, 0, start_);
+  place_vertices(clock, substeps, end_);
+  Vector sum{};
+  double particles = 0;
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
+    if (!model.is_particle(slot)) continue;
+    const Vector x = cloth.position(slot);
+    start_[slot] = clock.stands() ? x : cloth.start(slot);
+    end_[slot] = start_[slot] + substeps * (x - start_[slot]);
+    sum = sum + start_[slot];
+    ++particles;
+  }
+  const Vector origin = rounded((1 / std::max(1.0, particles)) * sum);
+  has_hulls_ = has_hulls_ && length(origin - origin_) == 0;
+  origin_ = origin;
+  double farthest = 0;
+  for (std::size_t point = 0; point < start_.size(); ++point) {
+    const Vector from = start_[point] - origin_;
+    if (point < slots_) farthest = std::max(farthest, dot(from, from));
+    write(start_quads_, point, from);
+    write(way_quads_, point, end_[point] - start_[point]);
+  }
+  rounding_ = static_cast<float>(0x1p-21 * std::sqrt(farthest));
+  find_reach(model.touched_surface());
+  write_boxes();
+  for (ContactMesh& mesh : meshes_)
+    mesh.normals.begin(mesh.mesh().surface, &start_[mesh.first_point], !mesh.has_moved);
+  for (std::size_t i = 0; i < to_.size(); ++i) to_[i] = start_[slots_ + i];
+}
+
+double ContactPoints::fastest(const BodyClock& clock) const {
+  double fastest = 0;
+  for (const ContactMesh& mesh : meshes_) {
+    const TravellingBody& body = clock.bodies()[mesh.body];
+    const reference::BodyMotion& motion = clock.motions()[mesh.body];
+    double farthest = 0, longest = 0;
+    for (std::size_t i = 0; i < body.from.size(); ++i) {
+      const Vector way = body.to[i] - body.from[i];
+      farthest = std::max(farthest, dot(body.from[i], body.from[i]));
+      longest = std::max(longest, dot(way, way));
+    }
+    const double by_pose = length(motion.velocity) + length(motion.spin) * std::sqrt(farthest);
+    fastest = std::max(fastest, by_pose + std::sqrt(longest) / clock.time());
+  }
+  return fastest;
+}
+
+void ContactPoints::find_reach(const TriangleSurface& cloth) {
+  const auto way_of = [&](std::uint32_t point) { return length(way(point)); };
+  double of_bodies = 0;
+  for (auto point = static_cast<std::uint32_t>(slots_); point < start_.size(); ++point)
+    of_bodies = std::max(of_bodies, way_of(point));
+  ways_.resize(slots_);
+  reach_.resize(slots_);
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) ways_[slot] = reach_[slot] = way_of(slot);
+  for (const auto& [a, b] : cloth.edges) {
+    reach_[a] = std::max(reach_[a], ways_[b]);
+    reach_[b] = std::max(reach_[b], ways_[a]);
+  }
+  largest_reach_ = 0;
+  for (double& reach : reach_) {
+    reach = tuning::kContactReach * std::max(reach, of_bodies) +
+            tuning::kContactSpare * largest_thickness_;
+    largest_reach_ = std::max(largest_reach_, reach);
+  }
+}
+
+void ContactPoints::write_boxes() {
+  const double rounding = static_cast<double>(rounding_);
+  for (std::size_t point = 0; point < start_.size(); ++point) {
+    const double reach =
+        point < slots_ ? reach_[point] : meshes_[mesh_of_[point - slots_]].thickness + rounding;
+    box_[point] = box_around(start_[point] - origin_, end_[point] - origin_, reach);
+  }
+}
+
+/// If the point goes on as in this interval it holds for kContactHull of them.
+Box ContactPoints::hull_around(std::size_t point) const {
+  const Vector from = start_[point] - origin_, way = end_[point] - start_[point];
+  const double spare = tuning::kContactReach * length(way);
+  const double reach =
+      point < slots_
+          ? 3 * reach_[point] + tuning::kContactHullSpare * largest_thickness_
+          : meshes_[mesh_of_[point - slots_]].thickness + 2 * static_cast<double>(rounding_);
+  return box_around(from, from + tuning::kContactHull * way, reach + spare);
+}
+
+void ContactPoints::renew_hulls() {
+  for (std::size_t point = 0; point < start_.size(); ++point) hull_[point] = hull_around(point);
+  has_hulls_ = true;
+}
+
+void ContactPoints::advance(const BodyClock& clock) {
+  const double share = clock.share_after(0);
+  for (const std::uint32_t point : asked_) {
+    if (is_of_cloth(point)) continue;
+    const std::size_t vertex = point - slots_;
+    const ContactMesh& mesh = meshes_[mesh_of_[vertex]];
+    from_[vertex] = to_[vertex];
+    to_[vertex] =
+        clock.vertex(mesh.body, point - mesh.first_point, clock.motions()[mesh.body].to, share);
+    set_place(point, to_[vertex]);
+  }
+}
+
+void ContactPoints::read_cloth(const ContactParticles& cloth) {
+  for (const std::uint32_t point : asked_) {
+    if (is_of_cloth(point)) set_place(point, cloth.position(point));
+  }
+}
+
+void ContactPoints::measure_moves(const Model& model, const ContactParticles& cloth,
+                                  const BodyClock& clock) {
+  place_vertices(clock, 0, end_);
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
+    if (model.is_particle(slot)) end_[slot] = cloth.position(slot);
+  }
+  for (std::size_t point = 0; point < start_.size(); ++point)
+    write(way_quads_, point, end_[point] - start_[point]);
+}
+
+bool ContactPoints::holds_end(std::uint32_t point) const {
+  const Vector x = end_[point] - origin_;
+  const auto holds = [&](double at, std::size_t k) {
+    return at >= static_cast<double>(box_[point].low[k]) &&
+           at <= static_cast<double>(box_[point].high[k]);
+  };
+  return holds(x.x, 0) && holds(x.y, 1) && holds(x.z, 2);
+}
+
+void ContactPoints::take_way_in(std::uint32_t point) {
+  box_[point].add(box_around(start_[point] - origin_, end_[point] - origin_, largest_thickness_));
+}
+
+void ContactPoints::set_end(std::uint32_t point, Vector x) {
+  end_[point] = x;
+  write(way_quads_, point, x - start_[point]);
+}
+
+std::size_t ContactPoints::bytes() const {
+  std::size_t bytes = bytes_of(meshes_) + bytes_of(mesh_of_) + bytes_of(start_) + bytes_of(end_) +
+                      bytes_of(reach_) + bytes_of(ways_) + bytes_of(box_) + bytes_of(hull_) +
+                      bytes_of(start_quads_) + bytes_of(way_quads_) + bytes_of(place_quads_) +
+                      bytes_of(asked_) + bytes_of(from_) + bytes_of(to_);
+  for (const ContactMesh& mesh : meshes_) bytes += mesh.tree.bytes() + mesh.normals.bytes();
+  return bytes;
+}
+
+}  // namespace weft

@@ -1,0 +1,103 @@
+#include "engine/contact/fail_safe.h"
+
+#include <algorithm>
+
+#include "engine/contact/geometry.h"
+
+namespace weft::fail_safe {
+
+using kernels::Vector;
+
+namespace {
+
+/// Moves the particles of a pair, in the end of the interval, and tells the body.
+class Mover {
+ public:
+  Mover(const ContactScene& scene, const ContactMesh& mesh) : scene_(scene), mesh_(mesh) {}
+
+  void move(std::uint32_t slot, Vector by, Vector faster, Vector of_surface) {
+    ContactParticle particle = scene_.particles.read(slot);
+    particle.x = particle.x + by;
+    particle.v = particle.v + faster;
+    scene_.particles.write(slot, particle);
+    scene_.particles.stop(slot);
+    scene_.points.set_end(slot, particle.x);
+    scene_.impulses.add(mesh_.body, scene_.clock.motions()[mesh_.body].to.centre, particle.x,
+                        scene_.model.mass[slot] * faster, of_surface);
+  }
+
+ private:
+  const ContactScene& scene_;
+  const ContactMesh& mesh_;
+};
+
+}  // namespace
+
+void blow(const ContactScene& scene, const PairList& pairs, const Failure& failure, double time) {
+  const ContactPoints& points = scene.points;
+  const Pair& pair = pairs.pairs[failure.pair];
+  const auto four = pairs.points(failure.pair);
+  FourPoints there;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vector from = points.start(four[k]);
+    there[k] = from + failure.time * (points.end(four[k]) - from);
+  }
+  const reference::Nearest met = nearest(pair.kind, there);
+  const double l = length(met.r);
+  const Vector n = kernels::direction(met.r, l);
+  FourPoints before;
+  for (std::size_t k = 0; k < 4; ++k) before[k] = points.start(four[k]);
+  const ContactMesh& mesh = points.meshes()[pair.mesh];
+  const double least = std::min(length(nearest(pair.kind, before).r), mesh.thickness);
+  double height = 0, weight = 0;
+  Vector approach{}, surface{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double w = met.weight[k];
+    height += w * dot(n, points.end(four[k]));
+    if (points.is_of_cloth(four[k])) {
+      approach = approach + w * scene.particles.read(four[k]).v;
+      weight += w * w * scene.model.inverse_mass[four[k]];
+    } else {
+      const Vector v = (w / time) * (points.end(four[k]) - points.start(four[k]));
+      approach = approach + v;
+      surface = surface - towards_cloth(pair.kind) * v;
+    }
+  }
+  if (!(weight > 0)) return;
+  const double push = std::max(0.0, least - height) / weight;
+  const double stop = std::max(0.0, -dot(n, approach)) / weight;
+  Mover mover(scene, mesh);
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!points.is_of_cloth(four[k])) continue;
+    const double part = met.weight[k] * scene.model.inverse_mass[four[k]];
+    if (part == 0) continue;
+    mover.move(four[k], (part * push) * n, (part * stop) * n, surface);
+  }
+}
+
+void take_along(const ContactScene& scene, const PairList& pairs, const Failure& failure,
+                double time) {
+  const ContactPoints& points = scene.points;
+  const Pair& pair = pairs.pairs[failure.pair];
+  const auto four = pairs.points(failure.pair);
+  FourPoints before;
+  for (std::size_t k = 0; k < 4; ++k) before[k] = points.start(four[k]);
+  const reference::Nearest met = nearest(pair.kind, before);
+  Vector way{};
+  double sum = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (points.is_of_cloth(four[k])) continue;
+    way = way + met.weight[k] * (points.end(four[k]) - points.start(four[k]));
+    sum += met.weight[k];
+  }
+  way = (1 / sum) * way;
+  const Vector v = (1 / time) * way;
+  Mover mover(scene, points.meshes()[pair.mesh]);
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!points.is_of_cloth(four[k]) || scene.model.inverse_mass[four[k]] == 0) continue;
+    const ContactParticle particle = scene.particles.read(four[k]);
+    mover.move(four[k], points.start(four[k]) + way - particle.x, v - particle.v, v);
+  }
+}
+
+}  // namespace weft::fail_safe

@@ -1,0 +1,12 @@
+/// What verification of contacts with meshes has found, and what became of it.
+#pragma once
+
+namespace weft {
+
+struct FailSafeReport {
+  int failures = 0;  // pairs that were caught
+  int zones = 0;     // pairs that were taken along
+  int left = 0;      // that cross in the end
+};
+
+}  // namespace weft

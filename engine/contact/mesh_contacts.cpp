@@ -1,0 +1,195 @@
+#include "engine/contact/mesh_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/bytes_of.h"
+#include "engine/contact/geometry.h"
+#include "engine/tuning.h"
+
+namespace weft {
+
+using kernels::Vector;
+
+void MeshContacts::begin(const BodyClock& clock, bool is_new,
+                         std::span<const std::uint32_t> inside) {
+  points_.begin(model_, clock);
+  left_ = 0;
+  interval_ = 0;
+  failures_ = {};
+  for (NearPairs& near : near_) near.clear();
+  if (empty()) return;
+  cloth_ = &model_.touched_surface();
+  impulses_.of_body.clear();
+  for (const TravellingBody& body : clock.bodies()) impulses_.of_body.push_back({.id = body.id});
+  impulses_.work = impulses_.friction = 0;
+  is_new_ = is_new;
+  inside_.assign(inside.begin(), inside.end());
+}
+
+/// s. Bodies that are fast are looked at more often: on their way they turn, and take cloth along.
+double MeshContacts::interval_for(const BodyClock& clock) const {
+  const double fastest = points_.fastest(clock);
+  const double way = tuning::kMeshWay * points_.largest_thickness();
+  return fastest > 0 ? std::min(tuning::kMeshInterval, way / fastest) : tuning::kMeshInterval;
+}
+
+void MeshContacts::predict(ContactParticles& particles, const BodyClock& clock, Team& team) {
+  if (empty()) return;
+  if (left_ == 0) {
+    left_ = clock.stands() ? 1 : clock.substeps_in(interval_for(clock));
+    begin_interval(particles, clock, left_, team);
+  }
+  --left_;
+}
+
+void MeshContacts::begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
+                                  Team& team) {
+  points_.begin_interval(model_, particles, clock, substeps);
+  broad_.find(*cloth_, points_, candidates_);
+  narrow_.measure(points_, candidates_, team);
+  if (is_new_) find_inside();
+  is_new_ = false;
+  narrow_.find_near(model_, points_, candidates_, near_,
+                    [&](std::uint32_t slot) { return is_inside(slot); });
+  come_out();
+  sweep_.begin(scene(particles, clock), near_);
+  interval_ = substeps * clock.motions().front().h;
+}
+
+void MeshContacts::advance(const BodyClock& clock) {
+  if (!empty()) sweep_.advance(clock, points_, near_);
+}
+
+bool MeshContacts::is_inside(std::uint32_t slot) const {
+  return std::ranges::binary_search(inside_, slot);
+}
+
+/// The triangle of the mesh that is nearest to the particle when the interval begins.
+bool MeshContacts::find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pair,
+                                std::array<std::uint32_t, 4>& four,
+                                reference::Nearest& found) const {
+  const ContactMesh& m = points_.meshes()[mesh];
+  const Vector x = points_.start(slot), from = x - points_.origin();
+  double least = std::numeric_limits<double>::infinity();
+  m.tree.near({static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)},
+              [&](std::uint32_t triangle) {
+                const auto [a, b, c] = m.mesh().surface.triangles[triangle];
+                const std::uint32_t first = m.first_point;
+                const reference::Nearest other = reference::nearest_in_triangle(
+                    x, points_.start(first + a), points_.start(first + b),
+                    points_.start(first + c));
+                const double square = dot(other.r, other.r);
+                if (square < least) {
+                  least = square;
+                  found = other;
+                  pair = {slot, triangle, mesh, PairKind::particle_triangle};
+                  four = {slot, first + a, first + b, first + c};
+                }
+                return static_cast<float>(least);
+              });
+  return least < std::numeric_limits<double>::infinity();
+}
+
+void MeshContacts::find_inside() {
+  inside_.clear();
+  for (std::uint32_t slot = 0; slot < points_.slots(); ++slot) {
+    if (!model_.is_particle(slot) || model_.inverse_mass[slot] == 0) continue;
+    for (std::uint16_t i = 0; i < points_.meshes().size(); ++i) {
+      ContactMesh& mesh = points_.meshes()[i];
+      if (mesh.mesh().two_sided || !mesh.tree.bounds().meets(points_.box(slot))) continue;
+      Pair pair;
+      std::array<std::uint32_t, 4> four{};
+      reference::Nearest found;
+      if (find_nearest(slot, i, pair, four, found) && is_behind(mesh, pair, found, found.r)) {
+        inside_.push_back(slot);
+        break;
+      }
+    }
+  }
+}
+
+/// Those that are inside are near to the surface that they leave by, however deep they are. Those
+/// that are out are forgotten.
+void MeshContacts::come_out() {
+  std::erase_if(inside_, [&](std::uint32_t slot) {
+    bool is_out = true;
+    for (std::uint16_t i = 0; i < points_.meshes().size(); ++i) {
+      ContactMesh& mesh = points_.meshes()[i];
+      Pair pair;
+      std::array<std::uint32_t, 4> four{};
+      reference::Nearest found;
+      if (mesh.mesh().two_sided || !find_nearest(slot, i, pair, four, found)) continue;
+      if (!is_behind(mesh, pair, found, found.r)) continue;
+      is_out = false;
+      const Vector n = kernels::direction(found.r, length(found.r));
+      near_[list_of(pair.kind)].add(pair, four, -1.0 * n, mesh.thickness, true);
+    }
+    return is_out;
+  });
+}
+
+bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& clock, Team& team) {
+  if (empty() || clock.stands() || left_ > 0 || interval_ == 0) return false;
+  points_.measure_moves(model_, particles, clock);
+  const double time = std::exchange(interval_, 0);
+  failures_.left = 0;
+  const ContactScene scene = this->scene(particles, clock);
+  verification_.find(scene, broad_, narrow_, candidates_, team);
+  if (verification_.failures().empty()) return false;
+  stop_failures(scene, broad_, narrow_, verification_, candidates_, time, failures_, team,
+                [&](std::uint32_t slot, const Pair& pair) {
+                  if (points_.meshes()[pair.mesh].mesh().two_sided || is_inside(slot)) return;
+                  inside_.insert(std::ranges::lower_bound(inside_, slot), slot);
+                });
+  return true;
+}
+
+int MeshContacts::count_touching() const {
+  int count = 0;
+  for (const NearPairs& near : near_)
+    count += static_cast<int>(std::ranges::count_if(near.states, &NearState::is_touching));
+  return count;
+}
+
+void MeshContacts::read_touching(const ContactParticles& particles,
+                                 std::vector<MeshTouch>& touches) const {
+  const auto at = [&](std::uint32_t point) {
+    return points_.is_of_cloth(point) ? particles.position(point) : points_.to(point);
+  };
+  for (const NearPairs& near : near_) {
+    for (std::size_t i = 0; i < near.list.size(); ++i) {
+      if (!near.states[i].is_touching) continue;
+      const Pair& pair = near.list.pairs[i];
+      const auto four = near.list.points(i);
+      const reference::Nearest found =
+          nearest(pair.kind, {at(four[0]), at(four[1]), at(four[2]), at(four[3])});
+      MeshTouch touch{.body = points_.meshes()[pair.mesh].body, .push = near.states[i].push};
+      touch.normal = towards_cloth(pair.kind) * near.normal(i);
+      double most = -1;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double weight = std::abs(found.weight[k]);
+        if (!points_.is_of_cloth(four[k])) {
+          touch.point = touch.point + weight * at(four[k]);
+        } else if (weight > most) {
+          most = weight;
+          touch.slot = four[k];
+        }
+      }
+      touches.push_back(touch);
+    }
+  }
+}
+
+std::size_t MeshContacts::bytes() const {
+  std::size_t bytes = points_.bytes() + broad_.bytes() + narrow_.bytes() + sweep_.bytes() +
+                      bytes_of(inside_) + bytes_of(impulses_.of_body);
+  for (const PairList& list : candidates_) bytes += list.bytes();
+  for (const NearPairs& near : near_)
+    bytes += near.list.bytes() + bytes_of(near.sides) + bytes_of(near.states);
+  return bytes;
+}
+
+}  // namespace weft

@@ -1,0 +1,107 @@
+/// Contacts of a cloth with bodies that are triangle meshes: the stages of an interval, in order.
+///
+///   1 intervals      every 4 ms (tuning::kMeshInterval), when a substep is predicted
+///   2 broad_phase    which pairs of features may meet in it at all
+///   3 narrow_phase   which of them may touch
+///   4 contact_sweep  in each substep: push apart what is nearer than the thickness, along normals
+///   5                of that moment, let come out slowly what was deeper, and hold by friction
+///   what 6                Coulomb's law lets it (kernels/reference/bodies.h) 7 verification   when
+///   it is over: what went through each other 8 fail_safe      stops that
+///
+/// Particles that are inside of a one-sided body when it appears, or when positions are written,
+/// are known as such until they are out.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/contact/fail_safe.h"
+#include "kernels/reference/distances.h"
+
+namespace weft {
+
+/// A particle that touches a mesh where the last substep ended.
+struct MeshTouch {
+  std::uint32_t slot = 0;
+  std::size_t body = 0;  // of the clock
+  double push = 0;       // m
+  kernels::Vector point{}, normal{};
+};
+
+class MeshContacts {
+ public:
+  MeshContacts(const Model& model, const simd::Table& table)
+      : model_(model), broad_(table), narrow_(table), sweep_(table), verification_(table) {}
+
+  bool empty() const { return points_.meshes().empty(); }
+  /// Of a frame. is_new: positions were given, or a body was: who is inside is looked for.
+  /// Else it is `inside`, ascending, as the frame before left it.
+  void begin(const BodyClock& clock, bool is_new, std::span<const std::uint32_t> inside);
+  /// A substep is predicted, and the clock stands where it begins: an interval begins with it if
+  /// the last one is over.
+  void predict(ContactParticles& particles, const BodyClock& clock, Team& team);
+  /// The clock has advanced to the end of the substep.
+  void advance(const BodyClock& clock);
+  /// moved(slot, by): by how much (m).
+  template <class Moved>
+  void sweep(ContactParticles& particles, const BodyClock& clock, Team& team, Moved&& moved) {
+    sweep_.sweep(scene(particles, clock), near_, team, moved);
+  }
+  /// Over what the slot has touched in this substep. Returns whether it was pushed.
+  bool hold(ContactParticles& particles, const BodyClock& clock, std::uint32_t slot) {
+    return sweep_.hold(scene(particles, clock), near_, slot);
+  }
+  /// Slots that have touched a mesh in this substep.
+  const std::vector<std::uint32_t>& touching() const { return sweep_.touching(); }
+  /// After a substep, which may be the last of an interval. Returns whether particles had to be
+  /// moved.
+  bool end_interval(ContactParticles& particles, const BodyClock& clock, Team& team);
+
+  /// m, of a pair that is nearer than its thickness.
+  double deepest(ContactParticles& particles, const BodyClock& clock, Team& team) {
+    return empty() ? 0 : sweep_.deepest(scene(particles, clock), near_, team);
+  }
+  const MeshImpulses& impulses() const { return impulses_; }
+  /// Particles that are inside count as left.
+  FailSafeReport failures() const {
+    FailSafeReport report = failures_;
+    report.left += static_cast<int>(inside_.size());
+    return report;
+  }
+  int count_touching() const;
+  void read_touching(const ContactParticles& particles, std::vector<MeshTouch>& touches) const;
+  /// Slots on the wrong side of a one-sided body, ascending.
+  const std::vector<std::uint32_t>& inside() const { return inside_; }
+  std::size_t bytes() const;
+
+ private:
+  ContactScene scene(ContactParticles& particles, const BodyClock& clock) {
+    return {model_, *cloth_, clock, points_, particles, impulses_};
+  }
+  void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
+                      Team& team);
+  double interval_for(const BodyClock& clock) const;
+  bool is_inside(std::uint32_t slot) const;
+  void find_inside();
+  void come_out();
+  bool find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pair,
+                    std::array<std::uint32_t, 4>& four, reference::Nearest& found) const;
+
+  const Model& model_;
+  const TriangleSurface* cloth_ = nullptr;  // the model's, when a mesh is there
+  ContactPoints points_;
+  BroadPhase broad_;
+  NarrowPhase narrow_;
+  ContactSweep sweep_;
+  Verification verification_;
+  Candidates candidates_;
+  Near near_;
+  MeshImpulses impulses_;
+  FailSafeReport failures_;
+  bool is_new_ = false;  // it is not known yet who is inside
+  int left_ = 0;         // substeps of the present interval
+  double interval_ = 0;  // s
+  std::vector<std::uint32_t> inside_;
+};
+
+}  // namespace weft

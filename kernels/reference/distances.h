@@ -1,0 +1,92 @@
+/// Where two features of two surfaces are nearest to each other, in double: what the vector kernels
+/// (kernels/simd/distances.h) are held against. (Ericson, Real-Time Collision Detection, 2005,
+/// sections 5.1.5 and 5.1.9.)
+///
+/// Four points a, b, c, d make up a pair: a point and a triangle b c d, or two edges a b and c d.
+/// What leads from the second feature to the first is r, the sum of weight times point.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "kernels/vectors.h"
+
+namespace weft::reference {
+
+using kernels::Vector;
+
+struct Nearest {
+  Vector r{};
+  std::array<double, 4> weight{};  // of the first feature they sum to 1, of the second to -1
+};
+
+/// Which corners of the triangle have a part in the nearest point: bit k, corner k.
+inline std::uint32_t corners_of(const Nearest& nearest) {
+  std::uint32_t corners = 0;
+  for (std::uint32_t k = 0; k < 3; ++k) corners |= (nearest.weight[k + 1] != 0 ? 1u : 0u) << k;
+  return corners;
+}
+/// Whether both nearest points are within their edges, not at an end.
+inline bool is_within_edges(const Nearest& nearest) {
+  return nearest.weight[0] != 0 && nearest.weight[1] != 0 && nearest.weight[2] != 0 &&
+         nearest.weight[3] != 0;
+}
+
+/// The share of the way from a to b at which it is nearest to p.
+inline double share_of_segment(Vector p, Vector a, Vector b) {
+  const Vector u = b - a;
+  const double square = dot(u, u);
+  return square > 0 ? std::clamp(dot(u, p - a) / square, 0.0, 1.0) : 0;
+}
+
+/// On a side, or within all of them, where the triangle has an area.
+inline Nearest nearest_in_triangle(Vector p, Vector a, Vector b, Vector c) {
+  const double ab = share_of_segment(p, a, b), bc = share_of_segment(p, b, c),
+               ca = share_of_segment(p, c, a);
+  const std::array<double, 3> sides[] = {{1 - ab, ab, 0}, {0, 1 - bc, bc}, {ca, 0, 1 - ca}};
+  Nearest nearest;
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const std::array<double, 3>& at) {
+    const Vector r = at[0] * (p - a) + at[1] * (p - b) + at[2] * (p - c);
+    const double square = dot(r, r);
+    if (!(square < least)) return;
+    least = square;
+    nearest = {r, {1, -at[0], -at[1], -at[2]}};
+  };
+  for (const auto& side : sides) consider(side);
+  const Vector u = b - a, v = c - a, w = p - a;
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
+  const double area = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
+  constexpr double kFlat = 1e-14;
+  if (area > kFlat * uu * vv && s > 0 && t > 0 && s + t < area)
+    consider({1 - s / area - t / area, s / area, t / area});
+  return nearest;
+}
+
+/// Within both edges, or at an end of one.
+inline Nearest nearest_of_edges(Vector a, Vector b, Vector c, Vector d) {
+  Nearest nearest;
+  double least = std::numeric_limits<double>::infinity();
+  const Vector u = b - a, v = d - c, w = a - c;
+  const auto consider = [&](double s, double t) {
+    const Vector r = w + s * u - t * v;
+    const double square = dot(r, r);
+    if (!(square < least)) return;
+    least = square;
+    nearest = {r, {1 - s, s, t - 1, -t}};
+  };
+  consider(0, share_of_segment(a, c, d));
+  consider(1, share_of_segment(b, c, d));
+  consider(share_of_segment(c, a, b), 0);
+  consider(share_of_segment(d, a, b), 1);
+  const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
+  const double determinant = uu * vv - uv * uv, s = uv * vw - uw * vv, t = uu * vw - uv * uw;
+  constexpr double kParallel = 1e-14;
+  if (determinant > kParallel * uu * vv && s > 0 && s < determinant && t > 0 && t < determinant)
+    consider(s / determinant, t / determinant);
+  return nearest;
+}
+
+}  // namespace weft::reference
