@@ -112,10 +112,9 @@ struct Fours {
 #else
   [[gnu::always_inline]] Component get(const double* x) const {
     if (row.count[first] == 4) return load_component(x + row.four[first]);
-    const auto lane = [&](std::uint32_t k) {
-      return k < row.count[first] ? x[row.four[first] + k] : 0;
-    };
-    return {Doubles(_mm_set_pd(lane(1), lane(0))), Doubles(_mm_set_pd(lane(3), lane(2)))};
+    alignas(64) double lanes[4]{};
+    for (std::uint32_t k = 0; k < row.count[first]; ++k) lanes[k] = x[row.four[first] + k];
+    return load_component(lanes);
   }
   [[gnu::always_inline]] void put(double* x, const Component& c) const {
     alignas(64) double lanes[4];
