@@ -11,6 +11,8 @@ Isa to_public(simd::Isa isa) {
       return Isa::avx512;
     case simd::Isa::avx2:
       return Isa::avx2;
+    case simd::Isa::neon:
+      return Isa::neon;
     case simd::Isa::sse2:
       break;
   }
@@ -20,10 +22,10 @@ Isa to_public(simd::Isa isa) {
 Result<Isa> from_environment() {
   const char* wanted = std::getenv("WEFT_ISA");
   if (wanted == nullptr || *wanted == '\0') return Isa::automatic;
-  for (const Isa isa : {Isa::automatic, Isa::sse2, Isa::avx2, Isa::avx512}) {
+  for (const Isa isa : {Isa::automatic, Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon}) {
     if (name(isa) == wanted) return isa;
   }
-  return Error{"WEFT_ISA: must be auto, sse2, avx2 or avx512 (" + std::string(wanted) + ")"};
+  return Error{"WEFT_ISA: must be auto, sse2, avx2, avx512 or neon (" + std::string(wanted) + ")"};
 }
 
 }  // namespace
@@ -37,7 +39,7 @@ Result<Isa> resolve(Isa wanted) {
     source = "WEFT_ISA";
   }
   if (wanted == Isa::automatic) return to_public(simd::best_isa());
-  if (wanted > Isa::avx512) {
+  if (wanted > Isa::neon) {
     return Error{"isa: unknown choice (" + std::to_string(static_cast<int>(wanted)) + ")"};
   }
   if (!simd::supported(to_kernel(wanted))) {
@@ -52,6 +54,8 @@ simd::Isa to_kernel(Isa isa) {
       return simd::Isa::avx512;
     case Isa::avx2:
       return simd::Isa::avx2;
+    case Isa::neon:
+      return simd::Isa::neon;
     default:
       return simd::Isa::sse2;
   }

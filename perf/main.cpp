@@ -28,14 +28,14 @@ void count(benchmark::State& state, const Work& work, const Bandwidth& bandwidth
 
 std::vector<simd::Isa> supported_isas() {
   std::vector<simd::Isa> isas;
-  for (const auto isa : {simd::Isa::sse2, simd::Isa::avx2, simd::Isa::avx512}) {
+  for (const auto isa : {simd::Isa::sse2, simd::Isa::avx2, simd::Isa::avx512, simd::Isa::neon}) {
     if (simd::supported(isa)) isas.push_back(isa);
   }
   return isas;
 }
 
 std::string name_of(simd::Isa isa) {
-  constexpr const char* kNames[] = {"sse2", "avx2", "avx512"};
+  constexpr const char* kNames[] = {"sse2", "avx2", "avx512", "neon"};
   return kNames[static_cast<std::size_t>(isa)];
 }
 

@@ -32,7 +32,7 @@ constexpr Kind kKinds[] = {
 constexpr int kSizes[] = {40, 120, 300};
 
 Isa to_public(simd::Isa isa) {
-  constexpr Isa kIsas[] = {Isa::sse2, Isa::avx2, Isa::avx512};
+  constexpr Isa kIsas[] = {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon};
   return kIsas[static_cast<std::size_t>(isa)];
 }
 

@@ -83,9 +83,9 @@ void add_solver_options(Verb verb, SolverOptions& options) {
               "frozen directions serve for at most so many iterations (default 32; 0: until all "
               "errors along them are within tolerance)");
   verb.option("--backend", options.backend, "simd (default) or reference");
-  verb.option(
-      "--isa", options.isa,
-      "--backend simd: sse2, avx2, avx512 or auto (default: WEFT_ISA, else the best there is)");
+  verb.option("--isa", options.isa,
+              "--backend simd: sse2, avx2, avx512, neon or auto (default: WEFT_ISA, else the best "
+              "there is)");
   verb.option(
       "--sleep", options.sleep,
       "on or off (default): steps of a cloth that rests do nothing until something changes");

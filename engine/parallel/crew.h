@@ -54,7 +54,7 @@ class Crew {
   Pieces& pieces_;
   const int threads_;  // that there may be
   int wanted_ = 0;     // that there is work for
-  const std::uint32_t rounding_;
+  const FloatControl rounding_;
   std::atomic<std::size_t> next_{0};      // of the large pieces; from count() on of the small ones
   std::atomic<std::size_t> unopened_{0};  // large pieces whose team has not been open yet
   std::atomic<std::size_t> comers_{0};

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <thread>
 
+#include "engine/parallel/processor.h"
+
 namespace weft {
 
 /// Pauses before a waiting thread yields its processor: some tens of microseconds.
@@ -19,7 +21,7 @@ template <class Ready>
 bool spin_until(int most, Ready&& ready) {
   for (int pauses = 0; pauses < most; ++pauses) {
     if (ready()) return true;
-    __builtin_ia32_pause();
+    pause();
   }
   return ready();
 }

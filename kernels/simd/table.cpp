@@ -16,16 +16,4 @@ void derive_joints(std::span<YarnRow> rows) {
   }
 }
 
-const Table& table(Isa isa) {
-  switch (isa) {
-    case Isa::avx512:
-      return kAvx512Table;
-    case Isa::avx2:
-      return kAvx2Table;
-    case Isa::sse2:
-      break;
-  }
-  return kSse2Table;
-}
-
 }  // namespace weft::simd

@@ -730,6 +730,7 @@ struct Table {
 /// The isa must be supported.
 const Table& table(Isa isa);
 
-extern const Table kSse2Table, kAvx2Table, kAvx512Table;
+// Of these a library has those of its processor (on_x86_64.cpp, on_aarch64.cpp).
+extern const Table kSse2Table, kAvx2Table, kAvx512Table, kNeonTable;
 
 }  // namespace weft::simd

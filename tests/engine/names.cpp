@@ -25,6 +25,7 @@ TEST_CASE("every choice has the name that the command line and reports call it b
   CHECK(name(Isa::sse2) == "sse2");
   CHECK(name(Isa::avx2) == "avx2");
   CHECK(name(Isa::avx512) == "avx512");
+  CHECK(name(Isa::neon) == "neon");
   CHECK(name(Isa::automatic) == "auto");
   CHECK(name(Status::converged) == "converged");
   CHECK(name(Status::fixed_iterations) == "fixed_iterations");

@@ -10,11 +10,12 @@
 
 namespace weft::test {
 
-inline constexpr simd::Isa kIsas[]{simd::Isa::sse2, simd::Isa::avx2, simd::Isa::avx512};
+inline constexpr simd::Isa kIsas[]{simd::Isa::sse2, simd::Isa::avx2, simd::Isa::avx512,
+                                   simd::Isa::neon};
 
 inline std::string text(simd::Isa isa) {
-  if (isa == simd::Isa::avx512) return "avx512";
-  return isa == simd::Isa::avx2 ? "avx2" : "sse2";
+  constexpr const char* kNames[] = {"sse2", "avx2", "avx512", "neon"};
+  return kNames[static_cast<int>(isa)];
 }
 
 /// Says which it leaves out.

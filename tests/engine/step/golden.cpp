@@ -1,5 +1,5 @@
-/// Fingerprints of whole runs on AVX2 and AVX-512: no change of the compiler, the machine or the
-/// code may change a bit unnoticed. (SSE2 does not fuse, and has bits of its own.)
+/// Fingerprints of whole runs on AVX2, AVX-512 and NEON: no change of the compiler, the machine or
+/// the code may change a bit unnoticed. (SSE2 does not fuse, and has bits of its own.)
 ///
 /// If a change is meant to change results, say so in its commit and put in the new table, which
 ///
@@ -12,8 +12,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
-#include "kernels/simd/isa.h"
+#include "engine/isa.h"
 #include "tests/support/clothes.h"
 #include "tests/support/mesh_scenes.h"
 
@@ -85,6 +86,14 @@ std::uint64_t hash_of(const Golden& golden, Isa isa) {
   return cloth.state_hash();
 }
 
+std::vector<Isa> fusing_isas() {
+  std::vector<Isa> isas;
+  for (const Isa isa : {Isa::avx2, Isa::avx512, Isa::neon}) {
+    if (simd::supported(to_kernel(isa))) isas.push_back(isa);
+  }
+  return isas;
+}
+
 void print(const Golden& golden, std::uint64_t hash) {
   std::printf("    {Way::%s, \"%s\", %d, %d, %s, 0x%016llx},\n",
               kWays[static_cast<int>(golden.way)], golden.scene, golden.size, golden.steps,
@@ -92,19 +101,19 @@ void print(const Golden& golden, std::uint64_t hash) {
 }
 
 TEST_CASE("runs have the fingerprints that they had") {
-  if (!simd::supported(simd::Isa::avx2)) {
-    MESSAGE("this machine lacks avx2: not tested");
-    return;
-  }
+  const std::vector<Isa> isas = fusing_isas();
+  if (isas.empty()) MESSAGE("this machine has neither avx2 nor neon: not tested");
   const bool wanted = std::getenv("WEFT_PRINT_HASHES") != nullptr;
   for (const Golden& golden : kGolden) {
     CAPTURE(std::string(kWays[static_cast<int>(golden.way)]));
     CAPTURE(std::string(golden.scene));
     CAPTURE(golden.size);
-    const std::uint64_t hash = hash_of(golden, Isa::avx2);
-    if (wanted) print(golden, hash);
-    CHECK(hash == golden.hash);
-    if (simd::supported(simd::Isa::avx512)) CHECK(hash_of(golden, Isa::avx512) == hash);
+    for (const Isa isa : isas) {
+      CAPTURE(std::string(name(isa)));
+      const std::uint64_t hash = hash_of(golden, isa);
+      if (wanted && isa == isas.front()) print(golden, hash);
+      CHECK(hash == golden.hash);
+    }
   }
 }
 

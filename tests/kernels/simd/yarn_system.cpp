@@ -216,7 +216,7 @@ TEST_CASE("velocities: the linear system takes them out along each link") {
 /// Where the kernels of an instruction set have it (kernels/simd/yarn_arrays.h).
 float& residual(BlockOfYarns& b, simd::Isa isa, std::uint32_t k, std::uint32_t lane) {
   constexpr std::uint32_t kArrays = 10, kBefore = 6;  // of a row; n, m, reciprocal and lambda
-  const std::uint32_t width = isa == simd::Isa::sse2 ? 4 : isa == simd::Isa::avx2 ? 8 : 16;
+  const std::uint32_t width = isa == simd::Isa::avx512 ? 16 : isa == simd::Isa::avx2 ? 8 : 4;
   const std::uint32_t row = lane / width * BlockOfYarns::kRows + k;
   float* floats = reinterpret_cast<float*>(b.system.data());
   return floats[(kArrays * row + kBefore) * width + lane % width];

@@ -40,8 +40,8 @@ class Weft(ConanFile):
 
     def validate(self):
         check_min_cppstd(self, 20)
-        if self.settings.os != "Linux" or self.settings.arch != "x86_64":
-            raise ConanInvalidConfiguration("weft runs on Linux on x86-64")
+        if self.settings.os != "Linux" or self.settings.arch not in ("x86_64", "armv8"):
+            raise ConanInvalidConfiguration("weft runs on Linux on x86-64 and aarch64")
 
     def layout(self):
         cmake_layout(self)

@@ -1,4 +1,5 @@
 #include "kernels/simd/isa.h"
+#include "kernels/simd/table.h"
 
 namespace weft::simd {
 
@@ -14,6 +15,8 @@ bool supported(Isa isa) {
       return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
              __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
              __builtin_cpu_supports("avx512vl") && supported(Isa::avx2);
+    case Isa::neon:
+      break;
   }
   return false;
 }
@@ -21,6 +24,11 @@ bool supported(Isa isa) {
 Isa best_isa() {
   if (supported(Isa::avx512)) return Isa::avx512;
   return supported(Isa::avx2) ? Isa::avx2 : Isa::sse2;
+}
+
+const Table& table(Isa isa) {
+  if (isa == Isa::avx512) return kAvx512Table;
+  return isa == Isa::avx2 ? kAvx2Table : kSse2Table;
 }
 
 }  // namespace weft::simd
