@@ -66,7 +66,7 @@ struct Falling {
     for (int k = 0; k < kSubsteps; ++k) {
       solver.advance(team);
       solver.sweep(team);
-      solver.repair(contacts, static_cast<std::int64_t>(model->constraints.size()));
+      solver.repair(contacts, static_cast<std::int64_t>(model->constraints.size()), team);
     }
     solver.settle(team);
   }
