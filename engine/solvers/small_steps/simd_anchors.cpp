@@ -41,7 +41,7 @@ SimdAnchors::SimdAnchors(const Model& model, const Settings& settings, const sim
       backstops_(layout_.backstops) {
   for (AtLimit* mask : {&at_limit_, &before_, &held_, &arrived_, &moved_})
     mask->resize(blocks_.size());
-  constexpr float kNone = std::numeric_limits<float>::infinity();
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();  // nobody is beyond that
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     blocks_[i].place = layout_.place[i];
     blocks_[i].backstop = layout_.backstop[i];
