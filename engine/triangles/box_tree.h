@@ -74,6 +74,14 @@ class BoxTree {
     return {{c.low[0][lane], c.low[1][lane], c.low[2][lane]},
             {c.high[0][lane], c.high[1][lane], c.high[2][lane]}};
   }
+  /// Whose boxes meet this one, a bit each. An infinite box would meet those that fill up a
+  /// cluster, and the leaves after the last one.
+  std::uint32_t met_in(const simd::Table& table, std::size_t cluster, const Box& box) const {
+    if (cluster >= clusters_.size()) return 0;
+    const auto lanes = std::min<std::size_t>(count_ - cluster * kernels::kLanes, kernels::kLanes);
+    return table.find_met(clusters_[cluster], box.low.data(), box.high.data()) &
+           ((std::uint32_t{1} << lanes) - 1);
+  }
   void join();
 
   std::size_t leaves_ = 1;            // nodes 1 ... leaves_ - 1 have the children 2 i and 2 i + 1
@@ -117,8 +125,7 @@ void BoxTree::find(const simd::Table& table, const Box& box, Visit&& visit) cons
       continue;
     }
     const std::size_t cluster = node - leaves_;
-    for (std::uint32_t met = table.find_met(clusters_[cluster], box.low.data(), box.high.data());
-         met != 0; met &= met - 1) {
+    for (std::uint32_t met = met_in(table, cluster, box); met != 0; met &= met - 1) {
       visit(items_[cluster * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(met))]);
     }
   }
@@ -148,9 +155,7 @@ void BoxTree::meet(const simd::Table& table, const BoxTree& a, const BoxTree& b,
     for (std::size_t at = first; at < last; ++at) {
       const Box box = a.box_in(i - a.leaves_, at - first);
       if (!box.meets(b.nodes_[j])) continue;
-      for (std::uint32_t met =
-               table.find_met(b.clusters_[cluster], box.low.data(), box.high.data());
-           met != 0; met &= met - 1) {
+      for (std::uint32_t met = b.met_in(table, cluster, box); met != 0; met &= met - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(met));
         visit(a.items_[at], b.items_[cluster * kernels::kLanes + lane]);
       }
