@@ -12,6 +12,7 @@
 #include "engine/model/validation.h"
 #include "engine/step/carry.h"
 #include "engine/step/choose_solver.h"
+#include "engine/step/saved_state.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"
 #include "engine/step/step_in_team.h"
@@ -113,17 +114,16 @@ struct Cloth::Impl : State {
     if (next) next.value()->go_on_from(*this);
     return next;
   }
-  /// That goes on from this one by small steps, which an automatic solver may become.
-  Result<std::unique_ptr<Impl>> by_small_steps() const {
+  /// A new state that may have bodies: by small steps, which an automatic solver becomes.
+  Result<std::unique_ptr<Impl>> for_bodies() const {
+    if (settings.solver == Solver::small_steps) return of(model);
     if (asked.solver != Solver::automatic)
       return refuse("body", "needs solver small_steps", std::string(name(settings.solver)));
     Settings wanted = asked;
     wanted.solver = Solver::small_steps;
     auto resolved = resolve(wanted, *model);
     if (!resolved) return Error{resolved.error()};
-    auto next = std::make_unique<Impl>(model, wanted, resolved.value());
-    next->go_on_from(*this);
-    return next;
+    return std::make_unique<Impl>(model, wanted, resolved.value());
   }
   Result<void> validate_body(std::uint32_t id) const {
     if (bodies.has(id)) return {};
@@ -190,6 +190,19 @@ Result<void> Cloth::copy_state(const Cloth& from) {
   if (!changed) return Error{changed.error()};
   changed.value()->copy(*from.impl_);
   impl_ = std::move(changed).value();
+  return {};
+}
+
+std::vector<std::byte> Cloth::save_state() const { return weft::save_state(*impl_); }
+
+Result<void> Cloth::load_state(std::span<const std::byte> bytes) {
+  auto saved = weft::read_state(bytes, *impl_->model);
+  if (!saved) return Error{saved.error()};
+  const bool had_bodies = saved.value().lasting.bodies.were_any();
+  auto next = had_bodies ? impl_->for_bodies() : impl_->of(impl_->model);
+  if (!next) return Error{next.error()};
+  if (auto r = restore(*next.value(), std::move(saved).value()); !r) return r;
+  impl_ = std::move(next).value();
   return {};
 }
 
@@ -377,8 +390,9 @@ Result<void> Cloth::scale_anchors(double scale) {
 
 Result<void> Cloth::prepare_for_bodies() {
   if (impl_->settings.solver == Solver::small_steps) return {};
-  auto changed = impl_->by_small_steps();
+  auto changed = impl_->for_bodies();
   if (!changed) return Error{changed.error()};
+  changed.value()->go_on_from(*impl_);
   impl_ = std::move(changed).value();
   return {};
 }

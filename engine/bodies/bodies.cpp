@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/model/validate.h"
 
 namespace weft {
 namespace {
@@ -118,6 +119,22 @@ std::span<const TravellingBody> Bodies::travelling(double friction_of_cloth) {
 
 bool Bodies::any() const {
   return std::ranges::any_of(bodies_, [](const Entry& e) { return e.shape != nullptr; });
+}
+
+bool Bodies::are_valid() const {
+  const auto is_finite = [](kernels::Vector v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  };
+  const auto is_valid = [&](const Entry& e) {
+    if (e.shape == nullptr) return true;
+    const std::size_t count = e.shape->mesh() != nullptr ? e.shape->mesh()->vertices.size() : 0;
+    const bool are_given = !e.vertices_from.empty() || !e.vertices_to.empty();
+    const bool are_as_many = e.vertices_from.size() == count && e.vertices_to.size() == count;
+    return (!are_given || are_as_many) && std::ranges::all_of(e.vertices_from, is_finite) &&
+           std::ranges::all_of(e.vertices_to, is_finite) &&
+           validate(Body{e.shape, e.to, e.thickness, e.friction}) && validate(e.from);
+  };
+  return std::ranges::all_of(bodies_, is_valid);
 }
 
 bool Bodies::moving() const {

@@ -10,6 +10,7 @@
 
 #include "engine/bodies/body_shape.h"
 #include "engine/bodies/pose.h"
+#include "engine/saving/fields.h"
 
 namespace weft {
 
@@ -57,6 +58,14 @@ class Bodies {
   void arrive(std::span<const BodyImpulse> impulses, double dt);
   BodyLoad load(std::uint32_t id) const { return bodies_[id].load; }
   std::size_t bytes() const;
+  friend void visit_fields(Is<Bodies> auto& part, auto& archive) {
+    auto& [bodies, are_others, travelling] = part;  // travelling: made in each step
+    archive(bodies, are_others);
+  }
+  /// Whether those that were read are bodies.
+  bool are_valid() const;
+  /// Whether there ever was one.
+  bool were_any() const { return !bodies_.empty(); }
 
  private:
   struct Entry {
@@ -66,6 +75,13 @@ class Bodies {
     double thickness = 0, friction = 0;
     bool is_on = true, moves = false, deforms = false, moved = false;
     BodyLoad load{};
+
+    friend void visit_fields(Is<Entry> auto& entry, auto& archive) {
+      auto& [shape, from, to, vertices_from, vertices_to, thickness, friction, is_on, moves,
+             deforms, moved, load] = entry;
+      archive(shape, from, to, vertices_from, vertices_to, thickness, friction, is_on, moves,
+              deforms, moved, load);
+    }
   };
   std::vector<Entry> bodies_;  // by id
   bool are_others_ = false;    // than in the last step

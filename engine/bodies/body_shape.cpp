@@ -6,12 +6,13 @@
 
 #include "engine/bodies/convex_hull.h"
 #include "engine/model/validation.h"
+#include "engine/saving/fields.h"
 
 namespace weft {
 namespace {
 
 using kernels::Vector;
-using Shared = Result<std::shared_ptr<const BodyShape>>;
+using Shared = Result<std::shared_ptr<BodyShape>>;
 
 Vector to_vector(Vec3 v) { return {v.x, v.y, v.z}; }
 
@@ -27,7 +28,7 @@ Shared build(const Plane& plane) {
   if (!(l > 0) || !std::isfinite(l))
     return refuse("normal", "has no direction", text(plane.normal));
   if (!std::isfinite(plane.offset)) return refuse("offset", "must be finite", number(plane.offset));
-  return std::make_shared<const BodyShape>(
+  return std::make_shared<BodyShape>(
       std::vector{reference::Face{(1 / l) * normal, plane.offset / l}}, std::vector<Vector>{});
 }
 
@@ -50,13 +51,13 @@ Shared build(const Capsule& capsule) {
     solid.a = to_vector(capsule.b);
     solid.radius = capsule.radius_b;
   }
-  return std::make_shared<const BodyShape>(solid);
+  return std::make_shared<BodyShape>(solid);
 }
 
 Shared build(const Ball& ball) {
   if (auto r = validate_finite("centre", ball.centre); !r) return Error{r.error()};
   if (auto r = validate_positive("radius", ball.radius); !r) return Error{r.error()};
-  return std::make_shared<const BodyShape>(
+  return std::make_shared<BodyShape>(
       reference::Solid{.a = to_vector(ball.centre), .radius = ball.radius});
 }
 
@@ -86,7 +87,7 @@ Shared build(const Hull& hull) {
     return refuse("points", "must be four or more that are not in a plane",
                   std::to_string(points.size()));
   }
-  return std::make_shared<const BodyShape>(std::move(faces), std::move(points));
+  return std::make_shared<BodyShape>(std::move(faces), std::move(points));
 }
 
 /// Triangles with three corners of their own.
@@ -145,7 +146,7 @@ Shared build(const TriangleMesh& mesh) {
     if (auto r = validate_sides(mesh); !r) return Error{r.error()};
   }
   shape.surface = make_triangle_surface(triangles, places, {});
-  return std::make_shared<const BodyShape>(std::move(shape));
+  return std::make_shared<BodyShape>(std::move(shape));
 }
 
 }  // namespace
@@ -195,7 +196,27 @@ double BodyShape::spread_of(const std::vector<reference::Face>& faces,
 }
 
 Result<std::shared_ptr<const BodyShape>> build_shape(const ShapeDescription& shape) {
-  return std::visit([](const auto& one) { return build(one); }, shape);
+  auto built = std::visit([](const auto& one) { return build(one); }, shape);
+  if (!built) return Error{built.error()};
+  built.value()->describe(shape);
+  return std::shared_ptr<const BodyShape>(std::move(built).value());
+}
+
+void visit_fields(const std::shared_ptr<const BodyShape>& shape, ArchiveWriter& archive) {
+  archive(shape != nullptr);
+  if (shape != nullptr) archive(shape->description());
+}
+
+void visit_fields(std::shared_ptr<const BodyShape>& shape, ArchiveReader& archive) {
+  bool is_there = false;
+  archive(is_there);
+  if (!is_there) return;
+  ShapeDescription description;
+  archive(description);
+  if (!archive.is_good()) return;
+  auto built = build_shape(description);
+  if (!built) return archive.refuse();
+  shape = std::move(built).value();
 }
 
 Hull box(Vec3 size) {

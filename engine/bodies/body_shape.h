@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/bodies/mesh_shape.h"
+#include "engine/saving/archive.h"
 #include "kernels/reference/bodies.h"
 
 namespace weft {
@@ -28,6 +29,10 @@ class BodyShape {
 
   /// Null: it is none, but solid().
   const MeshShape* mesh() const { return mesh_.get(); }
+  /// What it was built of.
+  const ShapeDescription& description() const { return description_; }
+  void describe(const ShapeDescription& description) { description_ = description; }
+
   const reference::Solid& solid() const { return solid_; }
   /// A plane reaches to infinity.
   bool is_bounded() const { return !corners_.empty(); }
@@ -48,6 +53,12 @@ class BodyShape {
   double spread_ = 1;
   reference::Solid solid_;
   std::unique_ptr<const MeshShape> mesh_;
+  ShapeDescription description_;
 };
+
+/// Null, or what the shape was built of.
+void visit_fields(const std::shared_ptr<const BodyShape>& shape, ArchiveWriter& archive);
+/// Builds it again. What cannot be built is refused.
+void visit_fields(std::shared_ptr<const BodyShape>& shape, ArchiveReader& archive);
 
 }  // namespace weft

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/model/validate.h"
 
 namespace weft {
 
@@ -86,6 +87,14 @@ double Anchors::largest_excess(const AnchorStore& store, const kernels::Vectors&
     most = std::max(most, reference::excess(limits, at, x[store.slot[i]]));
   }
   return most;
+}
+
+bool Anchors::fit(const Model& model) const {
+  const std::size_t count = model.anchors.size();
+  const bool are_as_many = from_.size() == count && to_.size() == count && asked_.size() == count &&
+                           most_from_.size() == count && most_to_.size() == count &&
+                           has_backstop_.size() == count;
+  return are_as_many && validate_anchor_limits(model, asked_);
 }
 
 std::size_t Anchors::bytes() const {

@@ -6,9 +6,15 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/saving/fields.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
 
 namespace weft {
+
+void visit_fields(Is<reference::AnchorPose> auto& pose, auto& archive) {
+  auto& [point, normal] = pose;
+  archive(point, normal);
+}
 
 class Anchors {
  public:
@@ -48,6 +54,13 @@ class Anchors {
   /// Whether one moves in this step or has moved in the last.
   bool moving() const { return moves_ || moved_ || most_from_ != most_to_; }
   std::size_t bytes() const;
+  friend void visit_fields(Is<Anchors> auto& anchors, auto& archive) {
+    auto& [from, to, asked, most_from, most_to, has_backstop, scale, limited, moves, moved] =
+        anchors;
+    archive(from, to, asked, most_from, most_to, has_backstop, scale, limited, moves, moved);
+  }
+  /// Whether those that were read are the model's.
+  bool fit(const Model& model) const;
 
  private:
   double most(const AnchorLimit& limit) const;

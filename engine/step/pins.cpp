@@ -1,6 +1,7 @@
 #include "engine/step/pins.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -107,6 +108,15 @@ void Pins::stop(bool arrived, Vectors& position, Vectors& velocity) {
 Vector Pins::last_velocity(std::uint32_t slot) const {
   const std::size_t i = index_of(slot);
   return i < pins_.size() ? pins_[i].last : Vector{0, 0, 0};
+}
+
+bool Pins::fit(const Model& model) const {
+  const auto is_pin = [&](const Place& p) {
+    return std::ranges::binary_search(model.pins, p.slot);
+  };
+  return (pins_.empty() || std::ranges::equal(pins_, model.pins, {}, &Pin::slot)) &&
+         std::ranges::all_of(put_down_, is_pin) &&
+         std::ranges::is_sorted(put_down_, std::less_equal{}, &Place::slot);
 }
 
 std::size_t Pins::bytes() const { return bytes_of(pins_) + bytes_of(put_down_); }

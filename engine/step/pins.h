@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/saving/archive.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -52,17 +53,33 @@ class Pins {
   /// In the last step.
   kernels::Vector last_velocity(std::uint32_t slot) const;
   std::size_t bytes() const;
+  friend void visit_fields(Is<Pins> auto& part, auto& archive) {
+    auto& [pins, moving, put_down] = part;
+    archive(pins, moving, put_down);
+  }
+  /// Whether those that were read are the model's.
+  bool fit(const Model& model) const;
 
  private:
   struct Pin {
     std::uint32_t slot = 0;
     kernels::Vector from{}, to{};
     kernels::Vector last{}, speed{};  // of the last move and of this one
+
+    friend void visit_fields(Is<Pin> auto& pin, auto& archive) {
+      auto& [slot, from, to, last, speed] = pin;
+      archive(slot, from, to, last, speed);
+    }
   };
   /// A pin that was put down, and where it stood before.
   struct Place {
     std::uint32_t slot = 0;
     kernels::Vector before{};
+
+    friend void visit_fields(Is<Place> auto& place, auto& archive) {
+      auto& [slot, before] = place;
+      archive(slot, before);
+    }
   };
   /// In pins_; its size if none is watched there.
   std::size_t index_of(std::uint32_t slot) const;

@@ -14,6 +14,7 @@
 #include <cstddef>
 
 #include "engine/model/model.h"
+#include "engine/saving/archive.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -28,6 +29,14 @@ class Rest {
   /// After a step of dt. Returns whether the cloth falls asleep.
   bool watch(const kernels::Vectors& position, double dt);
   std::size_t bytes() const { return from_.bytes(); }
+  friend void visit_fields(Is<Rest> auto& rest, auto& archive) {
+    auto& [reach, from, time, is_watching, is_asleep, restless] = rest;  // reach: the model's
+    archive(from, time, is_watching, is_asleep, restless);
+  }
+  /// Whether what was read is about particles of the model.
+  bool fits(const Model& model) const {
+    return from_.size() == model.slots() && restless_ < model.slots();
+  }
 
  private:
   bool has_moved(const kernels::Vectors& position, std::size_t slot) const;

@@ -5,9 +5,15 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/saving/archive.h"
 #include "engine/solvers/small_steps/seams.h"
 
 namespace weft {
+
+void visit_fields(Is<SeamState> auto& state, auto& archive) {
+  auto& [speed, is_closed] = state;
+  archive(speed, is_closed);
+}
 
 class Seams {
  public:
@@ -21,6 +27,12 @@ class Seams {
 
   std::span<const SeamState> states() const { return states_; }
   std::size_t bytes() const { return states_.capacity() * sizeof(SeamState); }
+  friend void visit_fields(Is<Seams> auto& seams, auto& archive) {
+    auto& [states] = seams;
+    archive(states);
+  }
+  /// Whether those that were read are the model's.
+  bool fit(const Model& model) const { return states_.size() == model.seams.size(); }
 
  private:
   std::vector<SeamState> states_;

@@ -13,19 +13,27 @@
 
 namespace weft {
 
+LastingState::LastingState(const Model& model)
+    : position(model.initial_position),
+      velocity(model.initial_velocity),
+      gravity(model.gravity),
+      wind(model.air.wind),
+      anchors(model),
+      seams(model),
+      rest(model) {}
+
+void LastingState::forget_past() {
+  placed = true;
+  lost_energy = elastic_energy = give_per_mass = longest_substep = refinement = 0;
+}
+
 State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
-    : model(std::move(shared)),
+    : LastingState(*shared),
+      model(std::move(shared)),
       settings(chosen),
-      anchors(*model),
-      seams(*model),
-      rest(*model),
       kernels(&simd::table(to_kernel(chosen.isa))),
       measure(std::make_unique<Measure>(*model, chosen, *kernels)) {
   settings.scheme = scheme_of(settings);
-  position = model->initial_position;
-  velocity = model->initial_velocity;
-  gravity = model->gravity;
-  wind = model->air.wind;
   for (kernels::Vectors* v :
        {&solved, &next_velocity, &step_start.position, &step_start.velocity}) {
     v->resize(model->slots());
@@ -88,79 +96,48 @@ void State::make_solvers() {
   }
 }
 
-namespace {
-
-/// Whether what steps by one came to says how those by the other will go.
-bool alike(const Settings& a, const Settings& b) {
-  return a.solver == b.solver && a.scheme == b.scheme && a.backend == b.backend &&
-         a.iterations == b.iterations && a.tolerance == b.tolerance &&
-         a.contact_tolerance == b.contact_tolerance && a.motion_tolerance == b.motion_tolerance;
-}
-
-}  // namespace
-
-/// What needs memory first: all of it is copied or, where memory runs out, nothing. Under other
-/// settings positions are given ones, and nothing is remembered.
+/// What needs memory first: all of it is copied or, where memory runs out, nothing.
 void State::copy(const State& from) {
+  LastingState its = from;
   const bool same = alike(settings, from.settings);
-  kernels::Vectors its_force = from.force;
-  Pins its_pins = from.pins;
-  Anchors its_anchors = from.anchors;
-  Seams its_seams = from.seams;
-  Bodies its_bodies = from.bodies;
   if (same && small_steps) small_steps->take_past(*from.small_steps);
   if (!same && small_steps) small_steps->forget_past();
-  position = from.position;
-  velocity = from.velocity;
-  force = std::move(its_force);
-  pins = std::move(its_pins);
-  anchors = std::move(its_anchors);
-  seams = std::move(its_seams);
-  bodies = std::move(its_bodies);
-  copy_scalars(from, same);
-  rest = from.rest;
-  if (!same || !settings.sleep) rest.wake();
+  take(std::move(its), from.settings);
 }
 
-void State::copy_scalars(const State& from, bool same) {
-  asleep = from.asleep;
-  gravity = from.gravity;
-  wind = from.wind;
-  way = from.way;
-  placed = !same || from.placed;
-  displaced = from.displaced;
-  rests_differ = from.rests_differ;
-  lost_energy = same ? from.lost_energy : 0;
-  elastic_energy = same ? from.elastic_energy : 0;
-  give_per_mass = same ? from.give_per_mass : 0;
-  longest_substep = same ? from.longest_substep : 0;
-  refinement = same ? from.refinement : 0;
+void State::take(LastingState&& from, const Settings& its) {
+  const bool same = alike(settings, its);
+  LastingState::operator=(std::move(from));
+  if (!same) forget_past();
+  if (!same || !settings.sleep) rest.wake();
 }
 
 void State::go_on_from(const State& from) {
   const Model& its_model = *from.model;
-  if (from.force.size() > 0) force.resize(model->slots());
+  LastingState next = from;
+  next.position = position;
+  next.velocity = velocity;
+  if (from.force.size() > 0) next.force = kernels::Vectors(model->slots());
   bool same_masses = true;
   for_each_particle(*model, its_model, [&](std::uint32_t slot, std::uint32_t its_slot) {
-    position.set(slot, from.position[its_slot]);
-    velocity.set(slot, from.velocity[its_slot]);
-    if (force.size() > 0) force.set(slot, from.force[its_slot]);
+    next.position.set(slot, from.position[its_slot]);
+    next.velocity.set(slot, from.velocity[its_slot]);
+    if (from.force.size() > 0) next.force.set(slot, from.force[its_slot]);
     same_masses = same_masses && model->inverse_mass[slot] == its_model.inverse_mass[its_slot];
     const bool is_free = model->inverse_mass[slot] > 0;
     if (is_free == (its_model.inverse_mass[its_slot] > 0)) return;
     if (its_model.is_attached(its_slot)) return;  // it has the velocity of its point
-    velocity.set(slot, is_free ? from.pins.last_velocity(its_slot) : kernels::Vector{0, 0, 0});
+    next.velocity.set(slot, is_free ? from.pins.last_velocity(its_slot) : kernels::Vector{0, 0, 0});
   });
-  pins.go_on_from(from.pins, its_model, *model, position);
-  anchors = from.anchors;
-  seams = from.seams;
-  bodies = from.bodies;
-  const bool same = alike(settings, from.settings);
-  copy_scalars(from, same);
+  next.pins = {};
+  next.pins.go_on_from(from.pins, its_model, *model, next.position);
+  next.rest = rest;
+  take(std::move(next), from.settings);
   displaced = true;
   rests_differ = rests_differ || fast_rest_differs(*model, its_model, settings.tolerance);
   if (!same_masses) lost_energy = 0;  // what was lost was energy of others
-  if (same && small_steps) small_steps->go_on_from(*from.small_steps, velocity.view(), gravity);
+  if (alike(settings, from.settings) && small_steps)
+    small_steps->go_on_from(*from.small_steps, velocity.view(), gravity);
 }
 
 std::size_t State::bytes() const {

@@ -15,6 +15,7 @@
 
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "engine/bodies/bodies.h"
@@ -25,6 +26,7 @@
 #include "engine/model/model.h"
 #include "engine/parallel/arena.h"
 #include "engine/parallel/team.h"
+#include "engine/saving/fields.h"
 #include "engine/solvers/constraint_solver.h"
 #include "engine/solvers/direct/direct_solver.h"
 #include "engine/solvers/small_steps/small_steps.h"
@@ -59,35 +61,23 @@ struct CarriedWay {
 
   void add(const RigidMotion& motion, double share);
   kernels::Vector at(kernels::Vector x) const { return moved + cross(turned, x); }
+  friend void visit_fields(Is<CarriedWay> auto& way, auto& archive) {
+    auto& [moved, turned] = way;
+    archive(moved, turned);
+  }
 };
 
-struct State {
-  std::shared_ptr<const Model> model;
-  Settings settings;  // isa, solver, substeps and velocity_correction resolved
-
+/// What goes on into the next step, and so is copied and saved, but for what solvers remember. All
+/// else of a State is made in each step, or follows from the model and the settings.
+struct LastingState {
   kernels::Vectors position, velocity;
-  kernels::Vectors force;                  // external; empty: none
-  kernels::Vectors velocity_before_decay;  // for an attempt that is rejected; with decay only
-  kernels::Vectors total_force;  // besides gravity (air.h); empty where velocities cause none
-  std::vector<Resistance> resistances;     // per triangle
-  kernels::Vectors air_from, air_impulse;  // of small steps: in a part of a frame, m and N s
-  kernels::Vector gravity, wind;
-  double air_parts = 1;       // of a frame of small steps, in which the air is looked at (air.h)
-  CarriedWay way;             // through the air
-  double way_per_second = 0;  // 1 over the length of the present step
-  /// m/s, of the air about x, as the cloth sees it.
-  kernels::Vector wind_at(kernels::Vector x) const { return wind - way_per_second * way.at(x); }
-  kernels::Vectors solved;  // where the position loop works; the next positions
-  kernels::Vectors next_velocity;
-  Checkpoint step_start;
-  kernels::Vectors substep_positions;  // where a fast substep began; with contacts only
-  ContactStore contacts;
-  NearbyPairs nearby;  // of the present frame of small steps
+  kernels::Vectors force;  // external; empty: none
+  kernels::Vector gravity{}, wind{};
+  CarriedWay way;  // through the air
   Pins pins;
   Anchors anchors;
   Seams seams;
   Bodies bodies;
-  BodyReport body_report;     // of the present attempt by small steps
   bool placed = true;         // positions were given, not stepped to: they may violate constraints
   bool displaced = false;     // they may, though stepped to: a pin was put down, the model changed
   bool rests_differ = false;  // the rest of fast springs has changed since (fast_springs.h)
@@ -96,9 +86,41 @@ struct State {
   double give_per_mass = 0;   // s^2, of springs in the last step (measure/state_measure.h)
   double longest_substep = 0;  // s, of a solver, since positions were given
   double refinement = 0;       // log2 of the next step's parts, or how much shorter its substeps
-
   Rest rest;
   StepReport asleep;  // what its steps report while the cloth sleeps
+
+  explicit LastingState(const Model& model);
+  /// All of it under other settings: positions are given ones, and nothing is known of the past.
+  void forget_past();
+  friend void visit_fields(Is<LastingState> auto& state, auto& archive) {
+    auto& [position, velocity, force, gravity, wind, way, pins, anchors, seams, bodies, placed,
+           displaced, rests_differ, lost_energy, elastic_energy, give_per_mass, longest_substep,
+           refinement, rest, asleep] = state;
+    archive(position, velocity, force, gravity, wind, way, pins, anchors, seams, bodies, placed,
+            displaced, rests_differ, lost_energy, elastic_energy, give_per_mass, longest_substep,
+            refinement, rest, asleep);
+  }
+};
+
+struct State : LastingState {
+  std::shared_ptr<const Model> model;
+  Settings settings;  // isa, solver, substeps and velocity_correction resolved
+
+  kernels::Vectors velocity_before_decay;  // for an attempt that is rejected; with decay only
+  kernels::Vectors total_force;  // besides gravity (air.h); empty where velocities cause none
+  std::vector<Resistance> resistances;     // per triangle
+  kernels::Vectors air_from, air_impulse;  // of small steps: in a part of a frame, m and N s
+  double air_parts = 1;       // of a frame of small steps, in which the air is looked at (air.h)
+  double way_per_second = 0;  // 1 over the length of the present step
+  /// m/s, of the air about x, as the cloth sees it.
+  kernels::Vector wind_at(kernels::Vector x) const { return wind - way_per_second * way.at(x); }
+  kernels::Vectors solved;  // where the position loop works; the next positions
+  kernels::Vectors next_velocity;
+  Checkpoint step_start;
+  kernels::Vectors substep_positions;  // where a fast substep began; with contacts only
+  ContactStore contacts;
+  NearbyPairs nearby;      // of the present frame of small steps
+  BodyReport body_report;  // of the present attempt by small steps
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots
   kernels::AlignedVector<double>
@@ -126,6 +148,9 @@ struct State {
   const kernels::Vectors& forces() const { return total_force.size() > 0 ? total_force : force; }
   /// Goes on from another state of the same model.
   void copy(const State& from);
+  /// Goes on where another state was, whose settings were `its`; the memory of solvers is taken or
+  /// forgotten by the caller.
+  void take(LastingState&& from, const Settings& its);
   /// Goes on from one of another model of the same particles. Of those that the models do not
   /// agree on, fixed ones are at rest, and free ones have the speed of their last move.
   void go_on_from(const State& from);
@@ -135,7 +160,17 @@ struct State {
 
  private:
   void make_solvers();
-  void copy_scalars(const State& from, bool same);
 };
+
+/// What the memory of solvers, and what is known of the past, is worth something for.
+template <class Any>
+auto memory_settings(Any& s) {
+  return std::tie(s.solver, s.scheme, s.backend, s.iterations, s.tolerance, s.contact_tolerance,
+                  s.motion_tolerance);
+}
+/// Whether what steps by one came to says how those by the other will go.
+inline bool alike(const Settings& a, const Settings& b) {
+  return memory_settings(a) == memory_settings(b);
+}
 
 }  // namespace weft

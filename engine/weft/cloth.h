@@ -228,6 +228,17 @@ class WEFT_API Cloth {
   /// are projected as if newly written.
   Result<void> copy_state(const Cloth& from);
 
+  /// All that copy_state takes over but the model, as bytes for a file: numbers are little-endian,
+  /// a checksum says whether they are whole, and shapes of bodies are among them. A cloth of an
+  /// equal model (of the same description; load_model) that loads them, in another program too,
+  /// continues bit for bit as this one does, if its settings are the same.
+  std::vector<std::byte> save_state() const;
+  /// Goes on where the saved cloth was, as copy_state does: with this cloth's settings. Takes as
+  /// long as to create a cloth, and hulls of bodies are built again. Bytes that are damaged, of
+  /// another version of the format, or of another model are refused, and nothing is changed; after
+  /// change() and limit_anchors the model may be another one: save it, too (save_model).
+  Result<void> load_state(std::span<const std::byte> bytes);
+
   /// Advances by dt seconds (finite, > 0): all substeps or none. If memory runs out, std::bad_alloc
   /// is thrown and the state is unchanged. An error means that dt was refused. Meant for frames of
   /// 0.1 ms to 0.1 s: in shorter ones the rounding of yarns' floats shows up as velocity, and slows

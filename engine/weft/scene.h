@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace weft {
@@ -171,6 +172,11 @@ class Model;
 
 /// Checks the description and prepares it. On error nothing is built.
 WEFT_API Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description);
+
+/// The model as bytes for a file: all that it was built from, with a version and a checksum.
+WEFT_API std::vector<std::byte> save_model(const Model& model);
+/// Builds it again. Bytes that are damaged, or of another version of the format, are refused.
+WEFT_API Result<std::shared_ptr<const Model>> load_model(std::span<const std::byte> bytes);
 
 struct ModelInfo {
   std::size_t particles = 0;

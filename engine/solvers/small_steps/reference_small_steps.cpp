@@ -151,6 +151,7 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
                         &past_.v_before, &past_.moved}) {
     vectors->resize(model.slots());
   }
+  past_.at_limit = at_limit_;
   if (model.constraints.has_springs()) multiplier_.resize(model.constraints.size());
   membrane_multiplier_.resize(model.membrane.size());
   if (model.has_laws()) aside_.resize(model.slots());
@@ -650,6 +651,18 @@ void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsVie
   std::ranges::sort(past_.inside);
 }
 
+bool ReferenceSmallSteps::load_past(ArchiveReader& archive) {
+  Past past;
+  archive(past);
+  const auto has_slots = [&](const kernels::Vectors& v) { return v.size() == model_.slots(); };
+  const bool is_past = has_slots(past.v) && has_slots(past.v_before) && has_slots(past.moved) &&
+                       past.at_limit.size() == at_limit_.size() && are_slots(model_, past.inside) &&
+                       past.h >= 0 && std::isfinite(past.h);
+  if (!archive.is_done() || !is_past) return false;
+  past_ = std::move(past);
+  return true;
+}
+
 void ReferenceSmallSteps::turn(const Turn& by) {
   for (kernels::Vectors* v : {&past_.v, &past_.v_before, &past_.moved}) {
     for (std::size_t i = 0; i < model_.slots(); ++i) v->set(i, by((*v)[i]));
@@ -660,6 +673,10 @@ std::size_t ReferenceSmallSteps::bytes() const {
   return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + bytes_of(arrived_) +
          bytes_of(multiplier_) + bytes_of(membrane_multiplier_) + aside_.bytes() + passes_.bytes() +
          seams_.bytes();
+}
+
+bool are_slots(const Model& model, std::span<const std::uint32_t> slots) {
+  return std::ranges::is_sorted(slots) && (slots.empty() || slots.back() < model.slots());
 }
 
 std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,

@@ -28,6 +28,11 @@ class ReferenceSmallSteps final : public SmallSteps {
     std::vector<bool> at_limit;  // per anchor
     ReferenceBodies::Touching touching;
     std::vector<std::uint32_t> inside;  // of meshes, slots
+
+    friend void visit_fields(Is<Past> auto& past, auto& archive) {
+      auto& [h, v, v_before, moved, at_limit, touching, inside] = past;
+      archive(h, v, v_before, moved, at_limit, touching, inside);
+    }
   };
 
   ReferenceSmallSteps(const Model& model, const Settings& settings, const simd::Table& table);
@@ -67,6 +72,8 @@ class ReferenceSmallSteps final : public SmallSteps {
   }
   void go_on_from(const SmallSteps& from, kernels::VectorsView v, kernels::Vector gravity) override;
   void forget_past() override { past_.h = 0; }
+  void save_past(ArchiveWriter& archive) const override { archive(past_); }
+  bool load_past(ArchiveReader& archive) override;
   void turn(const Turn& by) override;
   std::size_t bytes() const override;
 

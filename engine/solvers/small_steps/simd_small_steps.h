@@ -35,6 +35,11 @@ struct SmallStepsPast {
   SimdAnchors::AtLimit at_limit;
   SimdBodies::Touching touching;
   std::vector<std::uint32_t> inside;  // of meshes, slots
+
+  friend void visit_fields(Is<SmallStepsPast> auto& past, auto& archive) {
+    auto& [h, since_renewal, v, v_before, moved, base, at_limit, touching, inside] = past;
+    archive(h, since_renewal, v, v_before, moved, base, at_limit, touching, inside);
+  }
 };
 
 class SmallStepsSolver final : public SmallSteps {
@@ -82,6 +87,8 @@ class SmallStepsSolver final : public SmallSteps {
   void take_past(const SmallSteps& from) override;
   void go_on_from(const SmallSteps& from, kernels::VectorsView v, kernels::Vector gravity) override;
   void forget_past() override { past_.h = 0; }
+  void save_past(ArchiveWriter& archive) const override { archive(last_past()); }
+  bool load_past(ArchiveReader& archive) override;
   void turn(const Turn& by) override;
 
   std::size_t bytes() const override;
@@ -94,6 +101,8 @@ class SmallStepsSolver final : public SmallSteps {
   simd::Yarns yarns();
   void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
   void begin_past(Team& team);
+  SmallStepsPast last_past() const;
+  void set_past(SmallStepsPast&& past);
   /// Of a substep of h_ after one of h_before.
   SubstepFormula formula_after(double h_before) const;
   double decaying_share() const;

@@ -1,5 +1,7 @@
 /// The memory of small steps: taken over from another cloth, or from a changed one, or turned.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "engine/model/change.h"
@@ -8,14 +10,36 @@
 
 namespace weft {
 
-void SmallStepsSolver::take_past(const SmallSteps& from) {
-  const auto& other = static_cast<const SmallStepsSolver&>(from);
-  SmallStepsPast its_past = other.past_;
-  if (!other.is_new_) its_past.base = other.base_;
-  past_ = std::move(its_past);
+/// Of the last frame that was kept.
+SmallStepsPast SmallStepsSolver::last_past() const {
+  SmallStepsPast past = past_;
+  if (!is_new_) past.base = base_;
+  return past;
+}
+
+void SmallStepsSolver::set_past(SmallStepsPast&& past) {
+  past_ = std::move(past);
   std::ranges::copy(past_.base, base_.begin());
   is_new_ = false;
   moved_ = true;
+}
+
+void SmallStepsSolver::take_past(const SmallSteps& from) {
+  set_past(static_cast<const SmallStepsSolver&>(from).last_past());
+}
+
+bool SmallStepsSolver::load_past(ArchiveReader& archive) {
+  SmallStepsPast past;
+  archive(past);
+  const bool has_sizes = std::ranges::all_of(
+      std::array{past.v.size(), past.v_before.size(), past.moved.size(), past.base.size()},
+      [&](std::size_t size) { return size == layout_.floats; });
+  const bool is_past = has_sizes && past.at_limit.size() == past_.at_limit.size() &&
+                       are_slots(model_, past.inside) && past.h >= 0 && std::isfinite(past.h) &&
+                       past.since_renewal >= 0 && past.since_renewal <= tuning::kRenewal;
+  if (!archive.is_done() || !is_past) return false;
+  set_past(std::move(past));
+  return true;
 }
 
 /// Floats are carried to other places as they are. A base of other cells is of no use.

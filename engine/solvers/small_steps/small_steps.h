@@ -12,6 +12,7 @@
 
 #include "engine/contacts/contacts.h"
 #include "engine/parallel/team.h"
+#include "engine/saving/archive.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
 #include "engine/solvers/small_steps/body_report.h"
 #include "engine/solvers/small_steps/local_passes.h"
@@ -101,6 +102,9 @@ struct FramePlan {
   bool bodies_are_new = false;  // there are other ones, or one was put elsewhere
 };
 
+/// Whether slots that were read are some of the model's, ascending.
+bool are_slots(const Model& model, std::span<const std::uint32_t> slots);
+
 class SmallSteps {
  public:
   virtual ~SmallSteps() = default;
@@ -173,6 +177,10 @@ class SmallSteps {
   virtual void go_on_from(const SmallSteps& from, kernels::VectorsView v,
                           kernels::Vector gravity) = 0;
   virtual void forget_past() = 0;
+  virtual void save_past(ArchiveWriter& archive) const = 0;
+  /// Goes on where the saved one was. Returns whether it was one of the same kind and model; if
+  /// not, nothing is changed.
+  virtual bool load_past(ArchiveReader& archive) = 0;
   /// The past happened in other directions. Positions are new ones.
   virtual void turn(const Turn& by) = 0;
   virtual std::size_t bytes() const = 0;
