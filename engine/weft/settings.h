@@ -65,8 +65,8 @@ enum class Directions : std::uint8_t { each, frozen };
 ///   same tolerance.
 enum class Backend : std::uint8_t { reference, simd };
 /// What the simd backend runs on. automatic: what WEFT_ISA in the environment names, else the best
-/// that the machine has: sse2, avx2 or avx512 of x86-64, neon of aarch64. avx2 and avx512 give the
-/// same bits, and kernels on neon round as they do.
+/// that the machine has: sse2, avx2 or avx512 of x86-64, neon of aarch64. avx2, avx512 and neon
+/// give the same bits.
 enum class Isa : std::uint8_t { automatic, sse2, avx2, avx512, neon };
 
 inline constexpr int kMaxThreads = 64;

@@ -6,7 +6,7 @@
 namespace weft::simd {
 
 /// sse2: every x86-64. avx2: with FMA. avx512: F, CD, DQ, BW, VL. neon: every aarch64.
-/// avx2, avx512 and neon round alike; sse2 rounds twice where they fuse.
+/// avx2, avx512 and neon give the same bits; sse2 rounds twice where they fuse.
 enum class Isa : std::uint8_t { sse2, avx2, avx512, neon };
 
 /// By the processor and, of x86-64, by what the operating system saves of it (XGETBV).
