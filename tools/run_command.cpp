@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "tools/exit_code.h"
+#include "tools/file_ending.h"
 #include "tools/interrupt.h"
 #include "tools/json_output.h"
 #include "tools/outputs.h"
@@ -32,7 +33,28 @@ struct RunOptions {
   std::optional<std::string> dt;
   std::vector<std::string> out;
   std::optional<std::string> json;
+  std::optional<std::string> save, resume;
 };
+
+Result<RunState> state_of(const RunOptions& options, const RunPlan& plan) {
+  auto state = read_run_state(*options.resume);
+  if (!state) return Error{fmt::format("--resume: {}", state.error())};
+  const auto refused = [&](const std::string& why) {
+    return Error{fmt::format("--resume: '{}' {}", *options.resume, why)};
+  };
+  const auto& [frame, dt, cloth] = state.value();
+  if (dt != plan.dt)
+    return refused(fmt::format("is of frames of {} s, and --dt is {}", dt, plan.dt));
+  if (frame >= plan.steps)
+    return refused(
+        fmt::format("is of frame {}, and --steps {} asks for none after it", frame, plan.steps));
+  for (const std::string& name : options.out) {
+    if (file_ending(name) == ".pc2")
+      return Error{fmt::format("--out: '{}' needs all frames, and --resume leaves out the first {}",
+                               name, frame)};
+  }
+  return state;
+}
 
 Result<RunPlan> plan_of(const RunOptions& options) {
   RunPlan plan = options.plan;
@@ -43,6 +65,11 @@ Result<RunPlan> plan_of(const RunOptions& options) {
   }
   if (plan.steps < 1) return Error{fmt::format("--steps: {} is below 1", plan.steps)};
   if (plan.repeat < 1) return Error{fmt::format("--repeat: {} is below 1", plan.repeat)};
+  if (options.resume) {
+    auto state = state_of(options, plan);
+    if (!state) return Error{state.error()};
+    plan.resume = std::move(state).value();
+  }
   return plan;
 }
 
@@ -59,10 +86,11 @@ Result<void> check_destinations(const RunOptions& options) {
   };
   std::ranges::for_each(options.out, add);
   if (options.json && *options.json != "-") add(*options.json);
+  if (options.save) add(*options.save);
   std::ranges::stable_sort(all, {}, &Destination::place);
   const auto twice = std::ranges::adjacent_find(all, {}, &Destination::place);
   if (twice == all.end() || twice->place.empty()) return {};
-  return Error{fmt::format("--out, --json: '{}' is named twice", twice->name)};
+  return Error{fmt::format("--out, --json, --save: '{}' is named twice", twice->name)};
 }
 
 /// What is known to be possible before anything runs.
@@ -72,6 +100,7 @@ struct Prepared {
   Settings settings;
   RunPlan plan;
   std::optional<JsonOutput> json;
+  std::optional<StateFile> state;
 };
 
 Result<Prepared> prepare(const RunOptions& options) {
@@ -89,25 +118,33 @@ Result<Prepared> prepare(const RunOptions& options) {
   plan.value().up = source.value().up;
   plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
   Prepared prepared{std::move(source.value()), model.value(), settings.value(),
-                    std::move(plan.value()), std::nullopt};
+                    std::move(plan.value()),   std::nullopt,  std::nullopt};
   if (options.json) {
     auto json = JsonOutput::open(*options.json);
     if (!json) return Error{fmt::format("--json: {}", json.error())};
     prepared.json = std::move(json.value());
   }
+  if (options.save) {
+    auto state = StateFile::open(*options.save, prepared.plan.dt);
+    if (!state) return Error{fmt::format("--save: {}", state.error())};
+    prepared.state = std::move(state.value());
+  }
   return prepared;
 }
 
-Result<RunSummary> run_and_record(const Prepared& prepared, Outputs& outputs) {
+Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
   ProgressLine progress;
   RunPlan plan = prepared.plan;
   bool stopped = false;
   plan.stop = [&stopped] { return stopped = OrderlyInterrupt::signal() != 0; };
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
     const bool is_done = committed(report.status);
+    const int done = is_done ? frame : frame - 1;
     if (is_done) outputs.add_frame(cloth, frame, plan.dt * frame);
+    if (is_done && prepared.state) prepared.state->add_frame(cloth, frame);
     if (frame == plan.steps || !is_done || stopped) {
-      outputs.add_last(cloth, plan.dt * (is_done ? frame : frame - 1));
+      outputs.add_last(cloth, plan.dt * done);
+      if (prepared.state) prepared.state->add_last(cloth, done);
     }
     if (!progress.redraws()) return;
     progress.show(fmt::format("{} frame {}/{}, strain {}", bar(frame, plan.steps, 30), frame,
@@ -119,8 +156,8 @@ Result<RunSummary> run_and_record(const Prepared& prepared, Outputs& outputs) {
 /// Files are those of the first run, the report is that of the fastest.
 std::string interruption(const RunSummary& summary, const RunPlan& plan) {
   if (summary.finished_runs == 0) {
-    return fmt::format("in frame {} of {}, the last one in all that was written", summary.frames,
-                       plan.steps);
+    return fmt::format("in frame {} of {}, the last one in all that was written",
+                       summary.last_frame(), plan.steps);
   }
   const int finished_repeats = summary.finished_runs - 1;
   return fmt::format("in repeat {} of {}; the report is that of {}", summary.finished_runs,
@@ -136,7 +173,7 @@ int interrupted(const RunSummary& summary, const RunPlan& plan) {
 Result<int> run_verb(const RunOptions& options) {
   auto prepared = prepare(options);
   if (!prepared) return Error{prepared.error()};
-  auto& [source, model, settings, plan, json] = prepared.value();
+  auto& [source, model, settings, plan, json, state] = prepared.value();
   for (const std::string& note : source.notes) print_message(fmt::format("weft: {}\n", note));
   const OrderlyInterrupt interrupt;
   auto outputs = Outputs::open(options.out, source);
@@ -147,6 +184,10 @@ Result<int> run_verb(const RunOptions& options) {
   const RunReport report{source.name, settings, plan, summary.value(), source.counts};
   if (auto finished = outputs.value().finish(); !finished) {
     return Error{fmt::format("--out: {}", finished.error())};
+  }
+  if (state) {
+    if (auto saved = state->finish(); !saved)
+      return Error{fmt::format("--save: {}", saved.error())};
   }
   if (json) {
     auto written = json->write(to_json(report));
@@ -181,6 +222,12 @@ void add_run_command(CommandLine& line) {
                 "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
                 "frames, .json the last state as a scene; frame_%04d.obj or .json a file for the "
                 "start and each frame");
+  verb.option("--save", options->save,
+              "file that has the state of the run, to go on from: written anew about once a second "
+              "and in the end, so that one is there whenever the run is killed");
+  verb.option("--resume", options->resume,
+              "file of --save to go on from, to the same bits if all other options are as they "
+              "were; --steps counts its frames too");
   verb.option("--json", options->json, "write the report to a file, or - for stdout");
 }
 

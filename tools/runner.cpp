@@ -34,7 +34,7 @@ bool is_reached(Status status) {
 
 void look_for_miss(RunSummary& summary, const StepReport& report) {
   if (summary.first_miss || is_reached(report.status)) return;
-  summary.first_miss = {.frame = summary.frames,
+  summary.first_miss = {.frame = summary.last_frame(),
                         .status = report.status,
                         .max_error = report.max_error,
                         .max_strain = report.max_strain,
@@ -122,14 +122,18 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   if (!bodies) return Error{bodies.error()};
   RunSummary summary;
   Errors errors;
+  if (plan.resume) {  // whose bodies are those that were added, where they had come to
+    if (auto loaded = cloth.load_state(plan.resume->cloth); !loaded) return Error{loaded.error()};
+    summary.resumed_at = plan.resume->frame;
+  }
   summary.energy_start = cloth.energy().total();
   summary.lowest = std::numeric_limits<double>::infinity();
-  while (summary.frames < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
+  while (summary.last_frame() < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
          committed(summary.status) && !summary.stopped) {
-    if (auto sent = pins.send(cloth, (summary.frames + 1) * plan.dt); !sent) {
+    if (auto sent = pins.send(cloth, (summary.last_frame() + 1) * plan.dt); !sent) {
       return Error{sent.error()};
     }
-    if (auto sent = bodies.value().send(cloth, (summary.frames + 1) * plan.dt); !sent) {
+    if (auto sent = bodies.value().send(cloth, (summary.last_frame() + 1) * plan.dt); !sent) {
       return Error{sent.error()};
     }
     const double cpu_start = cpu_seconds();
@@ -143,7 +147,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
     add_errors(summary, errors, cloth, plan);
     summary.stopped = plan.stop && plan.stop();
-    if (on_frame) on_frame(summary.frames, cloth, report.value());
+    if (on_frame) on_frame(summary.last_frame(), cloth, report.value());
   }
   summary.finished_runs = summary.stopped ? 0 : 1;
   finish(summary, errors, cloth);

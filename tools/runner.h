@@ -16,13 +16,15 @@
 
 #include "tools/fabric_measure.h"
 #include "tools/pin_moves.h"
+#include "tools/run_state.h"
 #include "tools/scene_bodies.h"
 
 namespace weft::tools {
 
 struct RunPlan {
-  double dt = 0.01;  ///< s
-  int steps = 200;   ///< frames to run
+  double dt = 0.01;                     ///< s
+  int steps = 200;                      ///< frames to run, those before `resume` included
+  std::optional<RunState> resume = {};  ///< where the run goes on from
   /// Runs of which the fastest is reported. Above 1 an untimed run goes first, to warm up.
   int repeat = 1;
   /// A run ends once its steps have taken so much processor time (s); RunSummary::frames says how
@@ -38,8 +40,8 @@ struct RunPlan {
   FabricMeasure fabric = {};    ///< what RunSummary::fabric is measured by
 };
 
-/// Called once per frame, frames counted from 1, with the state that the frame reached.
-/// With repeats it is called in the first (warm-up) run only.
+/// Called once per frame, frames counted from 1 (those before RunPlan::resume too), with the state
+/// that the frame reached. With repeats it is called in the first (warm-up) run only.
 using FrameCallback = std::function<void(int frame, const Cloth&, const StepReport&)>;
 
 /// A frame that was not brought within its tolerances, and what its report names.
@@ -64,7 +66,9 @@ struct RunSummary {
   Scheme scheme = Scheme::automatic;  ///< likewise
   Isa isa = Isa::automatic;           ///< what the kernels ran on
   int threads = 1;                    ///< that the steps could use
-  int frames = 0;  ///< computed; below RunPlan::steps if stopped, not committed or out of time
+  int frames = 0;      ///< computed; below RunPlan::steps if stopped, not committed or out of time
+  int resumed_at = 0;  ///< frames that were done before
+  int last_frame() const { return resumed_at + frames; }
   bool stopped = false;  ///< RunPlan::stop said so, to this run or to a later repeat
   /// Runs that came to their end, the one to warm up included. Where a later one was stopped the
   /// figures are those of the best before it; 0: of the one that was stopped.
@@ -129,8 +133,8 @@ struct RunSummary {
 /// Adds a frame's work, times, status and, if it is the first, its miss.
 void add_frame(RunSummary& summary, const StepReport& report);
 
-/// Every repeat starts from the model's own state. A step that commits nothing ends the run. An
-/// error means that the settings, dt or a move were refused.
+/// Every repeat starts from the model's own state, or that of RunPlan::resume. A step that commits
+/// nothing ends the run. An error means that the settings, dt or a move were refused.
 Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& settings,
                        const RunPlan& plan, const FrameCallback& on_frame = {});
 
