@@ -94,6 +94,16 @@ bool is_now_under(PairKind kind, const Encountered& pair, Vector r, Vector side,
 
 }  // namespace
 
+double least_weight(const Model& model, const std::array<std::uint32_t, 4>& points,
+                    const ContactPoints& of) {
+  constexpr double kLeast = 0.05;
+  double lightest = 0;
+  for (const std::uint32_t point : points) {
+    if (of.is_of_cloth(point)) lightest = std::max(lightest, model.inverse_mass[point]);
+  }
+  return kLeast * lightest;
+}
+
 void ContactSweep::begin(const ContactScene& scene, const Near& near) {
   for (const std::uint32_t point : asked_) is_asked_[point] = false;
   asked_.clear();
@@ -177,6 +187,7 @@ bool ContactSweep::resist(const ContactScene& scene, NearPairs& near, std::size_
     weight += share[k] * sign * found.weight[k];
   }
   if (!(weight > 0)) return false;
+  weight = std::max(weight, least_weight(scene.model, e.points, scene.points));
   const reference::Stop stop = reference::stop({n, gap, slip}, body.friction, body.h, state.grip);
   if (!(stop.push > 0)) return false;
   state.is_touching = true;

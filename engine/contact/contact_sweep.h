@@ -44,7 +44,14 @@ struct ContactScene {
   ContactPoints& points;
   ContactParticles& particles;
   MeshImpulses& impulses;
+  const std::vector<std::uint32_t>&
+      inside;  // slots on the wrong side of a one-sided body, ascending
 };
+
+/// 1/kg: a lower bound for the sum of W w^2. Where a feature is fixed but for a particle that has a
+/// small part in its nearest point, that particle is not thrown far for it.
+double least_weight(const Model& model, const std::array<std::uint32_t, 4>& points,
+                    const ContactPoints& of);
 
 class ContactSweep {
  public:
@@ -85,15 +92,19 @@ class ContactSweep {
   std::vector<std::uint32_t> linked_;  // slots
 };
 
+/// Particles first: of a pair that is a mean of several, which a push moves all at once, the
+/// corners are then where they may be, and what lies flat has nothing left to push.
 template <class Moved>
 void ContactSweep::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved) {
   find_touching(scene, near, team);
-  for (std::size_t list = 0; list < kPairLists; ++list) {
+  for (const PairKind kind :
+       {PairKind::particle_triangle, PairKind::edges, PairKind::vertex_triangle}) {
+    const std::size_t list = list_of(kind);
     for (std::size_t block = 0; block < touching_[list].size(); ++block) {
       for (std::uint32_t bits = touching_[list][block]; bits != 0; bits &= bits - 1) {
         const std::size_t i =
             block * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits));
-        if (!resist(scene, near[list], i)) continue;
+        if (near[list].list.pairs[i].kind != kind || !resist(scene, near[list], i)) continue;
         remember(scene, near[list], list, i);
         for (const std::uint32_t point : near[list].list.points(i)) {
           if (scene.points.is_of_cloth(point)) moved(point, near[list].states[i].push);

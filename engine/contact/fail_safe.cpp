@@ -64,6 +64,7 @@ void blow(const ContactScene& scene, const PairList& pairs, const Failure& failu
     }
   }
   if (!(weight > 0)) return;
+  weight = std::max(weight, least_weight(scene.model, four, points));
   const double push = std::max(0.0, least - height) / weight;
   const double stop = std::max(0.0, -dot(n, approach)) / weight;
   Mover mover(scene, mesh);

@@ -13,11 +13,18 @@ namespace weft {
 
 using kernels::Vector;
 
+namespace {
+
+/// In which pairs that have come near unexpectedly are put right, before what is left is verified.
+constexpr int kLateRounds = 3;
+
+}  // namespace
+
 void MeshContacts::begin(const BodyClock& clock, bool is_new,
                          std::span<const std::uint32_t> inside) {
   points_.begin(model_, clock);
   left_ = 0;
-  interval_ = 0;
+  interval_ = late_depth_ = 0;
   failures_ = {};
   for (NearPairs& near : near_) near.clear();
   if (empty()) return;
@@ -33,7 +40,7 @@ void MeshContacts::begin(const BodyClock& clock, bool is_new,
 double MeshContacts::interval_for(const BodyClock& clock) const {
   const double fastest = points_.fastest(clock);
   const double way = tuning::kMeshWay * points_.largest_thickness();
-  return fastest > 0 ? std::min(tuning::kMeshInterval, way / fastest) : tuning::kMeshInterval;
+  return fastest > 0 ? std::min(tuning::kContactInterval, way / fastest) : tuning::kContactInterval;
 }
 
 void MeshContacts::predict(ContactParticles& particles, const BodyClock& clock, Team& team) {
@@ -136,14 +143,26 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
   points_.measure_moves(model_, particles, clock);
   const double time = std::exchange(interval_, 0);
   failures_.left = 0;
+  late_depth_ = 0;
   const ContactScene scene = this->scene(particles, clock);
+  bool has_moved = false;
+  for (int round = 0; round < kLateRounds; ++round) {
+    verification_.find_late(scene, narrow_, candidates_, team);
+    for (const Failure& late : verification_.failures())
+      fail_safe::blow(scene, candidates_[late.list], late, time);
+    if (verification_.failures().empty()) break;
+    has_moved = true;
+  }
   verification_.find(scene, broad_, narrow_, candidates_, team);
-  if (verification_.failures().empty()) return false;
+  if (verification_.failures().empty() && !has_moved) return false;
   stop_failures(scene, broad_, narrow_, verification_, candidates_, time, failures_, team,
                 [&](std::uint32_t slot, const Pair& pair) {
                   if (points_.meshes()[pair.mesh].mesh().two_sided || is_inside(slot)) return;
                   inside_.insert(std::ranges::lower_bound(inside_, slot), slot);
                 });
+  verification_.find_late(scene, narrow_, candidates_, team);
+  for (const Failure& late : verification_.failures())
+    late_depth_ = std::max(late_depth_, late.depth);
   return true;
 }
 

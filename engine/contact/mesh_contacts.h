@@ -1,6 +1,6 @@
 /// Contacts of a cloth with bodies that are triangle meshes: the stages of an interval, in order.
 ///
-///   1 intervals      every 4 ms (tuning::kMeshInterval), when a substep is predicted
+///   1 intervals      every 2 ms (tuning::kContactInterval), when a substep is predicted
 ///   2 broad_phase    which pairs of features may meet in it at all
 ///   3 narrow_phase   which of them may touch
 ///   4 contact_sweep  in each substep: push apart what is nearer than the thickness, along normals
@@ -59,7 +59,8 @@ class MeshContacts {
 
   /// m, of a pair that is nearer than its thickness.
   double deepest(ContactParticles& particles, const BodyClock& clock, Team& team) {
-    return empty() ? 0 : sweep_.deepest(scene(particles, clock), near_, team);
+    if (empty()) return 0;
+    return std::max(late_depth_, sweep_.deepest(scene(particles, clock), near_, team));
   }
   const MeshImpulses& impulses() const { return impulses_; }
   /// Particles that are inside count as left.
@@ -76,7 +77,7 @@ class MeshContacts {
 
  private:
   ContactScene scene(ContactParticles& particles, const BodyClock& clock) {
-    return {model_, *cloth_, clock, points_, particles, impulses_};
+    return {model_, *cloth_, clock, points_, particles, impulses_, inside_};
   }
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
@@ -98,9 +99,10 @@ class MeshContacts {
   Near near_;
   MeshImpulses impulses_;
   FailSafeReport failures_;
-  bool is_new_ = false;  // it is not known yet who is inside
-  int left_ = 0;         // substeps of the present interval
-  double interval_ = 0;  // s
+  bool is_new_ = false;    // it is not known yet who is inside
+  int left_ = 0;           // substeps of the present interval
+  double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
+  double interval_ = 0;    // s
   std::vector<std::uint32_t> inside_;
 };
 

@@ -109,13 +109,16 @@ bool NarrowPhase::see(const Model& model, ContactPoints& points, const Pair& pai
   if (l - closing(points, pair.kind, four, normal) > mesh.thickness) return false;
   const Vector passes = points.way(four[0]) - points.way(four[3]);
   const bool stays = length(passes) < tuning::kContactPassing * l;
-  if (!is_inside && stays && is_in_place(pair.kind, found) &&
-      is_ghost(model.touched_surface(), mesh, pair, x, found, towards_cloth(pair.kind) * normal,
-               tuning::kContactLean, at))
-    return false;
+  const auto is_ghost_by = [&](double lean) {
+    return is_ghost(model.touched_surface(), mesh, pair, x, found,
+                    towards_cloth(pair.kind) * normal, lean, at);
+  };
+  const bool is_placed = stays && is_in_place(pair.kind, found);
+  if (!is_inside && is_placed && is_ghost_by(tuning::kContactLean)) return false;
   if (mesh.mesh().two_sided) return true;
   if (!is_behind(mesh, pair, found, towards_cloth(pair.kind) * found.r)) return true;
-  if (!is_inside) return false;
+  // Behind what is not the nearest of its surface the cloth may be beside it.
+  if (!is_inside) return !is_placed || is_ghost_by(0);
   is_under = true;
   normal = -1.0 * normal;
   return true;

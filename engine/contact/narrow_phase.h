@@ -3,6 +3,7 @@
 /// as expected, but for the reach.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -91,7 +92,10 @@ void NarrowPhase::find_near(const Model& model, ContactPoints& points, const Can
       if ((distances_[list].near[i / kernels::kLanes] >> i % kernels::kLanes & 1) == 0) continue;
       const Pair& pair = pairs.pairs[i];
       const std::array<std::uint32_t, 4> four = pairs.points(i);
-      const bool inside = pair.kind == PairKind::particle_triangle && is_inside(four[0]);
+      const bool inside = std::ranges::any_of(
+          four, [&](std::uint32_t point) { return points.is_of_cloth(point) && is_inside(point); });
+      // Faces and edges between particles that are inside follow these.
+      if (inside && pair.kind != PairKind::particle_triangle) continue;
       kernels::Vector normal{};
       bool is_under = false;
       if (!see(model, points, pair, four, inside, normal, is_under)) continue;

@@ -82,18 +82,12 @@ void Verification::find(const ContactScene& scene, const BroadPhase& broad, Narr
   failures_.clear();
   look_beside_strayed(scene, broad, narrow, candidates, team);
   const ContactPoints& points = scene.points;
+  const auto is_inside = [&](std::uint32_t point) {
+    return points.is_of_cloth(point) && std::ranges::binary_search(scene.inside, point);
+  };
   for (std::uint32_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
-    moved_.resize(pairs.blocks.size());
-    const simd::PairMoves moves{.pairs = pairs.blocks.data(),
-                                .moves = points.moves(),
-                                .distance = reinterpret_cast<const float(*)[kLanes]>(
-                                    narrow.distances()[list].distance.data()),
-                                .rounding = points.rounding(),
-                                .moved = moved_.data()};
-    team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
-      table_.find_moved_pairs(moves, has_edges(list), first, last);
-    });
+    find_moved(scene, narrow, candidates, list, 0, team);
     for (std::size_t block = 0; block < moved_.size(); ++block) {
       for (std::uint32_t bits = moved_[block]; bits != 0; bits &= bits - 1) {
         const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
@@ -106,13 +100,63 @@ void Verification::find(const ContactScene& scene, const BroadPhase& broad, Narr
           way.to[k] = points.end(four[k]);
         }
         const reference::Nearest found = nearest(pair.kind, way.from);
-        ContactMesh& mesh = scene.points.meshes()[pair.mesh];
+        const ContactMesh& mesh = points.meshes()[pair.mesh];
         const std::optional<double> time = meeting(pair.kind, way, found.r, mesh.thickness);
         if (!time) continue;
-        const Vector to_cloth = towards_cloth(pair.kind) * found.r;
         // It comes out, which is what it should.
-        if (!mesh.mesh().two_sided && is_behind(mesh, pair, found, to_cloth)) continue;
-        failures_.push_back({list, static_cast<std::uint32_t>(i), *time});
+        if (!mesh.mesh().two_sided && std::ranges::any_of(four, is_inside)) continue;
+        failures_.push_back({list, static_cast<std::uint32_t>(i), *time, 0});
+      }
+    }
+  }
+  leave_each_once(candidates);
+}
+
+/// Which pairs of a list may have come nearer than `near`.
+void Verification::find_moved(const ContactScene& scene, const NarrowPhase& narrow,
+                              const Candidates& candidates, std::uint32_t list, double near,
+                              Team& team) {
+  const PairList& pairs = candidates[list];
+  moved_.resize(pairs.blocks.size());
+  const simd::PairMoves moves{.pairs = pairs.blocks.data(),
+                              .moves = scene.points.moves(),
+                              .distance = reinterpret_cast<const float(*)[kLanes]>(
+                                  narrow.distances()[list].distance.data()),
+                              .rounding = scene.points.rounding() + static_cast<float>(near),
+                              .moved = moved_.data()};
+  team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
+    table_.find_moved_pairs(moves, has_edges(list), first, last);
+  });
+}
+
+void Verification::find_late(const ContactScene& scene, NarrowPhase& narrow,
+                             const Candidates& candidates, Team& team) {
+  failures_.clear();
+  const ContactPoints& points = scene.points;
+  const auto at = [&](std::uint32_t point) { return points.end(point); };
+  const auto is_inside = [&](std::uint32_t point) {
+    return points.is_of_cloth(point) && std::ranges::binary_search(scene.inside, point);
+  };
+  for (std::uint32_t list = 0; list < kPairLists; ++list) {
+    const PairList& pairs = candidates[list];
+    find_moved(scene, narrow, candidates, list, points.largest_thickness(), team);
+    for (std::size_t block = 0; block < moved_.size(); ++block) {
+      for (std::uint32_t bits = moved_[block]; bits != 0; bits &= bits - 1) {
+        const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
+        if (i >= pairs.size()) continue;
+        const Pair& pair = pairs.pairs[i];
+        const ContactMesh& mesh = points.meshes()[pair.mesh];
+        const auto four = pairs.points(i);
+        const FourPoints x{at(four[0]), at(four[1]), at(four[2]), at(four[3])};
+        const reference::Nearest found = nearest(pair.kind, x);
+        const double l = length(found.r);
+        constexpr double kLate = 0.95;  // of the thickness: what is nearer is no rounding
+        if (!(l < kLate * mesh.thickness) || l == 0 || !is_in_place(pair.kind, found)) continue;
+        const Vector n = (towards_cloth(pair.kind) / l) * found.r;
+        constexpr double kLean = 0.02;
+        if (is_ghost(scene.cloth, mesh, pair, x, found, n, kLean, at)) continue;
+        if (!mesh.mesh().two_sided && std::ranges::any_of(four, is_inside)) continue;
+        failures_.push_back({list, static_cast<std::uint32_t>(i), 1, mesh.thickness - l});
       }
     }
   }

@@ -17,6 +17,7 @@ namespace weft {
 struct Failure {
   std::uint32_t list = 0, pair = 0;  // of the candidates
   double time = 0;                   // of the interval, 0 to 1: before they met
+  double depth = 0;                  // m, of one that is late
 };
 
 class Verification {
@@ -27,8 +28,14 @@ class Verification {
   void find(const ContactScene& scene, const BroadPhase& broad, NarrowPhase& narrow,
             Candidates& candidates, Team& team);
   const std::vector<Failure>& failures() const { return failures_; }
+  /// Instead, pairs that have met no other, but have come nearer than their thickness where nothing
+  /// was expected: time is 1.
+  void find_late(const ContactScene& scene, NarrowPhase& narrow, const Candidates& candidates,
+                 Team& team);
 
  private:
+  void find_moved(const ContactScene& scene, const NarrowPhase& narrow,
+                  const Candidates& candidates, std::uint32_t list, double near, Team& team);
   void leave_each_once(const Candidates& candidates);
   void look_beside_strayed(const ContactScene& scene, const BroadPhase& broad, NarrowPhase& narrow,
                            Candidates& candidates, Team& team);

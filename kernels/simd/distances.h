@@ -92,7 +92,7 @@ struct FromEdge {
   const Floats determinant = fused_from(uv, uv, uu * vv), spare = Floats(beyond) * determinant;
   const Floats s = fused_from(ur, vv, uv * vr), t = fused_from(uv, ur, uu * vr);
   const Floats least = Floats(0.f) - spare, most = determinant + spare;
-  const FloatMask is_parallel = determinant < Floats(0.01f) * uu * vv;
+  const FloatMask is_parallel = determinant <= Floats(0.01f) * uu * vv;
   return is_parallel || (s > least && s < most && t > least && t < most);
 }
 
@@ -171,7 +171,7 @@ void find_moved_pairs(const PairMoves& moves, bool edges, std::size_t first, std
     std::uint32_t moved = 0;
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
       const PairCorners by = corners_of(m.moves, m.pairs[i], lane);
-      const Floats least = load(m.distance[i] + lane) * Floats(0.999f) - Floats(m.rounding);
+      const Floats least = load(m.distance[i] + lane) * Floats(0.95f) - Floats(m.rounding);
       const Floats most = largest_move_of(by, edges);
       moved |= bits(least <= Floats(0.f) || most >= least * least) << lane;
     }

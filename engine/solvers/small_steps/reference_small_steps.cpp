@@ -176,7 +176,6 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   touched_.clear();
   arrived_.clear();
   has_past_ = !plan.placed && h <= SubstepFormula::kLargestRatio * past_.h;
-  if (!has_past_ && !plan.projects) past_.h = 0;
   anchors_.begin(plan.anchors, h, plan.substeps);
   bodies_.begin(plan.bodies, h, plan.substeps, plan.projects,
                 has_past_ && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
@@ -577,7 +576,8 @@ void ReferenceSmallSteps::stop_at_contact(std::size_t i) {
 }
 
 void ReferenceSmallSteps::begin_at_limit(std::size_t i) {
-  const Vector a = acceleration_[i], v = v_[i] + (1 / last_) * (x_[i] - predicted_[i]);
+  const double rate = last_ > 0 ? 1 / last_ : 0;  // settled already: what is predicted is there
+  const Vector a = acceleration_[i], v = v_[i] + rate * (x_[i] - predicted_[i]);
   predicted_.set(i, x_[i]);
   v_.set(i, v);
   v_before_.set(i, v - h_ * decaying_share() * a);

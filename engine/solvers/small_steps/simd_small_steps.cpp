@@ -208,7 +208,6 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   touched_.clear();
   arrived_.clear();
   has_past_ = !plan.placed && plan.h <= SubstepFormula::kLargestRatio * past_.h;
-  if (!has_past_ && !plan.projects) past_.h = 0;
   split(x, plan.substeps, team);
   anchors_.begin(plan.anchors, plan.h, plan.substeps,
                  has_past_ ? past_.at_limit : std::span<const std::uint16_t>{});
