@@ -38,6 +38,18 @@ Mesh face_mesh(const SceneDescription& scene, std::vector<std::vector<std::uint3
   return mesh;
 }
 
+std::vector<std::array<std::uint32_t, 3>> triangles_of(
+    const std::vector<std::vector<std::uint32_t>>& faces) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const auto& face : faces) {
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+      const std::uint32_t a = face[0], b = face[i], c = face[i + 1];
+      if (a != b && b != c && c != a) triangles.push_back({a, b, c});
+    }
+  }
+  return triangles;
+}
+
 std::vector<std::vector<std::uint32_t>> particle_faces(const Mesh& mesh) {
   std::vector<std::vector<std::uint32_t>> faces = mesh.faces;
   for (auto& face : faces) {

@@ -28,6 +28,9 @@ MeshDescription describe_mesh(std::vector<Vec3> vertices,
 Mesh line_mesh(const SceneDescription& scene);
 /// One vertex per particle, these faces, and lines where constraints lead to particles of no face.
 Mesh face_mesh(const SceneDescription& scene, std::vector<std::vector<std::uint32_t>> faces);
+/// Each face as a fan around its first corner, but for triangles with two equal corners.
+std::vector<std::array<std::uint32_t, 3>> triangles_of(
+    const std::vector<std::vector<std::uint32_t>>& faces);
 /// The faces with their particles in place of the vertices.
 std::vector<std::vector<std::uint32_t>> particle_faces(const Mesh& mesh);
 

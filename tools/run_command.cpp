@@ -115,6 +115,7 @@ Result<Prepared> prepare(const RunOptions& options) {
   if (!model) return Error{model.error()};
   plan.value().moves = source.value().moves;
   plan.value().bodies = source.value().bodies;
+  plan.value().surface = source.value().description.surface;
   plan.value().up = source.value().up;
   plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
   Prepared prepared{std::move(source.value()), model.value(), settings.value(),
@@ -217,6 +218,8 @@ void add_run_command(CommandLine& line) {
   verb.option("--repeat", options->plan.repeat,
               "report the fastest of this many runs, after one to warm up (default 1: a "
               "single run)");
+  verb.flag("--check-intersections", options->plan.check_intersections,
+            "count after every frame how many triangles of the cloth cross triangles of bodies");
   add_solver_options(verb, options->solver);
   verb.repeated("--out", options->out,
                 "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "

@@ -105,6 +105,29 @@ std::string material_text(const ModelInfo& model) {
   return text;
 }
 
+std::string_view verb_of(std::int64_t count) { return count == 1 ? "was" : "were"; }
+
+/// Of the cloth and bodies that are meshes; empty where there is nothing to say.
+std::string crossings_text(const RunSummary& summary) {
+  std::string text;
+  if (summary.contact_failures > 0) {
+    text = fmt::format("{} {} stopped", counted(summary.contact_failures, "crossing"),
+                       verb_of(summary.contact_failures));
+  }
+  if (summary.zones > 0) {
+    text += fmt::format("{}{} taken along by bodies", text.empty() ? "" : ", ", summary.zones);
+  }
+  if (summary.max_intersecting > 0) {
+    text += fmt::format("{}at most {} could not be stopped in a frame", text.empty() ? "" : ", ",
+                        summary.max_intersecting);
+  }
+  if (summary.intersections) {
+    text += fmt::format("{}{} of triangles at most in a frame", text.empty() ? "" : "; ",
+                        counted(*summary.intersections, "crossing"));
+  }
+  return text;
+}
+
 struct MeshCount {
   std::string_view key;
   std::string_view noun;  ///< of one
@@ -189,7 +212,11 @@ Json to_json(const RunReport& report) {
       {"seam_work", summary.seam_work},
       {"max_contacts", summary.max_contacts},
       {"bodies", report.plan.bodies.size()},
+      {"body_triangles", count_triangles(report.plan.bodies)},
       {"body_contacts", summary.max_body_contacts},
+      {"contact_failures", summary.contact_failures},
+      {"zones", summary.zones},
+      {"intersecting", summary.max_intersecting},
       {"friction_work", summary.friction_work},
       {"body_work", summary.body_work},
       {"iterations_per_step", summary.iterations_per_step()},
@@ -212,6 +239,7 @@ Json to_json(const RunReport& report) {
       {"stages", stages_json(summary)},
       {"peak_rss_mb", peak_rss_mb()},
   };
+  if (summary.intersections) json["intersections"] = *summary.intersections;
   if (summary.fabric) {
     json["max_warp"] = summary.fabric->warp;
     json["max_weft"] = summary.fabric->weft;
@@ -277,6 +305,7 @@ std::string to_table(const RunReport& report) {
                               counted(summary.max_body_contacts, "contact"),
                               summary.max_penetration, summary.friction_work, summary.body_work));
   }
+  if (const auto crossed = crossings_text(summary); !crossed.empty()) row("crossings", crossed);
   if (summary.model.anchors > 0) {
     row("anchors", fmt::format("{}, {:.3g} m beyond their limits at most", summary.model.anchors,
                                summary.max_anchor_error));

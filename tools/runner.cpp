@@ -11,6 +11,7 @@
 #include <tbb/task_arena.h>
 
 #include "tools/cpu_time.h"
+#include "tools/mesh.h"
 #include "tools/warm_up.h"
 #include "tools/wording.h"
 
@@ -63,6 +64,9 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.seam_work += report.seam_work;
   summary.pin_work += report.pin_work;
   summary.max_body_contacts = std::max(summary.max_body_contacts, report.body_contacts);
+  summary.contact_failures += report.contact_failures;
+  summary.zones += report.zones;
+  summary.max_intersecting = std::max(summary.max_intersecting, report.intersecting);
   summary.body_work += report.body_work;
   summary.friction_work += report.friction_work;
   summary.max_penetration = std::max(summary.max_penetration, report.max_penetration);
@@ -97,6 +101,15 @@ void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth, const R
   summary.energy_gain = summary.frames == 1 ? gain : std::max(summary.energy_gain, gain);
 }
 
+/// The surface is that of the cloth.
+void look_for_crossings(RunSummary& summary, const Cloth& cloth, const RunPlan& plan,
+                        TriangleSet& surface) {
+  surface.places = particle_positions(cloth);
+  const TriangleSet bodies = meshes_at(plan.bodies, summary.frames * plan.dt);
+  summary.intersections =
+      std::max(summary.intersections.value_or(0), count_crossings(surface, bodies));
+}
+
 void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
   const double frames = std::max(summary.frames, 1);
   summary.mean_max_strain = errors.strain_sum / frames;
@@ -126,6 +139,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     if (auto loaded = cloth.load_state(plan.resume->cloth); !loaded) return Error{loaded.error()};
     summary.resumed_at = plan.resume->frame;
   }
+  TriangleSet surface{{}, plan.surface};
   summary.energy_start = cloth.energy().total();
   summary.lowest = std::numeric_limits<double>::infinity();
   while (summary.last_frame() < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
@@ -146,6 +160,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     summary.step_seconds += elapsed.count();
     summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
     add_errors(summary, errors, cloth, plan);
+    if (plan.check_intersections) look_for_crossings(summary, cloth, plan, surface);
     summary.stopped = plan.stop && plan.stop();
     if (on_frame) on_frame(summary.last_frame(), cloth, report.value());
   }

@@ -36,6 +36,9 @@ struct RunPlan {
   /// are at its end.
   std::vector<PinMove> moves = {};
   std::vector<SceneBody> bodies = {};
+  /// After every frame, of `surface` (SceneDescription::surface) and bodies that are meshes.
+  bool check_intersections = false;
+  std::vector<std::array<std::uint32_t, 3>> surface = {};
   double Vec3::*up = &Vec3::y;  ///< what RunSummary::lowest is measured along
   FabricMeasure fabric = {};    ///< what RunSummary::fabric is measured by
 };
@@ -104,8 +107,14 @@ struct RunSummary {
   double max_seam_gap = 0;             ///< m, over all frames and closed seams
   double seam_work = 0;                ///< J
   int max_body_contacts = 0;           ///< in one frame
-  double body_work = 0;                ///< J, done by moved bodies
-  double friction_work = 0;            ///< J
+  std::int64_t contact_failures = 0;   ///< over all frames (StepReport)
+  std::int64_t zones = 0;              ///< likewise
+  int max_intersecting = 0;            ///< in one frame, likewise
+  /// Most pairs in one frame of a triangle of the cloth and one of a body that crossed
+  /// (crossings.h); none where it was not asked for.
+  std::optional<std::size_t> intersections;
+  double body_work = 0;      ///< J, done by moved bodies
+  double friction_work = 0;  ///< J
 
   double energy_start = 0;  ///< J, before the first frame
   double energy_end = 0;    ///< J, after the last frame

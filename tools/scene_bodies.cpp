@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <string_view>
+#include <utility>
 
+#include "tools/body_files.h"
 #include "tools/json_reading.h"
 
 namespace weft::tools {
@@ -72,12 +75,18 @@ class Entry {
   std::vector<std::string> known_;
 };
 
+std::vector<double> read_times(Entry& entry) {
+  const Json& json = entry.needed("times");
+  auto times = read_array(json, entry.place("times"), read_number);
+  if (times.empty() || !std::ranges::is_sorted(times, std::ranges::less_equal()))
+    refuse(entry.place("times"), "times, each after the one before", json);
+  return times;
+}
+
 PinMove read_move(const Json& json, const std::string& place) {
   Entry entry(json, place);
   PinMove move;
-  move.times = read_array(entry.needed("times"), entry.place("times"), read_number);
-  if (move.times.empty() || !std::ranges::is_sorted(move.times, std::ranges::less_equal()))
-    refuse(entry.place("times"), "times, each after the one before", json["times"]);
+  move.times = read_times(entry);
   move.translations =
       read_array(entry.needed("translations"), entry.place("translations"), read_vector);
   if (entry.has("rotations"))
@@ -100,7 +109,44 @@ std::array<std::uint32_t, 3> read_corners(const Json& json, const std::string& p
   return {corners[0], corners[1], corners[2]};
 }
 
-ShapeDescription read_shape(Entry& entry) {
+TriangleMesh read_mesh(Entry& entry, const std::string& folder) {
+  TriangleMesh mesh;
+  if (entry.has("file")) {
+    const Json& file = entry.needed("file");
+    if (!file.is_string()) refuse(entry.place("file"), "the name of an .obj file", file);
+    auto read = read_body_mesh(std::filesystem::path(folder) / file.get<std::string>(), 1);
+    if (!read) throw Refused{fmt::format("{}: {}", entry.place("file"), read.error())};
+    mesh = std::move(read.value());
+  } else {
+    mesh.vertices = read_array(entry.needed("vertices"), entry.place("vertices"), read_vector);
+    mesh.triangles = read_array(entry.needed("triangles"), entry.place("triangles"), read_corners);
+  }
+  if (entry.has("two_sided")) mesh.two_sided = entry.flag("two_sided");
+  return mesh;
+}
+
+/// So many vertices.
+VertexMove read_vertex_move(const Json& json, const std::string& place, std::size_t vertices) {
+  Entry entry(json, place);
+  VertexMove move;
+  move.times = read_times(entry);
+  move.vertices = read_array(
+      entry.needed("vertices"), entry.place("vertices"),
+      [](const Json& row, const std::string& at) { return read_array(row, at, read_vector); });
+  entry.check_keys();
+  if (move.vertices.size() != move.times.size()) {
+    throw Refused{fmt::format("{}: expected as many as times, {}, not {}", entry.place("vertices"),
+                              move.times.size(), move.vertices.size())};
+  }
+  for (std::size_t i = 0; i < move.vertices.size(); ++i) {
+    if (move.vertices[i].size() == vertices) continue;
+    throw Refused{fmt::format("{}[{}]: expected the vertices of the mesh, {}, not {}",
+                              entry.place("vertices"), i, vertices, move.vertices[i].size())};
+  }
+  return move;
+}
+
+ShapeDescription read_shape(Entry& entry, const std::string& folder) {
   const Json& name = entry.needed("shape");
   if (name == "plane")
     return Plane{entry.vector("normal", Plane{}.normal), entry.number("offset", 0)};
@@ -113,26 +159,25 @@ ShapeDescription read_shape(Entry& entry) {
   if (name == "box") return box(entry.vector("size"));
   if (name == "hull")
     return Hull{read_array(entry.needed("points"), entry.place("points"), read_vector)};
-  if (name == "mesh") {
-    TriangleMesh mesh;
-    mesh.vertices = read_array(entry.needed("vertices"), entry.place("vertices"), read_vector);
-    mesh.triangles = read_array(entry.needed("triangles"), entry.place("triangles"), read_corners);
-    if (entry.has("two_sided")) mesh.two_sided = entry.flag("two_sided");
-    return mesh;
-  }
+  if (name == "mesh") return read_mesh(entry, folder);
   refuse(entry.place("shape"), "plane, sphere, capsule, box, hull or mesh", name);
 }
 
-SceneBody read_body(const Json& json, const std::string& place) {
+SceneBody read_body(const Json& json, const std::string& place, const std::string& folder) {
   Entry entry(json, place);
   SceneBody body;
-  body.shape = read_shape(entry);
+  body.shape = read_shape(entry, folder);
   if (const auto built = build_shape(body.shape); !built)
     throw Refused{fmt::format("{}.{}", place, built.error())};
   body.pose = {entry.vector("position", {}), quaternion(entry.vector("rotation", {}))};
   body.thickness = entry.number("thickness", body.thickness);
   body.friction = entry.number("friction", body.friction);
   if (entry.has("moves")) body.move = read_move(json["moves"], entry.place("moves"));
+  const auto* mesh = std::get_if<TriangleMesh>(&body.shape);
+  if (mesh && entry.has("vertex_moves")) {
+    body.vertex_move =
+        read_vertex_move(json["vertex_moves"], entry.place("vertex_moves"), mesh->vertices.size());
+  }
   entry.check_keys();
   return body;
 }
@@ -165,7 +210,60 @@ Json shape_json(const TriangleMesh& mesh) {
           {"two_sided", mesh.two_sided}};
 }
 
+/// x -> position + rotation x
+Vec3 placed(const Pose& pose, Vec3 x) {
+  const Rotation& q = pose.rotation;
+  const Vec3 t{2 * (q.y * x.z - q.z * x.y), 2 * (q.z * x.x - q.x * x.z),
+               2 * (q.x * x.y - q.y * x.x)};
+  return {pose.position.x + x.x + q.w * t.x + q.y * t.z - q.z * t.y,
+          pose.position.y + x.y + q.w * t.y + q.z * t.x - q.x * t.z,
+          pose.position.z + x.z + q.w * t.z + q.x * t.y - q.y * t.x};
+}
+
+Vec3 between(Vec3 a, Vec3 b, double share) {
+  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z)};
+}
+
+/// Times that have come to be one to the last bit: only the later frame is kept.
+void drop_merged_times(VertexMove& move) {
+  for (std::size_t key = move.times.size(); key-- > 1;) {
+    if (move.times[key - 1] < move.times[key]) continue;
+    const auto merged = static_cast<std::ptrdiff_t>(key - 1);
+    move.times.erase(move.times.begin() + merged);
+    move.vertices.erase(move.vertices.begin() + merged);
+  }
+}
+
+/// As it is at time 0.
+ShapeDescription first_shape(const SceneBody& body) {
+  ShapeDescription shape = body.shape;
+  if (body.vertex_move) std::get<TriangleMesh>(shape).vertices = vertices_at(body, 0);
+  return shape;
+}
+
 }  // namespace
+
+std::vector<Vec3> vertices_at(const SceneBody& body, double time) {
+  if (!body.vertex_move) return std::get<TriangleMesh>(body.shape).vertices;
+  const auto& [times, vertices] = *body.vertex_move;
+  const auto next = std::ranges::upper_bound(times, time);
+  if (next == times.begin()) return vertices.front();
+  if (next == times.end()) return vertices.back();
+  const auto after = static_cast<std::size_t>(next - times.begin()), before = after - 1;
+  const double share = (time - times[before]) / (times[after] - times[before]);
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < vertices[after].size(); ++i)
+    places.push_back(between(vertices[before][i], vertices[after][i], share));
+  return places;
+}
+
+std::size_t count_triangles(std::span<const SceneBody> bodies) {
+  std::size_t count = 0;
+  for (const SceneBody& body : bodies) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&body.shape)) count += mesh->triangles.size();
+  }
+  return count;
+}
 
 Pose pose_at(const SceneBody& body, double time) {
   if (!body.move) return body.pose;
@@ -173,8 +271,24 @@ Pose pose_at(const SceneBody& body, double time) {
           product(quaternion(rotation_at(*body.move, time)), body.pose.rotation)};
 }
 
-std::vector<SceneBody> read_bodies(const Json& json) {
-  return read_array(json, "bodies", read_body);
+TriangleSet meshes_at(std::span<const SceneBody> bodies, double time) {
+  TriangleSet set;
+  for (const SceneBody& body : bodies) {
+    const auto* mesh = std::get_if<TriangleMesh>(&body.shape);
+    if (!mesh) continue;
+    const auto first = static_cast<std::uint32_t>(set.places.size());
+    const Pose pose = pose_at(body, time);
+    for (const Vec3 v : vertices_at(body, time)) set.places.push_back(placed(pose, v));
+    for (const auto& [a, b, c] : mesh->triangles)
+      set.triangles.push_back({first + a, first + b, first + c});
+  }
+  return set;
+}
+
+std::vector<SceneBody> read_bodies(const Json& json, const std::string& folder) {
+  return read_array(json, "bodies", [&](const Json& entry, const std::string& place) {
+    return read_body(entry, place, folder);
+  });
 }
 
 std::string body_row(const SceneBody& body) {
@@ -189,6 +303,13 @@ std::string body_row(const SceneBody& body) {
                      {"about", row(body.move->about)}};
     if (!body.move->rotations.empty()) json["moves"]["rotations"] = rows(body.move->rotations);
   }
+  if (body.vertex_move) {
+    Json& moves = json["vertex_moves"];
+    moves["times"] = body.vertex_move->times;
+    moves["vertices"] = Json::array();
+    for (const auto& vertices : body.vertex_move->vertices)
+      moves["vertices"].push_back(rows(vertices));
+  }
   return json.dump();
 }
 
@@ -196,6 +317,9 @@ std::vector<SceneBody> present_bodies(std::span<const SceneBody> bodies, double 
   std::vector<SceneBody> present(bodies.begin(), bodies.end());
   for (SceneBody& body : present) {
     if (body.move) body.move = present_moves({&*body.move, 1}, {}, elapsed).front();
+    if (!body.vertex_move) continue;
+    for (double& time : body.vertex_move->times) time -= elapsed;
+    drop_merged_times(*body.vertex_move);
   }
   return present;
 }
@@ -207,7 +331,7 @@ Result<MovedBodies> MovedBodies::add(std::span<const SceneBody> bodies, Cloth& c
     const auto refused = [&](const std::string& why) {
       return Error{fmt::format("bodies[{}].{}", i, why)};
     };
-    const auto shape = build_shape(bodies[i].shape);
+    const auto shape = build_shape(first_shape(bodies[i]));
     if (!shape) return refused(shape.error());
     const auto id = cloth.add_body({.shape = shape.value(),
                                     .pose = pose_at(bodies[i], 0),
@@ -221,8 +345,14 @@ Result<MovedBodies> MovedBodies::add(std::span<const SceneBody> bodies, Cloth& c
 
 Result<void> MovedBodies::send(Cloth& cloth, double time) const {
   for (std::size_t i = 0; i < ids_.size(); ++i) {
-    if (!bodies_[i].move) continue;
-    if (auto sent = cloth.move_body(ids_[i], pose_at(bodies_[i], time)); !sent) return sent;
+    const SceneBody& body = bodies_[i];
+    if (body.move) {
+      if (auto sent = cloth.move_body(ids_[i], pose_at(body, time)); !sent) return sent;
+    }
+    if (body.vertex_move) {
+      if (auto sent = cloth.move_body_vertices(ids_[i], vertices_at(body, time)); !sent)
+        return sent;
+    }
   }
   return {};
 }

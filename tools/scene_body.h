@@ -4,10 +4,18 @@
 #include <weft/weft.h>
 
 #include <optional>
+#include <vector>
 
 #include "tools/pin_moves.h"
 
 namespace weft::tools {
+
+/// How the vertices of a mesh move, in coordinates of the body: linear between the times, still
+/// before the first and after the last.
+struct VertexMove {
+  std::vector<double> times = {};                ///< s; one at least, increasing
+  std::vector<std::vector<Vec3>> vertices = {};  ///< one list per time, of all vertices
+};
 
 /// It begins at a pose and moves as pins do: x goes to where place_at() takes it.
 struct SceneBody {
@@ -15,7 +23,8 @@ struct SceneBody {
   Pose pose{};
   double thickness = Body{}.thickness;  ///< m
   double friction = Body{}.friction;
-  std::optional<PinMove> move = {};  ///< of no particles
+  std::optional<PinMove> move = {};            ///< of no particles
+  std::optional<VertexMove> vertex_move = {};  ///< of a TriangleMesh alone
 };
 
 }  // namespace weft::tools

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "tools/json_reading.h"
+#include "tools/mesh.h"
 #include "tools/scene_material.h"
 #include "tools/scene_moves.h"
 #include "tools/text_file.h"
@@ -78,6 +80,12 @@ Faces read_faces(const Json& json, std::size_t particles) {
   return faces;
 }
 
+std::array<std::uint32_t, 3> read_triangle(const Json& json, const std::string& place) {
+  if (!json.is_array() || json.size() != 3) refuse(place, "three particles", json);
+  const auto corners = read_array(json, place, read_index);
+  return {corners[0], corners[1], corners[2]};
+}
+
 void read_key(const std::string& key, const Json& json, SceneDescription& scene) {
   if (key == "gravity") {
     scene.gravity = read_vector(json, key);
@@ -95,6 +103,8 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.membrane = read_array(json, key, read_membrane);
   } else if (key == "bending") {
     scene.bending = read_array(json, key, read_bending);
+  } else if (key == "surface") {
+    scene.surface = read_array(json, key, read_triangle);
   } else if (key == "anchors") {
     scene.anchors = read_array(json, key, read_anchor);
   } else if (key == "seams") {
@@ -114,7 +124,7 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
   }
 }
 
-SceneFile read_scene(const Json& json) {
+SceneFile read_scene(const Json& json, const std::string& folder) {
   if (!json.is_object()) throw Refused{"expected an object with the key 'positions'"};
   SceneDescription scene;
   for (const auto& [key, value] : json.items()) read_key(key, value, scene);
@@ -129,7 +139,8 @@ SceneFile read_scene(const Json& json) {
   SceneFile file;
   if (json.contains("moves")) file.moves = read_moves(json["moves"], scene);
   if (json.contains("faces")) file.faces = read_faces(json["faces"], scene.positions.size());
-  if (json.contains("bodies")) file.bodies = read_bodies(json["bodies"]);
+  if (!json.contains("surface")) scene.surface = triangles_of(file.faces);
+  if (json.contains("bodies")) file.bodies = read_bodies(json["bodies"], folder);
   file.description = std::move(scene);
   return file;
 }
@@ -180,9 +191,9 @@ void add_numbers(std::string& text, std::string_view key, const std::vector<Numb
 
 }  // namespace
 
-Result<SceneFile> parse_scene(std::string_view text) {
+Result<SceneFile> parse_scene(std::string_view text, const std::string& folder) {
   try {
-    return read_scene(parse_once_each(text));
+    return read_scene(parse_once_each(text), folder);
   } catch (const Refused& refused) {
     return Error{refused.message};
   } catch (const Json::exception& exception) {
@@ -193,7 +204,7 @@ Result<SceneFile> parse_scene(std::string_view text) {
 Result<SceneFile> read_scene_file(const std::string& path) {
   const auto text = read_text_file(path);
   if (!text) return Error{text.error()};
-  auto scene = parse_scene(text.value());
+  auto scene = parse_scene(text.value(), std::filesystem::path(path).parent_path().string());
   if (!scene) return Error{fmt::format("{}: {}", path, scene.error())};
   return scene;
 }
@@ -208,6 +219,8 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   add_rows(text, "constraints", scene.constraints, constraint_row);
   add_rows(text, "membrane", scene.membrane, membrane_row);
   add_rows(text, "bending", scene.bending, bending_row);
+  add_rows(text, "surface", scene.surface, [](const auto& t) { return Json(t).dump(); });
+  if (scene.surface.empty() && !faces.empty()) text += ",\n\"surface\": []";
   add_rows(text, "anchors", scene.anchors, anchor_row);
   add_rows(text, "seams", scene.seams, seam_row);
   if (has_damping(scene.damping)) {

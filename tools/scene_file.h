@@ -26,7 +26,8 @@ struct SceneFile {
   std::vector<SceneBody> bodies;
 };
 
-Result<SceneFile> parse_scene(std::string_view text);
+/// Files that it names are looked for from `folder`.
+Result<SceneFile> parse_scene(std::string_view text, const std::string& folder = {});
 Result<SceneFile> read_scene_file(const std::string& path);
 
 /// The file's text. One row of the arrays per line, so that files can be read and compared.

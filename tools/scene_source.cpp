@@ -59,7 +59,7 @@ Result<void> check_options(const SceneOptions& options, std::span<const std::str
       {"--end-mass", options.end_mass.has_value(), kChain},
       {"--pin", options.pin.has_value(), kObj},
       {"--mass", options.mass.has_value(), kObj},
-      {"--scale", options.scale.has_value(), kObj},
+      {"--scale", options.scale && options.world.bodies.empty(), kObj},
       {"--up", options.up.has_value(), kObj},
       {"--weld", options.weld.has_value(), kObj},
       {"--seam", !options.seams.empty(), kObj},
@@ -284,7 +284,8 @@ void add_scene_options(Verb verb, SceneOptions& options) {
               "coordinates like 'y>0.9' or 'x<=-1', or vertex numbers from 0 like 0,5,7-9; "
               "several with and, or between: 'top and x<0.1 or 17'");
   verb.option("--mass", options.mass, ".obj: kg of the whole mesh (default 1)");
-  verb.option("--scale", options.scale, ".obj: multiplies all coordinates (default 1)");
+  verb.option("--scale", options.scale,
+              ".obj, of the cloth and of a --body: multiplies all coordinates (default 1)");
   verb.option("--up", options.up, ".obj: y (default) or z, where top is and gravity comes from");
   verb.option("--weld", options.weld,
               ".obj: m, vertices as near as this are one (default 0: those at one place)");
@@ -317,8 +318,11 @@ void add_scene_options(Verb verb, SceneOptions& options) {
 Result<SceneSource> load_scene(const SceneOptions& options) {
   auto source = load_as_it_is(options);
   if (!source) return source;
-  auto surrounded = surround(options.world, source.value().description, source.value().bodies);
-  if (!surrounded) return Error{surrounded.error()};
+  SceneSource& scene = source.value();
+  const double scale = options.scale.value_or(1);
+  auto notes = surround(options.world, scene.description, scene.bodies, scale);
+  if (!notes) return Error{notes.error()};
+  scene.notes.insert(scene.notes.end(), notes.value().begin(), notes.value().end());
   return source;
 }
 

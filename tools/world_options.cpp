@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/body_files.h"
 #include "tools/parse.h"
 
 namespace weft::tools {
@@ -40,6 +41,24 @@ Result<void> add_plane(const std::string& text, std::vector<SceneBody>& bodies) 
   return {};
 }
 
+Result<void> add_meshes(const WorldOptions& options, double scale, std::vector<SceneBody>& bodies,
+                        std::vector<std::string>& notes) {
+  BodyFiles files{.scale = scale};
+  if (options.body_dt) {
+    if (options.bodies.empty()) return Error{"--body-dt: is for a --body with a * in its name"};
+    const auto seconds = parse_seconds("--body-dt", *options.body_dt);
+    if (!seconds) return Error{seconds.error()};
+    files.frame = seconds.value();
+  }
+  for (const std::string& names : options.bodies) {
+    files.names = names;
+    auto body = body_of_files(files, notes);
+    if (!body) return Error{body.error()};
+    bodies.push_back(std::move(body.value()));
+  }
+  return {};
+}
+
 Result<void> set_surfaces(const WorldOptions& options, SceneDescription& scene,
                           std::vector<SceneBody>& bodies) {
   for (const auto& [option, value] :
@@ -66,6 +85,10 @@ void add_world_options(Verb verb, WorldOptions& options) {
                 "may be repeated");
   verb.repeated("--plane", options.planes,
                 "nx,ny,nz,d: a solid plane, free where nx x + ny y + nz z >= d; may be repeated");
+  verb.repeated("--body", options.bodies,
+                "FILE.obj: a solid mesh; 'FOLDER/*.obj': one that deforms, a file for each frame; "
+                "may be repeated");
+  verb.option("--body-dt", options.body_dt, "s, from one file of a --body to the next, as 1/30");
   verb.option("--friction", options.friction,
               "Coulomb's, between the cloth and all bodies (default 0.3, or what they have)");
   verb.option("--thickness", options.thickness,
@@ -75,8 +98,8 @@ void add_world_options(Verb verb, WorldOptions& options) {
               "has)");
 }
 
-Result<void> surround(const WorldOptions& options, SceneDescription& scene,
-                      std::vector<SceneBody>& bodies) {
+Result<std::vector<std::string>> surround(const WorldOptions& options, SceneDescription& scene,
+                                          std::vector<SceneBody>& bodies, double scale) {
   if (options.gravity) {
     const auto gravity = parse_vector("--gravity", *options.gravity);
     if (!gravity) return Error{gravity.error()};
@@ -89,12 +112,15 @@ Result<void> surround(const WorldOptions& options, SceneDescription& scene,
     scene.damping.motion = *options.damping_motion;
   }
   for (const std::string& sphere : options.spheres) {
-    if (auto added = add_sphere(sphere, scene); !added) return added;
+    if (auto added = add_sphere(sphere, scene); !added) return Error{added.error()};
   }
+  std::vector<std::string> notes;
+  if (auto added = add_meshes(options, scale, bodies, notes); !added) return Error{added.error()};
   for (const std::string& plane : options.planes) {
-    if (auto added = add_plane(plane, bodies); !added) return added;
+    if (auto added = add_plane(plane, bodies); !added) return Error{added.error()};
   }
-  return set_surfaces(options, scene, bodies);
+  if (auto set = set_surfaces(options, scene, bodies); !set) return Error{set.error()};
+  return notes;
 }
 
 }  // namespace weft::tools

@@ -1,4 +1,4 @@
-/// What surrounds a cloth: gravity, spheres, planes, friction and the decay of its motion.
+/// What surrounds a cloth: gravity, spheres, bodies, friction and the decay of its motion.
 #pragma once
 
 #include <weft/weft.h>
@@ -17,6 +17,8 @@ struct WorldOptions {
   std::vector<std::string> spheres = {};      ///< x,y,z,radius in m, and perhaps a mass in kg
   std::optional<double> damping_motion = {};  ///< 1/s
   std::vector<std::string> planes = {};       ///< x,y,z,offset
+  std::vector<std::string> bodies = {};       ///< as BodyFiles::names
+  std::optional<std::string> body_dt = {};    ///< s
   std::optional<double> friction = {};
   std::optional<double> thickness = {};  ///< m
 };
@@ -24,9 +26,10 @@ struct WorldOptions {
 void add_world_options(Verb verb, WorldOptions& options);
 
 /// Replaces gravity and the decay of motion where they are given, and adds the spheres as the last
-/// particles, and the planes as the last bodies. Spheres without a mass are fixed. Friction and
-/// thickness are those of all bodies, and of the cloth.
-Result<void> surround(const WorldOptions& options, SceneDescription& scene,
-                      std::vector<SceneBody>& bodies);
+/// particles, and meshes and then planes as the last bodies. Spheres without a mass are fixed.
+/// Friction and thickness are those of all bodies, and of the cloth. `scale` is that of the files
+/// of meshes. Returns notes for whoever runs it, a line each.
+Result<std::vector<std::string>> surround(const WorldOptions& options, SceneDescription& scene,
+                                          std::vector<SceneBody>& bodies, double scale = 1);
 
 }  // namespace weft::tools

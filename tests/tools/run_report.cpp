@@ -38,6 +38,9 @@ RunReport report() {
   summary.max_body_contacts = 31;
   summary.body_work = 0.125;
   summary.friction_work = 0.0625;
+  summary.contact_failures = 41;
+  summary.zones = 43;
+  summary.max_intersecting = 47;
   summary.max_error = 0.25;
   summary.max_strain = 0.125;
   summary.mean_max_strain = 0.03125;
@@ -62,6 +65,7 @@ RunReport report() {
   summary.model.anchors = 31;
   summary.model.air_triangles = 29;
   summary.model.spheres = 17;
+  report.plan.bodies = {{.shape = TriangleMesh{{}, {{0, 1, 2}, {0, 2, 3}}}}};
   return report;
 }
 
@@ -78,7 +82,8 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
     "ms_per_frame": 250, "max_ms_per_frame": 500, "real_time_factor": 2,
     "max_strain": 0.125, "mean_max_strain": 0.03125, "rms_strain": 0.015625,
     "max_penetration": 0.75, "max_anchor_error": 0.5, "max_contacts": 19,
-    "bodies": 0, "body_contacts": 31, "body_work": 0.125, "friction_work": 0.0625,
+    "bodies": 1, "body_triangles": 2, "body_contacts": 31, "body_work": 0.125,
+    "friction_work": 0.0625, "contact_failures": 41, "zones": 43, "intersecting": 47,
     "iterations_per_step": 5, "velocity_iterations_per_step": 3, "direction_updates_per_step": 9,
     "visits": 101, "corrections": 103, "ns_per_constraint_iteration": 3125000,
     "energy_start": -1.5, "energy_end": -2.5, "pin_work": 0.875, "energy_gain": 0.25,
@@ -112,11 +117,26 @@ TEST_CASE("the table has every figure too") {
         "correct_velocities 281, report 344 ms at max error of the law 25 %\n"
         "strain    max 12.5 %, mean of the frames' max 3.12 %, rms 1.56 %\n"
         "contacts  0.75 m deepest penetration\n"
+        "bodies    1 body, 31 contacts at most, 0.75 m deepest penetration, 0.0625 J by friction, "
+        "0.125 J by moved ones\n"
+        "crossings 41 crossings were stopped, 43 taken along by bodies, at most 47 could not be "
+        "stopped in a frame\n"
         "anchors   31, 0.5 m beyond their limits at most\n"
         "work      5 iterations and 9 direction updates per step, 101 visits, 103 corrections\n"
         "energy    -1.5 J to -2.5 J, 0.875 J by moved pins, largest gain 0.25 J, "
         "0.438 J lost\n"
         "state     0123456789abcdef, lowest y -0.375 m\n");
+}
+
+TEST_CASE("crossings are in the report where they were counted or stopped") {
+  RunReport counted = report();
+  CHECK_FALSE(to_json(counted).contains("intersections"));
+  counted.summary.contact_failures = counted.summary.zones = counted.summary.max_intersecting = 0;
+  CHECK(to_table(counted).find("crossings") == std::string::npos);
+  counted.summary.intersections = 1;
+  CHECK(to_json(counted)["intersections"] == 1);
+  CHECK(to_table(counted).find("crossings 1 crossing of triangles at most in a frame\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("the report of a mesh says what it turned out to be") {
@@ -212,7 +232,7 @@ TEST_CASE("a table says which solver was chosen, and of contacts where there are
   RunReport chosen = report();
   chosen.summary.model.spheres = 0;
   CHECK(to_table(chosen).find("auto (yarn)") != std::string::npos);
-  CHECK(to_table(chosen).find("deepest penetration") == std::string::npos);
+  CHECK(to_table(chosen).find("\ncontacts ") == std::string::npos);
   chosen.summary.model.spheres = 1;
   chosen.settings.solver = Solver::direct;
   chosen.settings.iterations = 3;

@@ -61,6 +61,7 @@ void check_same(const SceneDescription& a, const SceneDescription& b) {
   CHECK(a.fixed == b.fixed);
   CHECK(a.spheres == b.spheres);
   CHECK(a.radii == b.radii);
+  CHECK(a.surface == b.surface);
 }
 
 /// The error of a scene of two particles with one more key, or with the text as it is.
@@ -180,6 +181,70 @@ TEST_CASE("bodies survive writing and reading, and move as they are told") {
   CHECK(pose_at(present_bodies(read.value().bodies, 1)[1], 0).position.x == 3);
 }
 
+/// One triangle whose third corner rises by a metre in two seconds.
+SceneBody rising_triangle() {
+  const std::vector<Vec3> low{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, high{low[0], low[1], {1, 1, 0}};
+  return {.shape = TriangleMesh{low, {{0, 1, 2}}, true},
+          .vertex_move = VertexMove{{0, 2}, {low, high}}};
+}
+
+TEST_CASE("meshes survive writing and reading, and their vertices move") {
+  SceneDescription scene;
+  scene.positions = {{0, 1, 0}};
+  scene.masses = {1};
+  const std::string text = scene_text(scene, {}, {}, {rising_triangle()});
+  const auto read = parse_scene(text);
+  REQUIRE_MESSAGE(read, (read ? "" : read.error()));
+  const std::vector<SceneBody>& bodies = read.value().bodies;
+  CHECK(scene_text(scene, {}, {}, bodies) == text);
+  CHECK(count_triangles(bodies) == 1);
+  CHECK(vertices_at(bodies[0], -1)[2].y == 0);
+  CHECK(vertices_at(bodies[0], 0.5)[2].y == 0.25);
+  CHECK(vertices_at(bodies[0], 9)[2].y == 1);
+  CHECK(vertices_at(present_bodies(bodies, 1)[0], 0)[2].y == 0.5);
+}
+
+TEST_CASE("meshes are where their pose is") {
+  SceneBody body = rising_triangle();
+  body.pose = {.position = {10, 0, 0}, .rotation = {0, 0, std::sqrt(0.5), std::sqrt(0.5)}};
+  const TriangleSet set = meshes_at(std::vector{SceneBody{.shape = Ball{.radius = 1}}, body}, 2);
+  REQUIRE(set.places.size() == 3);
+  CHECK(set.places[2].x == doctest::Approx(9));
+  CHECK(set.places[2].y == doctest::Approx(1));
+}
+
+TEST_CASE("a mesh may be in a file beside the scene") {
+  const TemporaryFolder folder;
+  folder.write("body.obj", "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n");
+  const std::string start = R"({"positions": [[0, 0, 0]], "masses": [1], "bodies": [)";
+  const std::string path = folder.write(
+      "scene.json", start + R"({"shape": "mesh", "file": "body.obj", "two_sided": true}]})");
+  const auto read = read_scene_file(path);
+  REQUIRE_MESSAGE(read, (read ? "" : read.error()));
+  const auto& mesh = std::get<TriangleMesh>(read.value().bodies[0].shape);
+  CHECK(mesh.vertices.size() == 3);
+  CHECK(mesh.two_sided);
+  const auto without = parse_scene(start + R"({"shape": "mesh", "file": "no.obj"}]})");
+  REQUIRE_FALSE(without);
+  CHECK(without.error().starts_with("bodies[0].file: "));
+}
+
+TEST_CASE("the surface is that of the faces unless it is given") {
+  const std::string start = R"({"positions": [[0,0,0],[1,0,0],[1,0,1],[0,0,1]], "total_mass": 1)";
+  const auto surface_of = [&](const std::string& more) {
+    return parse_scene(start + more + "}").value().description.surface;
+  };
+  using Surface = std::vector<std::array<std::uint32_t, 3>>;
+  CHECK(surface_of("") == Surface{});
+  CHECK(surface_of(R"(, "faces": [[0,1,2,3]])") == Surface{{0, 1, 2}, {0, 2, 3}});
+  CHECK(surface_of(R"(, "faces": [[0,1,2,3]], "surface": [[1,2,3]])") == Surface{{1, 2, 3}});
+  CHECK(surface_of(R"(, "faces": [[0,1,2,3]], "surface": [])") == Surface{});
+  const auto faces = parse_scene(start + R"(, "faces": [[0,1,2,3]], "surface": []})").value();
+  CHECK(parse_scene(scene_text(faces.description, {}, faces.faces)).value().description.surface ==
+        Surface{});
+  CHECK(error_with(R"("surface": [[0,1]])") == "surface[0]: expected three particles, not [0,1]");
+}
+
 TEST_CASE("errors of bodies name their place") {
   const auto error_of = [](const std::string& bodies) {
     const auto read =
@@ -187,13 +252,21 @@ TEST_CASE("errors of bodies name their place") {
     return read ? std::string() : read.error();
   };
   CHECK(error_of(R"([{"shape": "cone"}])") ==
-        R"(bodies[0].shape: expected plane, sphere, capsule, box or hull, not "cone")");
+        R"(bodies[0].shape: expected plane, sphere, capsule, box, hull or mesh, not "cone")");
   CHECK(error_of(R"([{"shape": "sphere"}])") == "bodies[0]: the key 'radius' is missing");
   CHECK(error_of(R"([{"shape": "sphere", "radius": 0}])") ==
         "bodies[0].radius: must be finite and greater than 0 (0)");
   CHECK(error_of(R"([{"shape": "plane", "size": 1}])") == "bodies[0]: unknown key 'size'");
   CHECK(error_of(R"([{"shape": "plane", "moves": {"times": [0]}}])") ==
         "bodies[0].moves: the key 'translations' is missing");
+  const std::string mesh =
+      R"([{"shape": "mesh", "vertices": [[0,0,0],[1,0,0],[0,1,0]], "triangles": [[0,1,2]])";
+  CHECK(error_of(mesh + R"(, "vertex_moves": {"times": [0], "vertices": []}}])") ==
+        "bodies[0].vertex_moves.vertices: expected as many as times, 1, not 0");
+  CHECK(error_of(mesh + R"(, "vertex_moves": {"times": [0], "vertices": [[[0,0,0]]]}}])") ==
+        "bodies[0].vertex_moves.vertices[0]: expected the vertices of the mesh, 3, not 1");
+  CHECK(error_of(R"([{"shape": "plane", "vertex_moves": {}}])") ==
+        "bodies[0]: unknown key 'vertex_moves'");
 }
 
 TEST_CASE("seams survive writing and reading to the last bit") {

@@ -10,6 +10,7 @@
 
 #include "tools/forms/form.h"
 #include "tools/forms/sheets.h"
+#include "tools/scenes/body_meshes.h"
 
 namespace weft::tools::forms {
 namespace {
@@ -57,18 +58,49 @@ Vec3 on_incline(double angle, double along, double height, double across) {
           std::cos(angle) * height - std::sin(angle) * along, across};
 }
 
+/// What bears a sheet: a closed shape, or a mesh of it that gets finer as the sheet does.
+enum class Surface { closed, mesh };
+
+/// A plane through the origin, or a plate of triangles in it that do not fit those of the sheet.
+ShapeDescription plane(Surface surface, double angle, int refinement) {
+  if (surface == Surface::closed) return Plane{.normal = on_incline(angle, 0, 1, 0)};
+  TriangleMesh plate = scenes::plate_mesh(11, 3, 31 << refinement, 7 << refinement);
+  for (Vec3& v : plate.vertices) v = on_incline(angle, v.x + 3, v.y, v.z);
+  return plate;
+}
+
+/// Around an axis along z through the origin.
+Capsule drum(double radius) { return {{0, 0, -1}, {0, 0, 2}, radius, radius}; }
+
+/// A table from x = -2 m to 0 whose top is at 0.
+ShapeDescription table(Surface surface, int along) {
+  const Vec3 size{2, 1, 2}, middle{-1, -0.5, 0};
+  const auto move = [&](std::vector<Vec3>& points) {
+    for (Vec3& p : points) p = {p.x + middle.x, p.y + middle.y, p.z + middle.z};
+  };
+  if (surface == Surface::mesh) {
+    TriangleMesh mesh = scenes::box_mesh(size, along);
+    move(mesh.vertices);
+    return mesh;
+  }
+  Hull hull = box(size);
+  move(hull.points);
+  return hull;
+}
+
 /// A sheet on an incline is let go. `descent` is told after so many frames, in the mean.
 struct Incline {
   double angle = 0;     // rad
   double friction = 0;  // of the cloth; the geometric mean with that of the plane counts
   int refinement = 0, frames = 0;
+  Surface surface = Surface::closed;
 
   Run run() const {
     SceneDescription scene = scene_of(mesh_of(square(refinement), bare_cotton()));
     for (Vec3& p : scene.positions) p = on_incline(angle, p.x, kThickness, p.z);
     scene.friction = friction;
     Run run(scene, {});
-    add(run, Plane{.normal = on_incline(angle, 0, 1, 0)});
+    add(run, plane(surface, angle, refinement));
     return run;
   }
   double descent(Run& run) const {
@@ -91,11 +123,11 @@ double first_slide(double low, double high, Slides&& slides) {
 }
 
 /// A sheet rests on an incline that is less steep, by little.
-Reading begins_to_slide(int refinement) {
+Reading begins_to_slide(Surface surface, int refinement) {
   const double expected = std::atan(kFriction);
   Reading reading;
   const double angle = first_slide(0.8 * expected, 1.2 * expected, [&](double tried) {
-    const Incline incline{tried, kFriction, refinement, 60};
+    const Incline incline{tried, kFriction, refinement, 60, surface};
     Run run = incline.run();
     const bool slides = incline.descent(run) > 1e-3;
     reading = run.reading(size_of(square(refinement)), 0, 0);
@@ -106,8 +138,8 @@ Reading begins_to_slide(int refinement) {
   return reading;
 }
 
-Reading slides_down(double friction, int refinement) {
-  const Incline incline{25 * kPi / 180, friction * friction / kFriction, refinement, 60};
+Reading slides_down(Surface surface, double friction, int refinement) {
+  const Incline incline{25 * kPi / 180, friction * friction / kFriction, refinement, 60, surface};
   Run run = incline.run();
   const double descent = incline.descent(run), time = incline.frames * kFrame;
   return run.reading(size_of(square(refinement)),
@@ -116,8 +148,8 @@ Reading slides_down(double friction, int refinement) {
 }
 
 /// What a plane bears after a second.
-Reading weighs(int refinement) {
-  const Incline level{0, kFriction, refinement, 60};
+Reading weighs(Surface surface, int refinement) {
+  const Incline level{0, kFriction, refinement, 60, surface};
   Run run = level.run();
   level.descent(run);
   const Sheet sheet = square(refinement);
@@ -126,10 +158,10 @@ Reading weighs(int refinement) {
 }
 
 /// A plane moves from rest at 2 m/s. The sheet on it reaches its speed by and by.
-Reading is_dragged(int refinement) {
+Reading is_dragged(Surface surface, int refinement) {
   constexpr double kSpeed = 2;  // m/s
   constexpr int kFrames = 60;
-  const Incline level{0, kFriction, refinement, 1};
+  const Incline level{0, kFriction, refinement, 1, surface};
   Run run = level.run();
   const double from = mean(positions(run)).x;
   for (int frame = 1; frame <= kFrames; ++frame) {
@@ -185,7 +217,7 @@ Reading is_held_by_a_drum(int refinement) {
   first_slide(0.8 * expected, 1.1 * expected, [&](double tried) {
     const HungStrip strip = strip_over_drum(tried, refinement);
     Run run(strip.scene, {.substeps = kSubsteps});
-    add(run, Capsule{{0, 0, -1}, {0, 0, 2}, kDrum, kDrum}, 0);
+    add(run, drum(kDrum), 0);
     run.steps(60, kFrame);
     const double near = -run.mean_y(strip.near), far = -run.mean_y(strip.far);
     run.steps(60, kFrame);
@@ -238,20 +270,29 @@ Reading slides_over_a_drum(int refinement) {
     scene.velocities.push_back({kSpeed * std::cos(angle), -kSpeed * std::sin(angle), 0});
     p = {(kRadius + kThickness) * std::sin(angle), (kRadius + kThickness) * std::cos(angle), p.z};
   }
-  return keeps_its_speed(sheet, scene, Capsule{{0, 0, -1}, {0, 0, 2}, kRadius, kRadius}, 18);
+  return keeps_its_speed(sheet, scene, drum(kRadius), 18);
+}
+
+/// A sheet whose first corner is at (x, 0) and which moves along x at 2 m/s, as high as it lies.
+SceneDescription sliding_sheet(const Sheet& sheet, double x) {
+  constexpr double kSpeed = 2;  // m/s
+  SceneDescription scene = scene_of(mesh_of(sheet, bare_cotton()));
+  scene.friction = 0;
+  for (Vec3& p : scene.positions) p = {p.x + x, kThickness, p.z - sheet.width / 2};
+  scene.velocities.assign(scene.positions.size(), {kSpeed, 0, 0});
+  return scene;
 }
 
 /// Along a table and over its edge, until half of it hangs.
-Reading slides_off_a_table(int refinement) {
-  constexpr double kSpeed = 2;  // m/s
+Reading slides_off_a_table(Surface surface, int refinement) {
   const Sheet sheet = square(refinement);
-  SceneDescription scene = scene_of(mesh_of(sheet, bare_cotton()));
-  scene.friction = 0;
-  for (Vec3& p : scene.positions) p = {p.x - 1, kThickness, p.z - sheet.width / 2};
-  scene.velocities.assign(scene.positions.size(), {kSpeed, 0, 0});
-  const std::vector<Vec3> table{{-2, 0, -1},  {-2, 0, 1},  {0, 0, -1},  {0, 0, 1},
-                                {-2, -1, -1}, {-2, -1, 1}, {0, -1, -1}, {0, -1, 1}};
-  return keeps_its_speed(sheet, scene, Hull{table}, 30);
+  return keeps_its_speed(sheet, sliding_sheet(sheet, -1), table(surface, 5 << refinement), 30);
+}
+
+/// Over two metres of triangles.
+Reading slides_over_a_plate(int refinement) {
+  const Sheet sheet = square(refinement);
+  return keeps_its_speed(sheet, sliding_sheet(sheet, 0), plane(Surface::mesh, 0, refinement), 60);
 }
 
 Form within_bound(std::string name, std::string formula, std::string unit,
@@ -262,20 +303,35 @@ Form within_bound(std::string name, std::string formula, std::string unit,
 }  // namespace
 
 std::vector<Form> body_forms() {
-  return {
-      within_bound("a sheet on an incline begins to slide", "atan mu", "degrees", begins_to_slide),
-      within_bound("a sheet slides down an incline", "g (sin a - mu cos a)", "m/s^2",
-                   [](int r) { return slides_down(kFriction, r); }),
-      within_bound("a sheet slides down an incline, without friction", "g sin a", "m/s^2",
-                   [](int r) { return slides_down(0, r); }),
-      within_bound("a sheet lies on a plane", "m g", "N", weighs),
-      within_bound("a plane drags a sheet", "v (t - v / 2 mu g)", "m", is_dragged),
-      within_bound("a strip is held by a drum", "(h + b) e^(mu pi) + b, b = 2 mu r / (1 + mu^2)",
-                   "m", is_held_by_a_drum),
-      within_bound("a sheet slides over a drum, without friction", "sqrt(v^2 + 2 g h)", "m/s",
-                   slides_over_a_drum),
-      within_bound("a sheet slides off a table, without friction", "sqrt(v^2 + 2 g h)", "m/s",
-                   slides_off_a_table)};
+  std::vector<Form> forms;
+  const auto add = [&](const std::string& name, Surface surface, std::string formula,
+                       std::string unit, auto measure) {
+    forms.push_back(within_bound(surface == Surface::mesh ? name + " (mesh)" : name,
+                                 std::move(formula), std::move(unit),
+                                 [=](int r) { return measure(surface, r); }));
+  };
+  const auto slides = [](double friction) {
+    return [=](Surface surface, int r) { return slides_down(surface, friction, r); };
+  };
+  const std::string falls = "sqrt(v^2 + 2 g h)";
+  for (const Surface surface : {Surface::closed, Surface::mesh}) {
+    add("a sheet on an incline begins to slide", surface, "atan mu", "degrees", begins_to_slide);
+    add("a sheet slides down an incline", surface, "g (sin a - mu cos a)", "m/s^2",
+        slides(kFriction));
+    add("a sheet slides down an incline, without friction", surface, "g sin a", "m/s^2", slides(0));
+    add("a sheet lies on a plane", surface, "m g", "N", weighs);
+    add("a plane drags a sheet", surface, "v (t - v / 2 mu g)", "m", is_dragged);
+    add("a sheet slides off a table, without friction", surface, falls, "m/s", slides_off_a_table);
+  }
+  forms.push_back(within_bound("a strip is held by a drum",
+                               "(h + b) e^(mu pi) + b, b = 2 mu r / (1 + mu^2)", "m",
+                               is_held_by_a_drum));
+  // Not over a mesh: between particles that lie on it a coarse sheet would be inside.
+  forms.push_back(within_bound("a sheet slides over a drum, without friction", falls, "m/s",
+                               slides_over_a_drum));
+  forms.push_back(within_bound("a sheet slides over a plate of triangles, without friction", "v",
+                               "m/s", slides_over_a_plate));
+  return forms;
 }
 
 }  // namespace weft::tools::forms

@@ -1,50 +1,15 @@
 /// Bodies that are sharp, fast, far away or where the cloth is, and plates that leave no room.
 #include <fmt/format.h>
-#include <weft/mesh.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "tools/hard/body_trial.h"
 #include "tools/hard/suite.h"
 
 namespace weft::tools::hard {
 namespace {
-
-constexpr double kLaw = 0.01;
-constexpr double kContactTolerance = 1e-4;  // m, that of Settings
-constexpr double kThickness = 1e-3;         // m, of bodies
-
-/// Small steps, and automatic, which becomes them.
-bool takes_bodies(const Method& method) {
-  return method.solver == Solver::small_steps || label(method) == "auto";
-}
-
-/// A level square of cotton, so many particles wide, with its middle at a place.
-SceneDescription cotton(int size, double width, Vec3 middle) {
-  MeshDescription mesh;
-  const double cell = width / (size - 1);
-  for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j)
-      mesh.positions.push_back(middle + Vec3{cell * i - width / 2, 0, cell * j - width / 2});
-  }
-  const auto n = static_cast<std::uint32_t>(size);
-  for (std::uint32_t i = 0; i + 1 < n; ++i) {
-    for (std::uint32_t j = 0; j + 1 < n; ++j) {
-      const std::uint32_t a = i * n + j;
-      mesh.corners.insert(mesh.corners.end(), {a, a + 1, a + n + 1, a + n});
-      mesh.face_sizes.push_back(4);
-    }
-  }
-  mesh.material = find_material("cotton").value();
-  return std::move(cloth_from_mesh(mesh).value().scene);
-}
-
-std::function<Pose(double)> stays(Vec3 at = {}) {
-  return [at](double) { return Pose{.position = at}; };
-}
-
-Rotation turned_about_z(double angle) { return {0, 0, std::sin(angle / 2), std::cos(angle / 2)}; }
 
 /// A ridge along z from the height -0.3 m to a point at 0, as wide as a hand below.
 Hull knife() {
@@ -67,23 +32,6 @@ Hull cube_on_its_corner() {
   const double top = std::sqrt(3.) * side / 2;
   for (Vec3& p : hull.points) p.y -= top;
   return hull;
-}
-
-Trial trial_of(const Setup& setup, SceneDescription scene, std::vector<TrialBody> bodies) {
-  Trial trial{std::move(scene), setup.settings(kLaw)};
-  trial.dt = 1.0 / 60;
-  trial.bodies = std::move(bodies);
-  return trial;
-}
-
-/// A thousandth of what moved and of what bodies did.
-double energy_allowed(const Observed& o) { return 1e-3 * (o.most_kinetic + std::abs(o.body_work)); }
-
-/// The figure is how deep particles were after steps; what missed a tolerance fails.
-Outcome depth_outcome(const Observed& o) {
-  Outcome result = strain_outcome(o, energy_allowed(o));
-  result.figure = o.max_penetration;
-  return result;
 }
 
 Outcome run_falls(const Setup& setup, const ShapeDescription& shape, double friction) {

@@ -45,9 +45,9 @@ Solid::Solid(const ShapeDescription& shape) {
     capsule_ = {ball->centre, ball->centre, ball->radius, ball->radius};
   } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
     capsule_ = *capsule;
-  } else {
+  } else if (const auto* hull = std::get_if<Hull>(&shape)) {
     // Every plane through three points that has all others on one side.
-    const std::vector<Vec3>& p = std::get<Hull>(shape).points;
+    const std::vector<Vec3>& p = hull->points;
     for (std::size_t i = 0; i < p.size(); ++i) {
       for (std::size_t j = 0; j < p.size(); ++j) {
         for (std::size_t k = 0; k < p.size(); ++k) {
@@ -77,6 +77,7 @@ TrialBody::TrialBody(const ShapeDescription& description, double rubs,
   auto built = build_shape(description);
   if (!built) throw std::runtime_error(built.error());
   shape = built.value();
+  if (const auto* triangles = std::get_if<TriangleMesh>(&description)) mesh = *triangles;
 }
 
 Vec3 in_body(const Pose& pose, Vec3 x) {

@@ -5,13 +5,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "tools/hard/oracle.h"
 
 namespace weft::tools::hard {
 
-/// The half spaces whose common part is a body, or a segment of balls.
+/// The half spaces whose common part is a body, or a segment of balls; of a mesh nothing.
 class Solid {
  public:
   explicit Solid(const ShapeDescription& shape);
@@ -33,6 +34,9 @@ struct TrialBody {
   TrialBody(const ShapeDescription& shape, double friction, std::function<Pose(double)> pose);
 
   Solid solid;
+  std::optional<TriangleMesh> mesh;  ///< in place of the solid
+  /// Where its vertices are, if they move; of a mesh.
+  std::function<std::vector<Vec3>(double time)> vertices = {};
   std::shared_ptr<const BodyShape> shape;
   double thickness = 1e-3;  ///< m
   double friction = 0.3;
@@ -43,7 +47,7 @@ struct TrialBody {
 /// y such that the pose takes it to x.
 Vec3 in_body(const Pose& pose, Vec3 x);
 
-/// m, the deepest that a particle which is free is under the surface at `thickness`.
+/// Not of meshes: m, the deepest that a particle which is free is under the surface at `thickness`.
 double max_penetration(const SceneDescription& scene, const Snapshot& state, const TrialBody& body,
                        const Pose& pose);
 /// Whether the straight way of a particle, as the body sees it, begins and ends outside and leads

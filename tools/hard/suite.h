@@ -24,6 +24,7 @@ std::vector<Case> sheet_cases();
 std::vector<Case> budget_cases();
 std::vector<Case> rest_cases();
 std::vector<Case> body_cases();
+std::vector<Case> mesh_cases();
 
 std::vector<Case> all_cases();
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/cpu_time.h"
+#include "tools/hard/mesh_oracle.h"
 #include "tools/wording.h"
 
 namespace weft::tools::hard {
@@ -35,6 +36,7 @@ bool tells_the_truth(const StepReport& report, const Settings& settings, double 
 struct Moved {
   std::vector<std::uint32_t> ids = {};  // kNoIndex: not yet there
   std::vector<Pose> from = {}, to = {};
+  double time = 0;  // s, of `to`
 };
 
 /// Returns what weft said where it refuses one.
@@ -43,6 +45,7 @@ std::string move_bodies(const Trial& trial, Cloth& cloth, int step, double from,
   moved.ids.resize(trial.bodies.size(), kNoIndex);
   moved.from.resize(trial.bodies.size());
   moved.to.resize(trial.bodies.size());
+  moved.time = to;
   for (std::size_t i = 0; i < trial.bodies.size(); ++i) {
     const TrialBody& body = trial.bodies[i];
     if (step < body.appears) continue;
@@ -57,16 +60,27 @@ std::string move_bodies(const Trial& trial, Cloth& cloth, int step, double from,
       moved.ids[i] = id.value();
     }
     if (const auto is = cloth.move_body(moved.ids[i], moved.to[i]); !is) return is.error();
+    if (!body.vertices) continue;
+    if (const auto is = cloth.move_body_vertices(moved.ids[i], body.vertices(to)); !is)
+      return is.error();
   }
   return {};
 }
 
-/// m, into those that are there. Notes what went through one.
+/// m, into those that are there. Notes what went through one, or crosses it.
 double look_at_bodies(Observed& o, const Trial& trial, const Snapshot& before, const Moved& moved) {
   double deepest = 0;
+  o.end_crossings = 0;
   for (std::size_t i = 0; i < moved.ids.size(); ++i) {
     if (moved.ids[i] == kNoIndex) continue;
     const TrialBody& body = trial.bodies[i];
+    if (body.mesh) {
+      const TriangleSet cloth{o.end.positions, trial.scene.surface};
+      const TriangleSet mesh = mesh_at(body, moved.to[i], moved.time);
+      o.end_crossings += count_crossings(cloth, mesh);
+      deepest = std::max(deepest, body.thickness - distance(cloth, mesh, body.thickness));
+      continue;
+    }
     deepest = std::max(deepest, max_penetration(trial.scene, o.end, body, moved.to[i]));
     o.went_through = o.went_through || went_through(before, o.end, body, moved.from[i], moved.to[i],
                                                     kDeep * body.thickness);
@@ -80,9 +94,16 @@ void add(Observed& o, const Trial& trial, const StepReport& report, double in_bo
   if (report.status > o.worst) o.worst_step = o.steps;
   o.worst = std::max(o.worst, report.status);
   o.missed += report.status != Status::converged;
+  o.crossings = std::max(o.crossings, o.end_crossings);
+  o.intersecting = std::max(o.intersecting, report.intersecting);
+  o.contact_failures += report.contact_failures;
+  o.zones += report.zones;
+  // Nobody measures how deep what crosses is.
+  const double told = o.end_crossings > 0 ? report.max_penetration : penetration;
   o.false_claims +=
-      !tells_the_truth(report, trial.settings, strain, max_rigid_strain(trial.scene, o.end),
-                       penetration, !trial.bodies.empty());
+      !tells_the_truth(report, trial.settings, strain, max_rigid_strain(trial.scene, o.end), told,
+                       !trial.bodies.empty()) ||
+      (o.end_crossings > 0 && report.status == Status::converged);
   o.finite = o.finite && all_finite(o.end);
   o.max_strain = std::max(o.max_strain, strain);
   o.end_strain = strain;
@@ -138,6 +159,12 @@ std::string text(const Observed& o) {
                                  o.ms_per_step(), measured_percent(o.max_strain));
   if (o.max_penetration > 0) text += fmt::format(", {:.2g} m deep", o.max_penetration);
   text += fmt::format(", energy gain {:.2g} J", o.energy_gain);
+  if (o.contact_failures > 0)
+    text += fmt::format(", {} failures with {} zones", o.contact_failures, o.zones);
+  if (o.crossings > 0 || o.intersecting > 0) {
+    text += fmt::format(", {} at most ({} reported, {} in the end)",
+                        counted(o.crossings, "crossing"), o.intersecting, o.end_crossings);
+  }
   if (o.missed > 0) {
     text += fmt::format(", {} not converged ({} in step {})", counted(o.missed, "step"),
                         name(o.worst), o.worst_step);

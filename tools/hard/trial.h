@@ -32,12 +32,17 @@ struct Observed {
   Status worst = Status::converged;
   int worst_step = -1;
   int missed = 0;        ///< steps that did not converge, by their status
-  int false_claims = 0;  ///< steps said to converge, or an error reported, and it is not so
+  int false_claims = 0;  ///< steps said to converge, or an error reported, and it is not so; or
+                         ///< said to converge though triangles cross
   bool finite = true;
   double max_strain = 0, end_strain = 0;
   double max_penetration = 0, end_penetration = 0;  ///< m, into spheres and bodies
   bool went_through = false;  ///< a body, by the straight way of a step that does not turn
-  double body_work = 0;       ///< J, as the reports say
+  std::size_t crossings = 0;  ///< of triangles with those of bodies, most after a step
+  std::size_t end_crossings = 0;
+  int intersecting = 0;  ///< most in a step, as the reports say
+  int contact_failures = 0, zones = 0;
+  double body_work = 0;                                      ///< J, as the reports say
   double energy_start = 0, energy_gain = 0, energy_end = 0;  ///< J; gain: the largest over start
                                                              ///< and the work of bodies
   double most_kinetic = 0, end_kinetic = 0;

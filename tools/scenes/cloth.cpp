@@ -86,6 +86,7 @@ Scene rigid(const Layout& layout, const Options& options) {
   } else {
     join_faces(layout, kind, options.diagonals, joiner);
   }
+  description.surface = tools::triangles_of(layout.faces);
   scene.mesh.particle_of_vertex.resize(count);
   std::iota(scene.mesh.particle_of_vertex.begin(), scene.mesh.particle_of_vertex.end(), 0u);
   return scene;

@@ -16,5 +16,6 @@ Layout four_pins(const Options& options);
 Layout flag(const Options& options);
 Layout drape(const Options& options);
 Layout table(const Options& options);
+Layout cushion(const Options& options);
 
 }  // namespace weft::scenes

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "tools/scenes/body_meshes.h"
 #include "tools/scenes/garments.h"
 
 namespace weft::scenes {
@@ -13,8 +14,7 @@ namespace {
 using tools::PinMove;
 using tools::SceneBody;
 
-// --------------------------------------------------------------------------------- a body of
-// capsules
+// --------------------------------------------------------------------------------- the wearer
 
 constexpr double kShoulder = 0.14, kShoulderHeight = 1.17;  // m
 
@@ -82,6 +82,15 @@ Result<Layout> mannequin(const Options& options) {
   auto layout = worn_tunic(options);
   if (!layout) return Error{"mannequin: " + layout.error()};
   layout.value().bodies = wearer();
+  return layout;
+}
+
+Result<Layout> mannequin_mesh(const Options& options) {
+  constexpr int kAround = 24;
+  auto layout = mannequin(options);
+  if (!layout) return layout;
+  for (SceneBody& part : layout.value().bodies)
+    part.shape = capsule_mesh(std::get<Capsule>(part.shape), kAround);
   return layout;
 }
 

@@ -1,4 +1,4 @@
-/// The built-in scene of a tunic on a body that walks (scenes.h).
+/// The built-in scenes of a tunic on a body that walks (scenes.h).
 #pragma once
 
 #include <weft/result.h>
@@ -10,5 +10,6 @@ namespace weft::scenes {
 
 /// The error says what is too coarse.
 Result<Layout> mannequin(const Options& options);
+Result<Layout> mannequin_mesh(const Options& options);
 
 }  // namespace weft::scenes

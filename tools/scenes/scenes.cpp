@@ -119,7 +119,7 @@ struct Entry {
   Result<Scene> (*make)(const Options&);
 };
 
-constexpr std::array<Entry, 14> kEntries{{
+constexpr std::array<Entry, 16> kEntries{{
     {{"hang", "a sheet with one fixed side swings down"}, 2, anything, cloth<hang>},
     {{"hang_sphere", "the same, swinging into a fixed sphere"}, 2, anything, cloth<hang_sphere>},
     {{"sphere_drop", "a heavy sphere drops into a sagging sheet"},
@@ -137,6 +137,10 @@ constexpr std::array<Entry, 14> kEntries{{
     {{"flag", "a sheet of cotton flies from a pole", true}, 2, anything, cloth<flag>},
     {{"drape", "a sheet of cotton falls over a fixed sphere", true}, 2, anything, cloth<drape>},
     {{"table", "a sheet of cotton slides off a table", true}, 3, anything, cloth<table>},
+    {{"cushion", "a ball is pressed into a taut sheet of cotton, rolls and slides", true},
+     3,
+     anything,
+     cloth<cushion>},
     {{"tunic", "a sewn tunic of cotton hangs from two pegs", true}, 20, anything, garment<tunic>},
     {{"skirt", "a flared skirt of cotton falls from its waist", true},
      20,
@@ -146,6 +150,10 @@ constexpr std::array<Entry, 14> kEntries{{
      20,
      anything,
      garment<mannequin>},
+    {{"mannequin_mesh", "the same on a body of triangle meshes", true},
+     20,
+     anything,
+     garment<mannequin_mesh>},
 }};
 
 constexpr auto kList = [] {

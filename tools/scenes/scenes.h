@@ -38,7 +38,10 @@
 /// table        (i, j) at (i L, 0.001, j L), of cotton if no material is given: a sheet that lies
 /// on
 ///              the top of a box of which it covers 0.4 m, and slides off its edge; friction 0.2.
+/// cushion      (i, j) at (i L, 0, j L), of the same; its border is fixed. A ball of radius 0.15 is
+///              pressed 6 cm into it, rolls 0.2 m along x, and slides back; friction 0.4.
 /// mannequin    The tunic, worn by a body of capsules that begins to walk after a second, 1 m/s.
+/// mannequin_mesh  The same on triangle meshes of these capsules, 24 triangles around each.
 /// skirt        Likewise: a front and a back that make up a cone, 0.45 m long; its waist is fixed.
 #pragma once
 
@@ -74,7 +77,7 @@ struct BuiltIn {
 };
 
 /// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain, flag, drape, table,
-/// tunic, skirt, mannequin.
+/// cushion, tunic, skirt, mannequin, mannequin_mesh.
 std::span<const BuiltIn> list();
 
 struct Scene {
