@@ -127,7 +127,7 @@ TEST_CASE("nor one that a sphere runs into") {
   const Backend backend = each_backend();
   Scene runs{.sheet = level_sheet(14, {0, 0, 0}, true), .mesh = icosphere(0.1, 2), .time = 0.4};
   runs.moves = true;
-  runs.pose = [](double t) { return Pose{{0, -0.2 + 2 * t, 0}, turn({0, 0, 1}, 3 * t)}; };
+  runs.pose = [](double t) { return Pose{{0, -0.2 + 4 * t, 0}, turn({0, 0, 1}, 3 * t)}; };
   run(runs, backend);
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("nor one beside a box that spins") {
               .body = {.shape = nullptr, .friction = 0.6},
               .time = 0.5};
   spins.moves = true;
-  spins.pose = [](double t) { return Pose{{}, turn({0, 0.6, 0.8}, 30 * t)}; };
+  spins.pose = [](double t) { return Pose{{}, turn({0, 0.6, 0.8}, 50 * t)}; };
   run(spins, backend);
 }
 
@@ -160,7 +160,7 @@ TEST_CASE("nor one that is thrown at a body, of little thickness too") {
   struct Throw {
     double thickness, speed;
   };
-  for (const auto [thickness, speed] : {Throw{1e-3, 15}, {1e-5, 5}}) {
+  for (const auto [thickness, speed] : {Throw{1e-3, 15}, {1e-5, 15}}) {
     CAPTURE(thickness);
     Scene thrown{.sheet = level_sheet(14, {0.01, 0.14, 0.003}, true),
                  .mesh = icosphere(0.1, 2),
