@@ -37,8 +37,8 @@ double to_inside(Vector p, Vector a, Vector b, Vector c) {
 }
 
 double of_edges(Vector a, Vector b, Vector c, Vector d) {
-  const double ends = std::min({to_segment(a, c, d), to_segment(b, c, d), to_segment(c, a, b),
-                                to_segment(d, a, b)});
+  const double ends = std::min(
+      {to_segment(a, c, d), to_segment(b, c, d), to_segment(c, a, b), to_segment(d, a, b)});
   const Vector n = cross(b - a, d - c);
   const double square = dot(n, n);
   if (!(square > 0)) return ends;
@@ -141,8 +141,8 @@ FeaturePair feature_pair(bool edges, Form form, std::uint32_t seed) {
 double distance_of(const FeaturePair& pair) {
   const auto& [a, b, c, d] = pair.point;
   if (pair.edges) return of_edges(a, b, c, d);
-  return std::min({to_segment(a, b, c), to_segment(a, c, d), to_segment(a, d, b),
-                   to_inside(a, b, c, d)});
+  return std::min(
+      {to_segment(a, b, c), to_segment(a, c, d), to_segment(a, d, b), to_inside(a, b, c, d)});
 }
 
 }  // namespace weft::test
