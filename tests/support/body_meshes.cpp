@@ -16,9 +16,18 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 TriangleMesh icosahedron() {
   const double t = std::numbers::phi;
-  return {.vertices = {{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0},
-                       {0, -1, t}, {0, 1, t}, {0, -1, -t}, {0, 1, -t},
-                       {t, 0, -1}, {t, 0, 1}, {-t, 0, -1}, {-t, 0, 1}},
+  return {.vertices = {{-1, t, 0},
+                       {1, t, 0},
+                       {-1, -t, 0},
+                       {1, -t, 0},
+                       {0, -1, t},
+                       {0, 1, t},
+                       {0, -1, -t},
+                       {0, 1, -t},
+                       {t, 0, -1},
+                       {t, 0, 1},
+                       {-t, 0, -1},
+                       {-t, 0, 1}},
           .triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
                         {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
                         {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
@@ -28,8 +37,8 @@ TriangleMesh icosahedron() {
 void subdivide(TriangleMesh& mesh) {
   std::map<std::array<std::uint32_t, 2>, std::uint32_t> middles;
   const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [found, is_new] = middles.try_emplace({std::min(a, b), std::max(a, b)},
-                                                     static_cast<std::uint32_t>(mesh.vertices.size()));
+    const auto [found, is_new] = middles.try_emplace(
+        {std::min(a, b), std::max(a, b)}, static_cast<std::uint32_t>(mesh.vertices.size()));
     if (is_new) mesh.vertices.push_back(0.5 * (mesh.vertices[a] + mesh.vertices[b]));
     return found->second;
   };

@@ -65,8 +65,9 @@ void check_find(const simd::Table& table, const Grown& grown, const Box& box) {
 
 void check_meet(const simd::Table& table, const Grown& a, const Grown& b) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> found, known;
-  BoxTree::meet(table, a.tree, b.tree,
-                [&](std::uint32_t i, std::uint32_t j) { found.push_back({i, j}); });
+  BoxTree::meet(table, a.tree, b.tree, [&](std::uint32_t i, std::uint32_t j) {
+    found.push_back({i, j});
+  });
   for (std::uint32_t i = 0; i < a.boxes.size(); ++i) {
     for (std::uint32_t j = 0; j < b.boxes.size(); ++j) {
       if (meet(a.boxes[i], b.boxes[j])) known.push_back({i, j});

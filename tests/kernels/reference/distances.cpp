@@ -34,8 +34,8 @@ double least_of_samples(const FeaturePair& pair) {
   for (int i = 0; i <= kParts; ++i) {
     for (int j = 0; j <= kParts - (pair.edges ? 0 : i); ++j) {
       const double s = double{1} * i / kParts, t = double{1} * j / kParts;
-      const Vector r = pair.edges ? a + s * (b - a) - (c + t * (d - c))
-                                  : a - (b + s * (c - b) + t * (d - b));
+      const Vector r =
+          pair.edges ? a + s * (b - a) - (c + t * (d - c)) : a - (b + s * (c - b) + t * (d - b));
       least = std::min(least, length(r));
     }
   }
