@@ -1,0 +1,169 @@
+#include <pybind11/stl.h>
+#include <weft/mesh.h>
+
+#include "arrays.h"
+#include "fields.h"
+#include "parts.h"
+
+namespace weft::python {
+
+namespace {
+
+using Mesh = MeshDescription;
+
+void add_materials(py::module_& m) {
+  py::class_<Material> material(m, "Material", "A cloth's own properties, whatever its mesh.");
+  add_keywords<Material>(material);
+  material.def_readwrite("density", &Material::density, "kg/m^2")
+      .def_readwrite("thickness", &Material::thickness, "m")
+      .def_readwrite("warp", &Material::warp, "N/m")
+      .def_readwrite("weft", &Material::weft, "N/m")
+      .def_readwrite("shear", &Material::shear, "N/m per radian")
+      .def_readwrite("bending", &Material::bending, "N m")
+      .def_readwrite("damping_stretch", &Material::damping_stretch, "s")
+      .def_readwrite("damping_bending", &Material::damping_bending, "s")
+      .def_readwrite("damping_motion", &Material::damping_motion, "1/s")
+      .def_readwrite("drag", &Material::drag, "as Air.drag")
+      .def_readwrite("lift", &Material::lift, "as Air.lift");
+  m.def(
+      "check_material", [](const Material& given) { check(check_material(given)); },
+      py::arg("material"), "Raises Error with the field and the value that are refused.");
+  m.def(
+      "find_material", [](const std::string& name) { return value_of(find_material(name)); },
+      py::arg("name"), "A common fabric; the error lists the names that there are.");
+  m.def(
+      "materials",
+      [] {
+        py::dict named;
+        for (const NamedMaterial& one : materials())
+          named[py::str(one.name.data(), one.name.size())] = one.material;
+        return named;
+      },
+      "Common fabrics by their names.");
+}
+
+void set_faces(Mesh& mesh, py::object value) {
+  const py::array array = py::array::ensure(value);
+  if (!array || array.ndim() != 2 || array.shape(1) < 3) {
+    PyErr_Clear();
+    refuse("faces: not an array (faces, corners) with three corners or more");
+  }
+  const auto sides = static_cast<std::uint32_t>(array.shape(1));
+  mesh.corners = index_rows(value, "faces", array.shape(1));
+  mesh.face_sizes.assign(mesh.corners.size() / sides, sides);
+}
+
+template <class Class>
+void add_shape(Class& mesh) {
+  mesh.def_property(
+          "positions", [](const Mesh& d) { return rows<double>(d.positions); },
+          [](Mesh& d, py::object v) { d.positions = vectors<Vec3>(v, "positions"); },
+          "m, an array (vertices, 3)")
+      .def_property(
+          "corners", [](const Mesh& d) { return rows<std::uint32_t>(d.corners); },
+          [](Mesh& d, py::object v) { d.corners = indices(v, "corners"); },
+          "vertices, face after face")
+      .def_property(
+          "face_sizes", [](const Mesh& d) { return rows<std::uint32_t>(d.face_sizes); },
+          [](Mesh& d, py::object v) { d.face_sizes = indices(v, "face_sizes"); },
+          "corners of each face; empty: triangles")
+      .def("set_faces", &set_faces, py::arg("faces"),
+           "Sets corners and face_sizes to those of an array (faces, corners).")
+      .def_property(
+          "lines", [](const Mesh& d) { return rows<std::uint32_t>(d.lines); },
+          [](Mesh& d, py::object v) { d.lines = index_tuples<2>(v, "lines"); },
+          "threads, an array (n, 2)")
+      .def_property(
+          "rest_positions", [](const Mesh& d) { return rows<double>(d.rest_positions); },
+          [](Mesh& d, py::object v) { d.rest_positions = vectors<Vec3>(v, "rest_positions"); },
+          "m, the shape at rest in space")
+      .def_property(
+          "rest_corners", [](const Mesh& d) { return rows<double>(d.rest_corners); },
+          [](Mesh& d, py::object v) {
+            d.rest_corners = vectors<std::array<double, 2>>(v, "rest_corners");
+          },
+          "m, the shape at rest when flat, one (u, v) per corner")
+      .def_property(
+          "warp", [](const Mesh& d) { return rows<double>(d.warp); },
+          [](Mesh& d, py::object v) { d.warp = vectors<Vec3>(v, "warp"); },
+          "where the warp runs, one direction or one per face")
+      .def_property(
+          "seams", [](const Mesh& d) { return rows<std::uint32_t>(d.seams); },
+          [](Mesh& d, py::object v) { d.seams = index_tuples<2>(v, "seams"); },
+          "pairs of vertices that are sewn together, an array (n, 2)")
+      .def_property(
+          "pins", [](const Mesh& d) { return rows<std::uint32_t>(d.pins); },
+          [](Mesh& d, py::object v) { d.pins = indices(v, "pins"); },
+          "vertices whose particles are fixed");
+}
+
+void add_description(py::module_& m) {
+  py::enum_<Ropes>(m, "Ropes", "Which constraints only pull.")
+      .value("none", Ropes::none)
+      .value("diagonals", Ropes::diagonals)
+      .value("all", Ropes::all);
+  py::class_<Mesh> mesh(m, "MeshDescription",
+                        "A surface, where it begins and in its shape at rest. Arrays that it "
+                        "returns are copies and cannot be written: assign whole ones.");
+  add_keywords<Mesh>(mesh);
+  add_shape(mesh);
+  mesh.def_readwrite("material", &Mesh::material, "a Material; None: rigid edges")
+      .def_readwrite("mass", &Mesh::mass, "kg of the whole, without a material")
+      .def_readwrite("thread_density", &Mesh::thread_density, "kg/m")
+      .def_readwrite("weld_distance", &Mesh::weld_distance, "m")
+      .def_readwrite("seam_time", &Mesh::seam_time, "s")
+      .def_readwrite("seam_force", &Mesh::seam_force, "N")
+      .def_readwrite("ropes", &Mesh::ropes, "Ropes");
+}
+
+void add_made(py::module_& m) {
+  py::class_<MeshCounts>(m, "MeshCounts", "What was found in a mesh.")
+      .def_readonly("triangles", &MeshCounts::triangles, "that are left of the faces")
+      .def_readonly("quads", &MeshCounts::quads, "four-sided faces")
+      .def_readonly("recognised_quads", &MeshCounts::recognised_quads, "pairs of triangles")
+      .def_readonly("welded_vertices", &MeshCounts::welded_vertices,
+                    "that share the particle of an earlier one")
+      .def_readonly("unused_vertices", &MeshCounts::unused_vertices, "in no face and no line")
+      .def_readonly("degenerate_faces", &MeshCounts::degenerate_faces, "without area, left out")
+      .def_readonly("double_faces", &MeshCounts::double_faces, "left out")
+      .def_readonly("non_manifold_edges", &MeshCounts::non_manifold_edges, "of three faces or more")
+      .def_readonly("thread_lines", &MeshCounts::thread_lines, "that became threads")
+      .def_readonly("pieces", &MeshCounts::pieces, "that nothing joins")
+      .def_readonly("loose_pieces", &MeshCounts::loose_pieces, "of these, without a pin")
+      .def_readonly("suggested_weld", &MeshCounts::suggested_weld, "m; 0: none");
+  py::class_<MeshCloth>(m, "MeshCloth", "What cloth_from_mesh made.")
+      .def_readwrite("scene", &MeshCloth::scene, "a SceneDescription, which may be changed")
+      .def_property_readonly(
+          "particle_of_vertex",
+          [](const MeshCloth& made) { return rows<std::uint32_t>(made.particle_of_vertex); },
+          "one per vertex; kNoIndex: none")
+      .def_readonly("counts", &MeshCloth::counts, "MeshCounts")
+      .def_property_readonly(
+          "cells", [](const MeshCloth& made) { return rows<std::uint32_t>(made.cells); },
+          "particles of faces that became springs, an array (n, 4)");
+}
+
+}  // namespace
+
+void add_mesh(py::module_& m) {
+  add_materials(m);
+  add_description(m);
+  add_made(m);
+  m.def(
+      "warp_from_texture",
+      [](const Mesh& mesh, py::object texture) {
+        const auto places = vectors<std::array<double, 2>>(texture, "texture");
+        return rows<double>(value_of(warp_from_texture(mesh, places)));
+      },
+      py::arg("mesh"), py::arg("texture"), "Where v grows on each face; one (u, v) per corner.");
+  m.def(
+      "cloth_from_mesh",
+      [](const Mesh& mesh) {
+        const Mesh copy = mesh;  // others may change theirs meanwhile
+        const py::gil_scoped_release release;
+        return value_of(cloth_from_mesh(copy));
+      },
+      py::arg("mesh"), "Welds, sews, and derives springs and masses.");
+}
+
+}  // namespace weft::python

@@ -1,0 +1,191 @@
+#include <pybind11/stl.h>
+#include <weft/scene.h>
+
+#include "arrays.h"
+#include "bytes.h"
+#include "fields.h"
+#include "held.h"
+#include "parts.h"
+#include "records.h"
+
+namespace weft::python {
+
+namespace {
+
+using Scene = SceneDescription;
+
+void check_kinds(const std::vector<ConstraintKind>& kinds, const std::string& field) {
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (kinds[i] > ConstraintKind::rope) {
+      refuse(field + "[" + std::to_string(i) + "].kind: " +
+             std::to_string(static_cast<int>(kinds[i])) + " is neither 0, distance, nor 1, rope");
+    }
+  }
+}
+
+template <class T>
+std::vector<T> checked_records(py::handle value, const std::string& field) {
+  std::vector<T> out = records<T>(value, field);
+  std::vector<ConstraintKind> kinds;
+  for (const T& record : out) kinds.push_back(record.kind);
+  check_kinds(kinds, field);
+  return out;
+}
+
+void add_enumerations(py::module_& m) {
+  py::enum_<ConstraintKind>(m, "ConstraintKind", "distance, or rope, which only pulls.")
+      .value("distance", ConstraintKind::distance)
+      .value("rope", ConstraintKind::rope);
+}
+
+void add_parts(py::module_& m) {
+  py::class_<Damping> damping(m, "Damping", "What springs lose, and the decay of all motion.");
+  add_keywords<Damping>(damping);
+  damping.def_readwrite("stretch", &Damping::stretch, "s")
+      .def_readwrite("bending", &Damping::bending, "s")
+      .def_readwrite("motion", &Damping::motion, "1/s");
+
+  py::class_<Air> air(m, "Air", "Drag and lift on triangles of the cloth.");
+  add_keywords<Air>(air);
+  air.def_property(
+         "triangles", [](const Air& a) { return rows<std::uint32_t>(a.triangles); },
+         [](Air& a, py::object v) { a.triangles = index_tuples<3>(v, "air.triangles"); },
+         "an array (n, 3) of particles")
+      .def_readwrite("density", &Air::density, "kg/m^3")
+      .def_readwrite("drag", &Air::drag, "of the area that a triangle shows")
+      .def_readwrite("lift", &Air::lift, "across the wind")
+      .def_readwrite("wind", &Air::wind, "m/s");
+}
+
+template <class Class>
+void add_particles(Class& scene) {
+  scene
+      .def_property(
+          "positions", [](const Scene& s) { return rows<double>(s.positions); },
+          [](Scene& s, py::object v) { s.positions = vectors<Vec3>(v, "positions"); },
+          "m, an array (particles, 3)")
+      .def_property(
+          "velocities", [](const Scene& s) { return rows<double>(s.velocities); },
+          [](Scene& s, py::object v) { s.velocities = vectors<Vec3>(v, "velocities"); },
+          "m/s, one per particle; empty: at rest")
+      .def_property(
+          "masses", [](const Scene& s) { return rows<double>(s.masses); },
+          [](Scene& s, py::object v) { s.masses = vectors<double>(v, "masses"); },
+          "kg, one per particle")
+      .def_property(
+          "fixed", [](const Scene& s) { return rows<std::uint32_t>(s.fixed); },
+          [](Scene& s, py::object v) { s.fixed = indices(v, "fixed"); },
+          "particles of infinite inertia")
+      .def_property(
+          "surface", [](const Scene& s) { return rows<std::uint32_t>(s.surface); },
+          [](Scene& s, py::object v) { s.surface = index_tuples<3>(v, "surface"); },
+          "triangles of the cloth, which meshes touch, an array (n, 3)")
+      .def_property(
+          "spheres", [](const Scene& s) { return rows<std::uint32_t>(s.spheres); },
+          [](Scene& s, py::object v) { s.spheres = indices(v, "spheres"); },
+          "particles that others collide with")
+      .def_property(
+          "radii", [](const Scene& s) { return rows<double>(s.radii); },
+          [](Scene& s, py::object v) { s.radii = vectors<double>(v, "radii"); },
+          "m, one per particle; empty without spheres");
+}
+
+template <class Class>
+void add_joints(Class& scene) {
+  scene
+      .def_property(
+          "constraints", [](const Scene& s) { return array_of_records(s.constraints); },
+          [](Scene& s, py::object v) {
+            s.constraints = checked_records<Constraint>(v, "constraints");
+          },
+          "records of weft.Constraint")
+      .def_property(
+          "membrane", [](const Scene& s) { return array_of_records(s.membrane); },
+          [](Scene& s, py::object v) {
+            s.membrane = checked_records<MembraneElement>(v, "membrane");
+          },
+          "records of weft.MembraneElement")
+      .def_property(
+          "bending", [](const Scene& s) { return array_of_records(s.bending); },
+          [](Scene& s, py::object v) { s.bending = records<BendingElement>(v, "bending"); },
+          "records of weft.BendingElement")
+      .def_property(
+          "anchors", [](const Scene& s) { return array_of_records(s.anchors); },
+          [](Scene& s, py::object v) { s.anchors = records<Anchor>(v, "anchors"); },
+          "records of weft.Anchor")
+      .def_property(
+          "seams", [](const Scene& s) { return array_of_records(s.seams); },
+          [](Scene& s, py::object v) { s.seams = records<Seam>(v, "seams"); },
+          "records of weft.Seam");
+}
+
+void add_model(py::module_& m) {
+  py::class_<ModelInfo>(m, "ModelInfo", "Counts of what a model consists of.")
+      .def_readonly("particles", &ModelInfo::particles, "fixed ones too")
+      .def_readonly("constraints", &ModelInfo::constraints, "active ones, without contacts")
+      .def_readonly("inert_constraints", &ModelInfo::inert_constraints, "between fixed particles")
+      .def_readonly("ropes", &ModelInfo::ropes, "constraints that only pull")
+      .def_readonly("compliant", &ModelInfo::compliant, "constraints that are springs")
+      .def_readonly("membrane_elements", &ModelInfo::membrane_elements, "active ones")
+      .def_readonly("bending_elements", &ModelInfo::bending_elements, "active ones")
+      .def_readonly("anchors", &ModelInfo::anchors, "points that hold particles")
+      .def_readonly("seams", &ModelInfo::seams, "pairs that come together")
+      .def_readonly("surface_triangles", &ModelInfo::surface_triangles, "that meshes touch")
+      .def_readonly("air_triangles", &ModelInfo::air_triangles, "that feel the air")
+      .def_readonly("spheres", &ModelInfo::spheres, "particles that others collide with")
+      .def_readonly("colours", &ModelInfo::colours, "groups of constraints that share no particle")
+      .def_readonly("tiles", &ModelInfo::tiles, "groups that threads may work on in parallel")
+      .def_readonly("run_share", &ModelInfo::run_share, "of the constraints in contiguous runs")
+      .def_readonly("bytes", &ModelInfo::bytes, "held by the model");
+  py::class_<HeldModel>(m, "Model", "A scene that is checked and prepared. Cloths share it.");
+  m.def(
+      "build_model",
+      [](const Scene& description) {
+        const Scene copy = description;  // others may change theirs meanwhile
+        const py::gil_scoped_release release;
+        return HeldModel{value_of(build_model(copy))};
+      },
+      py::arg("description"), "Checks the description and prepares it.");
+  m.def(
+      "save_model",
+      [](const HeldModel& held) {
+        std::vector<std::byte> saved;
+        {
+          const py::gil_scoped_release release;
+          saved = save_model(*held.model);
+        }
+        return to_python(saved);
+      },
+      py::arg("model"), "The model as bytes for a file.");
+  m.def(
+      "load_model",
+      [](const py::bytes& saved) {
+        const std::span<const std::byte> bytes = bytes_of(saved);
+        const py::gil_scoped_release release;
+        return HeldModel{value_of(load_model(bytes))};
+      },
+      py::arg("bytes"), "Builds a saved model again. Damaged bytes are refused.");
+  m.def(
+      "describe", [](const HeldModel& held) { return describe(*held.model); }, py::arg("model"),
+      "Counts of what a model consists of.");
+}
+
+}  // namespace
+
+void add_scene(py::module_& m) {
+  add_enumerations(m);
+  add_parts(m);
+  py::class_<Scene> scene(m, "SceneDescription",
+                          "Particles and what joins them. Arrays that it returns are copies and "
+                          "cannot be written: assign whole ones.");
+  add_keywords<Scene>(scene);
+  add_particles(scene);
+  add_joints(scene);
+  scene.def_readwrite("damping", &Scene::damping, "a Damping")
+      .def_readwrite("air", &Scene::air, "an Air")
+      .def_readwrite("friction", &Scene::friction, "Coulomb's, of the cloth beside bodies")
+      .def_readwrite("gravity", &Scene::gravity, "m/s^2");
+  add_model(m);
+}
+
+}  // namespace weft::python

@@ -1,0 +1,69 @@
+#include <weft/settings.h>
+
+#include "fields.h"
+#include "parts.h"
+
+namespace weft::python {
+
+namespace py = pybind11;
+
+namespace {
+
+void add_enumerations(py::module_& m) {
+  py::enum_<Solver>(m, "Solver", "How constraints are solved; see settings.h.")
+      .value("gauss_seidel", Solver::gauss_seidel)
+      .value("direct", Solver::direct)
+      .value("yarn", Solver::yarn)
+      .value("small_steps", Solver::small_steps)
+      .value("automatic", Solver::automatic);
+  py::enum_<Scheme>(m, "Scheme", "How a step goes on in time; see settings.h.")
+      .value("paper", Scheme::paper)
+      .value("rattle", Scheme::rattle)
+      .value("implicit", Scheme::implicit)
+      .value("bdf2", Scheme::bdf2)
+      .value("automatic", Scheme::automatic);
+  py::enum_<Directions>(m, "Directions", "When directions are renewed; see settings.h.")
+      .value("each", Directions::each)
+      .value("frozen", Directions::frozen);
+  py::enum_<Backend>(m, "Backend", "Scalar code in double, or lanes; see settings.h.")
+      .value("reference", Backend::reference)
+      .value("simd", Backend::simd);
+  py::enum_<Isa>(m, "Isa", "The instructions of the simd backend; see settings.h.")
+      .value("automatic", Isa::automatic)
+      .value("sse2", Isa::sse2)
+      .value("avx2", Isa::avx2)
+      .value("avx512", Isa::avx512)
+      .value("neon", Isa::neon);
+}
+
+}  // namespace
+
+void add_settings(py::module_& m) {
+  add_enumerations(m);
+  py::class_<Settings> settings(m, "Settings",
+                                "How a cloth is solved, and to which error; see settings.h.");
+  add_keywords<Settings>(settings);
+  settings.def_readwrite("tolerance", &Settings::tolerance, "strain that every step must reach")
+      .def_readwrite("substeps", &Settings::substeps, "0: automatic")
+      .def_readwrite("iterations", &Settings::iterations, "0: to the tolerance")
+      .def_readwrite("renew_after", &Settings::renew_after, "iterations along the same directions")
+      .def_readwrite("max_iterations", &Settings::max_iterations, "of a whole step")
+      .def_readwrite("contact_tolerance", &Settings::contact_tolerance, "m")
+      .def_readwrite("velocity_tolerance", &Settings::velocity_tolerance, "m/s")
+      .def_readwrite("motion_tolerance", &Settings::motion_tolerance, "m/s; 0: not asked for")
+      .def_readwrite("impulse_limit", &Settings::impulse_limit, "N s; 0: none")
+      .def_readwrite("solver", &Settings::solver, "a Solver")
+      .def_readwrite("scheme", &Settings::scheme, "a Scheme")
+      .def_readwrite("backend", &Settings::backend, "a Backend")
+      .def_readwrite("isa", &Settings::isa, "an Isa")
+      .def_readwrite("threads", &Settings::threads, "most threads of an Arena; 0: all")
+      .def_readwrite("directions", &Settings::directions, "Directions")
+      .def_readwrite("anticipate", &Settings::anticipate, "section 4.2 of the paper")
+      .def_readwrite("anticipate_products", &Settings::anticipate_products, "by stored products")
+      .def_readwrite("sleep", &Settings::sleep, "a cloth that rests costs nothing")
+      .def_readwrite("skip", &Settings::skip, "section 4.3 of the paper")
+      .def_readwrite("velocity_correction", &Settings::velocity_correction, "a second loop");
+  m.def("paper_settings", &paper_settings, "Those of the paper: Gauss-Seidel, one substep.");
+}
+
+}  // namespace weft::python

@@ -1,0 +1,134 @@
+"""What is read of a cloth, a batch and a surface, views' lifetimes, and saved states."""
+import gc
+import unittest
+
+import numpy as np
+from sheets import cloth_of, line, model_of, sheet
+
+import weft
+
+
+class Cloths(unittest.TestCase):
+    def test_positions_in_any_buffer(self):
+        cloth = cloth_of(9)
+        cloth.step(0.01)
+        new = cloth.read_positions()
+        self.assertEqual(new.tolist(), [cloth.position(i).tolist() for i in range(cloth.particle_count())])
+        out = np.empty_like(new)
+        self.assertIs(cloth.read_positions(out), out)
+        self.assertTrue(np.array_equal(out, new))
+        vertices = np.full((len(new), 8), 7, np.float32)
+        cloth.read_positions(vertices[:, :3], origin=(0.25, 0, 0))
+        cloth.read_velocities(vertices[:, 3:6])
+        self.assertTrue(np.array_equal(vertices[:, :3], (new - (0.25, 0, 0)).astype(np.float32)))
+        self.assertTrue(np.array_equal(vertices[:, 3:6], cloth.read_velocities().astype(np.float32)))
+        self.assertTrue(np.all(vertices[:, 6:] == 7))
+
+    def test_saved_and_loaded(self):
+        cloth = cloth_of(9)
+        cloth.add_body(weft.Body(shape=weft.build_shape(weft.Ball(centre=(0.5, -0.3, 0.5), radius=0.25))))
+        for _ in range(10):
+            cloth.step(0.01)
+        again = weft.Cloth.create(weft.load_model(weft.save_model(cloth.model)))
+        again.load_state(cloth.save_state())
+        other = cloth.clone()
+        for one in (cloth, again, other):
+            one.step(0.01)
+        self.assertEqual(cloth.state_hash(), again.state_hash())
+        self.assertEqual(cloth.state_hash(), other.state_hash())
+
+    def test_bodies_bear_the_cloth(self):
+        cloth = weft.Cloth.create(model_of(sheet(9, pins=[])))
+        plane = cloth.add_body(weft.Body(shape=weft.build_shape(weft.Plane()), pose=weft.Pose(
+            position=(0, -0.001, 0))))
+        for _ in range(100):
+            cloth.step(0.01)
+        weight = 10 * weft.cloth_from_mesh(sheet(9)).scene.masses.sum()
+        self.assertAlmostEqual(cloth.body_load(plane).force[1], -weight, delta=1e-3 * weight)
+        contacts = cloth.body_contacts()
+        self.assertEqual(contacts.dtype, weft.BodyContact)
+        self.assertTrue(np.all(contacts["body"] == plane) and len(contacts) == 81)
+        self.assertTrue(np.allclose(contacts["normal"], (0, 1, 0)))
+
+    def test_changes_and_pins(self):
+        cloth = cloth_of(9)
+        cloth.move_fixed([0, 1], cloth.read_positions()[:2] + (0, 0.01, 0))
+        cloth.step(0.01)
+        self.assertEqual(cloth.position(1)[1], 0.01)
+        cloth.change(weft.Changes(release=range(9), masses=[(3, 0.01)], damping=weft.Damping(motion=1)))
+        cloth.step(0.01)
+        self.assertGreater(cloth.position(1)[1], 0.018)  # let go at 1 m/s, it flies on
+        with self.assertRaisesRegex(weft.Error, r"masses\[0\]"):
+            weft.Changes(masses=[3])
+
+
+class Batches(unittest.TestCase):
+    def test_the_bits_of_each_alone(self):
+        model = model_of(sheet(8))
+        cloths = [weft.Cloth.create(model) for _ in range(6)]
+        batch = weft.Batch(cloths)
+        start = batch.read_positions()
+        self.assertEqual(start.shape, (6, 64, 3))
+        start[:, :, 1] += 0.1 * np.arange(6)[:, None]
+        batch.write_positions(start)
+        alone = [cloth.clone() for cloth in cloths]
+        for _ in range(5):
+            self.assertEqual(batch.step_all(0.01, weft.Arena(2)), 0)
+            for cloth in alone:
+                cloth.step(0.01)
+        self.assertEqual([c.state_hash() for c in cloths], [c.state_hash() for c in alone])
+        out = np.empty((6, 64, 3))
+        self.assertIs(batch.read_positions(out), out)
+        self.assertTrue(np.array_equal(out[3], alone[3].read_positions()))
+        self.assertEqual(batch.report(2).status, weft.Status.converged)
+
+    def test_refused(self):
+        cloths = [weft.Cloth.create(line(count)) for count in (3, 4)]
+        batch = weft.Batch(cloths)
+        self.assertEqual(batch.step_all(-1), 2)
+        with self.assertRaisesRegex(weft.Error, "dt"):
+            batch.report(1)
+        with self.assertRaisesRegex(weft.Error, r"cloths\[1\]: 4 particles"):
+            batch.read_positions()
+        with self.assertRaisesRegex(weft.Error, r"cloths\[2\]: it is in the batch"):
+            weft.Batch(cloths + cloths[:1])
+        with self.assertRaisesRegex(weft.Error, "cloth: 2"):
+            batch.report(2)
+
+    def test_keeps_its_cloths(self):
+        batch = weft.Batch([cloth_of(5), cloth_of(5)])
+        gc.collect()
+        self.assertEqual(batch.step_all(0.01), 0)
+
+
+class Surfaces(unittest.TestCase):
+    def test_vertices_and_normals(self):
+        mesh = sheet(7)
+        made = weft.cloth_from_mesh(mesh)
+        surface = weft.surface_of_mesh(mesh, made)
+        cloth = weft.Cloth.create(weft.build_model(made.scene))
+        positions, normals = surface.read_vertices(cloth)
+        self.assertTrue(np.array_equal(positions, cloth.read_positions()[made.particle_of_vertex].astype("f4")))
+        self.assertTrue(np.allclose(np.abs(normals), (0, 1, 0)))
+        finer = weft.map_surface(mesh, made, sheet(13))
+        self.assertTrue(np.allclose(finer.read_vertices(cloth)[0], sheet(13).positions, atol=1e-6))
+        vertices = np.zeros((49, 8), np.float32)
+        surface.read_vertices(cloth, vertices[:, :3], vertices[:, 3:6])
+        self.assertTrue(np.array_equal(vertices[:, 3:6], normals))
+
+    def test_the_view_keeps_its_surface(self):
+        mesh = sheet(7)
+        surface = weft.surface_of_mesh(mesh, weft.cloth_from_mesh(mesh))
+        triangles = surface.triangles()
+        expected = triangles.copy()
+        self.assertFalse(triangles.flags.owndata)
+        self.assertIs(triangles.base, surface)
+        del surface
+        gc.collect()
+        self.assertTrue(np.array_equal(triangles, expected))
+        with self.assertRaises(ValueError):
+            triangles[0] = 0
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,96 @@
+"""Scenes from arrays, and what is refused: one line with the field, the index and the value."""
+import unittest
+
+import numpy as np
+from sheets import cloth_of, line, model_of, sheet
+
+import weft
+
+
+class Scenes(unittest.TestCase):
+    def test_arrays_come_back(self):
+        mesh = sheet(5)
+        scene = weft.cloth_from_mesh(mesh).scene
+        again = weft.SceneDescription()
+        for field in ("positions", "velocities", "masses", "fixed", "constraints", "membrane", "bending",
+                      "anchors", "seams", "surface", "spheres", "radii", "damping", "air", "friction",
+                      "gravity"):
+            setattr(again, field, getattr(scene, field))
+        self.assertEqual(weft.save_model(weft.build_model(scene)), weft.save_model(weft.build_model(again)))
+
+    def test_fields_are_copies_that_cannot_be_written(self):
+        mesh = sheet(3)
+        with self.assertRaises(ValueError):
+            mesh.positions[0] = 1
+
+    def test_keywords_are_fields(self):
+        self.assertEqual(weft.Settings(tolerance=0.5, solver=weft.Solver.yarn).solver, weft.Solver.yarn)
+        with self.assertRaisesRegex(TypeError, "Settings has no field tolerence"):
+            weft.Settings(tolerence=1)
+
+    def test_version_is_that_of_the_library(self):
+        self.assertEqual(weft.__version__, weft._weft.__version__)
+
+    def test_materials(self):
+        cotton = weft.materials()["cotton"]
+        self.assertEqual(cotton.density, weft.find_material("cotton").density)
+        cotton.warp = -1
+        with self.assertRaisesRegex(weft.Error, "^[^\n]*warp[^\n]*-1[^\n]*$"):
+            weft.check_material(cotton)
+        with self.assertRaisesRegex(weft.Error, "cotton"):
+            weft.find_material("tin")
+
+
+class Refused(unittest.TestCase):
+    def refuses(self, pattern, call, *arguments, **keywords):
+        with self.assertRaisesRegex(weft.Error, pattern) as caught:
+            call(*arguments, **keywords)
+        self.assertNotIn("\n", str(caught.exception))
+        self.assertIsInstance(caught.exception, ValueError)
+
+    def test_scene(self):
+        scene = weft.SceneDescription(positions=np.zeros((2, 3)), masses=[1, -2])
+        self.refuses(r"masses\[1\].*-2", weft.build_model, scene)
+        self.refuses(r"positions: shape \(2, 2\)", weft.SceneDescription, positions=np.zeros((2, 2)))
+        self.refuses("positions: not an array", weft.SceneDescription, positions="no")
+        self.refuses(r"fixed\[1\]: -1 ", weft.SceneDescription, fixed=[0, -1])
+        self.refuses(r"fixed\[0\]: 4294967296 ", weft.SceneDescription, fixed=[2 ** 32])
+        self.refuses("fixed: not whole numbers", weft.SceneDescription, fixed=[0.5])
+        self.refuses("constraints: not records", weft.SceneDescription, constraints=[(1, 2)])
+        self.refuses(r"constraints\[0\].kind: 2", weft.SceneDescription, constraints=[(0, 1, 1.0, 2, 0)])
+        self.refuses("faces", weft.MeshDescription().set_faces, [1, 2, 3])
+
+    def test_a_cloth_is_unchanged(self):
+        cloth = cloth_of(8)
+        cloth.step(0.01)
+        before = cloth.state_hash()
+        self.refuses("dt.*-1", cloth.step, -1)
+        self.refuses("tolerance", weft.Cloth.create, line(3), weft.Settings(tolerance=-1))
+        self.refuses("position", cloth.write_positions, np.zeros((3, 3)))
+        self.refuses("particle", cloth.move_fixed, [63], [(0, 0, 0)])
+        self.refuses("particle: 64", cloth.position, 64)
+        self.refuses("7", cloth.move_body, 7, weft.Pose())
+        self.refuses("radius", weft.build_shape, weft.Ball(radius=-1))
+        self.assertEqual(cloth.state_hash(), before)
+
+    def test_buffers(self):
+        cloth = line(4)
+        cloth = weft.Cloth.create(cloth)
+        self.refuses(r"out: shape \(3, 3\) is not \(4, 3\)", cloth.read_positions, np.zeros((3, 3)))
+        self.refuses("out: neither float64", cloth.read_positions, np.zeros((4, 3), int))
+        self.refuses("out: neither float64", cloth.read_positions, np.zeros((3, 4)).T)
+        self.refuses("out: not float32", cloth.read_positions, np.zeros((3, 4), np.float32).T)
+        fixed = np.zeros((4, 3))
+        fixed.setflags(write=False)
+        self.refuses("out: cannot be written", cloth.read_positions, fixed)
+
+    def test_saved_bytes(self):
+        cloth = cloth_of(6)
+        saved = bytearray(cloth.save_state())
+        saved[len(saved) // 2] ^= 1
+        self.refuses("", cloth.load_state, bytes(saved))
+        self.refuses("", weft.load_model, b"nothing")
+
+
+if __name__ == "__main__":
+    unittest.main()
