@@ -105,11 +105,13 @@ py::array_t<double> read(const Batch& batch, std::optional<py::array> given, Rea
     refuse("out: not float64 in C's order that can be written");
   }
   auto* out = static_cast<Vec3*>(given->mutable_data());
-  const py::gil_scoped_release release;
-  for (std::size_t i = 0; i < batch.cloths.size(); ++i) {
-    check((batch.cloths[i]->value.*one)({out + i * particles, particles}));
+  {
+    const py::gil_scoped_release release;
+    for (std::size_t i = 0; i < batch.cloths.size(); ++i) {
+      check((batch.cloths[i]->value.*one)({out + i * particles, particles}));
+    }
   }
-  return *given;
+  return *given;  // with Python's lock, which counts references
 }
 
 void write(Batch& batch, py::handle given, Write one, const std::string& name) {
