@@ -2,7 +2,7 @@
 /// simulation: scene.h (describe and build), settings.h (create), body.h (what cloth touches),
 /// cloth.h (step and read), batch.h (many cloths) and jobs.h (threads of a job system).
 /// It does not include mesh.h, which makes a SceneDescription of a mesh and a material, and
-/// surface.h, which tells a renderer what to draw.
+/// surface.h, which tells a renderer what to draw. weft_c.h is all of them in C.
 ///
 ///   describe -> build -> create -> step -> read
 ///

@@ -1,0 +1,185 @@
+/// Steps of one cloth and of many in C, and the host's threads.
+#include <weft/batch.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "engine/c_interface/handles.h"
+#include "engine/c_interface/structs.h"
+
+namespace weft::c_interface {
+namespace {
+
+weft_report report_of(const StepReport& r) {
+  weft_report out{.size = sizeof(weft_report),
+                  .status = static_cast<int>(r.status),
+                  .asleep = r.asleep,
+                  .substeps = r.substeps,
+                  .halvings = r.halvings,
+                  .iterations = r.iterations,
+                  .direction_updates = r.direction_updates,
+                  .velocity_iterations = r.velocity_iterations,
+                  .visits = r.visits,
+                  .corrections = r.corrections,
+                  .scheme_fallbacks = r.scheme_fallbacks,
+                  .contacts = r.contacts,
+                  .max_strain = r.max_strain,
+                  .rms_strain = r.rms_strain,
+                  .max_shear = r.max_shear,
+                  .max_error = r.max_error,
+                  .worst_constraint = r.worst_constraint,
+                  .worst_element = r.worst_element,
+                  .max_penetration = r.max_penetration,
+                  .body_contacts = r.body_contacts,
+                  .contact_failures = r.contact_failures,
+                  .zones = r.zones,
+                  .intersecting = r.intersecting,
+                  .max_anchor_error = r.max_anchor_error,
+                  .open_seams = r.open_seams,
+                  .max_seam_gap = r.max_seam_gap,
+                  .seam_work = r.seam_work,
+                  .motion_error = r.motion_error,
+                  .energy_lost = r.energy_lost,
+                  .pin_work = r.pin_work,
+                  .body_work = r.body_work,
+                  .friction_work = r.friction_work,
+                  .failed_particle = r.failed_particle,
+                  .passed_particle = r.passed_particle,
+                  .stage_seconds = {}};
+  static_assert(sizeof out.stage_seconds == sizeof r.stage_seconds);
+  std::copy(r.stage_seconds.begin(), r.stage_seconds.end(), out.stage_seconds);
+  return out;
+}
+
+weft_batch_step default_step() {
+  weft_batch_step step{};
+  step.size = sizeof step;
+  step.result = WEFT_REFUSED;
+  step.report = report_of({});
+  return step;
+}
+
+weft_jobs no_jobs() {
+  return {.size = sizeof(weft_jobs), .host = nullptr, .threads = nullptr, .run = nullptr};
+}
+
+/// The functions of a host in C, as a JobSystem calls them.
+Result<JobSystem> job_system(const weft_jobs* given, weft_jobs& jobs) {
+  if (given == nullptr) return JobSystem{};
+  const auto read = read_struct("jobs", given, no_jobs());
+  if (!read) return Error{read.error()};
+  jobs = read.value();
+  JobSystem system;
+  system.host = &jobs;
+  if (jobs.threads != nullptr) {
+    system.threads = [](void* host) noexcept {
+      const auto& its = *static_cast<const weft_jobs*>(host);
+      return its.threads(its.host);
+    };
+  }
+  if (jobs.run != nullptr) {
+    system.run = [](void* host, Job job, int times) noexcept {
+      const auto& its = *static_cast<const weft_jobs*>(host);
+      its.run(its.host, job.function, job.context, times);
+    };
+  }
+  return system;
+}
+
+weft_batch_step& step_at(weft_batch_step* steps, std::size_t i) {
+  const std::size_t size = steps->size;
+  return *reinterpret_cast<weft_batch_step*>(reinterpret_cast<std::byte*>(steps) + i * size);
+}
+
+/// Each must have all that results are written to.
+Result<void> check_steps(weft_batch_step* steps, std::size_t count) {
+  if (auto r = check_struct("steps", steps); !r) return r;
+  const std::size_t size = steps->size;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string field = "steps[" + std::to_string(i) + "]";
+    const weft_batch_step& step = step_at(steps, i);
+    if (step.size != size || size <= offsetof(weft_batch_step, report)) {
+      return Error{field + ".size: must be that of the struct, and of the first (" +
+                   std::to_string(step.size) + ")"};
+    }
+    if (auto r = check_size(field + ".report", step.report.size); !r) return r;
+    if (step.report.size > size - offsetof(weft_batch_step, report)) {
+      return Error{field + ".report.size: goes beyond the step (" +
+                   std::to_string(step.report.size) + ")"};
+    }
+  }
+  return {};
+}
+
+void write_result(const ClothStep& done, weft_batch_step& out) {
+  std::fill(std::begin(out.message), std::end(out.message), '\0');
+  if (done.result) {
+    out.result = WEFT_OK;
+    write_struct(report_of(done.result.value()), &out.report);
+  } else {
+    out.result = WEFT_REFUSED;
+    done.result.error().copy(out.message, sizeof out.message - 1);
+  }
+}
+
+}  // namespace
+}  // namespace weft::c_interface
+
+using namespace weft::c_interface;
+
+weft_result weft_init_report(weft_report* report, size_t size) {
+  return init_struct("report", report_of({}), report, size);
+}
+
+weft_result weft_init_jobs(weft_jobs* jobs, size_t size) {
+  return init_struct("jobs", no_jobs(), jobs, size);
+}
+
+weft_result weft_init_batch_step(weft_batch_step* step, size_t size) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"step", step}}); !r) return r;
+    if (auto r = check_size("step", size); !r) return r;
+    step->size = size;
+    write_struct(default_step(), step);
+    if (size > offsetof(weft_batch_step, report)) {
+      step->report.size = size - offsetof(weft_batch_step, report);
+    }
+    return {};
+  });
+}
+
+weft_result weft_step(weft_cloth* cloth, double dt, const weft_jobs* jobs, weft_report* report) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}}); !r) return r;
+    if (report != nullptr) {
+      if (auto r = check_struct("report", report); !r) return r;
+    }
+    weft_jobs its{};
+    const auto system = job_system(jobs, its);
+    if (!system) return weft::Error{system.error()};
+    const auto done = cloth->cloth.step(dt, system.value());
+    if (!done) return weft::Error{done.error()};
+    if (report != nullptr) write_struct(report_of(done.value()), report);
+    return {};
+  });
+}
+
+weft_result weft_step_all(size_t count, weft_batch_step* steps, const weft_jobs* jobs) {
+  return call([&]() -> weft::Result<void> {
+    if (count == 0) return {};
+    if (auto r = check_steps(steps, count); !r) return r;
+    weft_jobs its{};
+    const auto system = job_system(jobs, its);
+    if (!system) return weft::Error{system.error()};
+    std::vector<weft::ClothStep> batch(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const weft_batch_step& step = step_at(steps, i);
+      batch[i].cloth = step.cloth == nullptr ? nullptr : &step.cloth->cloth;
+      batch[i].dt = step.dt;
+    }
+    weft::step_all(batch, system.value());
+    for (std::size_t i = 0; i < count; ++i) write_result(batch[i], step_at(steps, i));
+    return {};
+  });
+}
