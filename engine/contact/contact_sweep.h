@@ -17,6 +17,8 @@
 
 #include "engine/bodies/bodies.h"
 #include "engine/contact/contact_particles.h"
+#include "engine/contact/crossings.h"
+#include "engine/contact/misplaced.h"
 #include "engine/contact/narrow_phase.h"
 
 namespace weft {
@@ -44,8 +46,8 @@ struct ContactScene {
   ContactPoints& points;
   ContactParticles& particles;
   MeshImpulses& impulses;
-  const std::vector<std::uint32_t>&
-      inside;  // slots on the wrong side of a one-sided body, ascending
+  const Misplaced& misplaced;
+  const Crossings& crossings;
 };
 
 /// 1/kg: a lower bound for the sum of W w^2. Where a feature is fixed but for a particle that has a

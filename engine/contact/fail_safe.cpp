@@ -102,3 +102,24 @@ void take_along(const ContactScene& scene, const PairList& pairs, const Failure&
 }
 
 }  // namespace weft::fail_safe
+
+namespace weft {
+
+void stop_failures(const ContactScene& scene, const BroadPhase& broad, NarrowPhase& narrow,
+                   Verification& verification, Candidates& candidates, double time,
+                   FailSafeReport& report, Team& team) {
+  constexpr int kBlows = 8, kZones = 12;  // rounds
+  report.failures += static_cast<int>(verification.failures().size());
+  for (int round = 0; round < kBlows + kZones && !verification.failures().empty(); ++round) {
+    for (const Failure& failure : verification.failures()) {
+      if (round < kBlows)
+        fail_safe::blow(scene, candidates[failure.list], failure, time);
+      else
+        fail_safe::take_along(scene, candidates[failure.list], failure, time);
+    }
+    if (round >= kBlows) report.zones += static_cast<int>(verification.failures().size());
+    verification.find(scene, broad, narrow, candidates, team);
+  }
+}
+
+}  // namespace weft

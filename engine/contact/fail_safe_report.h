@@ -6,7 +6,7 @@ namespace weft {
 struct FailSafeReport {
   int failures = 0;  // pairs that were caught
   int zones = 0;     // pairs that were taken along
-  int left = 0;      // that cross in the end
+  int left = 0;      // triangles of the cloth that cross in the end, and particles inside
 };
 
 }  // namespace weft

@@ -20,8 +20,7 @@ constexpr int kLateRounds = 3;
 
 }  // namespace
 
-void MeshContacts::begin(const BodyClock& clock, bool is_new,
-                         std::span<const std::uint32_t> inside) {
+void MeshContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
   points_.begin(model_, clock);
   left_ = 0;
   interval_ = late_depth_ = 0;
@@ -33,7 +32,8 @@ void MeshContacts::begin(const BodyClock& clock, bool is_new,
   for (const TravellingBody& body : clock.bodies()) impulses_.of_body.push_back({.id = body.id});
   impulses_.work = impulses_.friction = 0;
   is_new_ = is_new;
-  inside_.assign(inside.begin(), inside.end());
+  misplaced_ = misplaced;
+  crossings_.begin(*cloth_, misplaced_.crossing);
 }
 
 /// s. Bodies that are fast are looked at more often: on their way they turn, and take cloth along.
@@ -57,10 +57,12 @@ void MeshContacts::begin_interval(ContactParticles& particles, const BodyClock& 
   points_.begin_interval(model_, particles, clock, substeps);
   broad_.find(*cloth_, points_, candidates_);
   narrow_.measure(points_, candidates_, team);
-  if (is_new_) find_inside();
+  if (is_new_) {
+    find_inside();
+    crossings_.find(points_);
+  }
   is_new_ = false;
-  narrow_.find_near(model_, points_, candidates_, near_,
-                    [&](std::uint32_t slot) { return is_inside(slot); });
+  narrow_.find_near(model_, points_, candidates_, near_, misplaced_, crossings_);
   come_out();
   sweep_.begin(scene(particles, clock), near_);
   interval_ = substeps * clock.motions().front().h;
@@ -68,10 +70,6 @@ void MeshContacts::begin_interval(ContactParticles& particles, const BodyClock& 
 
 void MeshContacts::advance(const BodyClock& clock) {
   if (!empty()) sweep_.advance(clock, points_, near_);
-}
-
-bool MeshContacts::is_inside(std::uint32_t slot) const {
-  return std::ranges::binary_search(inside_, slot);
 }
 
 /// The triangle of the mesh that is nearest to the particle when the interval begins.
@@ -101,7 +99,7 @@ bool MeshContacts::find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pa
 }
 
 void MeshContacts::find_inside() {
-  inside_.clear();
+  misplaced_.inside.clear();
   for (std::uint32_t slot = 0; slot < points_.slots(); ++slot) {
     if (!model_.is_particle(slot) || model_.inverse_mass[slot] == 0) continue;
     for (std::uint16_t i = 0; i < points_.meshes().size(); ++i) {
@@ -111,7 +109,7 @@ void MeshContacts::find_inside() {
       std::array<std::uint32_t, 4> four{};
       reference::Nearest found;
       if (find_nearest(slot, i, pair, four, found) && is_behind(mesh, pair, found, found.r)) {
-        inside_.push_back(slot);
+        misplaced_.inside.push_back(slot);
         break;
       }
     }
@@ -121,7 +119,7 @@ void MeshContacts::find_inside() {
 /// Those that are inside are near to the surface that they leave by, however deep they are. Those
 /// that are out are forgotten.
 void MeshContacts::come_out() {
-  std::erase_if(inside_, [&](std::uint32_t slot) {
+  std::erase_if(misplaced_.inside, [&](std::uint32_t slot) {
     bool is_out = true;
     for (std::uint16_t i = 0; i < points_.meshes().size(); ++i) {
       ContactMesh& mesh = points_.meshes()[i];
@@ -142,7 +140,6 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
   if (empty() || clock.stands() || left_ > 0 || interval_ == 0) return false;
   points_.measure_moves(model_, particles, clock);
   const double time = std::exchange(interval_, 0);
-  failures_.left = 0;
   late_depth_ = 0;
   const ContactScene scene = this->scene(particles, clock);
   bool has_moved = false;
@@ -154,16 +151,40 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
     has_moved = true;
   }
   verification_.find(scene, broad_, narrow_, candidates_, team);
-  if (verification_.failures().empty() && !has_moved) return false;
-  stop_failures(scene, broad_, narrow_, verification_, candidates_, time, failures_, team,
-                [&](std::uint32_t slot, const Pair& pair) {
-                  if (points_.meshes()[pair.mesh].mesh().two_sided || is_inside(slot)) return;
-                  inside_.insert(std::ranges::lower_bound(inside_, slot), slot);
-                });
+  if (verification_.failures().empty() && !has_moved) {
+    note_crossings();
+    return false;
+  }
+  stop_failures(scene, broad_, narrow_, verification_, candidates_, time, failures_, team);
+  for (const Failure& failure : verification_.failures())
+    misplace(candidates_[failure.list].pairs[failure.pair]);
+  note_crossings();
   verification_.find_late(scene, narrow_, candidates_, team);
   for (const Failure& late : verification_.failures())
     late_depth_ = std::max(late_depth_, late.depth);
   return true;
+}
+
+/// What could not be kept apart.
+void MeshContacts::misplace(const Pair& pair) {
+  std::vector<std::uint32_t>& inside = misplaced_.inside;
+  switch (pair.kind) {
+    case PairKind::particle_triangle:
+      if (!points_.meshes()[pair.mesh].mesh().two_sided && !misplaced_.is_inside(pair.of_cloth))
+        inside.insert(std::ranges::lower_bound(inside, pair.of_cloth), pair.of_cloth);
+      for (const std::uint32_t t : cloth_->triangles_at[pair.of_cloth])
+        crossings_.suspect(cloth_->triangles[t]);
+      return;
+    case PairKind::vertex_triangle:
+      return crossings_.suspect(cloth_->triangles[pair.of_cloth]);
+    case PairKind::edges:
+      crossings_.suspect(cloth_->edges[pair.of_cloth]);
+  }
+}
+
+void MeshContacts::note_crossings() {
+  crossings_.renew(points_);
+  misplaced_.crossing = crossings_.slots();
 }
 
 int MeshContacts::count_touching() const {
@@ -204,7 +225,7 @@ void MeshContacts::read_touching(const ContactParticles& particles,
 
 std::size_t MeshContacts::bytes() const {
   std::size_t bytes = points_.bytes() + broad_.bytes() + narrow_.bytes() + sweep_.bytes() +
-                      bytes_of(inside_) + bytes_of(impulses_.of_body);
+                      misplaced_.bytes() + crossings_.bytes() + bytes_of(impulses_.of_body);
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
     bytes += near.list.bytes() + bytes_of(near.sides) + bytes_of(near.states);

@@ -9,7 +9,7 @@
 ///   it is over: what went through each other 8 fail_safe      stops that
 ///
 /// Particles that are inside of a one-sided body when it appears, or when positions are written,
-/// are known as such until they are out.
+/// are known as such until they are out, and triangles that cross a body until they do no longer.
 #pragma once
 
 #include <span>
@@ -31,12 +31,17 @@ struct MeshTouch {
 class MeshContacts {
  public:
   MeshContacts(const Model& model, const simd::Table& table)
-      : model_(model), broad_(table), narrow_(table), sweep_(table), verification_(table) {}
+      : model_(model),
+        broad_(table),
+        narrow_(table),
+        sweep_(table),
+        verification_(table),
+        crossings_(table) {}
 
   bool empty() const { return points_.meshes().empty(); }
-  /// Of a frame. is_new: positions were given, or a body was: who is inside is looked for.
-  /// Else it is `inside`, ascending, as the frame before left it.
-  void begin(const BodyClock& clock, bool is_new, std::span<const std::uint32_t> inside);
+  /// Of a frame. is_new: positions were given, or a body was: what is misplaced is looked for.
+  /// Else it is as the frame before left it.
+  void begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced);
   /// A substep is predicted, and the clock stands where it begins: an interval begins with it if
   /// the last one is over.
   void predict(ContactParticles& particles, const BodyClock& clock, Team& team);
@@ -63,28 +68,28 @@ class MeshContacts {
     return std::max(late_depth_, sweep_.deepest(scene(particles, clock), near_, team));
   }
   const MeshImpulses& impulses() const { return impulses_; }
-  /// Particles that are inside count as left.
+  /// Left are triangles that cross, and particles inside.
   FailSafeReport failures() const {
     FailSafeReport report = failures_;
-    report.left += static_cast<int>(inside_.size());
+    report.left = crossings_.count() + static_cast<int>(misplaced_.inside.size());
     return report;
   }
   int count_touching() const;
   void read_touching(const ContactParticles& particles, std::vector<MeshTouch>& touches) const;
-  /// Slots on the wrong side of a one-sided body, ascending.
-  const std::vector<std::uint32_t>& inside() const { return inside_; }
+  const Misplaced& misplaced() const { return misplaced_; }
   std::size_t bytes() const;
 
  private:
   ContactScene scene(ContactParticles& particles, const BodyClock& clock) {
-    return {model_, *cloth_, clock, points_, particles, impulses_, inside_};
+    return {model_, *cloth_, clock, points_, particles, impulses_, misplaced_, crossings_};
   }
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
   double interval_for(const BodyClock& clock) const;
-  bool is_inside(std::uint32_t slot) const;
   void find_inside();
   void come_out();
+  void misplace(const Pair& pair);
+  void note_crossings();
   bool find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pair,
                     std::array<std::uint32_t, 4>& four, reference::Nearest& found) const;
 
@@ -99,11 +104,12 @@ class MeshContacts {
   Near near_;
   MeshImpulses impulses_;
   FailSafeReport failures_;
-  bool is_new_ = false;    // it is not known yet who is inside
+  bool is_new_ = false;    // it is not known yet what is misplaced
   int left_ = 0;           // substeps of the present interval
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
-  std::vector<std::uint32_t> inside_;
+  Misplaced misplaced_;
+  Crossings crossings_;
 };
 
 }  // namespace weft

@@ -59,6 +59,30 @@ void NarrowPhase::measure(const ContactPoints& points, const Candidates& candida
   }
 }
 
+void NarrowPhase::find_near(const Model& model, ContactPoints& points, const Candidates& candidates,
+                            Near& near, const Misplaced& misplaced,
+                            const Crossings& crossings) const {
+  for (std::size_t list = 0; list < kPairLists; ++list) {
+    near[list].clear();
+    const PairList& pairs = candidates[list];
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if ((distances_[list].near[i / kernels::kLanes] >> i % kernels::kLanes & 1) == 0) continue;
+      const Pair& pair = pairs.pairs[i];
+      const std::array<std::uint32_t, 4> four = pairs.points(i);
+      const bool inside = std::ranges::any_of(four, [&](std::uint32_t point) {
+        return points.is_of_cloth(point) && misplaced.is_inside(point);
+      });
+      // Faces and edges between particles that are inside follow these.
+      if (inside && pair.kind != PairKind::particle_triangle) continue;
+      if (crossings.leaves_out(pair)) continue;
+      kernels::Vector normal{};
+      bool is_under = false;
+      if (!see(model, points, pair, four, inside, normal, is_under)) continue;
+      near[list].add(pair, four, normal, points.meshes()[pair.mesh].thickness, is_under);
+    }
+  }
+}
+
 bool NarrowPhase::can_move(const Model& model, const Pair& pair,
                            const std::array<std::uint32_t, 4>& points) {
   const auto is_free = [&](std::uint32_t slot) { return model.inverse_mass[slot] > 0; };

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "engine/contact/broad_phase.h"
+#include "engine/contact/crossings.h"
+#include "engine/contact/misplaced.h"
 #include "engine/parallel/team.h"
 #include "kernels/reference/bodies.h"
 
@@ -57,11 +59,10 @@ class NarrowPhase {
   explicit NarrowPhase(const simd::Table& table) : table_(table) {}
 
   void measure(const ContactPoints& points, const Candidates& candidates, Team& team);
-  /// is_inside(slot): the particle is known to be on the wrong side of a one-sided body. Pairs of
-  /// others with a surface that the cloth is behind are left out: it lies beside another one there.
-  template <class IsInside>
+  /// Pairs with a surface that the cloth is behind are left out, but for particles that are known
+  /// to be inside: the cloth lies beside another surface there.
   void find_near(const Model& model, ContactPoints& points, const Candidates& candidates,
-                 Near& near, IsInside&& is_inside) const;
+                 Near& near, const Misplaced& misplaced, const Crossings& crossings) const;
   const std::array<Distances, kPairLists>& distances() const { return distances_; }
   std::array<Distances, kPairLists>& distances() { return distances_; }
   std::size_t bytes() const;
@@ -81,27 +82,5 @@ class NarrowPhase {
   const simd::Table& table_;
   std::array<Distances, kPairLists> distances_;
 };
-
-template <class IsInside>
-void NarrowPhase::find_near(const Model& model, ContactPoints& points, const Candidates& candidates,
-                            Near& near, IsInside&& is_inside) const {
-  for (std::size_t list = 0; list < kPairLists; ++list) {
-    near[list].clear();
-    const PairList& pairs = candidates[list];
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if ((distances_[list].near[i / kernels::kLanes] >> i % kernels::kLanes & 1) == 0) continue;
-      const Pair& pair = pairs.pairs[i];
-      const std::array<std::uint32_t, 4> four = pairs.points(i);
-      const bool inside = std::ranges::any_of(
-          four, [&](std::uint32_t point) { return points.is_of_cloth(point) && is_inside(point); });
-      // Faces and edges between particles that are inside follow these.
-      if (inside && pair.kind != PairKind::particle_triangle) continue;
-      kernels::Vector normal{};
-      bool is_under = false;
-      if (!see(model, points, pair, four, inside, normal, is_under)) continue;
-      near[list].add(pair, four, normal, points.meshes()[pair.mesh].thickness, is_under);
-    }
-  }
-}
 
 }  // namespace weft

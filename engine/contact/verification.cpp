@@ -83,7 +83,7 @@ void Verification::find(const ContactScene& scene, const BroadPhase& broad, Narr
   look_beside_strayed(scene, broad, narrow, candidates, team);
   const ContactPoints& points = scene.points;
   const auto is_inside = [&](std::uint32_t point) {
-    return points.is_of_cloth(point) && std::ranges::binary_search(scene.inside, point);
+    return points.is_of_cloth(point) && scene.misplaced.is_inside(point);
   };
   for (std::uint32_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
@@ -93,6 +93,7 @@ void Verification::find(const ContactScene& scene, const BroadPhase& broad, Narr
         const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
         if (i >= pairs.size()) continue;
         const Pair& pair = pairs.pairs[i];
+        if (scene.crossings.leaves_out(pair)) continue;
         Way way;
         const auto four = pairs.points(i);
         for (std::size_t k = 0; k < 4; ++k) {
@@ -135,7 +136,7 @@ void Verification::find_late(const ContactScene& scene, NarrowPhase& narrow,
   const ContactPoints& points = scene.points;
   const auto at = [&](std::uint32_t point) { return points.end(point); };
   const auto is_inside = [&](std::uint32_t point) {
-    return points.is_of_cloth(point) && std::ranges::binary_search(scene.inside, point);
+    return points.is_of_cloth(point) && scene.misplaced.is_inside(point);
   };
   for (std::uint32_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
@@ -145,6 +146,7 @@ void Verification::find_late(const ContactScene& scene, NarrowPhase& narrow,
         const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
         if (i >= pairs.size()) continue;
         const Pair& pair = pairs.pairs[i];
+        if (scene.crossings.leaves_out(pair)) continue;
         const ContactMesh& mesh = points.meshes()[pair.mesh];
         const auto four = pairs.points(i);
         const FourPoints x{at(four[0]), at(four[1]), at(four[2]), at(four[3])};

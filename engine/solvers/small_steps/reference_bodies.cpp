@@ -10,9 +10,9 @@ using kernels::Vector;
 
 void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps,
                             bool stands, const Touching& before, bool is_new,
-                            std::span<const std::uint32_t> inside) {
+                            const Misplaced& misplaced) {
   clock_.begin(bodies, h, substeps, stands);
-  meshes_.begin(clock_, is_new, inside);
+  meshes_.begin(clock_, is_new, misplaced);
   if (bodies.empty()) return;
   on_.assign(model_.slots(), false);
   if (before.size() == on_.size()) on_ = before;

@@ -21,9 +21,9 @@ class ReferenceBodies {
 
   bool empty() const { return clock_.bodies().empty(); }
   /// before: who touched a body when the frame before ended; empty: nothing is known of it.
-  /// inside: likewise, of meshes; is_new: it is to be found anew.
+  /// misplaced: likewise, by meshes; is_new: it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-             const Touching& before, bool is_new, std::span<const std::uint32_t> inside);
+             const Touching& before, bool is_new, const Misplaced& misplaced);
   /// part: of h, by the scheme.
   void advance(double part, ContactParticles& particles, Team& team);
   bool has_meshes() const { return !meshes_.empty(); }

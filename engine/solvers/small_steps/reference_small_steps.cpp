@@ -179,7 +179,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   anchors_.begin(plan.anchors, h, plan.substeps);
   bodies_.begin(plan.bodies, h, plan.substeps, plan.projects,
                 has_past_ && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
-                plan.placed || plan.bodies_are_new, past_.inside);
+                plan.placed || plan.bodies_are_new, past_.misplaced);
   at_limit_.assign(at_limit_.size(), false);
   if (has_past_ && !plan.anchors.moving) at_limit_ = past_.at_limit;
   last_ = 0;
@@ -628,7 +628,7 @@ void ReferenceSmallSteps::keep(Team&) {
   past_.v_before = v_before_;
   past_.at_limit = at_limit_;
   past_.touching = bodies_.touching();
-  past_.inside = bodies_.meshes().inside();
+  past_.misplaced = bodies_.meshes().misplaced();
   for (std::size_t i = 0; i < model_.slots(); ++i) past_.moved.set(i, x_[i] - before_[i]);
 }
 
@@ -637,7 +637,7 @@ void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsVie
   const auto& other = static_cast<const ReferenceSmallSteps&>(from);
   past_.h = other.past_.h;
   past_.at_limit = other.past_.at_limit;
-  past_.inside.clear();
+  past_.misplaced.clear();
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     const Past& its = other.past_;
     ParticlePast past{its.v[its_slot], its.v_before[its_slot], its.moved[its_slot]};
@@ -646,18 +646,19 @@ void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsVie
     past_.v.set(slot, past.v);
     past_.v_before.set(slot, past.v_before);
     past_.moved.set(slot, past.moved);
-    if (std::ranges::binary_search(its.inside, its_slot)) past_.inside.push_back(slot);
+    past_.misplaced.take_over(its.misplaced, its_slot, slot);
   });
-  std::ranges::sort(past_.inside);
+  past_.misplaced.sort();
 }
 
 bool ReferenceSmallSteps::load_past(ArchiveReader& archive) {
   Past past;
   archive(past);
   const auto has_slots = [&](const kernels::Vectors& v) { return v.size() == model_.slots(); };
-  const bool is_past = has_slots(past.v) && has_slots(past.v_before) && has_slots(past.moved) &&
-                       past.at_limit.size() == at_limit_.size() && are_slots(model_, past.inside) &&
-                       past.h >= 0 && std::isfinite(past.h);
+  const bool is_past =
+      has_slots(past.v) && has_slots(past.v_before) && has_slots(past.moved) &&
+      past.at_limit.size() == at_limit_.size() && are_slots(model_, past.misplaced.inside) &&
+      are_slots(model_, past.misplaced.crossing) && past.h >= 0 && std::isfinite(past.h);
   if (!archive.is_done() || !is_past) return false;
   past_ = std::move(past);
   return true;

@@ -27,11 +27,11 @@ class ReferenceSmallSteps final : public SmallSteps {
     kernels::Vectors v, v_before, moved;
     std::vector<bool> at_limit;  // per anchor
     ReferenceBodies::Touching touching;
-    std::vector<std::uint32_t> inside;  // of meshes, slots
+    Misplaced misplaced;
 
     friend void visit_fields(Is<Past> auto& past, auto& archive) {
-      auto& [h, v, v_before, moved, at_limit, touching, inside] = past;
-      archive(h, v, v_before, moved, at_limit, touching, inside);
+      auto& [h, v, v_before, moved, at_limit, touching, misplaced] = past;
+      archive(h, v, v_before, moved, at_limit, touching, misplaced);
     }
   };
 

@@ -53,9 +53,9 @@ void SimdBodies::make_room() {
 
 void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
                        std::span<const std::uint16_t> before, bool is_new,
-                       std::span<const std::uint32_t> inside) {
+                       const Misplaced& misplaced) {
   clock_.begin(bodies, h, substeps, stands);
-  meshes_.begin(clock_, is_new, inside);
+  meshes_.begin(clock_, is_new, misplaced);
   pairs_.clear();
   first_pair_.clear();
   if (bodies.empty()) return;

@@ -38,11 +38,10 @@ class SimdBodies {
 
   bool empty() const { return clock_.bodies().empty(); }
   bool has_meshes() const { return !meshes_.empty(); }
-  /// before: of the frame before; empty: nothing is known of it. inside: likewise, of meshes;
+  /// before: of the frame before; empty: nothing is known of it. misplaced: likewise, of meshes;
   /// is_new: it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-             std::span<const std::uint16_t> before, bool is_new,
-             std::span<const std::uint32_t> inside);
+             std::span<const std::uint16_t> before, bool is_new, const Misplaced& misplaced);
   /// Of a substep, whose flights are predicted. part: of h, by the scheme.
   void advance(const simd::Flight& flight, const float* base, double part,
                ContactParticles& particles, Team& team);

@@ -214,7 +214,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   anchors_.measure_base(base_.data());
   bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects,
                 has_past_ && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
-                plan.placed || plan.bodies_are_new, past_.inside);
+                plan.placed || plan.bodies_are_new, past_.misplaced);
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());
   });
@@ -756,7 +756,7 @@ void SmallStepsSolver::keep(Team& team) {
   past_.since_renewal = since_renewal_;
   past_.at_limit = anchors_.at_limit();
   past_.touching = bodies_.touching();
-  past_.inside = bodies_.meshes().inside();
+  past_.misplaced = bodies_.meshes().misplaced();
   is_new_ = false;
   const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -769,7 +769,7 @@ std::size_t SmallStepsSolver::bytes() const {
          bytes_of(scratch_) + bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) +
          bytes_of(arrived_) + bytes_of(multiplier_) + bytes_of(aside_) + passes_.bytes() +
          seams_.bytes() + membrane_.bytes() + bending_.bytes() + anchors_.bytes() +
-         bodies_.bytes() + bytes_of(past_.touching) + bytes_of(past_.inside);
+         bodies_.bytes() + bytes_of(past_.touching) + past_.misplaced.bytes();
 }
 
 }  // namespace weft

@@ -34,11 +34,11 @@ struct SmallStepsPast {
   kernels::AlignedVector<float> base;  // of a frame that is kept
   SimdAnchors::AtLimit at_limit;
   SimdBodies::Touching touching;
-  std::vector<std::uint32_t> inside;  // of meshes, slots
+  Misplaced misplaced;
 
   friend void visit_fields(Is<SmallStepsPast> auto& past, auto& archive) {
-    auto& [h, since_renewal, v, v_before, moved, base, at_limit, touching, inside] = past;
-    archive(h, since_renewal, v, v_before, moved, base, at_limit, touching, inside);
+    auto& [h, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced] = past;
+    archive(h, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced);
   }
 };
 

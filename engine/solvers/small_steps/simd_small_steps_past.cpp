@@ -35,8 +35,10 @@ bool SmallStepsSolver::load_past(ArchiveReader& archive) {
       std::array{past.v.size(), past.v_before.size(), past.moved.size(), past.base.size()},
       [&](std::size_t size) { return size == layout_.floats; });
   const bool is_past = has_sizes && past.at_limit.size() == past_.at_limit.size() &&
-                       are_slots(model_, past.inside) && past.h >= 0 && std::isfinite(past.h) &&
-                       past.since_renewal >= 0 && past.since_renewal <= tuning::kRenewal;
+                       are_slots(model_, past.misplaced.inside) &&
+                       are_slots(model_, past.misplaced.crossing) && past.h >= 0 &&
+                       std::isfinite(past.h) && past.since_renewal >= 0 &&
+                       past.since_renewal <= tuning::kRenewal;
   if (!archive.is_done() || !is_past) return false;
   set_past(std::move(past));
   return true;
@@ -51,7 +53,7 @@ void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v
   past_.h = its.h;
   past_.at_limit = its.at_limit;
   past_.since_renewal = layout_.cell == other.layout_.cell ? its.since_renewal : tuning::kRenewal;
-  past_.inside.clear();
+  past_.misplaced.clear();
   const YarnPlaces &places = layout_.places(), &its_places = other.layout_.places();
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     std::size_t to = places.of(slot), at = its_places.of(its_slot);
@@ -61,12 +63,12 @@ void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v
       past_.v_before[to] = its.v_before[at];
       past_.moved[to] = its.moved[at];
     }
-    if (std::ranges::binary_search(its.inside, its_slot)) past_.inside.push_back(slot);
+    past_.misplaced.take_over(its.misplaced, its_slot, slot);
     const bool is_free = model_.inverse_mass[slot] > 0;
     if (is_free == (other.model_.inverse_mass[its_slot] > 0)) return;
     write_past(slot, is_free ? ParticlePast::flight(v[slot], gravity, past_.h) : ParticlePast{});
   });
-  std::ranges::sort(past_.inside);
+  past_.misplaced.sort();
 }
 
 void SmallStepsSolver::write_past(std::uint32_t slot, const ParticlePast& past) {
