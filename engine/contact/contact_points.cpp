@@ -200,6 +200,18 @@ void ContactPoints::advance(const BodyClock& clock) {
   }
 }
 
+void ContactPoints::place_asked(const BodyClock& clock) {
+  for (const std::uint32_t point : asked_) {
+    if (is_of_cloth(point)) continue;
+    const ContactMesh& mesh = meshes_[mesh_of_[point - slots_]];
+    const reference::BodyMotion& motion = clock.motions()[mesh.body];
+    const std::uint32_t vertex = point - mesh.first_point;
+    from_[point - slots_] = clock.vertex(mesh.body, vertex, motion.from, clock.share_after(-1));
+    to_[point - slots_] = clock.vertex(mesh.body, vertex, motion.to, clock.share_after(0));
+    set_place(point, to_[point - slots_]);
+  }
+}
+
 void ContactPoints::read_cloth(const ContactParticles& cloth) {
   for (const std::uint32_t point : asked_) {
     if (is_of_cloth(point)) set_place(point, cloth.position(point));

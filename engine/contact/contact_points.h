@@ -75,6 +75,8 @@ class ContactPoints {
   }
   /// To the end of the present substep.
   void advance(const BodyClock& clock);
+  /// The same for points that are asked for since.
+  void place_asked(const BodyClock& clock);
   /// Where those of the cloth have come to.
   void read_cloth(const ContactParticles& cloth);
   const float* places() const { return place_quads_.data(); }

@@ -139,14 +139,14 @@ void MeshContacts::come_out() {
 bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& clock, Team& team) {
   if (empty() || clock.stands() || left_ > 0 || interval_ == 0) return false;
   points_.measure_moves(model_, particles, clock);
-  const double time = std::exchange(interval_, 0);
   late_depth_ = 0;
   const ContactScene scene = this->scene(particles, clock);
   bool has_moved = false;
   for (int round = 0; round < kLateRounds; ++round) {
     verification_.find_late(scene, narrow_, candidates_, team);
+    expect_failures(clock, particles);
     for (const Failure& late : verification_.failures())
-      fail_safe::blow(scene, candidates_[late.list], late, time);
+      fail_safe::blow(scene, candidates_[late.list], late, interval_);
     if (verification_.failures().empty()) break;
     has_moved = true;
   }
@@ -155,7 +155,8 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
     note_crossings();
     return false;
   }
-  stop_failures(scene, broad_, narrow_, verification_, candidates_, time, failures_, team);
+  expect_failures(clock, particles);
+  stop_failures(scene, broad_, narrow_, verification_, candidates_, interval_, failures_, team);
   for (const Failure& failure : verification_.failures())
     misplace(candidates_[failure.list].pairs[failure.pair]);
   note_crossings();
@@ -163,6 +164,27 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
   for (const Failure& late : verification_.failures())
     late_depth_ = std::max(late_depth_, late.depth);
   return true;
+}
+
+/// What was not expected to touch is near from now on, so that what puts the cloth right until the
+/// step is over keeps it apart.
+void MeshContacts::expect_failures(const BodyClock& clock, ContactParticles& particles) {
+  bool any = false;
+  for (const Failure& failure : verification_.failures()) {
+    const Pair& pair = candidates_[failure.list].pairs[failure.pair];
+    NearPairs& near = near_[failure.list];
+    if (near.has(pair)) continue;
+    const auto four = candidates_[failure.list].points(failure.pair);
+    FourPoints before;
+    for (std::size_t k = 0; k < 4; ++k) before[k] = points_.start(four[k]);
+    const Vector r = nearest(pair.kind, before).r;
+    near.add(pair, four, kernels::direction(r, length(r)), points_.meshes()[pair.mesh].thickness,
+             false);
+    any = true;
+  }
+  if (!any) return;
+  sweep_.begin(scene(particles, clock), near_);
+  points_.place_asked(clock);
 }
 
 /// What could not be kept apart.

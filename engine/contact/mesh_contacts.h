@@ -58,8 +58,8 @@ class MeshContacts {
   }
   /// Slots that have touched a mesh in this substep.
   const std::vector<std::uint32_t>& touching() const { return sweep_.touching(); }
-  /// After a substep, which may be the last of an interval. Returns whether particles had to be
-  /// moved.
+  /// After a substep, which may be the last of an interval, and again if particles were moved
+  /// since. Returns whether particles had to be moved.
   bool end_interval(ContactParticles& particles, const BodyClock& clock, Team& team);
 
   /// m, of a pair that is nearer than its thickness.
@@ -88,6 +88,7 @@ class MeshContacts {
   double interval_for(const BodyClock& clock) const;
   void find_inside();
   void come_out();
+  void expect_failures(const BodyClock& clock, ContactParticles& particles);
   void misplace(const Pair& pair);
   void note_crossings();
   bool find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pair,

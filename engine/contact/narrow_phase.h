@@ -48,6 +48,9 @@ struct NearPairs {
   }
   void add(const Pair& pair, const std::array<std::uint32_t, 4>& points, kernels::Vector normal,
            double thickness, bool is_under);
+  bool has(const Pair& pair) const {
+    return std::ranges::find(list.pairs, pair) != list.pairs.end();
+  }
   /// From the second feature to the first, as last seen there.
   kernels::Vector normal(std::size_t i) const;
   void set_normal(std::size_t i, kernels::Vector normal);

@@ -23,6 +23,8 @@ struct Pair {
   std::uint32_t of_cloth = 0, of_body = 0;
   std::uint16_t mesh = 0;  // its place among the meshes
   PairKind kind = PairKind::edges;
+
+  bool operator==(const Pair&) const = default;
 };
 
 /// Pairs in blocks of lanes: of one kind of kernel, points beside triangles or edges.

@@ -215,11 +215,15 @@ class Frame {
   /// Puts right what the last substep left out of tolerance, in rounds of a sweep and local passes
   /// that look at all constraints. If rounds no longer bring the error down it is there to stay.
   Status finish() {
+    constexpr int kMostVerifications = 4;
     read_positions();
     Status status = put_right_what_is_left();
-    if (solver_.end_contacts(team_)) {
+    for (int i = 0; i < kMostVerifications && solver_.end_contacts(team_); ++i) {
       read_positions();
-      if (!is_within_tolerance() && status == Status::converged) status = Status::iteration_limit;
+      const bool was_right = status == Status::converged;
+      if (was_right) status = is_within_tolerance() ? Status::converged : Status::iteration_limit;
+      if (!was_right || status == Status::converged || i + 1 == kMostVerifications) break;
+      status = put_right_what_is_left();
     }
     report_.iterations += static_cast<std::int64_t>(std::ceil(local_passes_));
     return status;
@@ -499,7 +503,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   }
   if (fixed)
     trial.worsen(Status::fixed_iterations);
-  else if (is_in_body)
+  else if (is_in_body || s.body_report.failures.left > 0)
     trial.worsen(Status::iteration_limit);
   if (frame.passed_particle != kNoIndex) {
     trial.passed_particle = frame.passed_particle;
