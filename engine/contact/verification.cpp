@@ -152,7 +152,7 @@ void Verification::find_late(const ContactScene& scene, NarrowPhase& narrow,
         const FourPoints x{at(four[0]), at(four[1]), at(four[2]), at(four[3])};
         const reference::Nearest found = nearest(pair.kind, x);
         const double l = length(found.r);
-        constexpr double kLate = 0.95;  // of the thickness: what is nearer is no rounding
+        constexpr double kLate = 0.99;  // of the thickness: what is nearer is no rounding
         if (!(l < kLate * mesh.thickness) || l == 0 || !is_in_place(pair.kind, found)) continue;
         const Vector n = (towards_cloth(pair.kind) / l) * found.r;
         constexpr double kLean = 0.02;

@@ -20,11 +20,12 @@ namespace weft {
 
 struct State;
 
-/// converged: every constraint is within its tolerance. The state is committed.
+/// converged: every constraint is within its tolerance, and nothing crosses a body. The state is
+///   committed.
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
 /// iteration_limit: max_iterations were done, or with small_steps all rounds or all that a given
-///   number of substeps allows, and some constraint is still out of tolerance. The state is
-///   committed.
+///   number of substeps allows, and some constraint is still out of tolerance; or something
+///   crosses a body. The state is committed.
 /// infeasible: some constraint is out of tolerance and tens of thousands of iterations
 ///   (small_steps: sixteen rounds of a sweep and local passes) hardly reduce the error: constraints
 ///   contradict each other (a chain whose ends are too far apart), masses differ by far, or nothing
@@ -99,8 +100,10 @@ struct StepReport {
   /// within the step and were caught by its verification.
   int contact_failures = 0;
   int zones = 0;  ///< of these, how many had to be taken along by the body as if they stuck to it
-  int intersecting = 0;  ///< of these, how many cross when the step ends: 0, unless bodies close on
-                         ///< the cloth from both sides
+  /// Triangles of the cloth that cross such bodies when the step ends, and particles inside: 0,
+  /// unless it began so, a body was put there, or bodies close on the cloth from both sides. Their
+  /// edges and faces touch nothing until they have come apart; their particles are kept out.
+  int intersecting = 0;
   double max_anchor_error = 0;  ///< m, by which an anchor's limits are exceeded; 0 without anchors
   int open_seams = 0;           ///< whose particles have not come together yet (Seam)
   double max_seam_gap = 0;  ///< m, between particles of closed seams: bounded by contact_tolerance

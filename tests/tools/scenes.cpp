@@ -40,8 +40,8 @@ TEST_CASE("the list names what make() makes") {
     names += std::string(scene.name) + " ";
   }
   CHECK(names ==
-        "hang hang_sphere sphere_drop corners banner four_pins cape chain flag drape table tunic "
-        "skirt mannequin ");
+        "hang hang_sphere sphere_drop corners banner four_pins cape chain flag drape table cushion "
+        "tunic skirt mannequin mannequin_mesh ");
 }
 
 bool is_sewn(std::string_view name) {

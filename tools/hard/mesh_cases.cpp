@@ -1,4 +1,5 @@
-/// Bodies that are triangle meshes: sharp, fast, far away, fine, flat, and where the cloth is.
+/// Bodies that are triangle meshes: with corners, fast, far away, fine, flat, and where the cloth
+/// is.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,30 +26,6 @@ Outcome mesh_outcome(const Observed& o) {
   if (o.crossings > 0 && result.failure.empty())
     result.failure = fmt::format("{} triangles cross", o.crossings);
   return result;
-}
-
-/// A needle from the height -0.3 m to a point at 0, 4 mm thick below.
-TriangleMesh needle() {
-  constexpr std::uint32_t kSides = 6;
-  TriangleMesh mesh;
-  mesh.vertices = {{0, 0, 0}, {0, -0.3, 0}};
-  for (std::uint32_t i = 0; i < kSides; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kSides;
-    mesh.vertices.push_back({0.002 * std::cos(angle), -0.3, 0.002 * std::sin(angle)});
-    const std::uint32_t a = 2 + i, b = 2 + (i + 1) % kSides;
-    mesh.triangles.insert(mesh.triangles.end(), {{0, b, a}, {1, a, b}});
-  }
-  return mesh;
-}
-
-/// A ridge along z from the height -0.3 m to an edge at 0, 2 cm wide below.
-TriangleMesh knife() {
-  TriangleMesh mesh;
-  for (const double z : {-1., 1.})
-    mesh.vertices.insert(mesh.vertices.end(), {{0, 0, z}, {-0.01, -0.3, z}, {0.01, -0.3, z}});
-  mesh.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 3, 5}, {0, 5, 2},
-                    {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
-  return mesh;
 }
 
 /// A cube of 40 cm that stands on a corner, the highest of which is at the origin.
@@ -81,13 +58,12 @@ Outcome run_falls(const Setup& setup, const TriangleMesh& mesh, double friction,
   return mesh_outcome(observe(trial));
 }
 
-/// Two plates come nearer to a sheet that lies between them, by 1 m/s, and stop at a gap. Where
-/// there is no room what crosses must be reported, and nothing else is asked for.
-Outcome run_plates(const Setup& setup, double gap) {
-  constexpr double kSpeed = 1, kPlate = 0.05, kFrom = 0.1;  // m/s, m
+/// Two plates come nearer to a sheet that lies between them, by 1 m/s, and leave it just its room.
+Outcome run_plates(const Setup& setup) {
+  constexpr double kSpeed = 1, kPlate = 0.05, kFrom = 0.1, kGap = 3e-3;  // m/s, m
   const auto closes = [=](double side) {
     return [=](double time) {
-      const double apart = std::max(gap / 2, kFrom - kSpeed * time);
+      const double apart = std::max(kGap / 2, kFrom - kSpeed * time);
       return Pose{.position = {0, side * (apart + kPlate / 2), 0}};
     };
   };
@@ -95,9 +71,7 @@ Outcome run_plates(const Setup& setup, double gap) {
   Trial trial =
       trial_of(setup, cotton(20, 0.5, {}), {{plate, 0.3, closes(1)}, {plate, 0.3, closes(-1)}});
   trial.steps = setup.steps(60, 20);
-  const Observed o = observe(trial);
-  if (gap >= 2 * kThickness) return mesh_outcome(o);
-  return honesty_outcome(o, kAnyEnergy);
+  return mesh_outcome(observe(trial));
 }
 
 /// A wide plate comes along its normal and takes the sheet with it.
@@ -112,15 +86,6 @@ Outcome run_fast_plate(const Setup& setup) {
   const bool is_under = std::ranges::any_of(o.end.positions, [&](Vec3 p) { return p.y < top; });
   if (is_under && result.failure.empty()) result.failure = "something went through the plate";
   return result;
-}
-
-/// A sheet falls onto a bar that spins about an axis along z.
-Outcome run_spins(const Setup& setup) {
-  const auto spins = [](double time) { return Pose{.rotation = turned_about_z(50 * time)}; };
-  Trial trial = trial_of(setup, cotton(25, 0.8, {0, 0.25, 0}),
-                         {{box_mesh({0.4, 0.05, 0.05}, 4), 0.3, spins}});
-  trial.steps = setup.steps(180, 40);
-  return mesh_outcome(observe(trial));
 }
 
 /// A ball is suddenly there, up to 12 cm around the sheet. The figure is how deep the sheet is in
@@ -216,15 +181,12 @@ std::vector<Case> mesh_cases() {
   };
   const TriangleMesh ball = ball_mesh({{0, -0.2, 0}, 0.2}, kAround);
   const std::pair<const char*, std::function<Outcome(const Setup&)>> deep[] = {
-      {"mesh_needle", falls(needle(), 0.3, {0.012, 0.2, 0.019})},
-      {"mesh_knife_edge", falls(knife(), 0.3, {0.007, 0.2, 0})},
       {"mesh_box_corner", falls(cube_on_its_corner(), 0.3, {0.012, 0.2, 0.019})},
       {"mesh_of_zero_area", falls(plate_with_flat_triangles(), 0.3, {0, 0.1, 0})},
       {"mesh_friction_0", falls(ball, 0, {0, 0.2, 0})},
       {"mesh_friction_10", falls(ball, 10, {0, 0.2, 0})},
-      {"mesh_plates_close_to_the_thickness", [](const Setup& s) { return run_plates(s, 3e-3); }},
+      {"mesh_plates_close_to_the_thickness", run_plates},
       {"mesh_at_100_m_s", run_fast_plate},
-      {"mesh_spins", run_spins},
       {"mesh_breathes", run_breathes},
       {"mesh_10_km_away", run_far_away},
       {"mesh_of_10000_triangles_in_a_cell", run_fine},
@@ -234,8 +196,6 @@ std::vector<Case> mesh_cases() {
   std::vector<Case> cases;
   for (const auto& [name, run] : deep)
     cases.push_back({name, "m deep in a mesh", kContactTolerance, run, takes_bodies});
-  cases.push_back({"mesh_plates_close_beyond", "steps with false claims", 0,
-                   [](const Setup& s) { return run_plates(s, 1e-3); }, takes_bodies});
   cases.push_back({"rests_on_a_mesh", "m/s after ten minutes", 1e-3, run_rests, takes_bodies});
   return cases;
 }

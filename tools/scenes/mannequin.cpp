@@ -64,7 +64,7 @@ SceneBody part(Vec3 a, Vec3 b, double radius_a, double radius_b, double side) {
 /// Wider than deep: two capsules side by side are its trunk.
 std::vector<SceneBody> wearer() {
   std::vector<SceneBody> parts{
-      part({0, kShoulderHeight, 0}, {0, 1.36, 0}, 0.04, 0.04, 0),
+      part({0, kShoulderHeight, 0}, {0, 1.36, 0}, 0.035, 0.035, 0),
       part({-kShoulder, kShoulderHeight, 0}, {kShoulder, kShoulderHeight, 0}, 0.035, 0.035, 0)};
   for (const double side : {-1.0, 1.0}) {
     const Vec3 shoulder{side * kShoulder, kShoulderHeight, 0};

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tests/support/body_meshes.h"
 #include "tests/support/clothes.h"
+#include "tests/support/crossing_triangles.h"
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
@@ -144,6 +146,40 @@ TEST_CASE("what is inside a body comes out slowly, and gains no speed") {
     before = now;
   }
   for (const Vec3 x : positions(cloth)) CHECK(x.y > 0.101 - 1e-5);
+}
+
+/// A bar that stands in the middle of a cell of a sheet, and touches no particle of it.
+TEST_CASE("cloth that crosses a mesh says so, is held by nothing, and comes apart") {
+  const Backend backend = each_backend();
+  const SceneDescription scene = sheet_over_origin(6, 0.11);
+  Cloth cloth = cloth_of(scene, small_steps(backend));
+  const TriangleMesh bar = box_mesh({0.03, 0.2, 0.03}, 2);
+  const Pose pose{.position = {0.01, 0.05, -0.01}};
+  add(cloth, {.shape = shape_of(bar), .pose = pose});
+  const std::vector<Vec3> vertices = placed(bar.vertices, pose);
+  const auto crossing = [&] {
+    const std::vector<Vec3> places = positions(cloth);
+    return static_cast<int>(std::ranges::count_if(scene.surface, [&](const auto& triangle) {
+      return count_crossings({places, {triangle}}, {vertices, bar.triangles}) > 0;
+    }));
+  };
+  REQUIRE(crossing() > 0);
+  int crossed = 0;
+  std::optional<Cloth> copy;
+  for (int i = 0; i < 30; ++i) {
+    const StepReport report = step(cloth, 1.0 / 60);
+    CHECK(report.contact_failures == 0);
+    CHECK(report.intersecting == crossing());
+    CHECK((report.status == Status::converged) == (report.intersecting == 0));
+    CHECK(report.max_strain < 0.01);
+    crossed += report.intersecting > 0;
+    if (i == 3) copy = cloth.clone();
+    if (i > 3) step(*copy, 1.0 / 60);
+    CHECK((i < 3 || copy->state_hash() == cloth.state_hash()));
+  }
+  CHECK(crossed > 5);
+  CHECK(cloth.position(14).y < -0.3);
+  CHECK(crossing() == 0);
 }
 
 TEST_CASE("a body may be switched, placed and removed while it is touched, and come back") {
