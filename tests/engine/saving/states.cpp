@@ -463,8 +463,8 @@ TEST_CASE("the format is the one of its version") {
   }
   CHECK(state[8] == std::byte{1});
   CHECK(model[8] == std::byte{1});
-  CHECK(state.size() == 11027);
-  CHECK(checksum(state) == 0xc80e3eeccf43d5be);
+  CHECK(state.size() == 11035);
+  CHECK(checksum(state) == 0x6ea5b323e3b707c4);
   CHECK(model.size() == 690);
   CHECK(checksum(model) == 0xc856bfa46954d81d);
 }
