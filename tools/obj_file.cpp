@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 #include <sstream>
+#include <utility>
 
 #include "tools/parse.h"
 
@@ -26,9 +27,11 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-bool is_vertex(std::span<const std::string_view> words) {
-  return words.size() >= 4 && parse_number(words[1]) && parse_number(words[2]) &&
-         parse_number(words[3]);
+std::optional<Vec3> vertex_place(std::span<const std::string_view> words) {
+  if (words.size() < 4) return std::nullopt;
+  const auto x = parse_number(words[1]), y = parse_number(words[2]), z = parse_number(words[3]);
+  if (!x || !y || !z) return std::nullopt;
+  return Vec3{*x, *y, *z};
 }
 
 /// Takes the first line off the text. A line ends as the loader has it: with \n, \r\n or \r.
@@ -66,6 +69,7 @@ std::optional<FlatPlace> texture_place(std::span<const std::string_view> words) 
 
 /// Reads along with the loader, for what that would accept in silence: it reads a broken number as
 /// 0, 3.5 as 3 and 4294967299 as 3 too, drops faces of two corners, and counts corners in a byte.
+/// Numbers with a point it reads with errors of rounding.
 class LineCheck {
  public:
   Result<void> add(std::string_view line) {
@@ -73,9 +77,10 @@ class LineCheck {
     const auto words = words_of(line);
     if (words.empty()) return {};
     if (words[0] == "v") {
-      ++vertices_;
-      return is_vertex(words) ? Result<void>{}
-                              : refused(line, "a vertex needs three finite numbers");
+      const auto place = vertex_place(words);
+      if (!place) return refused(line, "a vertex needs three finite numbers");
+      vertices_.push_back(*place);
+      return {};
     }
     if (words[0] == "vt") texture_.push_back(texture_place(words));
     if (words[0] != "f" && words[0] != "l") return {};
@@ -93,10 +98,12 @@ class LineCheck {
 
   /// Vertices may follow the faces that use them: only now is known how many there are.
   Result<void> finish() const {
-    if (largest_ <= vertices_) return {};
+    if (largest_ <= count()) return {};
     return Error{fmt::format("line {}: there is no vertex {}, the last one is {}", largest_line_,
-                             largest_, vertices_)};
+                             largest_, count())};
   }
+  /// Of each v of the file, to the last bit, which the loader's own numbers are not.
+  std::vector<Vec3>& vertices() { return vertices_; }
   /// Of each vt of the file.
   const std::vector<std::optional<FlatPlace>>& texture() const { return texture_; }
 
@@ -109,7 +116,7 @@ class LineCheck {
 
   Result<void> add_corners(std::span<const std::string_view> words) {
     for (const std::string_view word : words) {
-      const long long number = vertex_number(word, vertices_);
+      const long long number = vertex_number(word, count());
       if (number == 0) return refused(word, "not the number of a vertex");
       if (number <= largest_) continue;
       largest_ = number;
@@ -118,8 +125,10 @@ class LineCheck {
     return {};
   }
 
+  long long count() const { return static_cast<long long>(vertices_.size()); }
+
   int line_ = 0;
-  long long vertices_ = 0;
+  std::vector<Vec3> vertices_;
   long long largest_ = 0;  ///< number of a vertex
   int largest_line_ = 0;
   std::vector<std::optional<FlatPlace>> texture_;
@@ -207,10 +216,7 @@ Result<ObjFile> parse_obj_file(std::string_view text) {
   }
   ObjFile file;
   Mesh& mesh = file.mesh;
-  for (std::size_t i = 0; i + 2 < attributes.vertices.size(); i += 3) {
-    const double* v = &attributes.vertices[i];
-    mesh.vertices.push_back({v[0], v[1], v[2]});
-  }
+  mesh.vertices = std::move(check.vertices());
   for (const tinyobj::shape_t& shape : shapes) {
     const std::size_t count = mesh.vertices.size();
     auto added = add_parts(shape.mesh.indices, shape.mesh.num_face_vertices, count, mesh.faces);

@@ -62,6 +62,18 @@ TEST_CASE("parts are welded where they meet, and unused vertices are no particle
   CHECK(build_model(scene.description));
 }
 
+TEST_CASE("coordinates are those of the file to the last bit") {
+  const ObjScene scene =
+      parse("v 0.3125 0.375 0.1\nv -1.7e-3 123456.789 1e22\nv .5 5. +2\nf 1 2 3");
+  const Vec3 written[] = {{0.3125, 0.375, 0.1}, {-1.7e-3, 123456.789, 1e22}, {0.5, 5, 2}};
+  REQUIRE(scene.mesh.vertices.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(scene.mesh.vertices[i].x == written[i].x);
+    CHECK(scene.mesh.vertices[i].y == written[i].y);
+    CHECK(scene.mesh.vertices[i].z == written[i].z);
+  }
+}
+
 TEST_CASE("edges keep their length in the file, and the mass is shared") {
   const ObjScene scene = parse(kTwoSquares, {.mass = 3, .scale = 2});
   for (const Constraint& constraint : scene.description.constraints) {
