@@ -224,6 +224,8 @@ void fall_asleep(State& s, StepReport& report) {
               .worst_constraint = report.worst_constraint,
               .worst_element = report.worst_element,
               .max_penetration = report.max_penetration,
+              .body_contacts = report.body_contacts,
+              .intersecting = report.intersecting,
               .max_anchor_error = report.max_anchor_error};
 }
 
