@@ -122,7 +122,6 @@ void ContactPoints::begin_interval(const Model& model, const ContactParticles& c
   write_boxes();
   for (ContactMesh& mesh : meshes_)
     mesh.normals.begin(mesh.mesh().surface, &start_[mesh.first_point], !mesh.has_moved);
-  for (std::size_t i = 0; i < to_.size(); ++i) to_[i] = start_[slots_ + i];
 }
 
 double ContactPoints::fastest(const BodyClock& clock) const {
@@ -187,20 +186,7 @@ void ContactPoints::renew_hulls() {
   has_hulls_ = true;
 }
 
-void ContactPoints::advance(const BodyClock& clock) {
-  const double share = clock.share_after(0);
-  for (const std::uint32_t point : asked_) {
-    if (is_of_cloth(point)) continue;
-    const std::size_t vertex = point - slots_;
-    const ContactMesh& mesh = meshes_[mesh_of_[vertex]];
-    from_[vertex] = to_[vertex];
-    to_[vertex] =
-        clock.vertex(mesh.body, point - mesh.first_point, clock.motions()[mesh.body].to, share);
-    set_place(point, to_[vertex]);
-  }
-}
-
-void ContactPoints::place_asked(const BodyClock& clock) {
+void ContactPoints::place_vertices_asked(const BodyClock& clock) {
   for (const std::uint32_t point : asked_) {
     if (is_of_cloth(point)) continue;
     const ContactMesh& mesh = meshes_[mesh_of_[point - slots_]];

@@ -73,10 +73,8 @@ class ContactPoints {
   void ask_for(std::span<const std::uint32_t> points) {
     asked_.assign(points.begin(), points.end());
   }
-  /// To the end of the present substep.
-  void advance(const BodyClock& clock);
-  /// The same for points that are asked for since.
-  void place_asked(const BodyClock& clock);
+  /// Where vertices that are asked for are when the present substep begins and ends.
+  void place_vertices_asked(const BodyClock& clock);
   /// Where those of the cloth have come to.
   void read_cloth(const ContactParticles& cloth);
   const float* places() const { return place_quads_.data(); }

@@ -123,7 +123,7 @@ void ContactSweep::begin(const ContactScene& scene, const Near& near) {
 }
 
 void ContactSweep::advance(const BodyClock& clock, ContactPoints& points, Near& near) {
-  points.advance(clock);
+  points.place_vertices_asked(clock);
   for (NearPairs& pairs : near) {
     for (NearState& state : pairs.states) {
       state.is_touching = false;

@@ -114,27 +114,27 @@ void Crossings::suspect(std::span<const std::uint32_t> corners) {
 
 void Crossings::renew(const ContactPoints& points) {
   if (slots_.empty()) return;
-  std::vector<std::uint32_t> near;
+  near_.clear();
   for (const std::uint32_t slot : slots_) {
     for (const std::uint32_t t : cloth_->triangles_at[slot]) {
       const auto known = std::ranges::count_if(cloth_->triangles[t], [&](std::uint32_t corner) {
         return std::ranges::binary_search(slots_, corner);
       });
-      if (known > 1 && !cloth_->is_point(t)) near.push_back(t);
+      if (known > 1 && !cloth_->is_point(t)) near_.push_back(t);
     }
   }
-  std::ranges::sort(near);
-  const auto rest = std::ranges::unique(near);
-  near.erase(rest.begin(), rest.end());
+  std::ranges::sort(near_);
+  const auto rest = std::ranges::unique(near_);
+  near_.erase(rest.begin(), rest.end());
   forget();
-  for (const std::uint32_t t : near) {
+  for (const std::uint32_t t : near_) {
     if (crosses(points, t, [&](std::uint32_t point) { return points.end(point); })) add(t);
   }
   gather_slots();
 }
 
 std::size_t Crossings::bytes() const {
-  return bytes_of(triangles_) + bytes_of(slots_) +
+  return bytes_of(triangles_) + bytes_of(slots_) + bytes_of(near_) +
          (has_triangle_.capacity() + has_edge_.capacity()) / 8;
 }
 

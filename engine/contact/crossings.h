@@ -20,7 +20,7 @@ class Crossings {
  public:
   explicit Crossings(const simd::Table& table) : table_(table) {}
 
-  /// Of a frame. slots: see there.
+  /// Of a frame. slots: those of the frame before, when it was over.
   void begin(const TriangleSurface& cloth, std::span<const std::uint32_t> slots);
   /// Among all triangles, when an interval begins.
   void find(const ContactPoints& points);
@@ -49,6 +49,7 @@ class Crossings {
   const simd::Table& table_;
   const TriangleSurface* cloth_ = nullptr;
   std::vector<std::uint32_t> triangles_, slots_;
+  std::vector<std::uint32_t> near_;            // triangles; scratch
   std::vector<bool> has_triangle_, has_edge_;  // empty until the first one crosses
 };
 

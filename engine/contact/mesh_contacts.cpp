@@ -60,6 +60,7 @@ void MeshContacts::begin_interval(ContactParticles& particles, const BodyClock& 
   if (is_new_) {
     find_inside();
     crossings_.find(points_);
+    misplaced_.crossing = crossings_.slots();
   }
   is_new_ = false;
   narrow_.find_near(model_, points_, candidates_, near_, misplaced_, crossings_);
@@ -151,15 +152,16 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
     has_moved = true;
   }
   verification_.find(scene, broad_, narrow_, candidates_, team);
-  if (verification_.failures().empty() && !has_moved) {
-    note_crossings();
-    return false;
+  has_moved = has_moved || !verification_.failures().empty();
+  if (has_moved) {
+    expect_failures(clock, particles);
+    stop_failures(scene, broad_, narrow_, verification_, candidates_, interval_, failures_, team);
+    for (const Failure& failure : verification_.failures())
+      misplace(candidates_[failure.list].pairs[failure.pair]);
   }
-  expect_failures(clock, particles);
-  stop_failures(scene, broad_, narrow_, verification_, candidates_, interval_, failures_, team);
-  for (const Failure& failure : verification_.failures())
-    misplace(candidates_[failure.list].pairs[failure.pair]);
-  note_crossings();
+  crossings_.renew(points_);
+  misplaced_.crossing = crossings_.slots();
+  if (!has_moved) return false;
   verification_.find_late(scene, narrow_, candidates_, team);
   for (const Failure& late : verification_.failures())
     late_depth_ = std::max(late_depth_, late.depth);
@@ -184,7 +186,7 @@ void MeshContacts::expect_failures(const BodyClock& clock, ContactParticles& par
   }
   if (!any) return;
   sweep_.begin(scene(particles, clock), near_);
-  points_.place_asked(clock);
+  points_.place_vertices_asked(clock);
 }
 
 /// What could not be kept apart.
@@ -202,11 +204,6 @@ void MeshContacts::misplace(const Pair& pair) {
     case PairKind::edges:
       crossings_.suspect(cloth_->edges[pair.of_cloth]);
   }
-}
-
-void MeshContacts::note_crossings() {
-  crossings_.renew(points_);
-  misplaced_.crossing = crossings_.slots();
 }
 
 int MeshContacts::count_touching() const {

@@ -1,12 +1,14 @@
 /// Contacts of a cloth with bodies that are triangle meshes: the stages of an interval, in order.
 ///
-///   1 intervals      every 2 ms (tuning::kContactInterval), when a substep is predicted
-///   2 broad_phase    which pairs of features may meet in it at all
-///   3 narrow_phase   which of them may touch
-///   4 contact_sweep  in each substep: push apart what is nearer than the thickness, along normals
-///   5                of that moment, let come out slowly what was deeper, and hold by friction
-///   what 6                Coulomb's law lets it (kernels/reference/bodies.h) 7 verification   when
-///   it is over: what went through each other 8 fail_safe      stops that
+/// - intervals of 2 ms (tuning::kContactInterval) begin when a substep is predicted;
+/// - broad_phase tells which pairs of features may meet in an interval at all;
+/// - narrow_phase tells which of them may touch;
+/// - contact_sweep pushes apart, in each substep, what is nearer than the thickness, along normals
+///   of that moment, lets what was deeper come out slowly, and holds by friction what Coulomb's law
+///   lets it (kernels/reference/bodies.h);
+/// - verification tells, when an interval is over, what went through each other;
+/// - fail_safe stops that;
+/// - crossings knows what could not be stopped, or crossed a body from the beginning.
 ///
 /// Particles that are inside of a one-sided body when it appears, or when positions are written,
 /// are known as such until they are out, and triangles that cross a body until they do no longer.
@@ -90,7 +92,6 @@ class MeshContacts {
   void come_out();
   void expect_failures(const BodyClock& clock, ContactParticles& particles);
   void misplace(const Pair& pair);
-  void note_crossings();
   bool find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pair,
                     std::array<std::uint32_t, 4>& four, reference::Nearest& found) const;
 

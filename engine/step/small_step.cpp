@@ -218,11 +218,11 @@ class Frame {
     constexpr int kMostVerifications = 4;
     read_positions();
     Status status = put_right_what_is_left();
-    for (int i = 0; i < kMostVerifications && solver_.end_contacts(team_); ++i) {
+    for (int i = 1; solver_.end_contacts(team_); ++i) {
       read_positions();
-      const bool was_right = status == Status::converged;
-      if (was_right) status = is_within_tolerance() ? Status::converged : Status::iteration_limit;
-      if (!was_right || status == Status::converged || i + 1 == kMostVerifications) break;
+      if (is_within_tolerance() || status != Status::converged) break;
+      status = Status::iteration_limit;
+      if (i == kMostVerifications) break;
       status = put_right_what_is_left();
     }
     report_.iterations += static_cast<std::int64_t>(std::ceil(local_passes_));

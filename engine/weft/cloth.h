@@ -20,12 +20,12 @@ namespace weft {
 
 struct State;
 
-/// converged: every constraint is within its tolerance, and nothing crosses a body. The state is
-///   committed.
+/// converged: every constraint is within its tolerance, and nothing crosses a body or is inside
+///   of one. The state is committed.
 /// fixed_iterations: Settings::iterations were done; the error is what the report says.
 /// iteration_limit: max_iterations were done, or with small_steps all rounds or all that a given
 ///   number of substeps allows, and some constraint is still out of tolerance; or something
-///   crosses a body. The state is committed.
+///   crosses a body or is inside of one. The state is committed.
 /// infeasible: some constraint is out of tolerance and tens of thousands of iterations
 ///   (small_steps: sixteen rounds of a sweep and local passes) hardly reduce the error: constraints
 ///   contradict each other (a chain whose ends are too far apart), masses differ by far, or nothing

@@ -35,9 +35,9 @@
 ///              along shoulders, sleeves and sides (garments.cpp has the pattern, 0.9 m wide and
 ///              0.7 long). Vertices are about 1/(N-1) m apart. It hangs from 8 cm of each shoulder;
 ///              of cotton if no material is given.
-/// table        (i, j) at (i L, 0.001, j L), of cotton if no material is given: a sheet that lies
-/// on
-///              the top of a box of which it covers 0.4 m, and slides off its edge; friction 0.2.
+/// table        (i, j) at (i L, 0.001, j L), of cotton if no material is given: a sheet that
+///              lies on the top of a box of which it covers 0.4 m, and slides off its edge;
+///              friction 0.2.
 /// cushion      (i, j) at (i L, 0, j L), of the same; its border is fixed. A ball of radius 0.15 is
 ///              pressed 6 cm into it, rolls 0.2 m along x, and slides back; friction 0.4.
 /// mannequin    The tunic, worn by a body of capsules that begins to walk after a second, 1 m/s.

@@ -180,31 +180,21 @@ void add_reading(ClothClass& cloth) {
 }
 
 void add_writing(ClothClass& cloth) {
+  using Write = Result<void> (Cloth::*)(std::span<const Vec3>);
+  const auto written = [](const char* name, Write write) {
+    return [name, write](HeldCloth& c, py::object in) {
+      const auto values = vectors<Vec3>(in, name);
+      const auto used = use(c);
+      check((c.value.*write)(values));
+    };
+  };
   cloth
-      .def(
-          "write_positions",
-          [](HeldCloth& c, py::object in) {
-            const auto values = vectors<Vec3>(in, "positions");
-            const auto used = use(c);
-            check(c.value.write_positions(values));
-          },
-          py::arg("positions"), "m, one per particle")
-      .def(
-          "write_velocities",
-          [](HeldCloth& c, py::object in) {
-            const auto values = vectors<Vec3>(in, "velocities");
-            const auto used = use(c);
-            check(c.value.write_velocities(values));
-          },
-          py::arg("velocities"), "m/s, one per particle")
-      .def(
-          "write_forces",
-          [](HeldCloth& c, py::object in) {
-            const auto values = vectors<Vec3>(in, "forces");
-            const auto used = use(c);
-            check(c.value.write_forces(values));
-          },
-          py::arg("forces"), "N, one per particle; empty: none")
+      .def("write_positions", written("positions", &Cloth::write_positions), py::arg("positions"),
+           "m, one per particle")
+      .def("write_velocities", written("velocities", &Cloth::write_velocities),
+           py::arg("velocities"), "m/s, one per particle")
+      .def("write_forces", written("forces", &Cloth::write_forces), py::arg("forces"),
+           "N, one per particle; empty: none")
       .def(
           "set_gravity",
           [](HeldCloth& c, Vec3 gravity) {

@@ -72,27 +72,20 @@ void add_changes(py::module_& m) {
 }
 
 void add_pins(ClothClass& cloth) {
+  using Fixed = Result<void> (Cloth::*)(std::span<const std::uint32_t>, std::span<const Vec3>);
+  const auto fixed = [](Fixed give) {
+    return [give](HeldCloth& c, py::object particles, py::object positions) {
+      const auto who = indices(particles, "particles");
+      const auto where = vectors<Vec3>(positions, "positions");
+      const auto used = use(c);
+      check((c.value.*give)(who, where));
+    };
+  };
   cloth
-      .def(
-          "move_fixed",
-          [](HeldCloth& c, py::object particles, py::object positions) {
-            const auto who = indices(particles, "particles");
-            const auto where = vectors<Vec3>(positions, "positions");
-            const auto used = use(c);
-            check(c.value.move_fixed(who, where));
-          },
-          py::arg("particles"), py::arg("positions"),
-          "Moves fixed particles: they travel there during the next step.")
-      .def(
-          "place_fixed",
-          [](HeldCloth& c, py::object particles, py::object positions) {
-            const auto who = indices(particles, "particles");
-            const auto where = vectors<Vec3>(positions, "positions");
-            const auto used = use(c);
-            check(c.value.place_fixed(who, where));
-          },
-          py::arg("particles"), py::arg("positions"),
-          "Puts fixed particles down somewhere else, without a way between.")
+      .def("move_fixed", fixed(&Cloth::move_fixed), py::arg("particles"), py::arg("positions"),
+           "Moves fixed particles: they travel there during the next step.")
+      .def("place_fixed", fixed(&Cloth::place_fixed), py::arg("particles"), py::arg("positions"),
+           "Puts fixed particles down somewhere else, without a way between.")
       .def(
           "change",
           [](HeldCloth& c, const Changes& changes) {
