@@ -10,6 +10,7 @@
 #include "engine/model/change.h"
 #include "engine/model/validate.h"
 #include "engine/model/validation.h"
+#include "engine/public_vectors.h"
 #include "engine/step/carry.h"
 #include "engine/step/choose_solver.h"
 #include "engine/step/saved_state.h"
@@ -19,9 +20,6 @@
 
 namespace weft {
 namespace {
-
-Vec3 to_public(kernels::Vector v) { return {v.x, v.y, v.z}; }
-kernels::Vector to_internal(Vec3 v) { return {v.x, v.y, v.z}; }
 
 Result<void> read(const Model& model, const kernels::Vectors& from, std::span<Vec3> out) {
   if (auto r = validate_size("out", out.size(), model.particles); !r) return r;

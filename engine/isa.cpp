@@ -5,7 +5,7 @@
 namespace weft {
 namespace {
 
-Isa to_public(simd::Isa isa) {
+Isa public_isa(simd::Isa isa) {
   switch (isa) {
     case simd::Isa::avx512:
       return Isa::avx512;
@@ -38,7 +38,7 @@ Result<Isa> resolve(Isa wanted) {
     wanted = named.value();
     source = "WEFT_ISA";
   }
-  if (wanted == Isa::automatic) return to_public(simd::best_isa());
+  if (wanted == Isa::automatic) return public_isa(simd::best_isa());
   if (wanted > Isa::neon) {
     return Error{"isa: unknown choice (" + std::to_string(static_cast<int>(wanted)) + ")"};
   }

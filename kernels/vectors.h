@@ -32,6 +32,7 @@ using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 /// A 3-vector in registers.
 struct Vector {
   double x, y, z;
+  bool operator==(const Vector&) const = default;
 };
 
 inline Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }

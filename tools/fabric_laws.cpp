@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "engine/mesh/geometry.h"
+
 namespace weft::tools {
 namespace {
 
-double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+using mesh::dot;
 
 /// Two sides of the triangle at rest, along the warp and along the weft.
 struct RestSides {

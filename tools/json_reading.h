@@ -25,6 +25,10 @@ struct Refused {
 /// Of a key, in one line, whatever it has in it.
 std::string in_quotes(const Json& key);
 
+/// A place in an object: "moves[0].times".
+inline std::string within(const std::string& place, std::string_view key) {
+  return fmt::format("{}.{}", place, key);
+}
 /// "place: expected ..., not ..."
 [[noreturn]] void refuse(const std::string& place, std::string_view expected, const Json& found);
 

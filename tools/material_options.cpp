@@ -72,7 +72,7 @@ Result<Material> base_of(const MaterialOptions& options) {
 }
 
 /// Of two values for one key the parser would drop one in silence.
-Json parse_once_each(std::string_view text) {
+Json parse_flat_object(std::string_view text) {
   std::set<std::string> seen;
   return Json::parse(text, [&](int, Json::parse_event_t event, const Json& parsed) {
     if (event == Json::parse_event_t::key && !seen.insert(parsed.get<std::string>()).second) {
@@ -150,7 +150,7 @@ Result<std::optional<Vec3>> wind_of(const MaterialOptions& options) {
 
 Result<Material> parse_material(std::string_view text) {
   try {
-    return read_material(parse_once_each(text));
+    return read_material(parse_flat_object(text));
   } catch (const Refused& refused) {
     return Error{refused.message};
   } catch (const Json::exception& exception) {

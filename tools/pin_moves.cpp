@@ -4,17 +4,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "engine/mesh/geometry.h"
+
 namespace weft::tools {
 namespace {
 
-Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
-bool operator==(Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+using mesh::cross, mesh::operator+, mesh::operator-, mesh::operator*;
 
-Vec3 cross(Vec3 a, Vec3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+bool operator==(Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 /// sin(x) / x.
 double sinc(double x) { return x == 0 ? 1 : std::sin(x) / x; }
@@ -27,28 +24,28 @@ Vec3 turned_by(Vec3 rotation, Vec3 r) {
   return sinc(angle) * across + (0.5 * half * half) * cross(rotation, across);
 }
 
-struct Pose {
+struct MovePose {
   Vec3 translation, rotation;
 };
 
-Pose pose(const PinMove& move, std::size_t key) {
+MovePose pose(const PinMove& move, std::size_t key) {
   return {move.translations[key], move.rotations.empty() ? Vec3{} : move.rotations[key]};
 }
 
 Vec3 between(Vec3 a, Vec3 b, double share) { return a + share * (b - a); }
 
-Pose pose_at(const PinMove& move, double time) {
+MovePose pose_at(const PinMove& move, double time) {
   const auto next = std::ranges::upper_bound(move.times, time);
   const auto key = static_cast<std::size_t>(next - move.times.begin());
   if (key == 0) return pose(move, 0);
   if (key == move.times.size()) return pose(move, key - 1);
   const double last_time = move.times[key - 1];
   const double share = (time - last_time) / (move.times[key] - last_time);
-  const Pose a = pose(move, key - 1), b = pose(move, key);
+  const MovePose a = pose(move, key - 1), b = pose(move, key);
   return {between(a.translation, b.translation, share), between(a.rotation, b.rotation, share)};
 }
 
-Vec3 place(const PinMove& move, const Pose& pose, Vec3 without) {
+Vec3 place(const PinMove& move, const MovePose& pose, Vec3 without) {
   return without + turned_by(pose.rotation, without - move.about) + pose.translation;
 }
 
@@ -90,7 +87,7 @@ Result<void> MovedPins::send(Cloth& cloth, double time) const {
 Result<void> MovedPins::put(Cloth& cloth, double time, Put how) const {
   for (std::size_t m = 0; m < moves_.size(); ++m) {
     const PinMove& move = moves_[m];
-    const Pose now = pose_at(move, time);
+    const MovePose now = pose_at(move, time);
     for (std::size_t k = 0; k < move.particles.size(); ++k) {
       const Vec3 to = tools::place(move, now, from_[m][k]);
       if (to == cloth.position(move.particles[k])) continue;

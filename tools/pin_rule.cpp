@@ -16,7 +16,7 @@ namespace {
 using Chosen = std::vector<bool>;
 using Test = std::function<bool(const Vec3&)>;
 
-constexpr double Vec3::*kAxes[] = {&Vec3::x, &Vec3::y, &Vec3::z};
+constexpr double Vec3::*kAxisOfLetter[] = {&Vec3::x, &Vec3::y, &Vec3::z};
 
 std::string_view without_blanks(std::string_view text) {
   const std::size_t first = text.find_first_not_of(' ');
@@ -38,7 +38,7 @@ std::vector<std::string_view> parts_of(std::string_view text, std::string_view w
 /// "y>0.9": one axis, one comparison, one number.
 std::optional<Test> comparison(std::string_view rule) {
   if (rule.size() < 3 || rule[0] < 'x' || rule[0] > 'z') return std::nullopt;
-  const auto axis = kAxes[rule[0] - 'x'];
+  const auto axis = kAxisOfLetter[rule[0] - 'x'];
   const bool greater = rule[1] == '>';
   const bool or_equal = rule[2] == '=';
   const auto bound = parse_number(rule.substr(or_equal ? 3 : 2));

@@ -15,10 +15,6 @@
 namespace weft::tools {
 namespace {
 
-std::string within(const std::string& place, std::string_view key) {
-  return fmt::format("{}.{}", place, key);
-}
-
 Rotation quaternion(Vec3 r) {
   const double angle = std::hypot(r.x, r.y, r.z);
   const double part = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
@@ -220,7 +216,7 @@ Vec3 placed(const Pose& pose, Vec3 x) {
           pose.position.z + x.z + q.w * t.z + q.x * t.y - q.y * t.x};
 }
 
-Vec3 between(Vec3 a, Vec3 b, double share) {
+Vec3 point_between(Vec3 a, Vec3 b, double share) {
   return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z)};
 }
 
@@ -253,7 +249,7 @@ std::vector<Vec3> vertices_at(const SceneBody& body, double time) {
   const double share = (time - times[before]) / (times[after] - times[before]);
   std::vector<Vec3> places;
   for (std::size_t i = 0; i < vertices[after].size(); ++i)
-    places.push_back(between(vertices[before][i], vertices[after][i], share));
+    places.push_back(point_between(vertices[before][i], vertices[after][i], share));
   return places;
 }
 

@@ -80,7 +80,7 @@ Faces read_faces(const Json& json, std::size_t particles) {
   return faces;
 }
 
-std::array<std::uint32_t, 3> read_triangle(const Json& json, const std::string& place) {
+std::array<std::uint32_t, 3> read_surface_triangle(const Json& json, const std::string& place) {
   if (!json.is_array() || json.size() != 3) refuse(place, "three particles", json);
   const auto corners = read_array(json, place, read_index);
   return {corners[0], corners[1], corners[2]};
@@ -104,7 +104,7 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
   } else if (key == "bending") {
     scene.bending = read_array(json, key, read_bending);
   } else if (key == "surface") {
-    scene.surface = read_array(json, key, read_triangle);
+    scene.surface = read_array(json, key, read_surface_triangle);
   } else if (key == "anchors") {
     scene.anchors = read_array(json, key, read_anchor);
   } else if (key == "seams") {

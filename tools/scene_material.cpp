@@ -13,10 +13,6 @@
 namespace weft::tools {
 namespace {
 
-std::string within(const std::string& place, std::string_view key) {
-  return fmt::format("{}.{}", place, key);
-}
-
 void check_keys(const Json& json, const std::string& place,
                 std::initializer_list<std::string_view> known) {
   if (!json.is_object()) refuse(place, "an object", json);

@@ -11,11 +11,6 @@
 namespace weft::tools {
 namespace {
 
-/// A place within an entry: "moves[0].times".
-std::string within(const std::string& place, std::string_view key) {
-  return fmt::format("{}.{}", place, key);
-}
-
 std::vector<double> read_times(const Json& json, const std::string& place) {
   std::vector<double> times = read_array(json, place, read_number);
   if (times.empty()) refuse(place, "one time at least", json);
@@ -63,7 +58,7 @@ void check_count(const Json& json, const std::string& place, std::string_view ke
                             json[of].size(), json[key].size())};
 }
 
-PinMove read_move(const Json& json, const std::string& place) {
+PinMove read_pin_move(const Json& json, const std::string& place) {
   check_keys(json, place);
   PinMove move;
   for (const auto& [key, value] : json.items()) read_key(key, value, within(place, key), move);
@@ -102,7 +97,7 @@ Json vectors_json(const std::vector<Vec3>& vectors) {
 }  // namespace
 
 std::vector<PinMove> read_moves(const Json& json, const SceneDescription& scene) {
-  std::vector<PinMove> moves = read_array(json, "moves", read_move);
+  std::vector<PinMove> moves = read_array(json, "moves", read_pin_move);
   std::vector<Pin> pins = pins_of(scene);
   for (std::size_t m = 0; m < moves.size(); ++m) {
     const std::vector<std::uint32_t>& particles = moves[m].particles;

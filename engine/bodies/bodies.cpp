@@ -20,8 +20,6 @@ bool same(const Pose& a, const Pose& b) {
   return of(a) == of(b);
 }
 
-bool same(kernels::Vector a, kernels::Vector b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
-
 Vec3 over_time(kernels::Vector v, double dt) { return {-v.x / dt, -v.y / dt, -v.z / dt}; }
 
 }  // namespace
@@ -68,8 +66,8 @@ bool Bodies::move_vertices(std::uint32_t id, std::span<const Vec3> to) {
   bool changes = false, moves = false;
   for (std::size_t i = 0; i < to.size(); ++i) {
     const kernels::Vector at{to[i].x, to[i].y, to[i].z};
-    changes = changes || !same(at, entry.vertices_to[i]);
-    moves = moves || !same(at, entry.vertices_from[i]);
+    changes = changes || at != entry.vertices_to[i];
+    moves = moves || at != entry.vertices_from[i];
     entry.vertices_to[i] = at;
   }
   entry.deforms = moves;

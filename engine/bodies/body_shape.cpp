@@ -6,6 +6,7 @@
 
 #include "engine/bodies/convex_hull.h"
 #include "engine/model/validation.h"
+#include "engine/public_vectors.h"
 #include "engine/saving/fields.h"
 
 namespace weft {
@@ -14,8 +15,6 @@ namespace {
 using kernels::Vector;
 using Shared = Result<std::shared_ptr<BodyShape>>;
 
-Vector to_vector(Vec3 v) { return {v.x, v.y, v.z}; }
-
 Result<void> validate_finite(std::string_view field, Vec3 v) {
   if (finite(v)) return {};
   return refuse(field, "must be finite", text(v));
@@ -23,7 +22,7 @@ Result<void> validate_finite(std::string_view field, Vec3 v) {
 
 Shared build(const Plane& plane) {
   if (auto r = validate_finite("normal", plane.normal); !r) return Error{r.error()};
-  const Vector normal = to_vector(plane.normal);
+  const Vector normal = to_internal(plane.normal);
   const double l = length(normal);
   if (!(l > 0) || !std::isfinite(l))
     return refuse("normal", "has no direction", text(plane.normal));
@@ -40,15 +39,15 @@ Shared build(const Capsule& capsule) {
        {std::pair{"radius_a", capsule.radius_a}, std::pair{"radius_b", capsule.radius_b}}) {
     if (auto r = validate_positive(field, radius); !r) return Error{r.error()};
   }
-  reference::Solid solid{.a = to_vector(capsule.a), .radius = capsule.radius_a};
-  const Vector along = to_vector(capsule.b) - solid.a;
+  reference::Solid solid{.a = to_internal(capsule.a), .radius = capsule.radius_a};
+  const Vector along = to_internal(capsule.b) - solid.a;
   const double l = length(along), fall = capsule.radius_a - capsule.radius_b;
   if (l > std::abs(fall)) {
     solid.axis = (1 / l) * along;
     solid.length = l;
     solid.taper = fall / l;
   } else if (fall < 0) {  // the ball at b holds that at a
-    solid.a = to_vector(capsule.b);
+    solid.a = to_internal(capsule.b);
     solid.radius = capsule.radius_b;
   }
   return std::make_shared<BodyShape>(solid);
@@ -58,7 +57,7 @@ Shared build(const Ball& ball) {
   if (auto r = validate_finite("centre", ball.centre); !r) return Error{r.error()};
   if (auto r = validate_positive("radius", ball.radius); !r) return Error{r.error()};
   return std::make_shared<BodyShape>(
-      reference::Solid{.a = to_vector(ball.centre), .radius = ball.radius});
+      reference::Solid{.a = to_internal(ball.centre), .radius = ball.radius});
 }
 
 /// Triangles in one plane have one face.
@@ -80,7 +79,7 @@ Shared build(const Hull& hull) {
   std::vector<Vector> points;
   for (std::size_t i = 0; i < hull.points.size(); ++i) {
     if (auto r = validate_finite(element("points", i), hull.points[i]); !r) return Error{r.error()};
-    points.push_back(to_vector(hull.points[i]));
+    points.push_back(to_internal(hull.points[i]));
   }
   std::vector<reference::Face> faces = faces_of(points);
   if (faces.empty()) {
@@ -126,7 +125,7 @@ Shared build(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vec3 v = mesh.vertices[i];
     if (auto r = validate_finite(element("vertices", i), v); !r) return Error{r.error()};
-    shape.vertices.push_back(to_vector(v));
+    shape.vertices.push_back(to_internal(v));
     places.push_back({v.x, v.y, v.z});
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

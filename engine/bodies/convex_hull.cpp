@@ -17,9 +17,9 @@ constexpr double kRounding = 1e-10;
 
 /// Points are added one after the other: the faces that a point sees go, and it is joined to their
 /// border.
-class Hull {
+class HullBuilder {
  public:
-  explicit Hull(std::span<const Vector> points) : points_(points) {
+  explicit HullBuilder(std::span<const Vector> points) : points_(points) {
     for (const Vector p : points) extent_ = std::max(extent_, length(p - points[0]));
   }
 
@@ -103,7 +103,7 @@ class Hull {
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 3>> convex_hull(std::span<const kernels::Vector> points) {
-  return Hull(points).build();
+  return HullBuilder(points).build();
 }
 
 }  // namespace weft

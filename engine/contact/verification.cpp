@@ -14,7 +14,7 @@ using kernels::Vector;
 
 namespace {
 
-struct Way {
+struct PairMotion {
   FourPoints from{}, to{};
 
   FourPoints at(double time) const {
@@ -33,7 +33,7 @@ double separation(PairKind kind, const FourPoints& x, Vector n) {
 }
 
 /// m, that a point of one feature moves beside one of the other, at most.
-double largest_move(PairKind kind, const Way& way) {
+double largest_move(PairKind kind, const PairMotion& way) {
   const std::size_t firsts = kind == PairKind::edges ? 2 : 1;
   double most = 0;
   for (std::size_t i = 0; i < firsts; ++i) {
@@ -47,7 +47,7 @@ double largest_move(PairKind kind, const Way& way) {
 
 /// A time before the features come nearer than a tenth of the thickness, or of their first distance
 /// if that is less, if they do.
-std::optional<double> time_of_meeting(PairKind kind, const Way& way, double distance,
+std::optional<double> time_of_meeting(PairKind kind, const PairMotion& way, double distance,
                                       double thickness) {
   constexpr double kLeft = 0.1, kStep = 0.9;
   constexpr int kMostSteps = 200;
@@ -64,7 +64,7 @@ std::optional<double> time_of_meeting(PairKind kind, const Way& way, double dist
   return time;
 }
 
-std::optional<double> meeting(PairKind kind, const Way& way, Vector r, double thickness) {
+std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, double thickness) {
   const double distance = length(r);
   const auto separates = [&](Vector n) {
     return separation(kind, way.from, n) > 0 && separation(kind, way.to, n) > 0;
@@ -94,7 +94,7 @@ void Verification::find(const ContactScene& scene, const BroadPhase& broad, Narr
         if (i >= pairs.size()) continue;
         const Pair& pair = pairs.pairs[i];
         if (scene.crossings.leaves_out(pair)) continue;
-        Way way;
+        PairMotion way;
         const auto four = pairs.points(i);
         for (std::size_t k = 0; k < 4; ++k) {
           way.from[k] = points.start(four[k]);

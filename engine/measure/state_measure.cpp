@@ -103,7 +103,7 @@ namespace {
 using kernels::kMost;
 
 /// In columns, which become lanes: asked one number after the other this took a fifth of a step.
-bool all_finite(const kernels::AlignedVector<double>& v) {
+bool all_numbers_finite(const kernels::AlignedVector<double>& v) {
   constexpr std::size_t kColumns = 8;
   double beyond[kColumns] = {};
   const auto judge = [&](std::size_t i, std::size_t column) {
@@ -120,7 +120,7 @@ bool all_finite(const kernels::AlignedVector<double>& v) {
 }  // namespace
 
 bool all_finite(const kernels::Vectors& v) {
-  return all_finite(v.x) && all_finite(v.y) && all_finite(v.z);
+  return all_numbers_finite(v.x) && all_numbers_finite(v.y) && all_numbers_finite(v.z);
 }
 
 std::size_t first_not_finite(const Model& m, const kernels::Vectors& x, const kernels::Vectors& v) {

@@ -19,9 +19,8 @@
 #include "engine/model/validation.h"
 
 namespace weft {
+namespace mesh {
 namespace {
-
-using namespace mesh;
 
 std::vector<std::uint32_t> pinned(const MeshDescription& mesh, const Welded& welded) {
   std::set<std::uint32_t> particles;
@@ -154,33 +153,34 @@ void add_rigid_edges(const MeshDescription& mesh, const Welded& welded, SceneDes
 }
 
 }  // namespace
+}  // namespace mesh
 
 Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
-  if (auto r = check_input(mesh); !r) return Error{r.error()};
-  Welded welded = weld(mesh);
-  Faces found = faces_of(mesh, welded.particle_of_vertex);
-  const std::size_t recognised = recognise_grids(found.faces, mesh.weld_distance);
-  const Edges edges(found.faces);
+  if (auto r = mesh::check_input(mesh); !r) return Error{r.error()};
+  mesh::Welded welded = mesh::weld(mesh);
+  mesh::Faces found = mesh::faces_of(mesh, welded.particle_of_vertex);
+  const std::size_t recognised = mesh::recognise_grids(found.faces, mesh.weld_distance);
+  const mesh::Edges edges(found.faces);
 
   MeshCloth cloth;
-  cloth.counts = count_all(mesh, welded, found.faces, edges);
+  cloth.counts = mesh::count_all(mesh, welded, found.faces, edges);
   cloth.counts.recognised_quads = recognised;
   cloth.counts.degenerate_faces = found.degenerate;
   cloth.counts.double_faces = found.doubles;
   SceneDescription& scene = cloth.scene;
   scene.positions = welded.positions;
-  scene.fixed = pinned(mesh, welded);
-  scene.seams = seams_of(mesh, welded);
-  scene.surface = triangles_of(found.faces);
+  scene.fixed = mesh::pinned(mesh, welded);
+  scene.seams = mesh::seams_of(mesh, welded);
+  scene.surface = mesh::triangles_of(found.faces);
   if (!mesh.material) {
-    add_rigid_edges(mesh, welded, scene);
-  } else if (auto r = add_material(mesh, welded, found.faces, edges, cloth); !r) {
+    mesh::add_rigid_edges(mesh, welded, scene);
+  } else if (auto r = mesh::add_material(mesh, welded, found.faces, edges, cloth); !r) {
     return Error{r.error()};
   }
   if (scene.constraints.empty() && scene.membrane.empty()) {
     return Error{"every edge of the mesh has length 0"};
   }
-  count_pieces(scene, cloth.counts);
+  mesh::count_pieces(scene, cloth.counts);
   cloth.particle_of_vertex = std::move(welded.particle_of_vertex);
   return cloth;
 }

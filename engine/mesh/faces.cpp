@@ -17,9 +17,9 @@ double longest_side(const Face& face) {
   return longest;
 }
 
-bool has_area(const Face& triangle) {
+bool triangle_has_area(const Face& triangle) {
   const auto& p = triangle.places;
-  return mesh::has_area(p[0], p[1], p[2]);
+  return has_area(p[0], p[1], p[2]);
 }
 
 bool has_repeated_particle(const Face& face) {
@@ -60,7 +60,7 @@ class Collector {
 
  private:
   void add_triangle(const Face& face) {
-    if (has_repeated_particle(face) || !has_area(face)) return add_degenerate();
+    if (has_repeated_particle(face) || !triangle_has_area(face)) return add_degenerate();
     found_.faces.push_back(with_warp(face));
   }
 

@@ -22,6 +22,13 @@ struct Face {
   bool is_quad() const { return size == 4; }
 };
 
+/// From a corner to the next.
+inline Vec3 side_vector(const Face& face, std::size_t side) {
+  return face.places[face.next(side)] - face.places[side];
+}
+inline double side_length(const Face& face, std::size_t side) {
+  return length(side_vector(face, side));
+}
 /// Twice the area, along the normal.
 Vec3 area_vector(const Face& face);
 double area(const Face& face);

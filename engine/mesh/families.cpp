@@ -7,10 +7,6 @@ namespace {
 
 constexpr std::uint32_t kUnknown = 2;
 
-Vec3 side_vector(const Face& face, std::size_t side) {
-  return face.places[face.next(side)] - face.places[side];
-}
-
 /// Numbers the first family that it meets 0; returns the quads that it reached.
 std::vector<std::uint32_t> spread(std::uint32_t start, const std::vector<Face>& faces,
                                   const Edges& edges, double weld_distance,

@@ -12,10 +12,6 @@ constexpr double kMostCosine = 0.2;
 
 constexpr std::uint32_t kNone = kNoIndex;
 
-double side_length(const Face& face, std::size_t side) {
-  return length(face.places[face.next(side)] - face.places[side]);
-}
-
 bool is_longest(const Face& triangle, std::size_t side) {
   const double size = side_length(triangle, side);
   return size > side_length(triangle, triangle.next(side)) &&

@@ -85,12 +85,6 @@ class Springs {
   PairNumbers numbers_;
 };
 
-double square(double x) { return x * x; }
-
-double side_length(const Face& face, std::size_t side) {
-  return length(face.places[face.next(side)] - face.places[side]);
-}
-
 /// Of a spring of this length that carries the stiffness k of an area: it stretches by the
 /// fraction e with the energy k e^2 / 2 per area.
 double spring(double k, double area, double length) { return k * area / square(length); }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostRays = 3;
 
-using Around = std::span<const CornerOfFace>;
+using CornersAround = std::span<const CornerOfFace>;
 
 /// One side of the ring around a particle, in places from there.
 struct RingSide {
@@ -24,7 +24,7 @@ struct Ray {
   std::uint64_t ends = 0;  ///< pair_key of both, the nearer corner of the second
 };
 
-std::vector<RingSide> ring_of(const std::vector<Face>& faces, Around around) {
+std::vector<RingSide> ring_of(const std::vector<Face>& faces, CornersAround around) {
   std::vector<RingSide> ring;
   for (const auto& [f, corner] : around) {
     const Face& face = faces[f];
@@ -83,7 +83,7 @@ class Adder {
     }
   }
 
-  void add(std::uint32_t particle, Around around) {
+  void add(std::uint32_t particle, CornersAround around) {
     if (!is_inner(around)) return;
     const auto ring = ring_of(faces_, around);
     if (!is_one_shape(ring)) return;
@@ -92,7 +92,7 @@ class Adder {
   }
 
  private:
-  bool is_inner(Around around) const {
+  bool is_inner(CornersAround around) const {
     return std::ranges::all_of(around, [&](const CornerOfFace& at) {
       const std::size_t before = faces_[at.face].previous(at.corner);
       return edges_.at(at.face, at.corner).is_inner() && edges_.at(at.face, before).is_inner();
@@ -129,7 +129,7 @@ class Adder {
     return best;
   }
 
-  void add(const Ray& ray, Around around, double rays) {
+  void add(const Ray& ray, CornersAround around, double rays) {
     const auto number = static_cast<std::uint32_t>(into_.stencils.size());
     into_.stencils.push_back(ray.stencil);
     for (const auto& [f, corner] : around) {

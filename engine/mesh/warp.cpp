@@ -11,7 +11,7 @@ namespace mesh {
 namespace {
 
 /// A direction is across a plane if less than this share of it lies in the plane.
-constexpr double kInPlane = 1e-3;
+constexpr double kLeastInPlane = 1e-3;
 
 Vec3 direction_of(const MeshDescription& mesh, std::size_t face) {
   if (mesh.warp.empty()) return {0, 1, 0};  // of flat places
@@ -24,7 +24,7 @@ Vec3 given_warp(const MeshDescription& mesh, std::size_t face, Vec3 normal) {
   if (mesh.warp.empty() && mesh.rest_corners.empty()) return {};
   const Vec3 direction = unit(direction_of(mesh, face));
   const Vec3 in_plane = direction - dot(direction, normal) * normal;
-  return length(in_plane) > kInPlane ? unit(in_plane) : Vec3{};
+  return length(in_plane) > kLeastInPlane ? unit(in_plane) : Vec3{};
 }
 
 namespace {

@@ -33,19 +33,19 @@ void join_equal(const MeshDescription& mesh, const std::vector<bool>& used, Part
 }
 
 /// A cube of the side weld_distance: what is as near as that lies in it or in a neighbour.
-using Cell = std::array<double, 3>;
+using GridCell = std::array<double, 3>;
 
-Cell cell_of(Vec3 v, double side) {
+GridCell cell_of(Vec3 v, double side) {
   return {std::floor(v.x / side), std::floor(v.y / side), std::floor(v.z / side)};
 }
 
 void join_near(const MeshDescription& mesh, const std::vector<bool>& used, Partition& parts) {
   const double side = mesh.weld_distance;
-  std::map<Cell, std::vector<std::uint32_t>> cells;
+  std::map<GridCell, std::vector<std::uint32_t>> cells;
   for (std::uint32_t vertex = 0; vertex < used.size(); ++vertex) {
     if (!used[vertex]) continue;
     const Vec3 v = mesh.positions[vertex];
-    const Cell cell = cell_of(v, side);
+    const GridCell cell = cell_of(v, side);
     for (int neighbour = 0; neighbour < 27; ++neighbour) {
       const auto found = cells.find({cell[0] + neighbour % 3 - 1, cell[1] + neighbour / 3 % 3 - 1,
                                      cell[2] + neighbour / 9 - 1});

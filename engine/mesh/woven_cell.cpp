@@ -8,12 +8,6 @@
 namespace weft::mesh {
 namespace {
 
-double square(double x) { return x * x; }
-
-Vec3 side_vector(const Face& quad, std::size_t side) {
-  return quad.places[quad.next(side)] - quad.places[side];
-}
-
 /// Two opposite sides beside the direction of their yarns.
 struct Sides {
   double length = 0;       ///< m, the mean

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/public_vectors.h"
+
 namespace weft {
 namespace {
 
 using kernels::Vector;
-
-Vec3 to_public(Vector v) { return {v.x, v.y, v.z}; }
 
 class Describer {
  public:

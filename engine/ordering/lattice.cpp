@@ -4,8 +4,13 @@
 #include <limits>
 #include <utility>
 
+#include "engine/mesh/geometry.h"
+
 namespace weft {
 namespace {
+
+using mesh::dot;
+using mesh::operator-;
 
 /// The most frequent value, and how often it occurs. Of equally frequent values it is the lowest.
 /// Sorts the values.
@@ -20,9 +25,6 @@ std::pair<std::int32_t, std::size_t> most_frequent(std::vector<std::int32_t>& va
   }
   return best;
 }
-
-Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// Rows are yarns of family 0, and columns are yarns of family 1. After a first row, the columns
 /// that cross it are placed, then the rows that these cross, and so on. A yarn is aligned with the

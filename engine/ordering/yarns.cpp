@@ -5,18 +5,19 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/mesh/geometry.h"
 #include "engine/ordering/incidence.h"
 #include "engine/ordering/used_colours.h"
 
 namespace weft {
 namespace {
 
+using mesh::dot;
+using mesh::operator-;
+
 constexpr double kLeastStraight = -0.5;   // a cosine: yarns turn by less than 60 degrees
 constexpr double kUnevenness = 0.25;      // the weight of equal lengths against straightness
 constexpr std::size_t kLargestKnot = 64;  // no yarn passes a particle with more links
-
-Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 struct Course {
   Vec3 direction;  // from a to b; zero if the ends coincide

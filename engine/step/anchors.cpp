@@ -9,12 +9,6 @@
 
 namespace weft {
 
-namespace {
-
-bool same(kernels::Vector a, kernels::Vector b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
-
-}  // namespace
-
 Anchors::Anchors(const Model& model) {
   for (const Anchor& anchor : model.anchors.described) {
     from_.push_back(pose_of(anchor.point, anchor.normal));
@@ -59,7 +53,7 @@ void Anchors::move(std::span<const Vec3> points, std::span<const Vec3> normals) 
   for (std::size_t i = 0; i < points.size(); ++i) {
     reference::AnchorPose to{{points[i].x, points[i].y, points[i].z}, to_[i].normal};
     if (!normals.empty()) to.normal = pose_of(points[i], normals[i]).normal;
-    moves_ = moves_ || !same(to.point, to_[i].point) || !same(to.normal, to_[i].normal);
+    moves_ = moves_ || to.point != to_[i].point || to.normal != to_[i].normal;
     to_[i] = to;
   }
 }

@@ -80,7 +80,7 @@ bool springs_are_misplaced(State& s, Team& team) {
 
 }  // namespace
 
-Misplaced find_misplaced(State& s, Team& team) {
+OutOfPlace find_out_of_place(State& s, Team& team) {
   if (s.settings.iterations > 0 || !(s.placed || s.displaced)) return {};
   return {.edges = is_out_of_tolerance(s, team), .springs = springs_are_misplaced(s, team)};
 }
@@ -171,7 +171,7 @@ class Projection {
 
 }  // namespace
 
-void project(State& s, const Misplaced& what, double dt, StepReport& report, Team& team) {
+void project(State& s, const OutOfPlace& what, double dt, StepReport& report, Team& team) {
   Projection projection(s, report, team);
   if (what.springs) return projection.put_springs_right();
   projection.put_edges_right(dt);

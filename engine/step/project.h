@@ -7,19 +7,19 @@ namespace weft {
 
 /// What is out of place where a step begins, because positions were given, pins were put down, or
 /// the model has changed.
-struct Misplaced {
+struct OutOfPlace {
   bool edges = false;    // rigid ones are out of tolerance, or contacts and anchors
   bool springs = false;  // that are fast (fast_springs.h), or triangles of fabric
   bool any() const { return edges || springs; }
 };
-Misplaced find_misplaced(State& s, Team& team);
+OutOfPlace find_out_of_place(State& s, Team& team);
 
 /// Moves the positions onto the constraints and leaves the velocities. Springs that are out of
 /// place come near the equilibrium among them, as if through honey: several times they have a short
 /// while to give way from rest, without gravity and forces. What cannot be put right
 /// with half of the iterations that a step may take is left to the step, and to its status. Small
 /// steps have half of these behind a solver, which ends at the other half.
-void project(State& s, const Misplaced& what, double dt, StepReport& report, Team& team);
+void project(State& s, const OutOfPlace& what, double dt, StepReport& report, Team& team);
 
 /// Of a step that is not committed: who left the range of numbers, and whether that would have
 /// happened without any constraint.

@@ -62,16 +62,16 @@ class Travel {
   bool arrived_ = false;
 };
 
-class Step {
+class OneStep {
  public:
-  Step(State& s, StepReport& report, Team& team)
+  OneStep(State& s, StepReport& report, Team& team)
       : s_(s), report_(report), team_(team), transaction_(s) {}
 
   /// Returns whether all of dt was done.
   bool run(double dt) {
-    if (const Misplaced misplaced = find_misplaced(s_, team_); misplaced.any()) {
+    if (const OutOfPlace found = find_out_of_place(s_, team_); found.any()) {
       transaction_.begin();
-      project(s_, misplaced, dt, report_, team_);
+      project(s_, found, dt, report_, team_);
     }
     if (s_.placed) {
       s_.longest_substep = 0;
@@ -240,7 +240,7 @@ StepReport step(State& s, double dt, Team& team) {
   {
     Travel travel(s, dt);
     s.anchors.depart(s.model->anchors, s.position);
-    done = Step(s, report, team).run(dt);
+    done = OneStep(s, report, team).run(dt);
     if (done) {
       travel.arrive();
       s.anchors.arrive();

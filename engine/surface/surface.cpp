@@ -15,9 +15,7 @@
 #include "engine/surface/normals.h"
 
 namespace weft {
-namespace {
-
-using namespace surface;
+namespace surface {
 
 /// What clones share.
 struct Shape {
@@ -30,6 +28,12 @@ struct Shape {
 
   std::size_t bytes() const { return drawn.bytes() + followed.bytes() + bytes_of(points); }
 };
+
+}  // namespace surface
+
+namespace {
+
+using namespace surface;
 
 /// Whether the cloth can be one that was made of the mesh.
 Result<void> check_made(const MeshDescription& mesh, const MeshCloth& cloth) {

@@ -16,9 +16,6 @@
 namespace weft::tools::forms {
 namespace {
 
-constexpr double kGravity = 10, kFrame = 1.0 / 60;
-constexpr double kPi = std::numbers::pi;
-
 Material denim() {
   Material m = find_material("denim").value();
   m.damping_bending = 0;

@@ -15,14 +15,13 @@
 namespace weft::tools::forms {
 namespace {
 
-constexpr double kGravity = 10, kFrame = 1.0 / 60, kFriction = 0.3;
-constexpr double kPi = std::numbers::pi;
+constexpr double kFriction = 0.3;
 constexpr double kBound = 0.01;
 constexpr double kThickness = 1e-3;  // m, of bodies
 
 /// Air and the decay of motion would be missing in the closed forms.
 Material bare_cotton() {
-  Material material = find_material("cotton").value();
+  Material material = cotton();
   material.drag = material.lift = material.damping_motion = 0;
   return material;
 }
@@ -174,7 +173,7 @@ Reading is_dragged(Surface surface, int refinement) {
                      mean(positions(run)).x - from);
 }
 
-constexpr double kDrum = 0.1, kNear = 0.2;  // m: its radius, and what hangs from its near side
+constexpr double kDrum = 0.1, kNearSide = 0.2;  // m: its radius, and what hangs from its near side
 constexpr double kHalfWay = kPi * kDrum / 2;
 
 /// m, that may hang from the far side of the drum. With the weight w per length and the tension T
@@ -195,13 +194,13 @@ struct HungStrip {
 HungStrip strip_over_drum(double far, int refinement) {
   Material material = bare_cotton();
   material.damping_motion = 10;
-  const double length = kNear + 2 * kHalfWay + far;
+  const double length = kNearSide + 2 * kHalfWay + far;
   HungStrip strip{.sheet = sheet_of(Pattern::quads, length, length / 15, 60 << refinement)};
   strip.scene = scene_of(mesh_of(strip.sheet, material));
   strip.near = particles_at(strip.scene, [](Vec3 p) { return p.x < 1e-9; });
   strip.far = particles_at(strip.scene, [&](Vec3 p) { return p.x > length - 1e-9; });
   for (Vec3& p : strip.scene.positions) {
-    const double s = p.x - kNear - kHalfWay, hangs = std::abs(s) - kHalfWay, angle = s / kDrum;
+    const double s = p.x - kNearSide - kHalfWay, hangs = std::abs(s) - kHalfWay, angle = s / kDrum;
     p = hangs > 0 ? Vec3{std::copysign(kDrum, s), -hangs, p.z}
                   : Vec3{kDrum * std::sin(angle), kDrum * std::cos(angle), p.z};
   }
@@ -213,7 +212,7 @@ HungStrip strip_over_drum(double far, int refinement) {
 Reading is_held_by_a_drum(int refinement) {
   constexpr int kSubsteps = 15;
   Reading reading;
-  const double expected = held_length(kNear);
+  const double expected = held_length(kNearSide);
   first_slide(0.8 * expected, 1.1 * expected, [&](double tried) {
     const HungStrip strip = strip_over_drum(tried, refinement);
     Run run(strip.scene, {.substeps = kSubsteps});

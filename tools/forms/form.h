@@ -5,11 +5,16 @@
 
 #include <cstdint>
 #include <functional>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace weft::tools::forms {
+
+inline constexpr double kGravity = 10;      ///< m/s^2, of all forms
+inline constexpr double kFrame = 1.0 / 60;  ///< s
+inline constexpr double kPi = std::numbers::pi;
 
 /// At one mesh or step, with what it cost.
 struct Reading {

@@ -14,13 +14,9 @@
 namespace weft::tools::forms {
 namespace {
 
-constexpr double kGravity = 10, kFrame = 1.0 / 60;
-constexpr double kPi = std::numbers::pi;
 /// Springs along diagonals add twice the shear to the product of two stretches: 1.7 % of a pull at
 /// 45 degrees.
 constexpr double kPatchBound = 0.03;
-
-Material cotton() { return find_material("cotton").value(); }
 
 /// A strip of a metre comes to rest under its own weight.
 Reading weighed(Pattern pattern, int refinement) {

@@ -12,14 +12,10 @@
 namespace weft::tools::forms {
 namespace {
 
-constexpr double kGravity = 10;
-
 /// Level, of cotton, held by nothing.
 SceneDescription free_sheet(const Material& material) {
   return scene_of(mesh_of(sheet_of(Pattern::irregular, 0.5, 0.5, 10), material));
 }
-
-Material cotton() { return find_material("cotton").value(); }
 
 /// m/s, downwards.
 double mean_fall(Run& run) {

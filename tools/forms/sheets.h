@@ -34,6 +34,8 @@ MeshDescription mesh_of(const Sheet& sheet, const Material& material);
 /// "32 x 4 cells"
 std::string size_of(const Sheet& sheet);
 
+inline Material cotton() { return find_material("cotton").value(); }
+
 using Place = std::function<bool(Vec3)>;
 void pin(MeshDescription& mesh, const Place& is_pinned);
 /// As cloth_from_mesh makes it. Throws where it refuses.

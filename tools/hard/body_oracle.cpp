@@ -29,12 +29,6 @@ double gap_of_capsule(const Capsule& c, Vec3 y) {
   return std::min({gap_at(low), gap_at(0), gap_at(1)});
 }
 
-std::vector<bool> fixed_particles(const SceneDescription& scene) {
-  std::vector<bool> fixed(scene.positions.size());
-  for (const std::uint32_t particle : scene.fixed) fixed[particle] = true;
-  return fixed;
-}
-
 }  // namespace
 
 Solid::Solid(const ShapeDescription& shape) {

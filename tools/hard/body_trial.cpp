@@ -8,8 +8,6 @@
 namespace weft::tools::hard {
 namespace {
 
-constexpr double kLaw = 0.01;
-
 void add_square(int size, double width, Vec3 middle, MeshDescription& mesh) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   const double cell = width / (size - 1);

@@ -10,8 +10,6 @@
 namespace weft::tools::hard {
 namespace {
 
-constexpr double kStrain = 0.01;
-
 /// J: every edge, its whole tolerance taken out in one step, gives its end b that speed.
 double energy_of_the_tolerance(const Trial& trial) {
   double energy = 0;

@@ -41,6 +41,9 @@ struct Case {
   std::function<bool(const Method&)> claimed = [](const Method&) { return true; };
 };
 
+/// The tolerance that cases ask for where nothing is said: of rigid edges, and of laws of springs.
+inline constexpr double kStrain = 0.01, kLaw = 0.01;
+
 /// For methods that bring a tight tolerance in a bounded number of passes.
 bool not_by_relaxation(const Method& method);
 /// For yarns with scheme paper, and automatic, which chooses them where spheres are heavy.

@@ -11,7 +11,6 @@
 namespace weft::tools::hard {
 namespace {
 
-constexpr double kStrain = 0.01;
 constexpr double kDt = 0.01;
 
 Trial long_run(const Setup& setup) {

@@ -12,7 +12,6 @@
 namespace weft::tools::hard {
 namespace {
 
-constexpr double kLaw = 0.01;
 constexpr double kGain = 1e-3;  // J
 
 bool solves_springs(const Method& method) { return method.scheme != Scheme::rattle; }

@@ -29,7 +29,7 @@ Outcome mesh_outcome(const Observed& o) {
 }
 
 /// A cube of 40 cm that stands on a corner, the highest of which is at the origin.
-TriangleMesh cube_on_its_corner() {
+TriangleMesh cube_mesh_on_its_corner() {
   const double a = std::atan(std::sqrt(2.)), side = 0.4;
   TriangleMesh mesh = box_mesh({side, side, side}, 1);
   for (Vec3& p : mesh.vertices) {
@@ -50,7 +50,8 @@ TriangleMesh plate_with_flat_triangles() {
   return mesh;
 }
 
-Outcome run_falls(const Setup& setup, const TriangleMesh& mesh, double friction, Vec3 from) {
+Outcome run_falls_on_mesh(const Setup& setup, const TriangleMesh& mesh, double friction,
+                          Vec3 from) {
   SceneDescription scene = cotton(25, 0.8, from);
   scene.friction = friction;
   Trial trial = trial_of(setup, std::move(scene), {{mesh, friction, stays()}});
@@ -59,7 +60,7 @@ Outcome run_falls(const Setup& setup, const TriangleMesh& mesh, double friction,
 }
 
 /// Two plates come nearer to a sheet that lies between them, by 1 m/s, and leave it just its room.
-Outcome run_plates(const Setup& setup) {
+Outcome run_mesh_plates(const Setup& setup) {
   constexpr double kSpeed = 1, kPlate = 0.05, kFrom = 0.1, kGap = 3e-3;  // m/s, m
   const auto closes = [=](double side) {
     return [=](double time) {
@@ -75,7 +76,7 @@ Outcome run_plates(const Setup& setup) {
 }
 
 /// A wide plate comes along its normal and takes the sheet with it.
-Outcome run_fast_plate(const Setup& setup) {
+Outcome run_fast_mesh_plate(const Setup& setup) {
   constexpr double kSpeed = 100, kFrom = -1.4, kPlate = 0.02;  // m/s, m
   const auto flies = [=](double time) { return Pose{.position = {0, kFrom + kSpeed * time, 0}}; };
   Trial trial = trial_of(setup, cotton(20, 0.5, {}), {{box_mesh({4, kPlate, 4}, 10), 0.3, flies}});
@@ -90,7 +91,7 @@ Outcome run_fast_plate(const Setup& setup) {
 
 /// A ball is suddenly there, up to 12 cm around the sheet. The figure is how deep the sheet is in
 /// the end. What comes out stretches the sheet, and this becomes speed.
-Outcome run_appears(const Setup& setup) {
+Outcome run_mesh_appears(const Setup& setup) {
   constexpr double kEnergy = 0.02;  // J, 0.7 m/s of the sheet
   SceneDescription scene = cotton(25, 0.8, {});
   scene.gravity = {};
@@ -113,7 +114,7 @@ Outcome run_fine(const Setup& setup) {
 }
 
 /// A sheet falls onto a ball.
-Outcome run_far_away(const Setup& setup) {
+Outcome run_mesh_far_away(const Setup& setup) {
   const Vec3 there{1e4, -1e4, 1e4};
   Trial trial = trial_of(setup, cotton(25, 0.8, there + Vec3{0, 0.25, 0}),
                          {{ball_mesh({.radius = 0.2}, kAround), 0.3, stays(there)}});
@@ -159,7 +160,7 @@ Outcome run_both_sides(const Setup& setup) {
 
 /// A sheet falls flat onto a plate and lies on it for ten minutes. The figure is the speed in the
 /// end.
-Outcome run_rests(const Setup& setup) {
+Outcome run_rests_on_mesh(const Setup& setup) {
   Trial trial =
       trial_of(setup, cotton(15, 0.5, {0, 0.05, 0}), {{plate_mesh(1, 1, 6, 6), 0.3, stays()}});
   trial.steps = setup.steps(36'000, 300);
@@ -177,26 +178,27 @@ Outcome run_rests(const Setup& setup) {
 
 std::vector<Case> mesh_cases() {
   const auto falls = [](const TriangleMesh& mesh, double friction, Vec3 from) {
-    return [=](const Setup& setup) { return run_falls(setup, mesh, friction, from); };
+    return [=](const Setup& setup) { return run_falls_on_mesh(setup, mesh, friction, from); };
   };
   const TriangleMesh ball = ball_mesh({{0, -0.2, 0}, 0.2}, kAround);
   const std::pair<const char*, std::function<Outcome(const Setup&)>> deep[] = {
-      {"mesh_box_corner", falls(cube_on_its_corner(), 0.3, {0.012, 0.2, 0.019})},
+      {"mesh_box_corner", falls(cube_mesh_on_its_corner(), 0.3, {0.012, 0.2, 0.019})},
       {"mesh_of_zero_area", falls(plate_with_flat_triangles(), 0.3, {0, 0.1, 0})},
       {"mesh_friction_0", falls(ball, 0, {0, 0.2, 0})},
       {"mesh_friction_10", falls(ball, 10, {0, 0.2, 0})},
-      {"mesh_plates_close_to_the_thickness", run_plates},
-      {"mesh_at_100_m_s", run_fast_plate},
+      {"mesh_plates_close_to_the_thickness", run_mesh_plates},
+      {"mesh_at_100_m_s", run_fast_mesh_plate},
       {"mesh_breathes", run_breathes},
-      {"mesh_10_km_away", run_far_away},
+      {"mesh_10_km_away", run_mesh_far_away},
       {"mesh_of_10000_triangles_in_a_cell", run_fine},
       {"mesh_between_two_sheets", run_both_sides},
-      {"mesh_appears_in_cloth", run_appears},
+      {"mesh_appears_in_cloth", run_mesh_appears},
   };
   std::vector<Case> cases;
   for (const auto& [name, run] : deep)
     cases.push_back({name, "m deep in a mesh", kContactTolerance, run, takes_bodies});
-  cases.push_back({"rests_on_a_mesh", "m/s after ten minutes", 1e-3, run_rests, takes_bodies});
+  cases.push_back(
+      {"rests_on_a_mesh", "m/s after ten minutes", 1e-3, run_rests_on_mesh, takes_bodies});
   return cases;
 }
 

@@ -12,8 +12,6 @@
 namespace weft::tools::hard {
 namespace {
 
-constexpr double kStrain = 0.01;
-
 /// A ribbon between two bars; one bar turns ten times and back. Twisted it is too short, and has to
 /// say so; untwisted it must be whole again: the figure is the strain in the end.
 Outcome run_twist(const Setup& setup) {

@@ -10,15 +10,15 @@
 namespace weft::tools::hard {
 namespace {
 
+bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+}  // namespace
+
 std::vector<bool> fixed_particles(const SceneDescription& scene) {
   std::vector<bool> fixed(scene.positions.size());
   for (const std::uint32_t particle : scene.fixed) fixed[particle] = true;
   return fixed;
 }
-
-bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-}  // namespace
 
 Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }

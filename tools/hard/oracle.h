@@ -8,6 +8,8 @@
 
 namespace weft::tools::hard {
 
+std::vector<bool> fixed_particles(const SceneDescription& scene);
+
 struct Snapshot {
   std::vector<Vec3> positions, velocities;
 };

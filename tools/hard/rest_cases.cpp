@@ -21,7 +21,7 @@ constexpr double kMostSpeed = 1e-3;       // m/s, of what rests
 constexpr double kMostPlacedSpeed = 0.1;  // m/s
 
 bool chosen_by_default(const Method& method) { return label(method) == "auto"; }
-bool by_small_steps(const Method& method) {
+bool by_small_steps_or_default(const Method& method) {
   return method.solver == Solver::small_steps || chosen_by_default(method);
 }
 
@@ -188,7 +188,7 @@ void add_placed(std::vector<Case>& cases) {
           {fmt::format("placed_{}_{:g}_m_higher", name, jump), "m/s after the frame",
            kMostPlacedSpeed,
            [=, scene = scene](const Setup& setup) { return run_placed(setup, scene, jump); },
-           by_small_steps});
+           by_small_steps_or_default});
     }
   }
 }

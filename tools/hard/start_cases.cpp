@@ -9,7 +9,6 @@ namespace weft::tools::hard {
 namespace {
 
 constexpr int kSize = 10;
-constexpr double kStrain = 0.01;
 
 /// The figure is the strain in the end; on the way, reports must be true.
 Outcome run_start(const Setup& setup, const SceneDescription& start) {

@@ -9,8 +9,6 @@
 namespace weft::tools::hard {
 namespace {
 
-constexpr double kStrain = 0.01;
-
 Outcome run_hang(const Setup& setup, double dt) {
   constexpr int kSize = 20;
   Trial trial{sheet("hang", kSize), setup.settings(kStrain)};

@@ -10,7 +10,7 @@
 namespace weft::scenes {
 namespace {
 
-constexpr std::uint64_t kSeed = 2009;
+constexpr std::uint64_t kIrregularSeed = 2009;
 
 /// From the last to the first, each with one at or before it.
 template <class T>
@@ -50,7 +50,7 @@ void add_cell(std::uint32_t corner, std::uint32_t size, SplitMix& random,
 
 IrregularMesh irregular_mesh(int size) {
   const auto n = static_cast<std::uint32_t>(size);
-  SplitMix random(kSeed);
+  SplitMix random(kIrregularSeed);
   const std::vector<Vec3> points = jittered_points(n, random);
   IrregularMesh mesh;
   for (std::uint32_t i = 0; i + 1 < n; ++i) {

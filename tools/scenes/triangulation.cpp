@@ -12,7 +12,7 @@
 namespace weft::scenes {
 namespace {
 
-constexpr std::uint64_t kSeed = 1934;
+constexpr std::uint64_t kInnerPointsSeed = 1934;
 constexpr double kMoved = 0.15;      // of the spacing, along each axis
 constexpr double kClearance = 0.65;  // of the spacing, between inner points and the border
 
@@ -199,7 +199,7 @@ Box box_of(const std::vector<Point>& points) {
 
 /// Near those of a lattice of equilateral triangles, row by row.
 std::vector<Point> inner_points(const std::vector<Point>& border, double spacing) {
-  SplitMix random(kSeed);
+  SplitMix random(kInnerPointsSeed);
   const auto moved = [&] { return kMoved * spacing * (2 * random.unit() - 1); };
   const auto [least, most] = box_of(border);
   const double height = std::sqrt(0.75) * spacing;

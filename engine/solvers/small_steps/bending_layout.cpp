@@ -19,14 +19,14 @@ using kernels::kLanes;
 
 constexpr std::size_t kInBlock[] = {0, 1, 3};  // particles whose weights a block holds
 
-float to_float(double number) {
+float to_positive_float(double number) {
   return static_cast<float>(std::clamp<double>(number, std::numeric_limits<float>::min(),
                                                std::numeric_limits<float>::max()));
 }
 
-class Builder {
+class BendingLayoutBuilder {
  public:
-  Builder(const Model& model, BendingLayout& layout)
+  BendingLayoutBuilder(const Model& model, BendingLayout& layout)
       : model_(model), store_(model.bending), layout_(layout) {}
 
   /// Classes of equal numbers of elements, by their stiffness; where the next of them is not much
@@ -90,7 +90,8 @@ class Builder {
       if (lane < elements.size()) fill(block, lane, elements[lane]);
       const bool holds = lane < elements.size();
       layout_.element.push_back(holds ? elements[lane] : kNoIndex);
-      layout_.stiffness.push_back(holds ? to_float(1 / store_.compliance[elements[lane]]) : 0);
+      layout_.stiffness.push_back(holds ? to_positive_float(1 / store_.compliance[elements[lane]])
+                                        : 0);
     }
   }
   void fill(simd::BendingBlock& block, std::uint32_t lane, std::uint32_t i) {
@@ -104,7 +105,7 @@ class Builder {
     for (std::size_t k = 0; k < 3; ++k)
       block.weight[k][lane] = static_cast<float>(store_.weights[i][kInBlock[k]]);
     block.rest[lane] = static_cast<float>(store_.rest[i]);
-    block.softness[lane] = to_float(store_.compliance[i] / inverse);
+    block.softness[lane] = to_positive_float(store_.compliance[i] / inverse);
     layout_.curved = layout_.curved || store_.rest[i] > 0;
   }
 
@@ -118,7 +119,7 @@ class Builder {
 BendingLayout make_bending_layout(const Model& model) {
   BendingLayout layout;
   if (model.bending.size() == 0) return layout;
-  Builder(model, layout).add_classes();
+  BendingLayoutBuilder(model, layout).add_classes();
   return layout;
 }
 

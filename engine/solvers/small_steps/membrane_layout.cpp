@@ -16,9 +16,9 @@ using kernels::kLanes;
 /// 1/s^2. Stiffer elements do not exist, and floats hold this.
 constexpr double kStiffest = 1e30;
 
-class Builder {
+class MembraneLayoutBuilder {
  public:
-  Builder(const Model& model, MembraneLayout& layout)
+  MembraneLayoutBuilder(const Model& model, MembraneLayout& layout)
       : model_(model), store_(model.membrane), layout_(layout) {
     layout.place.resize(store_.size());
   }
@@ -79,7 +79,7 @@ class Builder {
 MembraneLayout make_membrane_layout(const Model& model) {
   MembraneLayout layout;
   if (model.membrane.size() == 0) return layout;
-  Builder builder(model, layout);
+  MembraneLayoutBuilder builder(model, layout);
   for (const bool rope : {false, true}) builder.add_batches(rope);
   return layout;
 }

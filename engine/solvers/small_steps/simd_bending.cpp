@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-float to_float(double number) {
+float to_finite_float(double number) {
   return static_cast<float>(std::min<double>(number, std::numeric_limits<float>::max()));
 }
 
@@ -49,10 +49,10 @@ void SimdBending::bend(float* u, const float* v, double give, Team& team) {
     const int n = paces_[k].next();
     if (n == 0) continue;
     const reference::BendingVisit visit = paces_[k].visit(n, give);
-    bending.own = to_float(visit.own);
-    bending.rate = to_float(visit.rate);
-    bending.damping = to_float(visit.damping);
-    bending.most = to_float(visit.most);
+    bending.own = to_finite_float(visit.own);
+    bending.rate = to_finite_float(visit.rate);
+    bending.damping = to_finite_float(visit.damping);
+    bending.most = to_finite_float(visit.most);
     const BendingClass& c = layout_.classes[k];
     const auto batches = std::span(layout_.batches).subspan(c.first, c.last - c.first);
     for_blocks(batches, team, [&](bool four, std::size_t first, std::size_t last) {
@@ -64,7 +64,7 @@ void SimdBending::bend(float* u, const float* v, double give, Team& team) {
 double SimdBending::energy(float* u, double give, Team& team) {
   if (paces_.empty()) return 0;
   simd::Bending bending = arrays(u);
-  bending.resolved = to_float(paces_.front().resolved(give));
+  bending.resolved = to_finite_float(paces_.front().resolved(give));
   for_blocks(layout_.batches, team, [&](bool four, std::size_t first, std::size_t last) {
     table_.bending_energy(bending, layout_.stiffness.data(), energies_.data(), four, first, last);
   });

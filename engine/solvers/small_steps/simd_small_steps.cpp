@@ -14,7 +14,6 @@
 namespace weft {
 namespace {
 
-constexpr std::size_t kMostShares = 16;      // of the blocks of a family, each with its scratch
 constexpr std::size_t kPart = 4 * kStretch;  // floats that a thread takes at a time
 
 /// l^2 / rest^2 - 1 at this strain.
@@ -84,9 +83,9 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
   arrived_.reserve(model.anchors.size());
   multiplier_.resize(layout_.multipliers());
   const std::size_t wanted =
-      settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
+      settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostYarnShares;
   if (layout_.has_yarns())
-    scratch_.resize(layout_.yarns.scratch_rows() * std::min(wanted, kMostShares));
+    scratch_.resize(layout_.yarns.scratch_rows() * std::min(wanted, kMostYarnShares));
 }
 
 simd::Flight SmallStepsSolver::flight() {

@@ -25,9 +25,10 @@ YarnLayout no_yarns(const Model& model) {
 }
 
 /// Edge blocks of the constraints that are not in yarns.
-class Builder {
+class SmallStepsLayoutBuilder {
  public:
-  Builder(const Model& model, std::span<const std::uint32_t> in_yarns, SmallStepsLayout& layout)
+  SmallStepsLayoutBuilder(const Model& model, std::span<const std::uint32_t> in_yarns,
+                          SmallStepsLayout& layout)
       : model_(model), layout_(layout), is_in_yarn_(model.constraints.size()) {
     for (const std::uint32_t c : in_yarns) is_in_yarn_[c] = true;
   }
@@ -151,7 +152,7 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   layout.yarns =
       in_yarns.empty() ? no_yarns(model) : make_yarn_layout(model, in_yarns, memory, true);
   set_compliances(model, layout.yarns);
-  Builder(model, in_yarns, layout).add_batches();
+  SmallStepsLayoutBuilder(model, in_yarns, layout).add_batches();
   for (const auto* hubs : {&store.hub_distances, &store.hub_ropes}) {
     layout.serial.insert(layout.serial.end(), hubs->begin(), hubs->end());
   }

@@ -253,7 +253,7 @@ void leave_tethers_out(const Model& model, std::span<const std::uint32_t> anchor
 }
 
 /// Who is nearest to a particle, along constraints that cannot become longer.
-struct Nearest {
+struct NearestPin {
   double length = std::numeric_limits<double>::infinity();  // m
   std::uint32_t pin = kNoIndex;
 };
@@ -266,7 +266,7 @@ void for_each_rigid(const ConstraintStore& s, Work&& work) {
   }
 }
 
-std::vector<Nearest> find_nearest_pins(const Model& model) {
+std::vector<NearestPin> find_nearest_pins(const Model& model) {
   struct Step {
     std::uint32_t to = 0;
     double length = 0;
@@ -279,7 +279,7 @@ std::vector<Nearest> find_nearest_pins(const Model& model) {
   const Lists at = make_lists(model.slots(), [&](auto&& add) {
     for (std::uint32_t i = 0; i < steps.size(); ++i) add(steps[i ^ 1].to, i);
   });
-  std::vector<Nearest> nearest(model.slots());
+  std::vector<NearestPin> nearest(model.slots());
   using Entry = std::pair<double, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   for (const std::uint32_t pin : model.holds) {
@@ -305,7 +305,7 @@ std::vector<Nearest> find_nearest_pins(const Model& model) {
 std::vector<SmallStepsLoad::Span> find_ways(const Model& model) {
   std::vector<SmallStepsLoad::Span> ways;
   if (model.holds.size() < 2) return ways;
-  const std::vector<Nearest> nearest = find_nearest_pins(model);
+  const std::vector<NearestPin> nearest = find_nearest_pins(model);
   for_each_rigid(model.constraints, [&](std::uint32_t a, std::uint32_t b, double length) {
     const std::uint32_t first = nearest[a].pin, last = nearest[b].pin;
     if (first == last || first == kNoIndex || last == kNoIndex) return;

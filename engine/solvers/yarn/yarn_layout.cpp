@@ -161,9 +161,9 @@ double lightest_joined(const Model& model) {
   return most > 0 ? 1 / most : 1;
 }
 
-class Builder {
+class YarnLayoutBuilder {
  public:
-  Builder(const Model& model, Braces& braces, YarnLayout& layout)
+  YarnLayoutBuilder(const Model& model, Braces& braces, YarnLayout& layout)
       : model_(model), braces_(braces), layout_(layout), known_(LessByBytes{layout.kinds}) {
     layout.lightest = lightest_joined(model);
   }
@@ -312,7 +312,7 @@ YarnLayout make_yarn_layout(const Model& model, std::span<const std::uint32_t> c
   if (spans_first) begin_with_spans(model, braces, chains);
   sort(chains);
   layout.longest_at = find_longest_at(model, chains);
-  Builder builder(model, braces, layout);
+  YarnLayoutBuilder builder(model, braces, layout);
   for (std::span<Chain> left = chains; !left.empty();) {
     const std::size_t n = stretch(left, of_one_length);
     bring_fours_forward(left.first(n));

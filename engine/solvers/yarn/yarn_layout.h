@@ -26,6 +26,10 @@ namespace weft {
 
 class Model;
 
+/// The blocks of a family are divided into at most this many shares, each with a scratch of its
+/// own.
+inline constexpr std::size_t kMostYarnShares = 16;
+
 struct YarnLayout {
   std::vector<simd::YarnBlock> blocks;
   std::vector<std::uint32_t> links;       // per block: its number of constraints

@@ -19,10 +19,6 @@ struct Look {
   double strain, violation;
 };
 
-/// The blocks of a family are divided into at most this many shares, each with a scratch of its
-/// own.
-constexpr std::size_t kMostShares = 16;
-
 }  // namespace
 
 YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd::Table& table,
@@ -43,12 +39,12 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       singles_(model, settings),
       spans_(layout_, usual_, settings.tolerance, !model.has_contacts()) {
   const std::size_t wanted =
-      settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostShares;
+      settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostYarnShares;
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
   if (model.constraints.has_springs()) springs_.resize(layout_.rows());
   system_.reserve(layout_.rows());
   t_.reserve(u_.size());
-  scratch_.resize(layout_.scratch_rows() * std::min(wanted, kMostShares));
+  scratch_.resize(layout_.scratch_rows() * std::min(wanted, kMostYarnShares));
 }
 
 simd::Yarns YarnSolver::yarns() {
