@@ -88,7 +88,7 @@ class ArchiveWriter {
   template <class... T>
   void add(const std::variant<T...>& value) {
     add(static_cast<std::uint8_t>(value.index()));
-    std::visit([this](const auto& one) { add(one); }, value);
+    std::visit([this](const auto& one) { this->add(one); }, value);
   }
   template <class T>
   void add(const T& part) {

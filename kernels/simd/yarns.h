@@ -285,10 +285,14 @@ struct RowFactors {
 template <bool kSprings>
 [[gnu::always_inline]] inline auto keep_in_sums(const Yarns& y, const YarnBlock& block,
                                                 std::uint32_t lane) {
-  return [ springs = y.springs + (kSprings ? block.first : 0), lane ](
-      std::uint32_t k, Floats lambda, const FloatVector& n) __attribute__((always_inline)) {
-    if constexpr (kSprings) add_to_sum(springs[k], lane, lambda, n);
-  };
+  if constexpr (kSprings) {
+    return [ springs = y.springs + block.first, lane ](
+        std::uint32_t k, Floats lambda, const FloatVector& n) __attribute__((always_inline)) {
+      add_to_sum(springs[k], lane, lambda, n);
+    };
+  } else {
+    return [](std::uint32_t, Floats, const FloatVector&) __attribute__((always_inline)){};
+  }
 }
 
 /// Goes up the yarns, and calls move(row of the block, its inverse mass, the sum of its impulses).
