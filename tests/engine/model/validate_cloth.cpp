@@ -297,6 +297,7 @@ TEST_CASE("changes are of what there is, each once, and by values that it may ha
   check({.bending = {{7, 1}}}, {"bending[0]: no such bending element"});
   check({.damping = Damping{.motion = -1}}, {"damping.motion", "-1"});
   check({.air = ChangedAir{.drag = kNan}}, {"air.drag", "nan"});
+  check({.air = ChangedAir{.drag = 0.5}}, {"air.drag: given without air.triangles"});
   check({.compliances = {{5, 1}, {5, 1}}}, {"compliances[1]: constraint is listed twice (5)"});
   check({.fix = {9}, .masses = {{3, -1}}}, {"masses[0]"});
 }
