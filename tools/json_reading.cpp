@@ -2,31 +2,35 @@
 
 #include <algorithm>
 
+#include "tools/wording.h"
+
 namespace weft::tools {
 namespace {
-
-std::string shortened(std::string text) {
-  constexpr std::size_t kMost = 40;
-  if (text.size() <= kMost) return text;
-  const auto within_character = [](char byte) { return (byte & 0xc0) == 0x80; };  // of UTF-8
-  std::size_t end = kMost;
-  while (within_character(text[end])) --end;
-  return text.substr(0, end) + "...";
-}
 
 /// Without what nests in it, which may be as deep as the file is long.
 std::string brief(const Json& found) {
   if (std::ranges::none_of(found, [](const Json& part) { return part.is_structured(); })) {
-    return shortened(found.dump());
+    return shown(found.dump());
   }
   return found.is_array() ? "a nested array" : "a nested object";
+}
+
+/// What the parser read last it quotes as long as it is.
+std::string with_short_quote(std::string message) {
+  constexpr std::string_view kBefore = "last read: '", kAfter = "'; expected ";
+  const std::size_t found = message.find(kBefore);
+  if (found == std::string::npos) return message;
+  const std::size_t begin = found + kBefore.size();
+  const std::size_t end = std::min(message.rfind(kAfter), message.rfind('\''));
+  if (end == std::string::npos || end < begin) return message;
+  return message.replace(begin, end - begin, shown(message.substr(begin, end - begin)));
 }
 
 }  // namespace
 
 std::string in_quotes(const Json& key) {
   const std::string text = key.dump();
-  return '\'' + shortened(text.substr(1, text.size() - 2)) + '\'';
+  return '\'' + shown(text.substr(1, text.size() - 2)) + '\'';
 }
 
 void refuse(const std::string& place, std::string_view expected, const Json& found) {
@@ -36,7 +40,8 @@ void refuse(const std::string& place, std::string_view expected, const Json& fou
 std::string plain_message(const Json::exception& exception) {
   const std::string_view text = exception.what();
   const std::size_t bracket = text.find("] ");
-  return std::string(bracket == std::string_view::npos ? text : text.substr(bracket + 2));
+  return with_short_quote(
+      std::string(bracket == std::string_view::npos ? text : text.substr(bracket + 2)));
 }
 
 double read_number(const Json& json, const std::string& place) {

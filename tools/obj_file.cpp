@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tools/parse.h"
+#include "tools/wording.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #define TINYOBJLOADER_USE_DOUBLE
@@ -111,7 +112,7 @@ class LineCheck {
   static constexpr std::size_t kMostCorners = 255;
 
   Result<void> refused(std::string_view text, std::string_view why) const {
-    return Error{fmt::format("line {}: '{}': {}", line_, text, why)};
+    return Error{fmt::format("line {}: '{}': {}", line_, shown(text), why)};
   }
 
   Result<void> add_corners(std::span<const std::string_view> words) {

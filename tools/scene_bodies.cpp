@@ -28,12 +28,6 @@ Rotation product(const Rotation& a, const Rotation& b) {
       a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 
-Vec3 rotation_vector(const Rotation& q) {
-  const double sine = std::hypot(q.x, q.y, q.z);
-  const double factor = sine > 0 ? 2 * std::atan2(sine, q.w) / sine : 0;
-  return {factor * q.x, factor * q.y, factor * q.z};
-}
-
 /// The keys of an entry, of which each is to be asked for or is unknown.
 class Entry {
  public:
@@ -105,11 +99,20 @@ std::array<std::uint32_t, 3> read_corners(const Json& json, const std::string& p
   return {corners[0], corners[1], corners[2]};
 }
 
+/// One that a message can repeat in its line.
+bool is_file_name(const Json& json) {
+  constexpr std::size_t kLongest = 500;
+  if (!json.is_string()) return false;
+  const auto name = json.get<std::string>();
+  const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; };
+  return name.size() <= kLongest && std::ranges::none_of(name, is_control);
+}
+
 TriangleMesh read_mesh(Entry& entry, const std::string& folder) {
   TriangleMesh mesh;
   if (entry.has("file")) {
     const Json& file = entry.needed("file");
-    if (!file.is_string()) refuse(entry.place("file"), "the name of an .obj file", file);
+    if (!is_file_name(file)) refuse(entry.place("file"), "the name of an .obj file", file);
     auto read = read_body_mesh(std::filesystem::path(folder) / file.get<std::string>(), 1);
     if (!read) throw Refused{fmt::format("{}: {}", entry.place("file"), read.error())};
     mesh = std::move(read.value());
@@ -165,7 +168,8 @@ SceneBody read_body(const Json& json, const std::string& place, const std::strin
   body.shape = read_shape(entry, folder);
   if (const auto built = build_shape(body.shape); !built)
     throw Refused{fmt::format("{}.{}", place, built.error())};
-  body.pose = {entry.vector("position", {}), quaternion(entry.vector("rotation", {}))};
+  body.position = entry.vector("position", {});
+  body.rotation = entry.vector("rotation", {});
   body.thickness = entry.number("thickness", body.thickness);
   body.friction = entry.number("friction", body.friction);
   if (entry.has("moves")) body.move = read_move(json["moves"], entry.place("moves"));
@@ -262,9 +266,10 @@ std::size_t count_triangles(std::span<const SceneBody> bodies) {
 }
 
 Pose pose_at(const SceneBody& body, double time) {
-  if (!body.move) return body.pose;
-  return {place_at(*body.move, time, body.pose.position),
-          product(quaternion(rotation_at(*body.move, time)), body.pose.rotation)};
+  const Rotation rotation = quaternion(body.rotation);
+  if (!body.move) return {body.position, rotation};
+  return {place_at(*body.move, time, body.position),
+          product(quaternion(rotation_at(*body.move, time)), rotation)};
 }
 
 TriangleSet meshes_at(std::span<const SceneBody> bodies, double time) {
@@ -289,8 +294,8 @@ std::vector<SceneBody> read_bodies(const Json& json, const std::string& folder) 
 
 std::string body_row(const SceneBody& body) {
   Json json = std::visit([](const auto& shape) { return shape_json(shape); }, body.shape);
-  json["position"] = row(body.pose.position);
-  json["rotation"] = row(rotation_vector(body.pose.rotation));
+  json["position"] = row(body.position);
+  json["rotation"] = row(body.rotation);
   json["thickness"] = body.thickness;
   json["friction"] = body.friction;
   if (body.move) {

@@ -20,7 +20,8 @@ struct VertexMove {
 /// It begins at a pose and moves as pins do: x goes to where place_at() takes it.
 struct SceneBody {
   ShapeDescription shape;
-  Pose pose{};
+  Vec3 position{};
+  Vec3 rotation{};                      ///< rad, a rotation vector
   double thickness = Body{}.thickness;  ///< m
   double friction = Body{}.friction;
   std::optional<PinMove> move = {};            ///< of no particles

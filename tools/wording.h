@@ -4,10 +4,25 @@
 #include <fmt/format.h>
 #include <weft/weft.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace weft::tools {
+
+/// As much of a text from outside as a message shows: its beginning, in one line.
+inline std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 40;
+  std::size_t end = std::min(kMost, text.size());
+  const auto within_character = [](char byte) { return (byte & 0xc0) == 0x80; };  // of UTF-8
+  while (end < text.size() && end > 0 && within_character(text[end])) --end;
+  std::string line(text.substr(0, end));
+  for (char& c : line) {
+    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
+  }
+  return end < text.size() ? line + "..." : line;
+}
 
 /// What was asked for, as it was asked: 0.001 %.
 inline std::string percent(double fraction) { return fmt::format("{:g} %", 100 * fraction); }

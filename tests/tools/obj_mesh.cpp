@@ -226,6 +226,8 @@ TEST_CASE("broken files are refused in one line") {
   CHECK(error_of("v 0 0 0\nf\n") == "line 2: 'f': a face has three corners at least");
   CHECK(error_of("v 0 0 0\nl 1\n") == "line 2: 'l 1': a line has two ends at least");
   CHECK(error_of("v 0 0\n") == "line 1: 'v 0 0': a vertex needs three finite numbers");
+  CHECK(error_of("v \x01 \x1b" + std::string(1000, '9') + "\n") ==
+        "line 1: 'v ? ?" + std::string(35, '9') + "...': a vertex needs three finite numbers");
   CHECK(error_of("v 0 0 0\nv 1 0 0\nf 1 2 3\n") ==
         "line 3: there is no vertex 3, the last one is 2");
   CHECK(error_of("v 0 0 0\n") == "no face and no line in the file");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "temporary_folder.h"
 #include "tools/scenes/scenes.h"
@@ -161,20 +162,21 @@ TEST_CASE("bodies survive writing and reading, and move as they are told") {
   scene.friction = 0.45;
   const std::vector<SceneBody> bodies{{.shape = Plane{{0, 2, 0}, -0.5}, .friction = 0.1},
                                       {.shape = Capsule{{0, 0, 0}, {0, 1, 0}, 0.2, 0.1},
-                                       .pose = {.position = {1, 2, 3}},
+                                       .position = {1, 2, 3},
                                        .thickness = 0.002,
                                        .move = PinMove{.times = {0, 2},
                                                        .translations = {{0, 0, 0}, {4, 0, 0}},
                                                        .rotations = {{0, 0, 0}, {0, 0, 0.5}},
                                                        .about = {1, 2, 3}}},
                                       {.shape = box({1, 2, 3})},
-                                      {.shape = Ball{{0, 1, 0}, 0.25}}};
+                                      {.shape = Ball{{0, 1, 0}, 0.25}, .rotation = {0, 1, 0.5}}};
   const std::string text = scene_text(scene, {}, {}, bodies);
   const auto read = parse_scene(text);
   REQUIRE_MESSAGE(read, (read ? "" : read.error()));
   CHECK(read.value().description.friction == 0.45);
   REQUIRE(read.value().bodies.size() == 4);
   CHECK(scene_text(read.value().description, {}, {}, read.value().bodies) == text);
+  CHECK(read.value().bodies[3].rotation.z == 0.5);  // to the last bit
   const Pose pose = pose_at(read.value().bodies[1], 1);
   CHECK(pose.position.x == 3);
   CHECK(pose.rotation.z == doctest::Approx(std::sin(0.125)));
@@ -206,7 +208,8 @@ TEST_CASE("meshes survive writing and reading, and their vertices move") {
 
 TEST_CASE("meshes are where their pose is") {
   SceneBody body = rising_triangle();
-  body.pose = {.position = {10, 0, 0}, .rotation = {0, 0, std::sqrt(0.5), std::sqrt(0.5)}};
+  body.position = {10, 0, 0};
+  body.rotation = {0, 0, std::numbers::pi / 2};
   const TriangleSet set = meshes_at(std::vector{SceneBody{.shape = Ball{.radius = 1}}, body}, 2);
   REQUIRE(set.places.size() == 3);
   CHECK(set.places[2].x == doctest::Approx(9));
@@ -227,6 +230,16 @@ TEST_CASE("a mesh may be in a file beside the scene") {
   const auto without = parse_scene(start + R"({"shape": "mesh", "file": "no.obj"}]})");
   REQUIRE_FALSE(without);
   CHECK(without.error().starts_with("bodies[0].file: "));
+  const auto two_lines = parse_scene(start + R"({"shape": "mesh", "file": "a\nb.obj"}]})");
+  REQUIRE_FALSE(two_lines);
+  CHECK(two_lines.error() ==
+        R"(bodies[0].file: expected the name of an .obj file, not "a\nb.obj")");
+}
+
+TEST_CASE("an error repeats no more than the beginning of what the parser read last") {
+  const std::string error = error_of("{\"" + std::string(5000, 'a'));
+  CHECK(error.find("last read: '\"" + std::string(39, 'a') + "...'") != std::string::npos);
+  CHECK(error.size() < 250);
 }
 
 TEST_CASE("the surface is that of the faces unless it is given") {

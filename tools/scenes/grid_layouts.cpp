@@ -171,7 +171,7 @@ Layout table(const Options& options) {
   Layout layout = level_sheet(options.size);
   for (Vec3& x : layout.start) x.y = kHeight;
   layout.bodies.push_back({.shape = box({kTable, kTable, 1.4}),
-                           .pose = {.position = {kCovered - kTable / 2, -kTable / 2, 0.5}},
+                           .position = {kCovered - kTable / 2, -kTable / 2, 0.5},
                            .friction = 0.2});
   return layout;
 }
@@ -194,7 +194,7 @@ Layout cushion(const Options& options) {
       .rotations = {{}, {}, {0, 0, -kTurn}, {0, 0, -kTurn}},
       .about = from};
   layout.bodies.push_back({.shape = weft::Ball{.radius = kRadius},
-                           .pose = {.position = from},
+                           .position = from,
                            .thickness = kThickness,
                            .friction = 0.4,
                            .move = move});
