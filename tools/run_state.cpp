@@ -27,18 +27,27 @@ void visit_fields(Is<RunState> auto& state, auto& archive) {
 
 }  // namespace
 
-Result<RunState> read_run_state(const std::string& path) {
-  const auto text = read_text_file(path);
-  if (!text) return Error{text.error()};
-  const auto refused = [&](const std::string& why) {
-    return Error{fmt::format("'{}': {}", path, why)};
-  };
-  const auto content = unseal(kRun, std::as_bytes(std::span(text.value())));
-  if (!content) return refused(content.error());
+Result<RunState> parse_run_state(std::span<const std::byte> bytes) {
+  const auto content = unseal(kRun, bytes);
+  if (!content) return Error{content.error()};
   ArchiveReader archive(content.value());
   RunState state;
   visit_fields(state, archive);
-  if (!archive.is_done() || state.frame < 0) return refused("holds what cannot be");
+  if (!archive.is_done() || state.frame < 0) return Error{"holds what cannot be"};
+  return state;
+}
+
+std::vector<std::byte> bytes_of(const RunState& state) {
+  ArchiveWriter archive;
+  visit_fields(state, archive);
+  return seal(kRun, std::move(archive).bytes());
+}
+
+Result<RunState> read_run_state(const std::string& path) {
+  const auto text = read_text_file(path);
+  if (!text) return Error{text.error()};
+  auto state = parse_run_state(std::as_bytes(std::span(text.value())));
+  if (!state) return Error{fmt::format("'{}': {}", path, state.error())};
   return state;
 }
 
@@ -58,10 +67,7 @@ void StateFile::add_frame(const Cloth& cloth, int frame) {
 
 void StateFile::add_last(const Cloth& cloth, int frame) {
   if (!written_) return;
-  ArchiveWriter archive;
-  const RunState state{frame, dt_, cloth.save_state()};
-  visit_fields(state, archive);
-  const std::vector<std::byte> bytes = seal(kRun, std::move(archive).bytes());
+  const std::vector<std::byte> bytes = bytes_of({frame, dt_, cloth.save_state()});
   written_ = write_file(path_, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ struct RunState {
   double dt = 0;  ///< s, of each
   std::vector<std::byte> cloth = {};
 };
+
+/// The content of a file. An error says why it is none.
+Result<RunState> parse_run_state(std::span<const std::byte> bytes);
+std::vector<std::byte> bytes_of(const RunState& state);
 
 /// An error names the file and says why.
 Result<RunState> read_run_state(const std::string& path);
