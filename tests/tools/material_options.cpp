@@ -5,7 +5,7 @@
 namespace weft::tools {
 namespace {
 
-std::string error_of(const std::string& text) {
+std::string material_error(const std::string& text) {
   const auto material = parse_material(text);
   REQUIRE_FALSE(material);
   return material.error();
@@ -31,11 +31,11 @@ TEST_CASE("a material file has the fields of a material by name") {
 }
 
 TEST_CASE("errors of a material file name the field") {
-  CHECK(error_of("[]") == "expected an object with the fields of a material");
-  CHECK(error_of(R"({"stretch": 1})") == "unknown key 'stretch'");
-  CHECK(error_of(R"({"warp": "x"})") == R"(warp: expected a number, not "x")");
-  CHECK(error_of(R"({"warp": 1, "warp": 2})") == "the key 'warp' is given twice");
-  CHECK(error_of("{").find("parse error") != std::string::npos);
+  CHECK(material_error("[]") == "expected an object with the fields of a material");
+  CHECK(material_error(R"({"stretch": 1})") == "unknown key 'stretch'");
+  CHECK(material_error(R"({"warp": "x"})") == R"(warp: expected a number, not "x")");
+  CHECK(material_error(R"({"warp": 1, "warp": 2})") == "the key 'warp' is given twice");
+  CHECK(material_error("{").find("parse error") != std::string::npos);
 }
 
 TEST_CASE("options change a named material, or are one by themselves") {

@@ -38,7 +38,7 @@ ObjScene parse(const std::string& text, const ObjOptions& options = {}) {
   return std::move(scene.value());
 }
 
-std::string error_of(const std::string& text, const ObjOptions& options = {}) {
+std::string obj_error(const std::string& text, const ObjOptions& options = {}) {
   const auto scene = parse_obj(text, options);
   REQUIRE_FALSE(scene);
   return scene.error();
@@ -129,7 +129,7 @@ TEST_CASE("edges without a length are dropped") {
   const ObjScene scene = parse("v 0 0 0\nv 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\nf 1 1 2\n");
   CHECK(scene.description.positions.size() == 3);
   CHECK(scene.description.constraints.size() == 3);
-  CHECK(error_of("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n") == "every edge of the mesh has length 0");
+  CHECK(obj_error("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n") == "every edge of the mesh has length 0");
 }
 
 TEST_CASE("pin rules choose particles by their vertices") {
@@ -154,11 +154,11 @@ TEST_CASE("pin rules may be joined: or adds, and takes away, and binds more tigh
   CHECK(pinned("x>=2 or 0") == std::vector<std::uint32_t>{0, 4, 5});
   CHECK(pinned("x<1 and y<0.5 or top and x>1") == std::vector<std::uint32_t>{0, 5});
   CHECK(pinned("top and x<1 or  0,1 ") == std::vector<std::uint32_t>{0, 1, 3});
-  CHECK(error_of(kTwoSquares, {.pin = "top and x>5"}) == "--pin: 'top and x>5' matches no vertex");
-  CHECK(error_of(kTwoSquares, {.pin = "top or 99"}) == "--pin: '99': no face has a vertex 99");
+  CHECK(obj_error(kTwoSquares, {.pin = "top and x>5"}) == "--pin: 'top and x>5' matches no vertex");
+  CHECK(obj_error(kTwoSquares, {.pin = "top or 99"}) == "--pin: '99': no face has a vertex 99");
   CHECK(
-      error_of(kTwoSquares, {.pin = "top and "}).starts_with("--pin: 'top and' is not none, top"));
-  CHECK(error_of(kTwoSquares, {.pin = "top or left"}).starts_with("--pin: 'left' is not none"));
+      obj_error(kTwoSquares, {.pin = "top and "}).starts_with("--pin: 'top and' is not none, top"));
+  CHECK(obj_error(kTwoSquares, {.pin = "top or left"}).starts_with("--pin: 'left' is not none"));
 }
 
 TEST_CASE("what is up decides where the top is and where gravity comes from") {
@@ -192,13 +192,13 @@ TEST_CASE("seams sew lists of vertices, one by one") {
   const ObjScene crossed = parse(strips, {.seams = {"0-1:5-4", "3:7"}});
   CHECK(crossed.mesh.particle_of_vertex[0] == crossed.mesh.particle_of_vertex[5]);
   CHECK(crossed.mesh.particle_of_vertex[3] == crossed.mesh.particle_of_vertex[7]);
-  CHECK(error_of(strips, {.seams = {"0-1:4"}}) == "--seam: '0-1:4' sews 2 vertices to 1");
-  CHECK(error_of(strips, {.seams = {"0:8"}}) ==
+  CHECK(obj_error(strips, {.seams = {"0-1:4"}}) == "--seam: '0-1:4' sews 2 vertices to 1");
+  CHECK(obj_error(strips, {.seams = {"0:8"}}) ==
         "--seam: '0:8': there is no vertex 8, the last one is 7");
   for (const std::string seam : {"", "0-1", ":", "0:", "0:x", "a:b"}) {
     CAPTURE(seam);
-    CHECK(
-        error_of(strips, {.seams = {seam}}).starts_with("--seam: '" + seam + "' is not two lists"));
+    CHECK(obj_error(strips, {.seams = {seam}})
+              .starts_with("--seam: '" + seam + "' is not two lists"));
   }
 }
 
@@ -209,34 +209,34 @@ TEST_CASE("pin rules are in the file's coordinates") {
 TEST_CASE("a pin rule that means nothing is refused") {
   for (const std::string rule : {"", "y", "y>", "w>1", "y=1", "y>x", "1,", "3-1", "-1", "bottom"}) {
     CAPTURE(rule);
-    CHECK(error_of(kTwoSquares, {.pin = rule})
+    CHECK(obj_error(kTwoSquares, {.pin = rule})
               .starts_with("--pin: '" + rule + "' is not none, top, a comparison"));
   }
-  CHECK(error_of(kTwoSquares, {.pin = "y>5"}) == "--pin: 'y>5' matches no vertex");
-  CHECK(error_of(kTwoSquares, {.pin = "0,4"}) == "--pin: '0,4': no face has a vertex 4");
-  CHECK(error_of(kTwoSquares, {.pin = "9"}) == "--pin: '9': no face has a vertex 9");
-  CHECK(error_of(kTwoSquares, {.pin = "0-99"}) == "--pin: '0-99': no face has a vertex 4");
+  CHECK(obj_error(kTwoSquares, {.pin = "y>5"}) == "--pin: 'y>5' matches no vertex");
+  CHECK(obj_error(kTwoSquares, {.pin = "0,4"}) == "--pin: '0,4': no face has a vertex 4");
+  CHECK(obj_error(kTwoSquares, {.pin = "9"}) == "--pin: '9': no face has a vertex 9");
+  CHECK(obj_error(kTwoSquares, {.pin = "0-99"}) == "--pin: '0-99': no face has a vertex 4");
 }
 
 TEST_CASE("broken files are refused in one line") {
-  CHECK(error_of("v 0 0 0\nv 1 x 0\nf 1 2 1\n") ==
+  CHECK(obj_error("v 0 0 0\nv 1 x 0\nf 1 2 1\n") ==
         "line 2: 'v 1 x 0': a vertex needs three finite numbers");
-  CHECK(error_of("v 0 0 0\nv 1 0 0\nf 1 2\n") ==
+  CHECK(obj_error("v 0 0 0\nv 1 0 0\nf 1 2\n") ==
         "line 3: 'f 1 2': a face has three corners at least");
-  CHECK(error_of("v 0 0 0\nf\n") == "line 2: 'f': a face has three corners at least");
-  CHECK(error_of("v 0 0 0\nl 1\n") == "line 2: 'l 1': a line has two ends at least");
-  CHECK(error_of("v 0 0\n") == "line 1: 'v 0 0': a vertex needs three finite numbers");
-  CHECK(error_of("v \x01 \x1b" + std::string(1000, '9') + "\n") ==
+  CHECK(obj_error("v 0 0 0\nf\n") == "line 2: 'f': a face has three corners at least");
+  CHECK(obj_error("v 0 0 0\nl 1\n") == "line 2: 'l 1': a line has two ends at least");
+  CHECK(obj_error("v 0 0\n") == "line 1: 'v 0 0': a vertex needs three finite numbers");
+  CHECK(obj_error("v \x01 \x1b" + std::string(1000, '9') + "\n") ==
         "line 1: 'v ? ?" + std::string(35, '9') + "...': a vertex needs three finite numbers");
-  CHECK(error_of("v 0 0 0\nv 1 0 0\nf 1 2 3\n") ==
+  CHECK(obj_error("v 0 0 0\nv 1 0 0\nf 1 2 3\n") ==
         "line 3: there is no vertex 3, the last one is 2");
-  CHECK(error_of("v 0 0 0\n") == "no face and no line in the file");
-  CHECK(error_of("") == "no face and no line in the file");
-  const std::string zero = error_of("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 0 1 2\n");
+  CHECK(obj_error("v 0 0 0\n") == "no face and no line in the file");
+  CHECK(obj_error("") == "no face and no line in the file");
+  const std::string zero = obj_error("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 0 1 2\n");
   CHECK(zero == "line 4: '0': not the number of a vertex");
   std::string many = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf";
   for (int i = 0; i < 256; ++i) many += " 1";
-  CHECK(error_of(many) == "line 4: a face of 256 vertices; at most 255 can be read");
+  CHECK(obj_error(many) == "line 4: a face of 256 vertices; at most 255 can be read");
 }
 
 TEST_CASE("what is not the number of a vertex is refused, with its line") {
@@ -245,12 +245,12 @@ TEST_CASE("what is not the number of a vertex is refused, with its line") {
                                  "99999999999999999999", "-99999999999999999999"}) {
     CAPTURE(word);
     const std::string error = "line 4: '" + word + "/1': not the number of a vertex";
-    CHECK(error_of(triangle + "f 1 2 " + word + "/1\n") == error);
-    CHECK(error_of(triangle + "l 1 2 " + word + "/1\n") == error);
+    CHECK(obj_error(triangle + "f 1 2 " + word + "/1\n") == error);
+    CHECK(obj_error(triangle + "l 1 2 " + word + "/1\n") == error);
   }
   for (const std::string number : {"4", "4294967295", "4294967299", "9223372036854775807"}) {
     CAPTURE(number);
-    CHECK(error_of(triangle + "f 1 2 " + number + "\nf 1 2 3\n") ==
+    CHECK(obj_error(triangle + "f 1 2 " + number + "\nf 1 2 3\n") ==
           "line 4: there is no vertex " + number + ", the last one is 3");
   }
   CHECK(parse("f 1 2 3\n" + triangle).description.positions.size() == 3);
@@ -266,7 +266,7 @@ TEST_CASE("lines end as they may, and comments may follow") {
   std::string old_mac = text;
   std::ranges::replace(old_mac, '\n', '\r');
   CHECK(parse(old_mac).description.constraints.size() == 3);
-  CHECK(error_of("v 0 0 0\rv 1 x 0\rf 1 2 1\r") ==
+  CHECK(obj_error("v 0 0 0\rv 1 x 0\rf 1 2 1\r") ==
         "line 2: 'v 1 x 0': a vertex needs three finite numbers");
 }
 
@@ -279,8 +279,8 @@ TEST_CASE("lines are counted from 1, blank ones and comments too, however they e
     for (const char* line : {"", "v 0 0 0", "  ", "v 1 0 0 # five", "vt 0 0", "f 1 x 2"}) {
       text += end + line;
     }
-    CHECK(error_of(text) == "line 7: 'x': not the number of a vertex");
-    CHECK(error_of(text + end + end) == "line 7: 'x': not the number of a vertex");
+    CHECK(obj_error(text) == "line 7: 'x': not the number of a vertex");
+    CHECK(obj_error(text + end + end) == "line 7: 'x': not the number of a vertex");
   }
 }
 
@@ -289,13 +289,13 @@ TEST_CASE("the last line needs no end") {
     CAPTURE(text);
     CHECK(parse(kTriangle + text).description.constraints.size() == 3);
   }
-  CHECK(error_of(kTriangle + "f 1 2 34") == "line 4: there is no vertex 34, the last one is 3");
+  CHECK(obj_error(kTriangle + "f 1 2 34") == "line 4: there is no vertex 34, the last one is 3");
 }
 
 TEST_CASE("a vertex that is missing is reported where it is used first") {
-  CHECK(error_of(kTriangle + "f 1 2 3\nf 1 2 5\nl 1 4\nf 1 5 2\n") ==
+  CHECK(obj_error(kTriangle + "f 1 2 3\nf 1 2 5\nl 1 4\nf 1 5 2\n") ==
         "line 5: there is no vertex 5, the last one is 3");
-  CHECK(error_of(kTriangle + "l 1 4\n") == "line 4: there is no vertex 4, the last one is 3");
+  CHECK(obj_error(kTriangle + "l 1 4\n") == "line 4: there is no vertex 4, the last one is 3");
 }
 
 TEST_CASE("negative numbers count back from the vertices above them") {
@@ -303,7 +303,7 @@ TEST_CASE("negative numbers count back from the vertices above them") {
       parse("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\nf -1 -4 -2\nl -1 2\n");
   CHECK(scene.mesh.faces == std::vector<std::vector<std::uint32_t>>{{0, 1, 2}, {3, 0, 2}});
   CHECK(scene.mesh.lines == std::vector<std::vector<std::uint32_t>>{{3, 1}});
-  CHECK(error_of("v 0 0 0\nv 1 0 0\nf -1 -2 -3\nv 1 1 0\n") ==
+  CHECK(obj_error("v 0 0 0\nv 1 0 0\nf -1 -2 -3\nv 1 1 0\n") ==
         "line 3: '-3': not the number of a vertex");
 }
 
@@ -319,14 +319,14 @@ TEST_CASE("words are apart by blanks or tabs, and a vertex may carry a weight or
   REQUIRE(positions.size() == 3);
   CHECK((positions[0].x == 1 && positions[0].y == 2 && positions[0].z == 3));
   CHECK((positions[1].x == 4 && positions[1].y == 5 && positions[1].z == 6));
-  CHECK(error_of(kTriangle + "\tf\t1\tx\t2\n") == "line 4: 'x': not the number of a vertex");
+  CHECK(obj_error(kTriangle + "\tf\t1\tx\t2\n") == "line 4: 'x': not the number of a vertex");
 }
 
 TEST_CASE("each of the three coordinates is a finite number") {
   for (const std::string line : {"v x 0 0", "v 0 x 0", "v 0 0 x", "v 0 0 nan", "v inf 0 0",
                                  "v 0 1e999 0", "v 0 0 1,5", "v 0 0"}) {
     CAPTURE(line);
-    CHECK(error_of(kTriangle + line + " # c\n").starts_with("line 4: '" + line));
+    CHECK(obj_error(kTriangle + line + " # c\n").starts_with("line 4: '" + line));
   }
 }
 
@@ -352,23 +352,23 @@ TEST_CASE("only four-sided faces have diagonals") {
 }
 
 TEST_CASE("lines that a backslash continues are refused") {
-  CHECK(error_of(kTriangle + "f 1 2 \\\n3\n") == "line 4: '\\': not the number of a vertex");
-  CHECK(error_of(kTriangle + "l 1 2\\\n3\n") == "line 4: '2\\': not the number of a vertex");
-  CHECK(error_of("v 0 0 \\\n0\n") == "line 1: 'v 0 0 \\': a vertex needs three finite numbers");
+  CHECK(obj_error(kTriangle + "f 1 2 \\\n3\n") == "line 4: '\\': not the number of a vertex");
+  CHECK(obj_error(kTriangle + "l 1 2\\\n3\n") == "line 4: '2\\': not the number of a vertex");
+  CHECK(obj_error("v 0 0 \\\n0\n") == "line 1: 'v 0 0 \\': a vertex needs three finite numbers");
 }
 
 TEST_CASE("what the loader refuses is one line too, with the number of the file's") {
-  const std::string error = error_of("\r\n# two\r\n" + kTriangle + "f 1/x 2 3\n");
+  const std::string error = obj_error("\r\n# two\r\n" + kTriangle + "f 1/x 2 3\n");
   CHECK(error.find('\n') == std::string::npos);
   CHECK(error.find("line 6") != std::string::npos);
 }
 
 TEST_CASE("masses and scales must be above 0") {
-  CHECK(error_of(kTwoSquares, {.mass = 0}) == "--mass: 0 is not a number above 0");
-  CHECK(error_of(kTwoSquares, {.scale = -1}) == "--scale: -1 is not a number above 0");
+  CHECK(obj_error(kTwoSquares, {.mass = 0}) == "--mass: 0 is not a number above 0");
+  CHECK(obj_error(kTwoSquares, {.scale = -1}) == "--scale: -1 is not a number above 0");
   const double infinity = std::numeric_limits<double>::infinity();
-  CHECK(error_of(kTwoSquares, {.mass = infinity}) == "--mass: inf is not a number above 0");
-  CHECK(error_of(kTwoSquares, {.scale = 0 * infinity}).starts_with("--scale: "));
+  CHECK(obj_error(kTwoSquares, {.mass = infinity}) == "--mass: inf is not a number above 0");
+  CHECK(obj_error(kTwoSquares, {.scale = 0 * infinity}).starts_with("--scale: "));
 }
 
 TEST_CASE("a mesh is written with the numbering and the faces of its file") {

@@ -110,11 +110,11 @@ TEST_CASE("endings of files may be in capital letters") {
   CHECK(run_program(folder, "run " + folder.file("LAST.OBJ") + " --steps 2").exit_code == 0);
 }
 
-const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nf 1 2 3 4\nl 5 3\n";
+const std::string kSquareMesh = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nf 1 2 3 4\nl 5 3\n";
 
 TEST_CASE("a mesh is pinned, run and saved with its numbering") {
   const TemporaryFolder folder;
-  const std::string mesh = folder.write("square.obj", kSquare);
+  const std::string mesh = folder.write("square.obj", kSquareMesh);
   const Outcome outcome =
       run_program(folder, "run " + mesh + " --pin y'>'0.9 --ropes --steps 3 --json - --out " +
                               folder.file("last.obj") + " --out " + folder.file("motion.pc2"));
@@ -174,7 +174,7 @@ TEST_CASE("a cape is saved with its faces") {
 
 TEST_CASE("what is asked of a mesh is what is read") {
   const TemporaryFolder folder;
-  const std::string arguments = "scene " + folder.write("square.obj", kSquare) +
+  const std::string arguments = "scene " + folder.write("square.obj", kSquareMesh) +
                                 " --pin y'>'0.9 --mass 6 --scale 0.5 --ropes --out " +
                                 folder.file("scene.json");
   CHECK(run_program(folder, arguments).exit_code == 0);
