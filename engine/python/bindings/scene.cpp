@@ -32,7 +32,7 @@ std::vector<T> checked_records(py::handle value, const std::string& field) {
   return out;
 }
 
-void add_enumerations(py::module_& m) {
+void add_scene_enumerations(py::module_& m) {
   py::enum_<ConstraintKind>(m, "ConstraintKind", "distance, or rope, which only pulls.")
       .value("distance", ConstraintKind::distance)
       .value("rope", ConstraintKind::rope);
@@ -173,7 +173,7 @@ void add_model(py::module_& m) {
 }  // namespace
 
 void add_scene(py::module_& m) {
-  add_enumerations(m);
+  add_scene_enumerations(m);
   add_parts(m);
   py::class_<Scene> scene(m, "SceneDescription",
                           "Particles and what joins them. Arrays that it returns are copies and "

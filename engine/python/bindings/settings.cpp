@@ -9,7 +9,7 @@ namespace py = pybind11;
 
 namespace {
 
-void add_enumerations(py::module_& m) {
+void add_setting_enumerations(py::module_& m) {
   py::enum_<Solver>(m, "Solver", "How constraints are solved; see settings.h.")
       .value("gauss_seidel", Solver::gauss_seidel)
       .value("direct", Solver::direct)
@@ -39,7 +39,7 @@ void add_enumerations(py::module_& m) {
 }  // namespace
 
 void add_settings(py::module_& m) {
-  add_enumerations(m);
+  add_setting_enumerations(m);
   py::class_<Settings> settings(m, "Settings",
                                 "How a cloth is solved, and to which error; see settings.h.");
   add_keywords<Settings>(settings);
