@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include <fmt/ranges.h>
+
 #include "tests/fuzz/checks.h"
 #include "tools/obj_mesh.h"
 
@@ -17,10 +19,7 @@ constexpr const char* kMesh =
 constexpr std::uint32_t kUsed = 8;
 
 std::string list_of(const std::vector<std::uint32_t>& numbers) {
-  std::string text;
-  for (const std::uint32_t number : numbers)
-    text += (text.empty() ? "" : ",") + std::to_string(number);
-  return text;
+  return fmt::format("{}", fmt::join(numbers, ","));
 }
 
 void try_pins(std::string_view rule) {
