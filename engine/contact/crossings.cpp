@@ -96,45 +96,18 @@ bool Crossings::crosses(const ContactPoints& points, std::uint32_t triangle, At&
   return does;
 }
 
-void Crossings::find(const ContactPoints& points) {
+void Crossings::find(const ContactPoints& points, Moment moment) {
   forget();
+  const bool begins = moment == Moment::start;
+  const auto at = [&](std::uint32_t p) { return begins ? points.start(p) : points.end(p); };
   for (std::uint32_t t = 0; t < cloth_->triangles.size(); ++t) {
-    if (cloth_->is_point(t)) continue;
-    if (crosses(points, t, [&](std::uint32_t point) { return points.start(point); })) add(t);
-  }
-  gather_slots();
-}
-
-void Crossings::suspect(std::span<const std::uint32_t> corners) {
-  for (const std::uint32_t corner : corners) {
-    const auto place = std::ranges::lower_bound(slots_, corner);
-    if (place == slots_.end() || *place != corner) slots_.insert(place, corner);
-  }
-}
-
-void Crossings::renew(const ContactPoints& points) {
-  if (slots_.empty()) return;
-  near_.clear();
-  for (const std::uint32_t slot : slots_) {
-    for (const std::uint32_t t : cloth_->triangles_at[slot]) {
-      const auto known = std::ranges::count_if(cloth_->triangles[t], [&](std::uint32_t corner) {
-        return std::ranges::binary_search(slots_, corner);
-      });
-      if (known > 1 && !cloth_->is_point(t)) near_.push_back(t);
-    }
-  }
-  std::ranges::sort(near_);
-  const auto rest = std::ranges::unique(near_);
-  near_.erase(rest.begin(), rest.end());
-  forget();
-  for (const std::uint32_t t : near_) {
-    if (crosses(points, t, [&](std::uint32_t point) { return points.end(point); })) add(t);
+    if (!cloth_->is_point(t) && crosses(points, t, at)) add(t);
   }
   gather_slots();
 }
 
 std::size_t Crossings::bytes() const {
-  return bytes_of(triangles_) + bytes_of(slots_) + bytes_of(near_) +
+  return bytes_of(triangles_) + bytes_of(slots_) +
          (has_triangle_.capacity() + has_edge_.capacity()) / 8;
 }
 

@@ -2,9 +2,6 @@
 /// written, or more came together than could be kept apart. Which way they would come apart cannot
 /// be told from where they are, so their edges and faces are no contacts until they have. Their
 /// particles are kept out as all others are.
-///
-/// A triangle that begins to cross another one through an edge or a corner that is no contact has
-/// two corners in common with one that crosses, so that it is enough to look at such triangles.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +19,9 @@ class Crossings {
 
   /// Of a frame. slots: those of the frame before, when it was over.
   void begin(const TriangleSurface& cloth, std::span<const std::uint32_t> slots);
-  /// Among all triangles, when an interval begins.
-  void find(const ContactPoints& points);
-  /// Among those that cross and their neighbours, when an interval is over.
-  void renew(const ContactPoints& points);
-  /// Corners of a triangle that could not be kept apart, which are looked at when it is renewed.
-  void suspect(std::span<const std::uint32_t> corners);
+  enum class Moment { start, end };
+  /// Among all triangles, where an interval begins or ends.
+  void find(const ContactPoints& points, Moment moment);
 
   int count() const { return static_cast<int>(triangles_.size()); }
   /// Whether the pair is left alone.
@@ -49,7 +43,6 @@ class Crossings {
   const simd::Table& table_;
   const TriangleSurface* cloth_ = nullptr;
   std::vector<std::uint32_t> triangles_, slots_;
-  std::vector<std::uint32_t> near_;            // triangles; scratch
   std::vector<bool> has_triangle_, has_edge_;  // empty until the first one crosses
 };
 

@@ -59,7 +59,7 @@ void MeshContacts::begin_interval(ContactParticles& particles, const BodyClock& 
   narrow_.measure(points_, candidates_, team);
   if (is_new_) {
     find_inside();
-    crossings_.find(points_);
+    crossings_.find(points_, Crossings::Moment::start);
     misplaced_.crossing = crossings_.slots();
   }
   is_new_ = false;
@@ -159,8 +159,11 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
     for (const Failure& failure : verification_.failures())
       misplace(candidates_[failure.list].pairs[failure.pair]);
   }
-  crossings_.renew(points_);
-  misplaced_.crossing = crossings_.slots();
+  // Only what is misplaced, and what could not be stopped, leads others through a body.
+  if (crossings_.count() > 0 || !misplaced_.inside.empty() || !verification_.failures().empty()) {
+    crossings_.find(points_, Crossings::Moment::end);
+    misplaced_.crossing = crossings_.slots();
+  }
   if (!has_moved) return false;
   verification_.find_late(scene, narrow_, candidates_, team);
   for (const Failure& late : verification_.failures())
@@ -189,21 +192,13 @@ void MeshContacts::expect_failures(const BodyClock& clock, ContactParticles& par
   points_.place_vertices_asked(clock);
 }
 
-/// What could not be kept apart.
+/// Of what could not be kept apart: the particle is inside from now on.
 void MeshContacts::misplace(const Pair& pair) {
+  if (pair.kind != PairKind::particle_triangle || points_.meshes()[pair.mesh].mesh().two_sided)
+    return;
   std::vector<std::uint32_t>& inside = misplaced_.inside;
-  switch (pair.kind) {
-    case PairKind::particle_triangle:
-      if (!points_.meshes()[pair.mesh].mesh().two_sided && !misplaced_.is_inside(pair.of_cloth))
-        inside.insert(std::ranges::lower_bound(inside, pair.of_cloth), pair.of_cloth);
-      for (const std::uint32_t t : cloth_->triangles_at[pair.of_cloth])
-        crossings_.suspect(cloth_->triangles[t]);
-      return;
-    case PairKind::vertex_triangle:
-      return crossings_.suspect(cloth_->triangles[pair.of_cloth]);
-    case PairKind::edges:
-      crossings_.suspect(cloth_->edges[pair.of_cloth]);
-  }
+  if (!misplaced_.is_inside(pair.of_cloth))
+    inside.insert(std::ranges::lower_bound(inside, pair.of_cloth), pair.of_cloth);
 }
 
 int MeshContacts::count_touching() const {
