@@ -116,9 +116,9 @@ double next_refinement(const State& s, const FramePlan& plan, double error, cons
 }
 
 /// The same for fabric without a motion tolerance. Its load may come from any side, and what
-/// carries it sideways is swept one by one: substeps are shorter where the last one of a frame left
-/// much to put right, which took the time of `beyond` sweeps, and longer where it left little, down
-/// to those of cloth that hangs at rest.
+/// carries it sideways is swept one by one: substeps are shorter where a frame left much to put
+/// right, which took the time of `beyond` sweeps, and longer where it left little, down to those of
+/// cloth that hangs at rest.
 double refinement_for_laws(const State& s, const FramePlan& plan, double beyond,
                            const Budget& budget) {
   constexpr double kLevel = 0.25;
@@ -156,7 +156,7 @@ class Frame {
     if (s_.model->has_air() && s_.air_parts > 1) begin_air();
     plan_.anchors = plan.projects ? s_.anchors.standing() : s_.anchors.travel();
     plan_.seams = s_.seams.states();
-    plan_.bodies = s_.bodies.travelling(s_.model->friction);
+    if (plan.meets_bodies) plan_.bodies = s_.bodies.travelling(s_.model->friction);
     plan_.bodies_move = s_.bodies.moving();
     plan_.bodies_are_new = s_.bodies.are_others();
     kernels::Vectors& velocity = plan.projects ? s_.next_velocity : s_.velocity;
@@ -185,8 +185,8 @@ class Frame {
     }
     return air_work_;
   }
-  /// What substeps took beyond a sweep each, in the time of sweeps.
-  double beyond() const { return beyond_; }
+  /// What the frame took beyond a sweep for each substep, in the time of sweeps.
+  double beyond() const { return mended_; }
 
   void substep() {
     if (air_is_due()) look_at_air();
@@ -204,7 +204,6 @@ class Frame {
     if (s_.model->has_contacts()) find_contacts();
     if (mends) {
       count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest), team_));
-      beyond_ = mended_;
     } else if (to_tolerance && s_.contacts.count() > 0) {
       count(solver_.repair(s_.contacts, 0, team_));
     }
@@ -450,7 +449,6 @@ class Frame {
   int air_begun_ = 0;    // of the present part, in substeps
   double air_work_ = 0;  // J
   double mended_ = 0;    // beyond a sweep for each substep, any local visit as kLocalVisit
-  double beyond_ = 0;    // of that, in substeps
   double give_ = 0;      // s^2, of a sweep, per mass
   double elastic_energy_before_ = 0;  // J, in the beginning
 };
@@ -547,7 +545,8 @@ void look_ahead_by_small_steps(State& s, double h, StepReport& report, Team& tea
                .omega = tuning::kOmega,
                .placed = true,
                .projects = true,
-               .softest = std::numeric_limits<double>::infinity()});
+               .softest = std::numeric_limits<double>::infinity(),
+               .meets_bodies = false});
   frame.look_ahead();
 }
 

@@ -97,7 +97,8 @@ struct FramePlan {
   double softest = 0;     // m/N; where it projects: springs that are softer are left as they are
   AnchorTravel anchors{};
   std::span<const SeamState> seams{};
-  std::span<const TravellingBody> bodies{};
+  bool meets_bodies = true;
+  std::span<const TravellingBody> bodies{};  // where it meets them
   bool bodies_move = false;     // in this step, or in the last, or there are other ones
   bool bodies_are_new = false;  // there are other ones, or one was put elsewhere
 };
