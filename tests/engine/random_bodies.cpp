@@ -1,0 +1,208 @@
+/// Fabric beside bodies drawn by chance, which are moved, placed, switched and removed: a step
+/// commits a finite state or changes nothing, and what it says has converged is in no body.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/body_meshes.h"
+#include "tests/support/clothes.h"
+#include "tests/support/crossing_triangles.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/sheets.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test {
+namespace {
+
+constexpr double kSpacing = 0.05;  // m, of the sheet's vertices
+
+/// A body of the case, and where it is as far as the test knows.
+struct Solid {
+  ShapeDescription shape{};
+  Body body{};
+  std::uint32_t id = 0;
+  bool is_on = true;
+};
+
+struct Case {
+  std::uint32_t seed = 0;
+  MeshCloth cloth;
+  Settings settings;
+  double dt = 1.0 / 60;
+  int steps = 0;
+  double speed = 0;  // m/s, of bodies, at most
+  std::vector<Solid> solids;
+};
+
+Rotation random_rotation(Random& random) {
+  const Vec3 axis = random.in_box(1);
+  const double l = length(axis);
+  return l > 0.1 ? turn((1 / l) * axis, random.between(-3, 3)) : Rotation{};
+}
+
+ShapeDescription random_shape(Random& random) {
+  const double radius = random.between(0.02, 0.3);
+  switch (random.below(6)) {
+    case 0:
+      return Plane{.normal = {random.between(-0.3, 0.3), 1, random.between(-0.3, 0.3)}};
+    case 1:
+      return Ball{.radius = radius};
+    case 2:
+      return Capsule{.a = random.in_box(0.3),
+                     .b = random.in_box(0.3),
+                     .radius_a = radius,
+                     .radius_b = random.between(0.02, 0.3)};
+    case 3:
+      return box({radius, random.between(0.02, 0.3), random.between(0.02, 0.3)});
+    case 4:
+      return icosphere(radius, static_cast<int>(1 + random.below(2)));
+    default:
+      return box_mesh({2 * radius, radius, radius}, 1 + random.below(3));
+  }
+}
+
+/// At the height of the sheet, or not far from it.
+Pose random_pose(Random& random) {
+  return {.position = {random.between(0, 0.4), random.between(-0.5, 0.1), random.between(0, 0.4)},
+          .rotation = random_rotation(random)};
+}
+
+Case random_bodies(std::uint32_t seed) {
+  Random random(seed);
+  Case c;
+  c.seed = seed;
+  const std::uint32_t size = 3 + random.below(7);
+  MeshDescription mesh =
+      random.below(2) == 0 ? quads(size) : irregular_triangles(size, 0.2, random);
+  for (Vec3& v : mesh.positions) v = {kSpacing * v.x, 0, kSpacing * v.y};
+  const char* const materials[] = {"cotton", "silk", "denim"};
+  mesh.material = find_material(materials[random.below(3)]).value();
+  c.cloth = made(mesh);
+  if (random.below(2) == 0) c.cloth.scene.fixed = {0, size - 1};
+  c.cloth.scene.friction = random.below(4) == 0 ? 0 : random.between(0, 2);
+  c.settings.solver = Solver::small_steps;
+  c.settings.scheme = random.below(2) == 0 ? Scheme::bdf2 : Scheme::implicit;
+  c.settings.backend = random.below(4) == 0 ? Backend::reference : Backend::simd;
+  c.settings.threads = 1;
+  c.settings.tolerance = random.below(2) == 0 ? 1e-2 : 1e-3;
+  c.dt = 1.0 / (random.below(2) == 0 ? 60 : 30 + 210 * random.between(0, 1));
+  c.steps = static_cast<int>(4 + random.below(12));
+  c.speed = random.below(3) == 0 ? 0 : random.between(0, 3);
+  const std::uint32_t count = 1 + random.below(4);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Solid solid;
+    solid.shape = random_shape(random);
+    solid.body = {.shape = shape_of(solid.shape),
+                  .pose = random_pose(random),
+                  .thickness = random.between(5e-4, 5e-3),
+                  .friction = random.below(8) == 0 ? 10 : random.between(0, 1)};
+    c.solids.push_back(solid);
+  }
+  return c;
+}
+
+std::string text(const Case& c) {
+  std::ostringstream out;
+  out << "WEFT_SEED=" << c.seed << " WEFT_CASES=1: " << c.cloth.scene.positions.size()
+      << " particles, " << c.solids.size() << " bodies, " << name(c.settings.scheme) << ", "
+      << name(c.settings.backend) << ", tolerance " << c.settings.tolerance << ", dt " << c.dt;
+  return out.str();
+}
+
+/// m, from a particle to the surface of a shape that has a closed form; below 0 inside.
+std::optional<double> height_over(const Solid& solid, Vec3 x) {
+  const Vec3 p = solid.body.pose.position;
+  const auto at = [&](Vec3 v) { return p + turned(solid.body.pose.rotation, v); };
+  if (const auto* ball = std::get_if<Ball>(&solid.shape))
+    return length(x - at(ball->centre)) - ball->radius;
+  if (const auto* plane = std::get_if<Plane>(&solid.shape)) {
+    const Vec3 n = (1 / length(plane->normal)) * plane->normal;
+    return dot(turned(solid.body.pose.rotation, n), x - p);
+  }
+  return std::nullopt;
+}
+
+bool is_fixed(const Case& c, std::uint32_t particle) {
+  return std::ranges::find(c.cloth.scene.fixed, particle) != c.cloth.scene.fixed.end();
+}
+
+/// Moves about half of the bodies, and puts, switches or removes one now and then.
+void change_bodies(const Case& c, Random& random, std::vector<Solid>& solids, Cloth& cloth) {
+  for (Solid& solid : solids) {
+    const std::uint32_t what = random.below(24);
+    if (what < 12 && c.speed > 0) {
+      solid.body.pose.position = solid.body.pose.position + random.in_box(0.5 * c.speed * c.dt);
+      REQUIRE(cloth.move_body(solid.id, solid.body.pose));
+    } else if (what == 12) {
+      solid.body.pose = random_pose(random);
+      REQUIRE(cloth.place_body(solid.id, solid.body.pose));
+    } else if (what == 13) {
+      solid.is_on = !solid.is_on;
+      REQUIRE(cloth.switch_body(solid.id, solid.is_on));
+    } else if (what == 14) {
+      REQUIRE(cloth.remove_body(solid.id));
+      solid.id = add(cloth, solid.body);
+      solid.is_on = true;
+    }
+  }
+}
+
+void check_step(const Case& c, std::vector<Solid>& solids, Cloth& cloth) {
+  const std::uint64_t hash = cloth.state_hash();
+  const StepReport report = step(cloth, c.dt);
+  CAPTURE(name(report.status));
+  CHECK((report.failed_particle == kNoIndex) == committed(report.status));
+  if (!committed(report.status)) {
+    CHECK(cloth.state_hash() == hash);
+    return;
+  }
+  const std::vector<Vec3> now = positions(cloth);
+  for (std::uint32_t i = 0; i < now.size(); ++i) {
+    REQUIRE((std::isfinite(now[i].x) && std::isfinite(now[i].y) && std::isfinite(now[i].z)));
+    const Vec3 v = cloth.velocity(i);
+    REQUIRE((std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)));
+  }
+  CHECK(report.max_penetration >= 0);
+  if (report.status != Status::converged) return;
+  CHECK(report.intersecting == 0);
+  CHECK(report.max_error <= c.settings.tolerance * (1 + 0x1p-23));
+  CHECK(report.max_penetration <= c.settings.contact_tolerance * (1 + 0x1p-23));
+  constexpr double kRounding = 1e-6;  // m, of floats, and of bodies that turn
+  for (const Solid& solid : solids) {
+    if (!solid.is_on) continue;
+    CAPTURE(solid.shape.index());
+    if (const auto* mesh = std::get_if<TriangleMesh>(&solid.shape)) {
+      const std::vector<Vec3> at = placed(mesh->vertices, solid.body.pose);
+      CHECK(count_crossings({now, c.cloth.scene.surface}, {at, mesh->triangles}) == 0);
+    }
+    for (std::uint32_t i = 0; i < now.size(); ++i) {
+      if (is_fixed(c, i)) continue;
+      const auto height = height_over(solid, now[i]);
+      if (height) CHECK(*height >= solid.body.thickness - c.settings.contact_tolerance - kRounding);
+    }
+  }
+}
+
+TEST_CASE("random bodies: the state is finite, and what converged is in none of them") {
+  for_each_case(300, random_bodies, [](const Case& c) {
+    INFO(text(c));
+    Random random(c.seed + 1);
+    Cloth cloth = cloth_of(c.cloth.scene, c.settings);
+    std::vector<Solid> solids = c.solids;
+    for (Solid& solid : solids) solid.id = add(cloth, solid.body);
+    for (int k = 0; k < c.steps; ++k) {
+      CAPTURE(k);
+      if (k > 0) change_bodies(c, random, solids, cloth);
+      check_step(c, solids, cloth);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace weft::test
