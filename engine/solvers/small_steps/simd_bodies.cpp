@@ -1,8 +1,10 @@
 #include "engine/solvers/small_steps/simd_bodies.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/small_steps/body_touches.h"
@@ -94,15 +96,15 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   for (auto* bits : {&touching_, &moved_, &quick_}) std::ranges::fill(*bits, std::uint16_t{0});
 }
 
-SimdBodies::Extent SimdBodies::extent_of(std::size_t block, const simd::Flight& flight,
-                                         const float* base) const {
+SimdBodies::Extent SimdBodies::extent_of(std::size_t block, int substeps,
+                                         const simd::Flight& flight, const float* base) const {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const YarnPlaces& places = model_.small_steps().places();
   const std::size_t step = places.woven() ? 1 : 4, axis = places.stride;
   const simd::BodyBlock& b = layout_.blocks[block];
   float low[3] = {kInfinity, kInfinity, kInfinity}, high[3] = {-kInfinity, -kInfinity, -kInfinity};
   float longest = 0, widest = 0, largest = 0;
-  const auto ahead = static_cast<float>(until_search_);
+  const auto ahead = static_cast<float>(substeps);
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     if (!(b.mass[lane] > 0)) continue;
     float square = 0;
@@ -127,6 +129,17 @@ SimdBodies::Extent SimdBodies::extent_of(std::size_t block, const simd::Flight& 
   return {as_vector(low), as_vector(high), reach, std::sqrt(static_cast<double>(longest))};
 }
 
+bool SimdBodies::may_touch(const Extent& extent, std::size_t body, const BodyClock::Box& box,
+                           double time) const {
+  if (clock_.bodies()[body].shape->mesh() != nullptr || !extent.meets(box)) return false;
+  const BodyMotion& motion = clock_.motions()[body];
+  const Vector middle = extent.middle();
+  const double moves =
+      time * (length(motion.velocity) + length(motion.spin) * length(middle - motion.to.centre));
+  const reference::Gap gap = gap_of(motion.solid, motion.thickness, motion.to.from_place(middle));
+  return gap.gap <= extent.radius() + moves;
+}
+
 /// Which blocks may meet which bodies until the next search.
 void SimdBodies::search(const simd::Flight& flight, const float* base) {
   flush(impulses_, friction_);
@@ -146,23 +159,16 @@ void SimdBodies::search(const simd::Flight& flight, const float* base) {
   for (std::size_t body = 0; body < boxes.size(); ++body)
     longest = std::max(longest, share * clock_.fastest(body));
   for (std::uint32_t block = 0; block < layout_.blocks.size(); ++block) {
-    extents_.push_back(extent_of(block, flight, base));
+    extents_.push_back(extent_of(block, until_search_, flight, base));
     longest = std::max(longest, extents_.back().way);
   }
   for (std::uint32_t block = 0; block < layout_.blocks.size(); ++block) {
     Extent& extent = extents_[block];
     extent.reach += tuning::kContactReach * longest;
-    const Vector middle = extent.middle();
-    sum = sum + middle;
+    sum = sum + extent.middle();
     pairs_of_.push_back(static_cast<std::uint32_t>(pairs_.size()));
     for (std::uint32_t body = 0; body < boxes.size(); ++body) {
-      if (clock_.bodies()[body].shape->mesh() != nullptr || !extent.meets(boxes[body])) continue;
-      const BodyMotion& motion = clock_.motions()[body];
-      const double moves = share * (length(motion.velocity) +
-                                    length(motion.spin) * length(middle - motion.to.centre));
-      const reference::Gap gap =
-          gap_of(motion.solid, motion.thickness, motion.to.from_place(middle));
-      if (gap.gap > extent.radius() + moves) continue;
+      if (!may_touch(extent, body, boxes[body], share)) continue;
       if (first_pair_.empty() || pairs_.back().block != block)
         first_pair_.push_back(static_cast<std::uint32_t>(pairs_.size()));
       pairs_.push_back({block, body});
@@ -307,10 +313,28 @@ bool SimdBodies::begins_to_touch(std::uint32_t slot) {
 
 double SimdBodies::deepest(const simd::Flight& flight, const float* base,
                            ContactParticles& particles, Team& team) {
-  const double in_meshes = meshes_.deepest(particles, clock_, team);
-  if (pairs_.empty()) return in_meshes;
-  const float deepest = table_.deepest_in_bodies(hold_of(flight, base, 0), 0, pairs_.size());
-  return std::max(in_meshes, static_cast<double>(deepest));
+  double deepest = meshes_.deepest(particles, clock_, team);
+  simd::BodyHold hold = hold_of(flight, base, 0);
+  std::array<simd::BodyPair, 64> pairs;
+  hold.pairs = pairs.data();
+  std::size_t count = 0;
+  const auto measure = [&] {
+    const float depth = table_.deepest_in_bodies(hold, 0, std::exchange(count, 0));
+    deepest = std::max(deepest, static_cast<double>(depth));
+  };
+  boxes_.clear();
+  for (std::size_t body = 0; body < clock_.bodies().size(); ++body)
+    boxes_.push_back(clock_.box(body, 0));
+  for (std::uint32_t block = 0; block < layout_.blocks.size(); ++block) {
+    const Extent extent = extent_of(block, 1, flight, base);
+    for (std::uint32_t body = 0; body < boxes_.size(); ++body) {
+      if (!may_touch(extent, body, boxes_[body], 0)) continue;
+      if (count == pairs.size()) measure();
+      pairs[count++] = {block, body};
+    }
+  }
+  measure();
+  return deepest;
 }
 
 void SimdBodies::read_contacts(const ContactParticles& particles,

@@ -75,7 +75,8 @@ class SimdBodies {
   void report(Arrived&& arrived, Moved&& moved, Quick&& quick) const;
   const Touching& touching() const { return on_; }
 
-  /// m, by which a particle is under a surface where the last substep ended.
+  /// m, by which a particle is under a surface where the last substep ended: any particle, for what
+  /// put the cloth right may have moved it farther than the last search expected.
   double deepest(const simd::Flight& flight, const float* base, ContactParticles& particles,
                  Team& team);
   /// What was done in the frame.
@@ -108,7 +109,12 @@ class SimdBodies {
   void for_each_contact(Visit&& visit) const;
   void make_room();
   void search(const simd::Flight& flight, const float* base);
-  Extent extent_of(std::size_t block, const simd::Flight& flight, const float* base) const;
+  /// In so many substeps from where the present one begins.
+  Extent extent_of(std::size_t block, int substeps, const simd::Flight& flight,
+                   const float* base) const;
+  /// Whether particles of such a block may touch the body, which is in the box, in that time (s).
+  bool may_touch(const Extent& extent, std::size_t body, const BodyClock::Box& box,
+                 double time) const;
   void flush(std::vector<BodyImpulse>& impulses, double& friction) const;
   void write_frames();
   simd::BodyHold hold_of(const simd::Flight& flight, const float* base, float rate) const;
