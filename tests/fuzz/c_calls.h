@@ -5,23 +5,14 @@
 #include <weft/weft_c.h>
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include "tests/fuzz/checks.h"
+#include "tests/support/c_handles.h"
 
 namespace weft::fuzz {
 
-struct Freed {
-  void operator()(weft_model* model) const { weft_free_model(model); }
-  void operator()(weft_cloth* cloth) const { weft_free_cloth(cloth); }
-  void operator()(weft_shape* shape) const { weft_free_shape(shape); }
-  void operator()(weft_mesh_cloth* cloth) const { weft_free_mesh_cloth(cloth); }
-  void operator()(weft_surface* surface) const { weft_free_surface(surface); }
-  void operator()(weft_bytes* bytes) const { weft_free_bytes(bytes); }
-};
-template <class Handle>
-using Owned = std::unique_ptr<Handle, Freed>;
+using test::Owned;
 
 /// Whether the call was done. What is refused is said in one line; there is no lack of memory, and
 /// nothing that weft itself does wrong.

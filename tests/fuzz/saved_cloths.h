@@ -32,6 +32,26 @@ inline Bytes joined(std::span<const std::byte> a, std::span<const std::byte> b) 
   return both;
 }
 
+/// An input of a target. The first byte says of which cloth the rest is, and whether that is all
+/// that was saved, or its content alone, which is to be sealed rightly.
+struct SavedInput {
+  std::size_t kind = 0;
+  bool is_whole = false;
+  std::span<const std::byte> rest{};
+
+  /// like(): what was saved, whose seal the content gets.
+  template <class Like>
+  Bytes bytes(Like&& like) const {
+    return is_whole ? Bytes(rest.begin(), rest.end()) : sealed_like(like(), rest);
+  }
+};
+inline constexpr std::uint8_t kWhole = 0x80;
+/// size: at least 1.
+inline SavedInput saved_input(const std::uint8_t* data, std::size_t size) {
+  return {data[0] % kSavedCloths, (data[0] & kWhole) != 0,
+          std::as_bytes(std::span(data + 1, size - 1))};
+}
+
 /// What a state that was loaded does: it is saved as the same bytes, and steps.
 void use_loaded(Cloth& cloth, std::size_t kind);
 

@@ -1,5 +1,4 @@
-/// The bytes of a model: the first one says whether they come as they are or as content that is
-/// sealed rightly.
+/// The bytes of a model (SavedInput).
 #include "tests/fuzz/checks.h"
 #include "tests/fuzz/saved_cloths.h"
 #include "tests/fuzz/stepping.h"
@@ -19,10 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace weft;
   using namespace weft::fuzz;
   if (size == 0) return 0;
-  const auto content = std::as_bytes(std::span(data + 1, size - 1));
-  const bool as_it_is = data[0] == 1;
-  const auto model = load_model(as_it_is ? Bytes(content.begin(), content.end())
-                                         : sealed_like(some_model(), content));
+  const auto model = load_model(saved_input(data, size).bytes(some_model));
   if (!model) return check_message(model.error()), 0;
   const Bytes saved = save_model(*model.value());
   const auto again = load_model(saved);

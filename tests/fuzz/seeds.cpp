@@ -27,13 +27,13 @@ void write_all(const std::filesystem::path& folder) {
     write(folder / "saved_state" / name, kind,
           std::span(state).subspan(kSealSize + kFingerprintSize));
     if (kind % 3 != 0) continue;
-    write(folder / "saved_state" / (name + "_as_it_is"), 0x80 + kind, state);
+    write(folder / "saved_state" / (name + "_as_it_is"), kWhole + kind, state);
     const Bytes run = tools::bytes_of({.frame = 3, .dt = 0.01, .cloth = state});
     write(folder / "run_state" / name, kind, std::span(run).subspan(kSealSize));
-    write(folder / "run_state" / (name + "_as_it_is"), 0x80 + kind, run);
+    write(folder / "run_state" / (name + "_as_it_is"), kWhole + kind, run);
     const Bytes model = save_model(*saved_cloth(kind).model());
     write(folder / "saved_model" / name, 0, std::span(model).subspan(kSealSize));
-    write(folder / "saved_model" / (name + "_as_it_is"), 1, model);
+    write(folder / "saved_model" / (name + "_as_it_is"), kWhole, model);
   }
 }
 

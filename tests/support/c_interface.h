@@ -6,21 +6,11 @@
 #include <weft/weft_c.h>
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-namespace weft::test {
+#include "tests/support/c_handles.h"
 
-struct Freed {
-  void operator()(weft_model* model) const { weft_free_model(model); }
-  void operator()(weft_cloth* cloth) const { weft_free_cloth(cloth); }
-  void operator()(weft_shape* shape) const { weft_free_shape(shape); }
-  void operator()(weft_mesh_cloth* cloth) const { weft_free_mesh_cloth(cloth); }
-  void operator()(weft_surface* surface) const { weft_free_surface(surface); }
-  void operator()(weft_bytes* bytes) const { weft_free_bytes(bytes); }
-};
-template <class Handle>
-using Owned = std::unique_ptr<Handle, Freed>;
+namespace weft::test {
 
 /// What `make`, which takes the place for a handle, makes.
 template <class Handle, class Make>
