@@ -152,15 +152,16 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
     has_moved = true;
   }
   verification_.find(scene, broad_, narrow_, candidates_, team);
-  has_moved = has_moved || !verification_.failures().empty();
+  const bool has_failed = !verification_.failures().empty();
+  has_moved = has_moved || has_failed;
   if (has_moved) {
     expect_failures(clock, particles);
     stop_failures(scene, broad_, narrow_, verification_, candidates_, interval_, failures_, team);
     for (const Failure& failure : verification_.failures())
       misplace(candidates_[failure.list].pairs[failure.pair]);
   }
-  // Only what is misplaced, and what could not be stopped, leads others through a body.
-  if (crossings_.count() > 0 || !misplaced_.inside.empty() || !verification_.failures().empty()) {
+  // Only what is misplaced, and what had to be stopped, leads others through a body.
+  if (crossings_.count() > 0 || !misplaced_.inside.empty() || has_failed) {
     crossings_.find(points_, Crossings::Moment::end);
     misplaced_.crossing = crossings_.slots();
   }

@@ -206,9 +206,10 @@ TEST_CASE("random bodies: the state is finite, and what converged is in none of 
   for_each_case(300, random_bodies, check_case);
 }
 
-/// What puts the cloth right out of one body had moved it into another that no search had found.
-TEST_CASE("cloth that one body sends into another has not converged there") {
-  for (const std::uint32_t seed : {1807u, 3116u, 5642u, 5842u, 6284u, 6647u, 7363u, 7827u})
+/// All but the last: what puts the cloth right out of one body moves it into another, which no
+/// search has found. The last: what rigid zones take along crosses a mesh.
+TEST_CASE("random bodies: cases that once said converged in a body") {
+  for (const std::uint32_t seed : {1807u, 3116u, 5642u, 5842u, 6284u, 6647u, 7363u, 7827u, 8529u})
     check_case(random_bodies(seed));
 }
 
