@@ -1,6 +1,8 @@
 #include <pybind11/stl.h>
 #include <weft/batch.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "arrays.h"
@@ -114,17 +116,38 @@ py::array_t<double> read(const Batch& batch, std::optional<py::array> given, Rea
   return *given;  // with Python's lock, which counts references
 }
 
-void write(Batch& batch, py::handle given, Write one, const std::string& name) {
+bool are_finite(std::span<const Vec3> values) {
+  return std::ranges::all_of(values, [](const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  });
+}
+
+/// values: of one cloth after the other, as many each. A cloth refuses what is not finite, and says
+/// so best itself; what is refused is found before anything is written.
+void write_all(Batch& batch, std::span<const Vec3> values, Write one) {
+  const std::size_t count = values.size() / std::max<std::size_t>(1, batch.cloths.size());
+  const auto write = [&](std::size_t i) {
+    const auto written = (batch.cloths[i]->value.*one)(values.subspan(i * count, count));
+    if (!written) refuse("cloths[" + std::to_string(i) + "]: " + written.error());
+  };
+  for (std::size_t i = 0; i < batch.cloths.size(); ++i) {
+    if (!are_finite(values.subspan(i * count, count))) write(i);
+  }
+  for (std::size_t i = 0; i < batch.cloths.size(); ++i) write(i);
+}
+
+enum class Empty : std::uint8_t { refused, taken };
+
+void write(Batch& batch, py::handle given, Write one, const std::string& name,
+           Empty empty = Empty::refused) {
   const Doubles in = Doubles::ensure(given);
   if (!in) PyErr_Clear(), refuse(name + ": not an array of numbers");
   const Uses uses = use_all(batch);
   const std::size_t particles = particles_of(batch);
-  check_shape(batch, in, particles, name);
-  const auto* values = reinterpret_cast<const Vec3*>(in.data());
-  for (std::size_t i = 0; i < batch.cloths.size(); ++i) {
-    const auto written = (batch.cloths[i]->value.*one)({values + i * particles, particles});
-    if (!written) refuse("cloths[" + std::to_string(i) + "]: " + written.error());
-  }
+  if (in.size() > 0 || empty == Empty::refused) check_shape(batch, in, particles, name);
+  write_all(batch,
+            {reinterpret_cast<const Vec3*>(in.data()), static_cast<std::size_t>(in.size()) / 3},
+            one);
 }
 
 }  // namespace
@@ -154,11 +177,18 @@ void add_batch(py::module_& m) {
       .def(
           "write_positions",
           [](Batch& b, py::object in) { write(b, in, &Cloth::write_positions, "positions"); },
-          py::arg("positions"), "An array (cloths, particles, 3), one cloth after the other.")
+          py::arg("positions"),
+          "An array (cloths, particles, 3), one cloth after the other. All or, on an error, none.")
       .def(
           "write_velocities",
           [](Batch& b, py::object in) { write(b, in, &Cloth::write_velocities, "velocities"); },
-          py::arg("velocities"), "The same of velocities.");
+          py::arg("velocities"), "The same of velocities.")
+      .def(
+          "write_forces",
+          [](Batch& b, py::object in) {
+            write(b, in, &Cloth::write_forces, "forces", Empty::taken);
+          },
+          py::arg("forces"), "The same of forces, N; empty: none.");
 }
 
 }  // namespace weft::python

@@ -10,7 +10,7 @@ namespace weft::python {
 
 namespace {
 
-void add_status(py::module_& m) {
+void add_report_enumerations(py::module_& m) {
   py::enum_<Status>(m, "Status", "How a step ended; see cloth.h.")
       .value("converged", Status::converged)
       .value("fixed_iterations", Status::fixed_iterations)
@@ -19,6 +19,13 @@ void add_status(py::module_& m) {
       .value("passed_through", Status::passed_through)
       .value("non_finite_input", Status::non_finite_input)
       .value("non_finite", Status::non_finite);
+  py::enum_<Stage>(m, "Stage", "The stages of a step, in order.")
+      .value("predict", Stage::predict)
+      .value("find_contacts", Stage::find_contacts)
+      .value("solve_positions", Stage::solve_positions)
+      .value("commit", Stage::commit)
+      .value("correct_velocities", Stage::correct_velocities)
+      .value("report", Stage::report);
   m.def("committed", &committed, py::arg("status"), "Whether such a step changed the state.");
 }
 
@@ -45,7 +52,7 @@ void add_work(Class& report) {
       .def_readonly("corrections", &StepReport::corrections, "impulses applied")
       .def_readonly("scheme_fallbacks", &StepReport::scheme_fallbacks,
                     "attempts that rattle left to the other scheme")
-      .def_readonly("stage_seconds", &StepReport::stage_seconds, "s, of each stage of the step");
+      .def_readonly("stage_seconds", &StepReport::stage_seconds, "s, of each Stage of the step");
 }
 
 template <class Class>
@@ -86,7 +93,7 @@ void add_contacts(Class& report) {
 }  // namespace
 
 void add_report(py::module_& m) {
-  add_status(m);
+  add_report_enumerations(m);
   py::class_<StepReport> report(m, "StepReport", "What one step did and what it reached.");
   report.def("__repr__", &description_of);
   add_work(report);

@@ -402,6 +402,15 @@ class Status:
     non_finite: Status
 
 
+class Stage:
+    predict: Stage
+    find_contacts: Stage
+    solve_positions: Stage
+    commit: Stage
+    correct_velocities: Stage
+    report: Stage
+
+
 class StepReport:
     @property
     def status(self) -> Status: ...
@@ -613,6 +622,7 @@ class Batch:
     def read_velocities(self, out: NDArray[Any] | None = ...) -> NDArray[Any]: ...
     def write_positions(self, positions: ArrayLike) -> None: ...
     def write_velocities(self, velocities: ArrayLike) -> None: ...
+    def write_forces(self, forces: ArrayLike) -> None: ...
 
 
 class Surface:

@@ -95,6 +95,50 @@ class Batches(unittest.TestCase):
         with self.assertRaisesRegex(weft.Error, "cloth: 2"):
             batch.report(2)
 
+    def test_what_is_refused_of_one_cloth_changes_none(self):
+        cloths = [weft.Cloth.create(model_of(sheet(4))) for _ in range(3)]
+        batch = weft.Batch(cloths)
+        batch.step_all(0.01)
+        cloths[1].move_fixed([0], [(0, 0.1, 0)])  # which written positions would cancel
+        copies = [cloth.clone() for cloth in cloths]
+        good = batch.read_positions() + 0.01
+        bad, short, flat = good.copy(), good[:2], good[:, :, :2]
+        bad[2, 5, 1] = np.nan
+        for name, write in (("positions", batch.write_positions), ("velocities", batch.write_velocities),
+                            ("forces", batch.write_forces)):
+            with self.assertRaisesRegex(weft.Error, rf"^cloths\[2\]: {name}\[5\].*nan"):
+                write(bad)
+            for shape in (short, flat, good[0]):
+                with self.assertRaisesRegex(weft.Error, f"^{name}: shape"):
+                    write(shape)
+            with self.assertRaisesRegex(weft.Error, f"^{name}: not an array of numbers"):
+                write([["text"]])
+        with self.assertRaisesRegex(weft.Error, "^positions: shape"):
+            batch.write_positions([])
+        batch.step_all(0.01)
+        for cloth, copy in zip(cloths, copies):
+            copy.step(0.01)
+            self.assertEqual(cloth.state_hash(), copy.state_hash())
+
+    def test_velocities_and_forces_of_all(self):
+        cloths = [weft.Cloth.create(model_of(sheet(4, pins=[]))) for _ in range(3)]
+        batch = weft.Batch(cloths)
+        velocities = np.zeros((3, 16, 3))
+        velocities[:, :, 0] = np.arange(3)[:, None]
+        batch.write_velocities(velocities)
+        self.assertTrue(np.array_equal(batch.read_velocities(), velocities))
+        masses = weft.cloth_from_mesh(sheet(4)).scene.masses
+        batch.write_forces(masses[:, None] * np.array((0, 10 + 1, 0)) * np.ones((3, 1, 1)))
+        self.assertEqual(batch.step_all(0.01), 0)
+        self.assertTrue(np.allclose(batch.read_velocities(), velocities + (0, 0.01, 0), atol=1e-5))
+        batch = weft.Batch([cloth_of(4) for _ in range(2)])
+        batch.write_forces(np.ones((2, 16, 3)))
+        batch.write_forces([])
+        batch.step_all(0.01)
+        alone = cloth_of(4)
+        alone.step(0.01)
+        self.assertTrue(np.array_equal(batch.read_positions()[1], alone.read_positions()))
+
     def test_keeps_its_cloths(self):
         batch = weft.Batch([cloth_of(5), cloth_of(5)])
         gc.collect()
