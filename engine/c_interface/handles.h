@@ -1,6 +1,7 @@
 /// What the handles of C are.
 #pragma once
 
+#include <weft/batch.h>
 #include <weft/surface.h>
 #include <weft/weft_c.h>
 
@@ -16,6 +17,7 @@ struct weft_model {
 
 struct weft_cloth {
   weft::Cloth cloth;
+  std::vector<weft::ClothStep> batch{};  // of batches whose first cloth it is
 };
 
 struct weft_shape {

@@ -97,19 +97,28 @@ Result<void> check_steps(weft_batch_step* steps, std::size_t count) {
   if (auto r = check_struct("steps", steps); !r) return r;
   const std::size_t size = steps->size;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::string field = "steps[" + std::to_string(i) + "]";
     const weft_batch_step& step = step_at(steps, i);
+    const auto field = [i](const char* name) { return "steps[" + std::to_string(i) + "]" + name; };
     if (step.size != size || size <= offsetof(weft_batch_step, report)) {
-      return Error{field + ".size: must be that of the struct, and of the first (" +
+      return Error{field(".size") + ": must be that of the struct, and of the first (" +
                    std::to_string(step.size) + ")"};
     }
-    if (auto r = check_size(field + ".report", step.report.size); !r) return r;
+    if (auto r = check_size("report", step.report.size); !r) return Error{field(".") + r.error()};
     if (step.report.size > size - offsetof(weft_batch_step, report)) {
-      return Error{field + ".report.size: goes beyond the step (" +
+      return Error{field(".report.size") + ": goes beyond the step (" +
                    std::to_string(step.report.size) + ")"};
     }
   }
   return {};
+}
+
+/// The list of a batch, which the first cloth keeps for later ones.
+std::vector<ClothStep>& list_of(weft_batch_step* steps, std::size_t count,
+                                std::vector<ClothStep>& without_cloths) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (weft_cloth* cloth = step_at(steps, i).cloth; cloth != nullptr) return cloth->batch;
+  }
+  return without_cloths;
 }
 
 void write_result(const ClothStep& done, weft_batch_step& out) {
@@ -172,7 +181,9 @@ weft_result weft_step_all(size_t count, weft_batch_step* steps, const weft_jobs*
     weft_jobs its{};
     const auto system = job_system(jobs, its);
     if (!system) return weft::Error{system.error()};
-    std::vector<weft::ClothStep> batch(count);
+    std::vector<weft::ClothStep> without_cloths;
+    std::vector<weft::ClothStep>& batch = list_of(steps, count, without_cloths);
+    batch.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       const weft_batch_step& step = step_at(steps, i);
       batch[i].cloth = step.cloth == nullptr ? nullptr : &step.cloth->cloth;

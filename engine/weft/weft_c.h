@@ -276,7 +276,8 @@ WEFT_C_API weft_result weft_init_batch_step(weft_batch_step* step, size_t size);
 /* jobs, report: or NULL. */
 WEFT_C_API weft_result weft_step(weft_cloth* cloth, double dt, const weft_jobs* jobs,
                                  weft_report* report);
-/* WEFT_OK does not say that each cloth was stepped: its own result does. Allocates one list. */
+/* WEFT_OK does not say that each cloth was stepped: its own result does. Allocates nothing
+   once warm: the first cloth keeps the list of the batch. */
 WEFT_C_API weft_result weft_step_all(size_t count, weft_batch_step* steps, const weft_jobs* jobs);
 
 /* --------------------------------------------------------------------------------------- cloths */
