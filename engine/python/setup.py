@@ -1,9 +1,11 @@
 """Builds the module by CMake. CMAKE_ARGS in the environment are further options of it: with
 -DWEFT_INSTALLED=ON an installed weft is used, and otherwise the sources two folders above."""
+import atexit
 import os
 import pathlib
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -13,6 +15,7 @@ from setuptools.command.build_ext import build_ext
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCRATCH = tempfile.mkdtemp(prefix="weft-")  # nothing is written into the sources
+atexit.register(shutil.rmtree, SCRATCH, ignore_errors=True)
 
 
 def version():
