@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "engine/bytes_of.h"
@@ -16,20 +15,7 @@ SimdMeasure::SimdMeasure(const Model& model, const simd::Table& table)
       table_(table),
       strains_(layout_.chunks.size()),
       stretches_(model.ordering.tiles.size() + layout_.chunks.size() / kPiece + 1) {
-  if (model.constraints.has_springs()) find_stiffness();
-}
-
-void SimdMeasure::find_stiffness() {
-  const ConstraintStore& store = model_.constraints;
-  energies_.resize(layout_.chunks.size());
-  compliance_.assign(layout_.constraint_slots, std::numeric_limits<double>::infinity());
-  inverse_masses_.assign(layout_.constraint_slots, 0);
-  for (std::size_t slot = 0; slot < layout_.constraint_slots; ++slot) {
-    const std::uint32_t c = layout_.constraint_at[slot];
-    if (c == kNoIndex || store.compliance[c] == 0) continue;
-    compliance_[slot] = store.compliance[c];
-    inverse_masses_[slot] = 1 / store.effective_mass[c];
-  }
+  if (model.constraints.has_springs()) energies_.resize(layout_.chunks.size());
 }
 
 simd::Geometry SimdMeasure::geometry(kernels::VectorsView x) const {
@@ -127,7 +113,8 @@ Strain SimdMeasure::strain(kernels::VectorsView x, Team& team) {
 
 double SimdMeasure::spring_energy(kernels::VectorsView x, double give_per_mass, Team& team) {
   const simd::Geometry g = geometry(x);
-  const simd::SpringStiffness s{compliance_.data(), inverse_masses_.data(), give_per_mass};
+  const simd::SpringStiffness s{layout_.compliance.data(), layout_.inverse_mass.data(),
+                                give_per_mass};
   team.for_each_part(layout_.chunks.size(), kPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [run, real, singles, rope] = layout_.chunks[i];
@@ -172,8 +159,7 @@ void SimdMeasure::finish_strain(kernels::VectorsView x, std::size_t worst_chunk,
 }
 
 std::size_t SimdMeasure::bytes() const {
-  return bytes_of(strains_) + bytes_of(stretches_) + bytes_of(energies_) + bytes_of(compliance_) +
-         bytes_of(inverse_masses_);
+  return bytes_of(strains_) + bytes_of(stretches_) + bytes_of(energies_);
 }
 
 }  // namespace weft

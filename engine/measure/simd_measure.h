@@ -34,7 +34,6 @@ class SimdMeasure {
   std::size_t bytes() const;
 
  private:
-  void find_stiffness();
   simd::Geometry geometry(kernels::VectorsView x) const;
   simd::StrainSums sums(const simd::Geometry& g, const Chunk& chunk) const;
   simd::StretchRange stretch(const simd::Geometry& g, std::size_t first, std::size_t last) const;
@@ -45,9 +44,8 @@ class SimdMeasure {
   const Model& model_;
   const SimdLayout& layout_;
   const simd::Table& table_;
-  std::vector<simd::StrainSums> strains_;                       // per chunk
-  std::vector<double> energies_;                                // likewise; of springs only
-  kernels::AlignedVector<double> compliance_, inverse_masses_;  // likewise: simd::SpringStiffness
+  std::vector<simd::StrainSums> strains_;      // per chunk
+  std::vector<double> energies_;               // likewise; of springs only
   std::vector<simd::StretchRange> stretches_;  // per tile, then per piece between tiles
 };
 

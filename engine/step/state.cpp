@@ -73,14 +73,15 @@ void State::make_solvers() {
   if (settings.solver != Solver::small_steps) {
     sweeps = std::make_unique<Sweeps>(*model, settings, *kernels, *measure);
   }
+  Settings own = settings;
+  own.threads = threads_worth_having();  // yarns take memory for each
   if (settings.solver == Solver::yarn) {
-    yarn = std::make_unique<YarnSolver>(*model, settings, *kernels, measure->lanes());
+    yarn = std::make_unique<YarnSolver>(*model, own, *kernels, measure->lanes());
   }
   if (settings.solver == Solver::direct || (yarn && to_tolerance && unequal)) {
     direct = std::make_unique<DirectSolver>(*model, settings, *kernels);
   }
   if (settings.solver == Solver::small_steps || (exact && to_tolerance)) {
-    Settings own = settings;
     if (exact) own.scheme = Scheme::implicit;  // whoever takes over has no past
     small_steps = make_small_steps(*model, own, *kernels);
     if (model->has_contacts()) substep_positions.resize(model->slots());

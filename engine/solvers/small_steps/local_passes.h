@@ -1,12 +1,9 @@
 /// Local passes: Gauss-Seidel over what is out of tolerance, and over nothing else (paper 4.3).
 ///
-/// An item is a constraint, or a triangle of fabric with its three laws; items are numbered in this
-/// order. Each particle has a mask of 64 bits, one for each of its items. An item is looked at if
-/// its bit is set at one of its ends, which clears all of them; where it is out of tolerance it is
-/// taken back to `mended`, which is within, and the bits of all items at its ends are set for the
-/// next pass. It ends when no bit is set. A particle with more items has no mask: these have their
-/// bits at their other ends, or, where none of those has a mask either, are looked at in every
-/// pass.
+/// An item, a constraint or a triangle of fabric, is looked at if its bit is set at one of its ends
+/// (local_items.h), which clears all of them; where it is out of tolerance it is taken back to
+/// `mended`, which is within, and the bits of all items at its ends are set for the next pass. It
+/// ends when no bit is set. Items without a bit are looked at in every pass.
 #pragma once
 
 #include <bit>
@@ -17,9 +14,9 @@
 #include <vector>
 
 #include "engine/contacts/contacts.h"
-#include "engine/lists.h"
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/laws.h"
+#include "engine/solvers/small_steps/local_items.h"
 #include "engine/solvers/small_steps/membrane_laws.h"
 
 namespace weft {
@@ -39,18 +36,18 @@ struct LocalLimits {
 };
 
 class LocalPasses {
-  static constexpr std::uint32_t kNoBit = 255;
-
  public:
-  explicit LocalPasses(const Model& model);
+  LocalPasses(const Model& model, const LocalItems& items);
 
   /// The number of a triangle of fabric among all items.
-  std::uint32_t item_of_element(std::uint32_t element) const { return constraints_ + element; }
+  std::uint32_t item_of_element(std::uint32_t element) const {
+    return items_.constraints + element;
+  }
   /// Asks for all items of the slot, if it can move.
   void look_at(std::uint32_t slot);
   /// Asks for the item, and for all that share a particle with it.
   void look_near(std::uint32_t item) {
-    for (const End& end : ends(item)) look_at(end.slot);
+    for (const End& end : items_.ends(item)) look_at(end.slot);
   }
   void look_everywhere();
   /// Of what was asked for, and not done: where a step was broken off.
@@ -64,17 +61,7 @@ class LocalPasses {
   std::size_t bytes() const;
 
  private:
-  /// Where an item has its bit.
-  struct End {
-    std::uint32_t slot = 0;
-    std::uint32_t bit = kNoBit;  // its number; kNoBit: the slot has no mask
-    std::uint64_t mask() const { return bit == kNoBit ? 0 : std::uint64_t{1} << bit; }
-  };
-  std::span<const End> ends(std::uint32_t item) const {
-    if (item < constraints_) return {ends_.data() + 2 * std::size_t{item}, 2};
-    const std::size_t element = item - constraints_;
-    return {ends_.data() + 2 * std::size_t{constraints_} + 3 * element, 3};
-  }
+  using End = LocalItems::End;
   template <class Points>
   bool relax(Points& points, std::uint32_t item, const LocalLimits& limits);
   template <class Points>
@@ -92,18 +79,16 @@ class LocalPasses {
   void break_off();
 
   const Model& model_;
-  const std::uint32_t constraints_;
-  std::vector<End> ends_;  // of constraints two each, of triangles three each
-  Lists at_;               // slot -> items
-  std::vector<std::uint32_t> always_;
+  const LocalItems& items_;
   std::vector<std::uint64_t> now_, next_;         // per slot
   std::vector<std::uint32_t> present_, waiting_;  // slots whose masks may not be empty
 };
 
 template <class Points>
 bool LocalPasses::relax(Points& points, std::uint32_t item, const LocalLimits& limits) {
-  const bool is_out = item < constraints_ ? relax_constraint(points, item, limits)
-                                          : relax_triangle(points, item - constraints_, limits);
+  const bool is_out = item < items_.constraints
+                          ? relax_constraint(points, item, limits)
+                          : relax_triangle(points, item - items_.constraints, limits);
   if (is_out) look_near(item);
   return is_out;
 }
@@ -197,12 +182,12 @@ bool LocalPasses::pass(Points& points, const LocalLimits& limits, std::int64_t m
         break_off();
         return false;
       }
-      const std::uint32_t item = at_[slot][static_cast<std::size_t>(std::countr_zero(bits))];
-      for (const End& end : ends(item)) now_[end.slot] &= ~end.mask();
+      const std::uint32_t item = items_.at[slot][static_cast<std::size_t>(std::countr_zero(bits))];
+      for (const End& end : items_.ends(item)) now_[end.slot] &= ~end.mask();
       visit(item);
     }
   }
-  for (const std::uint32_t item : always_) {
+  for (const std::uint32_t item : items_.unmasked) {
     if (work.visits >= most_visits) return false;
     visit(item);
   }

@@ -138,7 +138,7 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
     : model_(model),
       layout_(model.small_steps()),
       settings_(settings),
-      passes_(model),
+      passes_(model, layout_.items),
       seams_(model),
       has_attached_(model.has_attached()),
       paces_(paces_of(layout_.bending, model.damping.bending)),

@@ -160,6 +160,7 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   layout.cell = layout.has_yarns() ? layout.yarns.cell : cell_of(model);
   layout.floats = kernels::round_up(layout.yarns.places.floats, std::size_t{kLanes});
   layout.anchors = make_anchor_layout(model, layout.places());
+  layout.items = make_local_items(model);
   layout.load = find_load(model, layout);
   return layout;
 }
@@ -203,7 +204,7 @@ double compliance_of_yarn(const Model& model, std::span<const std::uint32_t> slo
 std::size_t SmallStepsLayout::bytes() const {
   return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(used) +
          bytes_of(springs) + bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) +
-         bytes_of(serial) + membrane.bytes() + bending.bytes() + anchors.bytes() +
+         bytes_of(serial) + membrane.bytes() + bending.bytes() + anchors.bytes() + items.bytes() +
          bytes_of(load.spans) + bytes_of(load.ways);
 }
 

@@ -18,6 +18,7 @@
 
 #include "engine/solvers/small_steps/anchor_layout.h"
 #include "engine/solvers/small_steps/bending_layout.h"
+#include "engine/solvers/small_steps/local_items.h"
 #include "engine/solvers/small_steps/membrane_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/solvers/yarn/yarn_layout.h"
@@ -55,6 +56,7 @@ struct SmallStepsLayout {
   MembraneLayout membrane;
   BendingLayout bending;
   AnchorLayout anchors;
+  LocalItems items;
 
   double cell = 0;         // that positions are split by
   std::size_t floats = 0;  // of an array of particles

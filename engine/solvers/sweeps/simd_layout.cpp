@@ -1,6 +1,7 @@
 #include "engine/solvers/sweeps/simd_layout.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
@@ -114,6 +115,17 @@ void place(SimdLayout& layout, std::uint32_t slot, std::uint32_t constraint,
   if (constraint >= store.bilateral) layout.has_ropes = true;
 }
 
+void find_stiffness(const ConstraintStore& store, SimdLayout& layout) {
+  layout.compliance.assign(layout.constraint_slots, std::numeric_limits<double>::infinity());
+  layout.inverse_mass.assign(layout.constraint_slots, 0);
+  for (std::size_t slot = 0; slot < layout.constraint_slots; ++slot) {
+    const std::uint32_t c = layout.constraint_at[slot];
+    if (c == kNoIndex || store.compliance[c] == 0) continue;
+    layout.compliance[slot] = store.compliance[c];
+    layout.inverse_mass[slot] = 1 / store.effective_mass[c];
+  }
+}
+
 }  // namespace
 
 SimdLayout make_simd_layout(const Model& model) {
@@ -144,6 +156,7 @@ SimdLayout make_simd_layout(const Model& model) {
   for (const auto* list : {&store.hub_distances, &store.hub_ropes}) {
     for (const std::uint32_t c : *list) place(layout, next++, c, store, inverse_mass);
   }
+  if (store.has_springs()) find_stiffness(store, layout);
   cut_batches(ordering, layout);
   find_seams(ordering, layout);
   return layout;
@@ -174,7 +187,7 @@ std::size_t SimdLayout::bytes() const {
   return bytes_of(chunks) + bytes_of(runs) + bytes_of(batch_chunks) + bytes_of(batch_singles) +
          bytes_of(seams) + bytes_of(seams_at) + bytes_of(a) + bytes_of(b) +
          bytes_of(constraint_at) + bytes_of(rest_length) + bytes_of(inverse_square) +
-         bytes_of(share_a) + bytes_of(share_b);
+         bytes_of(share_a) + bytes_of(share_b) + bytes_of(compliance) + bytes_of(inverse_mass);
 }
 
 }  // namespace weft

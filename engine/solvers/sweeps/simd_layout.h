@@ -54,6 +54,8 @@ struct SimdLayout {
   kernels::AlignedVector<double> inverse_square;             // 1 / rest_length^2; padding: 0
   kernels::AlignedVector<double> share_a, share_b;           // w_a / (w_a + w_b), padding: 0
   bool has_ropes = false;
+  // simd::SpringStiffness, with springs only; of rigid constraints and padding infinite and 0.
+  kernels::AlignedVector<double> compliance, inverse_mass;
 
   std::size_t bytes() const;
 };

@@ -1,7 +1,9 @@
 /// describe(), strain(), max_penetration(), bytes(): what is measured outside of steps.
 #include <doctest/doctest.h>
+#include <weft/mesh.h>
 
 #include <cmath>
+#include <memory>
 
 #include "engine/measure/measure.h"
 #include "engine/model/model.h"
@@ -10,6 +12,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
+#include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
 namespace weft::test {
@@ -106,6 +109,24 @@ TEST_CASE("a cloth holds memory only for what it runs") {
   const std::size_t little = cloth_of(scene, lean).bytes();
   CHECK(little > 400 * 2 * 3 * sizeof(double));
   CHECK(little < cloth_of(scene, full).bytes());
+}
+
+/// Bytes per particle of a small sheet of cotton.
+double bytes_per_particle(const std::shared_ptr<const Model>& model, int threads) {
+  Cloth cloth = Cloth::create(model, {.threads = threads}).value();
+  run(cloth, 0.01, 20);
+  return static_cast<double>(cloth.bytes()) / static_cast<double>(cloth.particle_count());
+}
+
+TEST_CASE("a small cloth holds neither what its model knows nor room for threads") {
+  MeshDescription mesh = quads(20);
+  mesh.material = find_material("cotton").value();
+  mesh.pins = {0, 19};
+  const auto model = model_of(made(mesh).scene);
+  const double bytes = bytes_per_particle(model, 1);
+  CHECK(bytes < 840);
+  CHECK(bytes_per_particle(model, 0) == bytes);
+  CHECK(bytes_per_particle(model, kMaxThreads) == bytes);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "engine/measure/state_measure.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "tests/support/clothes.h"
 
 namespace weft::test {
@@ -48,7 +49,7 @@ double largest_strain(const Model& model, const Points& points) {
 TEST_CASE(
     "one particle out of place is put right, and nobody else is looked at but its neighbours") {
   const auto model = model_of(scene_of("hang", 30));
-  LocalPasses passes(*model);
+  LocalPasses passes(*model, model->small_steps().items);
   Points points{model->initial_position};
   const std::uint32_t slot = model->ordering.slot_of[15 * 30 + 15];
   points.x.set(slot, points.x[slot] + kernels::Vector{0.002, 0, 0});
@@ -66,7 +67,7 @@ TEST_CASE(
 
 TEST_CASE("nothing is done where nothing is out of tolerance, and nothing that nobody asked for") {
   const auto model = model_of(scene_of("corners", 9));
-  LocalPasses passes(*model);
+  LocalPasses passes(*model, model->small_steps().items);
   Points points{model->initial_position};
   CHECK(passes.run(points, {}, kLimits).visits == 0);
   passes.look_everywhere();
@@ -77,7 +78,7 @@ TEST_CASE("nothing is done where nothing is out of tolerance, and nothing that n
 
 TEST_CASE("the bound on visits holds, and what is left of one run does not leak into the next") {
   const auto model = model_of(scene_of("hang", 20));
-  LocalPasses passes(*model);
+  LocalPasses passes(*model, model->small_steps().items);
   Points points{model->initial_position};
   for (std::size_t i = 0; i < points.x.size(); ++i) points.x.x[i] *= 1.3;
   passes.look_everywhere();
@@ -108,7 +109,7 @@ SceneDescription two_hubs(std::uint32_t spokes) {
 
 TEST_CASE("particles of more constraints than a mask has bits are no exception") {
   const auto model = model_of(two_hubs(100));
-  LocalPasses passes(*model);
+  LocalPasses passes(*model, model->small_steps().items);
   Points points{model->initial_position};
   const std::uint32_t hub = model->ordering.slot_of[0];
   points.x.set(hub, points.x[hub] + kernels::Vector{0.2, 0, 0});
@@ -125,7 +126,7 @@ TEST_CASE("what is fixed stays, and ropes push nothing apart") {
   scene.masses.push_back(1);
   scene.constraints.push_back({0, 2, 1, ConstraintKind::rope});
   const auto model = model_of(scene);
-  LocalPasses passes(*model);
+  LocalPasses passes(*model, model->small_steps().items);
   Points points{model->initial_position};
   passes.look_everywhere();
   CHECK(passes.run(points, {}, kLimits).done);
