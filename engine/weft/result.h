@@ -1,12 +1,11 @@
 /// Errors are values: a Result holds one, or what was asked for. Part of weft.h.
 #pragma once
 
+#include <weft/api.h>
+
 #include <optional>
 #include <string>
 #include <utility>
-
-/// What a shared library shows.
-#define WEFT_API [[gnu::visibility("default")]]
 
 namespace weft {
 

@@ -45,12 +45,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
-
-#if defined(__GNUC__)
-#define WEFT_C_API __attribute__((visibility("default")))
-#else
-#define WEFT_C_API
-#endif
+#include <weft/api.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -67,10 +62,10 @@ typedef enum weft_result {
 
 /* Of the last call of this thread that did not succeed; "" if there was none. Never NULL. It is
  * valid until the next such call of this thread. Cut off after 1,023 characters. */
-WEFT_C_API const char* weft_last_message(void);
+WEFT_API const char* weft_last_message(void);
 
 /* Of the library that runs. Each may be NULL. */
-WEFT_C_API void weft_version(int* major, int* minor, int* patch);
+WEFT_API void weft_version(int* major, int* minor, int* patch);
 
 /* -------------------------------------------------------------------------------------- handles */
 
@@ -81,15 +76,15 @@ typedef struct weft_mesh_cloth weft_mesh_cloth; /* MeshCloth */
 typedef struct weft_surface weft_surface;       /* Surface */
 typedef struct weft_bytes weft_bytes;           /* what is to be saved */
 
-WEFT_C_API void weft_free_model(weft_model* model);
-WEFT_C_API void weft_free_cloth(weft_cloth* cloth);
-WEFT_C_API void weft_free_shape(weft_shape* shape);
-WEFT_C_API void weft_free_mesh_cloth(weft_mesh_cloth* cloth);
-WEFT_C_API void weft_free_surface(weft_surface* surface);
-WEFT_C_API void weft_free_bytes(weft_bytes* bytes);
+WEFT_API void weft_free_model(weft_model* model);
+WEFT_API void weft_free_cloth(weft_cloth* cloth);
+WEFT_API void weft_free_shape(weft_shape* shape);
+WEFT_API void weft_free_mesh_cloth(weft_mesh_cloth* cloth);
+WEFT_API void weft_free_surface(weft_surface* surface);
+WEFT_API void weft_free_bytes(weft_bytes* bytes);
 
-WEFT_C_API const void* weft_bytes_data(const weft_bytes* bytes);
-WEFT_C_API size_t weft_bytes_size(const weft_bytes* bytes);
+WEFT_API const void* weft_bytes_data(const weft_bytes* bytes);
+WEFT_API size_t weft_bytes_size(const weft_bytes* bytes);
 
 #define WEFT_NO_INDEX 0xffffffffu /* kNoIndex */
 
@@ -164,13 +159,13 @@ typedef struct weft_model_info { /* ModelInfo */
   size_t bytes;
 } weft_model_info;
 
-WEFT_C_API weft_result weft_init_scene(weft_scene* scene, size_t size);
-WEFT_C_API weft_result weft_init_model_info(weft_model_info* info, size_t size);
+WEFT_API weft_result weft_init_scene(weft_scene* scene, size_t size);
+WEFT_API weft_result weft_init_model_info(weft_model_info* info, size_t size);
 
-WEFT_C_API weft_result weft_build_model(const weft_scene* scene, weft_model** out);
-WEFT_C_API weft_result weft_describe(const weft_model* model, weft_model_info* info);
-WEFT_C_API weft_result weft_save_model(const weft_model* model, weft_bytes** out);
-WEFT_C_API weft_result weft_load_model(const void* bytes, size_t size, weft_model** out);
+WEFT_API weft_result weft_build_model(const weft_scene* scene, weft_model** out);
+WEFT_API weft_result weft_describe(const weft_model* model, weft_model_info* info);
+WEFT_API weft_result weft_save_model(const weft_model* model, weft_bytes** out);
+WEFT_API weft_result weft_load_model(const void* bytes, size_t size, weft_model** out);
 
 /* ----------------------------------------------------------------------------------- settings */
 
@@ -203,16 +198,16 @@ typedef struct weft_settings { /* Settings */
   int anticipate, anticipate_products, sleep, skip, velocity_correction; /* yes or no */
 } weft_settings;
 
-WEFT_C_API weft_result weft_init_settings(weft_settings* settings, size_t size);
+WEFT_API weft_result weft_init_settings(weft_settings* settings, size_t size);
 /* paper_settings() */
-WEFT_C_API weft_result weft_init_paper_settings(weft_settings* settings, size_t size);
+WEFT_API weft_result weft_init_paper_settings(weft_settings* settings, size_t size);
 
 /* The words for what these numbers mean, "unknown" for others. */
-WEFT_C_API const char* weft_solver_name(int solver);
-WEFT_C_API const char* weft_scheme_name(int scheme);
-WEFT_C_API const char* weft_directions_name(int directions);
-WEFT_C_API const char* weft_backend_name(int backend);
-WEFT_C_API const char* weft_isa_name(int isa);
+WEFT_API const char* weft_solver_name(int solver);
+WEFT_API const char* weft_scheme_name(int scheme);
+WEFT_API const char* weft_directions_name(int directions);
+WEFT_API const char* weft_backend_name(int backend);
+WEFT_API const char* weft_isa_name(int isa);
 
 /* ------------------------------------------------------------------------------ steps, batches */
 
@@ -226,10 +221,10 @@ enum {
   WEFT_NON_FINITE = 6
 }; /* Status */
 
-WEFT_C_API const char* weft_status_name(int status);
-WEFT_C_API const char* weft_stage_name(int stage);
+WEFT_API const char* weft_status_name(int status);
+WEFT_API const char* weft_stage_name(int stage);
 /* Whether a step with this status changed the state. */
-WEFT_C_API int weft_committed(int status);
+WEFT_API int weft_committed(int status);
 
 typedef struct weft_report { /* StepReport */
   size_t size;
@@ -269,37 +264,37 @@ typedef struct weft_batch_step {
   weft_report report; /* where it is */
 } weft_batch_step;
 
-WEFT_C_API weft_result weft_init_report(weft_report* report, size_t size);
-WEFT_C_API weft_result weft_init_jobs(weft_jobs* jobs, size_t size);
-WEFT_C_API weft_result weft_init_batch_step(weft_batch_step* step, size_t size);
+WEFT_API weft_result weft_init_report(weft_report* report, size_t size);
+WEFT_API weft_result weft_init_jobs(weft_jobs* jobs, size_t size);
+WEFT_API weft_result weft_init_batch_step(weft_batch_step* step, size_t size);
 
 /* jobs, report: or NULL. */
-WEFT_C_API weft_result weft_step(weft_cloth* cloth, double dt, const weft_jobs* jobs,
-                                 weft_report* report);
+WEFT_API weft_result weft_step(weft_cloth* cloth, double dt, const weft_jobs* jobs,
+                               weft_report* report);
 /* WEFT_OK does not say that each cloth was stepped: its own result does. Allocates nothing
    once warm: the first cloth keeps the list of the batch. */
-WEFT_C_API weft_result weft_step_all(size_t count, weft_batch_step* steps, const weft_jobs* jobs);
+WEFT_API weft_result weft_step_all(size_t count, weft_batch_step* steps, const weft_jobs* jobs);
 
 /* --------------------------------------------------------------------------------------- cloths */
 
 /* settings: or NULL. */
-WEFT_C_API weft_result weft_create_cloth(const weft_model* model, const weft_settings* settings,
-                                         weft_cloth** out);
-WEFT_C_API weft_result weft_clone_cloth(const weft_cloth* cloth, weft_cloth** out);
-WEFT_C_API weft_result weft_copy_state(weft_cloth* to, const weft_cloth* from);
-WEFT_C_API weft_result weft_save_state(const weft_cloth* cloth, weft_bytes** out);
-WEFT_C_API weft_result weft_load_state(weft_cloth* cloth, const void* bytes, size_t size);
+WEFT_API weft_result weft_create_cloth(const weft_model* model, const weft_settings* settings,
+                                       weft_cloth** out);
+WEFT_API weft_result weft_clone_cloth(const weft_cloth* cloth, weft_cloth** out);
+WEFT_API weft_result weft_copy_state(weft_cloth* to, const weft_cloth* from);
+WEFT_API weft_result weft_save_state(const weft_cloth* cloth, weft_bytes** out);
+WEFT_API weft_result weft_load_state(weft_cloth* cloth, const void* bytes, size_t size);
 
-WEFT_C_API size_t weft_particle_count(const weft_cloth* cloth);
+WEFT_API size_t weft_particle_count(const weft_cloth* cloth);
 /* A handle of its own, of the model that the cloth has now. */
-WEFT_C_API weft_result weft_model_of(const weft_cloth* cloth, weft_model** out);
-WEFT_C_API weft_result weft_settings_of(const weft_cloth* cloth, weft_settings* settings);
+WEFT_API weft_result weft_model_of(const weft_cloth* cloth, weft_model** out);
+WEFT_API weft_result weft_settings_of(const weft_cloth* cloth, weft_settings* settings);
 
-WEFT_C_API weft_result weft_position(const weft_cloth* cloth, uint32_t particle, double out[3]);
-WEFT_C_API weft_result weft_velocity(const weft_cloth* cloth, uint32_t particle, double out[3]);
+WEFT_API weft_result weft_position(const weft_cloth* cloth, uint32_t particle, double out[3]);
+WEFT_API weft_result weft_velocity(const weft_cloth* cloth, uint32_t particle, double out[3]);
 /* count: particles, as many as the cloth has. */
-WEFT_C_API weft_result weft_read_positions(const weft_cloth* cloth, size_t count, double* out);
-WEFT_C_API weft_result weft_read_velocities(const weft_cloth* cloth, size_t count, double* out);
+WEFT_API weft_result weft_read_positions(const weft_cloth* cloth, size_t count, double* out);
+WEFT_API weft_result weft_read_velocities(const weft_cloth* cloth, size_t count, double* out);
 
 /* FloatVectors: count is that of floats in the buffer. */
 typedef struct weft_float_vectors {
@@ -309,37 +304,37 @@ typedef struct weft_float_vectors {
 } weft_float_vectors;
 
 /* origin: or NULL, 0. */
-WEFT_C_API weft_result weft_read_float_positions(const weft_cloth* cloth, weft_float_vectors out,
-                                                 const double origin[3]);
-WEFT_C_API weft_result weft_read_float_velocities(const weft_cloth* cloth, weft_float_vectors out);
-WEFT_C_API weft_result weft_bounds(const weft_cloth* cloth, double least[3], double most[3]);
+WEFT_API weft_result weft_read_float_positions(const weft_cloth* cloth, weft_float_vectors out,
+                                               const double origin[3]);
+WEFT_API weft_result weft_read_float_velocities(const weft_cloth* cloth, weft_float_vectors out);
+WEFT_API weft_result weft_bounds(const weft_cloth* cloth, double least[3], double most[3]);
 
 /* count: of particles, as many as the cloth has; forces: or 0, none. */
-WEFT_C_API weft_result weft_write_positions(weft_cloth* cloth, size_t count, const double* in);
-WEFT_C_API weft_result weft_write_velocities(weft_cloth* cloth, size_t count, const double* in);
-WEFT_C_API weft_result weft_write_forces(weft_cloth* cloth, size_t count, const double* in);
-WEFT_C_API weft_result weft_set_gravity(weft_cloth* cloth, const double gravity[3]);
-WEFT_C_API weft_result weft_set_wind(weft_cloth* cloth, const double wind[3]);
-WEFT_C_API weft_result weft_move_fixed(weft_cloth* cloth, size_t count, const uint32_t* particles,
-                                       const double* positions);
-WEFT_C_API weft_result weft_place_fixed(weft_cloth* cloth, size_t count, const uint32_t* particles,
-                                        const double* positions);
+WEFT_API weft_result weft_write_positions(weft_cloth* cloth, size_t count, const double* in);
+WEFT_API weft_result weft_write_velocities(weft_cloth* cloth, size_t count, const double* in);
+WEFT_API weft_result weft_write_forces(weft_cloth* cloth, size_t count, const double* in);
+WEFT_API weft_result weft_set_gravity(weft_cloth* cloth, const double gravity[3]);
+WEFT_API weft_result weft_set_wind(weft_cloth* cloth, const double wind[3]);
+WEFT_API weft_result weft_move_fixed(weft_cloth* cloth, size_t count, const uint32_t* particles,
+                                     const double* positions);
+WEFT_API weft_result weft_place_fixed(weft_cloth* cloth, size_t count, const uint32_t* particles,
+                                      const double* positions);
 
 /* count: of all anchors. normals: or NULL, as they are. */
-WEFT_C_API weft_result weft_move_anchors(weft_cloth* cloth, size_t count, const double* points,
-                                         const double* normals);
+WEFT_API weft_result weft_move_anchors(weft_cloth* cloth, size_t count, const double* points,
+                                       const double* normals);
 /* backstops: a byte each, yes or no; or NULL, yes. */
-WEFT_C_API weft_result weft_limit_anchors(weft_cloth* cloth, size_t count,
-                                          const double* max_distances, const uint8_t* backstops);
-WEFT_C_API weft_result weft_limit_anchor(weft_cloth* cloth, uint32_t anchor, double max_distance,
-                                         int backstop);
-WEFT_C_API weft_result weft_scale_anchors(weft_cloth* cloth, double scale);
+WEFT_API weft_result weft_limit_anchors(weft_cloth* cloth, size_t count,
+                                        const double* max_distances, const uint8_t* backstops);
+WEFT_API weft_result weft_limit_anchor(weft_cloth* cloth, uint32_t anchor, double max_distance,
+                                       int backstop);
+WEFT_API weft_result weft_scale_anchors(weft_cloth* cloth, double scale);
 
 /* RigidMotion; each or NULL: 0. */
-WEFT_C_API weft_result weft_carry(weft_cloth* cloth, const double translation[3],
-                                  const double rotation[3], const double about[3], double share);
-WEFT_C_API weft_result weft_teleport(weft_cloth* cloth, const double translation[3],
-                                     const double rotation[3], const double about[3]);
+WEFT_API weft_result weft_carry(weft_cloth* cloth, const double translation[3],
+                                const double rotation[3], const double about[3], double share);
+WEFT_API weft_result weft_teleport(weft_cloth* cloth, const double translation[3],
+                                   const double rotation[3], const double about[3]);
 
 /* Changes. Particles, constraints and elements by their numbers in the description. */
 typedef struct weft_changes {
@@ -369,8 +364,8 @@ typedef struct weft_changes {
   double air_density, air_drag, air_lift;
 } weft_changes;
 
-WEFT_C_API weft_result weft_init_changes(weft_changes* changes, size_t size);
-WEFT_C_API weft_result weft_change(weft_cloth* cloth, const weft_changes* changes);
+WEFT_API weft_result weft_init_changes(weft_changes* changes, size_t size);
+WEFT_API weft_result weft_change(weft_cloth* cloth, const weft_changes* changes);
 
 typedef struct weft_strain { /* Strain */
   size_t size;
@@ -385,25 +380,25 @@ typedef struct weft_energy { /* Energy */
   double kinetic, potential, elastic;
 } weft_energy;
 
-WEFT_C_API weft_result weft_init_strain(weft_strain* strain, size_t size);
-WEFT_C_API weft_result weft_init_energy(weft_energy* energy, size_t size);
-WEFT_C_API weft_result weft_strain_of(const weft_cloth* cloth, weft_strain* strain);
-WEFT_C_API weft_result weft_energy_of(const weft_cloth* cloth, weft_energy* energy);
-WEFT_C_API double weft_max_penetration(const weft_cloth* cloth);
-WEFT_C_API uint64_t weft_state_hash(const weft_cloth* cloth);
-WEFT_C_API size_t weft_cloth_bytes(const weft_cloth* cloth);
+WEFT_API weft_result weft_init_strain(weft_strain* strain, size_t size);
+WEFT_API weft_result weft_init_energy(weft_energy* energy, size_t size);
+WEFT_API weft_result weft_strain_of(const weft_cloth* cloth, weft_strain* strain);
+WEFT_API weft_result weft_energy_of(const weft_cloth* cloth, weft_energy* energy);
+WEFT_API double weft_max_penetration(const weft_cloth* cloth);
+WEFT_API uint64_t weft_state_hash(const weft_cloth* cloth);
+WEFT_API size_t weft_cloth_bytes(const weft_cloth* cloth);
 
 /* --------------------------------------------------------------------------------------- bodies */
 
-WEFT_C_API weft_result weft_plane(const double normal[3], double offset, weft_shape** out);
-WEFT_C_API weft_result weft_ball(const double centre[3], double radius, weft_shape** out);
-WEFT_C_API weft_result weft_capsule(const double a[3], const double b[3], double radius_a,
-                                    double radius_b, weft_shape** out);
-WEFT_C_API weft_result weft_hull(size_t count, const double* points, weft_shape** out);
-WEFT_C_API weft_result weft_box(const double edges[3], weft_shape** out);
-WEFT_C_API weft_result weft_triangle_mesh(size_t vertex_count, const double* vertices,
-                                          size_t triangle_count, const uint32_t* triangles,
-                                          int two_sided, weft_shape** out);
+WEFT_API weft_result weft_plane(const double normal[3], double offset, weft_shape** out);
+WEFT_API weft_result weft_ball(const double centre[3], double radius, weft_shape** out);
+WEFT_API weft_result weft_capsule(const double a[3], const double b[3], double radius_a,
+                                  double radius_b, weft_shape** out);
+WEFT_API weft_result weft_hull(size_t count, const double* points, weft_shape** out);
+WEFT_API weft_result weft_box(const double edges[3], weft_shape** out);
+WEFT_API weft_result weft_triangle_mesh(size_t vertex_count, const double* vertices,
+                                        size_t triangle_count, const uint32_t* triangles,
+                                        int two_sided, weft_shape** out);
 
 typedef struct weft_body { /* Body */
   size_t size;
@@ -425,27 +420,26 @@ typedef struct weft_body_contact { /* BodyContact */
   double push;
 } weft_body_contact;
 
-WEFT_C_API weft_result weft_init_body(weft_body* body, size_t size);
-WEFT_C_API weft_result weft_init_body_load(weft_body_load* load, size_t size);
-WEFT_C_API weft_result weft_init_body_contact(weft_body_contact* contact, size_t size);
+WEFT_API weft_result weft_init_body(weft_body* body, size_t size);
+WEFT_API weft_result weft_init_body_load(weft_body_load* load, size_t size);
+WEFT_API weft_result weft_init_body_contact(weft_body_contact* contact, size_t size);
 
-WEFT_C_API weft_result weft_add_body(weft_cloth* cloth, const weft_body* body, uint32_t* id);
+WEFT_API weft_result weft_add_body(weft_cloth* cloth, const weft_body* body, uint32_t* id);
 /* rotation: x, y, z, w; or NULL, none. */
-WEFT_C_API weft_result weft_move_body(weft_cloth* cloth, uint32_t id, const double position[3],
-                                      const double rotation[4]);
-WEFT_C_API weft_result weft_place_body(weft_cloth* cloth, uint32_t id, const double position[3],
-                                       const double rotation[4]);
-WEFT_C_API weft_result weft_move_body_vertices(weft_cloth* cloth, uint32_t id, size_t count,
-                                               const double* vertices);
-WEFT_C_API weft_result weft_place_body_vertices(weft_cloth* cloth, uint32_t id, size_t count,
-                                                const double* vertices);
-WEFT_C_API weft_result weft_switch_body(weft_cloth* cloth, uint32_t id, int on);
-WEFT_C_API weft_result weft_remove_body(weft_cloth* cloth, uint32_t id);
-WEFT_C_API weft_result weft_body_load_of(const weft_cloth* cloth, uint32_t id,
-                                         weft_body_load* load);
+WEFT_API weft_result weft_move_body(weft_cloth* cloth, uint32_t id, const double position[3],
+                                    const double rotation[4]);
+WEFT_API weft_result weft_place_body(weft_cloth* cloth, uint32_t id, const double position[3],
+                                     const double rotation[4]);
+WEFT_API weft_result weft_move_body_vertices(weft_cloth* cloth, uint32_t id, size_t count,
+                                             const double* vertices);
+WEFT_API weft_result weft_place_body_vertices(weft_cloth* cloth, uint32_t id, size_t count,
+                                              const double* vertices);
+WEFT_API weft_result weft_switch_body(weft_cloth* cloth, uint32_t id, int on);
+WEFT_API weft_result weft_remove_body(weft_cloth* cloth, uint32_t id);
+WEFT_API weft_result weft_body_load_of(const weft_cloth* cloth, uint32_t id, weft_body_load* load);
 /* Writes the first `capacity` of them, and to *count how many there are. */
-WEFT_C_API weft_result weft_body_contacts(const weft_cloth* cloth, size_t capacity,
-                                          weft_body_contact* out, size_t* count);
+WEFT_API weft_result weft_body_contacts(const weft_cloth* cloth, size_t capacity,
+                                        weft_body_contact* out, size_t* count);
 
 /* ---------------------------------------------------------------------------- materials, meshes */
 
@@ -455,13 +449,13 @@ typedef struct weft_material { /* Material */
   double damping_stretch, damping_bending, damping_motion, drag, lift;
 } weft_material;
 
-WEFT_C_API weft_result weft_init_material(weft_material* material, size_t size);
-WEFT_C_API weft_result weft_check_material(const weft_material* material);
-WEFT_C_API size_t weft_material_count(void);
+WEFT_API weft_result weft_init_material(weft_material* material, size_t size);
+WEFT_API weft_result weft_check_material(const weft_material* material);
+WEFT_API size_t weft_material_count(void);
 /* NULL where there is none of that number. */
-WEFT_C_API const char* weft_material_name(size_t number);
-WEFT_C_API const char* weft_material_source(size_t number);
-WEFT_C_API weft_result weft_find_material(const char* name, weft_material* material);
+WEFT_API const char* weft_material_name(size_t number);
+WEFT_API const char* weft_material_source(size_t number);
+WEFT_API weft_result weft_find_material(const char* name, weft_material* material);
 
 enum { WEFT_NO_ROPES = 0, WEFT_DIAGONAL_ROPES = 1, WEFT_ALL_ROPES = 2 }; /* Ropes */
 
@@ -496,42 +490,41 @@ typedef struct weft_mesh_counts { /* MeshCounts */
   double suggested_weld;
 } weft_mesh_counts;
 
-WEFT_C_API weft_result weft_init_mesh(weft_mesh* mesh, size_t size);
-WEFT_C_API weft_result weft_init_mesh_counts(weft_mesh_counts* counts, size_t size);
+WEFT_API weft_result weft_init_mesh(weft_mesh* mesh, size_t size);
+WEFT_API weft_result weft_init_mesh_counts(weft_mesh_counts* counts, size_t size);
 
 /* directions: 3 for each face. texture: 2 for each corner. */
-WEFT_C_API weft_result weft_warp_from_texture(const weft_mesh* mesh, const double* texture,
-                                              size_t face_count, double* directions);
-WEFT_C_API weft_result weft_cloth_from_mesh(const weft_mesh* mesh, weft_mesh_cloth** out);
+WEFT_API weft_result weft_warp_from_texture(const weft_mesh* mesh, const double* texture,
+                                            size_t face_count, double* directions);
+WEFT_API weft_result weft_cloth_from_mesh(const weft_mesh* mesh, weft_mesh_cloth** out);
 /* Its scene. The arrays are those of the mesh cloth; the struct is the caller's to change. */
-WEFT_C_API weft_result weft_scene_of(const weft_mesh_cloth* cloth, weft_scene* scene);
+WEFT_API weft_result weft_scene_of(const weft_mesh_cloth* cloth, weft_scene* scene);
 /* One for each vertex: WEFT_NO_INDEX where it has none. */
-WEFT_C_API const uint32_t* weft_particle_of_vertex(const weft_mesh_cloth* cloth);
-WEFT_C_API weft_result weft_counts_of(const weft_mesh_cloth* cloth, weft_mesh_counts* counts);
-WEFT_C_API size_t weft_cell_count(const weft_mesh_cloth* cloth);
-WEFT_C_API const uint32_t* weft_cells(const weft_mesh_cloth* cloth); /* 4 each */
+WEFT_API const uint32_t* weft_particle_of_vertex(const weft_mesh_cloth* cloth);
+WEFT_API weft_result weft_counts_of(const weft_mesh_cloth* cloth, weft_mesh_counts* counts);
+WEFT_API size_t weft_cell_count(const weft_mesh_cloth* cloth);
+WEFT_API const uint32_t* weft_cells(const weft_mesh_cloth* cloth); /* 4 each */
 
 /* -------------------------------------------------------------------------------------- surfaces
  */
 
-WEFT_C_API weft_result weft_surface_of_mesh(const weft_mesh* mesh, const weft_mesh_cloth* cloth,
-                                            weft_surface** out);
+WEFT_API weft_result weft_surface_of_mesh(const weft_mesh* mesh, const weft_mesh_cloth* cloth,
+                                          weft_surface** out);
 /* max_distance: HUGE_VAL for any. */
-WEFT_C_API weft_result weft_map_surface(const weft_mesh* mesh, const weft_mesh_cloth* cloth,
-                                        const weft_mesh* other, double max_distance,
-                                        weft_surface** out);
-WEFT_C_API weft_result weft_clone_surface(const weft_surface* surface, weft_surface** out);
-WEFT_C_API size_t weft_surface_vertex_count(const weft_surface* surface);
-WEFT_C_API size_t weft_surface_particle_count(const weft_surface* surface);
-WEFT_C_API size_t weft_surface_triangle_count(const weft_surface* surface);
-WEFT_C_API const uint32_t* weft_surface_triangles(const weft_surface* surface); /* 3 each */
+WEFT_API weft_result weft_map_surface(const weft_mesh* mesh, const weft_mesh_cloth* cloth,
+                                      const weft_mesh* other, double max_distance,
+                                      weft_surface** out);
+WEFT_API weft_result weft_clone_surface(const weft_surface* surface, weft_surface** out);
+WEFT_API size_t weft_surface_vertex_count(const weft_surface* surface);
+WEFT_API size_t weft_surface_particle_count(const weft_surface* surface);
+WEFT_API size_t weft_surface_triangle_count(const weft_surface* surface);
+WEFT_API const uint32_t* weft_surface_triangles(const weft_surface* surface); /* 3 each */
 /* positions or normals may have no floats: NULL and 0. origin: or NULL, 0. */
-WEFT_C_API weft_result weft_read_vertices(weft_surface* surface, const weft_cloth* cloth,
-                                          weft_float_vectors positions, weft_float_vectors normals,
-                                          const double origin[3]);
-WEFT_C_API weft_result weft_copy_shape(weft_surface* surface, const weft_cloth* from,
-                                       weft_cloth* to);
-WEFT_C_API size_t weft_surface_bytes(const weft_surface* surface);
+WEFT_API weft_result weft_read_vertices(weft_surface* surface, const weft_cloth* cloth,
+                                        weft_float_vectors positions, weft_float_vectors normals,
+                                        const double origin[3]);
+WEFT_API weft_result weft_copy_shape(weft_surface* surface, const weft_cloth* from, weft_cloth* to);
+WEFT_API size_t weft_surface_bytes(const weft_surface* surface);
 
 #ifdef __cplusplus
 }

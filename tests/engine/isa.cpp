@@ -10,6 +10,7 @@
 #include "kernels/simd/table.h"
 #include "tests/support/clothes.h"
 #include "tests/support/isas.h"
+#include "tests/support/system.h"
 
 namespace weft::test {
 namespace {
@@ -26,13 +27,7 @@ class Environment {
   Environment& operator=(const Environment&) = delete;
 
  private:
-  static void set(const char* value) {
-    if (value != nullptr) {
-      ::setenv("WEFT_ISA", value, 1);
-    } else {
-      ::unsetenv("WEFT_ISA");
-    }
-  }
+  static void set(const char* value) { set_environment("WEFT_ISA", value); }
   std::string before_;
 };
 

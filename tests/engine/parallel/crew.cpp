@@ -3,16 +3,17 @@
 
 #include <doctest/doctest.h>
 #include <tbb/global_control.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cfenv>
 #include <chrono>
 #include <deque>
 #include <string>
 #include <thread>
 
 #include "tests/support/job_systems.h"
+#include "tests/support/rounding.h"
 #include "tests/support/teams.h"
 
 namespace weft::test {
@@ -111,45 +112,45 @@ class OneNeedsHelp : public Pieces {
     while (!helped_ && std::chrono::steady_clock::now() - start < std::chrono::seconds(30)) {
       team.for_each(2, [&](std::size_t) {
         if (std::this_thread::get_id() == leader) return;
-        helper_rounds_ = _MM_GET_ROUNDING_MODE();
+        helper_rounds_ = rounding();
         helped_ = true;
       });
     }
   }
   bool was_helped() const { return helped_; }
-  unsigned helper_rounds() const { return helper_rounds_; }
+  int helper_rounds() const { return helper_rounds_; }
 
  private:
   Team::SharedState shared_;
   std::atomic<bool> helped_{false};
-  std::atomic<unsigned> helper_rounds_{0};
+  std::atomic<int> helper_rounds_{-1};
 };
 
 TEST_CASE("who finds no piece left helps with a large one, and rounds as the caller does") {
   Pool pool(2);
-  for (const unsigned rounding : {_MM_ROUND_NEAREST, _MM_ROUND_UP}) {
+  for (const int wanted : {FE_TONEAREST, FE_UPWARD}) {
     OneNeedsHelp pieces;
-    const unsigned before = _MM_GET_ROUNDING_MODE();
-    _MM_SET_ROUNDING_MODE(rounding);
+    const int before = std::fegetround();
+    std::fesetround(wanted);
     Crew::work(pieces, pool.jobs(), nullptr);
-    _MM_SET_ROUNDING_MODE(before);
+    std::fesetround(before);
     CHECK(pieces.was_helped());
-    CHECK(pieces.helper_rounds() == rounding);
+    CHECK(pieces.helper_rounds() == wanted);
   }
 }
 
 TEST_CASE("a thread that ran a job rounds as it did before") {
-  unsigned after = 0;
+  int after = -1;
   OddHost host(2, [&after](Job job, int times) {
     std::thread([&] {
-      _MM_SET_ROUNDING_MODE(_MM_ROUND_DOWN);
+      std::fesetround(FE_DOWNWARD);
       for (int k = 0; k < times; ++k) job();
-      after = _MM_GET_ROUNDING_MODE();
+      after = rounding();
     }).join();
   });
   Loops loops(10, 4);
   Crew::work(loops, host.jobs(), nullptr);
-  CHECK(after == _MM_ROUND_DOWN);
+  CHECK(after == FE_DOWNWARD);
   CHECK(loops.are_done());
 }
 

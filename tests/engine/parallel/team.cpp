@@ -2,16 +2,17 @@
 #include "engine/parallel/team.h"
 
 #include <doctest/doctest.h>
-#include <sched.h>
 #include <tbb/parallel_for.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cfenv>
 #include <chrono>
 #include <thread>
 #include <vector>
 
+#include "tests/support/rounding.h"
+#include "tests/support/system.h"
 #include "tests/support/teams.h"
 
 namespace weft::test {
@@ -41,34 +42,34 @@ std::size_t threads_seen(Team& team) {
   return other ? 2 : 1;
 }
 
-constexpr unsigned kNobody = 1;  // no way to round
+constexpr int kNobody = -1;  // no way to round
 
 /// Loops as above; how the second thread rounds, or kNobody if none came.
-unsigned rounding_of_helper(Team& team) {
-  std::atomic<unsigned> rounding{kNobody};
+int rounding_of_helper(Team& team) {
+  std::atomic<int> of_helper{kNobody};
   const auto leader = std::this_thread::get_id();
   const auto start = std::chrono::steady_clock::now();
-  while (rounding == kNobody &&
+  while (of_helper == kNobody &&
          std::chrono::steady_clock::now() - start < std::chrono::seconds(30)) {
     team.for_each(2, [&](std::size_t) {
-      if (std::this_thread::get_id() != leader) rounding = _MM_GET_ROUNDING_MODE();
+      if (std::this_thread::get_id() != leader) of_helper = rounding();
     });
   }
-  return rounding;
+  return of_helper;
 }
 
 TEST_CASE("who helps rounds as its leader does, from team to team") {
   in_arena(2, [] {
-    for (const unsigned rounding : {_MM_ROUND_UP, _MM_ROUND_NEAREST, _MM_ROUND_DOWN}) {
-      const unsigned before = _MM_GET_ROUNDING_MODE();
-      unsigned of_helper = kNobody;
-      _MM_SET_ROUNDING_MODE(rounding);
+    for (const int wanted : {FE_UPWARD, FE_TONEAREST, FE_DOWNWARD}) {
+      const int before = std::fegetround();
+      int of_helper = kNobody;
+      std::fesetround(wanted);
       in_team_of_arena(2, [&](Team& team) { of_helper = rounding_of_helper(team); });
-      _MM_SET_ROUNDING_MODE(before);
+      std::fesetround(before);
       if (of_helper == kNobody) {
         MESSAGE("no second thread came within 30 s: not tested");
       } else {
-        CHECK(of_helper == rounding);
+        CHECK(of_helper == wanted);
       }
     }
   });
@@ -152,14 +153,9 @@ TEST_CASE("a second thread comes to help, if the arena has one") {
   });
 }
 
-/// Of the thread that asks; -1 if that cannot be known.
-int processors_allowed() {
-  cpu_set_t allowed;
-  return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : -1;
-}
-
 TEST_CASE("the processors that a worker may run on stay as they are") {
   const int allowed = processors_allowed();
+  REQUIRE(allowed > 0);
   std::atomic<int> changed{0};
   in_team_of(2, [allowed, &changed](Team& team) {
     threads_seen(team);
