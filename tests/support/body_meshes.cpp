@@ -66,7 +66,7 @@ class Builder {
     }
   }
   std::uint32_t index(Vec3 x) {
-    const auto key = [](double c) { return std::lround(c * 1e9); };
+    const auto key = [](double c) { return std::llround(c * 1e9); };
     const auto [found, is_new] = known_.try_emplace(
         {key(x.x), key(x.y), key(x.z)}, static_cast<std::uint32_t>(mesh.vertices.size()));
     if (is_new) mesh.vertices.push_back(x);
@@ -75,7 +75,7 @@ class Builder {
   TriangleMesh mesh;
 
  private:
-  std::map<std::array<long, 3>, std::uint32_t> known_;
+  std::map<std::array<long long, 3>, std::uint32_t> known_;
 };
 
 }  // namespace

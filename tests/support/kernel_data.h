@@ -1,12 +1,12 @@
 /// Something for the vector kernels to work on, and plain scalar code to expect the same bits from.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "kernels/simd/table.h"
 #include "kernels/vectors.h"
+#include "tests/support/fused.h"
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
@@ -22,7 +22,7 @@ struct Rounding {
 
   template <class T>
   T fused(T x, T y, T z) const {
-    return fuses ? std::fma(x, y, z) : x * y + z;
+    return fuses ? test::fused(x, y, z) : x * y + z;
   }
   double dot(kernels::Vector a, kernels::Vector b) const {
     return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
