@@ -33,6 +33,7 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
 }
 
 bool ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& x, Vector& v) {
+  if (model_.inverse_mass[slot] == 0) return false;
   bool is_touching = false;
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
     if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
