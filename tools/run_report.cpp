@@ -197,6 +197,7 @@ Json to_json(const RunReport& report) {
       {"tolerance", settings.tolerance},
       {"iterations", settings.iterations},
       {"status", name(summary.status)},
+      {"missed_frames", summary.missed_frames},
       {"ms_per_frame", 1e3 * summary.seconds_per_frame()},
       {"max_ms_per_frame", 1e3 * summary.longest_step_seconds},
       {"real_time_factor", real_time_factor(report)},
@@ -275,8 +276,10 @@ std::string to_table(const RunReport& report) {
           : "";
   const auto asleep =
       summary.asleep_frames > 0 ? fmt::format(", {} asleep", summary.asleep_frames) : "";
-  row("frames", fmt::format("{} of {:.6g} s{}{}, status {}", summary.frames, report.plan.dt,
-                            in_substeps, asleep, name(summary.status)));
+  const auto missed =
+      summary.missed_frames > 0 ? fmt::format(", {} out of tolerance", summary.missed_frames) : "";
+  row("frames", fmt::format("{} of {:.6g} s{}{}{}, status {}", summary.frames, report.plan.dt,
+                            in_substeps, asleep, missed, name(summary.status)));
   row("time",
       fmt::format("{:.4g} ms per frame, {:.3g} the longest, {} times real time, at max {} {}",
                   1e3 * summary.seconds_per_frame(), 1e3 * summary.longest_step_seconds,

@@ -34,7 +34,9 @@ bool is_reached(Status status) {
 }
 
 void look_for_miss(RunSummary& summary, const StepReport& report) {
-  if (summary.first_miss || is_reached(report.status)) return;
+  if (is_reached(report.status)) return;
+  ++summary.missed_frames;
+  if (summary.first_miss) return;
   summary.first_miss = {.frame = summary.last_frame(),
                         .status = report.status,
                         .max_error = report.max_error,

@@ -78,6 +78,7 @@ struct RunSummary {
   int finished_runs = 0;
   Status status = Status::converged;  ///< the worst of all frames
   std::optional<Miss> first_miss;
+  int missed_frames = 0;  ///< that were not brought within their tolerances
 
   double step_seconds = 0;          ///< wall time in step()
   double longest_step_seconds = 0;  ///< of one frame

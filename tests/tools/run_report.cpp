@@ -21,6 +21,7 @@ RunReport report() {
   summary.threads = 3;
   summary.frames = 4;
   summary.status = Status::infeasible;
+  summary.missed_frames = 37;
   summary.step_seconds = 1;
   summary.longest_step_seconds = 0.5;
   summary.cpu_seconds = 13;
@@ -78,7 +79,7 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
     "solver": "auto", "solver_used": "yarn", "scheme": "paper", "scheme_fallbacks": 8,
     "backend": "simd", "anticipate_products": false, "isa": "avx2", "threads": 3,
     "dt": 0.5, "steps": 4, "frames": 4, "asleep_frames": 0, "substeps": 5.5, "halvings": 7,
-    "tolerance": 0.0625, "iterations": 0, "status": "infeasible",
+    "tolerance": 0.0625, "iterations": 0, "status": "infeasible", "missed_frames": 37,
     "ms_per_frame": 250, "max_ms_per_frame": 500, "real_time_factor": 2,
     "max_strain": 0.125, "mean_max_strain": 0.03125, "rms_strain": 0.015625,
     "max_penetration": 0.75, "max_anchor_error": 0.5, "max_contacts": 19,
@@ -110,7 +111,8 @@ TEST_CASE("the table has every figure too") {
         "material  21 springs, 37 triangles, 23 bending elements, 29 air triangles\n"
         "solver    auto (yarn), scheme rattle, backend simd, tolerance 6.25 %\n"
         "scheme    8 of 22 substeps left to scheme paper\n"
-        "frames    4 of 0.5 s in 5.5 substeps each, status infeasible\n"
+        "frames    4 of 0.5 s in 5.5 substeps each, 37 out of tolerance, "
+        "status infeasible\n"
         "time      250 ms per frame, 500 the longest, 2 times real time, at max error of the law "
         "25 %\n"
         "stages    predict 31.2, find_contacts 93.8, solve_positions 156, commit 219, "
