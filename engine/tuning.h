@@ -75,12 +75,14 @@ inline constexpr double kSofter = 8;
 /// Substeps between two renewals of the base. Displacements are rounded to a 2^-24 part of what a
 /// particle moves in between.
 inline constexpr int kRenewal = 16;
-/// s, that a fabric which was put somewhere has to give way, from rest, again and again, up to so
-/// many times; and as often the longest substep, in which what is stiff comes to rest. What swings
-/// with the angular frequency w keeps 1 / (1 + (w h)^2) of its stretch each time h. A longer time
-/// loses more of what the fabric carried (perf/tried.md).
+/// s, that a fabric which was put somewhere has to give way, from rest, again and again; then the
+/// longest substep, in which what is stiff comes to rest. What swings with the angular frequency w
+/// keeps 1 / (1 + (w h)^2) of its stretch each time h. A longer time loses more of what the fabric
+/// carried (perf/tried.md).
 inline constexpr double kPlacing = 1. / 60;
-inline constexpr int kMostPlacings = 64;
+/// Of the speed of its fastest particle. What is contradictory, as around a body that it is too
+/// small for, never comes to rest.
+inline constexpr Patience kPlacingPatience{0.9, 8};
 /// m/s, that misplaced fabric reaches in the longest substep: ten times what falls does. Cloth that
 /// moves and is put back as it was must not count as misplaced.
 inline constexpr double kMisplacedSpeed = 0.5;

@@ -214,8 +214,17 @@ void ContactPoints::measure_moves(const Model& model, const ContactParticles& cl
     write(way_quads_, point, end_[point] - start_[point]);
 }
 
-bool ContactPoints::holds_end(std::uint32_t point) const {
-  const Vector x = end_[point] - origin_;
+bool ContactPoints::holds_end(std::uint32_t point) const { return holds(point, end_[point]); }
+
+bool ContactPoints::hold(const Model& model, const ContactParticles& cloth) const {
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
+    if (model.is_particle(slot) && !holds(slot, cloth.position(slot))) return false;
+  }
+  return true;
+}
+
+bool ContactPoints::holds(std::uint32_t point, Vector place) const {
+  const Vector x = place - origin_;
   const auto holds = [&](double at, std::size_t k) {
     return at >= static_cast<double>(box_[point].low[k]) &&
            at <= static_cast<double>(box_[point].high[k]);

@@ -100,6 +100,8 @@ class ContactPoints {
   void set_end(std::uint32_t point, kernels::Vector x);
   /// Whether the point came to a place that was expected.
   bool holds_end(std::uint32_t point) const;
+  /// Whether all particles are now where they were expected in the interval.
+  bool hold(const Model& model, const ContactParticles& cloth) const;
   /// Makes the box of a point hold its way.
   void take_way_in(std::uint32_t point);
   /// m, of quads.
@@ -112,6 +114,7 @@ class ContactPoints {
     quads[4 * point + 1] = static_cast<float>(v.y);
     quads[4 * point + 2] = static_cast<float>(v.z);
   }
+  bool holds(std::uint32_t point, kernels::Vector place) const;
   void note_moves(const BodyClock& clock);
   void place_vertices(const BodyClock& clock, int substeps, std::vector<kernels::Vector>& to) const;
   Box hull_around(std::size_t point) const;

@@ -44,12 +44,18 @@ double MeshContacts::interval_for(const BodyClock& clock) const {
 }
 
 void MeshContacts::predict(ContactParticles& particles, const BodyClock& clock, Team& team) {
-  if (empty()) return;
+  if (empty() || still_holds(particles, clock)) return;
   if (left_ == 0) {
     left_ = clock.stands() ? 1 : clock.substeps_in(interval_for(clock));
     begin_interval(particles, clock, left_, team);
   }
   --left_;
+}
+
+/// Where positions are put right, by any way, until a particle comes to a place that was not
+/// expected.
+bool MeshContacts::still_holds(const ContactParticles& particles, const BodyClock& clock) const {
+  return clock.stands() && interval_ > 0 && points_.hold(model_, particles);
 }
 
 void MeshContacts::begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,

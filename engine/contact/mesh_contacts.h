@@ -87,6 +87,7 @@ class MeshContacts {
   }
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
+  bool still_holds(const ContactParticles& particles, const BodyClock& clock) const;
   double interval_for(const BodyClock& clock) const;
   void find_inside();
   void come_out();

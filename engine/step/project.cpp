@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/measure/state_measure.h"
+#include "engine/solvers/stall.h"
 #include "engine/step/exact_substep.h"
 #include "engine/step/fast_springs.h"
 #include "engine/step/motion.h"
@@ -109,13 +110,14 @@ class Projection {
     }
     for (const double h : {tuning::kPlacing, tuning::kLongestSubstep}) {
       if (carries) drift = find_drift(before, softest, h);
-      for (int i = 0; i < tuning::kMostPlacings && left() > 0; ++i) {
+      Stall stall(tuning::kPlacingPatience);
+      while (left() > 0) {
         solve(softest, h);
         if (!all_finite(s_.solved)) return;
         if (carries) take_back(drift);
-        const double way = largest_way(s_.position, s_.solved);
+        const double speed = largest_way(s_.position, s_.solved) / h;
         s_.position = s_.solved;
-        if (way < tuning::kPlacedSpeed * h) break;
+        if (speed < tuning::kPlacedSpeed || stall.has_stalled(speed)) break;
       }
     }
   }

@@ -196,11 +196,7 @@ class Frame {
     const double rest = passes_left_ - share_of_substep();  // is for later substeps
     ++substeps_done_;
     const bool mends = to_tolerance && mends_now();
-    if (mends) solver_.judge(team_);
-    while (mends && passes_left_ - rest >= 1 && many_are_out()) {
-      sweep_beyond(tuning::kMended);
-      solver_.judge(team_);
-    }
+    if (mends) sweep_until_few_are_out(tuning::kMended, rest);
     if (s_.model->has_contacts()) find_contacts();
     if (mends) {
       count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest), team_));
@@ -224,7 +220,7 @@ class Frame {
       if (i == kMostVerifications) break;
       status = put_right_what_is_left();
     }
-    report_.iterations += static_cast<std::int64_t>(std::ceil(local_passes_));
+    count_local_passes();
     return status;
   }
 
@@ -232,6 +228,16 @@ class Frame {
   void look_ahead() {
     solver_.advance(team_);
     sweep();
+    read_positions();
+  }
+  /// From where the particles are, as far as the work of a round brings laws: what is left is for
+  /// the next time.
+  void give_way() {
+    const double rest = std::max(0.0, passes_left_ - most_of_substep());
+    sweep_beyond(0);
+    sweep_until_few_are_out(0, rest);
+    count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest), team_));
+    count_local_passes();
     read_positions();
   }
   /// From where the particles are, without a substep.
@@ -333,6 +339,14 @@ class Frame {
     count(solver_.repair_everywhere(s_.contacts, most_visits(most), team_));
     read_positions();
   }
+  /// After a sweep. rest: of passes_left_, what is not for this.
+  void sweep_until_few_are_out(double to, double rest) {
+    solver_.judge(team_);
+    while (passes_left_ - rest >= 1 && many_are_out()) {
+      sweep_beyond(to);
+      solver_.judge(team_);
+    }
+  }
   void sweep_beyond(double to) {
     plan_.projects ? solver_.sweep(team_) : solver_.mend(to, team_);
     count_sweep();
@@ -374,6 +388,9 @@ class Frame {
     local_passes_ += passes;
     passes_left_ -= local_visit_ * passes;
     mended_ += tuning::kLocalVisit * passes;
+  }
+  void count_local_passes() {
+    report_.iterations += static_cast<std::int64_t>(std::ceil(local_passes_));
   }
   void read_positions() {
     s_.solved = s_.position;
@@ -536,7 +553,10 @@ void project_by_small_steps(State& s, double softest, double h, const Budget& bu
                .placed = true,
                .projects = true,
                .softest = softest});
-  frame.put_right_at_once();
+  if (softest > 0)
+    frame.give_way();
+  else
+    frame.put_right_at_once();
 }
 
 void look_ahead_by_small_steps(State& s, double h, StepReport& report, Team& team) {
