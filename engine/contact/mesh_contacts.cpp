@@ -179,20 +179,28 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
 }
 
 /// What was not expected to touch is near from now on, so that what puts the cloth right until the
-/// step is over keeps it apart.
+/// step is over keeps it apart. What went through each other unnoticed was taken to be on the other
+/// side: now it is known on which it was.
 void MeshContacts::expect_failures(const BodyClock& clock, ContactParticles& particles) {
   bool any = false;
   for (const Failure& failure : verification_.failures()) {
     const Pair& pair = candidates_[failure.list].pairs[failure.pair];
     NearPairs& near = near_[failure.list];
-    if (near.has(pair)) continue;
+    const std::size_t known = near.find(pair);
+    const bool is_known = known < near.list.size();
+    const bool is_late = failure.depth > 0;
+    if (is_known && is_late) continue;
     const auto four = candidates_[failure.list].points(failure.pair);
     FourPoints before;
     for (std::size_t k = 0; k < 4; ++k) before[k] = points_.start(four[k]);
-    const Vector r = nearest(pair.kind, before).r;
-    near.add(pair, four, kernels::direction(r, length(r)), points_.meshes()[pair.mesh].thickness,
-             false);
-    any = true;
+    const Vector r = nearest(pair.kind, before).r, normal = kernels::direction(r, length(r));
+    if (is_known) {
+      near.set_normal(known, normal);
+      near.states[known].is_under = false;
+    } else {
+      near.add(pair, four, normal, points_.meshes()[pair.mesh].thickness, false);
+      any = true;
+    }
   }
   if (!any) return;
   sweep_.begin(scene(particles, clock), near_);

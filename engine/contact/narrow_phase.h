@@ -48,8 +48,9 @@ struct NearPairs {
   }
   void add(const Pair& pair, const std::array<std::uint32_t, 4>& points, kernels::Vector normal,
            double thickness, bool is_under);
-  bool has(const Pair& pair) const {
-    return std::ranges::find(list.pairs, pair) != list.pairs.end();
+  /// Its place, or size().
+  std::size_t find(const Pair& pair) const {
+    return static_cast<std::size_t>(std::ranges::find(list.pairs, pair) - list.pairs.begin());
   }
   /// From the second feature to the first, as last seen there.
   kernels::Vector normal(std::size_t i) const;
