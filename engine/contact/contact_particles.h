@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "kernels/vectors.h"
 
@@ -14,6 +15,15 @@ struct ContactParticle {
   kernels::Vector v{};      // its velocity there
 };
 
+/// A surface where a particle touches it.
+struct TouchedSurface {
+  static constexpr std::uint32_t kNoBody = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t body = kNoBody;  // of the clock
+  kernels::Vector velocity{};
+
+  bool is_there() const { return body != kNoBody; }
+};
+
 class ContactParticles {
  public:
   virtual ~ContactParticles() = default;
@@ -22,11 +32,13 @@ class ContactParticles {
   virtual ContactParticle read(std::uint32_t slot) const = 0;
   /// What has stopped it is no motion: it is predicted to be there.
   virtual void write(std::uint32_t slot, const ContactParticle& particle) = 0;
-  /// It touches a body in this substep. Returns by how much a change of its velocity counts as
-  /// momentum: that of a particle that stays in contact acts in a part of the substep alone.
-  virtual double touch(std::uint32_t slot) = 0;
+  /// It touches a body in this substep.
+  virtual void touch(std::uint32_t slot, const TouchedSurface& surface) = 0;
   /// It was put elsewhere when the substep was over: from there it goes on at first order.
-  virtual void stop(std::uint32_t slot) = 0;
+  virtual void stop(std::uint32_t slot, const TouchedSurface& surface) = 0;
+  /// By which a change of velocity in this substep counts as momentum: 1 / b, for a force acts in
+  /// the part b of it alone (kernels/simd/small_steps.h).
+  virtual double momentum_share() const = 0;
 };
 
 }  // namespace weft

@@ -192,7 +192,14 @@ bool ContactSweep::resist(const ContactScene& scene, NearPairs& near, std::size_
   if (!(stop.push > 0)) return false;
   state.is_touching = true;
   state.push += stop.push;
-  for (std::size_t k = 0; k < 4; ++k) relative = relative + (sign * found.weight[k]) * e.at[k].v;
+  TouchedSurface surface{.body = static_cast<std::uint32_t>(mesh.body)};
+  Vector on_body{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    relative = relative + (sign * found.weight[k]) * e.at[k].v;
+    if (scene.points.is_of_cloth(e.points[k])) continue;
+    surface.velocity = surface.velocity - (sign * found.weight[k]) * e.at[k].v;
+    on_body = on_body - (sign * found.weight[k]) * e.x[k];
+  }
   const reference::Slowed slow = reference::slow(n, relative, body.friction, state.grip);
   Vector impulse{};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -203,16 +210,11 @@ bool ContactSweep::resist(const ContactScene& scene, NearPairs& near, std::size_
     p.x = p.x + part * stop.by;
     p.v = p.v + part * slow.change;
     scene.particles.write(e.points[k], p);
-    const double momentum = scene.model.mass[e.points[k]] * scene.particles.touch(e.points[k]);
+    scene.particles.touch(e.points[k], surface);
+    const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
     impulse = impulse + (momentum * part) * slow.change;
   }
-  Vector velocity{}, on_body{};
-  for (std::size_t k = 0; k < 4; ++k) {
-    if (scene.points.is_of_cloth(e.points[k])) continue;
-    velocity = velocity - (sign * found.weight[k]) * e.at[k].v;
-    on_body = on_body - (sign * found.weight[k]) * e.x[k];
-  }
-  scene.impulses.add(mesh.body, body.to.centre, on_body, impulse, velocity);
+  scene.impulses.add(mesh.body, body.to.centre, on_body, impulse, surface.velocity);
   const double l_change = length(slow.change);
   if (l_change > 0)
     scene.impulses.friction += length(impulse) / l_change * slow.taken * (stop.slid / body.h);

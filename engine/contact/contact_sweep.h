@@ -13,6 +13,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/bodies/bodies.h"
@@ -23,8 +24,8 @@
 
 namespace weft {
 
-/// What contacts with meshes have given to the cloth, per body of the clock.
-struct MeshImpulses {
+/// What contacts have given to the cloth, per body of the clock.
+struct ContactImpulses {
   std::vector<BodyImpulse> of_body;
   double work = 0;      // J, that bodies did
   double friction = 0;  // J, that it took
@@ -36,6 +37,11 @@ struct MeshImpulses {
     of_body[body].angular = of_body[body].angular + cross(x - centre, impulse);
     work += dot(impulse, velocity);
   }
+  void begin(std::span<const TravellingBody> bodies) {
+    of_body.clear();
+    for (const TravellingBody& body : bodies) of_body.push_back({.id = body.id});
+    work = friction = 0;
+  }
 };
 
 /// What a sweep needs to know of a substep.
@@ -45,7 +51,7 @@ struct ContactScene {
   const BodyClock& clock;
   ContactPoints& points;
   ContactParticles& particles;
-  MeshImpulses& impulses;
+  ContactImpulses& impulses;
   const Misplaced& misplaced;
   const Crossings& crossings;
 };

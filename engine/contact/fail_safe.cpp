@@ -20,10 +20,12 @@ class Mover {
     particle.x = particle.x + by;
     particle.v = particle.v + faster;
     scene_.particles.write(slot, particle);
-    scene_.particles.stop(slot);
+    const TouchedSurface surface{static_cast<std::uint32_t>(mesh_.body), of_surface};
+    scene_.particles.stop(slot, surface);
     scene_.points.set_end(slot, particle.x);
+    const double momentum = scene_.model.mass[slot] * scene_.particles.momentum_share();
     scene_.impulses.add(mesh_.body, scene_.clock.motions()[mesh_.body].to.centre, particle.x,
-                        scene_.model.mass[slot] * faster, of_surface);
+                        momentum * faster, of_surface);
   }
 
  private:

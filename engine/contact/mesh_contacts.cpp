@@ -28,9 +28,7 @@ void MeshContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& m
   for (NearPairs& near : near_) near.clear();
   if (empty()) return;
   cloth_ = &model_.touched_surface();
-  impulses_.of_body.clear();
-  for (const TravellingBody& body : clock.bodies()) impulses_.of_body.push_back({.id = body.id});
-  impulses_.work = impulses_.friction = 0;
+  impulses_.begin(clock.bodies());
   is_new_ = is_new;
   misplaced_ = misplaced;
   crossings_.begin(*cloth_, misplaced_.crossing);

@@ -69,7 +69,7 @@ class MeshContacts {
     if (empty()) return 0;
     return std::max(late_depth_, sweep_.deepest(scene(particles, clock), near_, team));
   }
-  const MeshImpulses& impulses() const { return impulses_; }
+  const ContactImpulses& impulses() const { return impulses_; }
   /// Left are triangles that cross, and particles inside.
   FailSafeReport failures() const {
     FailSafeReport report = failures_;
@@ -105,7 +105,7 @@ class MeshContacts {
   Verification verification_;
   Candidates candidates_;
   Near near_;
-  MeshImpulses impulses_;
+  ContactImpulses impulses_;
   FailSafeReport failures_;
   bool is_new_ = false;    // it is not known yet what is misplaced
   int left_ = 0;           // substeps of the present interval

@@ -137,7 +137,8 @@ template <class At>
     if (backstop == nullptr && bits(out) == 0) continue;
     FloatVector predicted = at.get(f.predicted, block.place, lane);
     FloatVector v = at.get(f.v, block.place, lane);
-    p.v = fused(Floats(h.rate), p.x - predicted, v);
+    FloatVector led_to = at.get(f.led_to, block.place, lane);
+    p.v = fused(Floats(h.rate), led_to - predicted, v);
     p.motion = Floats(h.per_second) * load(block.way, lane);
     p.at_limit = out;
     FloatVector settled = p.v;
@@ -145,7 +146,8 @@ template <class At>
     if (backstop != nullptr) hold_behind(p, *backstop, h, settled, lane);
     if (bits(p.at_limit) == 0) continue;
     at.put(f.u, block.place, lane, p.x);
-    at.put(f.predicted, block.place, lane, select(p.at_limit, p.x, predicted));
+    if (!f.is_mended()) led_to = p.x;
+    at.put(f.predicted, block.place, lane, select(p.at_limit, led_to, predicted));
     at.put(f.v, block.place, lane, select(p.at_limit, p.v, v));
     FloatVector by = p.x - from;
     on |= bits(p.at_limit) << lane;

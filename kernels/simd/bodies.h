@@ -170,7 +170,8 @@ template <class At>
     FloatVector by = fused_from(share, along, push * p.normal);
     FloatVector predicted = at.get(flight.predicted, block.place, lane);
     FloatVector v_before = at.get(flight.v, block.place, lane);
-    FloatVector v = fused(Floats(h.rate), u - predicted, v_before);
+    FloatVector led_to = at.get(flight.led_to, block.place, lane);
+    FloatVector v = fused(Floats(h.rate), led_to - predicted, v_before);
 
     FloatVector r = (p.x + by) - splat(f.centre_to);
     FloatVector surface = splat(f.velocity) + cross_of(splat(f.spin), r);
@@ -189,9 +190,8 @@ template <class At>
     xsimd::select(on, stopped, load(grips.stopped + lane)).store_unaligned(grips.stopped + lane);
     xsimd::select(on, slowed, load(grips.slowed + lane)).store_unaligned(grips.slowed + lane);
 
-    const std::size_t of_block = std::size_t{h.pairs[i].block} * kernels::kLanes;
     const Floats momentum =
-        xsimd::select(on, load(block.mass + lane) * load(h.weights + of_block + lane), none);
+        xsimd::select(on, load(block.mass + lane) * Floats(h.momentum_share), none);
     FloatVector impulse = momentum * change;
     add(grips.linear, lane, impulse);
     add(grips.angular, lane, cross_of(r, impulse));
@@ -204,6 +204,10 @@ template <class At>
     FloatVector before = at.get(flight.u_before, block.place, lane);
     FloatVector start = fused(push - stays_out, p.normal, before);
     at.put(flight.u_before, block.place, lane, select(on, start, before));
+    if (flight.is_mended()) {
+      to = select(on, fused(push - stays_out, p.normal, led_to), led_to);
+      at.put(flight.led_to, block.place, lane, to);
+    }
     at.put(flight.predicted, block.place, lane, select(on, to, predicted));
     at.put(flight.v, block.place, lane, select(on, v + change, v_before));
     touching |= bits(on) << lane;

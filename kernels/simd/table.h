@@ -238,6 +238,11 @@ struct Flight {
   float* v = nullptr;                   // predicted; after settle() it is the velocity
   float* v_before = nullptr;            // a substep ago
   const float* acceleration = nullptr;  // of what is fixed: 0
+  /// Where motion has led, from which velocities follow: u, or u before it was mended. Mending
+  /// moves particles and is no motion.
+  float* led_to = nullptr;
+
+  bool is_mended() const { return led_to != u; }
 };
 
 /// What is left of a flight between two frames: the velocity in the end, and how it came about in
@@ -416,7 +421,6 @@ struct BodyHold {
   Flight flight{};
   const float* base = nullptr;
   const BodyBlock* blocks = nullptr;
-  const float* weights = nullptr;  // per block and lane: of a change of velocity as momentum
   const BodyPair* pairs = nullptr;
   const BodyFrame* frames = nullptr;
   BodyGrips* grips = nullptr;         // per pair
@@ -425,6 +429,7 @@ struct BodyHold {
   std::uint16_t* quick = nullptr;     // likewise: its way is to be looked at in full
   bool woven = false;                 // in woven rows, else in quads
   float rate = 0;                     // of SubstepWeights
+  float momentum_share = 1;           // by which a change of velocity counts as momentum
   float h = 0;
 };
 

@@ -1,6 +1,7 @@
 /// What both solvers of small steps tell of contacts.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "engine/contact/mesh_contacts.h"
@@ -17,17 +18,35 @@ inline BodyTouch touch_of(const BodyClock& clock, std::size_t body, std::uint32_
   return {slot, clock.bodies()[body].id, push, x - gap.gap * normal, normal};
 }
 
-/// Adds what meshes have done.
-inline void add_report(const MeshContacts& meshes, BodyReport& report) {
-  if (meshes.empty()) return;
-  const MeshImpulses& its = meshes.impulses();
+/// A particle that arrives at a surface goes on as if it had been in flight: what it was before, on
+/// which BDF2 builds, is forgotten. `impulse` is the momentum that the next substep has by that and
+/// would not have had; the body gave it. Of what it does along the surface friction took as much as
+/// Coulomb's law allows.
+inline void add_arrival(ContactImpulses& impulses, const BodyClock& clock,
+                        const TouchedSurface& surface, kernels::Vector x, kernels::Vector v,
+                        kernels::Vector impulse) {
+  const reference::BodyMotion& body = clock.motions()[surface.body];
+  impulses.add(surface.body, body.to.centre, x, impulse, surface.velocity);
+  const kernels::Vector slides = v - surface.velocity;
+  const double most = body.friction * length(impulse) * length(slides);
+  impulses.friction -= std::clamp(dot(impulse, slides), -most, most);
+}
+
+inline void add(const ContactImpulses& impulses, const BodyClock& clock, BodyReport& report) {
   for (std::size_t body = 0; body < report.impulses.size(); ++body) {
     BodyImpulse& sum = report.impulses[body];
-    sum.linear = sum.linear + its.of_body[body].linear;
-    sum.angular = sum.angular + its.of_body[body].angular;
+    sum.centre = clock.motions()[body].to.centre;
+    sum.linear = sum.linear + impulses.of_body[body].linear;
+    sum.angular = sum.angular + impulses.of_body[body].angular;
   }
-  report.work += its.work;
-  report.friction += its.friction;
+  report.work += impulses.work;
+  report.friction += impulses.friction;
+}
+
+/// Adds what meshes have done.
+inline void add_report(const MeshContacts& meshes, const BodyClock& clock, BodyReport& report) {
+  if (meshes.empty()) return;
+  add(meshes.impulses(), clock, report);
   report.contacts += meshes.count_touching();
   report.failures = meshes.failures();
 }

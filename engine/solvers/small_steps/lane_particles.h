@@ -23,11 +23,13 @@ class LaneParticles final : public ContactParticles {
     points_.put(slot, particle.x, particle.v);
     points_.put_start(slot, particle.start);
   }
-  double touch(std::uint32_t slot) override {
-    if (points_.bodies->begins_to_touch(slot)) stop(slot);
-    return points_.bodies->momentum_share(slot);
+  void touch(std::uint32_t slot, const TouchedSurface& surface) override {
+    if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
   }
-  void stop(std::uint32_t slot) override { points_.arrived.push_back(slot); }
+  void stop(std::uint32_t slot, const TouchedSurface& surface) override {
+    points_.arrived.push_back({slot, surface});
+  }
+  double momentum_share() const override { return points_.bodies->momentum_share(); }
 
  private:
   const LanePoints& points_;
@@ -35,10 +37,11 @@ class LaneParticles final : public ContactParticles {
 
 inline void LanePoints::grip(std::uint32_t slot) const {
   SimdBodies::Particle particle{place(u_start, slot), place(u, slot), settled(slot)};
-  if (bodies->hold(slot, particle)) {
+  const TouchedSurface surface = bodies->hold(slot, particle);
+  if (surface.is_there()) {
     put(slot, particle.x, particle.v);
     put_start(slot, particle.start);
-    if (bodies->begins_to_touch(slot)) arrived.push_back(slot);
+    if (bodies->begins_to_touch(slot)) arrived.push_back({slot, surface});
   }
   if (!bodies->has_meshes()) return;
   LaneParticles particles(*this);

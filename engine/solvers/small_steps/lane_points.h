@@ -7,6 +7,7 @@
 
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
+#include "engine/solvers/small_steps/arrivals.h"
 #include "engine/solvers/small_steps/simd_bodies.h"
 #include "engine/solvers/small_steps/simd_membrane.h"
 #include "engine/solvers/yarn/yarn_places.h"
@@ -30,7 +31,8 @@ struct LanePoints {
   const AnchorClock& anchors;
   SimdMembrane& membrane;
   SimdBodies* bodies;  // or null: they are left
-  std::vector<std::uint32_t>& arrived;
+  std::vector<Arrival>& arrived;
+  float* led_to;  // simd::Flight
 
   double axis(const float* from, std::size_t a, std::size_t b) const {
     return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
@@ -77,20 +79,26 @@ struct LanePoints {
     };
     return {sum(x), sum(y), sum(z)};
   }
+  kernels::Vector vector(const float* from, std::uint32_t slot) const {
+    const std::size_t x = places.of(slot), y = x + places.stride, z = y + places.stride;
+    return {static_cast<double>(from[x]), static_cast<double>(from[y]),
+            static_cast<double>(from[z])};
+  }
   kernels::Vector settled(std::uint32_t slot) const {
     const std::size_t x = places.of(slot), y = x + places.stride, z = y + places.stride;
     const auto velocity = [&](std::size_t at) {
-      return static_cast<double>(v[at]) + rate * static_cast<double>(u[at] - predicted[at]);
+      return static_cast<double>(v[at]) + rate * static_cast<double>(led_to[at] - predicted[at]);
     };
     return {velocity(x), velocity(y), velocity(z)};
   }
-  /// What has stopped it is no motion: it is predicted to be there.
+  /// What has stopped it is no motion: it is predicted to be where it is.
   void put(std::uint32_t slot, kernels::Vector position, kernels::Vector velocity) const {
     std::size_t at = places.of(slot);
     for (const auto& [to, speed] :
          {std::pair{position.x, velocity.x}, std::pair{position.y, velocity.y},
           std::pair{position.z, velocity.z}}) {
-      u[at] = predicted[at] = static_cast<float>(to - static_cast<double>(base[at]));
+      u[at] = static_cast<float>(to - static_cast<double>(base[at]));
+      predicted[at] = led_to[at];
       v[at] = static_cast<float>(speed);
       at += places.stride;
     }
@@ -98,7 +106,9 @@ struct LanePoints {
   void put_start(std::uint32_t slot, kernels::Vector position) const {
     std::size_t at = places.of(slot);
     for (const double to : {position.x, position.y, position.z}) {
-      u_start[at] = static_cast<float>(to - static_cast<double>(base[at]));
+      const float before =
+          std::exchange(u_start[at], static_cast<float>(to - static_cast<double>(base[at])));
+      if (led_to != u) predicted[at] = led_to[at] += u_start[at] - before;
       at += places.stride;
     }
   }

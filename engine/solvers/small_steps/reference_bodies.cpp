@@ -16,9 +16,7 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
   if (bodies.empty()) return;
   on_.assign(model_.slots(), false);
   if (before.size() == on_.size()) on_ = before;
-  impulses_.clear();
-  for (const TravellingBody& body : bodies) impulses_.push_back({.id = body.id});
-  friction_ = 0;
+  impulses_.begin(bodies);
 }
 
 void ReferenceBodies::advance(double part, ContactParticles& particles, Team& team) {
@@ -26,32 +24,34 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
   meshes_.predict(particles, clock_, team);
   clock_.advance();
   meshes_.advance(clock_);
-  stays_ = 1 / part;
+  momentum_share_ = 1 / part;
   grips_.assign(model_.slots() * clock_.bodies().size(), {});
   before_.swap(on_);
   on_.assign(model_.slots(), false);
 }
 
-bool ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& x, Vector& v) {
-  if (model_.inverse_mass[slot] == 0) return false;
-  bool is_touching = false;
+TouchedSurface ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& x, Vector& v) {
+  TouchedSurface surface;
+  if (model_.inverse_mass[slot] == 0) return surface;
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
     if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
     const reference::BodyMotion& body = clock_.motions()[i];
     reference::Grip& grip = grips_[slot * clock_.bodies().size() + i];
     const reference::Gripped gripped = reference::grip(body, start, x, v, radius(slot), grip);
     if (!gripped.is_touching) continue;
-    const double momentum = model_.mass[slot] * (before_[slot] ? stays_ : 1);
-    const Vector impulse = momentum * (gripped.v - v);
-    impulses_[i].linear = impulses_[i].linear + impulse;
-    impulses_[i].angular = impulses_[i].angular + cross(gripped.x - body.to.centre, impulse);
-    friction_ += 0.5 * momentum * gripped.friction;
+    surface = {static_cast<std::uint32_t>(i), body.velocity_at(gripped.x)};
+    const double momentum = model_.mass[slot] * momentum_share_;
+    impulses_.add(i, body.to.centre, gripped.x, momentum * (gripped.v - v), surface.velocity);
+    impulses_.friction += 0.5 * momentum * gripped.friction;
     start = gripped.start;
     x = gripped.x;
     v = gripped.v;
-    is_touching = true;
   }
-  return is_touching;
+  return surface;
+}
+
+void ReferenceBodies::arrive(const TouchedSurface& surface, Vector x, Vector v, Vector impulse) {
+  add_arrival(impulses_, clock_, surface, x, v, impulse);
 }
 
 bool ReferenceBodies::begins_to_touch(std::uint32_t slot) {
@@ -78,17 +78,11 @@ double ReferenceBodies::deepest(const kernels::Vectors& start, const kernels::Ve
 void ReferenceBodies::sum(BodyReport& report) const {
   report.clear();
   if (empty()) return;
-  report.impulses = impulses_;
-  report.friction = friction_;
-  for (std::size_t i = 0; i < impulses_.size(); ++i) {
-    const reference::BodyMotion& motion = clock_.motions()[i];
-    report.impulses[i].centre = motion.to.centre;
-    report.work +=
-        dot(impulses_[i].linear, motion.velocity) + dot(impulses_[i].angular, motion.spin);
-  }
+  for (const BodyImpulse& body : impulses_.of_body) report.impulses.push_back({.id = body.id});
+  add(impulses_, clock_, report);
   report.contacts = static_cast<int>(
       std::ranges::count_if(grips_, [](const reference::Grip& grip) { return grip.pushed > 0; }));
-  add_report(meshes_, report);
+  add_report(meshes_, clock_, report);
 }
 
 void ReferenceBodies::read_contacts(const ContactParticles& particles,

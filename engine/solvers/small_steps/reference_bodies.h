@@ -43,13 +43,17 @@ class ReferenceBodies {
   bool end_interval(ContactParticles& particles, Team& team) {
     return meshes_.end_interval(particles, clock_, team);
   }
-  /// By which a change of velocity of a particle that touches counts as momentum.
-  double momentum_share(std::uint32_t slot) const { return before_[slot] ? stays_ : 1; }
-  /// Moves a particle that went from start to x, with the velocity v there. Returns whether it
-  /// touches a body.
-  bool hold(std::uint32_t slot, kernels::Vector& start, kernels::Vector& x, kernels::Vector& v);
+  /// As ContactParticles::momentum_share().
+  double momentum_share() const { return momentum_share_; }
+  /// Moves a particle that went from start to x, with the velocity v there. Returns the surface
+  /// that it touches, the last of several, if there is one.
+  TouchedSurface hold(std::uint32_t slot, kernels::Vector& start, kernels::Vector& x,
+                      kernels::Vector& v);
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
+  /// impulse: as add_arrival (body_touches.h) has it.
+  void arrive(const TouchedSurface& surface, kernels::Vector x, kernels::Vector v,
+              kernels::Vector impulse);
   const Touching& touching() const { return on_; }
   double deepest(const kernels::Vectors& start, const kernels::Vectors& x,
                  ContactParticles& particles, Team& team);
@@ -64,11 +68,10 @@ class ReferenceBodies {
   const Model& model_;
   BodyClock clock_;
   MeshContacts meshes_;
-  double stays_ = 1;                    // of a change of velocity in contact, as momentum
+  double momentum_share_ = 1;
   std::vector<reference::Grip> grips_;  // per slot and body
   Touching on_, before_;
-  std::vector<BodyImpulse> impulses_;
-  double friction_ = 0;
+  ContactImpulses impulses_;  // but for those that meshes have given
 };
 
 }  // namespace weft

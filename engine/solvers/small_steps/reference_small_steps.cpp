@@ -26,8 +26,26 @@ struct ReferenceSmallSteps::Points {
   const AnchorClock& anchors;
   std::vector<reference::MembraneMultipliers>& of_membrane;
   ReferenceBodies* bodies;  // or null: they are left
-  std::vector<std::uint32_t>& arrived;
+  std::vector<Arrival>& arrived;
+  kernels::VectorsView led_to;  // as simd::Flight has it
 
+  bool is_mended() const { return led_to.x != x.x; }
+  Vector settled(std::uint32_t slot) const {
+    return v[slot] + rate * (led_to[slot] - predicted[slot]);
+  }
+  /// What has stopped it is no motion: it is predicted to be where it is.
+  void put(std::uint32_t slot, Vector position, Vector velocity) const {
+    x.set(slot, position);
+    predicted.set(slot, led_to[slot]);
+    v.set(slot, velocity);
+  }
+  void put_start(std::uint32_t slot, Vector position) const {
+    if (is_mended()) {
+      led_to.add(slot, position - start[slot]);
+      predicted.set(slot, led_to[slot]);
+    }
+    start.set(slot, position);
+  }
   Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
   void move(std::uint32_t slot, Vector by) const {
     x.add(slot, by);
@@ -35,24 +53,18 @@ struct ReferenceSmallSteps::Points {
     if (bodies != nullptr) grip(slot);
   }
   bool hold(std::uint32_t slot, std::uint32_t anchor) const {
-    const Vector settled = v[slot] + rate * (x[slot] - predicted[slot]);
-    const reference::Held held = anchors.hold(anchor, x[slot], settled);
-    if (!held.is_at_limit) return false;
-    x.set(slot, held.x);
-    predicted.set(slot, held.x);
-    v.set(slot, held.v);
-    return true;
+    const reference::Held held = anchors.hold(anchor, x[slot], settled(slot));
+    if (held.is_at_limit) put(slot, held.x, held.v);
+    return held.is_at_limit;
   }
   bool grip(std::uint32_t slot) const;
   bool grip_by_bodies(std::uint32_t slot) const {
-    Vector to = x[slot], settled = v[slot] + rate * (x[slot] - predicted[slot]);
-    Vector from = start[slot];
-    if (!bodies->hold(slot, from, to, settled)) return false;
-    start.set(slot, from);
-    x.set(slot, to);
-    predicted.set(slot, to);
-    v.set(slot, settled);
-    if (bodies->begins_to_touch(slot)) arrived.push_back(slot);
+    Vector to = x[slot], velocity = settled(slot), from = start[slot];
+    const TouchedSurface surface = bodies->hold(slot, from, to, velocity);
+    if (!surface.is_there()) return false;
+    put(slot, to, velocity);
+    put_start(slot, from);
+    if (bodies->begins_to_touch(slot)) arrived.push_back({slot, surface});
     return true;
   }
   void push(std::uint32_t slot, Vector by) const {
@@ -79,20 +91,19 @@ class ReferenceSmallSteps::Particles final : public ContactParticles {
   Vector position(std::uint32_t slot) const override { return points_.x[slot]; }
   Vector start(std::uint32_t slot) const override { return points_.start[slot]; }
   ContactParticle read(std::uint32_t slot) const override {
-    const Vector v = points_.v[slot] + points_.rate * (points_.x[slot] - points_.predicted[slot]);
-    return {points_.start[slot], points_.x[slot], v};
+    return {points_.start[slot], points_.x[slot], points_.settled(slot)};
   }
   void write(std::uint32_t slot, const ContactParticle& particle) override {
-    points_.start.set(slot, particle.start);
-    points_.x.set(slot, particle.x);
-    points_.predicted.set(slot, particle.x);
-    points_.v.set(slot, particle.v);
+    points_.put(slot, particle.x, particle.v);
+    points_.put_start(slot, particle.start);
   }
-  double touch(std::uint32_t slot) override {
-    if (points_.bodies->begins_to_touch(slot)) stop(slot);
-    return points_.bodies->momentum_share(slot);
+  void touch(std::uint32_t slot, const TouchedSurface& surface) override {
+    if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
   }
-  void stop(std::uint32_t slot) override { points_.arrived.push_back(slot); }
+  void stop(std::uint32_t slot, const TouchedSurface& surface) override {
+    points_.arrived.push_back({slot, surface});
+  }
+  double momentum_share() const override { return points_.bodies->momentum_share(); }
 
  private:
   const Points& points_;
@@ -117,7 +128,8 @@ ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_limits) {
           .anchors = anchors_,
           .of_membrane = membrane_multiplier_,
           .bodies = with_limits && !bodies_.empty() ? &bodies_ : nullptr,
-          .arrived = arrived_};
+          .arrived = arrived_,
+          .led_to = is_aside_ ? aside_.view() : x_.view()};
 }
 
 LawStep ReferenceSmallSteps::law_step() const {
@@ -317,8 +329,6 @@ void ReferenceSmallSteps::take_past_along() {
   if (!std::exchange(is_aside_, false)) return;
   for (const std::uint32_t slot : touched_) aside_.set(slot, x_[slot]);
   for (std::size_t i = 0; i < model_.slots(); ++i) {
-    const bool is_held = length(x_[i] - predicted_[i]) == 0;
-    if (is_held) continue;
     const Vector by = x_[i] - aside_[i];
     predicted_.view().add(i, by);
     before_.view().add(i, by);
@@ -364,7 +374,7 @@ void ReferenceSmallSteps::hold_anchors() {
     const std::uint32_t slot = model_.anchors.slot[i];
     const Vector from = x_[slot];
     if (!points.hold(slot, i)) continue;
-    if (!at_limit_before_[i] && !at_limit_[i]) arrived_.push_back(slot);
+    if (!at_limit_before_[i] && !at_limit_[i]) arrived_.push_back({slot});
     at_limit_[i] = true;
     if (length(x_[slot] - from) > strain * layout_.anchors.shortest[i]) passes_.look_at(slot);
   }
@@ -554,17 +564,14 @@ LocalWork ReferenceSmallSteps::repair_everywhere(const ContactStore& contacts,
 }
 
 void ReferenceSmallSteps::end_motions() {
-  const auto for_each = [](std::vector<std::uint32_t>& slots, auto&& work) {
-    std::ranges::sort(slots);
-    const auto rest = std::ranges::unique(slots);
-    slots.erase(rest.begin(), rest.end());
-    for (const std::uint32_t slot : slots) work(slot);
-    slots.clear();
-  };
-  for_each(touched_, [&](std::uint32_t i) {
-    if (is_free(i)) stop_at_contact(i);
-  });
-  for_each(arrived_, [&](std::uint32_t i) { begin_at_limit(i); });
+  std::ranges::sort(touched_);
+  const auto repeated = std::ranges::unique(touched_);
+  touched_.erase(repeated.begin(), repeated.end());
+  for (const std::uint32_t slot : touched_) {
+    if (is_free(slot)) stop_at_contact(slot);
+  }
+  touched_.clear();
+  take_arrivals(arrived_, [&](const Arrival& arrival) { begin_at_limit(arrival); });
 }
 
 void ReferenceSmallSteps::stop_at_contact(std::size_t i) {
@@ -575,12 +582,18 @@ void ReferenceSmallSteps::stop_at_contact(std::size_t i) {
   before_.set(i, x_[i] - h_ * (v + gain));
 }
 
-void ReferenceSmallSteps::begin_at_limit(std::size_t i) {
+void ReferenceSmallSteps::begin_at_limit(const Arrival& arrival) {
+  const std::uint32_t i = arrival.slot;
   const double rate = last_ > 0 ? 1 / last_ : 0;  // settled already: what is predicted is there
   const Vector a = acceleration_[i], v = v_[i] + rate * (x_[i] - predicted_[i]);
+  const Vector v_before = v - h_ * decaying_share() * a;
+  if (arrival.surface.is_there()) {
+    const double counts = model_.mass[i] * next_formula_.share_of_past();
+    bodies_.arrive(arrival.surface, x_[i], v, counts * (v_before_[i] - v_before));
+  }
   predicted_.set(i, x_[i]);
   v_.set(i, v);
-  v_before_.set(i, v - h_ * decaying_share() * a);
+  v_before_.set(i, v_before);
   before_.set(i, x_[i] - h_ * v + (0.5 * h_ * h_) * a);
 }
 

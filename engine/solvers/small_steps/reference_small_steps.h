@@ -11,6 +11,7 @@
 #include "engine/contacts/contacts.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/arrivals.h"
 #include "engine/solvers/small_steps/bending_pace.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/reference_bodies.h"
@@ -51,7 +52,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   double law_error() override;
   void end_seams() override;
   const SeamThreads& seams() const override { return seams_; }
-  void report_bodies(BodyReport& report) const override { bodies_.sum(report); }
+  void report_bodies(BodyReport& report) override { bodies_.sum(report); }
   double deepest_in_body(Team& team) override;
   bool end_contacts(Team& team) override;
   void read_contacts(std::vector<BodyTouch>& contacts) override;
@@ -115,7 +116,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   void hold_by_meshes(Team& team);
   void end_motions();
   void stop_at_contact(std::size_t slot);
-  void begin_at_limit(std::size_t slot);
+  void begin_at_limit(const Arrival& arrival);
 
   const Model& model_;
   const SmallStepsLayout& layout_;
@@ -136,7 +137,8 @@ class ReferenceSmallSteps final : public SmallSteps {
   Departures departures_;
   kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_;
   std::vector<std::uint32_t> out_;  // items (local_passes.h) that a sweep found out of tolerance
-  std::vector<std::uint32_t> touched_, arrived_;
+  std::vector<std::uint32_t> touched_;
+  std::vector<Arrival> arrived_;
   const std::vector<double> shortest_;            // m, per slot: of its constraints
   std::vector<bool> at_limit_, at_limit_before_;  // per anchor, in this substep and in the last
   std::vector<double> multiplier_;                // per constraint; with springs only

@@ -50,7 +50,6 @@ void SimdBodies::make_room() {
   layout_ = make_body_layout(model_, model_.small_steps().places(), far_);
   const std::size_t count = layout_.blocks.size();
   for (Touching* bits : {&on_, &before_, &held_, &arrived_}) bits->assign(count, 0);
-  weight_.assign(count * kLanes, 1);
 }
 
 void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
@@ -66,9 +65,7 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
   until_search_ = 0;
   std::ranges::fill(on_, std::uint16_t{0});
   if (before.size() == on_.size()) std::ranges::copy(before, on_.begin());
-  impulses_.clear();
-  for (const TravellingBody& body : bodies) impulses_.push_back({.id = body.id});
-  friction_ = 0;
+  impulses_.begin(bodies);
 }
 
 void SimdBodies::advance(const simd::Flight& flight, const float* base, double part,
@@ -82,13 +79,7 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   write_frames();
   before_.swap(on_);
   std::ranges::fill(on_, std::uint16_t{0});
-  stays_ = 1 / part;
-  const auto stays = static_cast<float>(stays_);
-  for (std::size_t active = 0; active + 1 < first_pair_.size(); ++active) {
-    const std::size_t block = pairs_[first_pair_[active]].block;
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
-      weight_[block * kLanes + lane] = (before_[block] >> lane & 1) != 0 ? stays : 1.f;
-  }
+  momentum_share_ = 1 / part;
   for (simd::BodyGrips& grips : grips_) {
     for (float* lanes : {grips.pushed, grips.held, grips.stopped, grips.slowed})
       std::fill_n(lanes, kLanes, 0.f);
@@ -142,7 +133,7 @@ bool SimdBodies::may_touch(const Extent& extent, std::size_t body, const BodyClo
 
 /// Which blocks may meet which bodies until the next search.
 void SimdBodies::search(const simd::Flight& flight, const float* base) {
-  flush(impulses_, friction_);
+  collect_impulses();
   until_search_ = clock_.substeps_in(tuning::kContactInterval);
   pairs_.clear();
   first_pair_.clear();
@@ -228,11 +219,11 @@ simd::BodyHold SimdBodies::hold_of(const simd::Flight& flight, const float* base
   return {.flight = flight,
           .base = base,
           .blocks = layout_.blocks.data(),
-          .weights = weight_.data(),
           .pairs = pairs_.data(),
           .frames = frames_.data(),
           .woven = model_.small_steps().places().woven(),
           .rate = rate,
+          .momentum_share = static_cast<float>(momentum_share_),
           .h = static_cast<float>(clock_.motions().front().h)};
 }
 
@@ -262,11 +253,11 @@ void SimdBodies::hold(const simd::Flight& flight, const float* base, float rate,
   }
 }
 
-bool SimdBodies::hold(std::uint32_t slot, Particle& particle) {
+TouchedSurface SimdBodies::hold(std::uint32_t slot, Particle& particle) {
   const std::uint32_t place = layout_.place_of[slot];
-  if (place == kNoIndex || pairs_.empty()) return false;
+  TouchedSurface surface;
+  if (place == kNoIndex || pairs_.empty()) return surface;
   const std::size_t block = place / kLanes, lane = place % kLanes;
-  bool is_touching = false;
   for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
     const BodyMotion& body = clock_.motions()[pairs_[i].body];
     simd::BodyGrips& lanes = grips_[i];
@@ -281,7 +272,7 @@ bool SimdBodies::hold(std::uint32_t slot, Particle& particle) {
     lanes.held[lane] = static_cast<float>(grip.held);
     lanes.stopped[lane] = static_cast<float>(grip.stopped);
     lanes.slowed[lane] = static_cast<float>(grip.slowed);
-    const double momentum = model_.mass[slot] * number(weight_[place]);
+    const double momentum = model_.mass[slot] * momentum_share_;
     const Vector impulse = momentum * (gripped.v - particle.v);
     const Vector moment = cross(gripped.x - body.to.centre, impulse);
     const auto add = [&](simd::LaneVectors& sum, Vector v) {
@@ -297,9 +288,21 @@ bool SimdBodies::hold(std::uint32_t slot, Particle& particle) {
     particle.start = gripped.start;
     particle.x = gripped.x;
     particle.v = gripped.v;
-    is_touching = true;
+    surface = {pairs_[i].body, body.velocity_at(gripped.x)};
   }
-  return is_touching;
+  return surface;
+}
+
+TouchedSurface SimdBodies::touched_by(std::uint32_t slot, Vector x) const {
+  const std::uint32_t place = layout_.place_of[slot];
+  const std::size_t block = place / kLanes, lane = place % kLanes;
+  std::size_t i = pairs_of_[block];
+  while ((touching_[i] >> lane & 1) == 0) ++i;
+  return {pairs_[i].body, clock_.motions()[pairs_[i].body].velocity_at(x)};
+}
+
+void SimdBodies::arrive(const TouchedSurface& surface, Vector x, Vector v, Vector impulse) {
+  add_arrival(impulses_, clock_, surface, x, v, impulse);
 }
 
 bool SimdBodies::begins_to_touch(std::uint32_t slot) {
@@ -345,44 +348,45 @@ void SimdBodies::read_contacts(const ContactParticles& particles,
   add_touches(meshes_, particles, clock_, contacts);
 }
 
-void SimdBodies::flush(std::vector<BodyImpulse>& impulses, double& friction) const {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const simd::BodyGrips& grips = grips_[i];
-    BodyImpulse& sum = impulses[pairs_[i].body];
-    const auto add = [](Vector& to, const simd::LaneVectors& lanes) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        to = to + Vector{static_cast<double>(lanes.x[lane]), static_cast<double>(lanes.y[lane]),
+void SimdBodies::collect_impulses() {
+  const auto take = [](simd::LaneVectors& lanes) {
+    Vector sum{};
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      sum = sum + Vector{static_cast<double>(lanes.x[lane]), static_cast<double>(lanes.y[lane]),
                          static_cast<double>(lanes.z[lane])};
-      }
-    };
-    add(sum.linear, grips.linear);
-    add(sum.angular, grips.angular);
-    for (const float lost : grips.friction) friction += 0.5 * static_cast<double>(lost);
+    }
+    lanes = {};
+    return sum;
+  };
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    simd::BodyGrips& grips = grips_[i];
+    const BodyMotion& motion = clock_.motions()[pairs_[i].body];
+    const Vector linear = take(grips.linear), angular = take(grips.angular);
+    BodyImpulse& sum = impulses_.of_body[pairs_[i].body];
+    sum.linear = sum.linear + linear;
+    sum.angular = sum.angular + angular;
+    impulses_.work += dot(linear, motion.velocity) + dot(angular, motion.spin);
+    for (float& lost : grips.friction)
+      impulses_.friction += 0.5 * static_cast<double>(std::exchange(lost, 0.f));
   }
 }
 
-void SimdBodies::sum(BodyReport& report) const {
+void SimdBodies::sum(BodyReport& report) {
   report.clear();
   if (empty()) return;
-  report.impulses = impulses_;
-  report.friction = friction_;
-  flush(report.impulses, report.friction);
-  for (std::size_t body = 0; body < report.impulses.size(); ++body) {
-    const BodyMotion& motion = clock_.motions()[body];
-    report.impulses[body].centre = motion.to.centre;
-    report.work += dot(report.impulses[body].linear, motion.velocity) +
-                   dot(report.impulses[body].angular, motion.spin);
-  }
-  add_report(meshes_, report);
+  collect_impulses();
+  for (const BodyImpulse& body : impulses_.of_body) report.impulses.push_back({.id = body.id});
+  add(impulses_, clock_, report);
+  add_report(meshes_, clock_, report);
   for (const std::uint16_t bits : touching_) report.contacts += std::popcount(bits);
 }
 
 std::size_t SimdBodies::bytes() const {
   return clock_.bytes() + meshes_.bytes() + layout_.bytes() + bytes_of(frames_) + bytes_of(faces_) +
          bytes_of(pairs_) + bytes_of(first_pair_) + bytes_of(pairs_of_) + bytes_of(grips_) +
-         bytes_of(touching_) + bytes_of(moved_) + bytes_of(quick_) + bytes_of(weight_) +
-         bytes_of(on_) + bytes_of(before_) + bytes_of(held_) + bytes_of(arrived_) +
-         bytes_of(impulses_) + bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_);
+         bytes_of(touching_) + bytes_of(moved_) + bytes_of(quick_) + bytes_of(on_) +
+         bytes_of(before_) + bytes_of(held_) + bytes_of(arrived_) + bytes_of(impulses_.of_body) +
+         bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_);
 }
 
 }  // namespace weft

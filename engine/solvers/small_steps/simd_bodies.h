@@ -58,21 +58,23 @@ class SimdBodies {
   void hold_by_meshes(std::uint32_t slot, ContactParticles& particles) {
     meshes_.hold(particles, clock_, slot);
   }
-  /// By which a change of velocity of a particle that touches counts as momentum.
-  double momentum_share(std::uint32_t slot) const {
-    const std::uint32_t place = layout_.place_of[slot];
-    return (before_[place / kernels::kLanes] >> place % kernels::kLanes & 1) != 0 ? stays_ : 1;
-  }
+  /// As ContactParticles::momentum_share().
+  double momentum_share() const { return momentum_share_; }
   const MeshContacts& meshes() const { return meshes_; }
-  /// Of one particle. Returns whether it touches a body.
-  bool hold(std::uint32_t slot, Particle& particle);
+  /// Of one particle. Returns the surface that it touches, the last of several, if there is one.
+  TouchedSurface hold(std::uint32_t slot, Particle& particle);
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
-  /// arrived(slot): it touches a body, and did not when the last substep ended. moved(slot): it was
-  /// moved as far as a constraint of its own may be in error. quick(slot): it is to be held by
-  /// itself.
+  /// The surface, of several bodies the first one's, that a particle at x touches.
+  TouchedSurface touched_by(std::uint32_t slot, kernels::Vector x) const;
+  /// arrived(slot): it touches a body, and did not when the last substep ended. moved(slot):
+  /// it was moved as far as a constraint of its own may be in error. quick(slot): it is to be held
+  /// by itself.
   template <class Arrived, class Moved, class Quick>
   void report(Arrived&& arrived, Moved&& moved, Quick&& quick) const;
+  /// impulse: as add_arrival (body_touches.h) has it.
+  void arrive(const TouchedSurface& surface, kernels::Vector x, kernels::Vector v,
+              kernels::Vector impulse);
   const Touching& touching() const { return on_; }
 
   /// m, by which a particle is under a surface where the last substep ended: any particle, for what
@@ -80,14 +82,8 @@ class SimdBodies {
   double deepest(const simd::Flight& flight, const float* base, ContactParticles& particles,
                  Team& team);
   /// What was done in the frame.
-  void sum(BodyReport& report) const;
+  void sum(BodyReport& report);
   void read_contacts(const ContactParticles& particles, std::vector<BodyTouch>& contacts) const;
-  /// visit(slot), of those that touch a body in the present substep.
-  template <class Visit>
-  void for_each_touching(Visit&& visit) const {
-    for_each_contact([&](std::uint32_t slot, std::size_t, double) { visit(slot); });
-    for (const std::uint32_t slot : meshes_.touching()) visit(slot);
-  }
   std::size_t bytes() const;
 
  private:
@@ -115,7 +111,8 @@ class SimdBodies {
   /// Whether particles of such a block may touch the body, which is in the box, in that time (s).
   bool may_touch(const Extent& extent, std::size_t body, const BodyClock::Box& box,
                  double time) const;
-  void flush(std::vector<BodyImpulse>& impulses, double& friction) const;
+  /// Adds what grips have given to impulses_.
+  void collect_impulses();
   void write_frames();
   simd::BodyHold hold_of(const simd::Flight& flight, const float* base, float rate) const;
 
@@ -127,7 +124,7 @@ class SimdBodies {
   MeshContacts meshes_;
   BodyLayout layout_;  // made when the first body is there
   double h_ = 0;
-  double stays_ = 1;          // of a change of velocity in contact, as momentum
+  double momentum_share_ = 1;
   int until_search_ = 0;      // substeps
   kernels::Vector origin_{};  // of frames
 
@@ -138,14 +135,12 @@ class SimdBodies {
   std::vector<std::uint32_t> pairs_of_;            // per block: where its pairs begin; and the end
   kernels::AlignedVector<simd::BodyGrips> grips_;  // per pair
   std::vector<std::uint16_t> touching_, moved_, quick_;  // per pair
-  kernels::AlignedVector<float> weight_;                 // per block and lane
   Touching on_, before_;                                 // per block, in this substep and the last
   Touching held_, arrived_;                              // by the last sweep
-  std::vector<BodyImpulse> impulses_;                    // before the last search
-  double friction_ = 0;                                  // J, likewise
-  std::vector<BodyClock::Box> boxes_;                    // scratch
-  std::vector<Extent> extents_;                          // likewise
-  std::vector<std::uint16_t> now_;                       // likewise
+  ContactImpulses impulses_;           // before the last search, and of arrivals; but for meshes
+  std::vector<BodyClock::Box> boxes_;  // scratch
+  std::vector<Extent> extents_;        // likewise
+  std::vector<std::uint16_t> now_;     // likewise
 };
 
 template <class Arrived, class Moved, class Quick>

@@ -39,7 +39,8 @@ LanePoints SmallStepsSolver::points(bool with_limits) {
           .anchors = anchors_.clock(),
           .membrane = membrane_,
           .bodies = with_limits && !bodies_.empty() ? &bodies_ : nullptr,
-          .arrived = arrived_};
+          .arrived = arrived_,
+          .led_to = is_aside_ ? aside_.data() : u_.data()};
 }
 
 LawStep SmallStepsSolver::law_step() const {
@@ -89,8 +90,13 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
 }
 
 simd::Flight SmallStepsSolver::flight() {
-  return {u_.data(), u_before_.data(), predicted_.data(),
-          v_.data(), v_before_.data(), acceleration_.data()};
+  return {u_.data(),
+          u_before_.data(),
+          predicted_.data(),
+          v_.data(),
+          v_before_.data(),
+          acceleration_.data(),
+          is_aside_ ? aside_.data() : u_.data()};
 }
 
 simd::Yarns SmallStepsSolver::yarns() {
@@ -332,34 +338,15 @@ void SmallStepsSolver::set_aside() {
   std::ranges::copy(u_, aside_.begin());
 }
 
-/// By a limit, which has put it where it is predicted to be.
-bool SmallStepsSolver::is_held(std::uint32_t slot) const {
-  const YarnPlaces& places = layout_.places();
-  std::size_t at = places.of(slot);
-  bool is_held = true;
-  for (int axis = 0; axis < 3; ++axis, at += places.stride)
-    is_held = is_held && u_[at] == predicted_[at];
-  return is_held;
-}
-
-/// Where mending has moved a particle its past is moved alike. Particles that a contact or a limit
-/// has stopped begin a new one.
+/// Where mending has moved a particle its past is moved alike, but for those that a sphere has
+/// pushed: they begin a new one, by where they are.
 void SmallStepsSolver::take_past_along(Team& team) {
   if (!std::exchange(is_aside_, false)) return;
   const YarnPlaces& places = layout_.places();
-  const auto leave = [&](std::uint32_t slot) {
+  for (const std::uint32_t slot : touched_) {
     std::size_t at = places.of(slot);
     for (int axis = 0; axis < 3; ++axis, at += places.stride) aside_[at] = u_[at];
-  };
-  for (const std::uint32_t slot : touched_) leave(slot);
-  for (const std::uint32_t slot : model_.anchors.slot) {
-    if (is_held(slot)) leave(slot);
   }
-  const auto leave_if_held = [&](std::uint32_t slot) {
-    if (is_held(slot)) leave(slot);
-  };
-  bodies_.for_each_touching(leave_if_held);
-  std::ranges::for_each(arrived_, leave_if_held);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const float by = u_[i] - aside_[i];
@@ -394,7 +381,7 @@ void SmallStepsSolver::judge_springs(Team& team) {
 void SmallStepsSolver::hold_anchors(Team& team) {
   if (anchors_.empty()) return;
   anchors_.hold(flight(), weights_.last.rate, team);
-  anchors_.report([&](std::uint32_t slot) { arrived_.push_back(slot); },
+  anchors_.report([&](std::uint32_t slot) { arrived_.push_back({slot}); },
                   [&](std::uint32_t slot) { passes_.look_at(slot); });
 }
 
@@ -403,9 +390,12 @@ void SmallStepsSolver::hold_bodies(Team& team) {
   if (bodies_.empty()) return;
   bodies_.hold(flight(), base_.data(), weights_.last.rate, team);
   const LanePoints points = this->points(true);
-  bodies_.report([&](std::uint32_t slot) { arrived_.push_back(slot); },
-                 [&](std::uint32_t slot) { passes_.look_at(slot); },
-                 [&](std::uint32_t slot) { points.grip(slot); });
+  bodies_.report(
+      [&](std::uint32_t slot) {
+        arrived_.push_back({slot, bodies_.touched_by(slot, points.place(u_.data(), slot))});
+      },
+      [&](std::uint32_t slot) { passes_.look_at(slot); },
+      [&](std::uint32_t slot) { points.grip(slot); });
   hold_by_meshes(team);
 }
 
@@ -430,7 +420,7 @@ bool SmallStepsSolver::end_contacts(Team& team) {
   return bodies_.end_interval(particles, team);
 }
 
-void SmallStepsSolver::report_bodies(BodyReport& report) const { bodies_.sum(report); }
+void SmallStepsSolver::report_bodies(BodyReport& report) { bodies_.sum(report); }
 
 double SmallStepsSolver::deepest_in_body(Team& team) {
   if (bodies_.empty()) return 0;
@@ -653,15 +643,12 @@ LocalWork SmallStepsSolver::repair_everywhere(const ContactStore& contacts,
 
 /// A contact ends a motion, and so does a limit: from there a particle goes on at first order.
 void SmallStepsSolver::end_motions() {
-  const auto for_each = [](std::vector<std::uint32_t>& slots, auto&& work) {
-    std::ranges::sort(slots);
-    const auto rest = std::ranges::unique(slots);
-    slots.erase(rest.begin(), rest.end());
-    for (const std::uint32_t slot : slots) work(slot);
-    slots.clear();
-  };
-  for_each(touched_, [&](std::uint32_t slot) { stop_at_contact(slot); });
-  for_each(arrived_, [&](std::uint32_t slot) { begin_at_limit(slot); });
+  std::ranges::sort(touched_);
+  const auto repeated = std::ranges::unique(touched_);
+  touched_.erase(repeated.begin(), repeated.end());
+  for (const std::uint32_t slot : touched_) stop_at_contact(slot);
+  touched_.clear();
+  take_arrivals(arrived_, [&](const Arrival& arrival) { begin_at_limit(arrival); });
 }
 
 /// The velocity v of a particle that was pushed is the mean one of this substep, and its past is
@@ -680,9 +667,11 @@ void SmallStepsSolver::stop_at_contact(std::uint32_t slot) {
 }
 
 /// The velocity is that at the end of this substep, and the past a free flight that leads to it.
-void SmallStepsSolver::begin_at_limit(std::uint32_t slot) {
+void SmallStepsSolver::begin_at_limit(const Arrival& arrival) {
   const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
-  std::size_t at = layout_.places().of(slot);
+  const LanePoints points = this->points(false);
+  const kernels::Vector v_before = points.vector(v_before_.data(), arrival.slot);
+  std::size_t at = layout_.places().of(arrival.slot);
   for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
     v_[at] += weights_.last.rate * (u_[at] - predicted_[at]);
     const float a = acceleration_[at], v = v_[at];
@@ -690,6 +679,11 @@ void SmallStepsSolver::begin_at_limit(std::uint32_t slot) {
     v_before_[at] = v - push * a;
     u_before_[at] = u_[at] - h * v + 0.5f * h * h * a;
   }
+  if (!arrival.surface.is_there()) return;
+  const double counts = model_.mass[arrival.slot] * next_formula_.share_of_past();
+  bodies_.arrive(arrival.surface, points.place(u_.data(), arrival.slot),
+                 points.vector(v_.data(), arrival.slot),
+                 counts * (v_before - points.vector(v_before_.data(), arrival.slot)));
 }
 
 double SmallStepsSolver::bending_energy(double give, Team& team) {

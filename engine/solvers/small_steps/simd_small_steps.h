@@ -66,7 +66,7 @@ class SmallStepsSolver final : public SmallSteps {
   double law_error() override;
   void end_seams() override;
   const SeamThreads& seams() const override { return seams_; }
-  void report_bodies(BodyReport& report) const override;
+  void report_bodies(BodyReport& report) override;
   double deepest_in_body(Team& team) override;
   bool end_contacts(Team& team) override;
   void read_contacts(std::vector<BodyTouch>& contacts) override;
@@ -115,7 +115,6 @@ class SmallStepsSolver final : public SmallSteps {
   void sweep(bool mends, Team& team);
   void set_aside();
   void take_past_along(Team& team);
-  bool is_held(std::uint32_t slot) const;
   float left_by_sweep() const;
   void sweep_yarns(Team& team);
   void sweep_edges(Team& team);
@@ -142,7 +141,7 @@ class SmallStepsSolver final : public SmallSteps {
   void advance_bodies(double part, Team& team);
   void end_motions();
   void stop_at_contact(std::uint32_t slot);
-  void begin_at_limit(std::uint32_t slot);
+  void begin_at_limit(const Arrival& arrival);
   template <class Work>
   void for_floats(Team& team, Work&& work);
   template <class Work>
@@ -182,13 +181,13 @@ class SmallStepsSolver final : public SmallSteps {
   std::vector<std::uint32_t> yarns_out_;                   // per row of yarns, likewise
   std::vector<std::uint32_t> touched_;                     // slots that contacts have pushed
   std::vector<float> largest_;                             // departure or move, per part of floats
-  std::vector<std::uint32_t> arrived_;                     // slots that came to an anchor's limit
-  kernels::AlignedVector<float> multiplier_;               // in places of the layout
-  bool is_begun_ = false;                                  // the substep has been swept
-  double mends_to_ = 0;                                    // share of the tolerance
-  bool mends_ = false;                                     // the present sweep
-  kernels::AlignedVector<float> aside_;                    // u_ before mending, with laws only
-  bool is_aside_ = false;                                  // aside_ is that of this substep
+  std::vector<Arrival> arrived_;
+  kernels::AlignedVector<float> multiplier_;  // in places of the layout
+  bool is_begun_ = false;                     // the substep has been swept
+  double mends_to_ = 0;                       // share of the tolerance
+  bool mends_ = false;                        // the present sweep
+  kernels::AlignedVector<float> aside_;       // u_ before mending, with laws only
+  bool is_aside_ = false;                     // aside_ is that of this substep
   bool projects_ = false;
   double softest_ = 0;  // m/N, where it projects
 };

@@ -56,6 +56,9 @@ struct SubstepFormula {
     decaying.share = (lost - past * (1 - lost) * lost_before) / (rate * part * h);
     return decaying;
   }
+  /// A flight leads to b v = b v_last + c (v_last - v_before) + b h a: by so much less of v_before
+  /// a particle has more momentum, per mass.
+  double share_of_past() const { return past / part; }
   /// (b h)^2 over the mass is what a constant force moves a particle by.
   double give(double h) const { return part * h * (part * h) * share; }
 };
@@ -134,7 +137,7 @@ class SmallSteps {
   /// What they have become in the frame, and have done (J).
   virtual const SeamThreads& seams() const = 0;
   /// What contacts with bodies have done in the frame.
-  virtual void report_bodies(BodyReport& report) const = 0;
+  virtual void report_bodies(BodyReport& report) = 0;
   /// m, by which a particle is under the surface of a body.
   virtual double deepest_in_body(Team& team) = 0;
   /// After the last substep: verifies contacts with meshes. Returns whether particles had to be

@@ -146,7 +146,8 @@ TEST_CASE("a sheet hangs over a ball of triangles as over a ball") {
     for (const Vec3 x : positions(cloth)) least = std::min(least, length(x));
     return least;
   };
-  CHECK(std::abs(nearest(on_mesh) - nearest(on_ball)) < flat + 1e-4);
+  // Edges of the sheet lie on corners of the mesh, and keep the particles beside them off it.
+  CHECK(std::abs(nearest(on_mesh) - nearest(on_ball)) < flat + 2e-4);
   const auto height = [](const Cloth& cloth) {
     double all = 0;
     for (const Vec3 x : positions(cloth)) all += x.y / 144;

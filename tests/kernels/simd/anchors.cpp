@@ -99,7 +99,7 @@ struct HeldBlock {
   }
   void hold(const simd::Table& table) {
     const simd::AnchorHold hold{
-        .flight = {.u = u.data(), .predicted = predicted.data(), .v = v.data()},
+        .flight = {.u = u.data(), .predicted = predicted.data(), .v = v.data(), .led_to = u.data()},
         .blocks = &block,
         .backstops = &backstop,
         .at_limit = &at_limit,

@@ -21,7 +21,7 @@ namespace {
 using kernels::kLanes;
 using kernels::Vector;
 
-constexpr double kH = 1e-3, kRate = 1.5 / kH, kFar = 0.004;
+constexpr double kH = 1e-3, kRate = 1.5 / kH, kMomentumShare = 1.5, kFar = 0.004;
 
 Vector random_vector(Random& random, double size) {
   return {random.between(-size, size), random.between(-size, size), random.between(-size, size)};
@@ -106,12 +106,12 @@ struct MovingBody {
 /// Particles that begin about at the surface of a body and move by some millimetres.
 struct GrippedBlock {
   bool woven;
-  kernels::AlignedVector<float> base, u, u_before, predicted, v, weights;
+  kernels::AlignedVector<float> base, u, u_before, predicted, v;
   simd::BodyBlock block{};
   simd::BodyGrips grips{};
   std::uint16_t touching = 0, moved = 0, quick = 0;
 
-  GrippedBlock(bool is_woven, Random& random) : woven(is_woven), weights(kLanes, 1) {
+  GrippedBlock(bool is_woven, Random& random) : woven(is_woven) {
     for (auto* array : {&base, &u, &u_before, &predicted, &v}) array->resize(4 * kLanes);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Vector out = random_vector(random, 1);
@@ -145,10 +145,10 @@ struct GrippedBlock {
     return {.flight = {.u = u.data(),
                        .u_before = u_before.data(),
                        .predicted = predicted.data(),
-                       .v = v.data()},
+                       .v = v.data(),
+                       .led_to = u.data()},
             .base = base.data(),
             .blocks = &block,
-            .weights = weights.data(),
             .pairs = &pair,
             .frames = &body.frame,
             .grips = &grips,
@@ -157,6 +157,7 @@ struct GrippedBlock {
             .quick = &quick,
             .woven = woven,
             .rate = static_cast<float>(kRate),
+            .momentum_share = static_cast<float>(kMomentumShare),
             .h = static_cast<float>(kH)};
   }
 };
@@ -189,7 +190,8 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
     CHECK(length(after.read(after.u, lane) - expected.x) < 2e-7);
     CHECK(length(after.settled(lane) - expected.v) < 1e-3);
     CHECK(double{after.grips.pushed[lane]} == doctest::Approx(grip.pushed).epsilon(1e-3));
-    const Vector impulse = double{before.block.mass[lane]} * (expected.v - before.settled(lane));
+    const double momentum = double{before.block.mass[lane]} * kMomentumShare;
+    const Vector impulse = momentum * (expected.v - before.settled(lane));
     const Vector given{double{after.grips.linear.x[lane]}, double{after.grips.linear.y[lane]},
                        double{after.grips.linear.z[lane]}};
     CHECK(length(given - impulse) < 2e-3);

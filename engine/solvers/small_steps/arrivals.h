@@ -1,0 +1,30 @@
+/// Particles whose motion a body or the limit of an anchor ended in a substep: they go on at first
+/// order.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "engine/contact/contact_particles.h"
+
+namespace weft {
+
+struct Arrival {
+  std::uint32_t slot = 0;
+  TouchedSurface surface{};  // of no body: an anchor's limit
+};
+
+/// Visits the first arrival of each particle, those at bodies first, and empties the list.
+template <class Visit>
+void take_arrivals(std::vector<Arrival>& arrivals, Visit&& visit) {
+  std::ranges::sort(arrivals, {},
+                    [](const Arrival& a) { return std::tuple(a.slot, a.surface.body); });
+  const auto rest = std::ranges::unique(arrivals, {}, &Arrival::slot);
+  arrivals.erase(rest.begin(), rest.end());
+  for (const Arrival& arrival : arrivals) visit(arrival);
+  arrivals.clear();
+}
+
+}  // namespace weft
