@@ -124,7 +124,7 @@ double refinement_for_laws(const State& s, const FramePlan& plan, double beyond,
   constexpr double kLevel = 0.25;
   const double share = beyond / plan.substeps;
   if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget))
-    return s.refinement + kLevel;
+    return s.refinement + std::log2(1 + share);
   const double least = -std::log2(kWeightsOfSwing) / 2;
   return share < tuning::kLittleMended ? std::max(least, s.refinement - kLevel) : s.refinement;
 }
