@@ -12,7 +12,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/system.h"
 
-namespace weft::test {
+namespace weft::test::engine_isa {
 namespace {
 
 /// WEFT_ISA for as long as it lives.
@@ -131,4 +131,4 @@ TEST_CASE("the reference takes the choice, too: the search for contacts runs on 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_isa

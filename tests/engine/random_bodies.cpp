@@ -17,7 +17,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_random_bodies {
 namespace {
 
 constexpr double kSpacing = 0.05;  // m, of the sheet's vertices
@@ -216,4 +216,4 @@ TEST_CASE("random bodies: cases that once said converged in a body") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_random_bodies

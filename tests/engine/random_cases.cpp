@@ -12,7 +12,7 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_random_cases {
 namespace {
 
 struct State {
@@ -350,4 +350,4 @@ TEST_CASE("random cases: threads, AVX2 or AVX-512 change no bit") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_random_cases

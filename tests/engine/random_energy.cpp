@@ -34,7 +34,7 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_random_energy {
 namespace {
 
 struct State {
@@ -121,4 +121,4 @@ TEST_CASE("what impulses do not explain, and ropes that end slack after a pull, 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_random_energy

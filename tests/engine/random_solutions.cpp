@@ -31,7 +31,7 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_random_solutions {
 namespace {
 
 constexpr double kLeastCondition = 1e-3;  // of matrices that Gauss-Seidel solves in good time
@@ -220,4 +220,4 @@ TEST_CASE("random solutions: every method, solver and backend ends near it") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_random_solutions

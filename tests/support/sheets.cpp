@@ -6,14 +6,9 @@
 #include <numbers>
 
 #include "tests/support/membrane.h"
+#include "tests/support/vectors.h"
 
 namespace weft::test {
-namespace {
-
-double distance(Vec3 a, Vec3 b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
-
-}  // namespace
-
 MeshDescription sheet(std::uint32_t rows, std::uint32_t columns,
                       const std::function<Vec3(double row, double column)>& place,
                       const std::function<Cut(std::uint32_t row, std::uint32_t column)>& cut) {

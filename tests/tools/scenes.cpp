@@ -14,7 +14,7 @@
 #include "tests/support/vectors.h"
 #include "tools/scenes/irregular_mesh.h"
 
-namespace weft::test {
+namespace weft::test::tools_scenes {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -405,4 +405,4 @@ TEST_CASE("an unknown scene is refused, and the known ones are named") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::tools_scenes

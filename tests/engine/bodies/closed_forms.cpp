@@ -12,7 +12,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_bodies_closed_forms {
 namespace {
 
 constexpr double kG = 10;  // m/s^2
@@ -307,4 +307,4 @@ TEST_CASE("friction of a drum that spins drives a particle as fast as its surfac
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_bodies_closed_forms

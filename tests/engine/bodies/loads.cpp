@@ -13,7 +13,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_bodies_loads {
 namespace {
 
 constexpr double kG = 10;  // m/s^2
@@ -134,4 +134,4 @@ TEST_CASE("what bodies give to the cloth is what its momentum changes by") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_bodies_loads

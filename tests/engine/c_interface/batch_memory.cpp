@@ -9,7 +9,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/counting_new.h"
 
-namespace weft::test {
+namespace weft::test::engine_c_interface_batch_memory {
 namespace {
 
 Owned<weft_model> model_in_c(const SceneDescription& scene) {
@@ -64,4 +64,4 @@ TEST_CASE("in C a batch that finds no memory for its list steps nothing") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_c_interface_batch_memory

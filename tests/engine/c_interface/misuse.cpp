@@ -12,7 +12,7 @@
 #include "tests/support/c_interface.h"
 #include "tests/support/clothes.h"
 
-namespace weft::test {
+namespace weft::test::engine_c_interface_misuse {
 namespace {
 
 void check_refused(weft_result result, const std::string& message) {
@@ -204,4 +204,4 @@ TEST_CASE("bytes that are no state and no model") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_c_interface_misuse

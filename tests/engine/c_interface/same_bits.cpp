@@ -14,7 +14,7 @@
 #include "tests/support/job_systems.h"
 #include "tests/support/random_cases.h"
 
-namespace weft::test {
+namespace weft::test::engine_c_interface_same_bits {
 namespace {
 
 /// The same cloth twice, in C++ and in C.
@@ -536,4 +536,4 @@ TEST_CASE("shapes of every kind") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_c_interface_same_bits

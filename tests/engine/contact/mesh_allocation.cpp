@@ -9,7 +9,7 @@
 #include "tests/support/counting_new.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_contact_mesh_allocation {
 namespace {
 
 /// A square of 1 m of cotton, held by two of its corners.
@@ -69,4 +69,4 @@ TEST_CASE("a warm step beside a mesh that moves and deforms allocates nothing") 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_contact_mesh_allocation

@@ -16,7 +16,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_contact_mesh_bodies {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -299,4 +299,4 @@ TEST_CASE("particles without a surface are held by meshes too") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_contact_mesh_bodies

@@ -15,7 +15,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_contact_mesh_closed_forms {
 namespace {
 
 constexpr double kG = 10;  // m/s^2
@@ -234,4 +234,4 @@ TEST_CASE("both backends move a cloth alike on a body of triangles") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_contact_mesh_closed_forms

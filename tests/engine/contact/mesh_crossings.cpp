@@ -15,7 +15,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_contact_mesh_crossings {
 namespace {
 
 /// A square of cotton of 0.5 m, level, its middle at the place.
@@ -184,4 +184,4 @@ TEST_CASE("nor one beside a two-sided sheet, on either side") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_contact_mesh_crossings

@@ -12,7 +12,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_contacts_contacts {
 namespace {
 
 /// A sphere of radius 0.1 at the origin and a particle of radius 0.1 at `distance` along x.
@@ -466,4 +466,4 @@ TEST_CASE("among many spheres every pair within the margin is found, and in orde
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_contacts_contacts

@@ -9,7 +9,7 @@
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::engine_contacts_crossings {
 namespace {
 
 /// A sphere of radius 0.1 at the origin, fixed, and a free particle on its way along x, `aside` of
@@ -216,4 +216,4 @@ TEST_CASE("among many spheres the first crossing is found, however far all moved
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_contacts_crossings

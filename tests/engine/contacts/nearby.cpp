@@ -8,7 +8,7 @@
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::engine_contacts_nearby {
 namespace {
 
 /// Each particle goes to somewhere within `way` of where it is.
@@ -72,4 +72,4 @@ TEST_CASE("the pairs know of no place but those of their slots") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_contacts_nearby

@@ -15,7 +15,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_measure_state_measure {
 namespace {
 
 TEST_CASE("a model describes what it holds") {
@@ -130,4 +130,4 @@ TEST_CASE("a small cloth holds neither what its model knows nor room for threads
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_measure_state_measure

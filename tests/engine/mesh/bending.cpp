@@ -9,7 +9,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_mesh_bending {
 namespace {
 
 constexpr double kRadius = 40;  ///< of cylinders, in edges
@@ -323,4 +323,4 @@ TEST_CASE("without bending stiffness there are no elements") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_mesh_bending

@@ -7,7 +7,7 @@
 
 #include "tests/support/sheets.h"
 
-namespace weft::test {
+namespace weft::test::engine_mesh_grids {
 namespace {
 
 MeshDescription with_material(MeshDescription mesh) {
@@ -128,4 +128,4 @@ TEST_CASE("without a material the mass is shared equally") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_mesh_grids

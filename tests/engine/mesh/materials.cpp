@@ -5,7 +5,7 @@
 
 #include "tests/support/sheets.h"
 
-namespace weft::test {
+namespace weft::test::engine_mesh_materials {
 namespace {
 
 TEST_CASE("every named material is sound, has a source and is found") {
@@ -96,4 +96,4 @@ TEST_CASE("without a material there is neither bending nor damping nor air") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_mesh_materials

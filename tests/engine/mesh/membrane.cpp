@@ -7,7 +7,7 @@
 
 #include "tests/support/sheets.h"
 
-namespace weft::test {
+namespace weft::test::engine_mesh_membrane {
 namespace {
 
 /// A plane deformation x -> x + E x, small enough for springs to be linear in it.
@@ -265,4 +265,4 @@ TEST_CASE("threads may be all that there is") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_mesh_membrane

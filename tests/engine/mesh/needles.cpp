@@ -10,7 +10,7 @@
 #include "tests/support/membrane.h"
 #include "tests/support/sheets.h"
 
-namespace weft::test {
+namespace weft::test::engine_mesh_needles {
 namespace {
 
 constexpr std::uint32_t kSize = 12;
@@ -162,4 +162,4 @@ TEST_CASE("a sheet with a needle hangs as one without, and is strained as little
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_mesh_needles

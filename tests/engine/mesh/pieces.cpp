@@ -5,8 +5,11 @@
 
 #include "tests/support/sheets.h"
 
-namespace weft::mesh {
+namespace weft::test::engine_mesh_pieces {
 namespace {
+
+using mesh::Pieces;
+using mesh::pieces_of;
 
 TEST_CASE("what constraints and triangles join is a piece; fixed particles and anchors hold it") {
   SceneDescription scene;
@@ -73,4 +76,4 @@ TEST_CASE("a mesh counts its pieces, those without a pin, and what would weld th
 }
 
 }  // namespace
-}  // namespace weft::mesh
+}  // namespace weft::test::engine_mesh_pieces

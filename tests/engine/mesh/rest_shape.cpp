@@ -8,7 +8,7 @@
 
 #include "tests/support/sheets.h"
 
-namespace weft::test {
+namespace weft::test::engine_mesh_rest_shape {
 namespace {
 
 /// Rolled up, twice as wide as at rest.
@@ -196,4 +196,4 @@ TEST_CASE("what has no area at the beginning needs none at rest") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_mesh_rest_shape

@@ -7,7 +7,7 @@
 
 #include "tests/support/sheets.h"
 
-namespace weft::test {
+namespace weft::test::engine_mesh_unsound {
 namespace {
 
 MeshDescription mesh_of(std::vector<Vec3> positions,
@@ -179,4 +179,4 @@ TEST_CASE("whatever the faces are, there is a sound cloth or one line that says 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_mesh_unsound

@@ -10,7 +10,7 @@
 
 #include "tests/support/sheets.h"
 
-namespace weft::test {
+namespace weft::test::engine_mesh_warp {
 namespace {
 
 Vec3 at_angle(double degrees) {
@@ -193,4 +193,4 @@ TEST_CASE("a warp that means nothing is refused by field and value") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_mesh_warp

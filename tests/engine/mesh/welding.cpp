@@ -5,7 +5,7 @@
 
 #include "tests/support/sheets.h"
 
-namespace weft::test {
+namespace weft::test::engine_mesh_welding {
 namespace {
 
 /// Two unit squares side by side that share no vertex; vertex 8 is in no face.
@@ -142,4 +142,4 @@ TEST_CASE("input that means nothing is refused by field, index and value") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_mesh_welding

@@ -14,7 +14,7 @@
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_model_change {
 namespace {
 
 /// With constraints and bending elements between fixed particles in among the others.
@@ -180,4 +180,4 @@ TEST_CASE("what was changed and changed back is as it was") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_model_change

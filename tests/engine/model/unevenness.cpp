@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace weft::test {
+namespace weft::test::engine_model_unevenness {
 namespace {
 
 struct Joined {
@@ -60,4 +60,4 @@ TEST_CASE("what is not joined to anything does not count") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_model_unevenness

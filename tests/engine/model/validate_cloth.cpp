@@ -9,7 +9,7 @@
 
 #include "tests/support/clothes.h"
 
-namespace weft::test {
+namespace weft::test::engine_model_validate_cloth {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -384,4 +384,4 @@ TEST_CASE("reads into a span of the wrong size copy nothing") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_model_validate_cloth

@@ -9,7 +9,7 @@
 
 #include "tests/support/clothes.h"
 
-namespace weft::test {
+namespace weft::test::engine_model_validate_scene {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -240,4 +240,4 @@ TEST_CASE("anchors hold one free particle each, within limits that can be") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_model_validate_scene

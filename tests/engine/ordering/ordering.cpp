@@ -10,7 +10,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/orderings.h"
 
-namespace weft::test {
+namespace weft::test::engine_ordering_ordering {
 namespace {
 
 Ordering order_of(const Mesh& mesh, const OrderingOptions& options = {}) {
@@ -253,4 +253,4 @@ TEST_CASE("a large sheet: long runs in every tile") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_ordering_ordering

@@ -11,7 +11,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/meshes.h"
 
-namespace weft::test {
+namespace weft::test::engine_ordering_yarns {
 namespace {
 
 /// The first rule that is broken, in words; empty if none is.
@@ -150,4 +150,4 @@ TEST_CASE("particles in one place, and no particles at all") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_ordering_yarns

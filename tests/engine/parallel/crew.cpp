@@ -16,7 +16,7 @@
 #include "tests/support/rounding.h"
 #include "tests/support/teams.h"
 
-namespace weft::test {
+namespace weft::test::engine_parallel_crew {
 namespace {
 
 /// Pieces that are loops; each `period`-th is worth several threads, and each third is not due.
@@ -155,4 +155,4 @@ TEST_CASE("a thread that ran a job rounds as it did before") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_parallel_crew

@@ -7,7 +7,7 @@
 #include "tests/support/job_systems.h"
 #include "tests/support/system.h"
 
-namespace weft::test {
+namespace weft::test::engine_parallel_no_threads {
 namespace {
 
 /// Steps cloths that are worth several threads, alone and together. Returns how many threads there
@@ -44,4 +44,4 @@ TEST_CASE("a host's threads are all that there are") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_parallel_no_threads

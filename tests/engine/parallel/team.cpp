@@ -15,7 +15,7 @@
 #include "tests/support/system.h"
 #include "tests/support/teams.h"
 
-namespace weft::test {
+namespace weft::test::engine_parallel_team {
 namespace {
 
 /// How often each index was done, in a loop by a team of so many.
@@ -248,4 +248,4 @@ TEST_CASE("a share that takes long is waited for") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_parallel_team

@@ -16,7 +16,7 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_saving_states {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -470,4 +470,4 @@ TEST_CASE("the format is the one of its version") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_saving_states

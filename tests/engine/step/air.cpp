@@ -15,7 +15,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_air {
 namespace {
 
 constexpr double kDensity = 1.2;
@@ -405,4 +405,4 @@ TEST_CASE("a flag flutters as fast at 60 Hz as at 240 Hz") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_air

@@ -9,7 +9,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/counting_new.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_allocation {
 namespace {
 
 /// The allocations of the second of two equal runs of 200 steps.
@@ -257,4 +257,4 @@ TEST_CASE("nor does a warm step that two threads share") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_allocation

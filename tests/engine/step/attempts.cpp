@@ -15,7 +15,7 @@
 #include "engine/step/step.h"
 #include "tests/support/clothes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_attempts {
 namespace {
 
 constexpr std::array kMethodNames{"solver", "stand_in", "small_steps", "sweeps"};
@@ -229,4 +229,4 @@ TEST_CASE("nothing is tried after the last attempt: its result counts, with its 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_attempts

@@ -18,7 +18,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_backends {
 namespace {
 
 constexpr double kStep = 0.01;
@@ -133,4 +133,4 @@ TEST_CASE("where an error lies on the edge of its tolerance the two part, and no
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_backends

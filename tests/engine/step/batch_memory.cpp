@@ -9,7 +9,7 @@
 #include "tests/support/counting_new.h"
 #include "tests/support/job_systems.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_batch_memory {
 namespace {
 
 /// Small ones with and without contacts, and one that is worth two threads.
@@ -95,4 +95,4 @@ TEST_CASE("a step that finds no memory in a job of the host throws in the thread
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_batch_memory

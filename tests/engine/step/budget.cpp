@@ -11,7 +11,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_budget {
 namespace {
 
 constexpr double kFrame = 1. / 60;
@@ -168,4 +168,4 @@ TEST_CASE("no iterations at all are for small steps in a given number") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_budget

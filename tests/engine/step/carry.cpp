@@ -12,7 +12,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_carry {
 namespace {
 
 constexpr RigidMotion kMotion{
@@ -244,4 +244,4 @@ TEST_CASE("a turn blows at what is far from its axis, and a teleport at nothing"
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_carry

@@ -15,7 +15,7 @@
 #include "tests/support/vectors.h"
 #include "tools/scenes/irregular_mesh.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_changes {
 namespace {
 
 /// Every solver on every backend that it has.
@@ -523,4 +523,4 @@ TEST_CASE("a cloth that moves loses no place, speed or energy by new damping, be
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_changes

@@ -9,7 +9,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_closed_forms {
 namespace {
 
 TEST_CASE("unconstrained particles follow their parabolas exactly") {
@@ -159,4 +159,4 @@ TEST_CASE("a moved pin takes its bar along at the next step") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_closed_forms

@@ -13,7 +13,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_conservation {
 namespace {
 
 constexpr double kStep = 0.01;
@@ -287,4 +287,4 @@ TEST_CASE("energy() is kinetic plus potential of what is not fixed") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_conservation

@@ -8,7 +8,7 @@
 
 #include "tests/support/clothes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_contact_energy {
 namespace {
 
 double largest_gain(const std::string& scene, const Settings& settings) {
@@ -43,4 +43,4 @@ TEST_CASE("contacts bring in no more energy than the catch of a free fall") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_contact_energy

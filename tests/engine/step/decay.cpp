@@ -9,7 +9,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_decay {
 namespace {
 
 constexpr Solver kSolvers[] = {Solver::small_steps, Solver::gauss_seidel, Solver::yarn,
@@ -168,4 +168,4 @@ TEST_CASE("pins that are moved are not slowed down") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_decay

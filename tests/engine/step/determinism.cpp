@@ -9,7 +9,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/mesh_scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_determinism {
 namespace {
 
 #ifdef WEFT_SANITIZE_THREAD
@@ -174,4 +174,4 @@ TEST_CASE("skipping leaves out much of what is at rest") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_determinism

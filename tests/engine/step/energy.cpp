@@ -12,7 +12,7 @@
 #include "tests/support/clothes.h"
 #include "tools/scenes/scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_energy {
 namespace {
 
 using kernels::Vector;
@@ -213,4 +213,4 @@ TEST_CASE("what springs have released stays, and no more") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_energy

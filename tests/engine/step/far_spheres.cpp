@@ -13,7 +13,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_far_spheres {
 namespace {
 
 constexpr double kDt = 1. / 60;
@@ -105,4 +105,4 @@ TEST_CASE("spheres that touch nothing change no bit where substeps are given, or
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_far_spheres

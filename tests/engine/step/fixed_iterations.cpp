@@ -11,7 +11,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_fixed_iterations {
 namespace {
 
 TEST_CASE("a fixed number of iterations visits every constraint so many times") {
@@ -264,4 +264,4 @@ TEST_CASE("with an impulse limit, no method changes the result") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_fixed_iterations

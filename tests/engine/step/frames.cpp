@@ -13,7 +13,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_frames {
 namespace {
 
 constexpr double kLongFrame = 0.033, kShortFrame = 0.004;
@@ -159,4 +159,4 @@ TEST_CASE("frames that become shorter for good make cloth as stiff as they would
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_frames

@@ -18,7 +18,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/mesh_scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_golden {
 namespace {
 
 /// exact: what automatic is with scheme paper.
@@ -118,4 +118,4 @@ TEST_CASE("runs have the fingerprints that they had") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_golden

@@ -6,7 +6,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_hubs {
 namespace {
 
 /// One particle of 1 kg in the middle of `spokes` particles that weigh 1 kg together, each on a bar
@@ -114,4 +114,4 @@ TEST_CASE("what a hub moves is looked at again, whichever end of its constraints
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_hubs

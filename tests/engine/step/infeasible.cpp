@@ -9,7 +9,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_infeasible {
 namespace {
 
 constexpr double kLink = 0.01;
@@ -177,4 +177,4 @@ TEST_CASE("small steps take little longer where two pins are too far apart") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_infeasible

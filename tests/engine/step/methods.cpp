@@ -9,7 +9,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_methods {
 namespace {
 
 constexpr double kStep = 0.01;
@@ -247,4 +247,4 @@ TEST_CASE("renewed and frozen directions tend to the same motion as dt does to 0
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_methods

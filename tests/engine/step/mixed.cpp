@@ -8,7 +8,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_mixed {
 namespace {
 
 constexpr int kSize = 7;
@@ -113,4 +113,4 @@ TEST_CASE("ropes, bars and contacts together: all eight methods tend to one moti
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_mixed

@@ -14,7 +14,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_momentum {
 namespace {
 
 constexpr double kStep = 0.01;
@@ -149,4 +149,4 @@ TEST_CASE("the velocity loop leaves no constraint's ends approaching or parting"
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_momentum

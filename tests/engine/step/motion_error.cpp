@@ -10,7 +10,7 @@
 #include "tests/support/clothes.h"
 #include "tools/scenes/scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_motion_error {
 namespace {
 
 constexpr double kFrame = 0.01;
@@ -217,4 +217,4 @@ TEST_CASE("energy_lost is what kinetic, potential and elastic energy and the pin
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_motion_error

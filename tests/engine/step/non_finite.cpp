@@ -9,7 +9,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_non_finite {
 namespace {
 
 /// Spoils a particle of a hanging sheet, steps it, and expects the refusal; then heals it and
@@ -172,4 +172,4 @@ TEST_CASE("particles that coincide are parted") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_non_finite

@@ -9,7 +9,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_numbering {
 namespace {
 
 /// Particle i becomes particle to[i].
@@ -106,4 +106,4 @@ TEST_CASE("what a step converges to does not depend on the order of the constrai
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_numbering

@@ -8,7 +8,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/counting_new.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_out_of_memory {
 namespace {
 
 struct Attempt {
@@ -141,4 +141,4 @@ TEST_CASE("forces that found no memory are not half there") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_out_of_memory

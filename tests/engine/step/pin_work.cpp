@@ -12,7 +12,7 @@
 #include "engine/model/model.h"
 #include "tests/support/clothes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_pin_work {
 namespace {
 
 using kernels::Vector;
@@ -317,4 +317,4 @@ TEST_CASE("pins that rest or are placed do no work, nor do those of a step that 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_pin_work

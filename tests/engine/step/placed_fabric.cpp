@@ -13,7 +13,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_placed_fabric {
 namespace {
 
 constexpr double kFrame = 1. / 60;
@@ -186,4 +186,4 @@ TEST_CASE("fabric of which the rest changes becomes no faster") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_placed_fabric

@@ -13,7 +13,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/mesh_scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_previewed {
 namespace {
 
 constexpr double kStep = 0.01;
@@ -115,4 +115,4 @@ TEST_CASE("nor of a start that has to be put right first") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_previewed

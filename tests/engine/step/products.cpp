@@ -16,7 +16,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_products {
 namespace {
 
 constexpr double kStep = 0.01;
@@ -178,4 +178,4 @@ TEST_CASE("memory for products is held where they are asked for") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_products

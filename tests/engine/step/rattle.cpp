@@ -14,7 +14,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_rattle {
 namespace {
 
 Settings rattle(Settings settings) {
@@ -355,4 +355,4 @@ TEST_CASE("a taut rope swings as a bar does") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_rattle

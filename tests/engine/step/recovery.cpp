@@ -14,7 +14,7 @@
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_recovery {
 namespace {
 
 constexpr Scheme kSchemes[] = {Scheme::paper, Scheme::automatic};  // by yarns, and as it comes
@@ -400,4 +400,4 @@ TEST_CASE("where iterations run out nothing is torn apart, and few more are done
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_recovery

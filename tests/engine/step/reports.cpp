@@ -8,7 +8,7 @@
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/motion.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_reports {
 namespace {
 
 void check_strain(const SceneDescription& scene, const Cloth& cloth, double max, double rms,
@@ -116,4 +116,4 @@ TEST_CASE("a scene without constraints converges at once and names no worst cons
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_reports

@@ -9,7 +9,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_rest {
 namespace {
 
 /// A sheet of triangles, 2 m wide, level where it begins and held at two corners.
@@ -110,4 +110,4 @@ TEST_CASE("in doubles, too") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_rest

@@ -5,7 +5,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_ropes {
 namespace {
 
 TEST_CASE("a slack rope lets its ends fly free") {
@@ -117,4 +117,4 @@ TEST_CASE("a rope's strain is its excess alone") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_ropes

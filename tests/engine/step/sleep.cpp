@@ -11,7 +11,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_sleep {
 namespace {
 
 constexpr double kDt = 1 / 60.;
@@ -208,4 +208,4 @@ TEST_CASE("a step of one that sleeps takes a fiftieth of what it took to move") 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_sleep

@@ -14,7 +14,7 @@
 #include "tests/support/vectors.h"
 #include "tools/scenes/scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_small_steps {
 namespace {
 
 constexpr Scheme kSchemes[] = {Scheme::implicit, Scheme::bdf2};
@@ -345,4 +345,4 @@ TEST_CASE("the way of a free sphere decides whether it matters to the choice of 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_small_steps

@@ -14,7 +14,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_springs {
 namespace {
 
 struct Way {
@@ -359,4 +359,4 @@ TEST_CASE("what does not go with springs is refused") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_springs

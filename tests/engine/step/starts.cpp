@@ -11,7 +11,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_starts {
 namespace {
 
 /// Both schemes, both backends, and the direct solver.
@@ -385,4 +385,4 @@ TEST_CASE("a cloth that is put back where it began goes on like a new one, in a 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_starts

@@ -14,7 +14,7 @@
 #include "tests/support/vectors.h"
 #include "tools/scenes/scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_substeps {
 namespace {
 
 Settings in_substeps(Settings settings, int substeps) {
@@ -357,4 +357,4 @@ TEST_CASE("the number of substeps must be at least 0") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_substeps

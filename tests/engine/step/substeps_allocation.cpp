@@ -4,7 +4,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/counting_new.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_substeps_allocation {
 namespace {
 
 TEST_CASE("a step in substeps allocates nothing, nor does one that is taken back") {
@@ -23,4 +23,4 @@ TEST_CASE("a step in substeps allocates nothing, nor does one that is taken back
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_substeps_allocation

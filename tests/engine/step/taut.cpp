@@ -12,7 +12,7 @@
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/meshes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_taut {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
@@ -178,4 +178,4 @@ TEST_CASE("what taut spans keep depends neither on threads nor, fused, on the in
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_taut

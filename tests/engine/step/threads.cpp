@@ -12,7 +12,7 @@
 #include "engine/step/step_in_team.h"
 #include "tests/support/clothes.h"
 
-namespace weft::test {
+namespace weft::test::engine_step_threads {
 namespace {
 
 TEST_CASE("cloths of one model, run in two threads at once, agree bit for bit") {
@@ -86,4 +86,4 @@ TEST_CASE("a cloth keeps its model alive") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_step_threads

@@ -14,7 +14,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_surface_map_surface {
 namespace {
 
 using std::numbers::pi;
@@ -315,4 +315,4 @@ TEST_CASE("what cannot be mapped is refused with one line, and nothing changes")
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_surface_map_surface

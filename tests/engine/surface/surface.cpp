@@ -12,7 +12,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_surface_surface {
 namespace {
 
 using std::numbers::pi;
@@ -295,4 +295,4 @@ TEST_CASE("what does not fit is refused with one line, and nothing is written") 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_surface_surface

@@ -7,7 +7,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/counting_new.h"
 
-namespace weft::test {
+namespace weft::test::engine_surface_surface_allocation {
 namespace {
 
 MeshDescription sheet_of(std::uint32_t cells) {
@@ -58,4 +58,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_surface_surface_allocation

@@ -12,7 +12,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::engine_triangles_box_tree {
 namespace {
 
 /// Some of them are points, some meet others at a face.
@@ -167,4 +167,4 @@ TEST_CASE("the bounds of a tree hold its boxes, and no more") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_triangles_box_tree

@@ -12,7 +12,7 @@
 #include "engine/triangles/triangle_surface.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::engine_triangles_triangle_surface {
 namespace {
 
 using Triangles = std::vector<TriangleSurface::Triangle>;
@@ -185,4 +185,4 @@ TEST_CASE("points alone, and nothing at all, are surfaces") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_triangles_triangle_surface

@@ -14,7 +14,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::kernels_reference_anticipated {
 namespace {
 
 using reference::Relaxation;
@@ -177,4 +177,4 @@ TEST_CASE("one correction, worked by hand") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_reference_anticipated

@@ -9,7 +9,7 @@
 #include "kernels/reference/distances.h"
 #include "tests/support/feature_pairs.h"
 
-namespace weft::test {
+namespace weft::test::kernels_reference_distances {
 namespace {
 
 using kernels::Vector;
@@ -95,4 +95,4 @@ TEST_CASE("weights name the part of a feature that is nearest") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_reference_distances

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace weft::test {
+namespace weft::test::kernels_reference_integrate {
 namespace {
 
 using kernels::Vector;
@@ -89,4 +89,4 @@ TEST_CASE("impulses: of the corrected position, of the corrected velocity, and t
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_reference_integrate

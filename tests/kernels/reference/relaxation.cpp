@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace weft::test {
+namespace weft::test::kernels_reference_relaxation {
 namespace {
 
 using kernels::Vector;
@@ -127,4 +127,4 @@ TEST_CASE("particles that coincide get some unit direction") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_reference_relaxation

@@ -11,7 +11,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_anchors {
 namespace {
 
 using kernels::kLanes;
@@ -155,4 +155,4 @@ TEST_CASE("particles are held by their anchors as in double") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_anchors

@@ -10,7 +10,7 @@
 #include "perf/workbench.h"
 #include "tests/support/isas.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_anticipate {
 namespace {
 
 using perf::Piece;
@@ -262,4 +262,4 @@ TEST_CASE("both forms correct the same constraints where some are within toleran
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_anticipate

@@ -11,7 +11,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_bending {
 namespace {
 
 using kernels::kLanes;
@@ -220,4 +220,4 @@ TEST_CASE("with half of its own answer taken back, the law holds") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_bending

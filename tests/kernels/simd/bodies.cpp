@@ -15,7 +15,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_bodies {
 namespace {
 
 using kernels::kLanes;
@@ -228,4 +228,4 @@ TEST_CASE("particles are gripped by bodies as in double") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_bodies

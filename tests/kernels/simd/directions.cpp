@@ -3,7 +3,7 @@
 
 #include "tests/support/kernel_data.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_directions {
 namespace {
 
 using kernels::Vector;
@@ -143,4 +143,4 @@ TEST_CASE("ends that coincide are told apart along y") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_directions

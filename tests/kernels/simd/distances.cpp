@@ -15,7 +15,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_distances {
 namespace {
 
 using kernels::kLanes;
@@ -403,4 +403,4 @@ TEST_CASE("AVX2 and AVX-512 give the same bits") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_distances

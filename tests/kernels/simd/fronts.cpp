@@ -12,7 +12,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_fronts {
 namespace {
 
 using kernels::AlignedVector;
@@ -152,4 +152,4 @@ TEST_CASE("avx2 and avx512 give the same bits") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_fronts

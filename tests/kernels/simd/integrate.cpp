@@ -5,7 +5,7 @@
 
 #include "tests/support/kernel_data.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_integrate {
 namespace {
 
 using kernels::Vector;
@@ -200,4 +200,4 @@ TEST_CASE("displacements are added to the positions and start anew") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_integrate

@@ -3,7 +3,7 @@
 
 #include "tests/support/kernel_data.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_masks {
 namespace {
 
 constexpr std::uint64_t kBit = std::uint64_t{1} << 37;
@@ -76,4 +76,4 @@ TEST_CASE("vectors without a mark are not even looked at") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_masks

@@ -9,7 +9,7 @@
 
 #include "tests/support/kernel_data.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_measure {
 namespace {
 
 using kernels::Vector;
@@ -217,4 +217,4 @@ TEST_CASE("a batch of padding has no strain") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_measure

@@ -12,7 +12,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_membrane {
 namespace {
 
 using kernels::kLanes;
@@ -313,4 +313,4 @@ TEST_CASE("whatever shape a triangle is in, a visit moves it by no more than it 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_membrane

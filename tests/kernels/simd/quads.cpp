@@ -6,7 +6,7 @@
 #include "perf/workbench.h"
 #include "tests/support/isas.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_quads {
 namespace {
 
 using perf::Piece;
@@ -88,4 +88,4 @@ TEST_CASE("contacts push the same in quads and planar") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_quads

@@ -7,7 +7,7 @@
 
 #include "tests/support/kernel_data.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_relax {
 namespace {
 
 enum class Kind { distance, rope };
@@ -261,4 +261,4 @@ TEST_CASE("a rope pulls only, and gives back no more than it pulled") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_relax

@@ -12,7 +12,7 @@
 #include "tests/support/random.h"
 #include "tests/support/yarn_block.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_small_steps {
 namespace {
 
 using kernels::Vector;
@@ -445,4 +445,4 @@ TEST_CASE("a yarn that is straight between two fixed ends moves finitely, and ha
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_small_steps

@@ -8,7 +8,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_split {
 namespace {
 
 using kernels::kLanes;
@@ -77,4 +77,4 @@ TEST_CASE("rows are split and joined as their own slots say; what is nobody's is
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_split

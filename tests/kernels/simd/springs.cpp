@@ -12,7 +12,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/random.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_springs {
 namespace {
 
 using kernels::Vector;
@@ -145,4 +145,4 @@ TEST_CASE("springs are relaxed by their law as in double, rigid edges and ropes 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_springs

@@ -10,7 +10,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/yarn_block.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_yarn_system {
 namespace {
 
 /// With one family, which is its own preconditioner, the first step is the solution.
@@ -252,4 +252,4 @@ TEST_CASE("one velocity or error that is no number is seen, whatever its lane an
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_yarn_system

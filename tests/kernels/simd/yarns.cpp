@@ -10,7 +10,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/yarn_block.h"
 
-namespace weft::test {
+namespace weft::test::kernels_simd_yarns {
 namespace {
 
 TEST_CASE("positions that do not move come back from two floats to the last bit") {
@@ -517,4 +517,4 @@ TEST_CASE("a straight yarn between two fixed ends, which no impulse can shorten,
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::kernels_simd_yarns

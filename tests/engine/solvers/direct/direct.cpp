@@ -13,7 +13,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_direct_direct {
 namespace {
 
 Settings direct(Settings settings = paper_settings()) {
@@ -402,4 +402,4 @@ TEST_CASE("direct bears its name and refuses what it cannot do") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_direct_direct

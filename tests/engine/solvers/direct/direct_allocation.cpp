@@ -4,7 +4,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/counting_new.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_direct_direct_allocation {
 namespace {
 
 TEST_CASE("a warm direct step allocates nothing") {
@@ -31,4 +31,4 @@ TEST_CASE("a warm direct step allocates nothing") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_direct_direct_allocation

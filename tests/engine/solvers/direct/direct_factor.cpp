@@ -13,7 +13,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_direct_direct_factor {
 namespace {
 
 /// A matrix on the pattern of a model's constraints, of random directions.
@@ -143,4 +143,4 @@ TEST_CASE("fronts hold every column once, children before parents") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_direct_direct_factor

@@ -8,7 +8,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/mesh_scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_direct_direct_failure {
 namespace {
 
 /// Ten bars of 0.1 in a straight line between fixed ends that are nearer than 1.
@@ -112,4 +112,4 @@ TEST_CASE("between masses far apart too few iterations bring neither energy nor 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_direct_direct_failure

@@ -12,7 +12,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_direct_direct_one_sided {
 namespace {
 
 Settings direct(Settings settings) {
@@ -263,4 +263,4 @@ TEST_CASE("a matrix made with a contact does not serve when that has let go") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_direct_direct_one_sided

@@ -8,7 +8,7 @@
 
 #include "tests/support/clothes.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_direct_direct_stiff {
 namespace {
 
 /// Particles of 1 kg that hang on each other, the last one heavier; their edges are stretched by
@@ -93,4 +93,4 @@ TEST_CASE("it ends where particles are within a tenth of the tolerance of where 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_direct_direct_stiff

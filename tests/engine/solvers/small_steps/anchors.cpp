@@ -16,7 +16,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_small_steps_anchors {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -654,4 +654,4 @@ TEST_CASE("limits of anchors that make no sense are refused, and change nothing"
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_small_steps_anchors

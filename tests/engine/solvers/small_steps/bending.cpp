@@ -19,7 +19,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_small_steps_bending {
 namespace {
 
 constexpr double kFrame = 0.01;
@@ -494,4 +494,4 @@ TEST_CASE("bending is for small steps, which automatic chooses; other solvers re
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_small_steps_bending

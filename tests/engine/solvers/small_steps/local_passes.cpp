@@ -12,7 +12,7 @@
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "tests/support/clothes.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_small_steps_local_passes {
 namespace {
 
 struct Points {
@@ -140,4 +140,4 @@ TEST_CASE("what is fixed stays, and ropes push nothing apart") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_small_steps_local_passes

@@ -15,7 +15,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_small_steps_membrane {
 namespace {
 
 constexpr double kFrame = 0.01;
@@ -334,4 +334,4 @@ TEST_CASE("a model that was changed is that of the changed description, and goes
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_small_steps_membrane

@@ -13,7 +13,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_small_steps_seams {
 namespace {
 
 constexpr double kFrame = 1. / 60;
@@ -149,4 +149,4 @@ TEST_CASE("seams that make no sense, and solvers that know none, are refused") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_small_steps_seams

@@ -15,7 +15,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_small_steps_small_steps {
 namespace {
 
 Settings small_steps(double tolerance = 0.01) {
@@ -342,4 +342,4 @@ TEST_CASE("a sphere that lies on a cloth asks for shorter substeps") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_small_steps_small_steps

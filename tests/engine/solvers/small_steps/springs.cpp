@@ -10,7 +10,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_small_steps_springs {
 namespace {
 
 Settings small_steps(Backend backend, double tolerance = 1e-3) {
@@ -218,4 +218,4 @@ TEST_CASE("springs are for small steps, where automatic chooses") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_small_steps_springs

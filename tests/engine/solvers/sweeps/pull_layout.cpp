@@ -12,7 +12,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/mesh_scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_sweeps_pull_layout {
 namespace {
 
 using Meeting = PullLayout::Meeting;
@@ -136,4 +136,4 @@ TEST_CASE("a grid is read side by side, but for a few blocks") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_sweeps_pull_layout

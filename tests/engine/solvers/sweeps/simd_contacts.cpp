@@ -11,7 +11,7 @@
 #include "engine/solvers/sweeps/simd_solver.h"
 #include "tests/support/isas.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_sweeps_simd_contacts {
 namespace {
 
 constexpr std::uint32_t kSpheres = 9, kEach = 13;  // particles in each sphere, of radius 0.5
@@ -78,4 +78,4 @@ TEST_CASE("contacts in any order push all the same") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_sweeps_simd_contacts

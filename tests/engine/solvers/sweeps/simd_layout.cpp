@@ -10,7 +10,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/mesh_scenes.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_sweeps_simd_layout {
 namespace {
 
 /// Whether all slots of a chunk, padding included, are in these tiles.
@@ -63,4 +63,4 @@ TEST_CASE("seams have every chunk of the first batch between tiles once, behind 
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_sweeps_simd_layout

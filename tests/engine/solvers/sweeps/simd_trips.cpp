@@ -11,7 +11,7 @@
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/teams.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_sweeps_simd_trips {
 namespace {
 
 constexpr int kManyPasses = 243;
@@ -104,4 +104,4 @@ TEST_CASE("passes through products in trips are passes one by one") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_sweeps_simd_trips

@@ -14,7 +14,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/motion.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_yarn_yarn {
 namespace {
 
 Settings yarn(double tolerance, int substeps = 1) {
@@ -339,4 +339,4 @@ TEST_CASE("automatic substeps follow the motion") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_yarn_yarn

@@ -9,7 +9,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_yarn_yarn_one_sided {
 namespace {
 
 constexpr double kTolerance = 0.01, kContactTolerance = 1e-3;
@@ -207,4 +207,4 @@ TEST_CASE("directions at the start serve until a rope has turned by nearly a rig
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_yarn_yarn_one_sided

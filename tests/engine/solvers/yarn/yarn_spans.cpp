@@ -14,7 +14,7 @@
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/meshes.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_yarn_yarn_spans {
 namespace {
 
 /// A line of six, 0.1 m apart; the first, third and last are fixed.
@@ -153,4 +153,4 @@ TEST_CASE("a span that was held and is slack keeps nothing while another is held
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_yarn_yarn_spans

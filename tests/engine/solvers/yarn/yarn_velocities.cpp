@@ -9,7 +9,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test {
+namespace weft::test::engine_solvers_yarn_yarn_velocities {
 namespace {
 
 Settings corrected(Solver solver, double velocity_tolerance) {
@@ -101,4 +101,4 @@ TEST_CASE("a fixed number of iterations is exactly that, by sweeps") {
 }
 
 }  // namespace
-}  // namespace weft::test
+}  // namespace weft::test::engine_solvers_yarn_yarn_velocities
