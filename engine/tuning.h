@@ -31,6 +31,10 @@ inline constexpr double kMended = 0.8;
 inline constexpr double kContactInterval = 2e-3;
 /// In thicknesses: no vertex of a body takes a longer way in such an interval.
 inline constexpr double kMeshWay = 5;
+/// So often a sweep pushes apart all pairs of cloth and meshes that touch, one after the other:
+/// what pushes a particle last undoes what others did. A sheet over the edge of a knife is 0.3 mm
+/// too deep with one round, 0.13 with two, 0.05 with three, 0.02 with four.
+inline constexpr int kMeshRounds = 3;
 /// In ways that a particle is predicted to take until the next search: what it may go beyond.
 inline constexpr double kContactReach = 0.5;
 /// The same in thicknesses, beside meshes: pairs that rest on each other are near in any case.

@@ -21,6 +21,7 @@
 #include "engine/contact/crossings.h"
 #include "engine/contact/misplaced.h"
 #include "engine/contact/narrow_phase.h"
+#include "engine/tuning.h"
 
 namespace weft {
 
@@ -81,6 +82,8 @@ class ContactSweep {
   std::size_t bytes() const;
 
  private:
+  template <class Moved>
+  void push_apart(const ContactScene& scene, Near& near, PairKind kind, Moved& moved);
   /// Returns whether it was pushed apart.
   bool resist(const ContactScene& scene, NearPairs& near, std::size_t i);
   void find_touching(const ContactScene& scene, Near& near, Team& team);
@@ -105,18 +108,24 @@ class ContactSweep {
 template <class Moved>
 void ContactSweep::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved) {
   find_touching(scene, near, team);
-  for (const PairKind kind :
-       {PairKind::particle_triangle, PairKind::edges, PairKind::vertex_triangle}) {
-    const std::size_t list = list_of(kind);
-    for (std::size_t block = 0; block < touching_[list].size(); ++block) {
-      for (std::uint32_t bits = touching_[list][block]; bits != 0; bits &= bits - 1) {
-        const std::size_t i =
-            block * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits));
-        if (near[list].list.pairs[i].kind != kind || !resist(scene, near[list], i)) continue;
-        remember(scene, near[list], list, i);
-        for (const std::uint32_t point : near[list].list.points(i)) {
-          if (scene.points.is_of_cloth(point)) moved(point, near[list].states[i].push);
-        }
+  for (int round = 0; round < tuning::kMeshRounds; ++round) {
+    for (const PairKind kind :
+         {PairKind::particle_triangle, PairKind::edges, PairKind::vertex_triangle})
+      push_apart(scene, near, kind, moved);
+  }
+}
+
+template <class Moved>
+void ContactSweep::push_apart(const ContactScene& scene, Near& near, PairKind kind, Moved& moved) {
+  const std::size_t list = list_of(kind);
+  for (std::size_t block = 0; block < touching_[list].size(); ++block) {
+    for (std::uint32_t bits = touching_[list][block]; bits != 0; bits &= bits - 1) {
+      const std::size_t i =
+          block * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits));
+      if (near[list].list.pairs[i].kind != kind || !resist(scene, near[list], i)) continue;
+      remember(scene, near[list], list, i);
+      for (const std::uint32_t point : near[list].list.points(i)) {
+        if (scene.points.is_of_cloth(point)) moved(point, near[list].states[i].push);
       }
     }
   }

@@ -181,6 +181,7 @@ inline Vector slip_of(const BodyMotion& body, Vector start, Vector x) {
 struct Grip {
   double pushed = 0, held = 0;     // m: along the normal, without what came out, and by friction
   double stopped = 0, slowed = 0;  // m/s, likewise
+  double came_out = 0;             // m, along the normal: the rest of the pushes
 };
 
 /// How a point of the cloth and the surface under it have come together in a substep.
@@ -215,13 +216,14 @@ struct Stop {
   Vector by{};           // m, of the point, altogether
 };
 inline Stop stop(const Encounter& e, double friction, double h, Grip& done) {
-  const double approach = -dot(e.normal, e.slip), began = e.gap + approach;
+  const double approach = -dot(e.normal, e.slip), began = e.gap + approach - done.came_out;
   const double recovers = h * std::min(kFastestRecovery, kRecovery - began / kRecoveryTime);
   const double target = std::min(0.0, began < 0 ? began + recovers : 0.0);
   const double push = target - e.gap;
   if (!(push > 0)) return {};
   const double stays_out = std::min(push, std::max(0.0, approach));
   done.pushed += stays_out;
+  done.came_out += push - stays_out;
   const Vector along = e.slip + approach * e.normal;
   const double l = length(along);
   const double held = held_share(l, friction * done.pushed, done.held);

@@ -123,8 +123,9 @@ template <class At>
 }
 
 /// m, along the normal; 0 where nothing is to be done.
-[[gnu::always_inline]] inline Floats push_of(const GripLanes& p, Floats approach, float h) {
-  const Floats none(0.f), began = p.gap + approach;
+[[gnu::always_inline]] inline Floats push_of(const GripLanes& p, Floats approach, Floats came_out,
+                                             float h) {
+  const Floats none(0.f), began = p.gap + approach - came_out;
   using reference::kFastestRecovery, reference::kRecovery, reference::kRecoveryTime;
   const Floats speed = fused_from(Floats(static_cast<float>(1 / kRecoveryTime)), began,
                                   Floats(static_cast<float>(kRecovery)));
@@ -158,7 +159,8 @@ template <class At>
     }
     if (bits(p.near) == 0) continue;
     const Floats approach = none - dot(p.normal, p.slip);
-    const Floats push = push_of(p, approach, h.h);
+    const Floats came_out = load(grips.came_out + lane);
+    const Floats push = push_of(p, approach, came_out, h.h);
     const FloatMask on = push > none;
     if (bits(on) == 0) continue;
     const Floats stays_out = xsimd::min(push, xsimd::max(none, approach));
@@ -189,6 +191,7 @@ template <class At>
     xsimd::select(on, held, load(grips.held + lane)).store_unaligned(grips.held + lane);
     xsimd::select(on, stopped, load(grips.stopped + lane)).store_unaligned(grips.stopped + lane);
     xsimd::select(on, slowed, load(grips.slowed + lane)).store_unaligned(grips.slowed + lane);
+    xsimd::select(on, came_out + push - stays_out, came_out).store_unaligned(grips.came_out + lane);
 
     const Floats momentum =
         xsimd::select(on, load(block.mass + lane) * Floats(h.momentum_share), none);

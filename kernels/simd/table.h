@@ -414,6 +414,7 @@ struct BodyPair {
 struct alignas(64) BodyGrips {
   float pushed[kernels::kLanes], held[kernels::kLanes];
   float stopped[kernels::kLanes], slowed[kernels::kLanes];
+  float came_out[kernels::kLanes];
   LaneVectors linear, angular;
   float friction[kernels::kLanes];
 };

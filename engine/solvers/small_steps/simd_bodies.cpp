@@ -81,7 +81,7 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   std::ranges::fill(on_, std::uint16_t{0});
   momentum_share_ = 1 / part;
   for (simd::BodyGrips& grips : grips_) {
-    for (float* lanes : {grips.pushed, grips.held, grips.stopped, grips.slowed})
+    for (float* lanes : {grips.pushed, grips.held, grips.stopped, grips.slowed, grips.came_out})
       std::fill_n(lanes, kLanes, 0.f);
   }
   for (auto* bits : {&touching_, &moved_, &quick_}) std::ranges::fill(*bits, std::uint16_t{0});
@@ -263,7 +263,8 @@ TouchedSurface SimdBodies::hold(std::uint32_t slot, Particle& particle) {
     simd::BodyGrips& lanes = grips_[i];
     const auto number = [](float x) { return static_cast<double>(x); };
     reference::Grip grip{number(lanes.pushed[lane]), number(lanes.held[lane]),
-                         number(lanes.stopped[lane]), number(lanes.slowed[lane])};
+                         number(lanes.stopped[lane]), number(lanes.slowed[lane]),
+                         number(lanes.came_out[lane])};
     const reference::Gripped gripped =
         reference::grip(body, particle.start, particle.x, particle.v,
                         number(layout_.blocks[block].radius[lane]), grip);
@@ -272,6 +273,7 @@ TouchedSurface SimdBodies::hold(std::uint32_t slot, Particle& particle) {
     lanes.held[lane] = static_cast<float>(grip.held);
     lanes.stopped[lane] = static_cast<float>(grip.stopped);
     lanes.slowed[lane] = static_cast<float>(grip.slowed);
+    lanes.came_out[lane] = static_cast<float>(grip.came_out);
     const double momentum = model_.mass[slot] * momentum_share_;
     const Vector impulse = momentum * (gripped.v - particle.v);
     const Vector moment = cross(gripped.x - body.to.centre, impulse);

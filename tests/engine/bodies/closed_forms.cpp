@@ -2,12 +2,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "tests/support/body_meshes.h"
 #include "tests/support/clothes.h"
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
@@ -16,18 +18,6 @@ namespace weft::test::engine_bodies_closed_forms {
 namespace {
 
 constexpr double kG = 10;  // m/s^2
-
-std::shared_ptr<const BodyShape> shape_of(const ShapeDescription& shape) {
-  auto built = build_shape(shape);
-  REQUIRE_MESSAGE(built, (built ? "" : built.error()));
-  return built.value();
-}
-
-std::uint32_t add(Cloth& cloth, const Body& body) {
-  auto id = cloth.add_body(body);
-  REQUIRE_MESSAGE(id, (id ? "" : id.error()));
-  return id.value();
-}
 
 Settings small_steps(Backend backend) {
   return {.solver = Solver::small_steps, .backend = backend, .threads = 1};
@@ -222,6 +212,28 @@ TEST_CASE("a rope over a drum holds what the capstan equation says, and no more"
   const Backend backend = each_backend();
   CHECK(fall_over_drum(backend, 0.98) < 1e-4);
   CHECK(fall_over_drum(backend, 1.02) > 2e-3);
+}
+
+TEST_CASE("what a body appears around comes out by 2 m/s") {
+  const Backend backend = each_backend();
+  const std::array<ShapeDescription, 3> shapes{Ball{.radius = 0.2}, box({0.4, 0.4, 0.4}),
+                                               box_mesh({0.4, 0.4, 0.4}, 3)};
+  for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+    CAPTURE(shape);
+    SceneDescription scene;
+    scene.gravity = {};
+    for (int i = -2; i <= 2; ++i) {
+      scene.positions.push_back({0.02 * i, 0.03, 0.01 * i});
+      scene.masses.push_back(0.01);
+    }
+    Cloth cloth = cloth_of(scene, small_steps(backend));
+    add(cloth, {.shape = shape_of(shapes[shape])});
+    run(cloth, 1.0 / 60, 1);
+    for (std::uint32_t i = 0; i < 5; ++i) {
+      const double speed = 60 * length(cloth.position(i) - scene.positions[i]);
+      CHECK(speed == doctest::Approx(2).epsilon(1e-3));
+    }
+  }
 }
 
 void push_particles(Backend backend, const ShapeDescription& shape) {

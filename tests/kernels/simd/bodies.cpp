@@ -124,6 +124,7 @@ struct GrippedBlock {
       block.radius[lane] = lane % 5 == 4 ? 0.001f : 0.f;
       block.far[lane] = static_cast<float>(kFar * kFar);
       grips.pushed[lane] = lane % 3 == 0 ? 1e-4f : 0.f;
+      grips.came_out[lane] = lane % 4 == 0 ? 2e-5f : 0.f;
     }
   }
   std::size_t place(std::size_t lane) const { return woven ? lane : 4 * lane; }
@@ -176,7 +177,8 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
     CAPTURE(seed);
     CAPTURE(lane);
     const Vector start = before.read(before.u_before, lane), x = before.read(before.u, lane);
-    reference::Grip grip{.pushed = double{before.grips.pushed[lane]}};
+    reference::Grip grip{.pushed = double{before.grips.pushed[lane]},
+                         .came_out = double{before.grips.came_out[lane]}};
     const reference::Gripped expected = reference::grip(body.motion, start, x, before.settled(lane),
                                                         double{before.block.radius[lane]}, grip);
     const bool is_free = before.block.mass[lane] > 0;
@@ -190,6 +192,7 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
     CHECK(length(after.read(after.u, lane) - expected.x) < 2e-7);
     CHECK(length(after.settled(lane) - expected.v) < 1e-3);
     CHECK(double{after.grips.pushed[lane]} == doctest::Approx(grip.pushed).epsilon(1e-3));
+    CHECK(std::abs(double{after.grips.came_out[lane]} - grip.came_out) < 2e-7);
     const double momentum = double{before.block.mass[lane]} * kMomentumShare;
     const Vector impulse = momentum * (expected.v - before.settled(lane));
     const Vector given{double{after.grips.linear.x[lane]}, double{after.grips.linear.y[lane]},
