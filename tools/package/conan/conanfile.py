@@ -40,8 +40,12 @@ class Weft(ConanFile):
 
     def validate(self):
         check_min_cppstd(self, 20)
-        if self.settings.os != "Linux" or self.settings.arch not in ("x86_64", "armv8"):
-            raise ConanInvalidConfiguration("weft runs on Linux on x86-64 and aarch64")
+        system, arch = str(self.settings.os), str(self.settings.arch)
+        if (system, arch) not in (("Linux", "x86_64"), ("Linux", "armv8"), ("Windows", "x86_64")):
+            raise ConanInvalidConfiguration("weft runs on Linux on x86-64 and aarch64, and on "
+                                            f"Windows on x86-64; not on {system} on {arch}")
+        if system == "Windows" and self.settings.compiler != "gcc":
+            raise ConanInvalidConfiguration("on Windows weft is built by MinGW-w64 (gcc)")
 
     def layout(self):
         cmake_layout(self)
