@@ -97,11 +97,9 @@ Result<TriangleMesh> read_body_mesh(const std::string& path, double scale) {
 Result<SceneBody> body_of_files(const BodyFiles& files, std::vector<std::string>& notes) {
   SceneBody body;
   TriangleMesh mesh;
-  const bool is_moving = files.names.find('*') != std::string::npos;
-  if (is_moving != files.frame.has_value()) {
-    return Error{is_moving ? fmt::format("--body: '{}' needs --body-dt", files.names)
-                           : "--body-dt: is for a --body with a * in its name"};
-  }
+  const bool is_moving = files.is_series();
+  if (is_moving && !files.frame)
+    return Error{fmt::format("--body: '{}' needs --body-dt", files.names)};
   if (is_moving) {
     const auto found = files_like(files.names);
     if (!found) return Error{fmt::format("--body: {}", found.error())};

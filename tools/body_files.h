@@ -19,6 +19,8 @@ struct BodyFiles {
   std::string names = {};            ///< a file or, with one *, all files of a folder that fit
   std::optional<double> frame = {};  ///< s, from one file to the next; needed with a *
   double scale = 1;
+
+  bool is_series() const { return names.find('*') != std::string::npos; }
 };
 
 /// A body whose surface is in files: rigid or, with a *, deforming. Frames are in the order of

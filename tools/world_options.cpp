@@ -45,17 +45,19 @@ Result<void> add_meshes(const WorldOptions& options, double scale, std::vector<S
                         std::vector<std::string>& notes) {
   BodyFiles files{.scale = scale};
   if (options.body_dt) {
-    if (options.bodies.empty()) return Error{"--body-dt: is for a --body with a * in its name"};
     const auto seconds = parse_seconds("--body-dt", *options.body_dt);
     if (!seconds) return Error{seconds.error()};
     files.frame = seconds.value();
   }
+  bool any_series = false;
   for (const std::string& names : options.bodies) {
     files.names = names;
+    any_series = any_series || files.is_series();
     auto body = body_of_files(files, notes);
     if (!body) return Error{body.error()};
     bodies.push_back(std::move(body.value()));
   }
+  if (files.frame && !any_series) return Error{"--body-dt: is for a --body with a * in its name"};
   return {};
 }
 
