@@ -36,8 +36,8 @@ class ContactParticles {
   virtual void touch(std::uint32_t slot, const TouchedSurface& surface) = 0;
   /// It was put elsewhere when the substep was over: from there it goes on at first order.
   virtual void stop(std::uint32_t slot, const TouchedSurface& surface) = 0;
-  /// By which a change of velocity in this substep counts as momentum: 1 / b, for a force acts in
-  /// the part b of it alone (kernels/simd/small_steps.h).
+  /// A change of velocity in this substep counts as so many times its momentum: 1 / b, since forces
+  /// act in the part b of a substep alone (kernels/simd/small_steps.h).
   virtual double momentum_share() const = 0;
 };
 

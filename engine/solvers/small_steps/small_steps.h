@@ -56,8 +56,8 @@ struct SubstepFormula {
     decaying.share = (lost - past * (1 - lost) * lost_before) / (rate * part * h);
     return decaying;
   }
-  /// A flight leads to b v = b v_last + c (v_last - v_before) + b h a: by so much less of v_before
-  /// a particle has more momentum, per mass.
+  /// A substep begins with v + c (v - v_before), and forces act in the part b of it: a particle
+  /// whose v_before becomes less by d gains the momentum c / b d, per mass.
   double share_of_past() const { return past / part; }
   /// (b h)^2 over the mass is what a constant force moves a particle by.
   double give(double h) const { return part * h * (part * h) * share; }
