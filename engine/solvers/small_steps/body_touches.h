@@ -18,10 +18,10 @@ inline BodyTouch touch_of(const BodyClock& clock, std::size_t body, std::uint32_
   return {slot, clock.bodies()[body].id, push, x - gap.gap * normal, normal};
 }
 
-/// A particle that arrives at a surface goes on as if it had been in flight: its velocity before, on
-/// which BDF2 builds, is forgotten. `impulse` is the momentum that the particle gains by that, and
-/// the body gives it. Friction takes the energy of its part along the surface, as far as Coulomb's
-/// law allows.
+/// A particle that arrives at a surface goes on as if it had been in flight: its velocity before,
+/// on which BDF2 builds, is forgotten. `impulse` is the momentum that the particle gains by that,
+/// and the body gives it. Friction takes the energy of its part along the surface, as far as
+/// Coulomb's law allows.
 inline void add_arrival(ContactImpulses& impulses, const BodyClock& clock,
                         const TouchedSurface& surface, kernels::Vector x, kernels::Vector v,
                         kernels::Vector impulse) {
