@@ -238,7 +238,8 @@ void run_anchors(benchmark::State& state, const Shared& shared, simd::Isa isa, i
     base[place + 2 * next] = static_cast<float>(poses[i].point.z);
   }
   anchors.measure_base(base.data());
-  const simd::Flight flight{.u = u.data(), .predicted = predicted.data(), .v = v.data()};
+  const simd::Flight flight{
+      .u = u.data(), .predicted = predicted.data(), .v = v.data(), .led_to = u.data()};
   for (auto _ : state) {
     std::ranges::fill(u, -1e-4f);  // a fall of a substep
     anchors.hold(flight, 0, team);
