@@ -2,8 +2,9 @@
 /// holds them.
 #pragma once
 
+#include <weft/scene.h>
+
 #include <cstdint>
-#include <limits>
 
 #include "kernels/vectors.h"
 
@@ -17,11 +18,10 @@ struct ContactParticle {
 
 /// A surface where a particle touches it.
 struct TouchedSurface {
-  static constexpr std::uint32_t kNoBody = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t body = kNoBody;  // of the clock
+  std::uint32_t body = kNoIndex;  // of the clock
   kernels::Vector velocity{};
 
-  bool is_there() const { return body != kNoBody; }
+  bool is_there() const { return body != kNoIndex; }
 };
 
 class ContactParticles {

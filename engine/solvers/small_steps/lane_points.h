@@ -79,6 +79,8 @@ struct LanePoints {
     };
     return {sum(x), sum(y), sum(z)};
   }
+  kernels::Vector position(std::uint32_t slot) const { return place(u, slot); }
+  kernels::Vector position_at_start(std::uint32_t slot) const { return place(u_start, slot); }
   kernels::Vector vector(const float* from, std::uint32_t slot) const {
     const std::size_t x = places.of(slot), y = x + places.stride, z = y + places.stride;
     return {static_cast<double>(from[x]), static_cast<double>(from[y]),

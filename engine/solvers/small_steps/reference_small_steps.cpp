@@ -30,6 +30,8 @@ struct ReferenceSmallSteps::Points {
   kernels::VectorsView led_to;  // as simd::Flight has it
 
   bool is_mended() const { return led_to.x != x.x; }
+  Vector position(std::uint32_t slot) const { return x[slot]; }
+  Vector position_at_start(std::uint32_t slot) const { return start[slot]; }
   Vector settled(std::uint32_t slot) const {
     return v[slot] + rate * (led_to[slot] - predicted[slot]);
   }
@@ -81,32 +83,6 @@ struct ReferenceSmallSteps::Points {
                                 const reference::MembraneMultipliers& to) const {
     of_membrane[element] = to;
   }
-};
-
-/// As contacts with meshes see them.
-class ReferenceSmallSteps::Particles final : public ContactParticles {
- public:
-  explicit Particles(const Points& points) : points_(points) {}
-
-  Vector position(std::uint32_t slot) const override { return points_.x[slot]; }
-  Vector start(std::uint32_t slot) const override { return points_.start[slot]; }
-  ContactParticle read(std::uint32_t slot) const override {
-    return {points_.start[slot], points_.x[slot], points_.settled(slot)};
-  }
-  void write(std::uint32_t slot, const ContactParticle& particle) override {
-    points_.put(slot, particle.x, particle.v);
-    points_.put_start(slot, particle.start);
-  }
-  void touch(std::uint32_t slot, const TouchedSurface& surface) override {
-    if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
-  }
-  void stop(std::uint32_t slot, const TouchedSurface& surface) override {
-    points_.arrived.push_back({slot, surface});
-  }
-  double momentum_share() const override { return points_.bodies->momentum_share(); }
-
- private:
-  const Points& points_;
 };
 
 bool ReferenceSmallSteps::Points::grip(std::uint32_t slot) const {

@@ -14,6 +14,7 @@
 #include "engine/solvers/small_steps/arrivals.h"
 #include "engine/solvers/small_steps/bending_pace.h"
 #include "engine/solvers/small_steps/local_passes.h"
+#include "engine/solvers/small_steps/point_particles.h"
 #include "engine/solvers/small_steps/reference_bodies.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
@@ -80,7 +81,7 @@ class ReferenceSmallSteps final : public SmallSteps {
 
  private:
   struct Points;
-  class Particles;
+  using Particles = PointParticles<Points>;
   /// with_limits: anchors and bodies hold what is moved.
   Points points(bool with_limits);
   LawStep law_step() const;

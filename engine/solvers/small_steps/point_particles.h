@@ -1,0 +1,37 @@
+/// Particles of small steps as contacts with meshes see them, in lanes and in double.
+#pragma once
+
+#include "engine/contact/contact_particles.h"
+
+namespace weft {
+
+/// Points: LanePoints, or ReferenceSmallSteps::Points.
+template <class Points>
+class PointParticles final : public ContactParticles {
+ public:
+  explicit PointParticles(const Points& points) : points_(points) {}
+
+  kernels::Vector position(std::uint32_t slot) const override { return points_.position(slot); }
+  kernels::Vector start(std::uint32_t slot) const override {
+    return points_.position_at_start(slot);
+  }
+  ContactParticle read(std::uint32_t slot) const override {
+    return {start(slot), position(slot), points_.settled(slot)};
+  }
+  void write(std::uint32_t slot, const ContactParticle& particle) override {
+    points_.put(slot, particle.x, particle.v);
+    points_.put_start(slot, particle.start);
+  }
+  void touch(std::uint32_t slot, const TouchedSurface& surface) override {
+    if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
+  }
+  void stop(std::uint32_t slot, const TouchedSurface& surface) override {
+    points_.arrived.push_back({slot, surface});
+  }
+  double momentum_share() const override { return points_.bodies->momentum_share(); }
+
+ private:
+  const Points& points_;
+};
+
+}  // namespace weft
