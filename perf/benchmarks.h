@@ -56,5 +56,6 @@ void register_small_step_benchmarks(Shared& shared);
 void register_direct_benchmarks();
 void register_team_benchmarks();
 void register_step_benchmarks();
+void register_cloth_benchmarks();
 
 }  // namespace weft::perf

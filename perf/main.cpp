@@ -56,6 +56,7 @@ int run(int argc, char** argv) {
   register_direct_benchmarks();
   register_team_benchmarks();
   register_step_benchmarks();
+  register_cloth_benchmarks();
   // A filter that matches nothing would pass unseen.
   return benchmark::RunSpecifiedBenchmarks() > 0 ? 0 : 1;
 }
