@@ -20,6 +20,7 @@
 #include "kernels/simd/small_steps.h"
 #include "kernels/simd/split.h"
 #include "kernels/simd/yarn_system.h"
+#include "kernels/simd/yarns.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {

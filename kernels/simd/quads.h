@@ -1,7 +1,7 @@
-/// Displacements in quads, | x y z - |, one slot each (table.h): a scattered slot is one load of 16
-/// bytes, and four of them make vectors by a transpose of 4 x 4. In vectors of more than four lanes
-/// that happens in each 128 bits on their own, so the register that holds lane 0 also holds lanes
-/// 4, 8 and 12:
+/// Displacements in quads, | x y z - |, one slot each (sweep_data.h): a scattered slot is one load
+/// of 16 bytes, and four of them make vectors by a transpose of 4 x 4. In vectors of more than four
+/// lanes that happens in each 128 bits on their own, so the register that holds lane 0 also holds
+/// lanes 4, 8 and 12:
 ///
 ///     q0 = | slot 0 | slot 4 | ...        x = | x0 x1 x2 x3 | x4 x5 x6 x7 | ...
 ///     q1 = | slot 1 | slot 5 | ...   ->   y = | y0 y1 y2 y3 | y4 y5 y6 y7 | ...

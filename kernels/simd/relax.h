@@ -1,4 +1,4 @@
-/// One pass over the constraints of one colour, in the displacement form (see table.h):
+/// One pass over the constraints of one colour, in the displacement form (see sweep_data.h):
 ///
 ///     e = e0 + n . (u_a - u_b)
 ///     if |e| > threshold:  u_a += gain_a e n,  u_b += gain_b e n

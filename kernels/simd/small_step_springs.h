@@ -1,8 +1,8 @@
 /// The laws of springs in a small step, reference::ConstraintLaw, lane by lane: of single
 /// constraints in blocks, and of yarns whose links may be springs.
 ///
-/// A yarn is solved exactly, as in yarns.h. With the direction d of length l in place of n, and the
-/// multiplier over l in place of the impulse, its system is
+/// A yarn is solved exactly, as in yarn_elimination.h. With the direction d of length l in place of
+/// n, and the multiplier over l in place of the impulse, its system is
 ///
 ///     (A / omega + diag(l^2 s)) lambda = l (l - rest - q (l_start - rest) - s mu),
 ///     s = softness / (1 + damping),   q = damping / (1 + damping)
@@ -15,7 +15,7 @@
 #pragma once
 
 #include "kernels/simd/quads.h"
-#include "kernels/simd/yarns.h"
+#include "kernels/simd/yarn_elimination.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {

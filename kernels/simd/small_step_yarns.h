@@ -1,14 +1,14 @@
 /// A relaxed sweep over yarns: what a small step does to them (engine/solvers/small_steps).
 ///
-/// As in yarns.h a yarn is solved exactly, here Newton's step for C = (l^2 - L^2) / 2 of each of
-/// its constraints, whose gradient is d: no root is taken. The right side is relaxed by omega; the
-/// diagonal has a compliance, the share YarnBlock::compliance of it, since the matrix of a straight
-/// yarn between two fixed ends is singular. Where kLeaves the right side is only what exceeds
-/// r.left.
+/// As in yarn_elimination.h a yarn is solved exactly, here Newton's step for C = (l^2 - L^2) / 2 of
+/// each of its constraints, whose gradient is d: no root is taken. The right side is relaxed by
+/// omega; the diagonal has a compliance, the share YarnBlock::compliance of it, since the matrix of
+/// a straight yarn between two fixed ends is singular. Where kLeaves the right side is only what
+/// exceeds r.left.
 #pragma once
 
 #include "kernels/simd/small_steps.h"
-#include "kernels/simd/yarns.h"
+#include "kernels/simd/yarn_elimination.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {

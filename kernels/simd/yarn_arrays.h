@@ -1,6 +1,6 @@
 /// The arrays that have a row for each row of a block, as the kernels see them: vector by vector.
-/// The rows of table.h have kLanes lanes. The rows here have kFloats lanes, and those of the first
-/// kFloats lanes of a block come first:
+/// The rows of yarn_data.h have kLanes lanes. The rows here have kFloats lanes, and those of the
+/// first kFloats lanes of a block come first:
 ///
 ///     | row 0 | row 1 | ... | row n |  row 0 | row 1 | ... | row n |
 ///       lanes 0 ... kFloats - 1        lanes kFloats ...
@@ -52,7 +52,7 @@ template <class Row, class Wide>
 /// One row of the linear system (yarn_system.h).
 struct SystemRow {
   RowVectors n;
-  float m[kFloats], reciprocal[kFloats];  // the factorisation (yarns.h)
+  float m[kFloats], reciprocal[kFloats];  // the factorisation (yarn_elimination.h)
   float lambda[kFloats], residual[kFloats];
   float z[kFloats], p[kFloats], q[kFloats];
 };

@@ -15,7 +15,7 @@
 /// (yarn_pull). With the errors of the first family included, the elimination gives the right side
 /// of the reduced system, and in the end the impulses of the first family.
 ///
-/// Springs have their softness on the diagonal of each T_f and R (yarns.h).
+/// Springs have their softness on the diagonal of each T_f and R (yarn_elimination.h).
 ///
 /// With scheme rattle A = J(q) M^-1 J(q)^T has the directions q at the start of the substep. It is
 /// symmetric, but ignores what constraints have turned by since. Each Newton step (of the
@@ -28,7 +28,7 @@
 
 #include <algorithm>
 
-#include "kernels/simd/yarns.h"
+#include "kernels/simd/yarn_elimination.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {

@@ -2,11 +2,11 @@
 ///
 /// A sweep solves the yarns of each family, one family after the other, until their own errors are
 /// small. Within a block of kLanes yarns this is Newton's method, with directions and errors
-/// renewed in each iteration; between families it is block Gauss-Seidel (kernels/simd/yarns.h). The
-/// constraints of no yarn (ropes, hubs, contacts) follow one by one, with their accumulated
-/// impulses clamped. Every block minimises the same convex quadratic function of the impulses, 1/2
-/// l'Al - e'l, over its own impulses with all others held. Along fixed directions a pass therefore
-/// never raises it, which is why the iteration converges.
+/// renewed in each iteration; between families it is block Gauss-Seidel
+/// (kernels/simd/yarn_elimination.h). The constraints of no yarn (ropes, hubs, contacts) follow one
+/// by one, with their accumulated impulses clamped. Every block minimises the same convex quadratic
+/// function of the impulses, 1/2 l'Al - e'l, over its own impulses with all others held. Along
+/// fixed directions a pass therefore never raises it, which is why the iteration converges.
 ///
 /// Where sweeps converge too slowly, Newton's method takes over with one linear system for all
 /// yarns: the first family is eliminated, and the others are solved by conjugate gradients with the
@@ -14,8 +14,8 @@
 ///
 /// The constraints are linear in the velocities, so that one such system corrects these.
 ///
-/// A spring gives way to what its impulses have come to (kernels/simd/yarns.h); its error is that
-/// of its law, by double positions and the sum of its impulses.
+/// A spring gives way to what its impulses have come to (kernels/simd/yarn_elimination.h); its
+/// error is that of its law, by double positions and the sum of its impulses.
 ///
 /// Errors are measured in double after each sweep, or after every second one while they are large;
 /// a Newton step is followed by a sweep. If the errors do not fall, the solver gives up early and
