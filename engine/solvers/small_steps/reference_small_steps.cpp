@@ -1,96 +1,18 @@
 #include "engine/solvers/small_steps/reference_small_steps.h"
 
-#include "engine/solvers/small_steps/simd_small_steps.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "engine/bytes_of.h"
-#include "engine/model/change.h"
 #include "engine/solvers/small_steps/body_layout.h"
+#include "engine/solvers/small_steps/reference_points.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/tuning.h"
 
 namespace weft {
 
 using kernels::Vector;
-
-struct ReferenceSmallSteps::Points {
-  kernels::VectorsView x, predicted, start;
-  std::vector<std::uint32_t>& touched;
-  std::vector<double>& multipliers;
-  kernels::VectorsView v;
-  double rate;                     // by which it settles
-  const std::uint32_t* anchor_at;  // per slot, or null: anchors are left
-  const AnchorClock& anchors;
-  std::vector<reference::MembraneMultipliers>& of_membrane;
-  ReferenceBodies* bodies;  // or null: they are left
-  std::vector<Arrival>& arrived;
-  kernels::VectorsView led_to;  // as simd::Flight has it
-
-  bool is_mended() const { return led_to.x != x.x; }
-  Vector position(std::uint32_t slot) const { return x[slot]; }
-  Vector position_at_start(std::uint32_t slot) const { return start[slot]; }
-  Vector settled(std::uint32_t slot) const {
-    return v[slot] + rate * (led_to[slot] - predicted[slot]);
-  }
-  /// What has stopped it is no motion: it is predicted to be where it is.
-  void put(std::uint32_t slot, Vector position, Vector velocity) const {
-    x.set(slot, position);
-    predicted.set(slot, led_to[slot]);
-    v.set(slot, velocity);
-  }
-  void put_start(std::uint32_t slot, Vector position) const {
-    if (is_mended()) {
-      led_to.add(slot, position - start[slot]);
-      predicted.set(slot, led_to[slot]);
-    }
-    start.set(slot, position);
-  }
-  Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
-  void move(std::uint32_t slot, Vector by) const {
-    x.add(slot, by);
-    if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
-    if (bodies != nullptr) grip(slot);
-  }
-  bool hold(std::uint32_t slot, std::uint32_t anchor) const {
-    const reference::Held held = anchors.hold(anchor, x[slot], settled(slot));
-    if (held.is_at_limit) put(slot, held.x, held.v);
-    return held.is_at_limit;
-  }
-  bool grip(std::uint32_t slot) const;
-  bool grip_by_bodies(std::uint32_t slot) const {
-    Vector to = x[slot], velocity = settled(slot), from = start[slot];
-    const TouchedSurface surface = bodies->hold(slot, from, to, velocity);
-    if (!surface.is_there()) return false;
-    put(slot, to, velocity);
-    put_start(slot, from);
-    if (bodies->begins_to_touch(slot)) arrived.push_back({slot, surface});
-    return true;
-  }
-  void push(std::uint32_t slot, Vector by) const {
-    move(slot, by);
-    touched.push_back(slot);
-  }
-  Vector start_difference(std::uint32_t a, std::uint32_t b) const { return start[a] - start[b]; }
-  double multiplier(std::uint32_t c) const { return multipliers[c]; }
-  void set_multiplier(std::uint32_t c, double to) const { multipliers[c] = to; }
-  const reference::MembraneMultipliers& membrane_multipliers(std::uint32_t element) const {
-    return of_membrane[element];
-  }
-  void set_membrane_multipliers(std::uint32_t element,
-                                const reference::MembraneMultipliers& to) const {
-    of_membrane[element] = to;
-  }
-};
-
-bool ReferenceSmallSteps::Points::grip(std::uint32_t slot) const {
-  const bool is_held = grip_by_bodies(slot);
-  if (!bodies->has_meshes()) return is_held;
-  Particles particles(*this);
-  return bodies->meshes().hold(particles, bodies->clock(), slot) || is_held;
-}
 
 ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_limits) {
   return {.x = x_.view(),
@@ -343,63 +265,6 @@ void ReferenceSmallSteps::judge_springs() {
   }
 }
 
-void ReferenceSmallSteps::hold_anchors() {
-  const Points points = this->points(true);
-  const double strain = tuning::kLocalShare * settings_.tolerance;
-  for (std::uint32_t i = 0; i < at_limit_.size(); ++i) {
-    const std::uint32_t slot = model_.anchors.slot[i];
-    const Vector from = x_[slot];
-    if (!points.hold(slot, i)) continue;
-    if (!at_limit_before_[i] && !at_limit_[i]) arrived_.push_back({slot});
-    at_limit_[i] = true;
-    if (length(x_[slot] - from) > strain * layout_.anchors.shortest[i]) passes_.look_at(slot);
-  }
-}
-
-/// Contacts come last.
-void ReferenceSmallSteps::hold_bodies(Team& team) {
-  if (bodies_.empty()) return;
-  const Points points = this->points(true);
-  const double strain = tuning::kLocalShare * settings_.tolerance;
-  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
-    if (!is_free(slot)) continue;
-    const Vector from = x_[slot];
-    if (points.grip_by_bodies(slot) && length(x_[slot] - from) > strain * shortest_[slot])
-      passes_.look_at(slot);
-  }
-  hold_by_meshes(team);
-}
-
-void ReferenceSmallSteps::hold_by_meshes(Team& team) {
-  if (!bodies_.has_meshes()) return;
-  const Points points = this->points(true);
-  Particles particles(points);
-  const double strain = tuning::kLocalShare * settings_.tolerance;
-  bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot, double by) {
-    if (by > strain * shortest_[slot]) passes_.look_at(slot);
-  });
-}
-
-bool ReferenceSmallSteps::end_contacts(Team& team) {
-  if (!bodies_.has_meshes()) return false;
-  const Points points = this->points(true);
-  Particles particles(points);
-  return bodies_.end_interval(particles, team);
-}
-
-double ReferenceSmallSteps::deepest_in_body(Team& team) {
-  if (bodies_.empty()) return 0;
-  const Points points = this->points(true);
-  Particles particles(points);
-  return bodies_.deepest(before_, x_, particles, team);
-}
-
-void ReferenceSmallSteps::read_contacts(std::vector<BodyTouch>& contacts) {
-  if (bodies_.empty()) return;
-  const Points points = this->points(true);
-  bodies_.read_contacts(Particles(points), contacts);
-}
-
 void ReferenceSmallSteps::relax_chain(std::span<const std::uint32_t> slots,
                                       std::span<const std::uint32_t> links) {
   if (model_.constraints.has_springs()) return relax_spring_chain(slots, links);
@@ -539,40 +404,6 @@ LocalWork ReferenceSmallSteps::repair_everywhere(const ContactStore& contacts,
   return run_passes(contacts, most_visits, team);
 }
 
-void ReferenceSmallSteps::end_motions() {
-  std::ranges::sort(touched_);
-  const auto repeated = std::ranges::unique(touched_);
-  touched_.erase(repeated.begin(), repeated.end());
-  for (const std::uint32_t slot : touched_) {
-    if (is_free(slot)) stop_at_contact(slot);
-  }
-  touched_.clear();
-  take_arrivals(arrived_, [&](const Arrival& arrival) { begin_at_limit(arrival); });
-}
-
-void ReferenceSmallSteps::stop_at_contact(std::size_t i) {
-  const Vector v = (1 / h_) * (x_[i] - before_[i]), gain = h_ * decaying_share() * acceleration_[i];
-  predicted_.set(i, x_[i]);
-  v_.set(i, v);
-  v_before_.set(i, v - gain);
-  before_.set(i, x_[i] - h_ * (v + gain));
-}
-
-void ReferenceSmallSteps::begin_at_limit(const Arrival& arrival) {
-  const std::uint32_t i = arrival.slot;
-  const double rate = last_ > 0 ? 1 / last_ : 0;  // settled already: what is predicted is there
-  const Vector a = acceleration_[i], v = v_[i] + rate * (x_[i] - predicted_[i]);
-  const Vector v_before = v - h_ * decaying_share() * a;
-  if (arrival.surface.is_there()) {
-    const double counts = model_.mass[i] * next_formula_.share_of_past();
-    bodies_.arrive(arrival.surface, x_[i], v, counts * (v_before_[i] - v_before));
-  }
-  predicted_.set(i, x_[i]);
-  v_.set(i, v);
-  v_before_.set(i, v_before);
-  before_.set(i, x_[i] - h_ * v + (0.5 * h_ * h_) * a);
-}
-
 void ReferenceSmallSteps::read_positions_of(std::span<const std::uint32_t> slots,
                                             kernels::VectorsView x) const {
   for (const std::uint32_t slot : slots) x.set(slot, x_[slot]);
@@ -621,59 +452,10 @@ void ReferenceSmallSteps::keep(Team&) {
   for (std::size_t i = 0; i < model_.slots(); ++i) past_.moved.set(i, x_[i] - before_[i]);
 }
 
-void ReferenceSmallSteps::go_on_from(const SmallSteps& from, kernels::VectorsView v,
-                                     Vector gravity) {
-  const auto& other = static_cast<const ReferenceSmallSteps&>(from);
-  past_.h = other.past_.h;
-  past_.at_limit = other.past_.at_limit;
-  past_.misplaced.clear();
-  for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
-    const Past& its = other.past_;
-    ParticlePast past{its.v[its_slot], its.v_before[its_slot], its.moved[its_slot]};
-    if (is_free(slot) != other.is_free(its_slot))
-      past = is_free(slot) ? ParticlePast::flight(v[slot], gravity, past_.h) : ParticlePast{};
-    past_.v.set(slot, past.v);
-    past_.v_before.set(slot, past.v_before);
-    past_.moved.set(slot, past.moved);
-    past_.misplaced.take_over(its.misplaced, its_slot, slot);
-  });
-  past_.misplaced.sort();
-}
-
-bool ReferenceSmallSteps::load_past(ArchiveReader& archive) {
-  Past past;
-  archive(past);
-  const auto has_slots = [&](const kernels::Vectors& v) { return v.size() == model_.slots(); };
-  const bool is_past =
-      has_slots(past.v) && has_slots(past.v_before) && has_slots(past.moved) &&
-      past.at_limit.size() == at_limit_.size() && are_slots(model_, past.misplaced.inside) &&
-      are_slots(model_, past.misplaced.crossing) && past.h >= 0 && std::isfinite(past.h);
-  if (!archive.is_done() || !is_past) return false;
-  past_ = std::move(past);
-  return true;
-}
-
-void ReferenceSmallSteps::turn(const Turn& by) {
-  for (kernels::Vectors* v : {&past_.v, &past_.v_before, &past_.moved}) {
-    for (std::size_t i = 0; i < model_.slots(); ++i) v->set(i, by((*v)[i]));
-  }
-}
-
 std::size_t ReferenceSmallSteps::bytes() const {
   return 9 * x_.bytes() + bytes_of(out_) + bytes_of(touched_) + bytes_of(arrived_) +
          bytes_of(multiplier_) + bytes_of(membrane_multiplier_) + aside_.bytes() + passes_.bytes() +
          seams_.bytes();
-}
-
-bool are_slots(const Model& model, std::span<const std::uint32_t> slots) {
-  return std::ranges::is_sorted(slots) && (slots.empty() || slots.back() < model.slots());
-}
-
-std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,
-                                             const simd::Table& table) {
-  if (settings.backend == Backend::reference)
-    return std::make_unique<ReferenceSmallSteps>(model, settings, table);
-  return std::make_unique<SmallStepsSolver>(model, settings, table);
 }
 
 }  // namespace weft

@@ -1,13 +1,10 @@
 #include "engine/solvers/small_steps/simd_small_steps.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "engine/bytes_of.h"
-#include "engine/solvers/small_steps/lane_particles.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/tuning.h"
 
@@ -15,12 +12,6 @@ namespace weft {
 namespace {
 
 constexpr std::size_t kPart = 4 * kStretch;  // floats that a thread takes at a time
-
-/// l^2 / rest^2 - 1 at this strain.
-float squared(double strain) { return static_cast<float>(2 * strain + strain * strain); }
-float squared_tolerance(const Settings& settings) {
-  return squared(tuning::kLocalShare * settings.tolerance);
-}
 
 }  // namespace
 
@@ -32,7 +23,7 @@ LanePoints SmallStepsSolver::points(bool with_limits) {
           .u_start = u_before_.data(),
           .touched = touched_,
           .multiplier_place = layout_.multiplier_place,
-          .multipliers = multiplier_.data(),
+          .multipliers = links_.multipliers(),
           .v = v_.data(),
           .rate = static_cast<double>(weights_.last.rate),
           .anchor_at = with_limits && !anchors_.empty() ? model_.anchors.at.data() : nullptr,
@@ -65,14 +56,11 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       passes_(model, layout_.items),
       seams_(model),
       has_attached_(model.has_attached()),
+      links_(model, settings, table),
       membrane_(model, table),
       bending_(model, table),
       anchors_(model, settings, table),
       bodies_(model, settings, table),
-      spans_(layout_.blocks.size()),
-      base_step_(layout_.yarns.rows()),
-      edges_out_(layout_.blocks.size()),
-      yarns_out_(layout_.yarns.rows()),
       largest_((layout_.floats + kPart - 1) / kPart) {
   for (auto* array : {&base_, &u_, &u_before_, &predicted_, &v_, &v_before_, &acceleration_}) {
     array->resize(layout_.floats);
@@ -82,11 +70,6 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
   if (model.has_laws()) aside_.resize(layout_.floats);
   past_.at_limit = anchors_.at_limit();
   arrived_.reserve(model.anchors.size());
-  multiplier_.resize(layout_.multipliers());
-  const std::size_t wanted =
-      settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostYarnShares;
-  if (layout_.has_yarns())
-    scratch_.resize(layout_.yarns.scratch_rows() * std::min(wanted, kMostYarnShares));
 }
 
 simd::Flight SmallStepsSolver::flight() {
@@ -97,19 +80,6 @@ simd::Flight SmallStepsSolver::flight() {
           v_before_.data(),
           acceleration_.data(),
           is_aside_ ? aside_.data() : u_.data()};
-}
-
-simd::Yarns SmallStepsSolver::yarns() {
-  const YarnLayout& yarns = layout_.yarns;
-  return {.kind = yarns.kind.data(),
-          .kinds = yarns.kinds.data(),
-          .slot = yarns.slot.data(),
-          .patch = yarns.patches.data(),
-          .base = base_.data(),
-          .base_step = base_step_.data(),
-          .cell = static_cast<float>(layout_.cell),
-          .moved = moved_,
-          .from_memory = yarns.from_memory()};
 }
 
 template <class Work>
@@ -179,14 +149,14 @@ void SmallStepsSolver::begin_past(Team& team) {
 void SmallStepsSolver::split(kernels::VectorsView x, int substeps, Team& team) {
   if (std::exchange(is_new_, false)) {
     base_.swap(past_.base);
-    moved_ = true;
+    is_unmeasured_ = true;
   }
   const YarnPlaces& places = layout_.places();
   const bool stays = has_past_ && past_.since_renewal + substeps <= tuning::kRenewal;
   since_renewal_ = stays ? past_.since_renewal : 0;
   if (!stays) {
     base_.swap(past_.base);
-    is_new_ = moved_ = true;
+    is_new_ = is_unmeasured_ = true;
   }
   places.clear(u_.data());
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
@@ -195,7 +165,7 @@ void SmallStepsSolver::split(kernels::VectorsView x, int substeps, Team& team) {
     else
       places.split(table_, x, layout_.cell, first, last, base_.data(), u_.data());
   });
-  if (moved_) measure_base(team);
+  if (is_unmeasured_) measure_base(team);
 }
 
 void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
@@ -231,10 +201,8 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
 }
 
 void SmallStepsSolver::measure_base(Team& team) {
-  moved_ = true;
-  team.for_each_share(layout_.blocks.size(), [&](std::size_t first, std::size_t last) {
-    table_.measure_edges(layout_.blocks.data(), spans_.data(), base_.data(), first, last);
-  });
+  is_unmeasured_ = false;
+  links_.measure_base(base_.data(), team);
   membrane_.measure_base(base_.data(), team);
   bending_.measure_base(base_.data(), team);
 }
@@ -308,22 +276,32 @@ void SmallStepsSolver::decay(double to, Team& team) {
   }
 }
 
-void SmallStepsSolver::sweep(Team& team) { sweep(false, team); }
+LinkSweep SmallStepsSolver::link_sweep() {
+  return {.base = base_.data(),
+          .u = u_.data(),
+          .u_start = u_before_.data(),
+          .laws = law_step(),
+          .omega = omega_,
+          .continues = is_begun_};
+}
+
+void SmallStepsSolver::sweep(Team& team) { sweep(link_sweep(), team); }
 
 void SmallStepsSolver::mend(double to, Team& team) {
   if (model_.has_laws()) set_aside();
-  mends_to_ = to;
-  sweep(true, team);
+  LinkSweep sweep = link_sweep();
+  sweep.omega = 1;
+  sweep.left = to * settings_.tolerance;
+  this->sweep(sweep, team);
 }
 
-void SmallStepsSolver::sweep(bool mends, Team& team) {
-  mends_ = mends;
-  if (layout_.has_yarns()) sweep_yarns(team);
-  sweep_edges(team);
+void SmallStepsSolver::sweep(const LinkSweep& links, Team& team) {
+  links_.sweep_yarns(links, team, [&] { hold_anchors(team); });
+  links_.sweep_edges(links, team);
   if (model_.constraints.has_springs())
     sweep_serial_springs();
   else
-    sweep_serial();
+    sweep_serial(links);
   sweep_membrane(team);
   if (layout_.has_single_constraints() || !layout_.has_yarns()) hold_anchors(team);
   draw_seams();
@@ -363,14 +341,7 @@ void SmallStepsSolver::judge(Team& team) {
 
 /// Finds which springs, and rigid constraints beside them, are out of tolerance.
 void SmallStepsSolver::judge_springs(Team& team) {
-  for_each_batch(team, [&](const EdgeBatch& batch, std::uint32_t first, std::uint32_t last) {
-    table_.judge_springs(relaxation_of_springs(), batch.rope, first, last);
-  });
-  for_each_yarn_block(team, 0, layout_.yarns.blocks.size(),
-                      [&](const simd::YarnBlock& block, simd::YarnScratch* scratch) {
-                        table_.judge_spring_yarns(yarns(), block, u_.data(), scratch,
-                                                  relaxation_of_spring_yarns());
-                      });
+  links_.judge_springs(link_sweep(), team);
   const LanePoints points = this->points(false);
   const double tolerance = tuning::kLocalShare * settings_.tolerance;
   for (const std::uint32_t c : layout_.serial) {
@@ -378,178 +349,18 @@ void SmallStepsSolver::judge_springs(Team& team) {
   }
 }
 
-void SmallStepsSolver::hold_anchors(Team& team) {
-  if (anchors_.empty()) return;
-  anchors_.hold(flight(), weights_.last.rate, team);
-  anchors_.report([&](std::uint32_t slot) { arrived_.push_back({slot}); },
-                  [&](std::uint32_t slot) { passes_.look_at(slot); });
-}
-
-/// Contacts come last.
-void SmallStepsSolver::hold_bodies(Team& team) {
-  if (bodies_.empty()) return;
-  bodies_.hold(flight(), base_.data(), weights_.last.rate, team);
-  const LanePoints points = this->points(true);
-  bodies_.report(
-      [&](std::uint32_t slot) {
-        arrived_.push_back({slot, bodies_.touched_by(slot, points.place(u_.data(), slot))});
-      },
-      [&](std::uint32_t slot) { passes_.look_at(slot); },
-      [&](std::uint32_t slot) { points.grip(slot); });
-  hold_by_meshes(team);
-}
-
-void SmallStepsSolver::hold_by_meshes(Team& team) {
-  if (!bodies_.has_meshes()) return;
-  const LanePoints points = this->points(true);
-  LaneParticles particles(points);
-  bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot) { passes_.look_at(slot); });
-}
-
-void SmallStepsSolver::advance_bodies(double part, Team& team) {
-  if (bodies_.empty()) return;
-  const LanePoints points = this->points(true);
-  LaneParticles particles(points);
-  bodies_.advance(flight(), base_.data(), part, particles, team);
-}
-
-bool SmallStepsSolver::end_contacts(Team& team) {
-  if (!bodies_.has_meshes()) return false;
-  const LanePoints points = this->points(true);
-  LaneParticles particles(points);
-  return bodies_.end_interval(particles, team);
-}
-
-void SmallStepsSolver::report_bodies(BodyReport& report) { bodies_.sum(report); }
-
-double SmallStepsSolver::deepest_in_body(Team& team) {
-  if (bodies_.empty()) return 0;
-  const LanePoints points = this->points(true);
-  LaneParticles particles(points);
-  return bodies_.deepest(flight(), base_.data(), particles, team);
-}
-
-void SmallStepsSolver::read_contacts(std::vector<BodyTouch>& contacts) {
-  if (bodies_.empty()) return;
-  const LanePoints points = this->points(true);
-  bodies_.read_contacts(LaneParticles(points), contacts);
-}
-
-simd::YarnRelaxation SmallStepsSolver::relaxation_of_yarns() {
-  return {static_cast<float>(mends_ ? 1 : omega_), squared_tolerance(settings_), yarns_out_.data(),
-          left_by_sweep()};
-}
-
-simd::EdgeRelaxation SmallStepsSolver::relaxation_of_edges() {
-  return {u_.data(),
-          layout_.blocks.data(),
-          spans_.data(),
-          edges_out_.data(),
-          static_cast<float>(mends_ ? 1 : omega_),
-          squared_tolerance(settings_),
-          left_by_sweep()};
-}
-
-/// Springs are swept as ever.
-float SmallStepsSolver::left_by_sweep() const {
-  return mends_ ? squared(mends_to_ * settings_.tolerance) : 0;
-}
-
-simd::SpringLaws SmallStepsSolver::spring_laws() const {
-  const LawStep step = law_step();
-  return {.u_start = u_before_.data(),
-          .scale = static_cast<float>(step.springs.scale),
-          .damping = static_cast<float>(step.springs.damping),
-          .most_compliance =
-              static_cast<float>(std::min<double>(step.softest, std::numeric_limits<float>::max())),
-          .strain = static_cast<float>(tuning::kLocalShare * settings_.tolerance),
-          .continues = is_begun_};
-}
-
-simd::SpringRelaxation SmallStepsSolver::relaxation_of_springs() {
-  return {relaxation_of_edges(), layout_.springs.data(), multiplier_.data(), spring_laws()};
-}
-
-simd::YarnSpringRelaxation SmallStepsSolver::relaxation_of_spring_yarns() {
-  return {relaxation_of_yarns(), multiplier_.data() + layout_.first_multiplier_of_yarns(),
-          static_cast<float>(layout_.yarns.lightest), spring_laws()};
-}
-
-/// work(block, scratch), for blocks first ... last - 1, which share no particle or are only read.
-template <class Work>
-void SmallStepsSolver::for_each_yarn_block(Team& team, std::size_t first, std::size_t last,
-                                           Work&& work) {
-  const std::size_t rows = layout_.yarns.scratch_rows(), count = last - first;
-  const std::size_t shares = std::min({scratch_.size() / rows, count, team.size()});
-  team.for_each(shares, [&](std::size_t share) {
-    const std::size_t end = first + count * (share + 1) / shares;
-    for (std::size_t i = first + count * share / shares; i < end; ++i) {
-      work(layout_.yarns.blocks[i], scratch_.data() + rows * share);
-    }
-  });
-}
-
-void SmallStepsSolver::sweep_yarns(Team& team) {
-  const simd::Yarns yarns = this->yarns();
-  const bool has_springs = model_.constraints.has_springs();
-  const simd::YarnRelaxation relaxation = relaxation_of_yarns();
-  const simd::YarnSpringRelaxation with_springs = relaxation_of_spring_yarns();
-  const std::vector<std::uint32_t>& begin = layout_.yarns.family_begin;
-  for (std::size_t family = 0; family < layout_.yarns.families(); ++family) {
-    for_each_yarn_block(team, begin[family], begin[family + 1],
-                        [&](const simd::YarnBlock& block, simd::YarnScratch* scratch) {
-                          if (has_springs)
-                            table_.relax_spring_yarns(yarns, block, u_.data(), scratch,
-                                                      with_springs);
-                          else
-                            table_.relax_yarns(yarns, block, u_.data(), scratch, relaxation);
-                        });
-    hold_anchors(team);
-  }
-  moved_ = false;
-}
-
-/// work(batch, first, last): blocks first ... last - 1 of it.
-template <class Work>
-void SmallStepsSolver::for_each_batch(Team& team, Work&& work) {
-  team.for_each(layout_.tiles.size(), [&](std::size_t tile) {
-    for (std::uint32_t i = layout_.tiles[tile].first; i < layout_.tiles[tile].last; ++i) {
-      work(layout_.batches[i], layout_.batches[i].first, layout_.batches[i].last);
-    }
-  });
-  for (std::size_t i = layout_.between_tiles; i < layout_.batches.size(); ++i) {
-    const EdgeBatch& batch = layout_.batches[i];
-    team.for_each_share(batch.last - batch.first, [&](std::size_t first, std::size_t last) {
-      work(batch, batch.first + static_cast<std::uint32_t>(first),
-           batch.first + static_cast<std::uint32_t>(last));
-    });
-  }
-}
-
-void SmallStepsSolver::sweep_edges(Team& team) {
-  const bool has_springs = model_.constraints.has_springs();
-  for_each_batch(team, [&](const EdgeBatch& batch, std::uint32_t first, std::uint32_t last) {
-    if (has_springs)
-      table_.relax_springs(relaxation_of_springs(), batch.rope, first, last);
-    else if (batch.rope)
-      table_.relax_ropes(relaxation_of_edges(), first, last);
-    else
-      table_.relax_distances(relaxation_of_edges(), first, last);
-  });
-}
-
-void SmallStepsSolver::sweep_serial() {
+void SmallStepsSolver::sweep_serial(const LinkSweep& sweep) {
   const ConstraintStore& s = model_.constraints;
   LanePoints points = this->points(false);
-  const double omega = mends_ ? 1 : omega_, left = static_cast<double>(left_by_sweep());
+  const double left = static_cast<double>(SimdLinks::squared(sweep.left));
   for (const std::uint32_t c : layout_.serial) {
     const kernels::Vector d = points.difference(s.a[c], s.b[c]);
     const double rest = s.rest_length[c], square = rest * rest, error = dot(d, d) - square;
-    if (std::abs(error) > static_cast<double>(squared_tolerance(settings_)) * square)
+    if (std::abs(error) > static_cast<double>(links_.squared_tolerance()) * square)
       passes_.look_near(c);
     if (c >= s.bilateral && error <= 0) continue;
     const kernels::Vector by =
-        reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c], omega, left) * d;
+        reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c], sweep.omega, left) * d;
     points.move(s.a[c], -model_.inverse_mass[s.a[c]] * by);
     points.move(s.b[c], model_.inverse_mass[s.b[c]] * by);
   }
@@ -573,28 +384,13 @@ void SmallStepsSolver::judge_membrane(Team& team) {
 }
 
 std::int64_t SmallStepsSolver::count_out() const {
-  std::int64_t count = membrane_.count_out();
-  for (std::size_t i = 0; i < edges_out_.size(); ++i) {
-    count += std::popcount(static_cast<std::uint32_t>(edges_out_[i] & layout_.used[i]));
-  }
-  for (const std::uint32_t lanes : yarns_out_) count += std::popcount(lanes);
-  return count;
+  return links_.count_out() + membrane_.count_out();
 }
 
 /// Constraints that a sweep found out of tolerance have been relaxed since, and so have their
 /// neighbours: all of these are looked at again.
 void SmallStepsSolver::look_near_what_was_out() {
-  const auto look = [&](const auto& words, const std::vector<std::uint32_t>& constraint) {
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      for (std::uint32_t bits = words[i]; bits != 0; bits &= bits - 1) {
-        const std::uint32_t c =
-            constraint[i * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits))];
-        if (c != kNoIndex) passes_.look_near(c);
-      }
-    }
-  };
-  look(edges_out_, layout_.constraint);
-  look(yarns_out_, layout_.yarns.constraint);
+  links_.for_each_out([&](std::uint32_t c) { passes_.look_near(c); });
   membrane_.for_each_out(
       [&](std::uint32_t element) { passes_.look_near(passes_.item_of_element(element)); });
 }
@@ -639,51 +435,6 @@ LocalWork SmallStepsSolver::repair_everywhere(const ContactStore& contacts,
                                               std::int64_t most_visits, Team& team) {
   passes_.look_everywhere();
   return run_passes(contacts, most_visits, team);
-}
-
-/// A contact ends a motion, and so does a limit: from there a particle goes on at first order.
-void SmallStepsSolver::end_motions() {
-  std::ranges::sort(touched_);
-  const auto repeated = std::ranges::unique(touched_);
-  touched_.erase(repeated.begin(), repeated.end());
-  for (const std::uint32_t slot : touched_) stop_at_contact(slot);
-  touched_.clear();
-  take_arrivals(arrived_, [&](const Arrival& arrival) { begin_at_limit(arrival); });
-}
-
-/// The velocity v of a particle that was pushed is the mean one of this substep, and its past is
-/// such that the next one begins as by the implicit Euler method: with v + h a, at x + h v + h^2 a.
-void SmallStepsSolver::stop_at_contact(std::uint32_t slot) {
-  if (model_.inverse_mass[slot] == 0) return;
-  const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
-  std::size_t at = layout_.places().of(slot);
-  for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
-    const float a = acceleration_[at], v = (u_[at] - u_before_[at]) / h;
-    predicted_[at] = u_[at];
-    v_[at] = v;
-    v_before_[at] = v - push * a;
-    u_before_[at] = u_[at] - h * (v + push * a);
-  }
-}
-
-/// The velocity is that at the end of this substep, and the past a free flight that leads to it.
-void SmallStepsSolver::begin_at_limit(const Arrival& arrival) {
-  const auto h = static_cast<float>(h_), push = static_cast<float>(h_ * decaying_share());
-  const LanePoints points = this->points(false);
-  const kernels::Vector v_before = points.vector(v_before_.data(), arrival.slot);
-  std::size_t at = layout_.places().of(arrival.slot);
-  for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
-    v_[at] += weights_.last.rate * (u_[at] - predicted_[at]);
-    const float a = acceleration_[at], v = v_[at];
-    predicted_[at] = u_[at];
-    v_before_[at] = v - push * a;
-    u_before_[at] = u_[at] - h * v + 0.5f * h * h * a;
-  }
-  if (!arrival.surface.is_there()) return;
-  const double counts = model_.mass[arrival.slot] * next_formula_.share_of_past();
-  bodies_.arrive(arrival.surface, points.place(u_.data(), arrival.slot),
-                 points.vector(v_.data(), arrival.slot),
-                 counts * (v_before - points.vector(v_before_.data(), arrival.slot)));
 }
 
 double SmallStepsSolver::bending_energy(double give, Team& team) {
@@ -758,11 +509,10 @@ void SmallStepsSolver::keep(Team& team) {
 }
 
 std::size_t SmallStepsSolver::bytes() const {
-  return 11 * bytes_of(u_) + bytes_of(largest_) + bytes_of(spans_) + bytes_of(base_step_) +
-         bytes_of(scratch_) + bytes_of(edges_out_) + bytes_of(yarns_out_) + bytes_of(touched_) +
-         bytes_of(arrived_) + bytes_of(multiplier_) + bytes_of(aside_) + passes_.bytes() +
-         seams_.bytes() + membrane_.bytes() + bending_.bytes() + anchors_.bytes() +
-         bodies_.bytes() + bytes_of(past_.touching) + past_.misplaced.bytes();
+  return 11 * bytes_of(u_) + bytes_of(largest_) + bytes_of(touched_) + bytes_of(arrived_) +
+         bytes_of(aside_) + passes_.bytes() + seams_.bytes() + links_.bytes() + membrane_.bytes() +
+         bending_.bytes() + anchors_.bytes() + bodies_.bytes() + bytes_of(past_.touching) +
+         past_.misplaced.bytes();
 }
 
 }  // namespace weft

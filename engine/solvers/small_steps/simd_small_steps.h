@@ -19,6 +19,7 @@
 #include "engine/solvers/small_steps/simd_anchors.h"
 #include "engine/solvers/small_steps/simd_bending.h"
 #include "engine/solvers/small_steps/simd_bodies.h"
+#include "engine/solvers/small_steps/simd_links.h"
 #include "engine/solvers/small_steps/simd_membrane.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
@@ -98,7 +99,6 @@ class SmallStepsSolver final : public SmallSteps {
   LanePoints points(bool with_limits);
   LawStep law_step() const;
   simd::Flight flight();
-  simd::Yarns yarns();
   void write_acceleration(kernels::Vector gravity, kernels::VectorsView force);
   void begin_past(Team& team);
   SmallStepsPast last_past() const;
@@ -112,26 +112,15 @@ class SmallStepsSolver final : public SmallSteps {
   void split(kernels::VectorsView x, int substeps, Team& team);
   void measure_base(Team& team);
   void renew_base(Team& team);
-  void sweep(bool mends, Team& team);
+  LinkSweep link_sweep();
+  void sweep(const LinkSweep& links, Team& team);
   void set_aside();
   void take_past_along(Team& team);
-  float left_by_sweep() const;
-  void sweep_yarns(Team& team);
-  void sweep_edges(Team& team);
   void judge_springs(Team& team);
-  void sweep_serial();
+  void sweep_serial(const LinkSweep& sweep);
   void sweep_serial_springs();
   void sweep_membrane(Team& team);
   void judge_membrane(Team& team);
-  simd::YarnRelaxation relaxation_of_yarns();
-  simd::EdgeRelaxation relaxation_of_edges();
-  simd::SpringLaws spring_laws() const;
-  simd::SpringRelaxation relaxation_of_springs();
-  simd::YarnSpringRelaxation relaxation_of_spring_yarns();
-  template <class Work>
-  void for_each_yarn_block(Team& team, std::size_t first, std::size_t last, Work&& work);
-  template <class Work>
-  void for_each_batch(Team& team, Work&& work);
   void look_near_what_was_out();
   void draw_seams();
   LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits, Team& team);
@@ -155,6 +144,7 @@ class SmallStepsSolver final : public SmallSteps {
   LocalPasses passes_;
   SeamThreads seams_;
   const bool has_attached_;  // which are where they belong before constraints are swept
+  SimdLinks links_;
   SimdMembrane membrane_;
   SimdBending bending_;
   SimdAnchors anchors_;
@@ -169,25 +159,17 @@ class SmallStepsSolver final : public SmallSteps {
   SubstepFormula formula_, next_formula_;  // of the present substep, and of the next
   int since_renewal_ = 0;
   kernels::Vector gravity_{};
-  bool has_force_ = true;  // in acceleration_
-  bool is_new_ = false;    // base_, of a frame that is not kept yet; past_ has the one before
-  bool moved_ = true;      // rows of yarns and edges do not remember the present base
+  bool has_force_ = true;      // in acceleration_
+  bool is_new_ = false;        // base_, of a frame that is not kept yet; past_ has the one before
+  bool is_unmeasured_ = true;  // base_: spans of constraints and elements are of another
 
   kernels::AlignedVector<float> base_, u_, u_before_, predicted_, v_, v_before_, acceleration_;
-  kernels::AlignedVector<simd::EdgeSpans> spans_;
-  kernels::AlignedVector<simd::YarnBaseSteps> base_step_;  // per row
-  kernels::AlignedVector<simd::YarnScratch> scratch_;      // for each thread
-  std::vector<std::uint16_t> edges_out_;                   // per edge block, a bit per lane
-  std::vector<std::uint32_t> yarns_out_;                   // per row of yarns, likewise
-  std::vector<std::uint32_t> touched_;                     // slots that contacts have pushed
-  std::vector<float> largest_;                             // departure or move, per part of floats
+  std::vector<std::uint32_t> touched_;  // slots that contacts have pushed
+  std::vector<float> largest_;          // departure or move, per part of floats
   std::vector<Arrival> arrived_;
-  kernels::AlignedVector<float> multiplier_;  // in places of the layout
-  bool is_begun_ = false;                     // the substep has been swept
-  double mends_to_ = 0;                       // share of the tolerance
-  bool mends_ = false;                        // the present sweep
-  kernels::AlignedVector<float> aside_;       // u_ before mending, with laws only
-  bool is_aside_ = false;                     // aside_ is that of this substep
+  bool is_begun_ = false;                // the substep has been swept
+  kernels::AlignedVector<float> aside_;  // u_ before mending, with laws only
+  bool is_aside_ = false;                // aside_ is that of this substep
   bool projects_ = false;
   double softest_ = 0;  // m/N, where it projects
 };

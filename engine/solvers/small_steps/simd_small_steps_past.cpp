@@ -21,7 +21,7 @@ void SmallStepsSolver::set_past(SmallStepsPast&& past) {
   past_ = std::move(past);
   std::ranges::copy(past_.base, base_.begin());
   is_new_ = false;
-  moved_ = true;
+  is_unmeasured_ = true;
 }
 
 void SmallStepsSolver::take_past(const SmallSteps& from) {
