@@ -16,7 +16,7 @@ Anchors::Anchors(const Model& model) {
     most_to_.push_back(anchor.max_distance);
   }
   to_ = from_;
-  most_from_ = most_to_;
+  most_from_ = most_before_ = most_to_;
   has_backstop_.assign(asked_.size(), 1);
 }
 
@@ -42,6 +42,7 @@ void Anchors::scale(double scale) {
 }
 
 void Anchors::depart(const AnchorStore& store, const kernels::Vectors& x) {
+  most_before_ = most_from_;
   for (std::size_t i = 0; i < most_to_.size(); ++i) {
     if (std::isinf(most_from_[i]) && std::isfinite(most_to_[i]))
       most_from_[i] = std::max(most_to_[i], length(x[store.slot[i]] - from_[i].point));
@@ -63,7 +64,8 @@ void Anchors::put_down() {
   moves_ = false;
 }
 
-void Anchors::arrive() {
+void Anchors::stop(bool arrived) {
+  if (!arrived) return most_from_.swap(most_before_);
   moved_ = std::exchange(moves_, false);
   if (moved_) from_ = to_;
   most_from_ = most_to_;
@@ -93,7 +95,7 @@ bool Anchors::fit(const Model& model) const {
 
 std::size_t Anchors::bytes() const {
   return bytes_of(from_) + bytes_of(to_) + bytes_of(asked_) + bytes_of(most_from_) +
-         bytes_of(most_to_) + bytes_of(has_backstop_);
+         bytes_of(most_before_) + bytes_of(most_to_) + bytes_of(has_backstop_);
 }
 
 }  // namespace weft

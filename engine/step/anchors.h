@@ -39,8 +39,8 @@ class Anchors {
   const std::vector<AnchorLimit>& limits() const { return asked_; }
   /// Before a step: what was let go and is held again begins where it is.
   void depart(const AnchorStore& store, const kernels::Vectors& x);
-  /// A step was done.
-  void arrive();
+  /// After depart. arrived: the step was done; else all is as it was before.
+  void stop(bool arrived);
 
   AnchorTravel travel() const {
     return {from_, to_, most_from_, most_to_, has_backstop_, moving(), limited_};
@@ -55,8 +55,8 @@ class Anchors {
   bool moving() const { return moves_ || moved_ || most_from_ != most_to_; }
   std::size_t bytes() const;
   friend void visit_fields(Is<Anchors> auto& anchors, auto& archive) {
-    auto& [from, to, asked, most_from, most_to, has_backstop, scale, limited, moves, moved] =
-        anchors;
+    auto& [from, to, asked, most_from, most_before, most_to, has_backstop, scale, limited, moves,
+           moved] = anchors;  // depart() sets most_before
     archive(from, to, asked, most_from, most_to, has_backstop, scale, limited, moves, moved);
   }
   /// Whether those that were read are the model's.
@@ -67,7 +67,7 @@ class Anchors {
 
   std::vector<reference::AnchorPose> from_, to_;
   std::vector<AnchorLimit> asked_;
-  std::vector<double> most_from_, most_to_;  // m, scaled
+  std::vector<double> most_from_, most_before_, most_to_;  // m, scaled; before the present step
   std::vector<std::uint8_t> has_backstop_;
   double scale_ = 1;
   bool limited_ = false;                // something was asked for that the description did not

@@ -86,6 +86,7 @@ void Pins::depart(double dt, Vectors& position, Vectors& velocity) {
   for (Pin& pin : pins_) {
     pin.to = position[pin.slot];
     pin.speed = (1 / dt) * (pin.to - pin.from);
+    pin.before = velocity[pin.slot];
     position.set(pin.slot, pin.from);
     velocity.set(pin.slot, pin.speed);
   }
@@ -97,7 +98,7 @@ void Pins::stop(bool arrived, Vectors& position, Vectors& velocity) {
   if (arrived) moving_ = false;
   for (Pin& pin : pins_) {
     position.set(pin.slot, pin.to);
-    velocity.set(pin.slot, {0, 0, 0});
+    velocity.set(pin.slot, arrived ? Vector{0, 0, 0} : pin.before);
     if (!arrived) continue;
     pin.from = pin.to;
     pin.last = pin.speed;

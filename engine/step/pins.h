@@ -46,7 +46,8 @@ class Pins {
 
   /// Those that travel start where they were, with their velocities.
   void depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);
-  /// After depart: everyone is where the caller wants them, at rest; arrived: the step was done.
+  /// After depart: everyone is where the caller wants them. arrived: the step was done, and they
+  /// are at rest; else all is as it was before.
   void stop(bool arrived, kernels::Vectors& position, kernels::Vectors& velocity);
   /// Whether one has moved in this step or in the last: if not, nobody is under way.
   bool moving() const { return moving_; }
@@ -65,10 +66,11 @@ class Pins {
     std::uint32_t slot = 0;
     kernels::Vector from{}, to{};
     kernels::Vector last{}, speed{};  // of the last move and of this one
+    kernels::Vector before{};         // its velocity when it departed
 
     friend void visit_fields(Is<Pin> auto& pin, auto& archive) {
-      auto& [slot, from, to, last, speed] = pin;
-      archive(slot, from, to, last, speed);
+      auto& [slot, from, to, last, speed, before] = pin;  // depart() sets to, speed and before
+      archive(slot, from, last);
     }
   };
   /// A pin that was put down, and where it stood before.

@@ -539,7 +539,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
       trial.refinement = next_refinement(s, plan, trial.motion_error, budget);
     else if (refines_substeps(s))
       trial.refinement = refinement_for_laws(s, plan, frame.beyond(), budget);
-    s.small_steps->keep(team);
+    if (!takes_over_in(s)) s.small_steps->keep(team);  // else the past is not looked at
   });
   return trial;
 }

@@ -47,10 +47,11 @@ struct Resistance {
   kernels::Vector spin{};
 };
 
-/// A state to return to.
+/// A state to return to: what a step may change before it is over.
 struct Checkpoint {
   kernels::Vectors position, velocity;
-  double lost_energy = 0, elastic_energy = 0;
+  Seams seams;
+  double lost_energy = 0, elastic_energy = 0, give_per_mass = 0, longest_substep = 0;
 };
 
 /// What carry has taken a cloth along since the last step, as a motion of all space: at x it is

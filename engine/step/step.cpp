@@ -20,38 +20,53 @@ namespace {
 /// The state at the beginning of a step: it comes back unless the step is committed.
 class Transaction {
  public:
-  explicit Transaction(State& s) : s_(s) {}
+  explicit Transaction(State& s) : s_(s) {
+    s_.step_start.seams = s_.seams;
+    s_.step_start.lost_energy = s_.lost_energy;
+    s_.step_start.elastic_energy = s_.elastic_energy;
+    s_.step_start.give_per_mass = s_.give_per_mass;
+    s_.step_start.longest_substep = s_.longest_substep;
+  }
   ~Transaction() {
-    if (!begun_) return;
-    std::swap(s_.position, s_.step_start.position);
-    std::swap(s_.velocity, s_.step_start.velocity);
+    if (committed_) return;
+    std::swap(s_.seams, s_.step_start.seams);
     s_.lost_energy = s_.step_start.lost_energy;
     s_.elastic_energy = s_.step_start.elastic_energy;
+    s_.give_per_mass = s_.step_start.give_per_mass;
+    s_.longest_substep = s_.step_start.longest_substep;
+    if (!moves_) return;
+    std::swap(s_.position, s_.step_start.position);
+    std::swap(s_.velocity, s_.step_start.velocity);
   }
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
 
-  /// Before the first change.
-  void begin() {
-    if (begun_) return;
+  /// Before particles move, but for the part that ends the step.
+  void move() {
+    if (moves_) return;
     s_.step_start.position = s_.position;
     s_.step_start.velocity = s_.velocity;
-    s_.step_start.lost_energy = s_.lost_energy;
-    s_.step_start.elastic_energy = s_.elastic_energy;
-    begun_ = true;
+    moves_ = true;
   }
-  void commit() { begun_ = false; }
+  void commit() { committed_ = true; }
 
  private:
   State& s_;
-  bool begun_ = false;
+  bool moves_ = false, committed_ = false;
 };
 
-/// The pins under way: whatever becomes of the step, they stand in the end where they were sent.
+/// Pins and anchors under way: whatever becomes of the step, pins stand in the end where they were
+/// sent.
 class Travel {
  public:
-  Travel(State& s, double dt) : s_(s) { s.pins.depart(dt, s.position, s.velocity); }
-  ~Travel() { s_.pins.stop(arrived_, s_.position, s_.velocity); }
+  Travel(State& s, double dt) : s_(s) {
+    s.pins.depart(dt, s.position, s.velocity);
+    s.anchors.depart(s.model->anchors, s.position);
+  }
+  ~Travel() {
+    s_.pins.stop(arrived_, s_.position, s_.velocity);
+    s_.anchors.stop(arrived_);
+  }
   Travel(const Travel&) = delete;
   Travel& operator=(const Travel&) = delete;
 
@@ -70,7 +85,7 @@ class OneStep {
   /// Returns whether all of dt was done.
   bool run(double dt) {
     if (const OutOfPlace found = find_out_of_place(s_, team_); found.any()) {
-      transaction_.begin();
+      transaction_.move();
       project(s_, found, dt, report_, team_);
     }
     if (s_.placed) {
@@ -98,7 +113,7 @@ class OneStep {
     for (std::size_t i = 0; begin < kFinest;) {
       const Attempt& attempt = plan_.attempts[i];
       const int end = attempt.end_of(begin);
-      if (end < kFinest || substeps_left > 1) transaction_.begin();
+      if (end < kFinest || substeps_left > 1) transaction_.move();
       const Outcome outcome = try_attempt(attempt, h * (end - begin) / kFinest);
       if (outcome == Outcome::accepted) {
         begin = end;
@@ -239,11 +254,9 @@ StepReport step(State& s, double dt, Team& team) {
   std::ranges::fill(s.contacts.met, 0);
   {
     Travel travel(s, dt);
-    s.anchors.depart(s.model->anchors, s.position);
     done = OneStep(s, report, team).run(dt);
     if (done) {
       travel.arrive();
-      s.anchors.arrive();
       s.bodies.arrive(s.body_report.impulses, dt);
       report.body_contacts = s.body_report.contacts;
       report.body_work = s.body_report.work;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
@@ -79,6 +80,96 @@ TEST_CASE("a force that overflows changes nothing") {
     forces[5] = {1e308, 0, 0};
     REQUIRE(cloth.write_forces(forces));
   });
+}
+
+/// A force that takes the last particle out of the range of numbers.
+void spoil_last(Cloth& cloth, double force = 1e308) {
+  std::vector<Vec3> forces(cloth.particle_count());
+  forces.back() = {force, 0, 0};
+  REQUIRE(cloth.write_forces(forces));
+}
+
+/// A step that fails leaves every byte of what is saved. Returns whether it failed.
+bool fails_without_a_trace(Cloth& cloth, double dt = 0.01) {
+  const std::vector<std::byte> before = cloth.save_state();
+  if (committed(step(cloth, dt).status)) return false;
+  CHECK(cloth.save_state() == before);
+  return true;
+}
+
+TEST_CASE("a step that fails leaves pins that are under way as they were") {
+  for (const Method& method : kAllMethods) {
+    CAPTURE(text(method));
+    const SceneDescription scene = scene_of("hang", 4);
+    Cloth cloth = cloth_of(scene, with(paper_settings(), method));
+    const auto send = [&](double x) { REQUIRE(cloth.move_fixed(0, {x, 0.01, 0})); };
+    send(0.01);
+    run(cloth, 0.01, 2);
+    REQUIRE(cloth.carry({.rotation = {0, 1, 0}}, 1));  // zeros become negative
+    send(0.02);
+    spoil_last(cloth);
+    CHECK(fails_without_a_trace(cloth));
+  }
+}
+
+TEST_CASE("a step that fails leaves anchors that take hold again as they were") {
+  const Backend backend = each_backend();
+  constexpr double kFree = std::numeric_limits<double>::infinity();
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}};
+  scene.masses = {1, 1};
+  scene.anchors = {{.particle = 0, .point = {0, 0, 0}, .max_distance = 0.5}};
+  Cloth cloth = cloth_of(scene, {.solver = Solver::small_steps, .backend = backend});
+  REQUIRE(cloth.limit_anchor(0, {.max_distance = kFree}));
+  run(cloth, 0.01, 10);
+  REQUIRE(cloth.limit_anchor(0, {.max_distance = 0.01}));
+  spoil_last(cloth);
+  CHECK(fails_without_a_trace(cloth));
+}
+
+TEST_CASE("a step that fails leaves seams as they were, though positions were given") {
+  const Backend backend = each_backend();
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {5, 0, 0}};
+  scene.masses = {1, 1, 1};
+  scene.seams = {{.a = 0, .b = 1, .time = 0.5}};
+  Cloth cloth = cloth_of(scene, {.solver = Solver::small_steps, .backend = backend});
+  run(cloth, 0.01, 10);
+  REQUIRE(cloth.write_positions(positions(cloth)));
+  spoil_last(cloth);
+  CHECK(fails_without_a_trace(cloth));
+}
+
+/// Four times as much force each time, so that the first, the last or no substep fails.
+void check_some_forces(const SceneDescription& scene, const Settings& settings, bool placed) {
+  int failed = 0, done = 0;
+  for (double force = 1e28; force < 1e160; force *= 4) {
+    Cloth cloth = cloth_of(scene, settings);
+    run(cloth, 0.01, 1);
+    if (placed) REQUIRE(cloth.write_positions(positions(cloth)));
+    spoil_last(cloth, force);
+    ++(fails_without_a_trace(cloth) ? failed : done);
+  }
+  CHECK(failed > 0);
+  CHECK(done > 0);
+}
+
+TEST_CASE("a step of which a later substep fails changes nothing") {
+  SceneDescription scene = scene_of("hang", 4);
+  scene.positions.push_back({5, 0, 0});
+  scene.masses.push_back(1);
+  for (const double compliance : {0., 1e-4}) {
+    for (Constraint& c : scene.constraints) c.compliance = compliance;
+    for (const Solver solver :
+         {Solver::small_steps, Solver::gauss_seidel, Solver::yarn, Solver::direct}) {
+      for (const bool placed : {false, true}) {
+        CAPTURE(compliance);
+        CAPTURE(name(solver));
+        CAPTURE(placed);
+        check_some_forces(scene, {.substeps = 5, .solver = solver}, placed);
+      }
+    }
+  }
 }
 
 TEST_CASE("an unconstrained particle that overflows changes nothing") {
