@@ -15,13 +15,18 @@ std::string brief(const Json& found) {
   return found.is_array() ? "a nested array" : "a nested object";
 }
 
-/// What the parser read last it quotes as long as it is.
+/// The parser quotes what it read last, however long that is, and may say then what it expected.
+/// The quoted text may contain these words, too.
 std::string with_short_quote(std::string message) {
   constexpr std::string_view kBefore = "last read: '", kAfter = "'; expected ";
+  constexpr std::size_t kLongestExpectation = 64;
   const std::size_t found = message.find(kBefore);
   if (found == std::string::npos) return message;
   const std::size_t begin = found + kBefore.size();
-  const std::size_t end = std::min(message.rfind(kAfter), message.rfind('\''));
+  const std::size_t after = message.rfind(kAfter);
+  const bool says_more =
+      after != std::string::npos && message.size() - after <= kLongestExpectation;
+  const std::size_t end = says_more ? after : message.rfind('\'');
   if (end == std::string::npos || end < begin) return message;
   return message.replace(begin, end - begin, shown(message.substr(begin, end - begin)));
 }

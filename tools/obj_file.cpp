@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <sstream>
 #include <utility>
@@ -43,11 +44,14 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-/// Comments of these lines are cut off, since the loader takes them for vertices of a face.
-std::string_view without_comment(std::string_view line) {
+/// What a mesh is made of, without comments, which the loader takes for vertices of a face. The
+/// loader sees nothing else: it converts numbers of lines that nobody needs without looking at
+/// their range.
+std::string_view needed_part(std::string_view line) {
+  constexpr std::array<std::string_view, 5> kNeeded{"v", "vt", "vn", "f", "l"};
   const auto words = words_of(line);
-  const bool is_element = !words.empty() && words[0].size() == 1;  // v, f, l, p
-  return is_element ? line.substr(0, line.find('#')) : line;
+  if (words.empty() || std::ranges::find(kNeeded, words[0]) == kNeeded.end()) return {};
+  return line.substr(0, line.find('#'));
 }
 
 /// From 1 up, or below 0 and counted back from the last vertex; 0: it is no number of a vertex.
@@ -142,7 +146,7 @@ Result<std::string> checked_text(std::string_view text, LineCheck& check) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   while (!text.empty()) {
-    const std::string_view line = without_comment(take_line(text));
+    const std::string_view line = needed_part(take_line(text));
     if (auto added = check.add(line); !added) return Error{added.error()};
     checked += line;
     checked += '\n';

@@ -9,12 +9,16 @@
 namespace weft::fuzz {
 namespace {
 
+/// Without a sign of 0, which JSON loses: it reads "-0" as an integer.
+std::string number(double x) { return fmt::format("{}", x + 0.); }
+
 std::string material_text(const Material& m) {
   return fmt::format(
       R"({{"density": {}, "thickness": {}, "warp": {}, "weft": {}, "shear": {}, "bending": {}, )"
       R"("damping_stretch": {}, "damping_bending": {}, "damping_motion": {}, "drag": {}, "lift": {}}})",
-      m.density, m.thickness, m.warp, m.weft, m.shear, m.bending, m.damping_stretch,
-      m.damping_bending, m.damping_motion, m.drag, m.lift);
+      number(m.density), number(m.thickness), number(m.warp), number(m.weft), number(m.shear),
+      number(m.bending), number(m.damping_stretch), number(m.damping_bending),
+      number(m.damping_motion), number(m.drag), number(m.lift));
 }
 
 /// Two triangles of it.

@@ -322,6 +322,13 @@ TEST_CASE("words are apart by blanks or tabs, and a vertex may carry a weight or
   CHECK(obj_error(kTriangle + "\tf\t1\tx\t2\n") == "line 4: 'x': not the number of a vertex");
 }
 
+TEST_CASE("lines that a mesh does not need are not looked at") {
+  const std::string huge(99, '8');  // beyond the range of the loader's numbers
+  const ObjScene scene =
+      parse(kTriangle + "vw 0 " + huge + "\nvw 0 -1\nt x 9/9/9\ncurv\nf 1 2 3\n");
+  CHECK(scene.description.constraints.size() == 3);
+}
+
 TEST_CASE("each of the three coordinates is a finite number") {
   for (const std::string line : {"v x 0 0", "v 0 x 0", "v 0 0 x", "v 0 0 nan", "v inf 0 0",
                                  "v 0 1e999 0", "v 0 0 1,5", "v 0 0"}) {

@@ -240,6 +240,7 @@ TEST_CASE("an error repeats no more than the beginning of what the parser read l
   const std::string error = error_of("{\"" + std::string(5000, 'a'));
   CHECK(error.find("last read: '\"" + std::string(39, 'a') + "...'") != std::string::npos);
   CHECK(error.size() < 250);
+  CHECK(error_of("\"'; expected " + std::string(5000, 'a')).size() < 250);
 }
 
 TEST_CASE("the surface is that of the faces unless it is given") {
