@@ -148,8 +148,10 @@ Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
       if (prepared.state) prepared.state->add_last(cloth, done);
     }
     if (!progress.redraws()) return;
-    progress.show(fmt::format("{} frame {}/{}, strain {}", bar(frame, plan.steps, 30), frame,
-                              plan.steps, measured_percent(report.max_strain)));
+    const std::string filled =
+        bar(static_cast<std::size_t>(frame), static_cast<std::size_t>(plan.steps), 30);
+    progress.show(fmt::format("{} frame {}/{}, strain {}", filled, frame, plan.steps,
+                              measured_percent(report.max_strain)));
   };
   return run(prepared.model, prepared.settings, plan, on_frame);
 }

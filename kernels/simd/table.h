@@ -1,5 +1,6 @@
 /// The vector kernels, one function pointer per stage, one table per instruction set. What they
-/// read and write stands in the headers whose names end in _data.h.
+/// read and write stands in sweep_data.h, yarn_data.h, front_data.h, small_step_data.h, grip_data.h
+/// and nearness_data.h.
 #pragma once
 
 #include <cstddef>

@@ -22,7 +22,9 @@ Outcome run_varying(const Setup& setup) {
   constexpr int kSize = 20;
   constexpr double kSteps[] = {1. / 60, 1. / 100, 1. / 1000, 1. / 30, 1. / 300, 1. / 60};
   Trial trial{sheet("hang", kSize), setup.settings(kStrain)};
-  trial.varying_dt = [&](int step) { return kSteps[step % std::size(kSteps)]; };
+  trial.varying_dt = [&](int step) {
+    return kSteps[static_cast<std::size_t>(step) % std::size(kSteps)];
+  };
   trial.steps = setup.steps(300, 60);
   return strain_outcome(trial, energy_of_the_catch(kSize, kStrain, 1. / 30));
 }

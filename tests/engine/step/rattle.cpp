@@ -114,7 +114,7 @@ TEST_CASE("the yarn solver moves as the direct solver does, over ropes, hubs and
 /// How many of one sheet is chance. Where the guard judged rounding there were 50 of these 120.
 TEST_CASE("few steps of sheets with a hub are left to scheme paper") {
   int fallbacks = 0;
-  for (int n = 5; n <= 16; ++n) {
+  for (std::uint32_t n = 5; n <= 16; ++n) {
     Cloth cloth = cloth_of(hub_sheet(n), rattle(by(Solver::yarn, 1e-3)));
     for (int k = 0; k < 10; ++k) fallbacks += step(cloth, 0.001).scheme_fallbacks;
   }
