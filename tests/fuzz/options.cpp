@@ -68,7 +68,10 @@ void try_name(std::string_view text) {
   const auto name = tools::NumberedName::of(text);
   if (!name) return;
   check(name->with(7) != name->with(8), "files of a series have different names");
-  check(name->with(7).size() + 4 + 20 >= text.size(), "a name keeps what is around its number");
+  const std::size_t percent = text.rfind('%');
+  check(name->with(7).starts_with(text.substr(0, percent)) &&
+            name->with(7).ends_with(text.substr(text.find('d', percent) + 1)),
+        "a name keeps what is around its number");
   note_accepted();
 }
 
