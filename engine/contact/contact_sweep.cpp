@@ -76,8 +76,8 @@ double time_in_plane(PairKind kind, const Encountered& pair, double before, doub
 /// they are at one place.
 bool has_crossed(PairKind kind, const Encountered& pair, double thickness) {
   const double before = volume(kind, pair.start), after = volume(kind, pair.x);
-  if ((before > 0) == (after > 0)) return false;
-  const double share = time_in_plane(kind, pair, before, after);
+  if (after == 0 || (before != 0 && (before > 0) == (after > 0))) return false;
+  const double share = before == 0 ? 0 : time_in_plane(kind, pair, before, after);
   constexpr double kTogether = 0.01;  // of the thickness
   return length(nearest(kind, pair.at_share(share)).r) < kTogether * thickness + 1e-9;
 }
@@ -158,8 +158,7 @@ bool ContactSweep::resist(const ContactScene& scene, NearPairs& near, std::size_
   Encountered e = look_at(scene, near.list.points(i), body.h);
   const reference::Nearest found = nearest(pair.kind, e.x);
   const double l = length(found.r);
-  constexpr double kNoDirection = 1e-9;  // m
-  const Vector direct = l > kNoDirection ? (1 / l) * found.r : near.normal(i);
+  const Vector direct = l > kTouching ? (1 / l) * found.r : near.normal(i);
   state.is_under =
       is_now_under(pair.kind, e, found.r, near.normal(i), state.is_under, mesh.thickness);
   const Vector along = state.is_under ? -1.0 * direct : direct;

@@ -45,12 +45,14 @@ void blow(const ContactScene& scene, const PairList& pairs, const Failure& failu
     there[k] = from + failure.time * (points.end(four[k]) - from);
   }
   const reference::Nearest met = nearest(pair.kind, there);
-  const double l = length(met.r);
-  const Vector n = kernels::direction(met.r, l);
+  ContactMesh& mesh = scene.points.meshes()[pair.mesh];
+  const Vector n = direction_apart(mesh, pair, met);
   FourPoints before;
   for (std::size_t k = 0; k < 4; ++k) before[k] = points.start(four[k]);
-  const ContactMesh& mesh = points.meshes()[pair.mesh];
-  const double least = std::min(length(nearest(pair.kind, before).r), mesh.thickness);
+  constexpr double kApart =
+      0.01;  // of the thickness: what touched is put so far before the surface
+  const double l = length(nearest(pair.kind, before).r),
+               least = l > kTouching ? std::min(l, mesh.thickness) : kApart * mesh.thickness;
   double height = 0, weight = 0;
   Vector approach{}, surface{};
   for (std::size_t k = 0; k < 4; ++k) {

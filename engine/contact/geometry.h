@@ -37,32 +37,56 @@ bool is_ghost(const TriangleSurface& cloth, const ContactMesh& mesh, const Pair&
               const FourPoints& x, const reference::Nearest& nearest, kernels::Vector n,
               double lean, At&& at);
 
+/// The normal of the body's surface where both are nearest; 0 on the border of an open mesh.
+inline kernels::Vector side_normal(ContactMesh& mesh, const Pair& pair,
+                                   const reference::Nearest& nearest) {
+  SideNormals& normals = mesh.normals;
+  if (pair.kind == PairKind::edges) return normals.of_edge(pair.of_body);
+  if (pair.kind == PairKind::vertex_triangle) return normals.of_point(pair.of_body);
+  const TriangleSurface::Triangle& t = mesh.mesh().surface.triangles[pair.of_body];
+  switch (corners_of(nearest)) {
+    case 1:
+      return normals.of_point(t[0]);
+    case 2:
+      return normals.of_point(t[1]);
+    case 4:
+      return normals.of_point(t[2]);
+    case 3:
+      return normals.of_edge(pair.of_body, 0);
+    case 6:
+      return normals.of_edge(pair.of_body, 1);
+    case 5:
+      return normals.of_edge(pair.of_body, 2);
+    default:
+      return normals.of_triangle(pair.of_body);
+  }
+}
+
+/// Features that are no farther apart touch: where they are does not tell on which side the cloth
+/// is. It is in front of the surface then.
+inline constexpr double kTouching = 1e-9;  // m
+
 /// Whether the cloth is behind the surface of a one-sided body, where both are nearest.
 inline bool is_behind(ContactMesh& mesh, const Pair& pair, const reference::Nearest& nearest,
                       kernels::Vector to_cloth) {
-  SideNormals& normals = mesh.normals;
-  const auto normal = [&]() -> kernels::Vector {
-    if (pair.kind == PairKind::edges) return normals.of_edge(pair.of_body);
-    if (pair.kind == PairKind::vertex_triangle) return normals.of_point(pair.of_body);
-    const TriangleSurface::Triangle& t = mesh.mesh().surface.triangles[pair.of_body];
-    switch (corners_of(nearest)) {
-      case 1:
-        return normals.of_point(t[0]);
-      case 2:
-        return normals.of_point(t[1]);
-      case 4:
-        return normals.of_point(t[2]);
-      case 3:
-        return normals.of_edge(pair.of_body, 0);
-      case 6:
-        return normals.of_edge(pair.of_body, 1);
-      case 5:
-        return normals.of_edge(pair.of_body, 2);
-      default:
-        return normals.of_triangle(pair.of_body);
-    }
-  };
-  return dot(normal(), to_cloth) < 0;
+  return length(to_cloth) > kTouching && dot(side_normal(mesh, pair, nearest), to_cloth) < 0;
+}
+
+/// A unit vector from the second feature to the first: along r or, where they touch, along the
+/// normal of the body.
+inline kernels::Vector direction_apart(ContactMesh& mesh, const Pair& pair,
+                                       const reference::Nearest& nearest) {
+  const double l = length(nearest.r);
+  if (l > kTouching) return (1 / l) * nearest.r;
+  const TriangleSurface& surface = mesh.mesh().surface;
+  kernels::Vector n = side_normal(mesh, pair, nearest);
+  if (dot(n, n) == 0) {
+    const std::uint32_t point =
+        pair.kind == PairKind::edges ? surface.edges[pair.of_body][0] : pair.of_body;
+    n = mesh.normals.of_triangle(
+        pair.kind == PairKind::particle_triangle ? pair.of_body : surface.triangles_at[point][0]);
+  }
+  return towards_cloth(pair.kind) * kernels::direction(n, length(n));
 }
 
 // ------------------------------------------------------------------------------------------------

@@ -191,7 +191,8 @@ void MeshContacts::expect_failures(const BodyClock& clock, ContactParticles& par
     const auto four = candidates_[failure.list].points(failure.pair);
     FourPoints before;
     for (std::size_t k = 0; k < 4; ++k) before[k] = points_.start(four[k]);
-    const Vector r = nearest(pair.kind, before).r, normal = kernels::direction(r, length(r));
+    const Vector normal =
+        direction_apart(points_.meshes()[pair.mesh], pair, nearest(pair.kind, before));
     if (is_known) {
       near.set_normal(known, normal);
       near.states[known].is_under = false;

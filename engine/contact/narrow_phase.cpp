@@ -128,8 +128,8 @@ bool NarrowPhase::see(const Model& model, ContactPoints& points, const Pair& pai
   const FourPoints x{at(four[0]), at(four[1]), at(four[2]), at(four[3])};
   const reference::Nearest found = nearest(pair.kind, x);
   const double l = length(found.r);
-  normal = kernels::direction(found.r, l);
   ContactMesh& mesh = points.meshes()[pair.mesh];
+  normal = direction_apart(mesh, pair, found);
   if (l - closing(points, pair.kind, four, normal) > mesh.thickness) return false;
   const Vector passes = points.way(four[0]) - points.way(four[3]);
   const bool stays = length(passes) < tuning::kContactPassing * l;

@@ -64,10 +64,12 @@ std::optional<double> time_of_meeting(PairKind kind, const PairMotion& way, doub
   return time;
 }
 
-std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, double thickness) {
-  const double distance = length(r);
+/// r: from the second feature to the first, or a unit vector of that kind where they touch.
+std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, double distance,
+                              double thickness) {
   const auto separates = [&](Vector n) {
-    return separation(kind, way.from, n) > 0 && separation(kind, way.to, n) > 0;
+    const double least = distance > kTouching ? 0 : -kTouching * length(n);  // rounding
+    return separation(kind, way.from, n) > least && separation(kind, way.to, n) > 0;
   };
   if (separates(r)) return std::nullopt;
   const Vector end = nearest(kind, way.to).r;
@@ -101,8 +103,10 @@ void Verification::find(const ContactScene& scene, const BroadPhase& broad, Narr
           way.to[k] = points.end(four[k]);
         }
         const reference::Nearest found = nearest(pair.kind, way.from);
-        const ContactMesh& mesh = points.meshes()[pair.mesh];
-        const std::optional<double> time = meeting(pair.kind, way, found.r, mesh.thickness);
+        ContactMesh& mesh = scene.points.meshes()[pair.mesh];
+        const double distance = std::max(length(found.r), kTouching);
+        const Vector r = distance > kTouching ? found.r : direction_apart(mesh, pair, found);
+        const auto time = meeting(pair.kind, way, r, distance, mesh.thickness);
         if (!time) continue;
         // It comes out, which is what it should.
         if (!mesh.mesh().two_sided && std::ranges::any_of(four, is_inside)) continue;
