@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "engine/bodies/convex_hull.h"
@@ -89,12 +90,13 @@ Shared build(const Hull& hull) {
   return std::make_shared<BodyShape>(std::move(faces), std::move(points));
 }
 
-/// Triangles with three corners of their own.
+bool has_three_corners(const TriangleSurface::Triangle& t) {
+  return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+}
+
 std::vector<TriangleSurface::Triangle> proper(const TriangleMesh& mesh) {
   std::vector<TriangleSurface::Triangle> triangles;
-  for (const TriangleSurface::Triangle& t : mesh.triangles) {
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
-  }
+  std::ranges::copy_if(mesh.triangles, std::back_inserter(triangles), has_three_corners);
   return triangles;
 }
 
@@ -103,10 +105,8 @@ Result<void> validate_sides(const TriangleMesh& mesh) {
   std::vector<std::array<std::uint32_t, 3>> sides;  // from, to, triangle
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const TriangleSurface::Triangle& corners = mesh.triangles[t];
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (corners[k] != corners[(k + 1) % 3])
-        sides.push_back({corners[k], corners[(k + 1) % 3], t});
-    }
+    if (!has_three_corners(corners)) continue;
+    for (std::size_t k = 0; k < 3; ++k) sides.push_back({corners[k], corners[(k + 1) % 3], t});
   }
   std::ranges::sort(sides);
   for (std::size_t i = 1; i < sides.size(); ++i) {

@@ -77,9 +77,15 @@ WEFT_API Hull box(Vec3 size);
 /// A surface of triangles, rigid, or deforming (Cloth::move_body_vertices).
 ///
 /// One-sided ones, as bodies of characters are, keep cloth on the side from which their corners run
-/// counterclockwise; they need not be closed. What begins on the other side comes out where a
-/// vertex of the mesh, an edge or a triangle is nearest to it. Two triangles that share an edge
-/// must run along it in opposite directions. Two-sided ones keep cloth on the side where it is.
+/// counterclockwise. What begins inside a closed one comes out where a vertex of the mesh, an edge
+/// or a triangle is nearest to it. An open one has no inside: cloth that begins behind it, farther
+/// away than the thickness, stays there. Two triangles that share an edge must run along it in
+/// opposite directions. Two-sided ones keep cloth on the side where it is. What begins exactly on
+/// a mesh is on the side from which its corners run counterclockwise.
+///
+/// Meshes cost several times what other shapes do, and the more the finer they are: 900 particles
+/// draped over a ball take 0.9 ms a frame on a Ball, 4 on a mesh of 224 triangles, 13 on one of
+/// 4,000.
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< those with two equal corners are left

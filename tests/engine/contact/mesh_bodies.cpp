@@ -48,6 +48,10 @@ TEST_CASE("a mesh that cannot be is refused with one line") {
   mesh.vertices[7].y = kNan;
   CHECK(refused(mesh).starts_with("vertices[7]: must be finite"));
   mesh = good;
+  mesh.triangles.push_back({0, 1, 0});  // left out, whatever the others are
+  mesh.triangles.push_back({0, 2, 2});
+  mesh.triangles.push_back({3, 3, 3});
+  CHECK(build_shape(mesh));
   std::swap(mesh.triangles[4][0], mesh.triangles[4][1]);
   CHECK(refused(mesh).find("runs along an edge in the same direction as another triangle") !=
         std::string::npos);

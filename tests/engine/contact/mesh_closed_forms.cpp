@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -73,6 +74,47 @@ TEST_CASE("a sheet on a triangulated incline rests below the angle of friction, 
     const double a = kG * (std::sin(angle) - friction * std::cos(angle));
     CHECK(slide(backend, angle, friction, 0.5, friction > 0) ==
           doctest::Approx(a / 8).epsilon(0.01));
+  }
+}
+
+/// m, that the lowest particle is above a plane through the origin that is turned about z.
+double height_above(const Cloth& cloth, double angle) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3& x : positions(cloth))
+    least = std::min(least, x.y * std::cos(angle) - x.x * std::sin(angle));
+  return least;
+}
+
+TEST_CASE("cloth that begins exactly on a mesh comes to lie on it") {
+  const Backend backend = each_backend();
+  constexpr double kThickness = 1e-3;
+  for (const double angle : {0.0, 10 * kDegree}) {  // turned, particles are at rounding from it
+    for (const std::uint32_t cuts : {3u, 8u}) {     // as fine as the cloth: corner on corner
+      for (const bool two_sided : {false, true}) {
+        for (const bool is_box : {false, true}) {
+          CAPTURE(angle);
+          CAPTURE(cuts);
+          CAPTURE(two_sided);
+          CAPTURE(is_box);
+          if (two_sided && angle > 0) continue;  // either side is right there
+          Cloth cloth = cloth_of(sheet_at(9, 0, angle).scene, small_steps(backend));
+          TriangleMesh mesh = is_box ? box_mesh({0.5, 0.5, 0.5}, cuts) : plane_mesh(0.5, cuts);
+          mesh.two_sided = two_sided;
+          const double depth = is_box ? 0.25 : 0;
+          add(cloth, {.shape = shape_of(mesh),
+                      .pose = {.position = {depth * std::sin(angle), -depth * std::cos(angle), 0},
+                               .rotation = turn({0, 0, 1}, angle)},
+                      .thickness = kThickness,
+                      .friction = 1});
+          for (int i = 0; i < 20; ++i) {
+            const StepReport report = step(cloth, 1.0 / 60);
+            CHECK(report.status == Status::converged);
+            CHECK(report.intersecting == 0);
+          }
+          CHECK(height_above(cloth, angle) == doctest::Approx(kThickness).epsilon(0.01));
+        }
+      }
+    }
   }
 }
 
