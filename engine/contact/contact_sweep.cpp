@@ -76,8 +76,8 @@ double time_in_plane(PairKind kind, const Encountered& pair, double before, doub
 /// they are at one place.
 bool has_crossed(PairKind kind, const Encountered& pair, double thickness) {
   const double before = volume(kind, pair.start), after = volume(kind, pair.x);
-  if (after == 0 || (before != 0 && (before > 0) == (after > 0))) return false;
-  const double share = before == 0 ? 0 : time_in_plane(kind, pair, before, after);
+  if ((before > 0) == (after > 0)) return false;
+  const double share = time_in_plane(kind, pair, before, after);
   constexpr double kTogether = 0.01;  // of the thickness
   return length(nearest(kind, pair.at_share(share)).r) < kTogether * thickness + 1e-9;
 }
@@ -88,7 +88,10 @@ bool has_crossed(PairKind kind, const Encountered& pair, double thickness) {
 bool is_now_under(PairKind kind, const Encountered& pair, Vector r, Vector side, bool was_under,
                   double thickness) {
   if (dot(r, side) > 0) return false;
-  if (was_under && dot(nearest(kind, pair.start).r, side) <= 0) return true;
+  const Vector before = nearest(kind, pair.start).r;
+  if (was_under && dot(before, side) <= 0) return true;
+  constexpr double kAcross = 0.5;  // cosine: who touched may also have slid along the surface
+  if (length(before) <= kTouching) return dot(r, side) < -kAcross * length(r);
   return has_crossed(kind, pair, thickness);
 }
 

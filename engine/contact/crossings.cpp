@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/contact/geometry.h"
 
 namespace weft {
 
@@ -20,7 +21,8 @@ double volume(Vector a, Vector b, Vector c, Vector d) { return dot(cross(a - d, 
 /// What only touches the triangle does not lead through it.
 bool leads_through(Vector from, Vector to, const Corners& t) {
   const double side = volume(t[0], t[1], t[2], from), other = volume(t[0], t[1], t[2], to);
-  if (!((side < 0 && other > 0) || (side > 0 && other < 0))) return false;
+  const double touches = kTouching * length(cross(t[1] - t[0], t[2] - t[0]));
+  if (std::min(side, other) >= -touches || std::max(side, other) <= touches) return false;
   const double turns[] = {volume(from, to, t[0], t[1]), volume(from, to, t[1], t[2]),
                           volume(from, to, t[2], t[0])};
   const auto [least, most] = std::ranges::minmax(turns);

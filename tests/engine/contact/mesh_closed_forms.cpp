@@ -98,9 +98,9 @@ TEST_CASE("cloth that begins exactly on a mesh comes to lie on it") {
           CAPTURE(is_box);
           if (two_sided && angle > 0) continue;  // either side is right there
           Cloth cloth = cloth_of(sheet_at(9, 0, angle).scene, small_steps(backend));
-          TriangleMesh mesh = is_box ? box_mesh({0.5, 0.5, 0.5}, cuts) : plane_mesh(0.5, cuts);
+          TriangleMesh mesh = is_box ? box_mesh({0.6, 0.6, 0.6}, cuts) : plane_mesh(0.5, cuts);
           mesh.two_sided = two_sided;
-          const double depth = is_box ? 0.25 : 0;
+          const double depth = is_box ? 0.3 : 0;
           add(cloth, {.shape = shape_of(mesh),
                       .pose = {.position = {depth * std::sin(angle), -depth * std::cos(angle), 0},
                                .rotation = turn({0, 0, 1}, angle)},
