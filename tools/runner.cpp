@@ -138,7 +138,11 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   RunSummary summary;
   Errors errors;
   if (plan.resume) {  // whose bodies are those that were added, where they had come to
-    if (auto loaded = cloth.load_state(plan.resume->cloth); !loaded) return Error{loaded.error()};
+    if (auto loaded = cloth.load_state(plan.resume->cloth); !loaded) {
+      return Error{fmt::format(
+          "--resume: {}; a run goes on with the mesh, the material and the wind that it began with",
+          loaded.error())};
+    }
     summary.resumed_at = plan.resume->frame;
   }
   TriangleSet surface{{}, plan.surface};

@@ -43,7 +43,10 @@ void add_settings(py::module_& m) {
   py::class_<Settings> settings(m, "Settings",
                                 "How a cloth is solved, and to which error; see settings.h.");
   add_keywords<Settings>(settings);
-  settings.def_readwrite("tolerance", &Settings::tolerance, "strain that every step must reach")
+  settings
+      .def_readwrite("tolerance", &Settings::tolerance,
+                     "strain that every step must reach, "
+                     "of springs and fabric what is left of their laws")
       .def_readwrite("substeps", &Settings::substeps, "0: automatic")
       .def_readwrite("iterations", &Settings::iterations, "0: to the tolerance")
       .def_readwrite("renew_after", &Settings::renew_after, "iterations along the same directions")
