@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include "tools/text_file.h"
+#include "tools/wording.h"
 
 namespace weft::tools {
 
 int refuse(std::string_view message) {
-  print_message(fmt::format("weft: {}\n", message));
+  print_message(fmt::format("weft: {}\n", in_one_line(std::string(message))));
   return kRefused;
 }
 

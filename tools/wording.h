@@ -11,16 +11,21 @@
 
 namespace weft::tools {
 
+/// In one line, whatever a text from outside in it holds.
+inline std::string in_one_line(std::string text) {
+  for (char& c : text) {
+    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
+  }
+  return text;
+}
+
 /// As much of a text from outside as a message shows: its beginning, in one line.
 inline std::string shown(std::string_view text) {
   constexpr std::size_t kMost = 40;
   std::size_t end = std::min(kMost, text.size());
   const auto within_character = [](char byte) { return (byte & 0xc0) == 0x80; };  // of UTF-8
   while (end < text.size() && end > 0 && within_character(text[end])) --end;
-  std::string line(text.substr(0, end));
-  for (char& c : line) {
-    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
-  }
+  const std::string line = in_one_line(std::string(text.substr(0, end)));
   return end < text.size() ? line + "..." : line;
 }
 

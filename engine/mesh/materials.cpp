@@ -1,4 +1,5 @@
 #include <weft/mesh.h>
+#include <algorithm>
 
 #include <string>
 
@@ -77,7 +78,10 @@ Result<Material> find_material(std::string_view name) {
     if (named.name == name) return named.material;
     names += (names.empty() ? "" : ", ") + std::string(named.name);
   }
-  return Error{"material: there is no '" + std::string(name) + "', there are " + names};
+  std::string asked(name);
+  std::ranges::replace_if(
+      asked, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
+  return Error{"material: there is no '" + asked + "', there are " + names};
 }
 
 }  // namespace weft

@@ -53,6 +53,7 @@ TEST_CASE("options of a material that mean nothing are refused") {
   const struct {
     std::string options, error;
   } kRefused[] = {
+      {square + " --pin 'x\n>0'", "--pin: "},
       {square + " --material tweed",
        "--material: material: there is no 'tweed', there are cotton, denim, linen, polyester, "
        "silk, "
@@ -75,6 +76,7 @@ TEST_CASE("options of a material that mean nothing are refused") {
     const Outcome outcome = run_program(folder, "run " + options);
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.err.find(error) != std::string::npos);
+    CHECK(std::ranges::count(outcome.err, '\n') == 1);
   }
 }
 

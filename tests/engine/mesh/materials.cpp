@@ -39,6 +39,7 @@ TEST_CASE("of a name that there is not the error lists those that there are") {
   REQUIRE_FALSE(found);
   CHECK(found.error() ==
         "material: there is no 'tweed', there are cotton, denim, linen, polyester, silk, wool");
+  CHECK(find_material("a\n\x1b[31m").error().starts_with("material: there is no 'a??[31m', "));
 }
 
 TEST_CASE("a material's errors name the field and the value") {
