@@ -2,7 +2,10 @@
 #pragma once
 
 #include <benchmark/benchmark.h>
+#include <weft/result.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -25,6 +28,13 @@ struct Work {
   bool particles = false;
 };
 void count(benchmark::State& state, const Work& work, const Bandwidth& bandwidth);
+
+/// A failure here is a mistake in the benchmark.
+template <class T>
+T& checked(Result<T>& result) {
+  if (!result) std::fprintf(stderr, "%s\n", result.error().c_str()), std::exit(1);
+  return result.value();
+}
 
 std::vector<simd::Isa> supported_isas();
 std::string name_of(simd::Isa isa);

@@ -8,8 +8,6 @@
 #include <weft/batch.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -22,13 +20,6 @@ namespace {
 constexpr double kFrame = 0.01;  // s
 constexpr int kFrames = 40;      // all do the same ones
 constexpr int kSize = 20;
-
-/// A failure here is a mistake in this file.
-template <class T>
-T& checked(Result<T>& result) {
-  if (!result) std::fprintf(stderr, "%s\n", result.error().c_str()), std::exit(1);
-  return result.value();
-}
 
 std::vector<Cloth> cloths_of_cotton(std::int64_t number) {
   auto scene = scenes::make("hang", {.size = kSize, .material = find_material("cotton").value()});

@@ -8,8 +8,6 @@
 /// Both take kSteps steps from the start. Steps are as much shorter as the mesh is finer: with a
 /// fixed length a step would move a fine mesh by more than an edge.
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 
 #include "perf/benchmarks.h"
@@ -63,13 +61,6 @@ Settings settings_of(const Case& c) {
   settings.skip = c.method.skip;
   settings.iterations = c.iterations;
   return settings;
-}
-
-/// A failure here is a mistake in this file.
-template <class T>
-T& checked(Result<T>& result) {
-  if (!result) std::fprintf(stderr, "%s\n", result.error().c_str()), std::exit(1);
-  return result.value();
 }
 
 std::shared_ptr<const Model> model_of(const Case& c) {

@@ -9,15 +9,9 @@
 #include <string>
 #include <string_view>
 
-namespace weft::tools {
+#include "engine/model/validation.h"
 
-/// In one line, whatever a text from outside in it holds.
-inline std::string in_one_line(std::string text) {
-  for (char& c : text) {
-    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
-  }
-  return text;
-}
+namespace weft::tools {
 
 /// As much of a text from outside as a message shows: its beginning, in one line.
 inline std::string shown(std::string_view text) {

@@ -90,8 +90,7 @@ bool is_now_under(PairKind kind, const Encountered& pair, Vector r, Vector side,
   if (dot(r, side) > 0) return false;
   const Vector before = nearest(kind, pair.start).r;
   if (was_under && dot(before, side) <= 0) return true;
-  constexpr double kAcross = 0.5;  // cosine: who touched may also have slid along the surface
-  if (length(before) <= kTouching) return dot(r, side) < -kAcross * length(r);
+  if (length(before) <= kTouching) return dot(r, side) < -kTouching;  // else it slid along
   return has_crossed(kind, pair, thickness);
 }
 

@@ -49,9 +49,8 @@ void blow(const ContactScene& scene, const PairList& pairs, const Failure& failu
   const Vector n = direction_apart(mesh, pair, met);
   FourPoints before;
   for (std::size_t k = 0; k < 4; ++k) before[k] = points.start(four[k]);
-  constexpr double kApart = 0.01;  // of the thickness, before the surface: for what touched
-  const double l = length(nearest(pair.kind, before).r),
-               least = l > kTouching ? std::min(l, mesh.thickness) : kApart * mesh.thickness;
+  const double l = length(nearest(pair.kind, before).r);
+  const double least = l > kTouching ? std::min(l, mesh.thickness) : mesh.thickness;
   double height = 0, weight = 0;
   Vector approach{}, surface{};
   for (std::size_t k = 0; k < 4; ++k) {

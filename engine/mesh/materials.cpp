@@ -1,5 +1,4 @@
 #include <weft/mesh.h>
-#include <algorithm>
 
 #include <string>
 
@@ -78,10 +77,8 @@ Result<Material> find_material(std::string_view name) {
     if (named.name == name) return named.material;
     names += (names.empty() ? "" : ", ") + std::string(named.name);
   }
-  std::string asked(name);
-  std::ranges::replace_if(
-      asked, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
-  return Error{"material: there is no '" + asked + "', there are " + names};
+  return Error{"material: there is no '" + in_one_line(std::string(name)) + "', there are " +
+               names};
 }
 
 }  // namespace weft

@@ -24,6 +24,14 @@ inline std::string element(std::string_view field, std::size_t index) {
   return std::string(field) + "[" + std::to_string(index) + "]";
 }
 
+/// In one line, whatever a text from outside in it holds.
+inline std::string in_one_line(std::string text) {
+  for (char& c : text) {
+    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
+  }
+  return text;
+}
+
 inline Error refuse(std::string_view what, std::string_view reason, const std::string& value) {
   return Error{std::string(what) + ": " + std::string(reason) + " (" + value + ")"};
 }

@@ -83,9 +83,7 @@ WEFT_API Hull box(Vec3 size);
 /// opposite directions. Two-sided ones keep cloth on the side where it is. What begins exactly on
 /// a mesh is on the side from which its corners run counterclockwise.
 ///
-/// Meshes cost several times what other shapes do, and the more the finer they are: 900 particles
-/// draped over a ball take 0.9 ms a frame on a Ball, 4 on a mesh of 224 triangles, 13 on one of
-/// 4,000.
+/// Meshes cost many times what other shapes do (perf/README.md), and the more the finer they are.
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< those with two equal corners are left

@@ -27,4 +27,14 @@ void take_arrivals(std::vector<Arrival>& arrivals, Visit&& visit) {
   arrivals.clear();
 }
 
+/// Visits each slot once, in ascending order, and empties the list.
+template <class Visit>
+void take_each_once(std::vector<std::uint32_t>& slots, Visit&& visit) {
+  std::ranges::sort(slots);
+  const auto repeated = std::ranges::unique(slots);
+  slots.erase(repeated.begin(), repeated.end());
+  for (const std::uint32_t slot : slots) visit(slot);
+  slots.clear();
+}
+
 }  // namespace weft

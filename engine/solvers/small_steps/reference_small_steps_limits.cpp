@@ -1,6 +1,4 @@
 /// As simd_small_steps_limits.cpp, in double.
-#include <algorithm>
-
 #include "engine/solvers/small_steps/reference_points.h"
 #include "engine/tuning.h"
 
@@ -73,13 +71,9 @@ void ReferenceSmallSteps::read_contacts(std::vector<BodyTouch>& contacts) {
 }
 
 void ReferenceSmallSteps::end_motions() {
-  std::ranges::sort(touched_);
-  const auto repeated = std::ranges::unique(touched_);
-  touched_.erase(repeated.begin(), repeated.end());
-  for (const std::uint32_t slot : touched_) {
+  take_each_once(touched_, [&](std::uint32_t slot) {
     if (is_free(slot)) stop_at_contact(slot);
-  }
-  touched_.clear();
+  });
   take_arrivals(arrived_, [&](const Arrival& arrival) { begin_at_limit(arrival); });
 }
 

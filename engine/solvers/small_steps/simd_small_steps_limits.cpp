@@ -1,6 +1,4 @@
 /// Small steps at limits: anchors and bodies hold particles, and a motion ends where one arrives.
-#include <algorithm>
-
 #include "engine/solvers/small_steps/lane_particles.h"
 #include "engine/solvers/small_steps/simd_small_steps.h"
 
@@ -65,11 +63,7 @@ void SmallStepsSolver::read_contacts(std::vector<BodyTouch>& contacts) {
 
 /// A contact ends a motion, and so does a limit: from there a particle goes on at first order.
 void SmallStepsSolver::end_motions() {
-  std::ranges::sort(touched_);
-  const auto repeated = std::ranges::unique(touched_);
-  touched_.erase(repeated.begin(), repeated.end());
-  for (const std::uint32_t slot : touched_) stop_at_contact(slot);
-  touched_.clear();
+  take_each_once(touched_, [&](std::uint32_t slot) { stop_at_contact(slot); });
   take_arrivals(arrived_, [&](const Arrival& arrival) { begin_at_limit(arrival); });
 }
 
