@@ -6,6 +6,7 @@
 ///   NAME_irregular  an irregular triangle mesh as the engine has it: singles, in quads
 #include <algorithm>
 
+#include "engine/solvers/sweeps/pull_layout.h"
 #include "perf/benchmarks.h"
 
 namespace weft::perf {

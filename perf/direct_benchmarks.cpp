@@ -3,6 +3,7 @@
 
 #include "engine/model/model.h"
 #include "engine/solvers/direct/direct_factor.h"
+#include "engine/solvers/direct/direct_layout.h"
 #include "perf/benchmarks.h"
 #include "tools/scenes/scenes.h"
 

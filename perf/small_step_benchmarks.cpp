@@ -14,6 +14,7 @@
 #include "engine/solvers/small_steps/simd_bending.h"
 #include "engine/solvers/small_steps/simd_membrane.h"
 #include "engine/solvers/small_steps/simd_small_steps.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/tuning.h"
 #include "perf/benchmarks.h"
 #include "perf/meshes.h"
@@ -44,7 +45,7 @@ struct Falling {
   Team team;
   Settings settings;
   SmallStepsSolver solver;
-  ContactStore contacts;
+  SphereContacts contacts;
   kernels::Vectors x, v;
 
   Falling(const Kind& kind, simd::Isa isa, int size)

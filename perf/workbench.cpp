@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "engine/solvers/sweeps/simd_layout.h"
+#include "engine/measure/simd_layout.h"
 #include "kernels/runs.h"
 
 namespace weft::perf {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 
 namespace weft::tools {
 namespace {

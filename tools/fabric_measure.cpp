@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 #include "engine/mesh/pair_numbers.h"
 
 namespace weft::tools {

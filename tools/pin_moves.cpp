@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 
 namespace weft::tools {
 namespace {

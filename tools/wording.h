@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/model/validation.h"
+#include "engine/validation.h"
 
 namespace weft::tools {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/bodies/validate_bodies.h"
 #include "engine/bytes_of.h"
-#include "engine/model/validate.h"
 
 namespace weft {
 namespace {

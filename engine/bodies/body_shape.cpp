@@ -6,9 +6,9 @@
 #include <string>
 
 #include "engine/bodies/convex_hull.h"
-#include "engine/model/validation.h"
 #include "engine/public_vectors.h"
 #include "engine/saving/fields.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {

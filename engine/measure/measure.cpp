@@ -28,11 +28,11 @@ double Measure::spring_energy(kernels::VectorsView x, double give_per_mass, Team
                 : energy_of_springs(model_, x, give_per_mass);
 }
 
-double Measure::penetration(kernels::VectorsView x, ContactStore& contacts) const {
-  return model_.has_contacts() ? max_penetration(model_, table_, x, contacts) : 0;
+double Measure::penetration(kernels::VectorsView x, SphereContacts& contacts) const {
+  return model_.has_spheres() ? max_penetration(model_, table_, x, contacts) : 0;
 }
 
-double Measure::error(kernels::VectorsView x, const SpringLaws* laws, ContactStore& contacts,
+double Measure::error(kernels::VectorsView x, const SpringLaws* laws, SphereContacts& contacts,
                       Team& team) {
   const double of_lengths = laws != nullptr ? largest_violation(*laws, model_.constraints, x)
                                             : max_strain(x, team) / tolerance_;

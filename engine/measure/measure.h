@@ -5,11 +5,11 @@
 
 #include <optional>
 
-#include "engine/contacts/contacts.h"
 #include "engine/measure/simd_measure.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "kernels/simd/table.h"
 #include "kernels/vectors.h"
 
@@ -25,10 +25,11 @@ class Measure {
   /// J (energy_of_springs).
   double spring_energy(kernels::VectorsView x, double give_per_mass, Team& team);
   /// m; the search writes into the scratch of the store.
-  double penetration(kernels::VectorsView x, ContactStore& contacts) const;
+  double penetration(kernels::VectorsView x, SphereContacts& contacts) const;
   /// The larger of the largest strain and the deepest penetration, each in its tolerance. With
   /// laws, what is left of them counts in place of the strain.
-  double error(kernels::VectorsView x, const SpringLaws* laws, ContactStore& contacts, Team& team);
+  double error(kernels::VectorsView x, const SpringLaws* laws, SphereContacts& contacts,
+               Team& team);
   /// Of the simd backend.
   SimdMeasure& lanes() { return *lanes_; }
   std::size_t bytes() const;

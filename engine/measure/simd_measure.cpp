@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/bytes_of.h"
+#include "engine/measure/simd_layout.h"
 #include "engine/measure/state_measure.h"
 
 namespace weft {

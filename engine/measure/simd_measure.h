@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "engine/measure/simd_layout.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
-#include "engine/solvers/sweeps/simd_layout.h"
 #include "kernels/simd/table.h"
 
 namespace weft {

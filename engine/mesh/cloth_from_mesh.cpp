@@ -16,7 +16,7 @@
 #include "engine/mesh/pieces.h"
 #include "engine/mesh/rays.h"
 #include "engine/mesh/welding.h"
-#include "engine/model/validation.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace mesh {

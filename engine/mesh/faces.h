@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 
 namespace weft::mesh {
 

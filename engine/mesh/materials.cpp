@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/model/validation.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "engine/mesh/geometry.h"
-#include "engine/model/validation.h"
+#include "engine/geometry.h"
+#include "engine/validation.h"
 
 namespace weft::mesh {
 namespace {

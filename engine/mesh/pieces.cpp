@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 #include "engine/mesh/partition.h"
 
 namespace weft::mesh {

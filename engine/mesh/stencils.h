@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 
 namespace weft::mesh {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/mesh/mesh_input.h"
-#include "engine/model/validation.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace mesh {

@@ -4,7 +4,7 @@
 #include <map>
 #include <tuple>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 #include "engine/mesh/mesh_input.h"
 #include "engine/mesh/partition.h"
 

@@ -43,7 +43,7 @@ class Describer {
       description_.positions.push_back(to_public(model_.initial_position[slot]));
       description_.velocities.push_back(to_public(model_.initial_velocity[slot]));
       description_.masses.push_back(model_.mass[slot]);
-      if (model_.has_contacts()) description_.radii.push_back(model_.radius[slot]);
+      if (model_.has_spheres()) description_.radii.push_back(model_.radius[slot]);
     }
     description_.fixed = particles(model_.pins);
     description_.spheres = particles(model_.spheres);

@@ -4,14 +4,10 @@
 
 #include "engine/bytes_of.h"
 #include "engine/model/validate.h"
+#include "kernels/reference/relax.h"
 
 namespace weft {
 namespace {
-
-template <class Layout>
-std::size_t bytes_if_made(const OnDemand<Layout>& layout) {
-  return layout.if_made() != nullptr ? layout.if_made()->bytes() : 0;
-}
 
 std::size_t bytes_of_bits(const std::vector<bool>& bits) { return bits.capacity() / 8; }
 
@@ -274,8 +270,7 @@ void Model::set_bending_compliances(std::span<const ChangedValue> compliances) {
         std::ranges::find(inert.bending, c.index, &InertStore::Entry<BendingElement>::described);
     at->entry.compliance = c.value;
   }
-  if (const SmallStepsLayout* layout = small_steps_.if_made())
-    small_steps_.put(std::make_shared<const SmallStepsLayout>(with_bending_of(*this, *layout)));
+  renew_bending_layout();
 }
 
 /// Inert constraints are not in the store: another end is free. Points of anchors count by
@@ -322,7 +317,7 @@ void Model::store_hubs(const Draft& draft, ConstraintKind kind) {
 
 /// Spheres are hubs.
 void Model::find_joined() {
-  if (!has_contacts()) return;
+  if (!has_spheres()) return;
   const ConstraintStore& s = constraints;
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
     if (is_sphere[a]) joined_.push_back(pair_of(a, b));
@@ -359,29 +354,6 @@ void Model::append(const Constraint& c, std::uint32_t described, std::uint32_t a
   s.slot.push_back(kNoIndex);
 }
 
-const ReferenceLayout& Model::reference() const {
-  return reference_.get([this] { return make_reference_layout(*this); });
-}
-
-const PullLayout& Model::pulls() const {
-  return pulls_.get([this] { return make_pull_layout(ordering); });
-}
-const SimdLayout& Model::simd() const {
-  return simd_.get([this] { return make_simd_layout(*this); });
-}
-
-const ChunkNeighbours& Model::chunk_neighbours() const {
-  return chunk_neighbours_.get([this] { return find_chunk_neighbours(simd()); });
-}
-
-const DirectLayout& Model::direct() const {
-  return direct_.get([this] { return make_direct_layout(*this); });
-}
-
-const YarnLayout& Model::yarns() const {
-  return yarns_.get([this] { return make_yarn_layout(*this); });
-}
-
 const TriangleSurface& Model::touched_surface() const {
   return touched_surface_.get([this] {
     std::vector<std::array<double, 3>> places;
@@ -397,10 +369,6 @@ const TriangleSurface& Model::touched_surface() const {
     }
     return make_triangle_surface(surface, places, loose);
   });
-}
-
-const SmallStepsLayout& Model::small_steps() const {
-  return small_steps_.get([this] { return make_small_steps_layout(*this); });
 }
 
 std::vector<Link> links_of(const ConstraintStore& store, std::size_t count) {
@@ -447,10 +415,9 @@ std::size_t Model::bytes() const {
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + ordering.bytes() + constraints.bytes() + membrane.bytes() +
          bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() + bytes_of(surface) +
-         bytes_of(air.triangles) + air.at.bytes() + bytes_if_made(reference_) +
-         bytes_if_made(simd_) + bytes_if_made(chunk_neighbours_) + bytes_if_made(pulls_) +
-         bytes_if_made(direct_) + bytes_if_made(yarns_) + bytes_if_made(small_steps_) +
-         bytes_if_made(touched_surface_);
+         bytes_of(air.triangles) + air.at.bytes() + reference_.bytes() + simd_.bytes() +
+         chunk_neighbours_.bytes() + pulls_.bytes() + direct_.bytes() + yarns_.bytes() +
+         small_steps_.bytes() + touched_surface_.bytes();
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

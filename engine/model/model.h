@@ -18,18 +18,20 @@
 #include "engine/model/on_demand.h"
 #include "engine/model/unevenness.h"
 #include "engine/ordering/ordering.h"
-#include "engine/solvers/direct/direct_layout.h"
-#include "engine/solvers/small_steps/small_steps_layout.h"
-#include "engine/solvers/sweeps/pull_layout.h"
-#include "engine/solvers/sweeps/reference_layout.h"
-#include "engine/solvers/sweeps/simd_layout.h"
-#include "engine/solvers/yarn/yarn_layout.h"
 #include "engine/triangles/triangle_surface.h"
 #include "kernels/reference/anchors.h"
 #include "kernels/reference/membrane.h"
 #include "kernels/vectors.h"
 
 namespace weft {
+
+struct ChunkNeighbours;
+struct DirectLayout;
+struct PullLayout;
+struct ReferenceLayout;
+struct SimdLayout;
+struct SmallStepsLayout;
+struct YarnLayout;
 
 /// The active constraints in solver order; within each range in the order of the batches:
 ///
@@ -195,7 +197,7 @@ class Model {
   }
   /// Whether anything obeys a law with a compliance: springs or triangles of fabric.
   bool has_laws() const { return constraints.has_springs() || membrane.size() > 0; }
-  bool has_contacts() const { return !spheres.empty(); }
+  bool has_spheres() const { return !spheres.empty(); }
   /// Of a particle; kNoIndex: none.
   std::uint32_t anchor_of(std::uint32_t particle) const {
     return anchors.at.empty() ? kNoIndex : anchors.at[ordering.slot_of[particle]];
@@ -210,7 +212,9 @@ class Model {
   bool is_particle(std::size_t slot) const { return ordering.particle_at[slot] != kNoIndex; }
   std::size_t bytes() const;
 
-  /// What each backend or solver needs besides; made when first asked for, by whichever thread.
+  /// Each backend and solver needs a layout besides. It is made when it is first asked for, by
+  /// whichever thread. The source of each layout defines its function, so that a change of a layout
+  /// compiles its solver alone.
   const ReferenceLayout& reference() const;
   const SimdLayout& simd() const;
   const ChunkNeighbours& chunk_neighbours() const;
@@ -237,6 +241,8 @@ class Model {
   void list_air_triangles();
   void find_holds();
   void find_joined();
+  /// Where the layout of small steps is made already.
+  void renew_bending_layout();
   void append(const Constraint& constraint, std::uint32_t described, std::uint32_t a,
               std::uint32_t b);
 

@@ -6,9 +6,9 @@
 
 #include "engine/model/change.h"
 #include "engine/model/model.h"
-#include "engine/model/validation.h"
 #include "engine/saving/fields.h"
 #include "engine/saving/sealed.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {

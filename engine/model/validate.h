@@ -8,12 +8,7 @@ namespace weft {
 class Model;
 
 Result<void> validate(const SceneDescription& description);
-Result<void> validate(const Settings& settings);
 Result<void> validate(const Changes& changes, const Model& model);
-/// For the simd backend: whether floats can square lengths and the tolerances that are used.
-Result<void> validate_for_lanes(const Settings& settings, const Model& model);
-/// Whether the solver that was chosen knows all that the model has.
-Result<void> validate_for_solver(const Settings& resolved, const Model& model);
 /// What a description says besides particles, constraints and spheres.
 Result<void> validate_material(const SceneDescription& description);
 Result<void> validate_anchors(const SceneDescription& description);
@@ -25,13 +20,10 @@ Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> poin
 Result<void> validate_anchor_limits(const Model& model, std::span<const AnchorLimit> limits);
 Result<void> validate_anchor_limit(const Model& model, std::uint32_t anchor,
                                    const AnchorLimit& limit);
-Result<void> validate(const Body& body);
-Result<void> validate(const Pose& pose);
 Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_wind(Vec3 wind);
 Result<void> validate_motion(const RigidMotion& motion, double share);
 Result<void> validate_time_step(double dt);
-Result<void> validate(const JobSystem& jobs);
 /// One finite vector per particle.
 Result<void> validate_vectors(std::string_view field, std::span<const Vec3> vectors,
                               std::size_t particles);

@@ -3,7 +3,7 @@
 
 #include "engine/model/model.h"
 #include "engine/model/validate.h"
-#include "engine/model/validation.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/model/validate.h"
-#include "engine/model/validation.h"
+#include "engine/validation.h"
 #include "kernels/reference/membrane.h"
 
 namespace weft {

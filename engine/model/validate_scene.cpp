@@ -4,7 +4,7 @@
 #include <span>
 
 #include "engine/model/validate.h"
-#include "engine/model/validation.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {

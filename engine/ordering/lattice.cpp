@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 
 namespace weft {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 #include "engine/ordering/incidence.h"
 #include "engine/ordering/used_colours.h"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "engine/model/validation.h"
 #include "engine/saving/archive.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {

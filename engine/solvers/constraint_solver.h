@@ -8,9 +8,9 @@
 /// are one formula.
 #pragma once
 
-#include "engine/contacts/contacts.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/parallel/team.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "kernels/loop.h"
 #include "kernels/vectors.h"
 
@@ -20,7 +20,7 @@ namespace weft {
 struct PositionTask {
   kernels::VectorsView x;  // in: the prediction; out: the solution, or the nearest that was found
   kernels::VectorsView start;  // where the substep began
-  ContactStore& contacts;      // of which measuring uses the scratch
+  SphereContacts& contacts;    // of which measuring uses the scratch
   double h = 0;                // s, of the substep
   bool along_start = false;    // impulses act along the directions at `start` (scheme rattle)
   bool first_round = true;     // contacts were found anew: accumulated impulses begin at 0
@@ -32,7 +32,7 @@ struct PositionTask {
 /// Velocities that are to be brought within the velocity tolerance, at the positions x.
 struct VelocityTask {
   kernels::VectorsView x, v;
-  const ContactStore& contacts;
+  const SphereContacts& contacts;
   bool exact = false;  // removes what is within tolerance as well (scheme rattle)
   int max_iterations = 1;
 };

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "engine/contacts/contacts.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "engine/step/motion.h"
 
 namespace weft {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/solvers/small_steps/small_steps.h"
+
 namespace weft {
 
 using kernels::Vector;

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "engine/contacts/contacts.h"
-#include "engine/contacts/crossings.h"
 #include "engine/measure/state_measure.h"
+#include "engine/solvers/sweeps/sweeps.h"
+#include "engine/spheres/passages.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "engine/step/energy.h"
 #include "engine/step/motion.h"
 #include "engine/step/pin_work.h"
@@ -14,7 +15,7 @@
 namespace weft {
 
 void find_contacts(State& s, StepReport& report) {
-  if (!s.model->has_contacts()) return;
+  if (!s.model->has_spheres()) return;
   timed(report, Stage::find_contacts,
         [&] { find_contacts(*s.model, *s.kernels, s.solved.view(), s.contacts); });
 }
@@ -30,7 +31,7 @@ kernels::LoopResult solve_positions(State& s, ConstraintSolver& solver, Position
     sum.failed = result.failed;
     task.first_round = false;
     task.max_iterations = std::max(1, task.max_iterations - result.iterations);
-    const bool again = s.model->has_contacts() && result.converged &&
+    const bool again = s.model->has_spheres() && result.converged &&
                        add_missed_contacts(*s.model, *s.kernels, task.x,
                                            s.settings.contact_tolerance, s.contacts) > 0;
     if (!again) break;
@@ -187,10 +188,10 @@ class ExactSubstep {
   }
 
   void watch_crossings() {
-    if (!s_.model->has_contacts()) return;
+    if (!s_.model->has_spheres()) return;
     timed(report_, Stage::find_contacts, [&] {
       const std::uint32_t passed =
-          find_crossing(*s_.model, *s_.kernels, s_.position.view(), s_.solved.view(), s_.contacts);
+          find_passage(*s_.model, *s_.kernels, s_.position.view(), s_.solved.view(), s_.contacts);
       if (passed == kNoIndex) return;
       trial_.passed_particle = s_.model->ordering.particle_at[passed];
       trial_.worsen(Status::passed_through);

@@ -13,7 +13,7 @@ inline kernels::Vector acceleration(const State& s, std::size_t slot) {
 }
 /// What is no sphere and can move.
 inline bool is_free_cloth(const Model& model, std::size_t slot) {
-  return model.inverse_mass[slot] != 0 && !(model.has_contacts() && model.is_sphere[slot]);
+  return model.inverse_mass[slot] != 0 && !(model.has_spheres() && model.is_sphere[slot]);
 }
 /// What the reference's stages work on.
 reference::Motion reference_motion(State& s);

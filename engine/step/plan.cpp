@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <limits>
 
-#include "engine/contacts/contacts.h"
 #include "engine/measure/state_measure.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/solvers/yarn/yarn_solver.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "engine/step/air.h"
 #include "engine/step/motion.h"
 #include "engine/step/reporting.h"

@@ -1,5 +1,6 @@
 #include "engine/step/previewed_sweeps.h"
 
+#include "engine/solvers/sweeps/sweeps.h"
 #include "engine/step/motion.h"
 
 namespace weft {

@@ -5,8 +5,9 @@
 #include <utility>
 
 #include "engine/model/saved_model.h"
-#include "engine/model/validation.h"
 #include "engine/saving/sealed.h"
+#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <limits>
 
-#include "engine/contacts/contacts.h"
-#include "engine/contacts/crossings.h"
 #include "engine/measure/state_measure.h"
 #include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/solvers/stall.h"
+#include "engine/solvers/sweeps/sweeps.h"
+#include "engine/spheres/passages.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "engine/step/air.h"
 #include "engine/step/burden.h"
 #include "engine/step/energy.h"
@@ -197,14 +199,14 @@ class Frame {
     ++substeps_done_;
     const bool mends = to_tolerance && mends_now();
     if (mends) sweep_until_few_are_out(tuning::kMended, rest);
-    if (s_.model->has_contacts()) find_contacts();
+    if (s_.model->has_spheres()) find_contacts();
     if (mends) {
       count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest), team_));
     } else if (to_tolerance && s_.contacts.count() > 0) {
       count(solver_.repair(s_.contacts, 0, team_));
     }
     solver_.end_seams();
-    if (s_.model->has_contacts()) watch_crossings();
+    if (s_.model->has_spheres()) watch_crossings();
   }
 
   /// Puts right what the last substep left out of tolerance, in rounds of a sweep and local passes
@@ -441,11 +443,11 @@ class Frame {
   void watch_crossings() {
     const double way = solver_.largest_move(team_);
     s_.nearby.move(way);
-    if (!may_have_crossed(*s_.model, way)) return;
+    if (!may_have_passed(*s_.model, way)) return;
     solver_.read_starts(s_.substep_positions.view(), team_);
     read_positions();
-    const std::uint32_t passed = find_crossing(*s_.model, *s_.kernels, s_.substep_positions.view(),
-                                               s_.solved.view(), s_.contacts);
+    const std::uint32_t passed = find_passage(*s_.model, *s_.kernels, s_.substep_positions.view(),
+                                              s_.solved.view(), s_.contacts);
     if (passed != kNoIndex) passed_particle = s_.model->ordering.particle_at[passed];
   }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 
 namespace weft {
 namespace {

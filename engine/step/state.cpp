@@ -6,6 +6,10 @@
 #include "engine/bytes_of.h"
 #include "engine/isa.h"
 #include "engine/model/change.h"
+#include "engine/solvers/direct/direct_solver.h"
+#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/sweeps/sweeps.h"
+#include "engine/solvers/yarn/yarn_solver.h"
 #include "engine/step/air.h"
 #include "engine/step/choose_solver.h"
 #include "engine/step/fast_springs.h"
@@ -39,7 +43,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     v->resize(model->slots());
   }
   impulses.resize((model->slots() + kStretch - 1) / kStretch);
-  contacts = make_contact_store(*model);
+  contacts = make_sphere_contacts(*model);
   if (settings.backend == Backend::reference) predicted.resize(model->slots());
   if (is_resisted(*model)) total_force.resize(model->slots());
   if (model->damping.motion > 0) velocity_before_decay.resize(model->slots());
@@ -57,6 +61,8 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
     arena_run = std::make_shared<ArenaRun>();
   }
 }
+
+State::~State() = default;
 
 int State::threads_worth_having() const {
   if (settings.backend == Backend::reference) return 1;
@@ -84,7 +90,7 @@ void State::make_solvers() {
   if (settings.solver == Solver::small_steps || (exact && to_tolerance)) {
     if (exact) own.scheme = Scheme::implicit;  // whoever takes over has no past
     small_steps = make_small_steps(*model, own, *kernels);
-    if (model->has_contacts()) substep_positions.resize(model->slots());
+    if (model->has_spheres()) substep_positions.resize(model->slots());
     if (model->heaviest_sphere > 0) inverse_mass_of_met = model->inverse_mass;
   }
   if (yarn) {

@@ -19,8 +19,6 @@
 #include <vector>
 
 #include "engine/bodies/bodies.h"
-#include "engine/contacts/contacts.h"
-#include "engine/contacts/nearby.h"
 #include "engine/measure/measure.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
@@ -28,10 +26,9 @@
 #include "engine/parallel/team.h"
 #include "engine/saving/fields.h"
 #include "engine/solvers/constraint_solver.h"
-#include "engine/solvers/direct/direct_solver.h"
-#include "engine/solvers/small_steps/small_steps.h"
-#include "engine/solvers/sweeps/sweeps.h"
-#include "engine/solvers/yarn/yarn_solver.h"
+#include "engine/solvers/small_steps/body_report.h"
+#include "engine/spheres/nearby_pairs.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "engine/step/anchors.h"
 #include "engine/step/pins.h"
 #include "engine/step/rest.h"
@@ -40,6 +37,11 @@
 #include "kernels/vectors.h"
 
 namespace weft {
+
+class DirectSolver;
+class SmallSteps;
+class Sweeps;
+class YarnSolver;
 
 /// Of the air at a corner of a triangle, kg/s (air.h).
 struct Resistance {
@@ -119,9 +121,9 @@ struct State : LastingState {
   kernels::Vectors next_velocity;
   Checkpoint step_start;
   kernels::Vectors substep_positions;  // where a fast substep began; with contacts only
-  ContactStore contacts;
-  NearbyPairs nearby;      // of the present frame of small steps
-  BodyReport body_report;  // of the present attempt by small steps
+  SphereContacts contacts;
+  NearbySpherePairs nearby;  // of the present frame of small steps
+  BodyReport body_report;    // of the present attempt by small steps
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots
   kernels::AlignedVector<double>
@@ -144,6 +146,7 @@ struct State : LastingState {
   bool is_in_batch = false;  // and has not been stepped in it
 
   State(std::shared_ptr<const Model> model, const Settings& settings);
+  ~State();
   /// What acts besides gravity; empty: nothing.
   kernels::Vectors& forces() { return total_force.size() > 0 ? total_force : force; }
   const kernels::Vectors& forces() const { return total_force.size() > 0 ? total_force : force; }

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "engine/bytes_of.h"
+#include "engine/geometry.h"
 #include "engine/lists.h"
-#include "engine/mesh/geometry.h"
 #include "engine/mesh/mesh_input.h"
 
 namespace weft::surface {

@@ -1,6 +1,6 @@
 #include "engine/surface/following.h"
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 
 namespace weft::surface {
 namespace {

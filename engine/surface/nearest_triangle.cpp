@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/mesh/geometry.h"
+#include "engine/geometry.h"
 
 namespace weft::surface {
 namespace {

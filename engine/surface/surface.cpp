@@ -9,10 +9,10 @@
 #include "engine/mesh/mesh_input.h"
 #include "engine/mesh/welding.h"
 #include "engine/model/validate.h"
-#include "engine/model/validation.h"
 #include "engine/surface/drawn_mesh.h"
 #include "engine/surface/following.h"
 #include "engine/surface/normals.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace surface {

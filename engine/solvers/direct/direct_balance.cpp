@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/solvers/direct/direct_layout.h"
 #include "engine/tuning.h"
 
 namespace weft {

@@ -16,6 +16,7 @@
 #pragma once
 
 #include "engine/solvers/direct/direct_factor.h"
+#include "engine/solvers/direct/direct_layout.h"
 #include "engine/solvers/direct/direct_system.h"
 
 namespace weft {

@@ -175,4 +175,8 @@ std::size_t DirectLayout::bytes() const {
          bytes_of(links) + bytes_of(bodies) + bytes_of(body_of);
 }
 
+const DirectLayout& Model::direct() const {
+  return direct_.get([this] { return make_direct_layout(*this); });
+}
+
 }  // namespace weft

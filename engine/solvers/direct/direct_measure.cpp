@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "engine/solvers/direct/direct_layout.h"
+
 namespace weft {
 namespace {
 
@@ -85,7 +87,7 @@ void add_contact(DirectSystem& s, const Tie& contact) {
 }
 
 template <class Read>
-void measure_contacts(DirectSystem& s, const ContactStore& contacts, Judge& takes_part,
+void measure_contacts(DirectSystem& s, const SphereContacts& contacts, Judge& takes_part,
                       Read&& read) {
   s.turned |= !s.touches.empty();
   for (const Tie& touch : s.touches) s.touch_of[touch.b] = kNoIndex;
@@ -102,7 +104,7 @@ void measure_contacts(DirectSystem& s, const ContactStore& contacts, Judge& take
 
 /// read(index, a, b, target) returns the Reading of a constraint or contact.
 template <class Read>
-double measure(DirectSystem& system, const ContactStore& contacts, Read&& read) {
+double measure(DirectSystem& system, const SphereContacts& contacts, Read&& read) {
   Judge takes_part{system};
   system.active = 0;
   measure_rows(system, takes_part, read);
@@ -114,7 +116,7 @@ double measure(DirectSystem& system, const ContactStore& contacts, Read&& read) 
 }  // namespace
 
 double measure_positions(DirectSystem& system, VectorsView x, VectorsView start,
-                         const ContactStore& contacts) {
+                         const SphereContacts& contacts) {
   const std::size_t constraints = start.x == nullptr ? 0 : system.model.constraints.size();
   return measure(system, contacts,
                  [&](std::uint32_t index, std::uint32_t a, std::uint32_t b, double target) {
@@ -128,7 +130,7 @@ double measure_positions(DirectSystem& system, VectorsView x, VectorsView start,
 
 /// One-sided constraints take part only where they are taut or touch at x.
 double measure_velocities(DirectSystem& system, VectorsView x, VectorsView v,
-                          const ContactStore& contacts) {
+                          const SphereContacts& contacts) {
   return measure(system, contacts,
                  [&](std::uint32_t index, std::uint32_t a, std::uint32_t b, double target) {
                    const Vector d = x[a] - x[b];

@@ -11,8 +11,8 @@ namespace weft {
 /// number. If `start` is given, for scheme rattle, the directions of constraints are those at
 /// `start`; contacts come about within a step and always act along their directions at x.
 double measure_positions(DirectSystem& system, kernels::VectorsView x, kernels::VectorsView start,
-                         const ContactStore& contacts);
+                         const SphereContacts& contacts);
 double measure_velocities(DirectSystem& system, kernels::VectorsView x, kernels::VectorsView v,
-                          const ContactStore& contacts);
+                          const SphereContacts& contacts);
 
 }  // namespace weft

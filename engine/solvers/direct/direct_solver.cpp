@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/solvers/direct/direct_impulses.h"
+#include "engine/solvers/direct/direct_layout.h"
 #include "engine/solvers/direct/direct_measure.h"
 #include "engine/solvers/stall.h"
 #include "engine/tuning.h"
@@ -73,8 +74,9 @@ LoopResult DirectSolver::solve_from_start(const PositionTask& task) {
 }
 
 /// Newton's method from x; with directions at `start`, the simplified Newton method.
-DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const ContactStore& contacts,
-                                    int max_iterations, LoopResult& result) {
+DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start,
+                                    const SphereContacts& contacts, int max_iterations,
+                                    LoopResult& result) {
   Stall stall(tuning::kDirectPatience);
   const double goal = std::min(1.0, tuning::kDirectGoal / settings_.tolerance);
   bool solved = false;
@@ -96,7 +98,7 @@ DirectOutcome DirectSolver::iterate(VectorsView x, VectorsView start, const Cont
   }
 }
 
-DirectOutcome DirectSolver::iterate_stiff(VectorsView x, const ContactStore& contacts,
+DirectOutcome DirectSolver::iterate_stiff(VectorsView x, const SphereContacts& contacts,
                                           int max_iterations, LoopResult& result) {
   copy(start_.view(), x, start_.size());
   system_.start(contacts, true, system_.laws);
@@ -105,7 +107,7 @@ DirectOutcome DirectSolver::iterate_stiff(VectorsView x, const ContactStore& con
 }
 
 DirectOutcome DirectSolver::iterate_fixed(VectorsView x, VectorsView start,
-                                          const ContactStore& contacts, LoopResult& result) {
+                                          const SphereContacts& contacts, LoopResult& result) {
   while (result.iterations < settings_.iterations) {
     measure_positions(system_, x, start, contacts);
     result.visits += system_.count();
@@ -132,7 +134,7 @@ LoopResult DirectSolver::correct_velocities(const VelocityTask& task, Team&) {
 /// The constraints are linear in the velocities, so that more than one solve is needed only where
 /// the active set changes.
 DirectOutcome DirectSolver::iterate_velocities(VectorsView x, VectorsView v,
-                                               const ContactStore& contacts, bool exact,
+                                               const SphereContacts& contacts, bool exact,
                                                int max_iterations, LoopResult& result) {
   const bool fixed = settings_.iterations > 0;
   Stall stall(tuning::kDirectPatience);

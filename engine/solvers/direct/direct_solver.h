@@ -61,14 +61,14 @@ class DirectSolver final : public ConstraintSolver {
   kernels::LoopResult solve_from_prediction(const PositionTask& task);
   kernels::LoopResult solve_from_start(const PositionTask& task);
   DirectOutcome iterate(kernels::VectorsView x, kernels::VectorsView start,
-                        const ContactStore& contacts, int max_iterations,
+                        const SphereContacts& contacts, int max_iterations,
                         kernels::LoopResult& result);
-  DirectOutcome iterate_stiff(kernels::VectorsView x, const ContactStore& contacts,
+  DirectOutcome iterate_stiff(kernels::VectorsView x, const SphereContacts& contacts,
                               int max_iterations, kernels::LoopResult& result);
   DirectOutcome iterate_fixed(kernels::VectorsView x, kernels::VectorsView start,
-                              const ContactStore& contacts, kernels::LoopResult& result);
+                              const SphereContacts& contacts, kernels::LoopResult& result);
   DirectOutcome iterate_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                   const ContactStore& contacts, bool exact, int max_iterations,
+                                   const SphereContacts& contacts, bool exact, int max_iterations,
                                    kernels::LoopResult& result);
   bool solve(kernels::VectorsView u, kernels::LoopResult& result);
 

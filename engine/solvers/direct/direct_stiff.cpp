@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/direct/direct_layout.h"
 #include "engine/solvers/direct/direct_measure.h"
 #include "engine/tuning.h"
 
@@ -38,14 +39,14 @@ int most_solves(const DirectLayout& layout) {
 
 DirectStiff::DirectStiff(const Model& model) {
   if (model.uneven.ratio < tuning::kNearlyEqualMasses || !model.direct().bodies.empty() ||
-      model.has_contacts())
+      model.has_spheres())
     return;
   soft_.resize(model.slots());
 }
 
 DirectOutcome DirectStiff::iterate(DirectSystem& system, DirectFactor& factor,
                                    DirectBalance& balance, VectorsView x,
-                                   const ContactStore& contacts, int max_iterations,
+                                   const SphereContacts& contacts, int max_iterations,
                                    LoopResult& result) {
   const Model& model = system.model;
   const int most = most_solves(system.layout);

@@ -35,7 +35,7 @@ class DirectStiff {
   bool wanted() const { return !soft_.empty(); }
   /// Iterates from x, which is also the prediction of the balance.
   DirectOutcome iterate(DirectSystem& system, DirectFactor& factor, DirectBalance& balance,
-                        kernels::VectorsView x, const ContactStore& contacts, int max_iterations,
+                        kernels::VectorsView x, const SphereContacts& contacts, int max_iterations,
                         kernels::LoopResult& result);
   std::size_t bytes() const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/direct/direct_layout.h"
 
 namespace weft {
 
@@ -14,11 +15,11 @@ DirectSystem::DirectSystem(const Model& model, const Settings& settings)
   nz.resize(rows);
   lambda.resize(rows);
   total.resize(model.constraints.size());
-  if (model.has_contacts()) touch_of.assign(model.slots(), kNoIndex);
+  if (model.has_spheres()) touch_of.assign(model.slots(), kNoIndex);
   ties.reserve(layout.links.size());
 }
 
-void DirectSystem::start(const ContactStore& contacts, bool fresh, const SpringLaws* its_laws) {
+void DirectSystem::start(const SphereContacts& contacts, bool fresh, const SpringLaws* its_laws) {
   laws = its_laws;
   if (laws != nullptr) turned = true;  // softness depends on h
   if (fresh) total.clear();

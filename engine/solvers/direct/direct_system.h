@@ -12,9 +12,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/contacts/contacts.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -52,7 +52,7 @@ struct DirectSystem {
   std::int64_t count() const { return static_cast<std::int64_t>(total.size()); }
 
   /// Makes room for the contacts. If `fresh`, every accumulated impulse becomes 0.
-  void start(const ContactStore& contacts, bool fresh, const SpringLaws* laws = nullptr);
+  void start(const SphereContacts& contacts, bool fresh, const SpringLaws* laws = nullptr);
   /// The length of a constraint at which it has no error: a spring gives way to what its impulse
   /// has come to.
   double target(std::uint32_t index) const;

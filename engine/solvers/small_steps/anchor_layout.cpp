@@ -5,6 +5,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
+#include "engine/solvers/yarn/yarn_places.h"
 
 namespace weft {
 namespace {

@@ -56,7 +56,7 @@ BodyLayout make_body_layout(const Model& model, const YarnPlaces& places, double
     layout.slot_at[at] = place.slot;
     layout.place_of[place.slot] = static_cast<std::uint32_t>(at);
     block.mass[place.lane] = static_cast<float>(model.mass[place.slot]);
-    if (model.has_contacts())
+    if (model.has_spheres())
       block.radius[place.lane] = static_cast<float>(model.radius[place.slot]);
     const auto most = static_cast<float>(far * shortest[place.slot]);
     block.far[place.lane] = most * most;

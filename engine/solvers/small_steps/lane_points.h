@@ -8,6 +8,7 @@
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
 #include "engine/solvers/small_steps/arrivals.h"
+#include "engine/solvers/small_steps/point_particles.h"
 #include "engine/solvers/small_steps/simd_bodies.h"
 #include "engine/solvers/small_steps/simd_membrane.h"
 #include "engine/solvers/yarn/yarn_places.h"
@@ -118,11 +119,27 @@ struct LanePoints {
     const reference::Held held = anchors.hold(anchor, place(u, slot), settled(slot));
     if (held.is_at_limit) put(slot, held.x, held.v);
   }
-  void grip(std::uint32_t slot) const;  // lane_particles.h
+  void grip(std::uint32_t slot) const;
   void push(std::uint32_t slot, kernels::Vector by) const {
     move(slot, by);
     touched.push_back(slot);
   }
 };
+
+/// The same as contacts with meshes see them.
+using LaneParticles = PointParticles<LanePoints>;
+
+inline void LanePoints::grip(std::uint32_t slot) const {
+  SimdBodies::Particle particle{position_at_start(slot), position(slot), settled(slot)};
+  const TouchedSurface surface = bodies->hold(slot, particle);
+  if (surface.is_there()) {
+    put(slot, particle.x, particle.v);
+    put_start(slot, particle.start);
+    if (bodies->begins_to_touch(slot)) arrived.push_back({slot, surface});
+  }
+  if (!bodies->has_meshes()) return;
+  LaneParticles particles(*this);
+  bodies->hold_by_meshes(slot, particles);
+}
 
 }  // namespace weft

@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "engine/contacts/contacts.h"
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/laws.h"
 #include "engine/solvers/small_steps/local_items.h"
 #include "engine/solvers/small_steps/membrane_laws.h"
+#include "engine/spheres/sphere_contacts.h"
 
 namespace weft {
 
@@ -57,7 +57,7 @@ class LocalPasses {
   /// push(slot, by), of a contact. With springs also what laws.h asks of them, with triangles of
   /// fabric what membrane_laws.h does.
   template <class Points>
-  LocalWork run(Points& points, const ContactStore& contacts, const LocalLimits& limits);
+  LocalWork run(Points& points, const SphereContacts& contacts, const LocalLimits& limits);
   std::size_t bytes() const;
 
  private:
@@ -71,7 +71,7 @@ class LocalPasses {
   template <class Points>
   bool relax_by_law(Points& points, std::uint32_t constraint, const LocalLimits& limits);
   template <class Points>
-  bool push_apart(Points& points, const ContactStore& contacts, double least, LocalWork& work);
+  bool push_apart(Points& points, const SphereContacts& contacts, double least, LocalWork& work);
   /// One of what was asked for. Returns false where visits were used up before its end.
   template <class Points>
   bool pass(Points& points, const LocalLimits& limits, std::int64_t most_visits, LocalWork& work);
@@ -131,7 +131,7 @@ bool LocalPasses::relax_triangle(Points& points, std::uint32_t element, const Lo
 
 /// Whether one was deeper than `least`.
 template <class Points>
-bool LocalPasses::push_apart(Points& points, const ContactStore& contacts, double least,
+bool LocalPasses::push_apart(Points& points, const SphereContacts& contacts, double least,
                              LocalWork& work) {
   bool any = false;
   for (std::uint32_t k = 0; k < contacts.count(); ++k) {
@@ -153,7 +153,7 @@ bool LocalPasses::push_apart(Points& points, const ContactStore& contacts, doubl
 }
 
 template <class Points>
-LocalWork LocalPasses::run(Points& points, const ContactStore& contacts,
+LocalWork LocalPasses::run(Points& points, const SphereContacts& contacts,
                            const LocalLimits& limits) {
   LocalWork work;
   bool again = push_apart(points, contacts, 0, work);

@@ -61,9 +61,7 @@ class ReferenceBodies {
   void read_contacts(const ContactParticles& particles, std::vector<BodyTouch>& contacts) const;
 
  private:
-  double radius(std::uint32_t slot) const {
-    return model_.has_contacts() ? model_.radius[slot] : 0;
-  }
+  double radius(std::uint32_t slot) const { return model_.has_spheres() ? model_.radius[slot] : 0; }
 
   const Model& model_;
   BodyClock clock_;

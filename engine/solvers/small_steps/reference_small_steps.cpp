@@ -7,6 +7,7 @@
 #include "engine/bytes_of.h"
 #include "engine/solvers/small_steps/body_layout.h"
 #include "engine/solvers/small_steps/reference_points.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/tuning.h"
 
@@ -377,7 +378,7 @@ void ReferenceSmallSteps::end_seams() {
                      });
 }
 
-LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int64_t most_visits,
+LocalWork ReferenceSmallSteps::run_passes(const SphereContacts& contacts, std::int64_t most_visits,
                                           Team& team) {
   if (model_.has_laws()) set_aside();
   Points points = this->points(true);
@@ -392,13 +393,13 @@ LocalWork ReferenceSmallSteps::run_passes(const ContactStore& contacts, std::int
   return work;
 }
 
-LocalWork ReferenceSmallSteps::repair(const ContactStore& contacts, std::int64_t most_visits,
+LocalWork ReferenceSmallSteps::repair(const SphereContacts& contacts, std::int64_t most_visits,
                                       Team& team) {
   for (const std::uint32_t item : out_) passes_.look_near(item);
   return run_passes(contacts, most_visits, team);
 }
 
-LocalWork ReferenceSmallSteps::repair_everywhere(const ContactStore& contacts,
+LocalWork ReferenceSmallSteps::repair_everywhere(const SphereContacts& contacts,
                                                  std::int64_t most_visits, Team& team) {
   passes_.look_everywhere();
   return run_passes(contacts, most_visits, team);

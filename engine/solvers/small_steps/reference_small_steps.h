@@ -8,7 +8,6 @@
 #include <iterator>
 #include <vector>
 
-#include "engine/contacts/contacts.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/arrivals.h"
@@ -18,6 +17,7 @@
 #include "engine/solvers/small_steps/reference_bodies.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "kernels/reference/small_steps.h"
 
 namespace weft {
@@ -47,8 +47,8 @@ class ReferenceSmallSteps final : public SmallSteps {
   void mend(double to, Team& team) override;
   void judge(Team& team) override;
   std::int64_t count_out() const override { return std::ssize(out_); }
-  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits, Team& team) override;
-  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits,
+  LocalWork repair(const SphereContacts& contacts, std::int64_t most_visits, Team& team) override;
+  LocalWork repair_everywhere(const SphereContacts& contacts, std::int64_t most_visits,
                               Team& team) override;
   double law_error() override;
   void end_seams() override;
@@ -111,7 +111,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   double left_by_sweep() const;
   void judge_membrane();
   void draw_seams();
-  LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits, Team& team);
+  LocalWork run_passes(const SphereContacts& contacts, std::int64_t most_visits, Team& team);
   void hold_anchors();
   void hold_bodies(Team& team);
   void hold_by_meshes(Team& team);

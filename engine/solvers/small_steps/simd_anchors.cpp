@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/tuning.h"
 
 namespace weft {

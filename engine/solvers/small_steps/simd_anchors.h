@@ -8,7 +8,9 @@
 
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/anchor_layout.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
+#include "kernels/simd/table.h"
 
 namespace weft {
 

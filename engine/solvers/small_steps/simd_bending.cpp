@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 
 namespace weft {
 namespace {

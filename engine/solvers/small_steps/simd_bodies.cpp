@@ -8,6 +8,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/small_steps/body_touches.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/tuning.h"
 
 namespace weft {

@@ -4,6 +4,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/small_steps/membrane_laws.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 
 namespace weft {
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/tuning.h"
 
@@ -410,7 +411,7 @@ void SmallStepsSolver::end_seams() {
                      });
 }
 
-LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_t most_visits,
+LocalWork SmallStepsSolver::run_passes(const SphereContacts& contacts, std::int64_t most_visits,
                                        Team& team) {
   if (model_.has_laws()) set_aside();
   LanePoints points = this->points(true);
@@ -425,13 +426,13 @@ LocalWork SmallStepsSolver::run_passes(const ContactStore& contacts, std::int64_
   return work;
 }
 
-LocalWork SmallStepsSolver::repair(const ContactStore& contacts, std::int64_t most_visits,
+LocalWork SmallStepsSolver::repair(const SphereContacts& contacts, std::int64_t most_visits,
                                    Team& team) {
   look_near_what_was_out();
   return run_passes(contacts, most_visits, team);
 }
 
-LocalWork SmallStepsSolver::repair_everywhere(const ContactStore& contacts,
+LocalWork SmallStepsSolver::repair_everywhere(const SphereContacts& contacts,
                                               std::int64_t most_visits, Team& team) {
   passes_.look_everywhere();
   return run_passes(contacts, most_visits, team);

@@ -11,7 +11,6 @@
 
 #include <vector>
 
-#include "engine/contacts/contacts.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/lane_points.h"
@@ -23,6 +22,7 @@
 #include "engine/solvers/small_steps/simd_membrane.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "kernels/simd/table.h"
 
 namespace weft {
@@ -60,9 +60,9 @@ class SmallStepsSolver final : public SmallSteps {
   void judge(Team& team) override;
   /// Constraints that the last sweep found out of tolerance.
   std::int64_t count_out() const override;
-  LocalWork repair(const ContactStore& contacts, std::int64_t most_visits, Team& team) override;
+  LocalWork repair(const SphereContacts& contacts, std::int64_t most_visits, Team& team) override;
   /// After the last: local passes that look at all constraints.
-  LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits,
+  LocalWork repair_everywhere(const SphereContacts& contacts, std::int64_t most_visits,
                               Team& team) override;
   double law_error() override;
   void end_seams() override;
@@ -123,7 +123,7 @@ class SmallStepsSolver final : public SmallSteps {
   void judge_membrane(Team& team);
   void look_near_what_was_out();
   void draw_seams();
-  LocalWork run_passes(const ContactStore& contacts, std::int64_t most_visits, Team& team);
+  LocalWork run_passes(const SphereContacts& contacts, std::int64_t most_visits, Team& team);
   void hold_anchors(Team& team);
   void hold_bodies(Team& team);
   void hold_by_meshes(Team& team);

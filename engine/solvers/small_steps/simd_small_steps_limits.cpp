@@ -1,5 +1,5 @@
 /// Small steps at limits: anchors and bodies hold particles, and a motion ends where one arrives.
-#include "engine/solvers/small_steps/lane_particles.h"
+#include "engine/solvers/small_steps/lane_points.h"
 #include "engine/solvers/small_steps/simd_small_steps.h"
 
 namespace weft {

@@ -10,13 +10,13 @@
 #include <memory>
 #include <span>
 
-#include "engine/contacts/contacts.h"
 #include "engine/parallel/team.h"
 #include "engine/saving/archive.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
 #include "engine/solvers/small_steps/body_report.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/seams.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "engine/turn.h"
 #include "kernels/vectors.h"
 
@@ -131,7 +131,8 @@ class SmallSteps {
   virtual void judge(Team& team) = 0;
   /// Constraints that were found out of tolerance.
   virtual std::int64_t count_out() const = 0;
-  virtual LocalWork repair(const ContactStore& contacts, std::int64_t most_visits, Team& team) = 0;
+  virtual LocalWork repair(const SphereContacts& contacts, std::int64_t most_visits,
+                           Team& team) = 0;
   /// After each substep's repair: which seams it has closed.
   virtual void end_seams() = 0;
   /// What they have become in the frame, and have done (J).
@@ -145,7 +146,7 @@ class SmallSteps {
   virtual bool end_contacts(Team& team) = 0;
   virtual void read_contacts(std::vector<BodyTouch>& contacts) = 0;
   /// After the last: local passes that look at all constraints.
-  virtual LocalWork repair_everywhere(const ContactStore& contacts, std::int64_t most_visits,
+  virtual LocalWork repair_everywhere(const SphereContacts& contacts, std::int64_t most_visits,
                                       Team& team) = 0;
   /// What is left of the laws of all constraints, the largest, over rest_length, with springs only;
   /// and of those of triangles of fabric.

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "engine/bytes_of.h"
+#include "engine/measure/simd_layout.h"
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/constraints_of_yarns.h"
 #include "engine/tuning.h"
@@ -206,6 +207,15 @@ std::size_t SmallStepsLayout::bytes() const {
          bytes_of(springs) + bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) +
          bytes_of(serial) + membrane.bytes() + bending.bytes() + anchors.bytes() + items.bytes() +
          bytes_of(load.spans) + bytes_of(load.ways);
+}
+
+const SmallStepsLayout& Model::small_steps() const {
+  return small_steps_.get([this] { return make_small_steps_layout(*this); });
+}
+
+void Model::renew_bending_layout() {
+  if (const SmallStepsLayout* layout = small_steps_.if_made())
+    small_steps_.put(std::make_shared<const SmallStepsLayout>(with_bending_of(*this, *layout)));
 }
 
 }  // namespace weft

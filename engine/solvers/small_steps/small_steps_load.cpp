@@ -228,7 +228,7 @@ Way longest_way(const Model& model, std::span<const Join> joins,
 Way way_that_hangs(const Model& model, std::span<const Join> joins,
                    std::span<const std::uint32_t> anchored) {
   const bool is_held = !model.holds.empty() || !anchored.empty();
-  if (is_held || joins.empty() || !model.has_contacts()) {
+  if (is_held || joins.empty() || !model.has_spheres()) {
     std::vector<std::uint32_t> from = model.pins;
     from.insert(from.end(), anchored.begin(), anchored.end());
     return longest_way(model, joins, from);

@@ -5,6 +5,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/lists.h"
+#include "engine/model/model.h"
 
 namespace weft {
 namespace {
@@ -240,6 +241,10 @@ simd::Anticipation PullMemory::view(const PullLayout& layout,
 
 std::size_t PullMemory::bytes() const {
   return bytes_of(error) + bytes_of(change) + bytes_of(sum) + bytes_of(product);
+}
+
+const PullLayout& Model::pulls() const {
+  return pulls_.get([this] { return make_pull_layout(ordering); });
 }
 
 }  // namespace weft

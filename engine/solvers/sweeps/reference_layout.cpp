@@ -104,4 +104,8 @@ std::size_t ReferenceLayout::bytes() const {
          block_neighbours.bytes();
 }
 
+const ReferenceLayout& Model::reference() const {
+  return reference_.get([this] { return make_reference_layout(*this); });
+}
+
 }  // namespace weft

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/sweeps/reference_layout.h"
 
 namespace weft {
 
@@ -32,7 +33,7 @@ ReferenceSolver::ReferenceSolver(const Model& model, const Settings& settings)
 
 /// Where they are followed by contacts, or differ from substep to substep.
 bool ReferenceSolver::owns_constraints() const {
-  return model_.has_contacts() || model_.constraints.has_springs();
+  return model_.has_spheres() || model_.constraints.has_springs();
 }
 
 /// Grows only.
@@ -61,7 +62,7 @@ void ReferenceSolver::reserve(std::size_t contacts) {
   capacity_ = size;
 }
 
-void ReferenceSolver::place_contacts(const ContactStore& contacts) {
+void ReferenceSolver::place_contacts(const SphereContacts& contacts) {
   if (model_.constraints.size() + contacts.count() > capacity_) reserve(2 * contacts.count());
   for (std::size_t k = 0; k < contacts.count(); ++k) {
     const std::size_t c = model_.constraints.size() + k;
@@ -130,7 +131,7 @@ reference::Method ReferenceSolver::method(const kernels::LoopLimits& limits) con
 }
 
 reference::Relaxation ReferenceSolver::position_problem(kernels::VectorsView x, double h,
-                                                        const ContactStore& contacts,
+                                                        const SphereContacts& contacts,
                                                         const SpringLaws* laws, bool first_round) {
   place_contacts(contacts);
   if (laws != nullptr) take_laws(*laws);
@@ -143,14 +144,14 @@ reference::Relaxation ReferenceSolver::position_problem(kernels::VectorsView x, 
 
 kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x,
                                                      kernels::VectorsView start, double h,
-                                                     const ContactStore& contacts, SpringLaws* laws,
-                                                     bool first_round,
+                                                     const SphereContacts& contacts,
+                                                     SpringLaws* laws, bool first_round,
                                                      const kernels::LoopLimits& limits) {
   reference::Relaxation r = position_problem(x, h, contacts, laws, first_round);
   if (start.x != nullptr) take_directions_at(start, r);
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   const auto result = reference::relax_positions(
-      r, layout_.topology(), model_.has_contacts() ? lists : reference::ContactLists{}, workspace(),
+      r, layout_.topology(), model_.has_spheres() ? lists : reference::ContactLists{}, workspace(),
       method(limits));
   keep_multipliers(laws);
   return result;
@@ -158,7 +159,7 @@ kernels::LoopResult ReferenceSolver::solve_positions(kernels::VectorsView x,
 
 kernels::LoopResult ReferenceSolver::solve_previewed_positions(const reference::Motion& motion,
                                                                double h,
-                                                               const ContactStore& contacts,
+                                                               const SphereContacts& contacts,
                                                                SpringLaws* laws, bool first_round,
                                                                const kernels::LoopLimits& limits) {
   const auto r = position_problem(motion.solved, h, contacts, laws, first_round);
@@ -190,7 +191,7 @@ void ReferenceSolver::choose_velocity_tolerances(const reference::Relaxation& r,
 
 kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
                                                         kernels::VectorsView v,
-                                                        const ContactStore& contacts,
+                                                        const SphereContacts& contacts,
                                                         const kernels::LoopLimits& limits) {
   place_contacts(contacts);  // positions may have been solved elsewhere
   reference::Relaxation r = problem(x, contacts.count());
@@ -203,7 +204,7 @@ kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
   if (settings_.impulse_limit > 0) r.limit = settings_.impulse_limit;
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   return reference::relax_velocities(r, layout_.topology(),
-                                     model_.has_contacts() ? lists : reference::ContactLists{},
+                                     model_.has_spheres() ? lists : reference::ContactLists{},
                                      workspace(), method(limits));
 }
 

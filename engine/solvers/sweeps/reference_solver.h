@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/contacts/contacts.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "kernels/reference/relax.h"
 
 namespace weft {
@@ -22,27 +22,27 @@ class ReferenceSolver {
   /// if given, instead of x. h is the time step, for the impulse limit. laws: of a model with
   /// springs (PositionTask).
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start, double h,
-                                      const ContactStore& contacts, SpringLaws* laws,
+                                      const SphereContacts& contacts, SpringLaws* laws,
                                       bool first_round, const kernels::LoopLimits& limits);
   /// The same by the original method as the paper has it (kernels/reference/previewed.h), from
   /// motion.position; motion.velocity is room.
   kernels::LoopResult solve_previewed_positions(const reference::Motion& motion, double h,
-                                                const ContactStore& contacts, SpringLaws* laws,
+                                                const SphereContacts& contacts, SpringLaws* laws,
                                                 bool first_round,
                                                 const kernels::LoopLimits& limits);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts,
+                                         const SphereContacts& contacts,
                                          const kernels::LoopLimits& limits);
   std::size_t bytes() const;
 
  private:
   void reserve(std::size_t contacts);
   bool owns_constraints() const;
-  void place_contacts(const ContactStore& contacts);
+  void place_contacts(const SphereContacts& contacts);
   void take_laws(const SpringLaws& laws);
   reference::Relaxation position_problem(kernels::VectorsView x, double h,
-                                         const ContactStore& contacts, const SpringLaws* laws,
+                                         const SphereContacts& contacts, const SpringLaws* laws,
                                          bool first_round);
   void keep_multipliers(SpringLaws* laws) const;
   void take_directions_at(kernels::VectorsView start, reference::Relaxation& r);

@@ -19,6 +19,7 @@
 /// since its last visit, so that all changes in question are 0.
 #include <algorithm>
 
+#include "engine/solvers/sweeps/pull_layout.h"
 #include "engine/solvers/sweeps/simd_loop.h"
 
 namespace weft {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "engine/solvers/sweeps/pull_layout.h"
+
 namespace weft {
 
 SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)

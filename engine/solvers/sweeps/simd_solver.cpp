@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/measure/simd_layout.h"
+#include "engine/solvers/sweeps/pull_layout.h"
 #include "engine/solvers/sweeps/simd_loop.h"
 
 namespace weft {
@@ -158,7 +160,7 @@ void SimdSolver::keep_multipliers(SpringLaws& laws) const {
 }
 
 /// The search lists them sphere by sphere; what it missed stands behind.
-void SimdSolver::order_contacts(const ContactStore& store) {
+void SimdSolver::order_contacts(const SphereContacts& store) {
   contact_order_.resize(store.count());
   std::iota(contact_order_.begin(), contact_order_.end(), 0u);
   if (std::ranges::is_sorted(store.sphere)) return;
@@ -167,7 +169,7 @@ void SimdSolver::order_contacts(const ContactStore& store) {
 }
 
 /// Brings the contacts of each sphere side by side.
-void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep_impulses) {
+void SimdSolver::place_contacts(const SphereContacts& store, double tau, bool keep_impulses) {
   contact_impulse_.resize(store.count());
   if (!keep_impulses) std::ranges::fill(contact_impulse_, 0.f);
   contacts_.resize(kernels::round_up(store.count(), kernels::kLanes) +
@@ -203,12 +205,12 @@ void SimdSolver::place_contacts(const ContactStore& store, double tau, bool keep
 }
 
 kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, kernels::VectorsView start,
-                                                const ContactStore& store, SpringLaws* laws,
+                                                const SphereContacts& store, SpringLaws* laws,
                                                 bool first_round, const kernels::LoopLimits& limits,
                                                 Team& team) {
   if (first_round) std::ranges::fill(impulse_, 0.f);
   if (laws != nullptr) take_laws(*laws, first_round);
-  if (model_.has_contacts()) {
+  if (model_.has_spheres()) {
     const double tau = settings_.iterations > 0 ? 1 : settings_.contact_tolerance;
     place_contacts(store, tau, !first_round);
   }
@@ -254,10 +256,10 @@ void SimdSolver::choose_active(kernels::VectorsView x) {
 /// The directions stay, but are "renewed" like frozen ones: it is the renewal that takes the errors
 /// anew from the velocities, in double. Without it no error could fall below 10^-7 of the first.
 kernels::LoopResult SimdSolver::correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                                   const ContactStore& store,
+                                                   const SphereContacts& store,
                                                    const kernels::LoopLimits& limits, Team& team) {
   std::ranges::fill(impulse_, 0.f);
-  if (model_.has_contacts()) {
+  if (model_.has_spheres()) {
     place_contacts(store, settings_.iterations > 0 ? 1 : settings_.velocity_tolerance, false);
   }
   choose_active(x);

@@ -20,12 +20,12 @@
 #include <optional>
 #include <vector>
 
-#include "engine/contacts/contacts.h"
+#include "engine/measure/simd_layout.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/sweeps/pull_layout.h"
-#include "engine/solvers/sweeps/simd_layout.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "kernels/loop.h"
 #include "kernels/simd/table.h"
 
@@ -39,7 +39,7 @@ struct ContactLanes {
   };
   std::vector<Range> spheres;  // those that have contacts
   std::vector<std::uint32_t> a, b;
-  std::vector<std::uint32_t> contact;  // in the ContactStore, or kNoIndex
+  std::vector<std::uint32_t> contact;  // in the SphereContacts, or kNoIndex
   kernels::AlignedVector<simd::ConstraintBlock> blocks;
   kernels::AlignedVector<float> impulse;
   kernels::AlignedVector<double> distance, scale;
@@ -81,12 +81,12 @@ class SimdSolver {
   /// were found anew, accumulated impulses start at 0. Scheme rattle takes directions at `start`,
   /// if given, instead of x. laws: of a model with springs (PositionTask).
   kernels::LoopResult solve_positions(kernels::VectorsView x, kernels::VectorsView start,
-                                      const ContactStore& contacts, SpringLaws* laws,
+                                      const SphereContacts& contacts, SpringLaws* laws,
                                       bool first_round, const kernels::LoopLimits& limits,
                                       Team& team);
   /// The velocity loop at the positions x.
   kernels::LoopResult correct_velocities(kernels::VectorsView x, kernels::VectorsView v,
-                                         const ContactStore& contacts,
+                                         const SphereContacts& contacts,
                                          const kernels::LoopLimits& limits, Team& team);
   std::size_t bytes() const;
 
@@ -96,8 +96,8 @@ class SimdSolver {
   void allocate_displacements();
   template <class Tolerance>
   ScaledConstraints scaled(Tolerance&& tau) const;
-  void order_contacts(const ContactStore& contacts);
-  void place_contacts(const ContactStore& contacts, double tolerance, bool keep_impulses);
+  void order_contacts(const SphereContacts& contacts);
+  void place_contacts(const SphereContacts& contacts, double tolerance, bool keep_impulses);
   void take_laws(const SpringLaws& laws, bool first_round);
   void renew_multipliers();
   void keep_multipliers(SpringLaws& laws) const;
@@ -126,7 +126,7 @@ class SimdSolver {
   std::vector<std::uint8_t> open_seam_;         // no share of the present pass had all its tiles
   std::optional<PullMemory> pulls_;             // anticipate_products only
   ContactLanes contacts_;
-  std::vector<float> contact_impulse_;        // per contact of the ContactStore
+  std::vector<float> contact_impulse_;        // per contact of the SphereContacts
   std::vector<std::uint32_t> contact_order_;  // its contacts, sphere by sphere
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/bytes_of.h"
+#include "engine/solvers/yarn/yarn_layout.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -71,7 +72,7 @@ void SingleConstraints::add(std::uint32_t a, std::uint32_t b, double distance, i
   pairs_.push_back({yarns.places.of(a), yarns.places.of(b), side, distance, wa, wb, 1 / (wa + wb)});
 }
 
-void SingleConstraints::start(const ContactStore& contacts, const SpringLaws* laws,
+void SingleConstraints::start(const SphereContacts& contacts, const SpringLaws* laws,
                               bool first_round) {
   from_start_ = false;
   if (laws != nullptr) take_laws(*laws);

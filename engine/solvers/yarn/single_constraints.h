@@ -7,9 +7,9 @@
 
 #include <vector>
 
-#include "engine/contacts/contacts.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "kernels/simd/table.h"
 
 namespace weft {
@@ -22,7 +22,7 @@ class SingleConstraints {
   /// In the first round accumulated impulses start at 0; in later rounds contacts may have been
   /// added. Impulses act along the directions at the present positions. laws: of a model with
   /// springs, for positions.
-  void start(const ContactStore& contacts, const SpringLaws* laws, bool first_round);
+  void start(const SphereContacts& contacts, const SpringLaws* laws, bool first_round);
   void keep_multipliers(SpringLaws& laws) const;
   std::size_t count() const { return pairs_.size(); }
   /// For scheme rattle: from here on the impulses of constraints act along the directions at base +

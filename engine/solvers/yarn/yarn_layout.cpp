@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/measure/simd_layout.h"
 #include "engine/model/model.h"
 #include "engine/ordering/used_colours.h"
 #include "engine/ordering/yarns.h"
@@ -300,7 +301,7 @@ std::vector<Vec3> initial_positions(const Model& model) {
 YarnLayout make_yarn_layout(const Model& model) {
   std::vector<std::uint32_t> all(model.constraints.plain);
   std::iota(all.begin(), all.end(), 0u);
-  return make_yarn_layout(model, all, YarnMemory::woven_if_possible, !model.has_contacts());
+  return make_yarn_layout(model, all, YarnMemory::woven_if_possible, !model.has_spheres());
 }
 
 YarnLayout make_yarn_layout(const Model& model, std::span<const std::uint32_t> constraints,
@@ -340,6 +341,10 @@ std::size_t YarnLayout::bytes() const {
          bytes_of(slot) + bytes_of(patches) + bytes_of(kind) + bytes_of(kinds) +
          bytes_of(not_in_second) + bytes_of(longest_at) + bytes_of(spans) + bytes_of(span_slots) +
          places.bytes();
+}
+
+const YarnLayout& Model::yarns() const {
+  return yarns_.get([this] { return make_yarn_layout(*this); });
 }
 
 }  // namespace weft

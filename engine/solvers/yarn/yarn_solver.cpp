@@ -6,6 +6,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/stall.h"
+#include "engine/solvers/yarn/yarn_layout.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -37,7 +38,7 @@ YarnSolver::YarnSolver(const Model& model, const Settings& settings, const simd:
       solves_(layout_.blocks.size()),
       stubborn_(layout_.blocks.size()),
       singles_(model, settings),
-      spans_(layout_, usual_, settings.tolerance, !model.has_contacts()) {
+      spans_(layout_, usual_, settings.tolerance, !model.has_spheres()) {
   const std::size_t wanted =
       settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : kMostYarnShares;
   if (settings.scheme == Scheme::rattle) start_.resize(layout_.rows());
@@ -236,7 +237,7 @@ YarnSolver::Aim YarnSolver::aim() const {
 /// makes the result smoother, but in cloth that is carried fast it may undo what the step has
 /// reached, each time. The sweep is always kept where taut spans are held or something touches a
 /// sphere, and with springs, whose impulses it has changed.
-bool YarnSolver::may_take_newton(const ContactStore& contacts) const {
+bool YarnSolver::may_take_newton(const SphereContacts& contacts) const {
   return !from_start_ && !spans_.holds() && contacts.count() == 0 && springs_.empty();
 }
 

@@ -27,13 +27,14 @@
 #include <algorithm>
 #include <vector>
 
-#include "engine/contacts/contacts.h"
 #include "engine/measure/simd_measure.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/constraint_solver.h"
 #include "engine/solvers/yarn/held_spans.h"
 #include "engine/solvers/yarn/single_constraints.h"
+#include "engine/solvers/yarn/yarn_layout.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "kernels/loop.h"
 #include "kernels/simd/table.h"
 
@@ -76,7 +77,7 @@ class YarnSolver final : public ConstraintSolver {
   };
   simd::Yarns yarns();
   Aim aim() const;
-  bool may_take_newton(const ContactStore& contacts) const;
+  bool may_take_newton(const SphereContacts& contacts) const;
   void begin(const PositionTask& task, Team& team);
   void take_laws(const SpringLaws& laws, bool first_round);
   void keep_multipliers(SpringLaws& laws) const;

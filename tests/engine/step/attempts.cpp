@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/parallel/team.h"
+#include "engine/solvers/yarn/yarn_solver.h"
 #include "engine/step/plan.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"

@@ -2,6 +2,7 @@
 /// formula would be wrong: unequal masses, constraints that meet head to head and tail to head,
 /// fixed ends.
 #include "kernels/reference/anticipated.h"
+#include "engine/solvers/sweeps/reference_layout.h"
 
 #include <doctest/doctest.h>
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/solvers/sweeps/pull_layout.h"
 #include "perf/workbench.h"
 #include "tests/support/isas.h"
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/solvers/yarn/yarn_layout.h"
 #include "tests/support/isas.h"
 #include "tests/support/yarn_block.h"
 

@@ -8,6 +8,7 @@
 
 #include "engine/model/model.h"
 #include "engine/solvers/direct/direct_factor.h"
+#include "engine/solvers/direct/direct_layout.h"
 #include "tests/support/clothes.h"
 #include "tests/support/isas.h"
 #include "tests/support/random.h"

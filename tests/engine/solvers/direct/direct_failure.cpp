@@ -26,13 +26,13 @@ SceneDescription compressed_line() {
 struct Trial {
   std::shared_ptr<const Model> model;
   kernels::Vectors x;
-  ContactStore contacts;
+  SphereContacts contacts;
   DirectSolver solver;
 
   explicit Trial(const SceneDescription& scene)
       : model(model_of(scene)),
         x(model->initial_position),
-        contacts(make_contact_store(*model)),
+        contacts(make_sphere_contacts(*model)),
         solver(*model, Settings{}, simd::table(simd::best_isa())) {}
   kernels::LoopResult solve() {
     Team team;

@@ -249,7 +249,7 @@ TEST_CASE("a matrix made with a contact does not serve when that has let go") {
   const auto model = model_of(scene);
   const simd::Table& table = simd::table(simd::best_isa());
   kernels::Vectors x = model->initial_position, v = model->initial_velocity;
-  ContactStore contacts = make_contact_store(*model);
+  SphereContacts contacts = make_sphere_contacts(*model);
   find_contacts(*model, table, x.view(), contacts);
   REQUIRE(contacts.count() == 1);
   Team team;

@@ -1,5 +1,6 @@
 /// The stiff attempt of the direct solver alone: when it is made, and how far it goes.
 #include "engine/solvers/direct/direct_stiff.h"
+#include "engine/solvers/direct/direct_layout.h"
 
 #include <doctest/doctest.h>
 
@@ -37,7 +38,7 @@ struct Trial {
     }
   }
   bool solve(double tolerance) {
-    const ContactStore contacts = make_contact_store(*model);
+    const SphereContacts contacts = make_sphere_contacts(*model);
     DirectSystem system(*model, tight(tolerance));
     DirectFactor factor(model->direct(), simd::table(simd::best_isa()));
     DirectBalance balance(*model);

@@ -12,6 +12,7 @@
 
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/bending_pace.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/tuning.h"
 #include "tests/support/bending.h"
 #include "tests/support/clothes.h"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "tests/support/clothes.h"
 #include "tests/support/membrane.h"
 #include "tests/support/random.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/tuning.h"
 #include "tests/support/clothes.h"

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "engine/contacts/contacts.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/sweeps/simd_solver.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "tests/support/isas.h"
 
 namespace weft::test::engine_solvers_sweeps_simd_contacts {
@@ -34,8 +34,8 @@ SceneDescription particles_in_fixed_spheres() {
   return scene;
 }
 
-ContactStore in_order(const ContactStore& store, const std::vector<std::uint32_t>& order) {
-  ContactStore other = store;
+SphereContacts in_order(const SphereContacts& store, const std::vector<std::uint32_t>& order) {
+  SphereContacts other = store;
   for (std::size_t k = 0; k < order.size(); ++k) {
     other.sphere[k] = store.sphere[order[k]];
     other.particle[k] = store.particle[order[k]];
@@ -48,11 +48,11 @@ TEST_CASE("contacts in any order push all the same") {
   const auto model = build_model(particles_in_fixed_spheres()).value();
   const simd::Table& table = simd::table(supported_isas().back());
   Team team;
-  ContactStore found = make_contact_store(*model);
+  SphereContacts found = make_sphere_contacts(*model);
   kernels::Vectors start = model->initial_position;
   find_contacts(*model, table, start.view(), found);
   REQUIRE(found.count() == kSpheres * kEach);
-  const auto solved = [&](const ContactStore& contacts) {
+  const auto solved = [&](const SphereContacts& contacts) {
     SimdSolver solver(*model, {}, table);
     kernels::Vectors x = start;
     CHECK(

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <tbb/global_control.h>
 
+#include "engine/measure/simd_layout.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/sweeps/simd_loop.h"

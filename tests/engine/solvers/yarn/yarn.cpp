@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/model/model.h"
+#include "engine/solvers/yarn/yarn_layout.h"
 #include "tests/support/clothes.h"
 #include "tests/support/isas.h"
 #include "tests/support/mesh_scenes.h"

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/solvers/yarn/single_constraints.h"
+#include "engine/solvers/yarn/yarn_layout.h"
 #include "engine/solvers/yarn/yarn_solver.h"
 #include "tests/support/clothes.h"
 #include "tests/support/vectors.h"
@@ -46,7 +47,7 @@ struct Trial {
   std::shared_ptr<const Model> model;
   kernels::Vectors start, x, v;
   const simd::Table& table = simd::table(simd::best_isa());
-  ContactStore contacts;
+  SphereContacts contacts;
   SimdMeasure measure;
   YarnSolver solver;
   Team team;
@@ -56,7 +57,7 @@ struct Trial {
         start(model->initial_position),
         x(start),
         v(model->initial_velocity),
-        contacts(make_contact_store(*model)),
+        contacts(make_sphere_contacts(*model)),
         measure(*model, table),
         solver(*model,
                {.tolerance = kTolerance,

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/contacts/contacts.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "tests/support/clothes.h"
 #include "tests/support/isas.h"
 #include "tests/support/mesh_scenes.h"
@@ -12,7 +12,7 @@
 #include "tests/support/random.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test::engine_contacts_contacts {
+namespace weft::test::engine_spheres_sphere_contacts {
 namespace {
 
 /// A sphere of radius 0.1 at the origin and a particle of radius 0.1 at `distance` along x.
@@ -439,7 +439,7 @@ TEST_CASE("among many spheres every pair within the margin is found, and in orde
       CAPTURE(seed);
       const auto model = model_of(sheet_among_spheres(seed));
       kernels::Vectors x = model->initial_position;
-      ContactStore contacts = make_contact_store(*model);
+      SphereContacts contacts = make_sphere_contacts(*model);
       Random random(seed);
       for (const double moved : {0.0, 0.01, 1.0, 100.0}) {
         for (std::size_t slot = 0; slot < model->slots(); ++slot) {
@@ -454,7 +454,7 @@ TEST_CASE("among many spheres every pair within the margin is found, and in orde
         CHECK(max_penetration(*model, table, x.view(), contacts) ==
               doctest::Approx(expected.deepest).epsilon(1e-14));
         CHECK(add_missed_contacts(*model, table, x.view(), 0, contacts) == 0);
-        ContactStore late = make_contact_store(*model);
+        SphereContacts late = make_sphere_contacts(*model);
         add_missed_contacts(*model, table, x.view(), 0, late);
         const Pairs touching = pairs_of(*model, x, 0);
         CHECK(late.sphere == touching.sphere);
@@ -466,4 +466,4 @@ TEST_CASE("among many spheres every pair within the margin is found, and in orde
 }
 
 }  // namespace
-}  // namespace weft::test::engine_contacts_contacts
+}  // namespace weft::test::engine_spheres_sphere_contacts

@@ -10,7 +10,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test::engine_cloth {
+namespace weft::test::engine_cpp_interface_cloth {
 namespace {
 
 TEST_CASE("a cloth starts as described") {
@@ -501,4 +501,4 @@ TEST_CASE("placed pins inject no more than the correction they ask for") {
 }
 
 }  // namespace
-}  // namespace weft::test::engine_cloth
+}  // namespace weft::test::engine_cpp_interface_cloth

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "engine/contacts/contacts.h"
+#include "engine/spheres/sphere_contacts.h"
 
 namespace weft {
 
-class NearbyPairs {
+class NearbySpherePairs {
  public:
   /// Nothing is known: pairs must be found anew.
   void forget() { spare_ = -1; }
@@ -21,15 +21,15 @@ class NearbyPairs {
   /// Finds all pairs that may touch after moves by up to `margin` (m) in all. Of the contacts only
   /// the scratch is written.
   void find(const Model& model, const simd::Table& kernels, kernels::VectorsView x, double margin,
-            ContactStore& contacts);
+            SphereContacts& contacts);
   /// Lists those of them that find_contacts() would find at x, in the same order.
-  void list_contacts(const Model& model, kernels::VectorsView x, ContactStore& contacts) const;
+  void list_contacts(const Model& model, kernels::VectorsView x, SphereContacts& contacts) const;
   /// Whose places list_contacts() looks at.
   std::span<const std::uint32_t> slots() const { return slots_; }
   std::size_t bytes() const;
 
  private:
-  std::vector<ContactPair> pairs_;
+  std::vector<SpherePair> pairs_;
   std::vector<std::uint32_t> slots_;
   double spare_ = -1;  // m, that everything may still move
 };

@@ -1,7 +1,8 @@
+#include "engine/bodies/validate_bodies.h"
+
 #include <cmath>
 
-#include "engine/model/validate.h"
-#include "engine/model/validation.h"
+#include "engine/validation.h"
 
 namespace weft {
 

@@ -7,10 +7,11 @@
 #include <utility>
 
 #include "engine/model/validate.h"
-#include "engine/model/validation.h"
 #include "engine/parallel/crew.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"
+#include "engine/step/validate_settings.h"
+#include "engine/validation.h"
 
 namespace weft {
 

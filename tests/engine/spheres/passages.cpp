@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-#include "engine/contacts/crossings.h"
+#include "engine/spheres/passages.h"
 #include "tests/support/clothes.h"
 #include "tests/support/isas.h"
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/random.h"
 
-namespace weft::test::engine_contacts_crossings {
+namespace weft::test::engine_spheres_passages {
 namespace {
 
 /// A sphere of radius 0.1 at the origin, fixed, and a free particle on its way along x, `aside` of
@@ -192,7 +192,7 @@ TEST_CASE("among many spheres the first crossing is found, however far all moved
     for (std::uint32_t seed = 0; seed < 60; ++seed) {
       CAPTURE(seed);
       const auto model = model_of(sheet_among_spheres(seed));
-      ContactStore contacts = make_contact_store(*model);
+      SphereContacts contacts = make_sphere_contacts(*model);
       kernels::Vectors before = model->initial_position, after = before;
       Random random(seed);
       for (const double moved : {1e-3, 3e-2, 0.3, 10.0, 1e3, 1e9}) {
@@ -206,7 +206,7 @@ TEST_CASE("among many spheres the first crossing is found, however far all moved
         }
         const std::uint32_t expected = crossing_of(*model, before, after);
         (expected == kNoIndex ? not_crossed : crossed) += 1;
-        CHECK(find_crossing(*model, simd::table(isa), before.view(), after.view(), contacts) ==
+        CHECK(find_passage(*model, simd::table(isa), before.view(), after.view(), contacts) ==
               expected);
       }
     }
@@ -216,4 +216,4 @@ TEST_CASE("among many spheres the first crossing is found, however far all moved
 }
 
 }  // namespace
-}  // namespace weft::test::engine_contacts_crossings
+}  // namespace weft::test::engine_spheres_passages

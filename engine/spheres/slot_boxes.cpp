@@ -1,4 +1,4 @@
-#include "engine/contacts/contact_boxes.h"
+#include "engine/spheres/slot_boxes.h"
 
 #include <limits>
 
@@ -19,7 +19,7 @@ void fill(kernels::Vectors& vectors, double value) {
 
 }  // namespace
 
-ContactBoxes::ContactBoxes(const Model& m) {
+SlotBoxes::SlotBoxes(const Model& m) {
   if (m.spheres.size() < kLeastSpheres) return;
   const std::size_t groups = kernels::round_up(m.slots(), simd::kBoxed) / simd::kBoxed;
   const std::size_t count = kernels::round_up(groups, kernels::kLanes);
@@ -33,12 +33,12 @@ ContactBoxes::ContactBoxes(const Model& m) {
   }
 }
 
-simd::Boxes ContactBoxes::boxes() {
+simd::Boxes SlotBoxes::boxes() {
   return {.low = low_.view(), .high = high_.view(), .reach = reach_.data(), .count = near_.size()};
 }
 
-void ContactBoxes::enclose(const Model& m, const simd::Table& kernels,
-                           std::initializer_list<kernels::VectorsView> places) {
+void SlotBoxes::enclose(const Model& m, const simd::Table& kernels,
+                        std::initializer_list<kernels::VectorsView> places) {
   if (near_.empty()) return;
   fill(low_, kInfinity);
   fill(high_, -kInfinity);
@@ -47,15 +47,15 @@ void ContactBoxes::enclose(const Model& m, const simd::Table& kernels,
   }
 }
 
-std::size_t ContactBoxes::find(const simd::Table& kernels, kernels::Vector from, kernels::Vector to,
-                               double extra) {
+std::size_t SlotBoxes::find(const simd::Table& kernels, kernels::Vector from, kernels::Vector to,
+                            double extra) {
   const kernels::Vector low{std::min(from.x, to.x), std::min(from.y, to.y), std::min(from.z, to.z)};
   const kernels::Vector high{std::max(from.x, to.x), std::max(from.y, to.y),
                              std::max(from.z, to.z)};
   return kernels.find_boxes(boxes(), low, high, extra, near_.data());
 }
 
-std::size_t ContactBoxes::bytes() const {
+std::size_t SlotBoxes::bytes() const {
   return low_.bytes() + high_.bytes() + bytes_of(reach_) + bytes_of(near_);
 }
 

@@ -13,10 +13,10 @@ namespace weft {
 
 /// Made anew for each search. Without boxes, where the spheres are too few to pay for them, all
 /// slots are searched.
-class ContactBoxes {
+class SlotBoxes {
  public:
-  ContactBoxes() = default;
-  explicit ContactBoxes(const Model& model);
+  SlotBoxes() = default;
+  explicit SlotBoxes(const Model& model);
 
   /// Each box holds all places of its particles.
   void enclose(const Model& model, const simd::Table& kernels,

@@ -1,4 +1,4 @@
-#include "engine/contacts/crossings.h"
+#include "engine/spheres/passages.h"
 
 #include <algorithm>
 
@@ -19,13 +19,13 @@ double least_distance(kernels::Vector from, kernels::Vector to) {
 
 }  // namespace
 
-bool may_have_crossed(const Model& m, double way) {
+bool may_have_passed(const Model& m, double way) {
   return std::ranges::any_of(m.spheres,
                              [&](std::uint32_t s) { return !(2 * way < kShortest * m.radius[s]); });
 }
 
-std::uint32_t find_crossing(const Model& m, const simd::Table& kernels, kernels::VectorsView before,
-                            kernels::VectorsView after, ContactStore& contacts) {
+std::uint32_t find_passage(const Model& m, const simd::Table& kernels, kernels::VectorsView before,
+                           kernels::VectorsView after, SphereContacts& contacts) {
   std::uint32_t* const moved = contacts.found.data();
   contacts.boxes.enclose(m, kernels, {before, after});
   for (const std::uint32_t s : m.spheres) {

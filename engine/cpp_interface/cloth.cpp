@@ -4,19 +4,22 @@
 #include <bit>
 #include <utility>
 
-#include "engine/contacts/contacts.h"
+#include "engine/bodies/validate_bodies.h"
 #include "engine/isa.h"
 #include "engine/measure/state_measure.h"
 #include "engine/model/change.h"
 #include "engine/model/validate.h"
-#include "engine/model/validation.h"
 #include "engine/public_vectors.h"
+#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/spheres/sphere_contacts.h"
 #include "engine/step/carry.h"
 #include "engine/step/choose_solver.h"
 #include "engine/step/saved_state.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"
 #include "engine/step/step_in_team.h"
+#include "engine/step/validate_settings.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {

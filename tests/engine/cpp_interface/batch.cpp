@@ -14,7 +14,7 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/teams.h"
 
-namespace weft::test::engine_batch {
+namespace weft::test::engine_cpp_interface_batch {
 namespace {
 
 #ifdef WEFT_SANITIZE_THREAD
@@ -210,4 +210,4 @@ TEST_CASE("half a job system is refused") {
 }
 
 }  // namespace
-}  // namespace weft::test::engine_batch
+}  // namespace weft::test::engine_cpp_interface_batch

@@ -1,4 +1,4 @@
-#include "engine/solvers/sweeps/simd_layout.h"
+#include "engine/measure/simd_layout.h"
 
 #include <algorithm>
 #include <limits>
@@ -188,6 +188,14 @@ std::size_t SimdLayout::bytes() const {
          bytes_of(seams) + bytes_of(seams_at) + bytes_of(a) + bytes_of(b) +
          bytes_of(constraint_at) + bytes_of(rest_length) + bytes_of(inverse_square) +
          bytes_of(share_a) + bytes_of(share_b) + bytes_of(compliance) + bytes_of(inverse_mass);
+}
+
+const SimdLayout& Model::simd() const {
+  return simd_.get([this] { return make_simd_layout(*this); });
+}
+
+const ChunkNeighbours& Model::chunk_neighbours() const {
+  return chunk_neighbours_.get([this] { return find_chunk_neighbours(simd()); });
 }
 
 }  // namespace weft

@@ -1,5 +1,5 @@
 /// The seams: what may be done of the batch between tiles before all tiles are done.
-#include "engine/solvers/sweeps/simd_layout.h"
+#include "engine/measure/simd_layout.h"
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/support/clothes.h"
 #include "tests/support/mesh_scenes.h"
 
-namespace weft::test::engine_solvers_sweeps_simd_layout {
+namespace weft::test::engine_measure_simd_layout {
 namespace {
 
 /// Whether all slots of a chunk, padding included, are in these tiles.
@@ -63,4 +63,4 @@ TEST_CASE("seams have every chunk of the first batch between tiles once, behind 
 }
 
 }  // namespace
-}  // namespace weft::test::engine_solvers_sweeps_simd_layout
+}  // namespace weft::test::engine_measure_simd_layout

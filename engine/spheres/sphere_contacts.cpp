@@ -1,4 +1,4 @@
-#include "engine/contacts/contacts.h"
+#include "engine/spheres/sphere_contacts.h"
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ constexpr double kMargin = 0.05;  // of the sphere's radius
 /// the sphere's radius.
 template <class Reach, class Visit>
 void for_each_pair(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
-                   ContactStore& contacts, Reach&& reach, Visit&& visit) {
+                   SphereContacts& contacts, Reach&& reach, Visit&& visit) {
   std::uint32_t* const found = contacts.found.data();
   contacts.boxes.enclose(m, kernels, {x});
   for (const std::uint32_t s : m.spheres) {
@@ -29,7 +29,7 @@ void for_each_pair(const Model& m, const simd::Table& kernels, kernels::VectorsV
   }
 }
 
-bool listed(const ContactStore& contacts, std::uint32_t s, std::uint32_t p) {
+bool listed(const SphereContacts& contacts, std::uint32_t s, std::uint32_t p) {
   for (auto k = contacts.first[p]; k != kNoIndex; k = contacts.next[k]) {
     if (contacts.sphere[k] == s) return true;
   }
@@ -37,7 +37,7 @@ bool listed(const ContactStore& contacts, std::uint32_t s, std::uint32_t p) {
 }
 
 /// Room in all lists before anything is in one: they stay of one length if memory runs out.
-void make_room(ContactStore& contacts) {
+void make_room(SphereContacts& contacts) {
   if (contacts.count() < contacts.capacity()) return;
   const std::size_t room = std::max<std::size_t>(64, 2 * std::size_t{contacts.count()});
   contacts.distance.reserve(room);
@@ -48,7 +48,7 @@ void make_room(ContactStore& contacts) {
 
 }  // namespace
 
-void ContactStore::clear() {
+void SphereContacts::clear() {
   for (const std::uint32_t p : particle) first[p] = kNoIndex;
   sphere.clear();
   particle.clear();
@@ -56,7 +56,7 @@ void ContactStore::clear() {
   next.clear();
 }
 
-void ContactStore::add(ContactPair pair, double radii) {
+void SphereContacts::add(SpherePair pair, double radii) {
   make_room(*this);
   next.push_back(first[pair.particle]);
   first[pair.particle] = count();
@@ -72,23 +72,23 @@ bool may_touch(const Model& m, std::uint32_t sphere, std::uint32_t particle) {
   return !(particle < sphere && m.is_sphere[particle]) && !m.joined_to_sphere(sphere, particle);
 }
 
-std::size_t ContactStore::bytes() const {
+std::size_t SphereContacts::bytes() const {
   return bytes_of(sphere) + bytes_of(particle) + bytes_of(distance) + bytes_of(first) +
          bytes_of(next) + bytes_of(met) + bytes_of(found) + boxes.bytes();
 }
 
-ContactStore make_contact_store(const Model& model) {
-  ContactStore contacts;
-  if (!model.has_contacts()) return contacts;
+SphereContacts make_sphere_contacts(const Model& model) {
+  SphereContacts contacts;
+  if (!model.has_spheres()) return contacts;
   contacts.first.assign(model.slots(), kNoIndex);
   contacts.met.resize(model.slots());
   contacts.found.resize(model.slots());
-  contacts.boxes = ContactBoxes(model);
+  contacts.boxes = SlotBoxes(model);
   return contacts;
 }
 
 void find_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
-                   ContactStore& contacts) {
+                   SphereContacts& contacts) {
   contacts.clear();
   for_each_pair(
       m, kernels, x, contacts, [](double radius) { return (1 + kMargin) * radius; },
@@ -97,12 +97,12 @@ void find_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsV
       });
 }
 
-double reach_of(const Model& m, ContactPair pair) {
+double reach_of(const Model& m, SpherePair pair) {
   return m.radius[pair.particle] + (1 + kMargin) * m.radius[pair.sphere];
 }
 
 void find_pairs(const Model& m, const simd::Table& kernels, kernels::VectorsView x, double margin,
-                ContactStore& contacts, std::vector<ContactPair>& pairs) {
+                SphereContacts& contacts, std::vector<SpherePair>& pairs) {
   pairs.clear();
   for_each_pair(
       m, kernels, x, contacts,
@@ -112,12 +112,12 @@ void find_pairs(const Model& m, const simd::Table& kernels, kernels::VectorsView
       });
 }
 
-bool touches_nothing(const Model& m, const ContactStore& contacts, std::uint32_t slot) {
-  return m.has_contacts() && m.is_sphere[slot] && !contacts.met[slot] && !m.is_sphere_joined(slot);
+bool touches_nothing(const Model& m, const SphereContacts& contacts, std::uint32_t slot) {
+  return m.has_spheres() && m.is_sphere[slot] && !contacts.met[slot] && !m.is_sphere_joined(slot);
 }
 
 std::size_t add_missed_contacts(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
-                                double tolerance, ContactStore& contacts) {
+                                double tolerance, SphereContacts& contacts) {
   const std::uint32_t before = contacts.count();
   for_each_pair(
       m, kernels, x, contacts, [&](double radius) { return std::max(0.0, radius - tolerance); },
@@ -129,7 +129,7 @@ std::size_t add_missed_contacts(const Model& m, const simd::Table& kernels, kern
 }
 
 double max_penetration(const Model& m, const simd::Table& kernels, kernels::VectorsView x,
-                       ContactStore& contacts) {
+                       SphereContacts& contacts) {
   double deepest = 0;
   for_each_pair(
       m, kernels, x, contacts, [](double radius) { return radius; },

@@ -1,5 +1,5 @@
 /// Pairs that are looked at in place of all, against a search of all.
-#include "engine/contacts/nearby.h"
+#include "engine/spheres/nearby_pairs.h"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/random.h"
 
-namespace weft::test::engine_contacts_nearby {
+namespace weft::test::engine_spheres_nearby_pairs {
 namespace {
 
 /// Each particle goes to somewhere within `way` of where it is.
@@ -28,8 +28,8 @@ TEST_CASE("until something has moved beyond their margin the pairs hold all cont
     CAPTURE(seed);
     const auto model = model_of(sheet_among_spheres(seed));
     kernels::Vectors x = model->initial_position;
-    ContactStore contacts = make_contact_store(*model), expected = make_contact_store(*model);
-    NearbyPairs nearby;
+    SphereContacts contacts = make_sphere_contacts(*model), expected = make_sphere_contacts(*model);
+    NearbySpherePairs nearby;
     Random random(seed);
     for (; steps < 40 * (seed + 1); ++steps) {
       const double way = random.between(0, 0.02);
@@ -56,8 +56,8 @@ TEST_CASE("until something has moved beyond their margin the pairs hold all cont
 TEST_CASE("the pairs know of no place but those of their slots") {
   const simd::Table& table = simd::table(supported_isas().back());
   const auto model = model_of(sheet_among_spheres(3));
-  ContactStore contacts = make_contact_store(*model), expected = make_contact_store(*model);
-  NearbyPairs nearby;
+  SphereContacts contacts = make_sphere_contacts(*model), expected = make_sphere_contacts(*model);
+  NearbySpherePairs nearby;
   CHECK_FALSE(nearby.hold_after(0));
   kernels::Vectors all = model->initial_position;
   nearby.find(*model, table, all.view(), 0.1, contacts);
@@ -72,4 +72,4 @@ TEST_CASE("the pairs know of no place but those of their slots") {
 }
 
 }  // namespace
-}  // namespace weft::test::engine_contacts_nearby
+}  // namespace weft::test::engine_spheres_nearby_pairs

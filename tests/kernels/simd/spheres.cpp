@@ -8,7 +8,7 @@
 #include "tests/support/kernel_data.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test::kernels_simd_contacts {
+namespace weft::test::kernels_simd_spheres {
 namespace {
 
 constexpr std::uint32_t kSphere = 3;
@@ -257,4 +257,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace weft::test::kernels_simd_contacts
+}  // namespace weft::test::kernels_simd_spheres

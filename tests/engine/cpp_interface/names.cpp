@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-namespace weft::test::engine_names {
+namespace weft::test::engine_cpp_interface_names {
 namespace {
 
 TEST_CASE("every choice has the name that the command line and reports call it by") {
@@ -47,4 +47,4 @@ TEST_CASE("all stages have names, and no two the same") {
 }
 
 }  // namespace
-}  // namespace weft::test::engine_names
+}  // namespace weft::test::engine_cpp_interface_names

@@ -1,9 +1,10 @@
+#include "engine/step/validate_settings.h"
+
 #include <cmath>
 
 #include "engine/model/model.h"
-#include "engine/model/validate.h"
-#include "engine/model/validation.h"
 #include "engine/step/choose_solver.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {
@@ -153,7 +154,7 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
 
 Result<void> validate_for_lanes(const Settings& s, const Model& model) {
   const bool corrects_velocities = s.velocity_correction || s.scheme == Scheme::rattle;
-  if (s.iterations == 0 && model.has_contacts()) {
+  if (s.iterations == 0 && model.has_spheres()) {
     if (auto r = validate_float("contact_tolerance", s.contact_tolerance); !r) return r;
   }
   if (s.iterations == 0 && corrects_velocities) {

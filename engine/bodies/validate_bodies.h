@@ -1,0 +1,12 @@
+/// What is refused of a body, in one line.
+#pragma once
+
+#include <weft/body.h>
+#include <weft/result.h>
+
+namespace weft {
+
+Result<void> validate(const Body& body);
+Result<void> validate(const Pose& pose);
+
+}  // namespace weft
