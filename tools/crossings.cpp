@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <variant>
+
+#include "tools/body_moves.h"
 
 namespace weft::tools {
 namespace {
@@ -143,6 +146,20 @@ bool an_edge_leads_through(const Corners& edges, const Corners& triangle) {
 }
 
 }  // namespace
+
+TriangleSet meshes_at(std::span<const SceneBody> bodies, double time) {
+  TriangleSet set;
+  for (const SceneBody& body : bodies) {
+    const auto* mesh = std::get_if<TriangleMesh>(&body.shape);
+    if (!mesh) continue;
+    const auto first = static_cast<std::uint32_t>(set.places.size());
+    const std::vector<Vec3> places = places_at(body, time);
+    set.places.insert(set.places.end(), places.begin(), places.end());
+    for (const auto& [a, b, c] : mesh->triangles)
+      set.triangles.push_back({first + a, first + b, first + c});
+  }
+  return set;
+}
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> near_pairs(const TriangleSet& a,
                                                                 const TriangleSet& b,

@@ -7,8 +7,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "tools/scene_body.h"
 
 namespace weft::tools {
 
@@ -17,6 +20,9 @@ struct TriangleSet {
   std::vector<Vec3> places;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
+
+/// All bodies that are meshes, as one, where they are at a time.
+TriangleSet meshes_at(std::span<const SceneBody> bodies, double time);
 
 /// Pairs of a triangle of `a` and one of `b` whose boxes, grown by `reach` (m), meet.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> near_pairs(const TriangleSet& a,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/body_moves.h"
 #include "tools/file_ending.h"
 #include "tools/obj_mesh.h"
 #include "tools/scene_file.h"

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/body_moves.h"
 #include "tools/wording.h"
 
 namespace weft::tools {

@@ -10,7 +10,9 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include "tools/body_moves.h"
 #include "tools/cpu_time.h"
+#include "tools/crossings.h"
 #include "tools/mesh.h"
 #include "tools/warm_up.h"
 #include "tools/wording.h"

@@ -17,7 +17,7 @@
 #include "tools/fabric_measure.h"
 #include "tools/pin_moves.h"
 #include "tools/run_state.h"
-#include "tools/scene_bodies.h"
+#include "tools/scene_body.h"
 
 namespace weft::tools {
 

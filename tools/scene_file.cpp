@@ -11,6 +11,7 @@
 
 #include "tools/json_reading.h"
 #include "tools/mesh.h"
+#include "tools/scene_bodies.h"
 #include "tools/scene_material.h"
 #include "tools/scene_moves.h"
 #include "tools/text_file.h"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tools/pin_moves.h"
-#include "tools/scene_bodies.h"
+#include "tools/scene_body.h"
 
 namespace weft::tools {
 

@@ -12,7 +12,7 @@
 #include "tools/material_options.h"
 #include "tools/mesh.h"
 #include "tools/pin_moves.h"
-#include "tools/scene_bodies.h"
+#include "tools/scene_body.h"
 #include "tools/world_options.h"
 
 namespace weft::tools {

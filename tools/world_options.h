@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/command_line.h"
-#include "tools/scene_bodies.h"
+#include "tools/scene_body.h"
 
 namespace weft::tools {
 

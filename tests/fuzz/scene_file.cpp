@@ -4,6 +4,7 @@
 #include "engine/saving/fields.h"
 #include "tests/fuzz/checks.h"
 #include "tests/fuzz/stepping.h"
+#include "tools/body_moves.h"
 
 namespace weft::fuzz {
 namespace {

@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "temporary_folder.h"
+#include "tools/body_moves.h"
+#include "tools/crossings.h"
 #include "tools/scenes/scenes.h"
 
 namespace weft::tools {
