@@ -1,12 +1,12 @@
 /// The `weft` program. Its exit codes: exit_code.h.
 #include "tools/command_line.h"
-#include "tools/forms_command.h"
-#include "tools/hard_command.h"
 #include "tools/interrupt.h"
-#include "tools/paper_command.h"
-#include "tools/precision_command.h"
 #include "tools/run_command.h"
 #include "tools/scene_command.h"
+#include "tools/studies/forms/forms_command.h"
+#include "tools/studies/hard/hard_command.h"
+#include "tools/studies/paper/paper_command.h"
+#include "tools/studies/precision/precision_command.h"
 #include "tools/text_file.h"
 
 int main(int argc, char** argv) {

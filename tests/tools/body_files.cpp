@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "run_program.h"
-#include "temporary_folder.h"
+#include "tests/tools/run_program.h"
+#include "tests/tools/temporary_folder.h"
 #include "tools/scenes/body_meshes.h"
 
 namespace weft::tools {

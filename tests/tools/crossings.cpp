@@ -7,8 +7,8 @@
 #include <random>
 #include <set>
 
-#include "tools/hard/mesh_oracle.h"
 #include "tools/scenes/body_meshes.h"
+#include "tools/studies/hard/mesh_oracle.h"
 
 namespace weft::tools {
 namespace {

@@ -5,9 +5,9 @@
 #include <chrono>
 #include <thread>
 
-#include "run_program.h"
-#include "running_program.h"
-#include "temporary_folder.h"
+#include "tests/tools/run_program.h"
+#include "tests/tools/running_program.h"
+#include "tests/tools/temporary_folder.h"
 
 namespace weft::tools {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "run_program.h"
-#include "temporary_folder.h"
+#include "tests/tools/run_program.h"
+#include "tests/tools/temporary_folder.h"
 #include "tools/scene_file.h"
 #include "tools/scenes/scenes.h"
 

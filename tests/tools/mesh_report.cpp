@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "run_program.h"
-#include "temporary_folder.h"
+#include "tests/tools/run_program.h"
+#include "tests/tools/temporary_folder.h"
 #include "tools/scenes/splitmix.h"
 
 namespace weft::tools {

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstring>
 
-#include "temporary_folder.h"
+#include "tests/tools/temporary_folder.h"
 
 namespace weft::tools {
 namespace {

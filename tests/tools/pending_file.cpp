@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "temporary_folder.h"
+#include "tests/tools/temporary_folder.h"
 
 namespace weft::tools {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "run_program.h"
-#include "temporary_folder.h"
+#include "tests/tools/run_program.h"
+#include "tests/tools/temporary_folder.h"
 #include "tools/scene_file.h"
 
 namespace weft::tools {

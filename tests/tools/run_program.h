@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "temporary_folder.h"
+#include "tests/tools/temporary_folder.h"
 
 namespace weft::tools {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "run_program.h"
-#include "running_program.h"
-#include "temporary_folder.h"
+#include "tests/tools/run_program.h"
+#include "tests/tools/running_program.h"
+#include "tests/tools/temporary_folder.h"
 #include "tools/run_state.h"
 
 namespace weft::tools {

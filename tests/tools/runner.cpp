@@ -8,7 +8,7 @@
 #include <numeric>
 #include <optional>
 
-#include "slowness.h"
+#include "tests/tools/slowness.h"
 #include "tools/scenes/scenes.h"
 
 namespace weft::tools {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "temporary_folder.h"
+#include "tests/tools/temporary_folder.h"
 
 extern char** environ;
 

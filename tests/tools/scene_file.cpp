@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "temporary_folder.h"
+#include "tests/tools/temporary_folder.h"
 #include "tools/body_moves.h"
 #include "tools/crossings.h"
 #include "tools/scenes/scenes.h"

@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "run_program.h"
-#include "temporary_folder.h"
+#include "tests/tools/run_program.h"
+#include "tests/tools/temporary_folder.h"
 
 namespace weft::tools {
 namespace {

@@ -1,0 +1,66 @@
+#include "tools/studies/forms/elastica.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace weft::tools::forms {
+namespace {
+
+/// Where a function that rises is 0.
+template <class Function>
+double root(double low, double high, Function&& rising) {
+  for (int i = 0; i < 80; ++i) {
+    const double middle = 0.5 * (low + high);
+    (rising(middle) < 0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+struct Shape {
+  double theta, rate, x, y;  // x, y: from the tip
+};
+
+Shape operator+(Shape a, Shape b) {
+  return {a.theta + b.theta, a.rate + b.rate, a.x + b.x, a.y + b.y};
+}
+Shape operator*(double k, Shape a) { return {k * a.theta, k * a.rate, k * a.x, k * a.y}; }
+
+/// By what the shape changes with the distance from the tip, r = 1 - s.
+Shape slope(double load, double r, Shape f) {
+  return {f.rate, -load * r * std::cos(f.theta), -std::cos(f.theta), std::sin(f.theta)};
+}
+
+/// At the clamp, for this slope at the tip, or where it becomes level before; by Runge and Kutta's
+/// method of fourth order.
+Shape from_tip(double load, double theta) {
+  constexpr int kSteps = 1000;
+  constexpr double kStep = 1.0 / kSteps;
+  Shape f{theta, 0, 0, 0};
+  for (int i = 0; i < kSteps && f.theta >= 0; ++i) {
+    const double r = kStep * i;
+    const Shape a = slope(load, r, f);
+    const Shape b = slope(load, r + kStep / 2, f + (kStep / 2) * a);
+    const Shape c = slope(load, r + kStep / 2, f + (kStep / 2) * b);
+    const Shape d = slope(load, r + kStep, f + kStep * c);
+    f = f + (kStep / 6) * (a + 2 * b + 2 * c + d);
+  }
+  return f;
+}
+
+}  // namespace
+
+Tip heavy_elastica(double load) {
+  const double theta =
+      root(0, std::numbers::pi / 2, [&](double slope) { return from_tip(load, slope).theta; });
+  const Shape clamp = from_tip(load, theta);
+  return {-clamp.x, -clamp.y};
+}
+
+double buckled_height(double nearer) {
+  const double p = root(0, 0.999, [&](double modulus) {
+    return 2 - nearer - 2 * std::comp_ellint_2(modulus) / std::comp_ellint_1(modulus);
+  });
+  return p / std::comp_ellint_1(p);
+}
+
+}  // namespace weft::tools::forms
