@@ -1,13 +1,13 @@
 /// The `weft` program. Its exit codes: exit_code.h.
-#include "tools/command_line.h"
-#include "tools/interrupt.h"
-#include "tools/run_command.h"
-#include "tools/scene_command.h"
+#include "tools/program/commands/run_command.h"
+#include "tools/program/commands/scene_command.h"
+#include "tools/program/files/text_file.h"
+#include "tools/program/terminal/command_line.h"
+#include "tools/program/terminal/interrupt.h"
 #include "tools/studies/forms/forms_command.h"
 #include "tools/studies/hard/hard_command.h"
 #include "tools/studies/paper/paper_command.h"
 #include "tools/studies/precision/precision_command.h"
-#include "tools/text_file.h"
 
 int main(int argc, char** argv) {
   using namespace weft::tools;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tests/fuzz/checks.h"
-#include "tools/material_options.h"
+#include "tools/program/options/material_options.h"
 
 namespace weft::fuzz {
 namespace {

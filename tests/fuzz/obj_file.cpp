@@ -1,5 +1,5 @@
 /// An OBJ file, as cloth and as a body. The first line says by letters what is asked of it.
-#include "tools/obj_file.h"
+#include "tools/program/formats/obj_file.h"
 
 #include <weft/mesh.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/fuzz/checks.h"
 #include "tests/fuzz/stepping.h"
-#include "tools/obj_mesh.h"
+#include "tools/program/formats/obj_mesh.h"
 
 namespace weft::fuzz {
 namespace {

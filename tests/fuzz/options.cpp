@@ -5,10 +5,10 @@
 #include <string>
 
 #include "tests/fuzz/checks.h"
-#include "tools/numbered_name.h"
-#include "tools/parse.h"
-#include "tools/solver_options.h"
-#include "tools/world_options.h"
+#include "tools/program/options/solver_options.h"
+#include "tools/program/options/world_options.h"
+#include "tools/program/text/numbered_name.h"
+#include "tools/program/text/parse.h"
 
 namespace weft::fuzz {
 namespace {

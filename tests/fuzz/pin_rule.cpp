@@ -1,5 +1,5 @@
 /// A rule of --pin, and the lists of --seam, for a small mesh: the first letter says which.
-#include "tools/pin_rule.h"
+#include "tools/program/formats/pin_rule.h"
 
 #include <algorithm>
 #include <string>
@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "tests/fuzz/checks.h"
-#include "tools/obj_mesh.h"
+#include "tools/program/formats/obj_mesh.h"
 
 namespace weft::fuzz {
 namespace {

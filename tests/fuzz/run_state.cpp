@@ -1,5 +1,5 @@
 /// The file of --resume (SavedInput).
-#include "tools/run_state.h"
+#include "tools/program/run/run_state.h"
 
 #include <algorithm>
 

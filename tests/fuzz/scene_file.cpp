@@ -1,10 +1,10 @@
 /// The text of a scene file. What is accepted is written and read again, built, and stepped.
-#include "tools/scene_file.h"
+#include "tools/program/formats/scene_file.h"
 
 #include "engine/saving/fields.h"
 #include "tests/fuzz/checks.h"
 #include "tests/fuzz/stepping.h"
-#include "tools/body_moves.h"
+#include "tools/scenes/body_moves.h"
 
 namespace weft::fuzz {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "tests/fuzz/saved_cloths.h"
-#include "tools/run_state.h"
+#include "tools/program/run/run_state.h"
 
 namespace weft::fuzz {
 namespace {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "tools/scene_body.h"
 #include "tools/scenes/irregular_mesh.h"
+#include "tools/scenes/scene_body.h"
 
 namespace weft::scenes {
 

@@ -52,8 +52,8 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/mesh.h"
-#include "tools/scene_body.h"
+#include "tools/scenes/mesh.h"
+#include "tools/scenes/scene_body.h"
 
 namespace weft::scenes {
 

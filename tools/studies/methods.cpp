@@ -1,6 +1,6 @@
 #include "tools/studies/methods.h"
 
-#include "tools/enumerators.h"
+#include "tools/program/text/enumerators.h"
 
 namespace weft::tools {
 namespace {

@@ -5,8 +5,8 @@
 #include <system_error>
 #include <utility>
 
-#include "tools/pending_file.h"
-#include "tools/text_file.h"
+#include "tools/program/files/pending_file.h"
+#include "tools/program/files/text_file.h"
 
 namespace weft::tools {
 namespace {

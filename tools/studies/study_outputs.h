@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "tools/command_line.h"
-#include "tools/json_output.h"
+#include "tools/program/files/json_output.h"
+#include "tools/program/terminal/command_line.h"
 
 namespace weft::tools {
 

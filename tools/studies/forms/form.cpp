@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "tools/cpu_time.h"
+#include "tools/program/measure/cpu_time.h"
 
 namespace weft::tools::forms {
 namespace {

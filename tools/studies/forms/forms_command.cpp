@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/exit_code.h"
-#include "tools/pending_file.h"
-#include "tools/progress.h"
+#include "tools/program/files/pending_file.h"
+#include "tools/program/terminal/exit_code.h"
+#include "tools/program/terminal/progress.h"
 #include "tools/studies/forms/results.h"
 #include "tools/studies/study_outputs.h"
 

@@ -1,7 +1,7 @@
 /// `weft forms`: closed forms and what is measured, in one table.
 #pragma once
 
-#include "tools/command_line.h"
+#include "tools/program/terminal/command_line.h"
 
 namespace weft::tools {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tools/fabric_laws.h"
+#include "tools/program/measure/fabric_laws.h"
 #include "tools/studies/forms/form.h"
 #include "tools/studies/forms/oscillation.h"
 #include "tools/studies/forms/sheets.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/json_output.h"
+#include "tools/program/files/json_output.h"
 #include "tools/studies/forms/form.h"
 
 namespace weft::tools::forms {

@@ -13,9 +13,9 @@
 #include <thread>
 #include <vector>
 
-#include "tools/exit_code.h"
-#include "tools/pending_file.h"
-#include "tools/progress.h"
+#include "tools/program/files/pending_file.h"
+#include "tools/program/terminal/exit_code.h"
+#include "tools/program/terminal/progress.h"
 #include "tools/studies/hard/results.h"
 #include "tools/studies/hard/suite.h"
 #include "tools/studies/study_outputs.h"

@@ -1,7 +1,7 @@
 /// `weft hard`: the cases that break cloth engines.
 #pragma once
 
-#include "tools/command_line.h"
+#include "tools/program/terminal/command_line.h"
 
 namespace weft::tools {
 

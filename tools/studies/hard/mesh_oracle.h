@@ -1,7 +1,7 @@
 /// How near cloth is to bodies that are triangle meshes: by distances of its own.
 #pragma once
 
-#include "tools/crossings.h"
+#include "tools/program/measure/crossings.h"
 #include "tools/studies/hard/body_oracle.h"
 
 namespace weft::tools::hard {

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "tools/fabric_laws.h"
+#include "tools/program/measure/fabric_laws.h"
 
 namespace weft::tools::hard {
 namespace {

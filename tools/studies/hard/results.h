@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/json_output.h"
+#include "tools/program/files/json_output.h"
 #include "tools/studies/hard/suite.h"
 
 namespace weft::tools::hard {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "tools/cpu_time.h"
+#include "tools/program/measure/cpu_time.h"
+#include "tools/program/text/wording.h"
 #include "tools/studies/hard/mesh_oracle.h"
-#include "tools/wording.h"
 
 namespace weft::tools::hard {
 namespace {

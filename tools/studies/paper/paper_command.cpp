@@ -10,16 +10,16 @@
 #include <utility>
 #include <vector>
 
-#include "tools/exit_code.h"
-#include "tools/json_output.h"
-#include "tools/pending_file.h"
-#include "tools/progress.h"
+#include "tools/program/files/json_output.h"
+#include "tools/program/files/pending_file.h"
+#include "tools/program/files/text_file.h"
+#include "tools/program/terminal/exit_code.h"
+#include "tools/program/terminal/progress.h"
 #include "tools/scenes/scenes.h"
 #include "tools/studies/paper/results.h"
 #include "tools/studies/paper/study.h"
 #include "tools/studies/plots/plotting.h"
 #include "tools/studies/study_outputs.h"
-#include "tools/text_file.h"
 
 namespace weft::tools {
 namespace {

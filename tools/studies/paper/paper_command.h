@@ -1,7 +1,7 @@
 /// `weft paper`: the measurements of the paper's section 5.
 #pragma once
 
-#include "tools/command_line.h"
+#include "tools/program/terminal/command_line.h"
 
 namespace weft::tools {
 

@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-#include "tools/runner.h"
+#include "tools/program/run/runner.h"
 
 namespace weft::tools::paper {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "tools/wording.h"
+#include "tools/program/text/wording.h"
 
 namespace weft::tools::paper {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/json_output.h"
+#include "tools/program/files/json_output.h"
 #include "tools/studies/paper/study.h"
 
 namespace weft::tools::paper {

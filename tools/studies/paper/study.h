@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/runner.h"
+#include "tools/program/run/runner.h"
 
 namespace weft::tools::paper {
 

@@ -9,9 +9,9 @@
 #include <cstddef>
 #include <utility>
 
-#include "tools/cpu_time.h"
+#include "tools/program/measure/cpu_time.h"
+#include "tools/program/text/wording.h"
 #include "tools/studies/precision/meter.h"
-#include "tools/wording.h"
 
 namespace weft::tools::precision {
 namespace {

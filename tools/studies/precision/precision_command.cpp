@@ -10,10 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "tools/exit_code.h"
-#include "tools/json_output.h"
-#include "tools/pending_file.h"
-#include "tools/progress.h"
+#include "tools/program/files/json_output.h"
+#include "tools/program/files/pending_file.h"
+#include "tools/program/files/text_file.h"
+#include "tools/program/terminal/exit_code.h"
+#include "tools/program/terminal/progress.h"
 #include "tools/studies/plots/plotting.h"
 #include "tools/studies/precision/bullet.h"
 #include "tools/studies/precision/motion.h"
@@ -22,7 +23,6 @@
 #include "tools/studies/precision/results_tables.h"
 #include "tools/studies/precision/sweep.h"
 #include "tools/studies/study_outputs.h"
-#include "tools/text_file.h"
 
 namespace weft::tools {
 namespace {

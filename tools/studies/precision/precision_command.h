@@ -1,7 +1,7 @@
 /// `weft precision`: error against time per frame.
 #pragma once
 
-#include "tools/command_line.h"
+#include "tools/program/terminal/command_line.h"
 
 namespace weft::tools {
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "tools/wording.h"
+#include "tools/program/text/wording.h"
 
 namespace weft::tools::precision {
 namespace {

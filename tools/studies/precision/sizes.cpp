@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "tools/enumerators.h"
+#include "tools/program/text/enumerators.h"
+#include "tools/program/text/wording.h"
 #include "tools/studies/precision/order.h"
 #include "tools/studies/precision/sweep.h"
-#include "tools/wording.h"
 
 namespace weft::tools::precision {
 namespace {

@@ -6,10 +6,10 @@
 #include <span>
 #include <utility>
 
-#include "tools/runner.h"
+#include "tools/program/run/runner.h"
+#include "tools/program/text/wording.h"
 #include "tools/studies/methods.h"
 #include "tools/studies/precision/reference_solution.h"
-#include "tools/wording.h"
 
 namespace weft::tools::precision {
 namespace {

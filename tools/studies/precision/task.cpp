@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "tools/scene_source.h"
+#include "tools/program/options/scene_source.h"
 #include "tools/scenes/scenes.h"
 #include "tools/studies/precision/reference_solution.h"
 

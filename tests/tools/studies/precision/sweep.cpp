@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "tools/enumerators.h"
+#include "tools/program/text/enumerators.h"
 #include "tools/studies/methods.h"
 #include "tools/studies/precision/bullet.h"
 #include "tools/studies/precision/meter.h"

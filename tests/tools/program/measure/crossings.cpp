@@ -1,0 +1,107 @@
+#include "tools/program/measure/crossings.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "tools/scenes/body_meshes.h"
+#include "tools/studies/hard/mesh_oracle.h"
+
+namespace weft::tools {
+namespace {
+
+TriangleSet one(Vec3 a, Vec3 b, Vec3 c) { return {{a, b, c}, {{0, 1, 2}}}; }
+
+TriangleSet level() { return one({0, 0, 0}, {0, 0, 1}, {1, 0, 0}); }
+
+TriangleSet set_of(const TriangleMesh& mesh) { return {mesh.vertices, mesh.triangles}; }
+
+TEST_CASE("triangles cross where an edge of one leads through the other") {
+  CHECK(count_crossings(level(), one({0.2, -1, 0.2}, {0.2, 1, 0.2}, {5, 1, 5})) == 1);
+  CHECK(count_crossings(one({0.2, -1, 0.2}, {0.2, 1, 0.2}, {5, 1, 5}), level()) == 1);
+  CHECK(count_crossings(level(), one({0.2, 0.1, 0.2}, {0.2, 1, 0.2}, {5, 1, 5})) == 0);
+  CHECK(count_crossings(level(), one({0.9, -1, 0.9}, {0.9, 1, 0.9}, {5, 1, 5})) == 0);
+}
+
+TEST_CASE("what leads through an edge or a corner crosses, what only touches does not") {
+  CHECK(count_crossings(level(), one({0, -1, 0.5}, {0, 1, 0.5}, {-5, 1, 5})) == 1);
+  CHECK(count_crossings(level(), one({0, -1, 0}, {0, 1, 0}, {-5, 1, 5})) == 1);
+  CHECK(count_crossings(level(), one({0.2, 0, 0.2}, {0.2, 1, 0.2}, {5, 1, 5})) == 0);
+  CHECK(count_crossings(level(), level()) == 0);
+}
+
+TEST_CASE("triangles without area cross by their edges") {
+  CHECK(count_crossings(level(), one({0.2, -1, 0.2}, {0.2, 0, 0.2}, {0.2, 1, 0.2})) == 1);
+}
+
+TEST_CASE("far from the origin too") {
+  TriangleSet ball = set_of(scenes::ball_mesh({.radius = 0.5}, 16));
+  TriangleSet sheet = set_of(scenes::plate_mesh(2, 2, 9, 9));
+  for (Vec3& p : sheet.places) p = {p.x + 0.007, 0.013, p.z + 0.003};  // nothing meets a vertex
+  const std::size_t crossings = count_crossings(ball, sheet);
+  CHECK(crossings > 16);
+  for (TriangleSet* set : {&ball, &sheet}) {
+    for (Vec3& p : set->places) p = {p.x + 16384, p.y - 16384, p.z + 16384};
+  }
+  CHECK(count_crossings(ball, sheet) == crossings);
+}
+
+/// Triangles as large as `size`, anywhere in a box of a metre.
+TriangleSet random_triangles(std::mt19937& random, std::uint32_t count, double size) {
+  std::uniform_real_distribution<double> number(-0.5, 0.5);
+  TriangleSet set;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3 at{number(random), number(random), number(random)};
+    for (int k = 0; k < 3; ++k) {
+      set.places.push_back({at.x + size * number(random), at.y + size * number(random),
+                            at.z + size * number(random)});
+    }
+    set.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return set;
+}
+
+TriangleSet single(const TriangleSet& set, std::size_t triangle) {
+  return {set.places, {set.triangles[triangle]}};
+}
+
+TEST_CASE("of many triangles none is missed, nor a pair that is near") {
+  std::mt19937 random(7);
+  for (const double size : {0.05, 0.3, 1.0}) {
+    const TriangleSet a = random_triangles(random, 120, size),
+                      b = random_triangles(random, 90, size);
+    std::size_t crossings = 0;
+    double least = 0.1;
+    for (std::size_t i = 0; i < a.triangles.size(); ++i) {
+      for (std::size_t j = 0; j < b.triangles.size(); ++j) {
+        crossings += count_crossings(single(a, i), single(b, j));
+        least = std::min(least, hard::distance(single(a, i), single(b, j), 0.1));
+      }
+    }
+    CHECK(count_crossings(a, b) == crossings);
+    CHECK(hard::distance(a, b, 0.1) == least);
+  }
+}
+
+TEST_CASE("meshes that are made are closed and turned outwards") {
+  for (const TriangleMesh& mesh :
+       {scenes::ball_mesh({{1, 2, 3}, 0.5}, 12),
+        scenes::capsule_mesh({{}, {1, 0, 0}, 0.1, 0.3}, 16), scenes::box_mesh({1, 2, 3}, 3)}) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> sides;
+    double volume = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      for (const auto& side : {std::pair{a, b}, {b, c}, {c, a}}) CHECK(sides.insert(side).second);
+      const Vec3 p = mesh.vertices[a], q = mesh.vertices[b], r = mesh.vertices[c];
+      volume += p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) +
+                p.z * (q.x * r.y - q.y * r.x);
+    }
+    for (const auto& [a, b] : sides) CHECK(sides.contains({b, a}));
+    CHECK(volume > 0);
+  }
+}
+
+}  // namespace
+}  // namespace weft::tools

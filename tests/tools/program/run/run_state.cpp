@@ -1,0 +1,92 @@
+/// Runs that go on from the state of another one: --save and --resume.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/tools/run_program.h"
+#include "tests/tools/running_program.h"
+#include "tests/tools/temporary_folder.h"
+#include "tools/program/run/run_state.h"
+
+namespace weft::tools {
+namespace {
+
+TEST_CASE("a run that was killed goes on to the same bits") {
+  for (const std::string scene :
+       {"mannequin --size 30 --sleep on", "hang_sphere --size 12 --solver yarn",
+        "corners --size 9 --solver direct", "corners --size 9 --backend reference"}) {
+    CAPTURE(scene);
+    const TemporaryFolder folder;
+    const std::string state = folder.file("state.weft");
+    std::vector<std::string> arguments{"run"};
+    for (std::size_t at = 0, end = 0; end != std::string::npos; at = end + 1) {
+      end = scene.find(' ', at);
+      arguments.push_back(scene.substr(at, end - at));
+    }
+    for (const char* more : {"--steps", "100000000", "--save"}) arguments.emplace_back(more);
+    arguments.push_back(state);
+    const Running running(folder, arguments);
+    wait_for([&] { return std::filesystem::exists(state); });
+    running.kill_at_once();
+    const auto killed = read_run_state(state);
+    REQUIRE(killed);
+    const std::string run = scene + " --steps " + std::to_string(killed.value().frame + 7);
+    const auto resumed =
+        report_of(folder, run + " --resume " + state + " --save " + folder.file("end.weft"));
+    const auto whole = report_of(folder, run);
+    CHECK(resumed["state_hash"] == whole["state_hash"]);
+    CHECK(resumed["frames"] == 7);
+    const auto end = read_run_state(folder.file("end.weft"));
+    REQUIRE(end);
+    CHECK(end.value().frame == killed.value().frame + 7);
+  }
+}
+
+TEST_CASE("pins that move, and a run that is resumed twice, come to the same bits") {
+  const TemporaryFolder folder;
+  const std::string scene =
+      folder.write("scene.json", R"({"positions": [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
+        "masses": [1, 1, 1], "fixed": [0], "constraints": [[0, 1, 1], [1, 2, 1]],
+        "moves": [{"particles": [0], "times": [0, 1], "translations": [[0, 0, 0], [0, 1, 0]]}],
+        "bodies": [{"shape": "sphere", "centre": [1, -0.5, 0], "radius": 0.3}]})");
+  const std::string run = scene + " --dt 1/60 --steps ", state = folder.file("state.weft");
+  report_of(folder, run + "20 --save " + state);
+  report_of(folder, run + "40 --resume " + state + " --save " + state);
+  const auto last = report_of(folder, run + "60 --resume " + state);
+  CHECK(last["state_hash"] == report_of(folder, run + "60")["state_hash"]);
+  CHECK(last["frames"] == 20);
+}
+
+TEST_CASE("states that a run cannot go on from are refused in one line") {
+  const TemporaryFolder folder;
+  const std::string state = folder.file("state.weft"), run = "run hang --size 6 --steps ";
+  REQUIRE(run_program(folder, run + "5 --save " + state).exit_code == 0);
+  const auto refusal = [&](const std::string& arguments) {
+    const Outcome outcome = run_program(folder, arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.err.find('\n') == outcome.err.size() - 1);
+    return outcome.err;
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    CAPTURE(text);
+    CHECK(text.find(part) != std::string::npos);
+  };
+  has(refusal("run hang --size 7 --resume " + state), "state: is of another model");
+  has(refusal(run + "9 --dt 1/60 --resume " + state), "is of frames of 0.01 s, and --dt is");
+  has(refusal(run + "5 --resume " + state), "is of frame 5, and --steps 5 asks for none after it");
+  has(refusal(run + "9 --resume " + folder.file("none")), "--resume: ");
+  has(refusal(run + "9 --resume " + state + " --out " + folder.file("motion.pc2")),
+      "needs all frames, and --resume leaves out the first 5");
+  has(refusal(run + "9 --save " + folder.file("no/such/folder")), "--save: cannot write");
+  has(refusal(run + "9 --save " + state + " --json " + state), "is named twice");
+  std::string bytes = folder.read("state.weft");
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  has(refusal(run + "9 --resume " + folder.write("damaged", bytes)), "is damaged");
+  has(refusal(run + "9 --resume " + folder.write("text", "not a state")), "is not one of weft's");
+}
+
+}  // namespace
+}  // namespace weft::tools

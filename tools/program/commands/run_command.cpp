@@ -1,0 +1,239 @@
+#include "tools/program/commands/run_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "tools/program/files/json_output.h"
+#include "tools/program/files/text_file.h"
+#include "tools/program/options/scene_source.h"
+#include "tools/program/options/solver_options.h"
+#include "tools/program/run/outputs.h"
+#include "tools/program/run/run_report.h"
+#include "tools/program/run/runner.h"
+#include "tools/program/terminal/exit_code.h"
+#include "tools/program/terminal/interrupt.h"
+#include "tools/program/terminal/progress.h"
+#include "tools/program/text/file_ending.h"
+#include "tools/program/text/parse.h"
+#include "tools/program/text/wording.h"
+
+namespace weft::tools {
+namespace {
+
+struct RunOptions {
+  SceneOptions scene;
+  SolverOptions solver;
+  RunPlan plan;
+  std::optional<std::string> dt;
+  std::vector<std::string> out;
+  std::optional<std::string> json;
+  std::optional<std::string> save, resume;
+};
+
+Result<RunState> state_of(const RunOptions& options, const RunPlan& plan) {
+  auto state = read_run_state(*options.resume);
+  if (!state) return Error{fmt::format("--resume: {}", state.error())};
+  const auto refused = [&](const std::string& why) {
+    return Error{fmt::format("--resume: '{}' {}", *options.resume, why)};
+  };
+  const auto& [frame, dt, cloth] = state.value();
+  if (dt != plan.dt)
+    return refused(fmt::format("is of frames of {} s, and --dt is {}", dt, plan.dt));
+  if (frame >= plan.steps)
+    return refused(
+        fmt::format("is of frame {}, and --steps {} asks for none after it", frame, plan.steps));
+  for (const std::string& name : options.out) {
+    if (file_ending(name) == ".pc2")
+      return Error{fmt::format("--out: '{}' needs all frames, and --resume leaves out the first {}",
+                               name, frame)};
+  }
+  return state;
+}
+
+Result<RunPlan> plan_of(const RunOptions& options) {
+  RunPlan plan = options.plan;
+  if (options.dt) {
+    const auto seconds = parse_seconds("--dt", *options.dt);
+    if (!seconds) return Error{seconds.error()};
+    plan.dt = seconds.value();
+  }
+  if (plan.steps < 1) return Error{fmt::format("--steps: {} is below 1", plan.steps)};
+  if (plan.repeat < 1) return Error{fmt::format("--repeat: {} is below 1", plan.repeat)};
+  if (options.resume) {
+    auto state = state_of(options, plan);
+    if (!state) return Error{state.error()};
+    plan.resume = std::move(state).value();
+  }
+  return plan;
+}
+
+/// Two outputs of one name, however it is spelt, would overwrite each other.
+Result<void> check_destinations(const RunOptions& options) {
+  struct Destination {
+    std::filesystem::path place;
+    std::string name;
+  };
+  std::vector<Destination> all;
+  const auto add = [&all](const std::string& name) {
+    std::error_code unknown;  // then it is told when the file is opened
+    all.push_back({weakly_canonical(std::filesystem::absolute(name, unknown), unknown), name});
+  };
+  std::ranges::for_each(options.out, add);
+  if (options.json && *options.json != "-") add(*options.json);
+  if (options.save) add(*options.save);
+  std::ranges::stable_sort(all, {}, &Destination::place);
+  const auto twice = std::ranges::adjacent_find(all, {}, &Destination::place);
+  if (twice == all.end() || twice->place.empty()) return {};
+  return Error{fmt::format("--out, --json, --save: '{}' is named twice", twice->name)};
+}
+
+/// What is known to be possible before anything runs.
+struct Prepared {
+  SceneSource source;
+  std::shared_ptr<const Model> model;
+  Settings settings;
+  RunPlan plan;
+  std::optional<JsonOutput> json;
+  std::optional<StateFile> state;
+};
+
+Result<Prepared> prepare(const RunOptions& options) {
+  auto plan = plan_of(options);
+  if (!plan) return Error{plan.error()};
+  if (auto names = check_destinations(options); !names) return Error{names.error()};
+  const auto settings = settings_of(options.solver);
+  if (!settings) return Error{settings.error()};
+  auto source = load_scene(options.scene);
+  if (!source) return Error{source.error()};
+  const auto model = model_of(source.value());
+  if (!model) return Error{model.error()};
+  plan.value().moves = source.value().moves;
+  plan.value().bodies = source.value().bodies;
+  plan.value().surface = source.value().description.surface;
+  plan.value().up = source.value().up;
+  plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
+  Prepared prepared{std::move(source.value()), model.value(), settings.value(),
+                    std::move(plan.value()),   std::nullopt,  std::nullopt};
+  if (options.json) {
+    auto json = JsonOutput::open(*options.json);
+    if (!json) return Error{fmt::format("--json: {}", json.error())};
+    prepared.json = std::move(json.value());
+  }
+  if (options.save) {
+    auto state = StateFile::open(*options.save, prepared.plan.dt);
+    if (!state) return Error{fmt::format("--save: {}", state.error())};
+    prepared.state = std::move(state.value());
+  }
+  return prepared;
+}
+
+Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
+  ProgressLine progress;
+  RunPlan plan = prepared.plan;
+  bool stopped = false;
+  plan.stop = [&stopped] { return stopped = OrderlyInterrupt::signal() != 0; };
+  const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
+    const bool is_done = committed(report.status);
+    const int done = is_done ? frame : frame - 1;
+    if (is_done) outputs.add_frame(cloth, frame, plan.dt * frame);
+    if (is_done && prepared.state) prepared.state->add_frame(cloth, frame);
+    if (frame == plan.steps || !is_done || stopped) {
+      outputs.add_last(cloth, plan.dt * done);
+      if (prepared.state) prepared.state->add_last(cloth, done);
+    }
+    if (!progress.redraws()) return;
+    const std::string filled =
+        bar(static_cast<std::size_t>(frame), static_cast<std::size_t>(plan.steps), 30);
+    progress.show(fmt::format("{} frame {}/{}, strain {}", filled, frame, plan.steps,
+                              measured_percent(report.max_strain)));
+  };
+  return run(prepared.model, prepared.settings, plan, on_frame);
+}
+
+/// Files are those of the first run, the report is that of the fastest.
+std::string interruption(const RunSummary& summary, const RunPlan& plan) {
+  if (summary.finished_runs == 0) {
+    return fmt::format("in frame {} of {}, the last one in all that was written",
+                       summary.last_frame(), plan.steps);
+  }
+  const int finished_repeats = summary.finished_runs - 1;
+  return fmt::format("in repeat {} of {}; the report is that of {}", summary.finished_runs,
+                     plan.repeat,
+                     finished_repeats == 0 ? "the run to warm up" : "the fastest before it");
+}
+
+int interrupted(const RunSummary& summary, const RunPlan& plan) {
+  print_message(fmt::format("weft: interrupted {}\n", interruption(summary, plan)));
+  return interrupted_by(OrderlyInterrupt::signal());
+}
+
+Result<int> run_verb(const RunOptions& options) {
+  auto prepared = prepare(options);
+  if (!prepared) return Error{prepared.error()};
+  auto& [source, model, settings, plan, json, state] = prepared.value();
+  for (const std::string& note : source.notes) print_message(fmt::format("weft: {}\n", note));
+  const OrderlyInterrupt interrupt;
+  auto outputs = Outputs::open(options.out, source);
+  if (!outputs) return Error{outputs.error()};
+  auto summary = run_and_record(prepared.value(), outputs.value());
+  if (!summary) return Error{summary.error()};
+
+  const RunReport report{source.name, settings, plan, summary.value(), source.counts};
+  if (auto finished = outputs.value().finish(); !finished) {
+    return Error{fmt::format("--out: {}", finished.error())};
+  }
+  if (state) {
+    if (auto saved = state->finish(); !saved)
+      return Error{fmt::format("--save: {}", saved.error())};
+  }
+  if (json) {
+    auto written = json->write(to_json(report));
+    if (!written) return Error{fmt::format("--json: {}", written.error())};
+  }
+  if (!json || !json->is_stdout()) {
+    const auto printed = print_text(to_table(report));
+    const bool hung_up = OrderlyInterrupt::signal() == SIGHUP;  // and nobody reads any more
+    if (!printed && !hung_up) return Error{printed.error()};
+  }
+  if (summary.value().stopped) return interrupted(summary.value(), plan);
+  if (summary.value().reached_tolerance()) return kDone;
+  return missed_tolerance(text(*summary.value().first_miss));
+}
+
+}  // namespace
+
+void add_run_command(CommandLine& line) {
+  auto options = std::make_shared<RunOptions>();
+  Verb verb = line.add_verb("run", "Run a scene; report time beside error", [options] {
+    const auto result = run_verb(*options);
+    return result ? result.value() : refuse(result.error());
+  });
+  add_scene_options(verb, options->scene);
+  verb.option("--dt", options->dt, "s, one frame: 0.01 (default), or as 1/60");
+  verb.option("--steps", options->plan.steps, "frames to run (default 200)");
+  verb.option("--repeat", options->plan.repeat,
+              "report the fastest of this many runs, after one to warm up (default 1: a "
+              "single run)");
+  verb.flag("--check-intersections", options->plan.check_intersections,
+            "count after every frame how many triangles of the cloth cross triangles of bodies");
+  add_solver_options(verb, options->solver);
+  verb.repeated("--out", options->out,
+                "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
+                "frames, .json the last state as a scene; frame_%04d.obj or .json a file for the "
+                "start and each frame");
+  verb.option("--save", options->save,
+              "file that has the state of the run, to go on from: written anew about once a second "
+              "and in the end, so that one is there whenever the run is killed");
+  verb.option("--resume", options->resume,
+              "file of --save to go on from, to the same bits if all other options are as they "
+              "were; --steps counts its frames too");
+  verb.option("--json", options->json, "write the report to a file, or - for stdout");
+}
+
+}  // namespace weft::tools

@@ -1,0 +1,251 @@
+#include "tools/program/formats/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "tools/program/files/json_reading.h"
+#include "tools/program/files/text_file.h"
+#include "tools/program/formats/scene_bodies.h"
+#include "tools/program/formats/scene_material.h"
+#include "tools/program/formats/scene_moves.h"
+#include "tools/scenes/mesh.h"
+
+namespace weft::tools {
+namespace {
+
+// --------------------------------------------------------------------------------------- reading
+
+/// A rest length that the file leaves out becomes 0 here: legal lengths are above 0.
+constexpr double kMeasured = 0;
+
+double read_rest_length(const Json& json, const std::string& place) {
+  if (json.is_null()) return kMeasured;
+  const double length = read_number(json, place);
+  if (!(length > 0)) refuse(place, "a length above 0", json);
+  return length;
+}
+
+Constraint read_constraint(const Json& json, const std::string& place) {
+  if (!json.is_array() || json.size() < 2 || json.size() > 5) {
+    refuse(place, "[a, b, rest length, kind, compliance]", json);
+  }
+  Constraint constraint;
+  constraint.a = read_index(json[0], place + "[0]");
+  constraint.b = read_index(json[1], place + "[1]");
+  constraint.rest_length = json.size() > 2 ? read_rest_length(json[2], place + "[2]") : kMeasured;
+  if (json.size() > 3) constraint.kind = read_kind(json[3], place + "[3]");
+  if (json.size() > 4) constraint.compliance = read_number(json[4], place + "[4]");
+  return constraint;
+}
+
+void measure_rest_lengths(SceneDescription& scene) {
+  for (std::size_t i = 0; i < scene.constraints.size(); ++i) {
+    Constraint& constraint = scene.constraints[i];
+    if (constraint.rest_length != kMeasured) continue;
+    for (const std::uint32_t end : {constraint.a, constraint.b}) {
+      if (end < scene.positions.size()) continue;
+      throw Refused{fmt::format("constraints[{}]: there is no particle {}", i, end)};
+    }
+    const Vec3 a = scene.positions[constraint.a];
+    const Vec3 b = scene.positions[constraint.b];
+    constraint.rest_length = std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+  }
+}
+
+void share_total_mass(SceneDescription& scene, const Json& json) {
+  const double total = read_number(json, "total_mass");
+  if (!(total > 0)) refuse("total_mass", "a mass above 0", json);
+  const auto count = static_cast<double>(scene.positions.size());
+  scene.masses.assign(scene.positions.size(), total / count);
+}
+
+std::vector<std::uint32_t> read_face(const Json& json, const std::string& place) {
+  if (!json.is_array() || json.size() < 3) refuse(place, "three particles or more", json);
+  return read_array(json, place, read_index);
+}
+
+Faces read_faces(const Json& json, std::size_t particles) {
+  Faces faces = read_array(json, "faces", read_face);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (std::size_t k = 0; k < faces[i].size(); ++k) {
+      if (faces[i][k] < particles) continue;
+      throw Refused{fmt::format("faces[{}][{}]: there is no particle {}", i, k, faces[i][k])};
+    }
+  }
+  return faces;
+}
+
+std::array<std::uint32_t, 3> read_surface_triangle(const Json& json, const std::string& place) {
+  if (!json.is_array() || json.size() != 3) refuse(place, "three particles", json);
+  const auto corners = read_array(json, place, read_index);
+  return {corners[0], corners[1], corners[2]};
+}
+
+void read_key(const std::string& key, const Json& json, SceneDescription& scene) {
+  if (key == "gravity") {
+    scene.gravity = read_vector(json, key);
+  } else if (key == "positions") {
+    scene.positions = read_array(json, key, read_vector);
+  } else if (key == "velocities") {
+    scene.velocities = read_array(json, key, read_vector);
+  } else if (key == "masses") {
+    scene.masses = read_array(json, key, read_number);
+  } else if (key == "fixed") {
+    scene.fixed = read_array(json, key, read_index);
+  } else if (key == "constraints") {
+    scene.constraints = read_array(json, key, read_constraint);
+  } else if (key == "membrane") {
+    scene.membrane = read_array(json, key, read_membrane);
+  } else if (key == "bending") {
+    scene.bending = read_array(json, key, read_bending);
+  } else if (key == "surface") {
+    scene.surface = read_array(json, key, read_surface_triangle);
+  } else if (key == "anchors") {
+    scene.anchors = read_array(json, key, read_anchor);
+  } else if (key == "seams") {
+    scene.seams = read_array(json, key, read_seam);
+  } else if (key == "damping") {
+    scene.damping = read_damping(json, key);
+  } else if (key == "air") {
+    scene.air = read_air(json, key);
+  } else if (key == "spheres") {
+    scene.spheres = read_array(json, key, read_index);
+  } else if (key == "radii") {
+    scene.radii = read_array(json, key, read_number);
+  } else if (key == "friction") {
+    scene.friction = read_number(json, key);
+  } else if (key != "total_mass" && key != "moves" && key != "faces" && key != "bodies") {
+    throw Refused{fmt::format("unknown key {}", in_quotes(key))};
+  }
+}
+
+SceneFile read_scene(const Json& json, const std::string& folder) {
+  if (!json.is_object()) throw Refused{"expected an object with the key 'positions'"};
+  SceneDescription scene;
+  for (const auto& [key, value] : json.items()) read_key(key, value, scene);
+  if (!json.contains("positions")) throw Refused{"the key 'positions' is missing"};
+  if (json.contains("masses") == json.contains("total_mass")) {
+    throw Refused{"expected one of the keys 'masses' and 'total_mass'"};
+  }
+  if (json.contains("total_mass")) {
+    share_total_mass(scene, json["total_mass"]);
+  }
+  measure_rest_lengths(scene);
+  SceneFile file;
+  if (json.contains("moves")) file.moves = read_moves(json["moves"], scene);
+  if (json.contains("faces")) file.faces = read_faces(json["faces"], scene.positions.size());
+  if (!json.contains("surface")) scene.surface = triangles_of(file.faces);
+  if (json.contains("bodies")) file.bodies = read_bodies(json["bodies"], folder);
+  file.description = std::move(scene);
+  return file;
+}
+
+/// Of two values for one key the parser would drop one in silence. Only keys of the scene itself,
+/// of what it has and of what is in its arrays are looked at: other objects are refused anyway.
+Json parse_once_each(std::string_view text) {
+  constexpr std::size_t kDepths = 4;
+  std::array<std::set<std::string>, kDepths> seen;
+  return Json::parse(text, [&](int depth, Json::parse_event_t event, const Json& parsed) {
+    const auto at = static_cast<std::size_t>(depth);
+    if (event == Json::parse_event_t::object_start && at + 1 < kDepths) seen[at + 1].clear();
+    if (event != Json::parse_event_t::key || at >= kDepths) return true;
+    if (!seen[at].insert(parsed.get<std::string>()).second) {
+      throw Refused{fmt::format("the key {} is given twice", in_quotes(parsed))};
+    }
+    return true;
+  });
+}
+
+// --------------------------------------------------------------------------------------- writing
+
+std::string vector_row(const Vec3& v) { return Json{v.x, v.y, v.z}.dump(); }
+
+std::string constraint_row(const Constraint& constraint) {
+  Json row{constraint.a, constraint.b, constraint.rest_length};
+  const bool is_rope = constraint.kind == ConstraintKind::rope;
+  if (is_rope || constraint.compliance > 0) row.push_back(is_rope ? "rope" : "distance");
+  if (constraint.compliance > 0) row.push_back(constraint.compliance);
+  return row.dump();
+}
+
+template <class Value, class Row>
+void add_rows(std::string& text, std::string_view key, const std::vector<Value>& values, Row row) {
+  if (values.empty()) return;
+  text += fmt::format(",\n\"{}\": [", key);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += i == 0 ? "\n" : ",\n";
+    text += row(values[i]);
+  }
+  text += "\n]";
+}
+
+template <class Number>
+void add_numbers(std::string& text, std::string_view key, const std::vector<Number>& values) {
+  if (!values.empty()) text += fmt::format(",\n\"{}\": {}", key, Json(values).dump());
+}
+
+}  // namespace
+
+Result<SceneFile> parse_scene(std::string_view text, const std::string& folder) {
+  try {
+    return read_scene(parse_once_each(text), folder);
+  } catch (const Refused& refused) {
+    return Error{refused.message};
+  } catch (const Json::exception& exception) {
+    return Error{plain_message(exception)};
+  }
+}
+
+Result<SceneFile> read_scene_file(const std::string& path) {
+  const auto text = read_text_file(path);
+  if (!text) return Error{text.error()};
+  auto scene = parse_scene(text.value(), std::filesystem::path(path).parent_path().string());
+  if (!scene) return Error{fmt::format("{}: {}", path, scene.error())};
+  return scene;
+}
+
+std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves,
+                       const Faces& faces, const std::vector<SceneBody>& bodies) {
+  std::string text = fmt::format("{{\n\"gravity\": {}", vector_row(scene.gravity));
+  add_rows(text, "positions", scene.positions, vector_row);
+  add_rows(text, "velocities", scene.velocities, vector_row);
+  add_numbers(text, "masses", scene.masses);
+  add_numbers(text, "fixed", scene.fixed);
+  add_rows(text, "constraints", scene.constraints, constraint_row);
+  add_rows(text, "membrane", scene.membrane, membrane_row);
+  add_rows(text, "bending", scene.bending, bending_row);
+  add_rows(text, "surface", scene.surface, [](const auto& t) { return Json(t).dump(); });
+  if (scene.surface.empty() && !faces.empty()) text += ",\n\"surface\": []";
+  add_rows(text, "anchors", scene.anchors, anchor_row);
+  add_rows(text, "seams", scene.seams, seam_row);
+  if (has_damping(scene.damping)) {
+    text += fmt::format(",\n\"damping\": {}", damping_text(scene.damping));
+  }
+  if (has_air(scene.air)) text += fmt::format(",\n\"air\": {}", air_text(scene.air));
+  add_numbers(text, "spheres", scene.spheres);
+  add_numbers(text, "radii", scene.radii);
+  if (scene.friction != SceneDescription{}.friction)
+    text += fmt::format(",\n\"friction\": {}", Json(scene.friction).dump());
+  add_rows(text, "bodies", bodies, body_row);
+  add_rows(text, "moves", moves, move_row);
+  add_rows(text, "faces", faces, [](const auto& face) { return Json(face).dump(); });
+  return text + "\n}\n";
+}
+
+SceneDescription present_scene(const SceneDescription& scene, const Cloth& cloth) {
+  SceneDescription present = scene;
+  present.velocities.resize(scene.positions.size());
+  for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
+    present.positions[i] = cloth.position(i);
+    present.velocities[i] = cloth.velocity(i);
+  }
+  return present;
+}
+
+}  // namespace weft::tools

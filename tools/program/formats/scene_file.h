@@ -1,0 +1,41 @@
+/// Scenes as JSON files, read and written: the particles of a scene, how its pins move
+/// (pin_moves.h) and the faces that pictures show. tools/program/README.md describes the format.
+///
+/// Unknown keys are refused, and so are keys that are given twice. An error names the place in the
+/// file, like "constraints[3][2]". Numbers survive writing and reading again to the last bit.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/scenes/pin_moves.h"
+#include "tools/scenes/scene_body.h"
+
+namespace weft::tools {
+
+/// Faces are numbers of particles, in order around each.
+using Faces = std::vector<std::vector<std::uint32_t>>;
+
+struct SceneFile {
+  SceneDescription description;
+  std::vector<PinMove> moves;
+  Faces faces;
+  std::vector<SceneBody> bodies;
+};
+
+/// Files that it names are looked for from `folder`.
+Result<SceneFile> parse_scene(std::string_view text, const std::string& folder = {});
+Result<SceneFile> read_scene_file(const std::string& path);
+
+/// The file's text. One row of the arrays per line, so that files can be read and compared.
+std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves = {},
+                       const Faces& faces = {}, const std::vector<SceneBody>& bodies = {});
+
+/// The scene with the cloth's present positions and velocities, to be continued from there. With
+/// moves: present_moves(), whose times begin anew and which say where their pins come "from".
+SceneDescription present_scene(const SceneDescription& scene, const Cloth& cloth);
+
+}  // namespace weft::tools

@@ -1,0 +1,121 @@
+#include "tools/program/formats/scene_moves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
+#include "tools/program/files/json_reading.h"
+
+namespace weft::tools {
+namespace {
+
+std::vector<double> read_times(const Json& json, const std::string& place) {
+  std::vector<double> times = read_array(json, place, read_number);
+  if (times.empty()) refuse(place, "one time at least", json);
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    if (times[k - 1] < times[k]) continue;
+    refuse(fmt::format("{}[{}]", place, k), fmt::format("a time after {}", times[k - 1]), json[k]);
+  }
+  return times;
+}
+
+void read_key(const std::string& key, const Json& json, const std::string& place, PinMove& move) {
+  if (key == "particles") {
+    move.particles = read_array(json, place, read_index);
+  } else if (key == "times") {
+    move.times = read_times(json, place);
+  } else if (key == "translations") {
+    move.translations = read_array(json, place, read_vector);
+  } else if (key == "rotations") {
+    move.rotations = read_array(json, place, read_vector);
+  } else if (key == "about") {
+    move.about = read_vector(json, place);
+  } else if (key == "from") {
+    move.from = read_array(json, place, read_vector);
+  }
+}
+
+void check_keys(const Json& json, const std::string& place) {
+  if (!json.is_object()) refuse(place, "an object", json);
+  static constexpr std::string_view kKeys[] = {"particles", "times", "translations",
+                                               "rotations", "about", "from"};
+  for (const auto& [key, value] : json.items()) {
+    if (std::ranges::find(kKeys, key) != std::end(kKeys)) continue;
+    throw Refused{fmt::format("{}: unknown key {}", place, in_quotes(key))};
+  }
+  for (const std::string_view key : {"particles", "times", "translations"}) {
+    if (json.contains(key)) continue;
+    throw Refused{fmt::format("{}: the key '{}' is missing", place, key)};
+  }
+}
+
+void check_count(const Json& json, const std::string& place, std::string_view key,
+                 std::string_view of) {
+  if (!json.contains(key) || json[key].size() == json[of].size()) return;
+  throw Refused{fmt::format("{}: expected as many as {}, {}, not {}", within(place, key), of,
+                            json[of].size(), json[key].size())};
+}
+
+PinMove read_pin_move(const Json& json, const std::string& place) {
+  check_keys(json, place);
+  PinMove move;
+  for (const auto& [key, value] : json.items()) read_key(key, value, within(place, key), move);
+  check_count(json, place, "translations", "times");
+  check_count(json, place, "rotations", "times");
+  check_count(json, place, "from", "particles");
+  return move;
+}
+
+/// What may be said of the particles of a scene.
+enum class Pin : char { free, still, moved };
+
+std::vector<Pin> pins_of(const SceneDescription& scene) {
+  std::vector<Pin> pins(scene.positions.size(), Pin::free);
+  for (const std::uint32_t particle : scene.fixed) {
+    if (particle < pins.size()) pins[particle] = Pin::still;
+  }
+  return pins;
+}
+
+void take(std::uint32_t particle, const std::string& place, std::vector<Pin>& pins) {
+  const auto refused = [&](std::string_view why) {
+    throw Refused{fmt::format("{}: particle {} {}", place, particle, why)};
+  };
+  if (particle >= pins.size() || pins[particle] == Pin::free) refused("is not fixed");
+  if (pins[particle] == Pin::moved) refused("is moved twice");
+  pins[particle] = Pin::moved;
+}
+
+Json vectors_json(const std::vector<Vec3>& vectors) {
+  Json rows = Json::array();
+  for (const Vec3& v : vectors) rows.push_back({v.x, v.y, v.z});
+  return rows;
+}
+
+}  // namespace
+
+std::vector<PinMove> read_moves(const Json& json, const SceneDescription& scene) {
+  std::vector<PinMove> moves = read_array(json, "moves", read_pin_move);
+  std::vector<Pin> pins = pins_of(scene);
+  for (std::size_t m = 0; m < moves.size(); ++m) {
+    const std::vector<std::uint32_t>& particles = moves[m].particles;
+    for (std::size_t k = 0; k < particles.size(); ++k) {
+      take(particles[k], fmt::format("moves[{}].particles[{}]", m, k), pins);
+    }
+  }
+  return moves;
+}
+
+std::string move_row(const PinMove& move) {
+  Json row{{"particles", move.particles},
+           {"times", move.times},
+           {"translations", vectors_json(move.translations)}};
+  if (!move.rotations.empty()) row["rotations"] = vectors_json(move.rotations);
+  row["about"] = {move.about.x, move.about.y, move.about.z};
+  if (!move.from.empty()) row["from"] = vectors_json(move.from);
+  return row.dump();
+}
+
+}  // namespace weft::tools

@@ -1,0 +1,83 @@
+#include "tools/program/run/outputs.h"
+
+#include <fmt/format.h>
+
+#include "tools/program/formats/obj_mesh.h"
+#include "tools/program/formats/scene_file.h"
+#include "tools/program/text/file_ending.h"
+#include "tools/scenes/body_moves.h"
+
+namespace weft::tools {
+
+Result<Outputs> Outputs::open(const std::vector<std::string>& paths, const SceneSource& source) {
+  Outputs outputs(source);
+  for (const std::string& path : paths) {
+    if (auto added = outputs.add(path); !added) {
+      return Error{fmt::format("--out: {}", added.error())};
+    }
+  }
+  return outputs;
+}
+
+Result<void> Outputs::add(const std::string& path) {
+  const auto ending = file_ending(path);
+  if (ending == ".pc2") {
+    auto motion = Pc2Writer::open(path);
+    if (!motion) return Error{motion.error()};
+    motion.value().add_sample(source_->mesh.vertices);
+    motions_.push_back(std::move(motion.value()));
+    return {};
+  }
+  if (ending != ".obj" && ending != ".json") {
+    return Error{fmt::format("'{}' does not end in .obj, .pc2 or .json", path)};
+  }
+  const Format format = ending == ".obj" ? Format::mesh : Format::scene;
+  if (const auto name = NumberedName::of(path)) return add_series(*name, format);
+  auto file = PendingFile::open(path);
+  if (!file) return Error{file.error()};
+  lasts_.push_back({std::move(file.value()), format});
+  return {};
+}
+
+Result<void> Outputs::add_series(const NumberedName& name, Format format) {
+  series_.push_back({name, format});
+  const SceneDescription& scene = source_->description;
+  return write_file(name.with(0), format == Format::mesh
+                                      ? obj_text(source_->mesh, scene, scene.positions)
+                                      : scene_text(scene, source_->moves,
+                                                   particle_faces(source_->mesh), source_->bodies));
+}
+
+std::string Outputs::text(Format format, const Cloth& cloth, double elapsed) const {
+  const SceneDescription& scene = source_->description;
+  if (format == Format::mesh) return obj_text(source_->mesh, scene, particle_positions(cloth));
+  return scene_text(present_scene(scene, cloth), present_moves(source_->moves, scene, elapsed),
+                    particle_faces(source_->mesh), present_bodies(source_->bodies, elapsed));
+}
+
+void Outputs::add_frame(const Cloth& cloth, int frame, double elapsed) {
+  for (const Series& series : series_) {
+    if (!written_) break;
+    written_ = write_file(series.name.with(frame), text(series.format, cloth, elapsed));
+  }
+  if (motions_.empty()) return;
+  const std::vector<Vec3> points = vertex_positions(source_->mesh, particle_positions(cloth));
+  for (Pc2Writer& motion : motions_) motion.add_sample(points);
+}
+
+void Outputs::add_last(const Cloth& cloth, double elapsed) {
+  for (const Last& last : lasts_) last.file.write(text(last.format, cloth, elapsed));
+}
+
+Result<void> Outputs::finish() {
+  if (!written_) return written_;
+  for (Pc2Writer& motion : motions_) {
+    if (auto finished = motion.finish(); !finished) return finished;
+  }
+  for (Last& last : lasts_) {
+    if (auto committed = last.file.commit(); !committed) return committed;
+  }
+  return {};
+}
+
+}  // namespace weft::tools

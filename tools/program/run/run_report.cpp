@@ -1,0 +1,340 @@
+#include "tools/program/run/run_report.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/program/text/wording.h"
+#include "tools/scenes/body_moves.h"
+
+namespace weft::tools {
+namespace {
+
+double mean(std::int64_t total, int frames) {
+  return frames > 0 ? static_cast<double>(total) / frames : 0;
+}
+
+double milliseconds_per_frame(const RunSummary& summary, double seconds) {
+  return summary.frames > 0 ? 1e3 * seconds / summary.frames : 0;
+}
+
+double real_time_factor(const RunReport& report) {
+  const double seconds = report.summary.seconds_per_frame();
+  return seconds > 0 ? report.plan.dt / seconds : 0;
+}
+
+double nanoseconds_per_constraint_iteration(const RunSummary& summary) {
+  const double visits =
+      static_cast<double>(summary.model.constraints) * static_cast<double>(summary.iterations);
+  const auto stage = static_cast<std::size_t>(Stage::solve_positions);
+  return visits > 0 ? 1e9 * summary.stage_seconds[stage] / visits : 0;
+}
+
+double bytes_per_particle(const RunSummary& summary) {
+  return static_cast<double>(summary.bytes) / static_cast<double>(summary.model.particles);
+}
+
+char axis(const RunPlan& plan) { return plan.up == &Vec3::z ? 'z' : 'y'; }
+/// "lowest_y"
+std::string lowest_name(const RunPlan& plan) { return fmt::format("lowest_{}", axis(plan)); }
+
+std::string_view isa(const RunReport& report) {
+  return report.settings.backend == Backend::reference ? "scalar" : name(report.summary.isa);
+}
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+Json stages_json(const RunSummary& summary) {
+  Json stages = Json::object();
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    stages[std::string(name(static_cast<Stage>(i)))] =
+        milliseconds_per_frame(summary, summary.stage_seconds[i]);
+  }
+  return stages;
+}
+
+std::string stages_text(const RunSummary& summary) {
+  std::string text;
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", name(static_cast<Stage>(i)),
+                        milliseconds_per_frame(summary, summary.stage_seconds[i]));
+  }
+  return text;
+}
+
+/// "direct", "auto (yarn)".
+std::string solver_text(const RunReport& report) {
+  const std::string asked(name(report.settings.solver));
+  if (report.settings.solver != Solver::automatic) return asked;
+  return fmt::format("{} ({})", asked, name(report.summary.solver));
+}
+
+std::string goal_text(const Settings& settings) {
+  if (settings.iterations > 0)
+    return fmt::format("{} per substep", counted(settings.iterations, "iteration"));
+  const std::string strain = fmt::format("tolerance {}", percent(settings.tolerance));
+  if (settings.motion_tolerance == 0) return strain;
+  return fmt::format("{} and {:g} m/s", strain, settings.motion_tolerance);
+}
+
+/// Of a frame: as asked for, or the mean of those chosen.
+Json substeps(const RunReport& report) {
+  if (report.settings.substeps != kAutomaticSubsteps) return report.settings.substeps;
+  return mean(report.summary.substeps, report.summary.frames);
+}
+
+/// Of rigid constraints the error is their strain.
+std::string_view error_name(const RunSummary& summary) {
+  return summary.model.compliant > 0 || summary.model.membrane_elements > 0 ? "error of the law"
+                                                                            : "strain";
+}
+
+std::string material_text(const ModelInfo& model) {
+  std::string text;
+  const auto add = [&](std::size_t count, std::string_view what) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, what);
+  };
+  add(model.compliant, "spring");
+  add(model.membrane_elements, "triangle");
+  add(model.bending_elements, "bending element");
+  add(model.air_triangles, "air triangle");
+  return text;
+}
+
+std::string_view verb_of(std::int64_t count) { return count == 1 ? "was" : "were"; }
+
+/// Of the cloth and bodies that are meshes; empty where there is nothing to say.
+std::string crossings_text(const RunSummary& summary) {
+  std::string text;
+  if (summary.contact_failures > 0) {
+    text = fmt::format("{} {} stopped", counted(summary.contact_failures, "crossing"),
+                       verb_of(summary.contact_failures));
+  }
+  if (summary.zones > 0) {
+    text += fmt::format("{}{} taken along by bodies", text.empty() ? "" : ", ", summary.zones);
+  }
+  if (summary.max_intersecting > 0) {
+    text += fmt::format("{}at most {} could not be stopped in a frame", text.empty() ? "" : ", ",
+                        summary.max_intersecting);
+  }
+  if (summary.intersections) {
+    text += fmt::format("{}{} of triangles at most in a frame", text.empty() ? "" : "; ",
+                        counted(*summary.intersections, "crossing"));
+  }
+  return text;
+}
+
+struct MeshCount {
+  std::string_view key;
+  std::string_view noun;  ///< of one
+  std::string_view rest;  ///< after the noun
+  std::size_t MeshCounts::*value;
+};
+constexpr MeshCount kMeshCounts[] = {
+    {"welded_vertices", "vertex", " welded", &MeshCounts::welded_vertices},
+    {"unused_vertices", "vertex", " in no face and no line", &MeshCounts::unused_vertices},
+    {"degenerate_faces", "face", " without area", &MeshCounts::degenerate_faces},
+    {"double_faces", "face", " twice, used once", &MeshCounts::double_faces},
+    {"thread_lines", "line", " that are threads", &MeshCounts::thread_lines},
+    {"non_manifold_edges", "edge", " of more than two faces", &MeshCounts::non_manifold_edges},
+};
+
+void add_mesh(const MeshCounts& mesh, Json& json) {
+  json["pieces"] = mesh.pieces;
+  json["loose_pieces"] = mesh.loose_pieces;
+  for (const MeshCount& count : kMeshCounts) json[std::string(count.key)] = mesh.*count.value;
+}
+
+/// Of what is seldom, only what there is.
+std::string mesh_text(const MeshCounts& mesh) {
+  std::string text = counted(mesh.pieces, "piece");
+  if (mesh.loose_pieces > 0) text += fmt::format(", {} on no pin", mesh.loose_pieces);
+  for (const MeshCount& count : kMeshCounts) {
+    const std::size_t number = mesh.*count.value;
+    if (number == 0) continue;
+    const bool is_vertex = count.noun == "vertex";
+    text += ", " + (is_vertex && number != 1 ? fmt::format("{} vertices", number)
+                                             : counted(number, count.noun));
+    text += count.rest;
+  }
+  return text;
+}
+
+}  // namespace
+
+Json to_json(const RunReport& report) {
+  const RunSummary& summary = report.summary;
+  const Settings& settings = report.settings;
+  Json json{
+      {"scene", report.scene},
+      {"particles", summary.model.particles},
+      {"constraints", summary.model.constraints},
+      {"springs", summary.model.compliant},
+      {"membrane_elements", summary.model.membrane_elements},
+      {"bending_elements", summary.model.bending_elements},
+      {"anchors", summary.model.anchors},
+      {"seams", summary.model.seams},
+      {"air_triangles", summary.model.air_triangles},
+      {"spheres", summary.model.spheres},
+      {"solver", name(settings.solver)},
+      {"solver_used", name(summary.solver)},
+      {"scheme", name(summary.scheme)},
+      {"scheme_fallbacks", summary.scheme_fallbacks},
+      {"backend", name(settings.backend)},
+      {"anticipate_products", settings.anticipate_products},
+      {"isa", isa(report)},
+      {"threads", settings.backend == Backend::reference ? 1 : summary.threads},
+      {"dt", report.plan.dt},
+      {"steps", summary.frames},
+      {"frames", summary.frames},
+      {"asleep_frames", summary.asleep_frames},
+      {"substeps", substeps(report)},
+      {"halvings", summary.halvings},
+      {"tolerance", settings.tolerance},
+      {"iterations", settings.iterations},
+      {"status", name(summary.status)},
+      {"missed_frames", summary.missed_frames},
+      {"ms_per_frame", 1e3 * summary.seconds_per_frame()},
+      {"max_ms_per_frame", 1e3 * summary.longest_step_seconds},
+      {"real_time_factor", real_time_factor(report)},
+      {"rejected", summary.halvings + summary.scheme_fallbacks},
+      {"max_error", summary.max_error},
+      {"max_strain", summary.max_strain},
+      {"mean_max_strain", summary.mean_max_strain},
+      {"rms_strain", summary.rms_strain},
+      {"max_penetration", summary.max_penetration},
+      {"max_anchor_error", summary.max_anchor_error},
+      {"open_seams", summary.open_seams},
+      {"max_seam_gap", summary.max_seam_gap},
+      {"seam_work", summary.seam_work},
+      {"max_contacts", summary.max_contacts},
+      {"bodies", report.plan.bodies.size()},
+      {"body_triangles", count_triangles(report.plan.bodies)},
+      {"body_contacts", summary.max_body_contacts},
+      {"contact_failures", summary.contact_failures},
+      {"zones", summary.zones},
+      {"intersecting", summary.max_intersecting},
+      {"friction_work", summary.friction_work},
+      {"body_work", summary.body_work},
+      {"iterations_per_step", summary.iterations_per_step()},
+      {"velocity_iterations_per_step", mean(summary.velocity_iterations, summary.frames)},
+      {"direction_updates_per_step", mean(summary.direction_updates, summary.frames)},
+      {"visits", summary.visits},
+      {"corrections", summary.corrections},
+      {"ns_per_constraint_iteration", nanoseconds_per_constraint_iteration(summary)},
+      {"energy_start", summary.energy_start},
+      {"energy_end", summary.energy_end},
+      {"pin_work", summary.pin_work},
+      {"energy_gain", summary.energy_gain},
+      {"energy_lost", summary.energy_lost},
+      {"motion_tolerance", settings.motion_tolerance},
+      {"motion_error", summary.mean_motion_error},
+      {"max_motion_error", summary.max_motion_error},
+      {lowest_name(report.plan), summary.lowest},
+      {"state_hash", fmt::format("{:016x}", summary.state_hash)},
+      {"bytes_per_particle", bytes_per_particle(summary)},
+      {"stages", stages_json(summary)},
+      {"peak_rss_mb", peak_rss_mb()},
+  };
+  if (summary.intersections) json["intersections"] = *summary.intersections;
+  if (summary.fabric) {
+    json["max_warp"] = summary.fabric->warp;
+    json["max_weft"] = summary.fabric->weft;
+    json["max_shear"] = summary.fabric->shear;
+  }
+  if (report.mesh) add_mesh(*report.mesh, json);
+  return json;
+}
+
+std::string to_table(const RunReport& report) {
+  const RunSummary& summary = report.summary;
+  const Settings& settings = report.settings;
+  std::string text;
+  const auto row = [&text](std::string_view label, const std::string& value) {
+    text += fmt::format("{:<10}{}\n", label, value);
+  };
+  row("scene",
+      fmt::format("{}: {}, {}, {}", report.scene, counted(summary.model.particles, "particle"),
+                  counted(summary.model.constraints, "constraint"),
+                  counted(summary.model.spheres, "sphere")));
+  if (report.mesh) row("mesh", mesh_text(*report.mesh));
+  if (const auto material = material_text(summary.model); !material.empty())
+    row("material", material);
+  row("solver", fmt::format("{}, scheme {}, backend {}, {}", solver_text(report),
+                            name(summary.scheme), name(settings.backend), goal_text(settings)));
+  if (summary.scheme == Scheme::rattle) {
+    row("scheme", fmt::format("{} of {} left to scheme paper", summary.scheme_fallbacks,
+                              counted(summary.substeps, "substep")));
+  }
+  const auto in_substeps =
+      settings.substeps != 1
+          ? fmt::format(" in {:.3g} substeps each", mean(summary.substeps, summary.frames))
+          : "";
+  const auto asleep =
+      summary.asleep_frames > 0 ? fmt::format(", {} asleep", summary.asleep_frames) : "";
+  const auto missed =
+      summary.missed_frames > 0 ? fmt::format(", {} out of tolerance", summary.missed_frames) : "";
+  row("frames", fmt::format("{} of {:.6g} s{}{}{}, status {}", summary.frames, report.plan.dt,
+                            in_substeps, asleep, missed, name(summary.status)));
+  row("time",
+      fmt::format("{:.4g} ms per frame, {:.3g} the longest, {} times real time, at max {} {}",
+                  1e3 * summary.seconds_per_frame(), 1e3 * summary.longest_step_seconds,
+                  factor_text(real_time_factor(report)), error_name(summary),
+                  measured_percent(summary.max_error)));
+  row("stages", fmt::format("{} ms at max {} {}", stages_text(summary), error_name(summary),
+                            measured_percent(summary.max_error)));
+  row("strain",
+      fmt::format("max {}, mean of the frames' max {}, rms {}",
+                  measured_percent(summary.max_strain), measured_percent(summary.mean_max_strain),
+                  measured_percent(summary.rms_strain)));
+  if (summary.fabric) {
+    row("fabric", fmt::format("warp {}, weft {}, shear {:.3g} rad at most",
+                              measured_percent(summary.fabric->warp),
+                              measured_percent(summary.fabric->weft), summary.fabric->shear));
+  }
+  if (summary.model.spheres > 0) {
+    row("contacts", fmt::format("{:.3g} m deepest penetration", summary.max_penetration));
+  }
+  if (!report.plan.bodies.empty()) {
+    row("bodies", fmt::format("{}, {} at most, {:.3g} m deepest penetration, {:.3g} J by friction, "
+                              "{:.3g} J by moved ones",
+                              report.plan.bodies.size() == 1
+                                  ? "1 body"
+                                  : fmt::format("{} bodies", report.plan.bodies.size()),
+                              counted(summary.max_body_contacts, "contact"),
+                              summary.max_penetration, summary.friction_work, summary.body_work));
+  }
+  if (const auto crossed = crossings_text(summary); !crossed.empty()) row("crossings", crossed);
+  if (summary.model.anchors > 0) {
+    row("anchors", fmt::format("{}, {:.3g} m beyond their limits at most", summary.model.anchors,
+                               summary.max_anchor_error));
+  }
+  if (summary.model.seams > 0) {
+    row("seams", fmt::format("{}, {} open in the end, closed ones {:.3g} m apart at most, {:.3g} J",
+                             summary.model.seams, summary.open_seams, summary.max_seam_gap,
+                             summary.seam_work));
+  }
+  row("work",
+      fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {}, {}",
+                  summary.iterations_per_step(), mean(summary.direction_updates, summary.frames),
+                  counted(summary.visits, "visit"), counted(summary.corrections, "correction")));
+  const auto by_pins =
+      summary.pin_work != 0 ? fmt::format(", {:.6g} J by moved pins", summary.pin_work) : "";
+  row("energy", fmt::format("{:.6g} J to {:.6g} J{}, largest gain {:.3g} J, {:.3g} J lost",
+                            summary.energy_start, summary.energy_end, by_pins, summary.energy_gain,
+                            summary.energy_lost));
+  if (summary.solver == Solver::small_steps) {
+    row("motion", fmt::format("{:.3g} m/s away from the true one by estimate, {:.3g} at most",
+                              summary.mean_motion_error, summary.max_motion_error));
+  }
+  row("state", fmt::format("{:016x}, lowest {} {:.6g} m", summary.state_hash, axis(report.plan),
+                           summary.lowest));
+  return text;
+}
+
+}  // namespace weft::tools

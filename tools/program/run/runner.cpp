@@ -1,0 +1,251 @@
+#include "tools/program/run/runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "tools/program/measure/cpu_time.h"
+#include "tools/program/measure/crossings.h"
+#include "tools/program/run/warm_up.h"
+#include "tools/program/text/wording.h"
+#include "tools/scenes/body_moves.h"
+#include "tools/scenes/mesh.h"
+
+namespace weft::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double lowest_of(const Cloth& cloth, double Vec3::*up) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
+    lowest = std::min(lowest, cloth.position(i).*up);
+  }
+  return lowest;
+}
+
+/// Also of a frame that had no tolerance, but a number of iterations to do.
+bool is_reached(Status status) {
+  return status == Status::converged || status == Status::fixed_iterations;
+}
+
+void look_for_miss(RunSummary& summary, const StepReport& report) {
+  if (is_reached(report.status)) return;
+  ++summary.missed_frames;
+  if (summary.first_miss) return;
+  summary.first_miss = {.frame = summary.last_frame(),
+                        .status = report.status,
+                        .max_error = report.max_error,
+                        .max_strain = report.max_strain,
+                        .max_penetration = report.max_penetration,
+                        .constraint = report.worst_constraint,
+                        .failed_particle = report.failed_particle,
+                        .passed_particle = report.passed_particle};
+}
+
+void add_work(RunSummary& summary, const StepReport& report) {
+  summary.status = std::max(summary.status, report.status);
+  summary.substeps += report.substeps;
+  summary.asleep_frames += report.asleep ? 1 : 0;
+  summary.halvings += report.halvings;
+  summary.iterations += report.iterations;
+  summary.velocity_iterations += report.velocity_iterations;
+  summary.direction_updates += report.direction_updates;
+  summary.visits += report.visits;
+  summary.corrections += report.corrections;
+  summary.scheme_fallbacks += report.scheme_fallbacks;
+  summary.max_contacts = std::max(summary.max_contacts, report.contacts);
+  summary.max_error = std::max(summary.max_error, report.max_error);
+  summary.max_anchor_error = std::max(summary.max_anchor_error, report.max_anchor_error);
+  summary.open_seams = report.open_seams;
+  summary.max_seam_gap = std::max(summary.max_seam_gap, report.max_seam_gap);
+  summary.seam_work += report.seam_work;
+  summary.pin_work += report.pin_work;
+  summary.max_body_contacts = std::max(summary.max_body_contacts, report.body_contacts);
+  summary.contact_failures += report.contact_failures;
+  summary.zones += report.zones;
+  summary.max_intersecting = std::max(summary.max_intersecting, report.intersecting);
+  summary.body_work += report.body_work;
+  summary.friction_work += report.friction_work;
+  summary.max_penetration = std::max(summary.max_penetration, report.max_penetration);
+  summary.energy_lost += report.energy_lost;
+  summary.max_motion_error = std::max(summary.max_motion_error, report.motion_error);
+  summary.mean_motion_error += (report.motion_error - summary.mean_motion_error) / summary.frames;
+  summary.solver_seconds = 0;
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) {
+    summary.stage_seconds[stage] += report.stage_seconds[stage];
+    const bool is_report = static_cast<Stage>(stage) == Stage::report;
+    if (!is_report) summary.solver_seconds += summary.stage_seconds[stage];
+  }
+}
+
+/// What a run sums up frame by frame before it can be averaged.
+struct Errors {
+  double strain_sum = 0;         ///< of the frames' largest strains
+  double square_strain_sum = 0;  ///< of the frames' mean squares
+};
+
+void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth, const RunPlan& plan) {
+  const Strain strain = cloth.strain();
+  summary.max_strain = std::max(summary.max_strain, strain.max);
+  errors.strain_sum += strain.max;
+  errors.square_strain_sum += strain.rms * strain.rms;
+  if (!plan.fabric.is_empty())
+    summary.fabric = largest(summary.fabric.value_or(FabricStrain{}), plan.fabric(cloth));
+  summary.max_penetration = std::max(summary.max_penetration, cloth.max_penetration());
+  summary.lowest = std::min(summary.lowest, lowest_of(cloth, plan.up));
+  const double gain =
+      cloth.energy().total() - summary.energy_start - summary.pin_work - summary.body_work;
+  summary.energy_gain = summary.frames == 1 ? gain : std::max(summary.energy_gain, gain);
+}
+
+/// The surface is that of the cloth.
+void look_for_crossings(RunSummary& summary, const Cloth& cloth, const RunPlan& plan,
+                        TriangleSet& surface) {
+  surface.places = particle_positions(cloth);
+  const TriangleSet bodies = meshes_at(plan.bodies, summary.frames * plan.dt);
+  summary.intersections =
+      std::max(summary.intersections.value_or(0), count_crossings(surface, bodies));
+}
+
+void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
+  const double frames = std::max(summary.frames, 1);
+  summary.mean_max_strain = errors.strain_sum / frames;
+  summary.rms_strain = std::sqrt(errors.square_strain_sum / frames);
+  summary.solver = cloth.settings().solver;
+  summary.scheme = cloth.settings().scheme;
+  summary.isa = cloth.settings().isa;
+  summary.energy_end = cloth.energy().total();
+  summary.state_hash = cloth.state_hash();
+  summary.model = describe(*cloth.model());
+  summary.bytes = cloth.bytes() + summary.model.bytes;
+}
+
+Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Settings& settings,
+                            const RunPlan& plan, const FrameCallback& on_frame) {
+  auto created = Cloth::create(model, settings);
+  if (!created) return Error{created.error()};
+  Cloth& cloth = created.value();
+
+  const MovedPins pins(plan.moves, cloth);
+  if (auto placed = pins.place(cloth); !placed) return Error{placed.error()};
+  auto bodies = MovedBodies::add(plan.bodies, cloth);
+  if (!bodies) return Error{bodies.error()};
+  RunSummary summary;
+  Errors errors;
+  if (plan.resume) {  // whose bodies are those that were added, where they had come to
+    if (auto loaded = cloth.load_state(plan.resume->cloth); !loaded) {
+      return Error{fmt::format(
+          "--resume: {}; a run goes on with the mesh, the material and the wind that it began with",
+          loaded.error())};
+    }
+    summary.resumed_at = plan.resume->frame;
+  }
+  TriangleSet surface{{}, plan.surface};
+  summary.energy_start = cloth.energy().total();
+  summary.lowest = std::numeric_limits<double>::infinity();
+  while (summary.last_frame() < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
+         committed(summary.status) && !summary.stopped) {
+    if (auto sent = pins.send(cloth, (summary.last_frame() + 1) * plan.dt); !sent) {
+      return Error{sent.error()};
+    }
+    if (auto sent = bodies.value().send(cloth, (summary.last_frame() + 1) * plan.dt); !sent) {
+      return Error{sent.error()};
+    }
+    const double cpu_start = cpu_seconds();
+    const auto start = Clock::now();
+    const auto report = cloth.step(plan.dt);
+    const std::chrono::duration<double> elapsed = Clock::now() - start;
+    summary.cpu_seconds += cpu_seconds() - cpu_start;
+    if (!report) return Error{report.error()};
+    add_frame(summary, report.value());
+    summary.step_seconds += elapsed.count();
+    summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
+    add_errors(summary, errors, cloth, plan);
+    if (plan.check_intersections) look_for_crossings(summary, cloth, plan, surface);
+    summary.stopped = plan.stop && plan.stop();
+    if (on_frame) on_frame(summary.last_frame(), cloth, report.value());
+  }
+  summary.finished_runs = summary.stopped ? 0 : 1;
+  finish(summary, errors, cloth);
+  return summary;
+}
+
+Result<RunSummary> run_repeatedly(const std::shared_ptr<const Model>& model,
+                                  const Settings& settings, const RunPlan& plan,
+                                  const FrameCallback& on_frame) {
+  auto best = run_once(model, settings, plan, on_frame);
+  if (!best || plan.repeat <= 1 || best.value().stopped) return best;
+  for (int finished = 1; finished <= plan.repeat; ++finished) {
+    auto next = run_once(model, settings, plan, {});
+    if (!next) return next;
+    if (next.value().stopped) {  // a whole run is worth more than a part of one
+      best.value().stopped = true;
+      break;
+    }
+    const bool is_first = finished == 1;  // the run before it was to warm up
+    if (is_first || next.value().step_seconds < best.value().step_seconds) best = std::move(next);
+    best.value().finished_runs = finished + 1;
+  }
+  return best;
+}
+
+}  // namespace
+
+void add_frame(RunSummary& summary, const StepReport& report) {
+  ++summary.frames;
+  look_for_miss(summary, report);
+  add_work(summary, report);
+}
+
+std::string text(const Miss& miss) {
+  const std::string end = fmt::format("frame {}: {}", miss.frame, name(miss.status));
+  if (miss.failed_particle != kNoIndex) {
+    return fmt::format("{} at particle {}", end, miss.failed_particle);
+  }
+  if (miss.passed_particle != kNoIndex) {
+    return fmt::format("{}; particle {} went through a sphere", end, miss.passed_particle);
+  }
+  const std::string contacts =
+      miss.max_penetration > 0
+          ? fmt::format("; contacts are up to {:.3g} m deep", miss.max_penetration)
+          : "";
+  if (miss.constraint == kNoIndex) return end + contacts;
+  return fmt::format("{}; constraint {} has the largest strain, {}{}", end, miss.constraint,
+                     measured_percent(miss.max_strain), contacts);
+}
+
+Result<RunSummary> run(std::shared_ptr<const Model> model, const Settings& settings,
+                       const RunPlan& plan, const FrameCallback& on_frame) {
+  if (settings.threads < 0 || settings.threads > kMaxThreads) {
+    return Error{"threads: must be from 0 to " + std::to_string(kMaxThreads) + " (" +
+                 std::to_string(settings.threads) + ")"};
+  }
+  const int threads = settings.threads > 0
+                          ? settings.threads
+                          : std::min(tbb::info::default_concurrency(), kMaxThreads);
+  const tbb::global_control at_most(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(std::max(threads, 2)));
+  tbb::task_arena arena(threads);
+  auto result = arena.execute([&] {
+    if (threads > 1) warm_up(threads);
+    return run_repeatedly(model, settings, plan, on_frame);
+  });
+  if (result) result.value().threads = threads;
+  return result;
+}
+
+Result<RunSummary> run(const SceneDescription& scene, const Settings& settings, const RunPlan& plan,
+                       const FrameCallback& on_frame) {
+  auto model = build_model(scene);
+  if (!model) return Error{model.error()};
+  return run(model.value(), settings, plan, on_frame);
+}
+
+}  // namespace weft::tools

@@ -1,0 +1,139 @@
+#include "tools/scenes/body_moves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace weft::tools {
+namespace {
+
+Rotation quaternion(Vec3 r) {
+  const double angle = std::hypot(r.x, r.y, r.z);
+  const double part = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
+  return {part * r.x, part * r.y, part * r.z, std::cos(angle / 2)};
+}
+
+/// First b, then a.
+Rotation product(const Rotation& a, const Rotation& b) {
+  return {
+      a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z,
+      a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+
+/// x -> position + rotation x
+Vec3 placed(const Pose& pose, Vec3 x) {
+  const Rotation& q = pose.rotation;
+  const Vec3 t{2 * (q.y * x.z - q.z * x.y), 2 * (q.z * x.x - q.x * x.z),
+               2 * (q.x * x.y - q.y * x.x)};
+  return {pose.position.x + x.x + q.w * t.x + q.y * t.z - q.z * t.y,
+          pose.position.y + x.y + q.w * t.y + q.z * t.x - q.x * t.z,
+          pose.position.z + x.z + q.w * t.z + q.x * t.y - q.y * t.x};
+}
+
+Vec3 point_between(Vec3 a, Vec3 b, double share) {
+  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z)};
+}
+
+/// Times that have come to be one to the last bit: only the later frame is kept.
+void drop_merged_times(VertexMove& move) {
+  for (std::size_t key = move.times.size(); key-- > 1;) {
+    if (move.times[key - 1] < move.times[key]) continue;
+    const auto merged = static_cast<std::ptrdiff_t>(key - 1);
+    move.times.erase(move.times.begin() + merged);
+    move.vertices.erase(move.vertices.begin() + merged);
+  }
+}
+
+/// As it is at time 0.
+ShapeDescription first_shape(const SceneBody& body) {
+  ShapeDescription shape = body.shape;
+  if (body.vertex_move) std::get<TriangleMesh>(shape).vertices = vertices_at(body, 0);
+  return shape;
+}
+
+}  // namespace
+
+Pose pose_at(const SceneBody& body, double time) {
+  const Rotation rotation = quaternion(body.rotation);
+  if (!body.move) return {body.position, rotation};
+  return {place_at(*body.move, time, body.position),
+          product(quaternion(rotation_at(*body.move, time)), rotation)};
+}
+
+std::vector<Vec3> vertices_at(const SceneBody& body, double time) {
+  if (!body.vertex_move) return std::get<TriangleMesh>(body.shape).vertices;
+  const auto& [times, vertices] = *body.vertex_move;
+  const auto next = std::ranges::upper_bound(times, time);
+  if (next == times.begin()) return vertices.front();
+  if (next == times.end()) return vertices.back();
+  const auto after = static_cast<std::size_t>(next - times.begin()), before = after - 1;
+  const double share = (time - times[before]) / (times[after] - times[before]);
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < vertices[after].size(); ++i)
+    places.push_back(point_between(vertices[before][i], vertices[after][i], share));
+  return places;
+}
+
+std::vector<Vec3> places_at(const SceneBody& body, double time) {
+  const Pose pose = pose_at(body, time);
+  std::vector<Vec3> places = vertices_at(body, time);
+  for (Vec3& place : places) place = placed(pose, place);
+  return places;
+}
+
+std::size_t count_triangles(std::span<const SceneBody> bodies) {
+  std::size_t count = 0;
+  for (const SceneBody& body : bodies) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&body.shape)) count += mesh->triangles.size();
+  }
+  return count;
+}
+
+std::vector<SceneBody> present_bodies(std::span<const SceneBody> bodies, double elapsed) {
+  std::vector<SceneBody> present(bodies.begin(), bodies.end());
+  for (SceneBody& body : present) {
+    if (body.move) body.move = present_moves({&*body.move, 1}, {}, elapsed).front();
+    if (!body.vertex_move) continue;
+    for (double& time : body.vertex_move->times) time -= elapsed;
+    drop_merged_times(*body.vertex_move);
+  }
+  return present;
+}
+
+Result<MovedBodies> MovedBodies::add(std::span<const SceneBody> bodies, Cloth& cloth) {
+  MovedBodies added;
+  added.bodies_ = bodies;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto refused = [&](const std::string& why) {
+      return Error{"bodies[" + std::to_string(i) + "]." + why};
+    };
+    const auto shape = build_shape(first_shape(bodies[i]));
+    if (!shape) return refused(shape.error());
+    const auto id = cloth.add_body({.shape = shape.value(),
+                                    .pose = pose_at(bodies[i], 0),
+                                    .thickness = bodies[i].thickness,
+                                    .friction = bodies[i].friction});
+    if (!id) return refused(id.error());
+    added.ids_.push_back(id.value());
+  }
+  return added;
+}
+
+Result<void> MovedBodies::send(Cloth& cloth, double time) const {
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    const SceneBody& body = bodies_[i];
+    if (body.move) {
+      if (auto sent = cloth.move_body(ids_[i], pose_at(body, time)); !sent) return sent;
+    }
+    if (body.vertex_move) {
+      if (auto sent = cloth.move_body_vertices(ids_[i], vertices_at(body, time)); !sent)
+        return sent;
+    }
+  }
+  return {};
+}
+
+}  // namespace weft::tools

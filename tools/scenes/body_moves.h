@@ -1,0 +1,40 @@
+/// How the bodies of a scene move in a run.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tools/scenes/scene_body.h"
+
+namespace weft::tools {
+
+Pose pose_at(const SceneBody& body, double time);
+/// Of a mesh, in coordinates of the body.
+std::vector<Vec3> vertices_at(const SceneBody& body, double time);
+/// Of a mesh, in coordinates of the scene.
+std::vector<Vec3> places_at(const SceneBody& body, double time);
+
+/// How many triangles those have that are meshes.
+std::size_t count_triangles(std::span<const SceneBody> bodies);
+
+/// The bodies of a scene that goes on from where this one is after `elapsed` seconds.
+std::vector<SceneBody> present_bodies(std::span<const SceneBody> bodies, double elapsed);
+
+/// Bodies of one cloth.
+class MovedBodies {
+ public:
+  /// Adds them where they are at time 0.
+  static Result<MovedBodies> add(std::span<const SceneBody> bodies, Cloth& cloth);
+  /// Sends those that move to where they are at `time`.
+  Result<void> send(Cloth& cloth, double time) const;
+
+ private:
+  std::span<const SceneBody> bodies_;
+  std::vector<std::uint32_t> ids_;
+};
+
+}  // namespace weft::tools
