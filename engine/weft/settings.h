@@ -1,4 +1,30 @@
-/// How it is solved, and to which error. Part of weft.h.
+/// Settings of a cloth: how it is solved, and to which error. Part of weft.h.
+///
+///   auto cloth = weft::Cloth::create(model, {.tolerance = 0.001});  // 0.1 %; the rest by default
+///
+/// The defaults are right for most cloth. Everyday settings (Settings says more of each):
+///
+///   tolerance         the largest error that a step may leave
+///   motion_tolerance  how far the motion may be from the true motion
+///   substeps          a fixed number, to bound the time of a step
+///   max_iterations    the largest work of a step
+///   threads           how many threads a step may use
+///   sleep             steps of a cloth at rest cost next to nothing
+///
+/// Advanced settings, and when to use them:
+///
+///   solver               if the automatic choice is not the best one for your scene (Solver)
+///   scheme               for a scheme of a given order, or `rattle`, which keeps the energy
+///   velocity_correction  with gauss_seidel, direct or yarn, for steps of 1 ms and less
+///   contact_tolerance    if 0.1 mm is too much or too little for your scene
+///   velocity_tolerance   with velocity_correction or `rattle`
+///   backend              `reference`, to check a result in double precision; slow
+///   isa                  to compare instruction sets, or to use fewer than the machine has
+///   iterations           for the same number of iterations in each step, whatever the error
+///   directions, renew_after, skip, anticipate, anticipate_products, impulse_limit
+///                        to measure the method of the paper; nobody else needs them
+///
+/// Cloth::create checks the settings. An error names the field and the value.
 #pragma once
 
 #include <weft/result.h>
@@ -8,143 +34,171 @@
 
 namespace weft {
 
-/// gauss_seidel: the paper's impulse loop (section 3.2), one constraint after the other.
-/// direct: all impulses at once by sparse factorisation, repeated until the true errors are within
-///   tolerance: two or three solves, at any tolerance. For mass ratios of a million. At most
-///   16 bodies may take part, free spheres that touch or are joined to something and particles of
-///   more than 64 constraints; with more its substeps fall back as below.
-/// yarn: splits the cloth into chains of constraints that run straight on through it, as the yarns
-///   of a woven one do. Each is solved exactly, many side by side in SIMD lanes; where sweeps over
-///   them converge slowly, conjugate gradients solve all of them as one system. Ropes, hubs and
-///   contacts are relaxed one by one after each sweep, and take part in that system. A yarn
-///   between two fixed particles that is taut, and not braced by triangles, hangs by a strain: with
-///   scheme paper it keeps most of what yarns may leave (0.3 %, or the tolerance if that is less),
-///   in addition to the strain that the distance of its ends demands; not with springs. simd only.
-/// small_steps: one relaxed sweep in each of many short substeps, over yarns where the cloth has
-///   them and over single constraints elsewhere, and then passes over what is out of tolerance
-///   alone. A sweep leaves a strain that falls with the square of the substep; how long that may be
-///   follows in closed form from what hangs on the pins, and from the tolerance
-///   (engine/solvers/small_steps/small_steps_load.h). For any mesh, at tolerances of 0.1 % and
-///   looser, and for a motion that is near the true one. Masses should not differ by more than a
-///   hundred. Substeps of one length are best kept to: a change of it by half costs some energy.
-///   It alone solves bending.
-/// automatic: by what the cloth is. small_steps for cloth, woven or a mesh, and for all springs but
-///   with scheme paper. direct for chains of ropes, trees and bridges of them. yarn for all else:
-///   cloth at a tolerance that small steps could not afford, with unequal masses or free spheres,
-///   with scheme paper or rattle, or with velocity_correction. gauss_seidel on the reference
-///   backend and with `iterations`. The thresholds are no part of the interface.
-/// What yarn and direct do not bring within tolerance is done by others, in this order: the same
-/// solver in shorter parts, halves of what was rejected down to a sixteenth of the substep
-/// (StepReport::halvings counts what was rejected); and for the rest of the substep direct behind
-/// yarn, where masses are unequal; small_steps; gauss_seidel, whose result is committed with its
-/// error. For some steps afterwards substeps begin in about as many parts. Energy that
-/// a substep gains by more than gravity, forces and moved pins explain is taken out by scaling its
-/// velocities down, to rest at most, or to the rigid motion nearest to that of the pins
-/// (engine/step/energy.h). So a step depends slightly on the ones before, until positions are
-/// written. gauss_seidel is the paper's loop, and is guarded only where it is cut off.
+/// automatic: chosen for the cloth, by the first line that is true:
+///   small_steps   triangles of fabric, bending, anchors, seams or bodies; scheme implicit or bdf2;
+///                 a motion_tolerance; springs, if the scheme is automatic
+///   gauss_seidel  the reference backend, or `iterations`
+///   direct        chains, trees and bridges of ropes
+///   small_steps   cloth, woven or a mesh, at 0.1 % and looser, with nearly equal masses and no
+///                 heavy free spheres, if the scheme is automatic, without velocity_correction
+///   yarn          all else
+///   The thresholds are no part of the interface.
+/// small_steps: many short substeps of one relaxed sweep each, over yarns where the cloth has them
+///   and over single constraints elsewhere. Passes over the constraints that are out of tolerance
+///   follow. A sweep leaves a strain that falls with the square of the substep. The length of a
+///   substep follows in closed form from the load that hangs on the pins and from the tolerance
+///   (engine/solvers/small_steps/small_steps_load.h). Use it for any mesh at 0.1 % and looser, and
+///   for a motion that is near the true one. Masses should not differ by more than a hundred.
+///   Keep to substeps of one length: a change by half costs some energy. Only small_steps solves
+///   triangles of fabric, bending, anchors, seams and bodies.
+/// yarn: splits the cloth into yarns, chains of constraints that run straight on through it, as
+///   the yarns of a woven cloth do. Each yarn is solved exactly, many side by side in SIMD lanes.
+///   If sweeps over the yarns converge slowly, conjugate gradients solve all of them as one system.
+///   Ropes, hubs and contacts are relaxed one by one after each sweep, and take part in that
+///   system. A taut yarn between two fixed particles, without triangles that brace it, hangs by a
+///   strain. With scheme paper and without springs it keeps most of the strain that yarns may leave
+///   (0.3 %, or the tolerance if that is less), in addition to the strain that the distance of its
+///   ends demands. simd backend only.
+/// direct: computes all impulses at once by sparse factorisation, and repeats this until the true
+///   errors are within tolerance: two or three times, at any tolerance. Use it for mass ratios of a
+///   million. At most 16 bodies may take part: free spheres that touch something or are joined to
+///   something, and particles of more than 64 constraints. If there are more, its substeps fall
+///   back as below.
+/// gauss_seidel: the impulse loop of the paper (section 3.2), one constraint after the other.
+///
+/// If yarn or direct fails, these are tried in this order:
+///   1. the same solver in shorter parts: the part that was rejected is halved, down to a sixteenth
+///      of the substep (StepReport::halvings counts what was rejected);
+///   2. direct, after yarn, if masses are unequal: it does the rest of the substep;
+///   3. small_steps;
+///   4. gauss_seidel, whose result is committed with its error.
+/// For some steps after that, substeps begin in about as many parts.
+///
+/// Gravity, forces and moved pins explain a change of energy. If a substep gains more, its
+/// velocities are scaled down: to rest at most, or to the rigid motion nearest to that of the pins
+/// (engine/step/energy.h). So a step depends slightly on the steps before it, until positions are
+/// written. gauss_seidel is guarded in this way only where it is cut off.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, automatic };
-/// paper: impulses along the directions at the predicted positions; first order, and dissipative.
-/// rattle: along the directions at the start of the substep, always with velocity correction;
-///   second order. This includes ropes that become taut within the substep. Contacts arise within
-///   it and, in both schemes, act along their directions at its end. Where rattle does not
-///   converge, or its impulses would add energy (engine/step/energy.h), the substep is redone from
-///   the same state by the paper's scheme with velocity correction; StepReport::scheme_fallbacks
-///   counts these. With Settings::iterations nothing is redone. Takes no springs.
-/// implicit, bdf2: of small_steps alone. The implicit Euler method, first order, and the second
-///   order BDF2 with variable steps; particles that a contact has moved go on from there at first
-///   order. Whoever writes velocities changes the step before alike; written
-///   positions have no past.
-/// automatic: bdf2 with small_steps, else paper. Cloth::settings() tells.
+/// automatic: bdf2 with small_steps, else paper. Cloth::settings() tells which.
+/// bdf2, implicit: schemes of small_steps alone. bdf2 is BDF2 with variable steps, of second order;
+///   implicit is the implicit Euler method, of first order. A particle that a contact has moved
+///   goes on from there at first order. If you write velocities, the stored previous velocities
+///   change by the same amount. If you write positions, the history is dropped.
+/// paper: impulses along the directions at the predicted positions. First order, and dissipative.
+/// rattle: impulses along the directions at the start of the substep, always with velocity
+///   correction. Second order, also for ropes that become taut within the substep. Contacts that
+///   arise within the substep act, in both schemes, along their directions at its end. If rattle
+///   does not converge, or if its impulses would add energy (engine/step/energy.h), the substep is
+///   redone from the same state by scheme paper with velocity correction;
+///   StepReport::scheme_fallbacks counts these. With Settings::iterations nothing is redone. rattle
+///   refuses springs.
 enum class Scheme : std::uint8_t { paper, rattle, implicit, bdf2, automatic };
-/// each: directions renewed before every iteration (sections 3.2, 4.1).
-/// frozen: only once all errors along them are within tolerance (section 4.4), or after renew_after
-///   iterations.
+/// each: directions are renewed before every iteration (sections 3.2, 4.1).
+/// frozen: directions are renewed once all errors along them are within tolerance (section 4.4), or
+///   after renew_after iterations.
 enum class Directions : std::uint8_t { each, frozen };
-/// reference: scalar, double, the oracle for everything else.
-/// simd: single precision in lanes inside the loop, refined from positions in double; reaches the
-///   same tolerance.
+/// reference: scalar code in double precision, against which everything else is tested.
+/// simd: single precision in lanes inside the loop, refined from positions in double. It reaches
+///   the same tolerance.
 enum class Backend : std::uint8_t { reference, simd };
-/// What the simd backend runs on. automatic: what WEFT_ISA in the environment names, else the best
-/// that the machine has: sse2, avx2 or avx512 of x86-64, neon of aarch64. avx2, avx512 and neon
-/// give the same bits.
+/// The instruction set of the simd backend. automatic: the one that WEFT_ISA in the environment
+/// names, else the best of the machine: sse2, avx2 or avx512 on x86-64, neon on aarch64. avx2,
+/// avx512 and neon give the same bits.
 enum class Isa : std::uint8_t { automatic, sse2, avx2, avx512, neon };
 
 inline constexpr int kMaxThreads = 64;
 inline constexpr int kAutomaticSubsteps = 0;
 
-/// How a cloth is solved. The defaults converge to 1 % the fastest way that is known here;
-/// paper_settings() are the paper's.
+/// How a cloth is solved. The defaults are the fastest way to 1 % that is known here;
+/// paper_settings() has the settings of the paper. The order of the fields is that of the C struct;
+/// each says whether it is for every day.
 struct Settings {
-  /// Strain, | |a-b| - rest | / rest, that every step must reach, of springs what is left of their
-  /// law; > 0. The simd backend works in floats: it takes rest lengths, tolerance * rest length,
-  /// and the tolerances below that are used, from 1e-18 to 1e18, and Cloth::create refuses others.
+  /// Everyday. The strain, | |a-b| - rest | / rest, that every step must reach; of a spring, the
+  /// distance from its law. > 0. The simd backend works in floats. So Cloth::create refuses rest
+  /// lengths, tolerance * rest length, and those of the tolerances below that are used, outside
+  /// 1e-18 to 1e18.
   double tolerance = 0.01;
-  /// Each step is done as this many substeps, each solved to the tolerances; with small_steps only
-  /// the last is looked at, and the number bounds the time of a step: n substeps are n sweeps, and
-  /// what is done beyond takes as long as 6 n more, or as automatic substeps would if these are
-  /// more. max_iterations lowers that bound. 0 (kAutomaticSubsteps): of
-  /// small_steps by closed form, up to 1024; else chosen from the motion (rattle: up to 2.5 times
-  /// as many as paper) and, with yarns, from the load that heavy particles and, with scheme paper,
-  /// spheres are; no more than max_iterations / 8 then. 1 on the reference backend or with
-  /// `iterations`. Fine meshes need small substeps.
+  /// Everyday. Number of substeps of a step; 0 (kAutomaticSubsteps): chosen. Fine meshes need small
+  /// substeps.
+  ///
+  /// A given number, with small_steps: the errors are looked at after the last substep. There is
+  /// one sweep per substep. The corrections after that take at most the time of 6 further sweeps
+  /// per substep, or of automatic substeps if that is longer; max_iterations lowers this bound. The
+  /// search for contacts with bodies, and its verification, are not in it. With other solvers each
+  /// substep is solved to the tolerances.
+  ///
+  /// A chosen number, with small_steps: in closed form, up to 1024. With other solvers: from the
+  /// motion (rattle takes up to 2.5 times as many as paper) and, with yarn, from the load of heavy
+  /// particles and, with scheme paper, of spheres; then at most max_iterations / 8. On the
+  /// reference backend, and with `iterations`: 1.
   int substeps = kAutomaticSubsteps;
-  /// 0: iterate to the tolerance. K > 0: exactly K iterations per substep whatever the error,
-  /// nothing skipped; gauss_seidel renews frozen directions once per substep, the others in every
-  /// iteration.
+  /// Advanced. 0: iterate to the tolerance. K > 0: exactly K iterations per substep, whatever the
+  /// error; nothing is skipped. gauss_seidel then renews frozen directions once per substep, other
+  /// solvers in every iteration.
   int iterations = 0;
-  /// frozen: most iterations along the same directions; 0: until all errors along them are within
-  /// tolerance, as in the paper (section 4.4; simd: 1024, since between renewals errors in floats
-  /// fall by seven digits at most). Solving exactly along directions that will change is wasted
-  /// work: 32 saves a fifth of the iterations and more.
+  /// Advanced. The largest number of iterations along the same frozen directions. 0: until all
+  /// errors along them are within tolerance, as in the paper (section 4.4); on the simd backend at
+  /// most 1024, since between renewals errors in floats fall by seven digits at most. An exact
+  /// solution along directions that will change is wasted work: 32 saves a fifth of the iterations
+  /// and more.
   int renew_after = 32;
-  /// Of a whole step, whatever its substeps, attempts and schemes; > 0. It bounds the time of a
-  /// step: a game sets it, to several times of what its frames take, for what one leaves undone the
-  /// next finds. (For the same time in each frame: `iterations` and `substeps`, solver yarn.) With
-  /// small_steps and n `substeps` a step is n sweeps, and no more than max_iterations passes
-  /// beyond, projections of a start included, whatever the state; it may be 0 then. A pass is a
-  /// sweep, or as many visits of local passes as take about as long. With other solvers each
-  /// substep may do half of what is left, the last one all; half of that is kept for the last
-  /// attempt (see Solver), which does one at least. The velocity loop may do as many of its own.
-  /// Where a substep that is cut off would gain energy, its velocities are scaled down.
+  /// Everyday. The largest work of a whole step, with all its substeps, attempts and schemes; > 0.
+  /// Games should set it to a few times the usual work: what one frame leaves undone, the next must
+  /// do. (For the same time in each frame: `iterations` and `substeps`, solver yarn.)
+  ///
+  /// With small_steps and given substeps: passes in addition to one sweep per substep, in any
+  /// state, projections of a start included; 0 is allowed. A pass is a sweep, or as many visits of
+  /// local passes as take about as long.
+  ///
+  /// With other solvers: each substep may do half of what is left, and the last one all. Half of
+  /// that is kept for the last attempt (Solver), which does at least one iteration. The velocity
+  /// loop may do as many of its own. If a substep that is cut off would gain energy, its velocities
+  /// are scaled down.
   int max_iterations = 1'000'000;
-  double contact_tolerance = 1e-4;   ///< m of penetration, and beyond an anchor's limits, left; > 0
-  double velocity_tolerance = 0.01;  ///< m/s along a constraint; > 0
-  /// m/s, by which particles may come away from their true motion; 0: not asked for. Of small_steps
-  /// alone, which automatic then chooses at any tolerance, and not with `substeps`, `iterations` or
-  /// velocity_correction. Held by the number of substeps, up to 1024, as far as rounding allows;
-  /// StepReport::motion_error tells. What contacts do, and chaos, is not in that estimate.
+  /// Advanced. m, of penetration, and beyond the limits of an anchor, that a step may leave; > 0.
+  double contact_tolerance = 1e-4;
+  double velocity_tolerance = 0.01;  ///< Advanced. m/s along a constraint; > 0
+  /// Everyday. m/s, by which particles may depart from their true motion; 0: not asked for. weft
+  /// uses more substeps (up to 1024) until the error is small enough, as far as rounding allows;
+  /// StepReport::motion_error tells the error. The estimate leaves out contacts and chaos. Only
+  /// small_steps has it, and automatic then chooses small_steps at any tolerance. It is refused
+  /// with `substeps`, `iterations` or velocity_correction.
   double motion_tolerance = 0;
-  double impulse_limit = 0;  ///< N s, the largest impulse of one correction; 0: no limit;
-                             ///< gauss_seidel on the reference backend only
-  Solver solver = Solver::automatic;
-  Scheme scheme = Scheme::automatic;
-  Backend backend = Backend::simd;
-  Isa isa = Isa::automatic;
-  /// Maximum threads of the caller's arena or job system (jobs.h) per step; 0: all that it offers,
-  /// up to kMaxThreads. Yarns use at most 16, small cloths one. Does not affect the result.
+  /// Advanced. N s, the largest impulse of one correction; 0: no limit. gauss_seidel on the
+  /// reference backend only.
+  double impulse_limit = 0;
+  Solver solver = Solver::automatic;  ///< Advanced.
+  Scheme scheme = Scheme::automatic;  ///< Advanced.
+  Backend backend = Backend::simd;    ///< Advanced.
+  Isa isa = Isa::automatic;           ///< Advanced.
+  /// Everyday. The largest number of threads of the caller's arena or job system (jobs.h) per step.
+  /// 0: all that it offers, up to kMaxThreads. Yarns use at most 16 threads, small cloths one. The
+  /// number does not affect the result.
   int threads = 0;
-  Directions directions = Directions::frozen;
-  /// Section 4.2: update errors instead of recomputing them. simd forms them from displacements
-  /// either way, which is faster in lanes (perf/tried.md); there this selects how `skip` tracks
-  /// satisfied constraints: true, by flags of chunks; false, by the paper's 64-bit masks.
+  Directions directions = Directions::frozen;  ///< Advanced.
+  /// Advanced. Section 4.2: errors are updated instead of recomputed. The simd backend forms them
+  /// from displacements either way, which is faster in lanes (perf/tried.md). There this setting
+  /// selects how `skip` tracks satisfied constraints: true, by flags of chunks; false, by the
+  /// 64-bit masks of the paper.
   bool anticipate = true;
-  /// simd, gauss_seidel, with `anticipate`: errors of distance constraints, in both loops, are
-  /// kept, and updated through the stored products of neighbouring directions, as in section 4.2.
-  /// Ropes, constraints at hubs and contacts still form theirs from displacements. An iteration
-  /// takes 1.3 to 2 times as long as by displacements, on irregular meshes 3 times (perf/tried.md).
-  /// The reference backend anticipates by products, and refuses this; models with springs do, too.
+  /// Advanced. With gauss_seidel on the simd backend and with `anticipate`: errors of distance
+  /// constraints, in both loops, are kept, and updated through the stored products of neighbouring
+  /// directions, as in section 4.2. Ropes, constraints at hubs and contacts still form theirs from
+  /// displacements. An iteration takes 1.3 to 2 times as long as by displacements, on irregular
+  /// meshes 3 times (perf/tried.md). The reference backend anticipates by products anyway, and
+  /// refuses this setting. Models with springs refuse it, too.
   bool anticipate_products = false;
-  /// A cloth that rests sleeps: where for half a second no particle has come farther than a
-  /// thousandth of the mean length of its constraints, velocities are set to zero, and steps do
-  /// nothing but say so (StepReport::asleep), until it is given other positions, velocities,
-  /// forces, gravity, wind, pins, anchors, rigid motions or properties than it has. The same values
-  /// again do not wake it. A balance that is lost more slowly than that is kept. In steps of more
-  /// than 1/8 s nothing falls asleep.
+  /// Everyday. A cloth that rests falls asleep: its velocities are set to zero, and its steps do
+  /// nothing but say so (StepReport::asleep). It rests if for half a second no particle has moved
+  /// farther than a thousandth of the mean length of its constraints. Positions, velocities,
+  /// forces, gravity, wind, pins, anchors, rigid motions or properties that differ from those it
+  /// has wake it; the same values again do not. A cloth that tips over more slowly than this falls
+  /// asleep too. In steps of more than 1/8 s nothing falls asleep.
   bool sleep = false;
-  bool skip = true;  ///< section 4.3: satisfied constraints are passed over
-  /// Sections 3.2, 3.3: a second loop, on velocities; rattle has it always. Without it gauss_seidel
-  /// gains energy in steps of a millisecond and less: errors left within a loose tolerance come
-  /// back as speed, error / dt (tests/README.md). Takes no springs.
+  bool skip = true;  ///< Advanced. Section 4.3: satisfied constraints are passed over.
+  /// Advanced. Sections 3.2, 3.3: a second loop, on velocities; rattle always has it. Without it
+  /// gauss_seidel gains energy in steps of a millisecond and less: an error that is left within a
+  /// loose tolerance comes back as speed, error / dt (tests/README.md). It refuses springs.
   bool velocity_correction = false;
 };
 
