@@ -1,7 +1,7 @@
-/* WEFT_API marks what a shared library shows, in C and C++. Part of weft.h and weft_c.h.
+/* WEFT_API marks the names that a shared library shows, in C and C++. Part of weft.h and weft_c.h.
  *
- * On Windows that is said while the DLL is built (CMake defines weft_EXPORTS then). A program that
- * uses it calls functions, which need no mark.
+ * On Windows the mark is needed only while the DLL is built (CMake defines weft_EXPORTS then). A
+ * program that uses the DLL calls functions, which need no mark.
  */
 #ifndef WEFT_API_H
 #define WEFT_API_H

@@ -7,8 +7,8 @@
 ///     if (!step.result) std::puts(step.result.error().c_str());
 ///   }
 ///
-/// Large cloths come first; threads that find no cloth left help with large ones. So a batch keeps
-/// its threads busy whether it is of a thousand small cloths or of one large one.
+/// Large cloths come first. A thread that finds no cloth left helps with a large one. So a batch
+/// keeps its threads busy, whether it has a thousand small cloths or one large one.
 #pragma once
 
 #include <weft/cloth.h>
@@ -19,19 +19,20 @@
 
 namespace weft {
 
-/// A cloth of a batch: what it is to do, and what came of it.
+/// A cloth of a batch, the time that it is to advance, and the result of its step.
 struct ClothStep {
-  Cloth* cloth = nullptr;  ///< the caller's; once in a batch
-  double dt = 0;           ///< s, as of Cloth::step
-  /// As of Cloth::step. An error, too, where the cloth is null, moved from, or in the batch already
-  /// (the first one counts), and where memory ran out (the cloth is unchanged then).
+  Cloth* cloth = nullptr;  ///< owned by the caller; at most once in a batch
+  double dt = 0;           ///< s, as for Cloth::step
+  /// The result of Cloth::step. It is also an error if the cloth is null or moved from, if it is in
+  /// the batch already (its first entry is stepped), or if memory ran out (the cloth is unchanged
+  /// then).
   Result<StepReport> result = Error{"not stepped"};
 };
 
 /// Steps each of these cloths, of one or several models, as Cloth::step would, and bit for bit to
-/// the same state. Results are in `steps`; a cloth that fails does not keep others from their step.
-/// Settings::threads is how many threads may work on one cloth; how many work on the batch is up to
-/// `jobs`. Allocates nothing once warm.
+/// the same state. Results are in `steps`. If a cloth fails, the others are stepped all the same.
+/// Settings::threads limits the threads that work on one cloth; `jobs` says how many work on the
+/// batch. Allocates nothing once warm.
 WEFT_API void step_all(std::span<ClothStep> steps, const JobSystem& jobs = {}) noexcept;
 
 }  // namespace weft

@@ -1,4 +1,8 @@
-/// Errors are values: a Result holds one, or what was asked for. Part of weft.h.
+/// Errors are values: a Result holds an Error or the value that was asked for. Part of weft.h.
+///
+///   auto model = weft::build_model(scene);
+///   if (!model) return std::puts(model.error().c_str());  // one line
+///   auto cloth = weft::Cloth::create(model.value(), {});
 #pragma once
 
 #include <weft/api.h>

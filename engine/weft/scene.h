@@ -1,4 +1,15 @@
-/// What is simulated: particles, and what joins and moves them. Part of weft.h.
+/// Scenes and models: particles, and the constraints, fabric, anchors, seams, air and forces that
+/// join and move them. Part of weft.h.
+///
+///   weft::SceneDescription scene;                 // plain vectors, SI units
+///   scene.positions = {{0, 0, 0}, {1, 0, 0}};     // m, one per particle
+///   scene.masses = {1, 1};                        // kg, one per particle
+///   scene.constraints = {{0, 1, 1.0}};            // particles 0 and 1 are 1 m apart
+///   scene.fixed = {0};
+///   auto model = weft::build_model(scene);        // checks all fields; the scene may go now
+///   if (!model) std::puts(model.error().c_str()); // "masses[1]: ..."
+///
+/// A model is immutable: any number of cloths and threads may share it.
 #pragma once
 
 #include <weft/result.h>
@@ -17,18 +28,19 @@ struct Vec3 {
   double x = 0, y = 0, z = 0;
 };
 
-/// In place of the number of a particle or constraint: none.
+/// Stands for no particle, no constraint and no element where a number is expected.
 inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
-/// distance: |a - b| = rest_length. rope: |a - b| <= rest_length (pulls only).
+/// distance: |a - b| = rest_length.
+/// rope: |a - b| <= rest_length; it only pulls.
 enum class ConstraintKind : std::uint8_t { distance, rope };
 
 /// With a compliance the constraint is a spring: its tension f obeys the law
 ///
 ///     |a - b| - rest_length = compliance f          (rope: f >= 0, and 0 where it is slack)
 ///
-/// and a tolerance is about what is left of this law, as a fraction of rest_length. Without one the
-/// law is that of a rigid edge. (Macklin et al., "XPBD", 2016; Servin et al. 2006.)
+/// Its error is the difference of the two sides, as a fraction of rest_length. Without a compliance
+/// the law is that of a rigid edge. (Macklin et al., "XPBD", 2016; Servin et al. 2006.)
 struct Constraint {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -41,9 +53,9 @@ struct Constraint {
 ///
 ///     d = sum of weights[i] x[particles[i]]
 ///
-/// does not change when the particles move as one, and its energy is (|d| - rest)^2 / (2
-/// compliance). With cotangent weights, rest 0 and a compliance of (A0 + A1) / (3 k) this is the
-/// isometric bending of two triangles with the areas A0 and A1 and the stiffness k (Bergou et al.,
+/// does not change when the particles move as one. Its energy is (|d| - rest)^2 / (2 compliance).
+/// With cotangent weights, rest 0 and a compliance of (A0 + A1) / (3 k) this is the isometric
+/// bending of two triangles with the areas A0 and A1 and the stiffness k (Bergou et al.,
 /// "A Quadratic Bending Model for Inextensible Surfaces", 2006).
 struct BendingElement {
   std::array<std::uint32_t, 4> particles{};  ///< all different; the last may be kNoIndex
@@ -52,16 +64,16 @@ struct BendingElement {
   double compliance = 0;                     ///< m/N, > 0
 };
 
-/// A triangle of fabric. With F = [f_u f_v], what becomes of a unit of length along the warp and
-/// along the weft, it obeys three laws:
+/// A triangle of fabric. The columns of its deformation F = [f_u f_v] are the images of a unit of
+/// length along the warp and along the weft. It obeys three laws:
 ///
 ///     |f_u| - 1 = T_u / warp,   |f_v| - 1 = T_v / weft,   f_u . f_v / (|f_u| |f_v|) = T_s / shear
 ///
-/// T_u and T_v are tensions and T_s is the shear force, each per width; f_u and f_v follow from the
-/// corners, since the deformation is the same in the whole triangle. Its energy is half of each
+/// T_u and T_v are tensions and T_s is the shear force, each per width. f_u and f_v follow from the
+/// corners, since the deformation is the same in the whole triangle. Each law stores half of its
 /// left side squared, times its stiffness, times the area at rest. This is exact for every affine
-/// deformation. A tolerance is about what is left of each law. (Baraff and Witkin, "Large Steps in
-/// Cloth Simulation", 1998; laws with compliances as of springs.)
+/// deformation. The error of a law is the difference of its two sides. (Baraff and Witkin, "Large
+/// Steps in Cloth Simulation", 1998; the laws have compliances as those of springs.)
 struct MembraneElement {
   std::array<std::uint32_t, 3> particles{};  ///< all different
   /// m, where the corners lie at rest in the plane of the fabric: along the warp, along the weft.
@@ -69,17 +81,17 @@ struct MembraneElement {
   double warp = 0;   ///< N/m, at least 0; 0: there is no such law
   double weft = 0;   ///< N/m, likewise
   double shear = 0;  ///< N/m per radian of shear, likewise
-  /// rope: warp and weft only pull, so that the triangle may become narrower without a force.
+  /// rope: warp and weft only pull, so the triangle may become narrower without a force.
   ConstraintKind kind = ConstraintKind::distance;
 };
 
-/// Times in which springs lose what they swing with, and the decay of all motion.
+/// Damping times of springs, and the decay of all motion.
 struct Damping {
-  /// s. A spring resists its rate of change with its stiffness times this (Macklin et al. 2016,
-  /// eq. 26). Constraints without a compliance have no such rate.
+  /// s. A spring resists its rate of change with its stiffness times this time (Macklin et al.
+  /// 2016, eq. 26). Constraints without a compliance are not damped.
   double stretch = 0;
-  double bending = 0;
-  double motion = 0;  ///< 1/s; velocities fall by exp(-motion t), whatever the step
+  double bending = 0;  ///< s, the same for bending elements
+  double motion = 0;   ///< 1/s; velocities fall by exp(-motion t), whatever the step
 };
 
 /// Drag and lift on triangles of the cloth. With v the mean velocity of its corners relative to the
@@ -87,12 +99,13 @@ struct Damping {
 ///
 ///     -1/2 density A |n . v| (drag v + lift (|v| n' - |n . v| v / |v|))
 ///
-/// n' = n or -n, whichever has n' . v >= 0. The first part is against v, the second across it;
-/// edge-on, and where v is 0, there is none. Each corner takes a third, of the force that is linear
-/// in its own velocity and sums to this (engine/step/air.h). A triangle that moves along its normal
-/// feels 1/2 density A drag |v|^2: of mass m it falls with v^2 = 2 m g / (density A drag) in the
-/// end. The force is found once a step with small_steps, else once a substep, and in a way that
-/// keeps it from making light cloth faster than the air, at any step.
+/// n' is n or -n, whichever has n' . v >= 0. The first part is against v, the second across it.
+/// There is no force edge-on, and none where v is 0. Each corner takes a third of the force: a
+/// share that is linear in its own velocity, so that the three sum to the formula
+/// (engine/step/air.h). A triangle that moves along its normal feels 1/2 density A drag |v|^2. So
+/// with the mass m it falls with v^2 = 2 m g / (density A drag) in the end. With small_steps the
+/// force is found once or a few times a step, else once a substep. It cannot make light cloth
+/// faster than the air, at any step.
 struct Air {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double density = 1.2;  ///< kg/m^3
@@ -101,33 +114,34 @@ struct Air {
   Vec3 wind;             ///< m/s; Cloth::set_wind changes it
 };
 
-/// A point that an animation moves (Cloth::move_anchors) and a particle that is to stay near it, as
-/// with characters whose skin carries the cloth:
+/// Keeps a particle near a point that an animation moves (Cloth::move_anchors), as the skin of a
+/// character carries its clothes:
 ///
 ///     |x - point| <= max_distance
 ///     |x - centre| >= backstop_radius,
 ///         centre = point - (backstop_distance + backstop_radius) normal
 ///
-/// Both hold one particle alone and cost far less than a constraint: the particle is put within its
-/// limits, to Settings::contact_tolerance, and loses what of its velocity leads out of them as they
-/// move. That is a rope which becomes taut, and a floor without bounce and friction. A max_distance
-/// of 0 attaches the particle to the point, as a fixed particle that is moved is.
-/// Constraints between such particles are inert, as between fixed ones. Cloth::limit_anchors
-/// changes limits later. Solver small_steps only.
+/// Each limit holds one particle alone, and costs far less than a constraint. The particle is put
+/// within its limits, to Settings::contact_tolerance. The part of its velocity that points out of
+/// the limits is removed (relative to the moving limits). So the first limit is a rope that becomes
+/// taut, and the second a floor without bounce and friction. A max_distance of 0 attaches the
+/// particle to the point, as a fixed particle that is moved. Constraints between attached particles
+/// are inert, as between fixed ones. Cloth::limit_anchors changes limits later. Solver small_steps
+/// only.
 struct Anchor {
-  std::uint32_t particle = 0;    ///< one that is not fixed, in at most one anchor
-  Vec3 point{};                  ///< m, where it begins
-  Vec3 normal{};                 ///< out of the backstop, of any length but 0; used with one
+  std::uint32_t particle = 0;    ///< must not be fixed; in at most one anchor
+  Vec3 point{};                  ///< m, where the point begins
+  Vec3 normal{};                 ///< out of the backstop, of any length but 0; used with a backstop
   double max_distance = 0;       ///< m, at least 0; infinite: no limit
   double backstop_distance = 0;  ///< m, of the surface of the backstop behind the point; >= 0
   double backstop_radius = 0;    ///< m; 0: there is no backstop; infinite: it is a plane
 };
 
 /// Two particles that are sewn together while the cloth moves, wherever they begin. They come
-/// together along the straight line between them, in the time `time` or, where max_force is too
-/// little for that, later, but never faster. Then they are held together whatever the force, for
-/// good. Until then the seam is open, which breaks no law (StepReport::open_seams). Positions that
-/// are written apart from each other open it again. Solver small_steps only.
+/// together along the straight line between them in the time `time`, never faster. If max_force is
+/// too small for that, they take longer. Then the seam is closed for good: it holds any force. An
+/// open seam does not count as an error (StepReport::open_seams). Positions that are written apart
+/// from each other open it again. Solver small_steps only.
 struct Seam {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -135,56 +149,63 @@ struct Seam {
   double max_force = std::numeric_limits<double>::infinity();  ///< N, > 0, while it is open
 };
 
-/// What is simulated. Lengths in m, masses in kg, times in s.
+/// A scene. Lengths in m, masses in kg, times in s. Vectors hold one entry per particle, or per
+/// constraint, element, anchor, seam or triangle; particles are numbered from 0.
+///
 /// At most one constraint may join the same two particles. A constraint between two fixed particles
-/// is legal but inert: nothing can move it, so it is neither solved nor measured until one of them
-/// is released (Cloth::change).
+/// is legal but inert: it is neither solved nor measured until one of them is released
+/// (Cloth::change).
 struct SceneDescription {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;      ///< empty: at rest; else one per particle
-  std::vector<double> masses;        ///< one per particle, 1e-150 to 1e150, fixed ones too
+  std::vector<double> masses;        ///< kg, one per particle, 1e-150 to 1e150, fixed ones too
   std::vector<std::uint32_t> fixed;  ///< particles of infinite inertia; move them with move_fixed()
   std::vector<Constraint> constraints;
   std::vector<MembraneElement> membrane;
   std::vector<BendingElement> bending;
   std::vector<Anchor> anchors;
   std::vector<Seam> seams;
-  /// Triangles of the cloth, by their particles. Bodies that are triangle meshes touch its faces
-  /// and edges (body.h); without these they touch particles alone. cloth_from_mesh fills it.
+  /// Triangles of the cloth, by their particles. Bodies that are triangle meshes touch the faces
+  /// and edges of these triangles (body.h); without them they touch particles alone.
+  /// cloth_from_mesh fills this.
   std::vector<std::array<std::uint32_t, 3>> surface;
   Damping damping;
   Air air;
-  double friction = 0.3;  ///< Coulomb's, of the cloth beside bodies (body.h); at least 0
-  Vec3 gravity{0, -10, 0};
+  double friction = 0.3;    ///< Coulomb's coefficient of the cloth on bodies (body.h); at least 0
+  Vec3 gravity{0, -10, 0};  ///< m/s^2
 
-  /// Contacts exist only for the particles listed in `spheres`. Each collides with every other
-  /// particle that no constraint joins it to, at the distance radii[i] + radii[j]; unlisted
-  /// particles do not collide with each other. radii: empty without spheres, else one per
-  /// particle, >= 0. What they cost: three or four times a substep each sphere is held against one
-  /// box per 256 particles, and against the particles of those boxes that it comes near (one or two
-  /// spheres: against all particles).
+  /// Spheres of the paper: particles that collide with other particles. A sphere collides with
+  /// every particle that no constraint joins it to, at the distance radii[i] + radii[j]. Particles
+  /// that are not listed do not collide with each other. radii: m, empty without spheres, else one
+  /// per particle, >= 0. Cost: each sphere is compared with one box per 256 particles, three or
+  /// four times per substep, and with the particles of the boxes that it comes near. (One or two
+  /// spheres are compared with all particles.)
   std::vector<std::uint32_t> spheres;
   std::vector<double> radii;
 };
 
-/// Topology, colours, rest lengths, masses: all that does not change from step to step.
+/// A scene that is checked and prepared: topology, colours, rest lengths, masses. Nothing in it
+/// changes from step to step.
 class Model;
 
-/// Checks the description and prepares it. On error nothing is built.
+/// Checks the description and prepares it. On an error nothing is built; the error names the field,
+/// the index and the value.
 WEFT_API Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description);
 
-/// The model as bytes for a file: all that it was built from, with a version and a checksum.
+/// The model as bytes for a file: its description, a version and a checksum.
 WEFT_API std::vector<std::byte> save_model(const Model& model);
-/// Builds it again. Bytes that are damaged, or of another version of the format, are refused.
+/// Builds a saved model again. Bytes that are damaged, or of another version of the format, are
+/// refused.
 WEFT_API Result<std::shared_ptr<const Model>> load_model(std::span<const std::byte> bytes);
 
+/// Counts of a model.
 struct ModelInfo {
   std::size_t particles = 0;
   std::size_t constraints = 0;  ///< active ones, without contacts
   std::size_t inert_constraints = 0;
   std::size_t ropes = 0;
   std::size_t compliant = 0;          ///< constraints that are springs
-  std::size_t membrane_elements = 0;  ///< active ones, likewise
+  std::size_t membrane_elements = 0;  ///< active ones
   std::size_t bending_elements = 0;
   std::size_t anchors = 0;
   std::size_t seams = 0;
@@ -193,9 +214,9 @@ struct ModelInfo {
   std::size_t spheres = 0;
   std::size_t colours = 0;
   std::size_t tiles = 0;  ///< groups of particles that threads may work on in parallel
-  double run_share =
-      0;  ///< of the constraints without a hub (engine/model/model.h): in contiguous runs
-  std::size_t bytes = 0;
+  /// Share of the constraints without a hub (engine/model/model.h) that stand in contiguous runs.
+  double run_share = 0;
+  std::size_t bytes = 0;  ///< held by the model
 };
 WEFT_API ModelInfo describe(const Model& model);
 
