@@ -260,8 +260,8 @@ class WEFT_API Cloth {
   /// (save_model).
   Result<void> load_state(std::span<const std::byte> bytes);
 
-  /// Advances by dt seconds (finite, > 0): all substeps or none. An error means that dt was
-  /// refused. If memory runs out, std::bad_alloc is thrown and the state is unchanged.
+  /// Advances by dt seconds (finite, > 0): all substeps or none. An error means that dt or
+  /// jobs was refused. If memory runs out, std::bad_alloc is thrown and the state is unchanged.
   ///
   /// dt is meant to be 0.1 ms to 0.1 s. In shorter steps the rounding of the floats of yarns shows
   /// up as velocity and slows motion (rattle and velocity_correction undo that; direct works in

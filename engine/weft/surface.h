@@ -1,5 +1,5 @@
-/// What a renderer draws of a cloth: vertices with normals, of the mesh that the cloth was made of
-/// or of another, finer or coarser one that follows it.
+/// Vertices and normals for a renderer: of the mesh that a cloth was made of, or of another mesh,
+/// finer or coarser, that follows the cloth.
 ///
 ///   auto made = weft::cloth_from_mesh(mesh);                          // as mesh.h says
 ///   auto skirt = weft::surface_of_mesh(mesh, made.value());           // once
@@ -12,10 +12,10 @@
 ///   fine.value().read_vertices(cloth, ...);                           // vertices of render_mesh
 ///
 ///   auto near = weft::map_surface(far_mesh, far_made, near_mesh);     // a level of detail
-///   near.value().copy_shape(far_cloth, near_cloth);                   // near_cloth goes on from
-///   there
+///   near.value().copy_shape(far_cloth, near_cloth);                   // near_cloth goes on there
 ///
-/// weft.h does not include this header; this header includes mesh.h.
+/// The buffers are the caller's. Errors are one line, and then nothing is written. This header
+/// includes mesh.h; weft.h does not include it.
 #pragma once
 
 #include <weft/mesh.h>
@@ -29,10 +29,10 @@
 
 namespace weft {
 
-/// The vertices of a mesh, as they follow from the particles of a cloth. Copies made by clone()
-/// share what does not change. Each belongs to one thread at a time, since it holds the workspace
-/// of its reads; which cloth it reads is said at each call. A surface that was moved from can only
-/// be assigned to or destroyed.
+/// Computes the vertices of a mesh from the particles of a cloth. Each call names the cloth. A
+/// Surface holds the workspace of its reads, so one thread at a time may use it. clone() makes a
+/// copy for another thread, which shares all data that do not change. After a move, the old object
+/// can only be assigned to or destroyed.
 class WEFT_API Surface {
  public:
   Surface(Surface&&) noexcept;
@@ -42,39 +42,41 @@ class WEFT_API Surface {
 
   std::size_t vertex_count() const;    ///< of the mesh
   std::size_t particle_count() const;  ///< of the cloths that it reads
-  /// For an index buffer: vertices of the faces of the mesh, in their order and as they are wound.
-  /// Four-sided faces are cut along the diagonal that is shorter at the beginning, those of more
-  /// corners around the first.
+  /// Triangles for an index buffer: the faces of the mesh, in their order and as they are wound.
+  /// Four-sided faces are cut along the diagonal that is shorter at the beginning; faces of more
+  /// corners are cut around the first corner.
   std::span<const std::array<std::uint32_t, 3>> triangles() const;
 
-  /// Writes one position, m, relative to the origin (Cloth::read_positions), and one normal per
-  /// vertex. One of the two may be left out: {}. Nothing is allocated, and nothing of the buffers
-  /// is read, so that they may be memory of a graphics card.
+  /// Writes one position (m, relative to the origin, as Cloth::read_positions) and one normal per
+  /// vertex. Either buffer may be left out: {}. Nothing is allocated. The buffers are only written,
+  /// never read, so they may be memory of a graphics card.
   ///
-  /// Normals are smooth and of length 1. That of a vertex is the sum of the normals of the faces
-  /// around it, each as much as its area. Faces count at all vertices of one particle (of the
-  /// followed cloth's mesh: vertices at one place, or nearer than weld_distance, or sewn), so that
-  /// edges of texture coordinates do not show; there are no hard edges. Where the areas sum to
-  /// nothing (threads, faces that have collapsed) the normal is (0, 0, 1). Of faces with the same
-  /// corners, as files of two-sided surfaces have them, the first counts; vertices that only
-  /// others of them have, wound the other way, have its normals turned around.
+  /// Normals are smooth and of length 1; there are no hard edges. The normal of a vertex is the sum
+  /// of the normals of the faces around it, weighted by their areas. A face counts at all vertices
+  /// of one particle (for map_surface: at vertices of one place, or nearer than weld_distance, or
+  /// sewn), so edges of texture coordinates do not show. If the areas sum to nothing (threads,
+  /// collapsed faces) the normal is (0, 0, 1). If several faces have the same corners, as in files
+  /// of two-sided surfaces, the first counts. A vertex of the other faces alone, which are wound
+  /// the other way, has the opposite normal.
   ///
   /// Vertices in no face and no line have no particle (MeshCloth::particle_of_vertex is kNoIndex)
-  /// and are not drawn: what stands in the buffers for them is left as it is.
+  /// and are not drawn: their floats in the buffers stay as they are.
   Result<void> read_vertices(const Cloth& from, FloatVectors positions, FloatVectors normals = {},
                              Vec3 origin = {});
 
-  /// `to`, a cloth of another level of detail, takes the shape and the velocities of `from`: its
+  /// Gives `to`, a cloth of another level of detail, the shape and the velocities of `from`: its
   /// particles are written where this surface has them (Cloth::write_positions, write_velocities).
-  /// This surface must be one of map_surface whose `other` is the mesh that `to` was made of. What
-  /// is out of tolerance then is projected as the next step of `to` begins. That takes long where
-  /// the coarse cloth is folded between its vertices: Settings::max_iterations bounds it (a skirt
-  /// of 1,800 particles from one of 288: 12 ms by 60 of them, 1.8 s by the default, each within 1
-  /// %). Fixed particles move as all others: place_fixed() puts them where they belong. Bodies,
-  /// anchors, forces and gravity stay those of `to`.
+  /// The surface must come from map_surface(mesh, cloth, other), and `to` must be made from
+  /// `other`.
+  ///
+  /// Positions out of tolerance are projected when the next step of `to` begins. This takes long
+  /// where the coarse cloth is folded between its vertices; Settings::max_iterations bounds it. (A
+  /// skirt of 1,800 particles from one of 288 took 12 ms with a max_iterations of 60 and 1.8 s with
+  /// the default, each within 1 %.) Fixed particles move as all others do: place_fixed() puts them
+  /// where they belong. `to` keeps its bodies, anchors, forces and gravity.
   Result<void> copy_shape(const Cloth& from, Cloth& to);
 
-  std::size_t bytes() const;  ///< held by this surface, with what clones share
+  std::size_t bytes() const;  ///< held by this surface, with the data that clones share
 
  private:
   struct Impl;
@@ -85,25 +87,26 @@ class WEFT_API Surface {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The mesh itself, whose particles the cloth has. cloth: what cloth_from_mesh made of it.
+/// The surface of the mesh itself. cloth: the result of cloth_from_mesh for this mesh.
 WEFT_API Result<Surface> surface_of_mesh(const MeshDescription& mesh, const MeshCloth& cloth);
 
-/// Another mesh that follows the faces of `mesh`. Both are taken as they lie at the beginning, in
-/// `positions`. Each vertex of the other belongs to the nearest triangle of the mesh
-/// (Surface::triangles), and stays where it is as three shares of the corners of that triangle, and
-/// a distance along the smooth normal there (along the triangle's own, where the two differ by more
-/// than 60 degrees). So
+/// Another mesh that follows the faces of `mesh`. Both are used as they lie at the beginning, in
+/// `positions`. Each vertex of the other mesh belongs to the nearest triangle of the mesh
+/// (Surface::triangles). Its place is three shares of the corners of that triangle, and a distance
+/// along the smooth normal there (along the triangle's own normal, if the two differ by more than
+/// 60 degrees). So
 ///
-/// - every rigid motion of the cloth is that of the other mesh, and at the beginning it lies where
-///   its description says, to the precision of floats;
-/// - what lies in the triangles moves with them, and so does, in their planes, what lies beside the
-///   border of the cloth: every affine map of the cloth is one of the other mesh;
-/// - what lies at a distance keeps that, however the cloth stretches.
+/// - at the beginning the other mesh lies where its description says, to the precision of floats,
+///   and it follows every rigid motion of the cloth;
+/// - vertices that lie in the triangles move with them, and vertices beside the border of the cloth
+///   move with the plane of their triangle: every affine map of the cloth is an affine map of the
+///   other mesh;
+/// - vertices at a distance keep that distance, however the cloth stretches.
 ///
-/// The velocities of copy_shape are those of this motion. Vertices of the other mesh at one place,
-/// or nearer than its weld_distance, or sewn, are one point. A vertex that is farther than
-/// max_distance, m, from the mesh is refused. Of the other mesh positions, faces, lines, seams and
-/// welds count, but neither material nor pins.
+/// copy_shape gives the velocities of this motion. Vertices of the other mesh at one place, or
+/// nearer than its weld_distance, or sewn, are one point. A vertex that is farther than
+/// max_distance, m, from the mesh is refused. The positions, faces, lines, seams and welds of the
+/// other mesh count; its material and its pins do not.
 WEFT_API Result<Surface> map_surface(const MeshDescription& mesh, const MeshCloth& cloth,
                                      const MeshDescription& other,
                                      double max_distance = std::numeric_limits<double>::infinity());

@@ -11,34 +11,36 @@
  *     puts(weft_last_message());
  *   weft_free_cloth(cloth), weft_free_model(model);
  *
- * The C++ headers say what everything means; what has the same name here is the same thing, with
- * the same default, in the same unit (m, kg, s, N, J, rad). This header says how it crosses.
+ * The C++ headers document every function and field. A name here means the same as there, with the
+ * same default and the same unit (m, kg, s, N, J, rad). This header says how data cross to C.
  *
- * Shapes. Points and vectors are doubles x, y, z, one after the other: of n points an array has
- * 3 n. Edges, triangles and the like are the numbers of their particles or vertices, 2, 3 or 4
- * each. Lists of things are arrays of the same count, one a property. "or NULL" says that an array
- * may be left out; then its property has its default everywhere. Where a count is 0 arrays are not
- * looked at. An int that says yes or no is 0 or not 0. A count is at most 4294967295.
+ * Shapes. Points and vectors are doubles x, y, z, one after the other: an array of n points has
+ * 3 n doubles. Edges, triangles and the like are the numbers of their particles or vertices, 2, 3
+ * or 4 each. A list of things is several arrays of one count, one array for each property. "or
+ * NULL" says that an array may be left out; then its property has its default everywhere. If a
+ * count is 0 its arrays are not read. An int that means yes or no is 0 or not 0. A count is at most
+ * 4294967295.
  *
  * Structs. The first field is the size of the struct as the caller's compiler knows it. The init
- * function of a struct sets that and all defaults; call it first, also where a function fills in a
- * struct. Later versions add fields at the end: a program that was compiled before gets their
- * defaults, and is not given them. Fields that this version does not know must be 0. NULL in place
- * of an optional struct is one of defaults.
+ * function of a struct sets the size and all defaults. Call it first, also if a function fills in
+ * the struct. Later versions add fields at the end. A program that was compiled before gets the
+ * defaults of new fields, and new fields are not written to its structs. Fields that this version
+ * does not know must be 0. NULL in place of an optional struct means the defaults.
  *
- * Ownership. Functions that give back a handle have a parameter `out`; the caller frees it with the
- * weft_free_ function of its kind, to which NULL is nothing. Handles do not depend on each other: a
- * cloth keeps its model. Functions read the caller's arrays and keep none. Pointers that they give
- * back point into a handle and are valid until it is freed, or until the next call that changes it.
+ * Ownership. Functions that return a handle have a parameter `out`. The caller frees the handle
+ * with the weft_free_ function of its kind, which ignores NULL. Handles do not depend on each
+ * other: a cloth keeps its model. Functions read the caller's arrays and keep none. Pointers that
+ * they return point into a handle; they are valid until it is freed, or until the next call that
+ * changes it.
  *
- * Errors. Functions return WEFT_OK (0) or what else has happened; then weft_last_message() says in
- * one line what, naming the field, the index and the value, and nothing was changed. A null handle
- * or array is such an error. Functions that return another type than weft_result cannot fail but
- * for a null handle, to which they return 0 (NULL), and set the message. No exception leaves a
- * function. Handles that were freed, and counts larger than their arrays, are not noticed.
+ * Errors. Functions return WEFT_OK (0) or another weft_result. Then nothing was changed, and
+ * weft_last_message() is one line that names the field, the index and the value. A null handle or
+ * array is such an error. Functions that return another type fail only for a null handle: they
+ * return 0 (NULL) and set the message. No exception leaves a function. Freed handles, and counts
+ * larger than their arrays, are not noticed.
  *
- * Threads. A handle is used by one thread at a time, but models, shapes and mesh cloths by any
- * number. weft starts no threads (weft_jobs). The message is the calling thread's own.
+ * Threads. One thread at a time may use a handle. Any number of threads may use a model, a shape or
+ * a mesh cloth. weft starts no threads (weft_jobs). Each thread has its own message.
  */
 #ifndef WEFT_WEFT_C_H
 #define WEFT_WEFT_C_H
@@ -55,16 +57,16 @@ extern "C" {
 
 typedef enum weft_result {
   WEFT_OK = 0,
-  WEFT_REFUSED = 1,       /* the input; the message says what of it */
+  WEFT_REFUSED = 1,       /* bad input; the message names it */
   WEFT_OUT_OF_MEMORY = 2, /* nothing was changed */
   WEFT_FAILED = 3         /* anything else: a mistake in weft, or a host whose threads failed */
 } weft_result;
 
-/* Of the last call of this thread that did not succeed; "" if there was none. Never NULL. It is
- * valid until the next such call of this thread. Cut off after 1,023 characters. */
+/* The message of the last call of this thread that did not succeed; "" if there was none. Never
+ * NULL. It is valid until the next such call of this thread. Cut off after 1,023 characters. */
 WEFT_API const char* weft_last_message(void);
 
-/* Of the library that runs. Each may be NULL. */
+/* The version of the library that runs. Each pointer may be NULL. */
 WEFT_API void weft_version(int* major, int* minor, int* patch);
 
 /* -------------------------------------------------------------------------------------- handles */
@@ -74,7 +76,7 @@ typedef struct weft_cloth weft_cloth;           /* Cloth */
 typedef struct weft_shape weft_shape;           /* BodyShape */
 typedef struct weft_mesh_cloth weft_mesh_cloth; /* MeshCloth */
 typedef struct weft_surface weft_surface;       /* Surface */
-typedef struct weft_bytes weft_bytes;           /* what is to be saved */
+typedef struct weft_bytes weft_bytes;           /* bytes of a saved model or state */
 
 WEFT_API void weft_free_model(weft_model* model);
 WEFT_API void weft_free_cloth(weft_cloth* cloth);
@@ -202,7 +204,7 @@ WEFT_API weft_result weft_init_settings(weft_settings* settings, size_t size);
 /* paper_settings() */
 WEFT_API weft_result weft_init_paper_settings(weft_settings* settings, size_t size);
 
-/* The words for what these numbers mean, "unknown" for others. */
+/* The names of these numbers; "unknown" for other numbers. */
 WEFT_API const char* weft_solver_name(int solver);
 WEFT_API const char* weft_scheme_name(int scheme);
 WEFT_API const char* weft_directions_name(int directions);
@@ -243,25 +245,25 @@ typedef struct weft_report { /* StepReport */
                               correct_velocities, report */
 } weft_report;
 
-/* JobSystem. Both functions or neither; NULL in place of the struct is the oneTBB arena that the
- * calling thread is in. They throw nothing. */
+/* JobSystem. Set both functions or neither; they must not throw. NULL in place of the struct is the
+ * oneTBB arena that the calling thread is in. */
 typedef struct weft_jobs {
   size_t size;
-  void* host; /* what the functions are called with */
-  /* How many threads may run jobs at the same time, the calling one included. */
+  void* host; /* the first argument of the functions */
+  /* Returns how many threads may run jobs at the same time, the calling one included. */
   int (*threads)(void* host);
-  /* Calls job(context) so many times, in any threads, and returns when all calls have returned. */
+  /* Calls job(context) `times` times, in any threads, and returns when all calls have returned. */
   void (*run)(void* host, void (*job)(void* context), void* context, int times);
 } weft_jobs;
 
 /* A cloth of a batch (ClothStep). */
 typedef struct weft_batch_step {
-  size_t size; /* in an array all have that of the first */
+  size_t size; /* in an array all entries have the size of the first */
   weft_cloth* cloth;
   double dt;
-  weft_result result; /* what came of it */
-  char message[256];  /* where the result is not WEFT_OK; cut off at its end */
-  weft_report report; /* where it is */
+  weft_result result; /* the result of this step */
+  char message[256];  /* if the result is not WEFT_OK; cut off at its end */
+  weft_report report; /* if the result is WEFT_OK */
 } weft_batch_step;
 
 WEFT_API weft_result weft_init_report(weft_report* report, size_t size);
@@ -271,8 +273,8 @@ WEFT_API weft_result weft_init_batch_step(weft_batch_step* step, size_t size);
 /* jobs, report: or NULL. */
 WEFT_API weft_result weft_step(weft_cloth* cloth, double dt, const weft_jobs* jobs,
                                weft_report* report);
-/* WEFT_OK does not say that each cloth was stepped: its own result does. Allocates nothing
-   once warm: the first cloth keeps the list of the batch. */
+/* WEFT_OK does not mean that each cloth was stepped: see the result of each entry. Allocates
+ * nothing once warm: the first cloth keeps the list of the batch. */
 WEFT_API weft_result weft_step_all(size_t count, weft_batch_step* steps, const weft_jobs* jobs);
 
 /* --------------------------------------------------------------------------------------- cloths */
@@ -286,30 +288,30 @@ WEFT_API weft_result weft_save_state(const weft_cloth* cloth, weft_bytes** out);
 WEFT_API weft_result weft_load_state(weft_cloth* cloth, const void* bytes, size_t size);
 
 WEFT_API size_t weft_particle_count(const weft_cloth* cloth);
-/* A handle of its own, of the model that the cloth has now. */
+/* A new handle of the model that the cloth has now. */
 WEFT_API weft_result weft_model_of(const weft_cloth* cloth, weft_model** out);
 WEFT_API weft_result weft_settings_of(const weft_cloth* cloth, weft_settings* settings);
 
 WEFT_API weft_result weft_position(const weft_cloth* cloth, uint32_t particle, double out[3]);
 WEFT_API weft_result weft_velocity(const weft_cloth* cloth, uint32_t particle, double out[3]);
-/* count: particles, as many as the cloth has. */
+/* count: number of particles of the cloth. */
 WEFT_API weft_result weft_read_positions(const weft_cloth* cloth, size_t count, double* out);
 WEFT_API weft_result weft_read_velocities(const weft_cloth* cloth, size_t count, double* out);
 
-/* FloatVectors: count is that of floats in the buffer. */
+/* FloatVectors. count: number of floats in the buffer. */
 typedef struct weft_float_vectors {
   float* floats;
   size_t count;
   size_t stride; /* floats from one vector to the next, at least 3 */
 } weft_float_vectors;
 
-/* origin: or NULL, 0. */
+/* origin: or NULL: 0. */
 WEFT_API weft_result weft_read_float_positions(const weft_cloth* cloth, weft_float_vectors out,
                                                const double origin[3]);
 WEFT_API weft_result weft_read_float_velocities(const weft_cloth* cloth, weft_float_vectors out);
 WEFT_API weft_result weft_bounds(const weft_cloth* cloth, double least[3], double most[3]);
 
-/* count: of particles, as many as the cloth has; forces: or 0, none. */
+/* count: number of particles of the cloth; for forces also 0: none. */
 WEFT_API weft_result weft_write_positions(weft_cloth* cloth, size_t count, const double* in);
 WEFT_API weft_result weft_write_velocities(weft_cloth* cloth, size_t count, const double* in);
 WEFT_API weft_result weft_write_forces(weft_cloth* cloth, size_t count, const double* in);
@@ -320,10 +322,10 @@ WEFT_API weft_result weft_move_fixed(weft_cloth* cloth, size_t count, const uint
 WEFT_API weft_result weft_place_fixed(weft_cloth* cloth, size_t count, const uint32_t* particles,
                                       const double* positions);
 
-/* count: of all anchors. normals: or NULL, as they are. */
+/* count: number of all anchors. normals: or NULL: as they are. */
 WEFT_API weft_result weft_move_anchors(weft_cloth* cloth, size_t count, const double* points,
                                        const double* normals);
-/* backstops: a byte each, yes or no; or NULL, yes. */
+/* backstops: a byte each, yes or no; or NULL: yes. */
 WEFT_API weft_result weft_limit_anchors(weft_cloth* cloth, size_t count,
                                         const double* max_distances, const uint8_t* backstops);
 WEFT_API weft_result weft_limit_anchor(weft_cloth* cloth, uint32_t anchor, double max_distance,
@@ -358,7 +360,7 @@ typedef struct weft_changes {
   size_t bending_count;
   const uint32_t* bending_elements;
   const double* bending_compliances;
-  int change_damping; /* yes or no: whether the three that follow count */
+  int change_damping; /* yes or no: whether the next three fields count */
   double damping_stretch, damping_bending, damping_motion;
   int change_air; /* likewise */
   double air_density, air_drag, air_lift;
@@ -402,7 +404,7 @@ WEFT_API weft_result weft_triangle_mesh(size_t vertex_count, const double* verti
 
 typedef struct weft_body { /* Body */
   size_t size;
-  const weft_shape* shape; /* the body keeps what it needs of it */
+  const weft_shape* shape; /* the body keeps it alive; the handle may be freed */
   double position[3];
   double rotation[4]; /* x, y, z, w */
   double thickness, friction;
@@ -414,7 +416,7 @@ typedef struct weft_body_load { /* BodyLoad */
 } weft_body_load;
 
 typedef struct weft_body_contact { /* BodyContact */
-  size_t size;                     /* in an array all have that of the first */
+  size_t size;                     /* in an array all entries have the size of the first */
   uint32_t particle, body;
   double point[3], normal[3];
   double push;
@@ -425,7 +427,7 @@ WEFT_API weft_result weft_init_body_load(weft_body_load* load, size_t size);
 WEFT_API weft_result weft_init_body_contact(weft_body_contact* contact, size_t size);
 
 WEFT_API weft_result weft_add_body(weft_cloth* cloth, const weft_body* body, uint32_t* id);
-/* rotation: x, y, z, w; or NULL, none. */
+/* rotation: x, y, z, w; or NULL: none. */
 WEFT_API weft_result weft_move_body(weft_cloth* cloth, uint32_t id, const double position[3],
                                     const double rotation[4]);
 WEFT_API weft_result weft_place_body(weft_cloth* cloth, uint32_t id, const double position[3],
@@ -437,7 +439,7 @@ WEFT_API weft_result weft_place_body_vertices(weft_cloth* cloth, uint32_t id, si
 WEFT_API weft_result weft_switch_body(weft_cloth* cloth, uint32_t id, int on);
 WEFT_API weft_result weft_remove_body(weft_cloth* cloth, uint32_t id);
 WEFT_API weft_result weft_body_load_of(const weft_cloth* cloth, uint32_t id, weft_body_load* load);
-/* Writes the first `capacity` of them, and to *count how many there are. */
+/* Writes the first `capacity` contacts, and the number of all contacts to *count. */
 WEFT_API weft_result weft_body_contacts(const weft_cloth* cloth, size_t capacity,
                                         weft_body_contact* out, size_t* count);
 
@@ -452,7 +454,7 @@ typedef struct weft_material { /* Material */
 WEFT_API weft_result weft_init_material(weft_material* material, size_t size);
 WEFT_API weft_result weft_check_material(const weft_material* material);
 WEFT_API size_t weft_material_count(void);
-/* NULL where there is none of that number. */
+/* NULL if no material has this number. */
 WEFT_API const char* weft_material_name(size_t number);
 WEFT_API const char* weft_material_source(size_t number);
 WEFT_API weft_result weft_find_material(const char* name, weft_material* material);
@@ -497,20 +499,20 @@ WEFT_API weft_result weft_init_mesh_counts(weft_mesh_counts* counts, size_t size
 WEFT_API weft_result weft_warp_from_texture(const weft_mesh* mesh, const double* texture,
                                             size_t face_count, double* directions);
 WEFT_API weft_result weft_cloth_from_mesh(const weft_mesh* mesh, weft_mesh_cloth** out);
-/* Its scene. The arrays are those of the mesh cloth; the struct is the caller's to change. */
+/* The scene of a mesh cloth. Its arrays belong to the mesh cloth; the caller may change the struct.
+ */
 WEFT_API weft_result weft_scene_of(const weft_mesh_cloth* cloth, weft_scene* scene);
-/* One for each vertex: WEFT_NO_INDEX where it has none. */
+/* One particle for each vertex, WEFT_NO_INDEX if it has none. */
 WEFT_API const uint32_t* weft_particle_of_vertex(const weft_mesh_cloth* cloth);
 WEFT_API weft_result weft_counts_of(const weft_mesh_cloth* cloth, weft_mesh_counts* counts);
 WEFT_API size_t weft_cell_count(const weft_mesh_cloth* cloth);
 WEFT_API const uint32_t* weft_cells(const weft_mesh_cloth* cloth); /* 4 each */
 
-/* -------------------------------------------------------------------------------------- surfaces
- */
+/* ------------------------------------------------------------------------------------- surfaces */
 
 WEFT_API weft_result weft_surface_of_mesh(const weft_mesh* mesh, const weft_mesh_cloth* cloth,
                                           weft_surface** out);
-/* max_distance: HUGE_VAL for any. */
+/* max_distance: HUGE_VAL for any distance. */
 WEFT_API weft_result weft_map_surface(const weft_mesh* mesh, const weft_mesh_cloth* cloth,
                                       const weft_mesh* other, double max_distance,
                                       weft_surface** out);
@@ -519,7 +521,7 @@ WEFT_API size_t weft_surface_vertex_count(const weft_surface* surface);
 WEFT_API size_t weft_surface_particle_count(const weft_surface* surface);
 WEFT_API size_t weft_surface_triangle_count(const weft_surface* surface);
 WEFT_API const uint32_t* weft_surface_triangles(const weft_surface* surface); /* 3 each */
-/* positions or normals may have no floats: NULL and 0. origin: or NULL, 0. */
+/* positions or normals may have no floats: NULL and 0. origin: or NULL: 0. */
 WEFT_API weft_result weft_read_vertices(weft_surface* surface, const weft_cloth* cloth,
                                         weft_float_vectors positions, weft_float_vectors normals,
                                         const double origin[3]);
