@@ -11,14 +11,14 @@ namespace weft::python {
 namespace {
 
 void add_shapes(py::module_& m) {
-  py::class_<Plane> plane(m, "Plane", "All of space where normal . x < offset.");
+  py::class_<Plane> plane(m, "Plane", "The half space where normal . x < offset.");
   add_keywords<Plane>(plane);
   plane.def_readwrite("normal", &Plane::normal, "of any length but 0")
       .def_readwrite("offset", &Plane::offset, "in units of the normal");
   py::class_<Ball> ball(m, "Ball", "A ball.");
   add_keywords<Ball>(ball);
   ball.def_readwrite("centre", &Ball::centre, "m").def_readwrite("radius", &Ball::radius, "m");
-  py::class_<Capsule> capsule(m, "Capsule", "The balls around all points of a segment.");
+  py::class_<Capsule> capsule(m, "Capsule", "All balls whose centres lie on a segment.");
   add_keywords<Capsule>(capsule);
   capsule.def_readwrite("a", &Capsule::a, "m")
       .def_readwrite("b", &Capsule::b, "m")
@@ -55,11 +55,11 @@ void add_shapes(py::module_& m) {
 
 void add_body(py::module_& m) {
   add_shapes(m);
-  py::class_<Pose> pose(m, "Pose", "Where the coordinates of a body are.");
+  py::class_<Pose> pose(m, "Pose", "Position and rotation of the coordinates of a body.");
   add_keywords<Pose>(pose);
   pose.def_readwrite("position", &Pose::position, "m")
       .def_readwrite("rotation", &Pose::rotation, "a quaternion x, y, z, w");
-  py::class_<Body> body(m, "Body", "What Cloth.add_body takes.");
+  py::class_<Body> body(m, "Body", "A body for Cloth.add_body.");
   add_keywords<Body>(body);
   body.def_property(
           "shape",
@@ -71,7 +71,7 @@ void add_body(py::module_& m) {
       .def_readwrite("pose", &Body::pose, "where it is")
       .def_readwrite("thickness", &Body::thickness, "m, at which it keeps particles")
       .def_readwrite("friction", &Body::friction, "Coulomb's");
-  py::class_<BodyLoad>(m, "BodyLoad", "What the cloth did to a body in its last step.")
+  py::class_<BodyLoad>(m, "BodyLoad", "The mean force and moment of the cloth on a body.")
       .def_readonly("force", &BodyLoad::force, "N")
       .def_readonly("moment", &BodyLoad::moment, "N m, about the position of its pose");
 }

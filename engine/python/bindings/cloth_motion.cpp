@@ -53,7 +53,7 @@ void add_changes(py::module_& m) {
   air.def_readwrite("density", &ChangedAir::density, "kg/m^3")
       .def_readwrite("drag", &ChangedAir::drag, "as Air.drag")
       .def_readwrite("lift", &ChangedAir::lift, "as Air.lift");
-  py::class_<Changes> changes(m, "Changes", "What becomes different while a cloth moves.");
+  py::class_<Changes> changes(m, "Changes", "Changes of a cloth that moves.");
   add_keywords<Changes>(changes);
   changes
       .def_property(
@@ -94,11 +94,11 @@ void add_pins(ClothClass& cloth) {
             const py::gil_scoped_release release;
             check(c.value.change(copy));
           },
-          py::arg("changes"), "Changes what was described: all of it or, on an error, nothing.");
+          py::arg("changes"), "Changes the description of a moving cloth; on an error, nothing.");
 }
 
 void add_anchors(py::module_& m, ClothClass& cloth) {
-  py::class_<AnchorLimit> limit(m, "AnchorLimit", "What an anchor asks for from now on.");
+  py::class_<AnchorLimit> limit(m, "AnchorLimit", "New limits of an anchor.");
   add_keywords<AnchorLimit>(limit);
   limit.def_readwrite("max_distance", &AnchorLimit::max_distance, "m; infinite: let go")
       .def_readwrite("backstop", &AnchorLimit::backstop, "whether the backstop counts");
@@ -126,14 +126,14 @@ void add_anchors(py::module_& m, ClothClass& cloth) {
             const auto used = use(c);
             check(c.value.limit_anchor(anchor, one));
           },
-          py::arg("anchor"), py::arg("limit"), "The same of one of them.")
+          py::arg("anchor"), py::arg("limit"), "Sets the limits of one anchor.")
       .def(
           "scale_anchors",
           [](HeldCloth& c, double scale) {
             const auto used = use(c);
             check(c.value.scale_anchors(scale));
           },
-          py::arg("scale"), "From the next step on largest distances count so many times.");
+          py::arg("scale"), "Multiplies all largest distances, from the next step on.");
 }
 
 void add_rigid_motion(py::module_& m, ClothClass& cloth) {
@@ -156,7 +156,7 @@ void add_rigid_motion(py::module_& m, ClothClass& cloth) {
             const auto used = use(c);
             check(c.value.teleport(by));
           },
-          py::arg("motion"), "The same, with share 1 and without a way through the air.");
+          py::arg("motion"), "carry with share 1, without drag of the air.");
 }
 
 void add_bodies(ClothClass& cloth) {
@@ -197,7 +197,7 @@ void add_bodies(ClothClass& cloth) {
             const auto used = use(c);
             check(c.value.switch_body(id, on));
           },
-          py::arg("id"), py::arg("on"), "A body that is off is not there.")
+          py::arg("id"), py::arg("on"), "A body that is off touches nothing.")
       .def(
           "remove_body",
           [](HeldCloth& c, std::uint32_t id) {
@@ -211,14 +211,14 @@ void add_bodies(ClothClass& cloth) {
             const auto used = use(c);
             return value_of(c.value.body_load(id));
           },
-          py::arg("id"), "What the cloth did to it in the last step.")
+          py::arg("id"), "The force and moment of the cloth on it in the last step.")
       .def(
           "body_contacts",
           [](const HeldCloth& c) {
             const auto used = use(c);
             return array_of_records(c.value.body_contacts());
           },
-          "Those of the last step, records of weft.BodyContact.");
+          "Contacts of the last step, records of weft.BodyContact.");
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ void add_shape(Class& mesh) {
 }
 
 void add_description(py::module_& m) {
-  py::enum_<Ropes>(m, "Ropes", "Which constraints only pull.")
+  py::enum_<Ropes>(m, "Ropes", "The constraints that only pull.")
       .value("none", Ropes::none)
       .value("diagonals", Ropes::diagonals)
       .value("all", Ropes::all);
@@ -117,7 +117,7 @@ void add_description(py::module_& m) {
 }
 
 void add_made(py::module_& m) {
-  py::class_<MeshCounts>(m, "MeshCounts", "What was found in a mesh.")
+  py::class_<MeshCounts>(m, "MeshCounts", "Counts of a mesh.")
       .def_readonly("triangles", &MeshCounts::triangles, "that are left of the faces")
       .def_readonly("quads", &MeshCounts::quads, "four-sided faces")
       .def_readonly("recognised_quads", &MeshCounts::recognised_quads, "pairs of triangles")
@@ -131,7 +131,7 @@ void add_made(py::module_& m) {
       .def_readonly("pieces", &MeshCounts::pieces, "that nothing joins")
       .def_readonly("loose_pieces", &MeshCounts::loose_pieces, "of these, without a pin")
       .def_readonly("suggested_weld", &MeshCounts::suggested_weld, "m; 0: none");
-  py::class_<MeshCloth>(m, "MeshCloth", "What cloth_from_mesh made.")
+  py::class_<MeshCloth>(m, "MeshCloth", "The result of cloth_from_mesh.")
       .def_readwrite("scene", &MeshCloth::scene, "a SceneDescription, which may be changed")
       .def_property_readonly(
           "particle_of_vertex",
@@ -155,7 +155,7 @@ void add_mesh(py::module_& m) {
         const auto places = vectors<std::array<double, 2>>(texture, "texture");
         return rows<double>(value_of(warp_from_texture(mesh, places)));
       },
-      py::arg("mesh"), py::arg("texture"), "Where v grows on each face; one (u, v) per corner.");
+      py::arg("mesh"), py::arg("texture"), "Directions of v on each face; one (u, v) per corner.");
   m.def(
       "cloth_from_mesh",
       [](const Mesh& mesh) {

@@ -60,13 +60,14 @@ void add_errors(Class& report) {
   report.def_readonly("max_strain", &StepReport::max_strain, "recomputed from the positions")
       .def_readonly("rms_strain", &StepReport::rms_strain, "root mean square")
       .def_readonly("max_shear", &StepReport::max_shear, "rad")
-      .def_readonly("max_error", &StepReport::max_error, "what `tolerance` bounds")
+      .def_readonly("max_error", &StepReport::max_error,
+                    "the largest error of a law; `tolerance` bounds it")
       .def_readonly("worst_constraint", &StepReport::worst_constraint,
                     "its number in the description, or kNoIndex")
       .def_readonly("worst_element", &StepReport::worst_element,
                     "likewise, of the largest strain or shear")
       .def_readonly("max_anchor_error", &StepReport::max_anchor_error, "m")
-      .def_readonly("open_seams", &StepReport::open_seams, "whose particles have not come together")
+      .def_readonly("open_seams", &StepReport::open_seams, "seams that have not come together")
       .def_readonly("max_seam_gap", &StepReport::max_seam_gap, "m")
       .def_readonly("motion_error", &StepReport::motion_error, "m/s, estimated")
       .def_readonly("failed_particle", &StepReport::failed_particle,
@@ -80,9 +81,11 @@ void add_contacts(Class& report) {
   report.def_readonly("contacts", &StepReport::contacts, "candidate pairs of spheres")
       .def_readonly("max_penetration", &StepReport::max_penetration, "m, beyond the thickness")
       .def_readonly("body_contacts", &StepReport::body_contacts, "pairs that touch")
-      .def_readonly("contact_failures", &StepReport::contact_failures, "caught by verification")
-      .def_readonly("zones", &StepReport::zones, "taken along by a body")
-      .def_readonly("intersecting", &StepReport::intersecting, "that cross when the step ends")
+      .def_readonly("contact_failures", &StepReport::contact_failures,
+                    "pairs that verification stopped")
+      .def_readonly("zones", &StepReport::zones, "pairs that were moved with a body, as if glued")
+      .def_readonly("intersecting", &StepReport::intersecting,
+                    "triangles that cross a mesh when the step ends")
       .def_readonly("seam_work", &StepReport::seam_work, "J")
       .def_readonly("energy_lost", &StepReport::energy_lost, "J")
       .def_readonly("pin_work", &StepReport::pin_work, "J")
@@ -94,12 +97,12 @@ void add_contacts(Class& report) {
 
 void add_report(py::module_& m) {
   add_report_enumerations(m);
-  py::class_<StepReport> report(m, "StepReport", "What one step did and what it reached.");
+  py::class_<StepReport> report(m, "StepReport", "The work of one step and the errors at its end.");
   report.def("__repr__", &description_of);
   add_work(report);
   add_errors(report);
   add_contacts(report);
-  py::class_<Strain>(m, "Strain", "Of all constraints and triangles of fabric.")
+  py::class_<Strain>(m, "Strain", "Strain of all constraints and triangles of fabric.")
       .def_readonly("max", &Strain::max, "the largest")
       .def_readonly("rms", &Strain::rms, "root mean square")
       .def_readonly("worst_constraint", &Strain::worst_constraint,
@@ -107,7 +110,7 @@ void add_report(py::module_& m) {
       .def_readonly("max_shear", &Strain::max_shear, "rad")
       .def_readonly("worst_element", &Strain::worst_element,
                     "the triangle of the largest strain or shear");
-  py::class_<Energy>(m, "Energy", "Of the particles that are not fixed.")
+  py::class_<Energy>(m, "Energy", "Energy of the particles that are not fixed.")
       .def_readonly("kinetic", &Energy::kinetic, "J")
       .def_readonly("potential", &Energy::potential, "J, zero at the origin")
       .def_readonly("elastic", &Energy::elastic, "J")

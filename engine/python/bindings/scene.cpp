@@ -39,7 +39,8 @@ void add_scene_enumerations(py::module_& m) {
 }
 
 void add_parts(py::module_& m) {
-  py::class_<Damping> damping(m, "Damping", "What springs lose, and the decay of all motion.");
+  py::class_<Damping> damping(m, "Damping",
+                              "Damping times of springs, and the decay of all motion.");
   add_keywords<Damping>(damping);
   damping.def_readwrite("stretch", &Damping::stretch, "s")
       .def_readwrite("bending", &Damping::bending, "s")

@@ -45,8 +45,8 @@ void add_settings(py::module_& m) {
   add_keywords<Settings>(settings);
   settings
       .def_readwrite("tolerance", &Settings::tolerance,
-                     "strain that every step must reach, "
-                     "of springs and fabric what is left of their laws")
+                     "the strain that every step must reach; of springs and fabric, "
+                     "the distance from their laws")
       .def_readwrite("substeps", &Settings::substeps, "0: automatic")
       .def_readwrite("iterations", &Settings::iterations, "0: to the tolerance")
       .def_readwrite("renew_after", &Settings::renew_after, "iterations along the same directions")
@@ -66,7 +66,7 @@ void add_settings(py::module_& m) {
       .def_readwrite("sleep", &Settings::sleep, "a cloth that rests costs nothing")
       .def_readwrite("skip", &Settings::skip, "section 4.3 of the paper")
       .def_readwrite("velocity_correction", &Settings::velocity_correction, "a second loop");
-  m.def("paper_settings", &paper_settings, "Those of the paper: Gauss-Seidel, one substep.");
+  m.def("paper_settings", &paper_settings, "The settings of the paper: Gauss-Seidel, one substep.");
 }
 
 }  // namespace weft::python

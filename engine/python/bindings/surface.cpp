@@ -40,14 +40,14 @@ Pair read_vertices(HeldSurface& held, const HeldCloth& from, std::optional<py::a
 
 void add_surface(py::module_& m) {
   py::class_<HeldSurface>(m, "Surface",
-                          "What a renderer draws of a cloth. One thread at a time may use it.")
+                          "Vertices and normals for a renderer. One thread at a time may use it.")
       .def(
           "clone",
           [](const HeldSurface& s) {
             const auto used = use(s);
             return std::make_unique<HeldSurface>(s.value.clone());
           },
-          "A second one, which shares what does not change.")
+          "A second one, which shares data that do not change.")
       .def(
           "vertex_count", [](const HeldSurface& s) { return s.value.vertex_count(); },
           "of the mesh")
@@ -77,7 +77,7 @@ void add_surface(py::module_& m) {
       [](const MeshDescription& mesh, const MeshCloth& cloth) {
         return std::make_unique<HeldSurface>(value_of(surface_of_mesh(mesh, cloth)));
       },
-      py::arg("mesh"), py::arg("cloth"), "The mesh itself, whose particles the cloth has.");
+      py::arg("mesh"), py::arg("cloth"), "The surface of the mesh itself.");
   m.def(
       "map_surface",
       [](const MeshDescription& mesh, const MeshCloth& cloth, const MeshDescription& other,

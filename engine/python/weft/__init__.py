@@ -11,7 +11,7 @@
     report = cloth.step(1 / 60)
     positions = cloth.read_positions()                   # an array (particles, 3), m
 
-Names are those of the C++ headers, which say more about each. Units are SI. What is refused raises
+Names are those of the C++ headers, which say more about each. Units are SI. Bad input raises
 weft.Error, with one line that names the field, the index and the value; nothing is changed then.
 """
 from ._weft import *

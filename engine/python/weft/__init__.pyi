@@ -1,4 +1,4 @@
-"""Type hints of the module; its docstrings say what everything means."""
+"""Type hints of the module; its docstrings document every name."""
 from collections.abc import Iterable
 from typing import Any
 
