@@ -1,5 +1,5 @@
-/// What of a cloth is where bodies that are meshes should not let it be: part of its state, for it
-/// cannot be told from places alone.
+/// Particles inside a mesh body, and triangles that cross one: a part of the state of a cloth,
+/// since places alone do not tell it.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Misplaced {
     inside.clear();
     crossing.clear();
   }
-  /// Adds what another cloth's slot is to this one's.
+  /// Adds the marks of another cloth's slot to this one's.
   void take_over(const Misplaced& other, std::uint32_t its_slot, std::uint32_t slot) {
     if (other.is_inside(its_slot)) inside.push_back(slot);
     if (std::ranges::binary_search(other.crossing, its_slot)) crossing.push_back(slot);

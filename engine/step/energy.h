@@ -12,8 +12,8 @@
 ///
 ///     1/2 sum m |v'|^2 - m |v|^2 - 2 m a . (x' - x)  <=  work of moved pins
 ///
-/// What is gained beyond that is taken out of the velocities, all of them slowed down by the same
-/// factor; with pins under way the motion that differs from theirs is (pin_work.h).
+/// A gain beyond that is taken out of the velocities: all are slowed down by the same factor. With
+/// pins under way, only the motion that differs from theirs is slowed down (pin_work.h).
 ///
 /// Scheme rattle takes D along the directions at x and K along those at x'. Both are h/2 times the
 /// acceleration that the constraints cause, but for O(h^2), and what they do to the energy cancels
@@ -34,23 +34,23 @@ namespace weft {
 /// Whether a substep by scheme rattle gains much of what its impulses are worth.
 bool gains_energy(const State& s, const kernels::ImpulseEnergy& impulses, double h);
 
-/// The guard of a substep by a solver, from (position, velocity) to (solved, next_velocity). As
-/// long as it gains less than a share of what its impulses are worth it is left alone, unless it is
-/// suspect: other attempts were rejected. Returns whether there was so much energy in the
-/// velocities: a substep that has lifted its particles by more is in a wrong place. Cheap where
-/// nothing is gained. What is taken is no longer in impulses.gain.
+/// The guard of a substep by a solver, from (position, velocity) to (solved, next_velocity). Gains
+/// of less than a share of what its impulses are worth are left alone, unless the substep is
+/// suspect: another attempt was rejected before. Returns false if the velocities hold less energy
+/// than the gain: then the substep has lifted its particles to a wrong place. Cheap if nothing is
+/// gained. impulses.gain falls by the energy that is taken.
 bool guard_energy(State& s, kernels::ImpulseEnergy& impulses, bool is_suspect, double h);
 
 /// The guard of small steps. Constraints are springs here: energy that was lost shortly before
 /// (State::lost_energy) is stored in them, and may come back; and rounding takes it as often as it
-/// gives it. What springs and bending elements have released (J) is no gain. Cheap if no pins are
-/// under way. What is taken is no longer in change.gain.
+/// gives it. Energy that springs and bending elements have released (J) is no gain. Cheap if no
+/// pins are under way. change.gain falls by the energy that is taken.
 void guard_springs(State& s, kernels::ImpulseEnergy& change, double released, double h);
 
 // Its parts:
 /// J, beyond the work of moved pins.
 double gained_energy(const State& s, const kernels::ImpulseEnergy& change, double h);
-/// Returns whether there was so much in the velocities. change.gain falls by what is taken.
+/// Returns false if the velocities hold less. change.gain falls by the energy that is taken.
 bool take_energy(State& s, double gain, double h, kernels::ImpulseEnergy& change);
 
 }  // namespace weft

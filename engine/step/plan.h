@@ -8,10 +8,10 @@
 ///   5  the paper's loop, whose result is accepted with its error: it comes to rest where
 ///      constraints contradict each other
 ///
-/// Only the part that is rejected is left to the next attempt: those before it are kept. Where that
-/// has been accepted the list begins again, with the first attempt that has a part beginning there.
-/// So a substep that is rejected, and then in its second half, is done as a half and two quarters.
-/// Small steps, sweeps and the direct solver behind yarns do all that is left of the substep.
+/// A rejected part is retried by the next attempt; the parts before it are kept. After success, the
+/// list begins again at the first attempt whose parts begin at this point. So a substep that is
+/// rejected, and then in its second half, is done as a half and two quarters. Small steps, sweeps
+/// and the direct solver behind yarns do all that is left of the substep.
 ///
 /// Where pins are farther apart than the constraints between them reach, small steps are left out.
 ///
