@@ -100,7 +100,7 @@ struct StepReport {
   double max_strain = 0;
   double rms_strain = 0;
   double max_shear = 0;  ///< rad, the largest of all triangles of fabric
-  /// The largest error of a law; `tolerance` bounds it. Of a rigid constraint this is the strain.
+  /// The largest error of a law; `tolerance` bounds it. For a rigid constraint it is the strain.
   /// For a spring it is | |a-b| - rest_length - compliance f | / rest_length, with the tension f
   /// that the solver applied in the last substep. For a triangle of fabric it is the difference of
   /// the two sides of a law (MembraneElement), in strain and in radians of shear.

@@ -26,7 +26,7 @@ struct SceneFile {
   std::vector<SceneBody> bodies;
 };
 
-/// Files that it names are looked for from `folder`.
+/// Files that the scene names are relative to `folder`.
 Result<SceneFile> parse_scene(std::string_view text, const std::string& folder = {});
 Result<SceneFile> read_scene_file(const std::string& path);
 
@@ -34,8 +34,8 @@ Result<SceneFile> read_scene_file(const std::string& path);
 std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves = {},
                        const Faces& faces = {}, const std::vector<SceneBody>& bodies = {});
 
-/// The scene with the cloth's present positions and velocities, to be continued from there. With
-/// moves: present_moves(), whose times begin anew and which say where their pins come "from".
+/// The scene with the cloth's present positions and velocities, to be continued from there. Write
+/// it with present_moves(): their times begin anew, and "from" gives the places of their pins.
 SceneDescription present_scene(const SceneDescription& scene, const Cloth& cloth);
 
 }  // namespace weft::tools
