@@ -55,5 +55,5 @@
 #include <weft/settings.h>
 
 #define WEFT_VERSION_MAJOR 0
-#define WEFT_VERSION_MINOR 3
+#define WEFT_VERSION_MINOR 4
 #define WEFT_VERSION_PATCH 0
