@@ -63,6 +63,8 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
 }
 
 State::~State() = default;
+State::State(State&&) noexcept = default;
+State& State::operator=(State&&) noexcept = default;
 
 int State::threads_worth_having() const {
   if (settings.backend == Backend::reference) return 1;

@@ -147,6 +147,8 @@ struct State : LastingState {
 
   State(std::shared_ptr<const Model> model, const Settings& settings);
   ~State();
+  State(State&&) noexcept;
+  State& operator=(State&&) noexcept;
   /// What acts besides gravity; empty: nothing.
   kernels::Vectors& forces() { return total_force.size() > 0 ? total_force : force; }
   const kernels::Vectors& forces() const { return total_force.size() > 0 ? total_force : force; }
