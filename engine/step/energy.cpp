@@ -96,11 +96,12 @@ bool guard_energy(State& s, kernels::ImpulseEnergy& impulses, bool is_suspect, d
   return gain <= allowed + energy_at_rest(s, h) || take_energy(s, gain, h, impulses);
 }
 
-void guard_springs(State& s, kernels::ImpulseEnergy& change, double released, double h) {
-  const double stored = s.lost_energy * std::exp(-h / tuning::kSpringTime);
+double guard_springs(State& s, double lost, double released, double h,
+                     kernels::ImpulseEnergy& change) {
+  const double stored = lost * std::exp(-h / tuning::kSpringTime);
   const double gain = gained_energy(s, change, h) - released;
   take_energy(s, gain - stored, h, change);
-  s.lost_energy = std::max(0.0, stored - gain);
+  return std::max(0.0, stored - gain);
 }
 
 }  // namespace weft

@@ -42,10 +42,11 @@ bool gains_energy(const State& s, const kernels::ImpulseEnergy& impulses, double
 bool guard_energy(State& s, kernels::ImpulseEnergy& impulses, bool is_suspect, double h);
 
 /// The guard of small steps. Constraints are springs here: energy that was lost shortly before
-/// (State::lost_energy) is stored in them, and may come back; and rounding takes it as often as it
-/// gives it. Energy that springs and bending elements have released (J) is no gain. Cheap if no
-/// pins are under way. change.gain falls by the energy that is taken.
-void guard_springs(State& s, kernels::ImpulseEnergy& change, double released, double h);
+/// (`lost`, J) is stored in them, and may come back; and rounding takes it as often as it gives it.
+/// Energy that springs and bending elements have released (J) is no gain. Cheap if no pins are
+/// under way. change.gain falls by the energy that is taken. Returns State::lost_energy.
+double guard_springs(State& s, double lost, double released, double h,
+                     kernels::ImpulseEnergy& change);
 
 // Its parts:
 /// J, beyond the work of moved pins.

@@ -12,9 +12,6 @@ namespace weft {
 Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budget,
                  StepReport& report, Team& team);
 
-/// Whether State::refinement says how much shorter substeps are than is known beforehand.
-bool refines_substeps(const State& s);
-
 /// Puts solved, which is equal to position, right in the same rounds. Springs up to the compliance
 /// `softest` have the time h from rest to give way; softer ones are left as they are.
 void project_by_small_steps(State& s, double softest, double h, const Budget& budget,

@@ -8,6 +8,7 @@
 #include "engine/parallel/team.h"
 #include "engine/step/air.h"
 #include "engine/step/exact_substep.h"
+#include "engine/step/frame_plan.h"
 #include "engine/step/plan.h"
 #include "engine/step/project.h"
 #include "engine/step/reporting.h"

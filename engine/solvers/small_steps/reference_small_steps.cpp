@@ -32,7 +32,7 @@ ReferenceSmallSteps::Points ReferenceSmallSteps::points(bool with_limits) {
 }
 
 LawStep ReferenceSmallSteps::law_step() const {
-  if (projects_) return {{1 / (h_ * h_), 0}, softest_};
+  if (softest_) return {{1 / (h_ * h_), 0}, *softest_};
   return {{1 / formula_.give(h_), model_.damping.stretch / h_}};
 }
 
@@ -77,18 +77,17 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   const double h = plan.h;
   h_ = h;
   omega_ = plan.omega;
-  projects_ = plan.projects;
   softest_ = plan.softest;
   is_begun_ = is_aside_ = false;
   passes_.forget();
-  seams_.begin(plan.seams, plan.projects ? 0 : plan.h);
+  seams_.begin(plan.seams, plan.projects() ? 0 : plan.h);
   departures_.begin();
   for (BendingPace& pace : paces_) pace.begin(plan);
   touched_.clear();
   arrived_.clear();
   has_past_ = !plan.placed && h <= SubstepFormula::kLargestRatio * past_.h;
   anchors_.begin(plan.anchors, h, plan.substeps);
-  bodies_.begin(plan.bodies, h, plan.substeps, plan.projects,
+  bodies_.begin(plan.bodies, h, plan.substeps, plan.projects(),
                 has_past_ && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
                 plan.placed || plan.bodies_are_new, past_.misplaced);
   at_limit_.assign(at_limit_.size(), false);
@@ -111,7 +110,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   }
   const Points points = this->points(true);
   Particles particles(points);
-  if (projects_) bodies_.advance(1, particles, team);
+  if (plan.projects()) bodies_.advance(1, particles, team);
   next_formula_ = formula_after(has_past_ ? past_.h : h);
 }
 

@@ -147,10 +147,9 @@ class ReferenceSmallSteps final : public SmallSteps {
   bool is_begun_ = false;                                            // the substep has been swept
   double mends_to_ = 0;                                              // share of the tolerance
   bool mends_ = false;                                               // the present sweep
-  kernels::Vectors aside_;  // x_ before mending, with laws only
-  bool is_aside_ = false;   // aside_ is that of this substep
-  bool projects_ = false;
-  double softest_ = 0;  // m/N, where it projects
+  kernels::Vectors aside_;         // x_ before mending, with laws only
+  bool is_aside_ = false;          // aside_ is that of this substep
+  std::optional<double> softest_;  // FramePlan
 };
 
 }  // namespace weft

@@ -36,7 +36,7 @@ LanePoints SmallStepsSolver::points(bool with_limits) {
 }
 
 LawStep SmallStepsSolver::law_step() const {
-  if (projects_) return {{1 / (h_ * h_), 0}, softest_};
+  if (softest_) return {{1 / (h_ * h_), 0}, *softest_};
   return {{1 / formula_.give(h_), model_.damping.stretch / h_}};
 }
 
@@ -174,11 +174,10 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
                              const FramePlan& plan, Team& team) {
   h_ = plan.h;
   omega_ = plan.omega;
-  projects_ = plan.projects;
   softest_ = plan.softest;
   is_begun_ = is_aside_ = false;
   passes_.forget();
-  seams_.begin(plan.seams, plan.projects ? 0 : plan.h);
+  seams_.begin(plan.seams, plan.projects() ? 0 : plan.h);
   departures_.begin();
   bending_.begin(plan);
   touched_.clear();
@@ -188,7 +187,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   anchors_.begin(plan.anchors, plan.h, plan.substeps,
                  has_past_ ? past_.at_limit : std::span<const std::uint16_t>{});
   anchors_.measure_base(base_.data());
-  bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects,
+  bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects(),
                 has_past_ && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
                 plan.placed || plan.bodies_are_new, past_.misplaced);
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
@@ -196,7 +195,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   });
   write_acceleration(gravity, force);
   begin_past(team);
-  if (projects_) advance_bodies(1, team);
+  if (plan.projects()) advance_bodies(1, team);
   next_formula_ = formula_after(has_past_ ? past_.h : h_);
   weights_.last.rate = 0;
 }

@@ -170,8 +170,7 @@ class SmallStepsSolver final : public SmallSteps {
   bool is_begun_ = false;                // the substep has been swept
   kernels::AlignedVector<float> aside_;  // u_ before mending, with laws only
   bool is_aside_ = false;                // aside_ is that of this substep
-  bool projects_ = false;
-  double softest_ = 0;  // m/N, where it projects
+  std::optional<double> softest_;        // FramePlan
 };
 
 }  // namespace weft

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "engine/parallel/team.h"
@@ -89,21 +90,23 @@ class Departures {
   double count_ = 0;
 };
 
-/// What a step is done in.
+/// What a frame is to do (engine/step/frame_plan.h makes it).
 struct FramePlan {
   double h = 0;  // s, of a substep
   int substeps = 1;
   double passes = 0;      // at most, beyond a sweep for each substep, in the time of sweeps
   double omega = 1;       // of a sweep
   bool placed = false;    // positions are not where the last step ended: nothing is known of a past
-  bool projects = false;  // a start is put right (engine/step/project.h): the past is kept
-  double softest = 0;     // m/N; where it projects: springs that are softer are left as they are
+  // m/N. A start is put right (engine/step/project.h) and the past is kept: springs that are softer
+  // are left as they are.
+  std::optional<double> softest{};
   AnchorTravel anchors{};
   std::span<const SeamState> seams{};
-  bool meets_bodies = true;
-  std::span<const TravellingBody> bodies{};  // where it meets them
+  std::span<const TravellingBody> bodies{};
   bool bodies_move = false;     // in this step, or in the last, or there are other ones
   bool bodies_are_new = false;  // there are other ones, or one was put elsewhere
+
+  bool projects() const { return softest.has_value(); }
 };
 
 /// Whether slots that were read are some of the model's, ascending.

@@ -1,0 +1,160 @@
+#include "engine/step/frame_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/solvers/small_steps/small_steps_load.h"
+#include "engine/step/burden.h"
+#include "engine/tuning.h"
+
+namespace weft {
+namespace {
+
+/// A substep is a sweep or two, and local passes that may always visit every constraint once.
+int most_substeps(const Budget& budget) {
+  return std::min(tuning::kMostSubsteps, std::max(1, budget.positions / 3));
+}
+
+/// s, of substeps that hold the motion tolerance where the acceleration a sets in and ends again
+/// within dt: the departures of a frame are then 2 a h together, or by first order a h each.
+double length_for_onset(const State& s, double a, double dt) {
+  const double share = SubstepFormula::of(s.settings.scheme, 1).error_share;
+  const double length = s.settings.motion_tolerance / (share * a);
+  return s.settings.scheme == Scheme::bdf2 ? std::sqrt(0.5 * length * dt) : length;
+}
+
+/// s, of the longest substep that the strain tolerance and the motion tolerance allow. What a frame
+/// will be like is not known: State::refinement says what the last ones were. Where that is below 0
+/// the cloth pulls less than at the bottom of a swing.
+double usual_length(State& s, double dt) {
+  Burden burden = burden_of(s, dt);
+  burden.weights *= std::exp2(2 * std::min(0.0, s.refinement));
+  const double length = std::min(
+      tuning::kLongestSubstep,
+      substep_length(s.model->small_steps().load, s.position.view(), burden, s.settings.tolerance));
+  if (!refines_substeps(s)) return length;
+  const double shorter = std::exp2(-std::max(0.0, s.refinement));
+  if (s.settings.motion_tolerance == 0) return length * shorter;
+  return std::min(length, length_for_onset(s, burden.acceleration, dt)) * shorter;
+}
+
+/// A sweep is a spring of stiffness omega / (b h)^2, and what it leaves out of shape is its load. A
+/// spring that becomes stiffer under load gains energy. So where the caller's frames say how long
+/// substeps are, the stiffness rises by no more than e^(dt / kSpringTime) in one.
+void keep_stiffness(const State& s, double dt, FramePlan& plan) {
+  if (plan.placed) return;
+  const double least = s.give_per_mass * std::exp(-dt / tuning::kSpringTime);
+  const double give = give_per_mass(s, plan);
+  if (give < least) plan.omega *= give / least;
+}
+
+/// A number of substeps that was given bounds the time of a step: where it is less than automatic
+/// substeps would be, by the time of those.
+double passes_beyond(int substeps, double automatic_substeps) {
+  const double missing =
+      std::min<double>(automatic_substeps, tuning::kMostSubsteps) - static_cast<double>(substeps);
+  return std::max(tuning::kPassesBeyond * substeps, missing);
+}
+
+void add_bodies(State& s, FramePlan& plan) {
+  plan.bodies = s.bodies.travelling(s.model->friction);
+  plan.bodies_move = s.bodies.moving();
+  plan.bodies_are_new = s.bodies.are_others();
+}
+
+/// The logarithm to base 2 of how many times shorter substeps are to be than is known beforehand.
+/// Seldom changed, in levels of a half: by BDF2 one halves the error.
+double refinement_for_motion(const State& s, const FramePlan& plan, double error,
+                             const Budget& budget) {
+  constexpr double kLevel = 0.5;
+  const double asked = s.settings.motion_tolerance;
+  const bool can_fall = plan.substeps < most_substeps(budget) &&
+                        error > tuning::kOverRounding * s.small_steps->rounding_error(plan.h);
+  if (error > asked && can_fall) return s.refinement + kLevel;
+  const bool is_small = error < tuning::kMotionSpare * asked;
+  return is_small ? std::max(0.0, s.refinement - kLevel) : s.refinement;
+}
+
+/// The same for fabric without a motion tolerance. Its load may come from any side, and what
+/// carries it sideways is swept one by one: substeps are shorter where a frame left much to put
+/// right, which took the time of `beyond` sweeps, and longer where it left little, down to those of
+/// cloth that hangs at rest.
+double refinement_for_laws(const State& s, const FramePlan& plan, double beyond,
+                           const Budget& budget) {
+  constexpr double kLevel = 0.25;
+  const double share = beyond / plan.substeps;
+  if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget))
+    return s.refinement + std::log2(1 + share);
+  const double least = -std::log2(kWeightsOfSwing) / 2;
+  return share < tuning::kLittleMended ? std::max(least, s.refinement - kLevel) : s.refinement;
+}
+
+}  // namespace
+
+bool refines_substeps(const State& s) {
+  if (s.settings.motion_tolerance > 0) return true;
+  return s.model->has_laws() && !takes_over_in(s) && s.settings.substeps == kAutomaticSubsteps;
+}
+
+double give_per_mass(const State& s, const FramePlan& plan) {
+  const double bh = SubstepFormula::of(s.settings.scheme, 1).part * plan.h;
+  return bh * bh / plan.omega;
+}
+
+FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget& budget) {
+  const bool takes_over = takes_over_in(s);
+  FramePlan plan{.h = dt,
+                 .omega = tuning::kOmega,
+                 .placed = s.placed || takes_over,
+                 .anchors = s.anchors.travel(),
+                 .seams = s.seams.states()};
+  add_bodies(s, plan);
+  const double usual = usual_length(s, dt);
+  const double wanted = std::max(1.0, std::ceil(dt / usual));
+  if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
+    plan.substeps = s.settings.substeps;
+    plan.h = dt / plan.substeps;
+    plan.passes = std::min<double>(budget.positions, passes_beyond(plan.substeps, wanted));
+    keep_stiffness(s, dt, plan);
+  } else {
+    plan.substeps = static_cast<int>(std::min<double>(wanted, most_substeps(budget)));
+    plan.h = dt / plan.substeps;
+    plan.passes = budget.positions - plan.substeps;
+    const double part = 2 * plan.h / usual;
+    if (part < 1) plan.omega *= part * part;
+  }
+  if (attempt.in_vain)
+    plan.passes = std::min<double>(plan.passes, tuning::kPassesBeyond * plan.substeps);
+  return plan;
+}
+
+FramePlan plan_of_projection(State& s, double softest, double h, const Budget& budget) {
+  FramePlan plan{.h = h,
+                 .passes = static_cast<double>(budget.positions),
+                 .omega = tuning::kOmega,
+                 .placed = true,
+                 .softest = softest,
+                 .anchors = s.anchors.standing(),
+                 .seams = s.seams.states()};
+  add_bodies(s, plan);
+  return plan;
+}
+
+FramePlan plan_of_look_ahead(const State& s, double h) {
+  return {.h = h,
+          .omega = tuning::kOmega,
+          .placed = true,
+          .softest = std::numeric_limits<double>::infinity(),
+          .anchors = s.anchors.standing(),
+          .seams = s.seams.states()};
+}
+
+double next_refinement(const State& s, const FramePlan& plan, double error, double beyond,
+                       const Budget& budget) {
+  return s.settings.motion_tolerance > 0 ? refinement_for_motion(s, plan, error, budget)
+                                         : refinement_for_laws(s, plan, beyond, budget);
+}
+
+}  // namespace weft

@@ -1,0 +1,33 @@
+/// What a frame of small steps is to do: a step, a projection, or a look ahead.
+#pragma once
+
+#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/step/attempt.h"
+#include "engine/step/state.h"
+
+namespace weft {
+
+/// Whether small steps stand in for another solver: they have no past, and no energy in springs.
+inline bool takes_over_in(const State& s) { return s.settings.solver != Solver::small_steps; }
+/// Whether State::refinement says how much shorter substeps are than is known beforehand.
+bool refines_substeps(const State& s);
+
+/// Substeps are about as long as the load allows. A step that is far shorter than the load allows
+/// is no stiffer. What is done in vain is bounded as where a number of substeps was given. This
+/// writes over solved and, with free spheres, contacts.
+FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget& budget);
+/// From rest; springs up to the compliance `softest` have the time h to give way, and softer ones
+/// are left as they are.
+FramePlan plan_of_projection(State& s, double softest, double h, const Budget& budget);
+/// A substep of h from rest, of all that acts but bodies.
+FramePlan plan_of_look_ahead(const State& s, double h);
+
+/// s^2, of a sweep: its compliance over w_a + w_b.
+double give_per_mass(const State& s, const FramePlan& plan);
+
+/// State::refinement after a frame whose error of motion was `error` (m/s), and which took the time
+/// of `beyond` sweeps besides one for each substep. Only where refines_substeps(s).
+double next_refinement(const State& s, const FramePlan& plan, double error, double beyond,
+                       const Budget& budget);
+
+}  // namespace weft
