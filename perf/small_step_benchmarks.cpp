@@ -13,7 +13,7 @@
 #include "engine/solvers/small_steps/simd_anchors.h"
 #include "engine/solvers/small_steps/simd_bending.h"
 #include "engine/solvers/small_steps/simd_membrane.h"
-#include "engine/solvers/small_steps/simd_small_steps.h"
+#include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/tuning.h"
 #include "perf/benchmarks.h"
@@ -44,7 +44,7 @@ struct Falling {
   std::shared_ptr<const Model> model;
   Team team;
   Settings settings;
-  SmallStepsSolver solver;
+  std::unique_ptr<SmallSteps> solver;
   SphereContacts contacts;
   kernels::Vectors x, v;
 
@@ -53,7 +53,7 @@ struct Falling {
                   scenes::make(kind.scene, {.size = size, .diagonals = kind.diagonals}).value())
                   .value()),
         settings(settings_on(isa)),
-        solver(*model, settings, simd::table(isa)) {
+        solver(make_small_steps(*model, settings, simd::table(isa))) {
     x = model->initial_position;
     v = model->initial_velocity;
     frame();
@@ -62,14 +62,14 @@ struct Falling {
   void frame() {
     const double h = std::min(0.005, substep_length(model->small_steps().load, x.view(),
                                                     {.acceleration = 10}, settings.tolerance));
-    solver.begin(x.view(), v.view(), model->gravity, {},
-                 {.h = h, .substeps = kSubsteps, .omega = tuning::kOmega, .placed = true}, team);
+    solver->begin(x.view(), v.view(), model->gravity, {},
+                  {.h = h, .substeps = kSubsteps, .omega = tuning::kOmega, .placed = true}, team);
     for (int k = 0; k < kSubsteps; ++k) {
-      solver.advance(team);
-      solver.sweep(team);
-      solver.repair(contacts, static_cast<std::int64_t>(model->constraints.size()), team);
+      solver->advance(team);
+      solver->sweep(team);
+      solver->repair(contacts, static_cast<std::int64_t>(model->constraints.size()), team);
     }
-    solver.settle(team);
+    solver->settle(team);
   }
   static Settings settings_on(simd::Isa isa) {
     Settings settings;
@@ -88,10 +88,10 @@ void run(benchmark::State& state, const Shared& shared, const Kind& kind, simd::
     if (all)
       falling.frame();
     else
-      falling.solver.sweep(falling.team);
+      falling.solver->sweep(falling.team);
   }
   const auto edges = static_cast<double>(falling.model->constraints.size()) * (all ? kSubsteps : 1);
-  const double footprint = static_cast<double>(falling.solver.bytes());
+  const double footprint = static_cast<double>(falling.solver->bytes());
   const double bytes = footprint * (all ? kSubsteps : 1);  // about: each array once in a substep
   count(state, {.items = edges, .bytes = bytes, .footprint = footprint}, shared.bandwidth);
 }

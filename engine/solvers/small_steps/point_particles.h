@@ -5,7 +5,7 @@
 
 namespace weft {
 
-/// Points: LanePoints, or ReferenceSmallSteps::Points.
+/// Points: LanePoints, or ReferenceStore::Points.
 template <class Points>
 class PointParticles final : public ContactParticles {
  public:

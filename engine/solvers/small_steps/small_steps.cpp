@@ -1,11 +1,243 @@
+/// A frame of small steps from top to bottom. The particles are in a store: in lanes
+/// (lane_store.h), or in double (reference_store.h), the text to read beside it. The two agree in
+/// the names of their functions.
 #include "engine/solvers/small_steps/small_steps.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "engine/solvers/small_steps/reference_small_steps.h"
-#include "engine/solvers/small_steps/simd_small_steps.h"
+#include "engine/solvers/small_steps/lane_store.h"
+#include "engine/solvers/small_steps/reference_store.h"
+#include "engine/solvers/small_steps/substep.h"
 
 namespace weft {
+namespace {
+
+template <class Store>
+class StoredSmallSteps final : public SmallSteps {
+ public:
+  StoredSmallSteps(const Model& model, const Settings& settings, const simd::Table& table)
+      : model_(model),
+        layout_(model.small_steps()),
+        now_{model, settings},
+        seams_(model),
+        store_(now_, table) {
+    now_.arrived.reserve(model.anchors.size());
+  }
+
+  void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
+             kernels::VectorsView force, const FramePlan& plan, Team& team) override {
+    now_.h = plan.h;
+    now_.omega = plan.omega;
+    now_.softest = plan.softest;
+    now_.is_begun = now_.is_aside = false;
+    now_.passes.forget();
+    now_.touched.clear();
+    now_.arrived.clear();
+    now_.has_past = !plan.placed && plan.h <= SubstepFormula::kLargestRatio * store_.past_h();
+    seams_.begin(plan.seams, plan.projects() ? 0 : plan.h);
+    departures_.begin();
+    store_.begin(x, v, plan, team);
+    store_.accelerate(gravity, force);
+    store_.begin_past(team);
+    if (plan.projects()) store_.advance_bodies(1, team);
+    now_.next_formula = now_.formula_after(now_.has_past ? store_.past_h() : now_.h);
+  }
+  void accelerate(kernels::Vector gravity, kernels::VectorsView force) override {
+    store_.accelerate(gravity, force);
+  }
+
+  /// From the end of a substep to the prediction of the next, where anchors and bodies are then.
+  void advance(Team& team) override {
+    end_contacts(team);
+    end_motions(team);
+    now_.is_begun = false;
+    store_.renew_base(team);
+    if (now_.next_formula.left < 1) {
+      settle(now_.measures_departures(), team);
+      store_.decay(now_.next_formula.left, team);
+    }
+    add_departure(store_.predict(team));
+    now_.formula = std::exchange(now_.next_formula, now_.formula_after(now_.h));
+    store_.bend(team);
+    store_.advance_anchors();
+    store_.advance_bodies(now_.formula.part, team);
+    if (model_.has_attached()) store_.hold_anchors(team);  // before constraints are swept
+  }
+
+  void sweep(Team& team) override { sweep({now_.omega, 0}, team); }
+  void mend(double to, Team& team) override {
+    set_aside();
+    sweep({1, to * now_.settings.tolerance}, team);
+  }
+  void judge(Team& team) override {
+    if (model_.constraints.has_springs()) store_.judge_springs(team);
+    store_.judge_membrane(team);
+  }
+  std::int64_t count_out() const override { return store_.count_out(); }
+
+  /// Constraints that a sweep found out of tolerance have been relaxed since, and so have their
+  /// neighbours: all of these are looked at again.
+  LocalWork repair(const SphereContacts& contacts, std::int64_t most_visits, Team& team) override {
+    store_.for_each_out([&](std::uint32_t item) { now_.passes.look_near(item); });
+    return run_passes(contacts, most_visits, team);
+  }
+  LocalWork repair_everywhere(const SphereContacts& contacts, std::int64_t most_visits,
+                              Team& team) override {
+    now_.passes.look_everywhere();
+    return run_passes(contacts, most_visits, team);
+  }
+  void end_seams() override {
+    if (seams_.empty()) return;
+    seams_.end_substep(store_.points(false), time_of_seams(), now_.settings.contact_tolerance,
+                       [&](std::uint32_t a, std::uint32_t b) {
+                         now_.touched.push_back(a);
+                         now_.touched.push_back(b);
+                       });
+  }
+  /// Of meshes, where their interval is over.
+  bool end_contacts(Team& team) override {
+    if (!store_.bodies().has_meshes()) return false;
+    const Points points = store_.points(true);
+    PointParticles particles(points);
+    return store_.bodies().end_interval(particles, team);
+  }
+  void settle(Team& team) override {
+    end_motions(team);
+    settle(true, team);
+  }
+  void keep(Team& team) override { store_.keep(team); }
+
+  double law_error() override {
+    const Points points = store_.points(false);
+    const LawStep step = now_.law_step();
+    const double most = largest_violation(model_.membrane, points, step);
+    if (!model_.constraints.has_springs()) return most;
+    return std::max(most, largest_violation(model_.constraints, points, step));
+  }
+  double motion_error() const override { return departures_.mean_error(); }
+  double rounding_error(double h) const override { return store_.rounding_error(h); }
+  double bending_energy(double give, Team& team) override {
+    return store_.bending_energy(give, team);
+  }
+  double deepest_in_body(Team& team) override {
+    return store_.bodies().empty() ? 0 : store_.deepest_in_body(team);
+  }
+  const SeamThreads& seams() const override { return seams_; }
+  void report_bodies(BodyReport& report) override { store_.bodies().sum(report); }
+  void read_contacts(std::vector<BodyTouch>& contacts) override {
+    if (store_.bodies().empty()) return;
+    const Points points = store_.points(true);
+    store_.bodies().read_contacts(PointParticles(points), contacts);
+  }
+
+  void read_positions(kernels::VectorsView x, Team& team) const override {
+    store_.read_positions(x, team);
+  }
+  void read_positions_of(std::span<const std::uint32_t> slots,
+                         kernels::VectorsView x) const override {
+    store_.read_positions_of(slots, x);
+  }
+  void read_starts(kernels::VectorsView x, Team& team) const override {
+    store_.read_starts(x, team);
+  }
+  void read_velocities(kernels::VectorsView v, Team& team) const override {
+    store_.read_velocities(v, team);
+  }
+  double largest_move(Team& team) override { return store_.largest_move(team); }
+
+  void take_past(const SmallSteps& from) override { store_.take_past(store_of(from)); }
+  void go_on_from(const SmallSteps& from, kernels::VectorsView v,
+                  kernels::Vector gravity) override {
+    store_.go_on_from(store_of(from), v, gravity);
+  }
+  void forget_past() override { store_.forget_past(); }
+  void save_past(ArchiveWriter& archive) const override { store_.save_past(archive); }
+  bool load_past(ArchiveReader& archive) override { return store_.load_past(archive); }
+  void turn(const Turn& by) override { store_.turn(by); }
+  std::size_t bytes() const override { return now_.bytes() + seams_.bytes() + store_.bytes(); }
+
+ private:
+  using Points = typename Store::Points;
+  static const Store& store_of(const SmallSteps& steps) {
+    return static_cast<const StoredSmallSteps&>(steps).store_;
+  }
+
+  /// Contacts come last.
+  void sweep(const Relaxation& by, Team& team) {
+    store_.sweep_yarns(by, team, [&] { store_.hold_anchors(team); });
+    store_.sweep_edges(by, team);
+    store_.sweep_membrane(team);
+    if (layout_.has_single_constraints() || !layout_.has_yarns()) store_.hold_anchors(team);
+    draw_seams();
+    if (!store_.bodies().empty()) store_.hold_bodies(team);
+    now_.is_begun = true;
+  }
+  LocalWork run_passes(const SphereContacts& contacts, std::int64_t most_visits, Team& team) {
+    set_aside();
+    Points points = store_.points(true);
+    const LocalLimits limits{
+        .tolerance = now_.local_tolerance(),
+        .contact_tolerance = tuning::kLocalShare * now_.settings.contact_tolerance,
+        .mended = tuning::kMended * now_.settings.tolerance,
+        .most_visits = most_visits,
+        .laws = now_.law_step()};
+    const LocalWork work = now_.passes.run(points, contacts, limits);
+    draw_seams();
+    store_.hold_by_meshes(team);
+    return work;
+  }
+  void draw_seams() {
+    if (seams_.empty()) return;
+    Points points = store_.points(false);
+    seams_.draw(points, time_of_seams(), !now_.is_begun);
+  }
+  double time_of_seams() const { return 1 / now_.law_step().springs.scale; }
+
+  /// What mending does to laws is no motion: a sweep leaves some of their load as an error, and the
+  /// next one would have it again.
+  void set_aside() {
+    if (model_.has_laws() && !std::exchange(now_.is_aside, true)) store_.set_aside();
+  }
+  /// A contact ends a motion, and so does a limit: from there a particle goes on at first order.
+  /// Where mending has moved one its past is moved alike, but for those that a sphere has pushed:
+  /// they begin a new one, by where they are.
+  void end_motions(Team& team) {
+    if (std::exchange(now_.is_aside, false)) store_.take_past_along(team);
+    take_each_once(now_.touched, [&](std::uint32_t slot) {
+      if (now_.is_free(slot)) store_.stop_at_contact(slot);
+    });
+    take_arrivals(now_.arrived, [&](const Arrival& arrival) { begin_at_limit(arrival); });
+  }
+  /// The velocity is that at the end of this substep, and the past a free flight that leads to it.
+  void begin_at_limit(const Arrival& arrival) {
+    const std::uint32_t slot = arrival.slot;
+    const kernels::Vector v_before = store_.velocity_before(slot);
+    store_.begin_at_limit(slot);
+    if (!arrival.surface.is_there()) return;
+    const double counts = model_.mass[slot] * now_.next_formula.share_of_past();
+    store_.bodies().arrive(arrival.surface, store_.points(false).position(slot),
+                           store_.velocity(slot),
+                           counts * (v_before - store_.velocity_before(slot)));
+  }
+  void settle(bool measures, Team& team) {
+    const std::optional<double> departure = store_.settle(measures, team);
+    if (measures) add_departure(departure);
+  }
+  /// Nothing where velocities were settled already.
+  void add_departure(std::optional<double> largest) {
+    if (largest) departures_.add(*largest, now_.formula.error_share);
+  }
+
+  const Model& model_;
+  const SmallStepsLayout& layout_;
+  Substep now_;
+  SeamThreads seams_;
+  Departures departures_;
+  Store store_;
+};
+
+}  // namespace
 
 bool are_slots(const Model& model, std::span<const std::uint32_t> slots) {
   return std::ranges::is_sorted(slots) && (slots.empty() || slots.back() < model.slots());
@@ -14,8 +246,8 @@ bool are_slots(const Model& model, std::span<const std::uint32_t> slots) {
 std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,
                                              const simd::Table& table) {
   if (settings.backend == Backend::reference)
-    return std::make_unique<ReferenceSmallSteps>(model, settings, table);
-  return std::make_unique<SmallStepsSolver>(model, settings, table);
+    return std::make_unique<StoredSmallSteps<ReferenceStore>>(model, settings, table);
+  return std::make_unique<StoredSmallSteps<LaneStore>>(model, settings, table);
 }
 
 }  // namespace weft

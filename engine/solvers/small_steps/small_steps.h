@@ -1,6 +1,6 @@
 /// Small steps: one relaxed sweep over all constraints in each of many substeps, and then passes
 /// over those alone that are out of tolerance. This is what a frame (engine/step/small_step.cpp)
-/// asks of them; SmallStepsSolver answers in lanes, ReferenceSmallSteps in double.
+/// asks of them; small_steps.cpp has their order.
 #pragma once
 
 #include <weft/weft.h>
@@ -94,9 +94,9 @@ class Departures {
 struct FramePlan {
   double h = 0;  // s, of a substep
   int substeps = 1;
-  double passes = 0;      // at most, beyond a sweep for each substep, in the time of sweeps
-  double omega = 1;       // of a sweep
-  bool placed = false;    // positions are not where the last step ended: nothing is known of a past
+  double passes = 0;    // at most, beyond a sweep for each substep, in the time of sweeps
+  double omega = 1;     // of a sweep
+  bool placed = false;  // positions are not where the last step ended: nothing is known of a past
   // m/N. A start is put right (engine/step/project.h) and the past is kept: springs that are softer
   // are left as they are.
   std::optional<double> softest{};

@@ -1,34 +1,32 @@
-/// The memory of small steps: taken over from another cloth, or from a changed one, or turned.
+/// The memory of a LaneStore: taken over from another cloth, or from a changed one, or turned.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include "engine/model/change.h"
-#include "engine/solvers/small_steps/simd_small_steps.h"
+#include "engine/solvers/small_steps/lane_store.h"
 #include "engine/tuning.h"
 
 namespace weft {
 
 /// Of the last frame that was kept.
-SmallStepsPast SmallStepsSolver::last_past() const {
+SmallStepsPast LaneStore::last_past() const {
   SmallStepsPast past = past_;
   if (!is_new_) past.base = base_;
   return past;
 }
 
-void SmallStepsSolver::set_past(SmallStepsPast&& past) {
+void LaneStore::set_past(SmallStepsPast&& past) {
   past_ = std::move(past);
   std::ranges::copy(past_.base, base_.begin());
   is_new_ = false;
   is_unmeasured_ = true;
 }
 
-void SmallStepsSolver::take_past(const SmallSteps& from) {
-  set_past(static_cast<const SmallStepsSolver&>(from).last_past());
-}
+void LaneStore::take_past(const LaneStore& from) { set_past(from.last_past()); }
 
-bool SmallStepsSolver::load_past(ArchiveReader& archive) {
+bool LaneStore::load_past(ArchiveReader& archive) {
   SmallStepsPast past;
   archive(past);
   const bool has_sizes = std::ranges::all_of(
@@ -45,9 +43,8 @@ bool SmallStepsSolver::load_past(ArchiveReader& archive) {
 }
 
 /// Floats are carried to other places as they are. A base of other cells is of no use.
-void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v,
-                                  kernels::Vector gravity) {
-  const auto& other = static_cast<const SmallStepsSolver&>(from);
+void LaneStore::go_on_from(const LaneStore& other, kernels::VectorsView v,
+                           kernels::Vector gravity) {
   const SmallStepsPast& its = other.past_;
   const auto& its_base = other.is_new_ ? its.base : other.base_;
   past_.h = its.h;
@@ -71,7 +68,7 @@ void SmallStepsSolver::go_on_from(const SmallSteps& from, kernels::VectorsView v
   past_.misplaced.sort();
 }
 
-void SmallStepsSolver::write_past(std::uint32_t slot, const ParticlePast& past) {
+void LaneStore::write_past(std::uint32_t slot, const ParticlePast& past) {
   const YarnPlaces& places = layout_.places();
   const auto write = [&](auto& to, kernels::Vector vector) {
     std::size_t at = places.of(slot);
@@ -85,7 +82,7 @@ void SmallStepsSolver::write_past(std::uint32_t slot, const ParticlePast& past) 
   write(past_.moved, past.moved);
 }
 
-void SmallStepsSolver::turn(const Turn& by) {
+void LaneStore::turn(const Turn& by) {
   const YarnPlaces& places = layout_.places();
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
     if (!model_.is_particle(slot)) continue;

@@ -1,0 +1,59 @@
+/// The substep that is being done, as its order (small_steps.cpp) and a store of its particles
+/// (lane_store.h, reference_store.h) both see it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/bytes_of.h"
+#include "engine/model/model.h"
+#include "engine/solvers/small_steps/arrivals.h"
+#include "engine/solvers/small_steps/laws.h"
+#include "engine/solvers/small_steps/local_passes.h"
+#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/tuning.h"
+
+namespace weft {
+
+struct Substep {
+  const Model& model;
+  const Settings settings;
+  LocalPasses passes{model, model.small_steps().items};
+
+  double h = 0, omega = 1;                   // FramePlan
+  std::optional<double> softest{};           // likewise
+  bool has_past = false;                     // the past of the store is that of the present frame
+  SubstepFormula formula{}, next_formula{};  // of the present substep, and of the next
+  bool is_begun = false;                     // it has been swept
+  bool is_aside = false;                     // positions before mending were set aside
+  std::vector<std::uint32_t> touched{};      // slots that contacts have pushed
+  std::vector<Arrival> arrived{};
+
+  bool is_free(std::size_t slot) const { return model.inverse_mass[slot] > 0; }
+  bool measures_departures() const { return settings.motion_tolerance > 0; }
+  /// Strain at which local passes look at a constraint.
+  double local_tolerance() const { return tuning::kLocalShare * settings.tolerance; }
+  LawStep law_step() const {
+    if (softest) return {{1 / (h * h), 0}, *softest};
+    return {{1 / formula.give(h), model.damping.stretch / h}};
+  }
+  /// Of a substep of h after one of h_before.
+  SubstepFormula formula_after(double h_before) const {
+    return SubstepFormula::of(settings.scheme, h / h_before)
+        .with_decay(model.damping.motion, h, h_before);
+  }
+  /// Of h, in which accelerations act in a flight.
+  double decaying_share() const {
+    return SubstepFormula{}.with_decay(model.damping.motion, h, h).share;
+  }
+  std::size_t bytes() const { return passes.bytes() + bytes_of(touched) + bytes_of(arrived); }
+};
+
+/// How far a sweep goes with rigid constraints.
+struct Relaxation {
+  double omega = 1;
+  double left = 0;  // strain that they may keep
+};
+
+}  // namespace weft
