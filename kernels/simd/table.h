@@ -71,7 +71,7 @@ struct Table {
                                         std::uint32_t last, bool rope);
   std::uint32_t (*relax_spring_serial)(const BlockRelaxation&, std::uint32_t first,
                                        std::uint32_t last, bool rope);
-  /// Contacts of one sphere, the slot a[first]; see contacts.h for their gains.
+  /// Contacts of one sphere, the slot a[first]; see spheres.h for their gains.
   std::uint32_t (*relax_contacts)(const BlockRelaxation&, std::uint32_t first, std::uint32_t last);
   /// The same with the paper's masks (4.3): lanes whose bit is clear at both ends are passed over,
   /// whole vectors at once. `visits` counts the lanes looked at.
