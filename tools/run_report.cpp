@@ -207,6 +207,7 @@ Json to_json(const RunReport& report) {
       {"mean_max_strain", summary.mean_max_strain},
       {"rms_strain", summary.rms_strain},
       {"max_penetration", summary.max_penetration},
+      {"max_bending_error", summary.max_bending_error},
       {"max_anchor_error", summary.max_anchor_error},
       {"open_seams", summary.open_seams},
       {"max_seam_gap", summary.max_seam_gap},

@@ -60,6 +60,7 @@ void add_work(RunSummary& summary, const StepReport& report) {
   summary.scheme_fallbacks += report.scheme_fallbacks;
   summary.max_contacts = std::max(summary.max_contacts, report.contacts);
   summary.max_error = std::max(summary.max_error, report.max_error);
+  summary.max_bending_error = std::max(summary.max_bending_error, report.max_bending_error);
   summary.max_anchor_error = std::max(summary.max_anchor_error, report.max_anchor_error);
   summary.open_seams = report.open_seams;
   summary.max_seam_gap = std::max(summary.max_seam_gap, report.max_seam_gap);

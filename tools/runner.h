@@ -103,6 +103,7 @@ struct RunSummary {
   double rms_strain = 0;               ///< over all frames and constraints
   std::optional<FabricStrain> fabric;  ///< over all frames; none without a fabric
   double max_penetration = 0;          ///< m, over all frames and sphere pairs
+  double max_bending_error = 0;        ///< over all frames
   double max_anchor_error = 0;         ///< m, over all frames and anchors
   int open_seams = 0;                  ///< in the end
   double max_seam_gap = 0;             ///< m, over all frames and closed seams

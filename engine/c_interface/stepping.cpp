@@ -46,7 +46,8 @@ weft_report report_of(const StepReport& r) {
                   .friction_work = r.friction_work,
                   .failed_particle = r.failed_particle,
                   .passed_particle = r.passed_particle,
-                  .stage_seconds = {}};
+                  .stage_seconds = {},
+                  .max_bending_error = r.max_bending_error};
   static_assert(sizeof out.stage_seconds == sizeof r.stage_seconds);
   std::copy(r.stage_seconds.begin(), r.stage_seconds.end(), out.stage_seconds);
   return out;

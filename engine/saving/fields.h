@@ -108,16 +108,16 @@ void visit_fields(Is<AnchorLimit> auto& limit, auto& archive) {
 void visit_fields(Is<StepReport> auto& report, auto& archive) {
   auto& [status, asleep, substeps, halvings, iterations, direction_updates, velocity_iterations,
          visits, corrections, scheme_fallbacks, contacts, max_strain, rms_strain, max_shear,
-         max_error, worst_constraint, worst_element, max_penetration, body_contacts,
-         contact_failures, zones, intersecting, max_anchor_error, open_seams, max_seam_gap,
-         seam_work, motion_error, energy_lost, pin_work, body_work, friction_work, failed_particle,
-         passed_particle, stage_seconds] = report;
+         max_error, max_bending_error, worst_constraint, worst_element, max_penetration,
+         body_contacts, contact_failures, zones, intersecting, max_anchor_error, open_seams,
+         max_seam_gap, seam_work, motion_error, energy_lost, pin_work, body_work, friction_work,
+         failed_particle, passed_particle, stage_seconds] = report;
   archive(status, asleep, substeps, halvings, iterations, direction_updates, velocity_iterations,
           visits, corrections, scheme_fallbacks, contacts, max_strain, rms_strain, max_shear,
-          max_error, worst_constraint, worst_element, max_penetration, body_contacts,
-          contact_failures, zones, intersecting, max_anchor_error, open_seams, max_seam_gap,
-          seam_work, motion_error, energy_lost, pin_work, body_work, friction_work, failed_particle,
-          passed_particle, stage_seconds);
+          max_error, max_bending_error, worst_constraint, worst_element, max_penetration,
+          body_contacts, contact_failures, zones, intersecting, max_anchor_error, open_seams,
+          max_seam_gap, seam_work, motion_error, energy_lost, pin_work, body_work, friction_work,
+          failed_particle, passed_particle, stage_seconds);
 }
 
 }  // namespace weft

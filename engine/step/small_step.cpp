@@ -131,6 +131,12 @@ double refinement_for_laws(const State& s, const FramePlan& plan, double beyond,
   return share < tuning::kLittleMended ? std::max(least, s.refinement - kLevel) : s.refinement;
 }
 
+/// Where bending takes more steps than a solution may have it leaves more than the tolerance.
+/// Shorter substeps are softer.
+bool leaves_bending(const State& s, const StepReport& report) {
+  return report.max_bending_error > s.settings.tolerance;
+}
+
 /// Of local passes over everything, in visits of a sweep that take as long.
 double time_of_local_visit(const Model& model) {
   const auto triangles = static_cast<double>(model.membrane.size());
@@ -223,6 +229,7 @@ class Frame {
       status = put_right_what_is_left();
     }
     count_local_passes();
+    report_.max_bending_error = solver_.bending_error();
     return status;
   }
 
@@ -520,7 +527,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   }
   if (fixed)
     trial.worsen(Status::fixed_iterations);
-  else if (is_in_body || s.body_report.failures.left > 0)
+  else if (is_in_body || s.body_report.failures.left > 0 || leaves_bending(s, report))
     trial.worsen(Status::iteration_limit);
   if (frame.passed_particle != kNoIndex) {
     trial.passed_particle = frame.passed_particle;
@@ -541,6 +548,8 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
       trial.refinement = next_refinement(s, plan, trial.motion_error, budget);
     else if (refines_substeps(s))
       trial.refinement = refinement_for_laws(s, plan, frame.beyond(), budget);
+    if (leaves_bending(s, report) && plan.substeps < most_substeps(budget))
+      trial.refinement = std::max(trial.refinement, s.refinement + 1);
     if (!takes_over_in(s)) s.small_steps->keep(team);  // else the past is not looked at
   });
   return trial;

@@ -241,6 +241,7 @@ typedef struct weft_report { /* StepReport */
   uint32_t failed_particle, passed_particle;
   double stage_seconds[6]; /* predict, find_contacts, solve_positions, commit,
                               correct_velocities, report */
+  double max_bending_error;
 } weft_report;
 
 /* JobSystem. Both functions or neither; NULL in place of the struct is the oneTBB arena that the

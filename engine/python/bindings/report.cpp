@@ -65,6 +65,7 @@ void add_errors(Class& report) {
                     "its number in the description, or kNoIndex")
       .def_readonly("worst_element", &StepReport::worst_element,
                     "likewise, of the largest strain or shear")
+      .def_readonly("max_bending_error", &StepReport::max_bending_error)
       .def_readonly("max_anchor_error", &StepReport::max_anchor_error, "m")
       .def_readonly("open_seams", &StepReport::open_seams, "whose particles have not come together")
       .def_readonly("max_seam_gap", &StepReport::max_seam_gap, "m")

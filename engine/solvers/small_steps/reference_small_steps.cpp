@@ -52,7 +52,7 @@ ReferenceSmallSteps::ReferenceSmallSteps(const Model& model, const Settings& set
       passes_(model, layout_.items),
       seams_(model),
       has_attached_(model.has_attached()),
-      paces_(paces_of(layout_.bending, model.damping.bending)),
+      bending_(model, settings, table),
       anchors_(model.anchors),
       bodies_(model, table),
       shortest_(shortest_lengths(model)),
@@ -83,7 +83,6 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   passes_.forget();
   seams_.begin(plan.seams, plan.projects ? 0 : plan.h);
   departures_.begin();
-  for (BendingPace& pace : paces_) pace.begin(plan);
   touched_.clear();
   arrived_.clear();
   has_past_ = !plan.placed && h <= SubstepFormula::kLargestRatio * past_.h;
@@ -96,8 +95,10 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   last_ = 0;
   const double push = h * decaying_share();
   accelerate(gravity, force);
+  double weight = 0;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     const Vector a = acceleration_[i];
+    weight += model_.mass[i] * dot(a, a);
     x_.set(i, x[i]);
     v_.set(i, v[i]);
     if (!has_past_) {
@@ -109,6 +110,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     v_before_.set(i, past_.v_before[i] + jump);
     before_.set(i, x[i] - (past_.moved[i] + past_.h * jump));
   }
+  bending_.begin(plan, weight);
   const Points points = this->points(true);
   Particles particles(points);
   if (projects_) bodies_.advance(1, particles, team);
@@ -149,7 +151,6 @@ void ReferenceSmallSteps::advance(Team& team) {
                        last_);
   }
   last_ = bh;
-  bend();
   anchors_.advance();
   const Points points = this->points(true);
   Particles particles(points);
@@ -157,6 +158,7 @@ void ReferenceSmallSteps::advance(Team& team) {
   at_limit_before_.swap(at_limit_);
   at_limit_.assign(at_limit_.size(), false);
   if (has_attached_) hold_anchors();
+  bend(team);
 }
 
 SubstepFormula ReferenceSmallSteps::formula_after(double h_before) const {
@@ -179,29 +181,34 @@ void ReferenceSmallSteps::decay() {
   }
 }
 
-void ReferenceSmallSteps::bend() {
-  const BendingLayout& layout = layout_.bending;
-  for (std::size_t k = 0; k < paces_.size(); ++k) {
-    const int n = paces_[k].next();
-    if (n == 0) continue;
-    const reference::BendingVisit visit = paces_[k].visit(n, formula_.give(h_));
-    const BendingClass& c = layout.classes[k];
-    for (std::uint32_t lane = layout.first_lane(c); lane < layout.last_lane(c); ++lane) {
-      const std::uint32_t i = layout.element[lane];
-      if (i == kNoIndex) continue;
-      reference::bend(element(i), visit, model_.inverse_mass.data(), x_.view(), v_before_.view());
+void ReferenceSmallSteps::bend(Team& team) {
+  const int n = bending_.next();
+  if (n == 0) return;
+  double* const residual = bending_.residual();
+  std::fill_n(residual, 4 * model_.slots(), 0.0);
+  for (std::uint32_t i = 0; i < model_.bending.size(); ++i) {
+    const reference::BendingElement e = element(i);
+    const Vector f = reference::pull(e, bending_.damping(), x_.view(), v_.view());
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!is_free(e.slots[k])) continue;
+      double* const of = residual + 4 * std::size_t{e.slots[k]};
+      const Vector pull = e.weights[k] * f;
+      of[0] += pull.x;
+      of[1] += pull.y;
+      of[2] += pull.z;
     }
   }
+  bending_.solve(n, formula_.give(h_), team);
+  const double* const by = bending_.solution();
+  for (std::size_t i = 0; i < model_.slots(); ++i)
+    x_.view().add(i, {by[4 * i], by[4 * i + 1], by[4 * i + 2]});
 }
 
 double ReferenceSmallSteps::bending_energy(double give, Team&) {
-  if (paces_.empty()) return 0;
-  const double resolved = paces_.front().resolved(give);
+  const double resolved = bending_.resolved(give);
   double sum = 0;
-  for (const std::uint32_t i : layout_.bending.element) {
-    if (i == kNoIndex) continue;
+  for (std::uint32_t i = 0; i < model_.bending.size(); ++i)
     sum += reference::energy(element(i), resolved, model_.inverse_mass.data(), x_.view());
-  }
   return sum;
 }
 

@@ -11,13 +11,14 @@
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/arrivals.h"
-#include "engine/solvers/small_steps/bending_pace.h"
+#include "engine/solvers/small_steps/bending_solver.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/point_particles.h"
 #include "engine/solvers/small_steps/reference_bodies.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/spheres/sphere_contacts.h"
+#include "kernels/reference/bending.h"
 #include "kernels/reference/small_steps.h"
 
 namespace weft {
@@ -63,6 +64,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   void read_starts(kernels::VectorsView x, Team& team) const override;
   double largest_move(Team& team) override;
   double bending_energy(double give, Team& team) override;
+  double bending_error() const override { return bending_.error(); }
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;
   double motion_error() const override { return departures_.mean_error(); }
@@ -92,7 +94,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   double decaying_share() const;
   void decay();
   void settle_velocities();
-  void bend();
+  void bend(Team& team);
   void measure_departure();
   reference::BendingElement element(std::uint32_t i) const {
     const BendingStore& s = model_.bending;
@@ -125,7 +127,7 @@ class ReferenceSmallSteps final : public SmallSteps {
   LocalPasses passes_;
   SeamThreads seams_;
   const bool has_attached_;  // which are where they belong before constraints are swept
-  std::vector<BendingPace> paces_;
+  BendingSolver bending_;
   AnchorClock anchors_;
   ReferenceBodies bodies_;
   Past past_;

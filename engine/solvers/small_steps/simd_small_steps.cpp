@@ -59,7 +59,7 @@ SmallStepsSolver::SmallStepsSolver(const Model& model, const Settings& settings,
       has_attached_(model.has_attached()),
       links_(model, settings, table),
       membrane_(model, table),
-      bending_(model, table),
+      bending_(model, settings, table),
       anchors_(model, settings, table),
       bodies_(model, settings, table),
       largest_((layout_.floats + kPart - 1) / kPart) {
@@ -180,7 +180,6 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   passes_.forget();
   seams_.begin(plan.seams, plan.projects ? 0 : plan.h);
   departures_.begin();
-  bending_.begin(plan);
   touched_.clear();
   arrived_.clear();
   has_past_ = !plan.placed && plan.h <= SubstepFormula::kLargestRatio * past_.h;
@@ -195,6 +194,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
     layout_.places().narrow(table_, v, first, last, v_.data());
   });
   write_acceleration(gravity, force);
+  bending_.begin(plan, acceleration_.data());
   begin_past(team);
   if (projects_) advance_bodies(1, team);
   next_formula_ = formula_after(has_past_ ? past_.h : h_);
@@ -241,10 +241,10 @@ void SmallStepsSolver::advance(Team& team) {
   formula_ = std::exchange(next_formula_, formula_after(h_));
   weights_.last = {weights_.push, static_cast<float>(1 / (formula_.part * h_)),
                    static_cast<float>(formula_.slope)};
-  bending_.bend(u_.data(), v_before_.data(), formula_.give(h_), team);
   anchors_.advance();
   advance_bodies(formula_.part, team);
   if (has_attached_) hold_anchors(team);
+  bending_.bend(u_.data(), v_.data(), formula_.give(h_), team);
 }
 
 SubstepFormula SmallStepsSolver::formula_after(double h_before) const {

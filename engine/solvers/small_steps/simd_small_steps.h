@@ -78,6 +78,7 @@ class SmallStepsSolver final : public SmallSteps {
   void read_starts(kernels::VectorsView x, Team& team) const override;
   double largest_move(Team& team) override;
   double bending_energy(double give, Team& team) override;
+  double bending_error() const override { return bending_.error(); }
   /// After the last substep.
   void settle(Team& team) override;
   void read_velocities(kernels::VectorsView v, Team& team) const override;
