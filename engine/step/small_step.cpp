@@ -199,14 +199,14 @@ class Frame {
     ++substeps_done_;
     const bool mends = to_tolerance && mends_now();
     if (mends) sweep_until_few_are_out(tuning::kMended, rest);
-    if (s_.model->has_spheres()) find_contacts();
+    if (s_.model->has_spheres()) timed(report_, Stage::find_contacts, [&] { find_contacts(); });
     if (mends) {
       count(solver_.repair(s_.contacts, most_visits(passes_left_ - rest), team_));
     } else if (to_tolerance && s_.contacts.count() > 0) {
       count(solver_.repair(s_.contacts, 0, team_));
     }
     solver_.end_seams();
-    if (s_.model->has_spheres()) watch_crossings();
+    if (s_.model->has_spheres()) timed(report_, Stage::find_contacts, [&] { watch_crossings(); });
   }
 
   /// Puts right what the last substep left out of tolerance, in rounds of a sweep and local passes
@@ -325,7 +325,7 @@ class Frame {
       const double error = std::max(report_.max_error / s_.settings.tolerance,
                                     distance / s_.settings.contact_tolerance);
       if (stall.has_stalled(error)) return Status::infeasible;
-      timed(report_, Stage::solve_positions, [&] { put_right(); });
+      put_right();
     }
   }
   /// Of the passes that are left for each substep to come, and for what the last one leaves.
@@ -472,6 +472,19 @@ class Frame {
   double elastic_energy_before_ = 0;  // J, in the beginning
 };
 
+/// As timed. To find contacts with bodies is a stage of its own.
+template <class Work>
+void timed_with_contacts(State& s, StepReport& report, Stage stage, Work&& work) {
+  timed(report, stage, [&] {
+    work();
+    const ContactMs ms = s.small_steps->contact_times.take();
+    report.stage_seconds[static_cast<std::size_t>(Stage::find_contacts)] += 1e-3 * ms.find;
+    report.contact_ms.find += ms.find;
+    report.contact_ms.sweep += ms.sweep;
+    report.contact_ms.verify += ms.verify;
+  });
+}
+
 }  // namespace
 
 bool refines_substeps(const State& s) {
@@ -485,16 +498,17 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   Trial trial;
   Frame frame(s, report, team);
   FramePlan plan;
-  timed(report, Stage::predict, [&] {
+  timed_with_contacts(s, report, Stage::predict, [&] {
     plan = plan_for(s, attempt, h, budget);
     frame.begin(plan);
   });
-  timed(report, Stage::solve_positions, [&] {
+  bool is_in_body = false;
+  timed_with_contacts(s, report, Stage::solve_positions, [&] {
     for (int i = 0; i < plan.substeps; ++i) frame.substep();
+    trial.status = frame.finish();
+    is_in_body = frame.is_in_body();
   });
   trial.substeps = plan.substeps;
-  trial.status = frame.finish();
-  const bool is_in_body = frame.is_in_body();
   if (trial.status != Status::converged && !attempt.is_last) {
     trial.outcome = Outcome::rejected;
     return trial;
@@ -548,17 +562,19 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
 
 void project_by_small_steps(State& s, double softest, double h, const Budget& budget,
                             StepReport& report, Team& team) {
-  Frame frame(s, report, team);
-  frame.begin({.h = h,
-               .passes = static_cast<double>(budget.positions),
-               .omega = tuning::kOmega,
-               .placed = true,
-               .projects = true,
-               .softest = softest});
-  if (softest > 0)
-    frame.give_way();
-  else
-    frame.put_right_at_once();
+  timed_with_contacts(s, report, Stage::solve_positions, [&] {
+    Frame frame(s, report, team);
+    frame.begin({.h = h,
+                 .passes = static_cast<double>(budget.positions),
+                 .omega = tuning::kOmega,
+                 .placed = true,
+                 .projects = true,
+                 .softest = softest});
+    if (softest > 0)
+      frame.give_way();
+    else
+      frame.put_right_at_once();
+  });
 }
 
 void look_ahead_by_small_steps(State& s, double h, StepReport& report, Team& team) {

@@ -30,6 +30,13 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
   on_.assign(model_.slots(), false);
 }
 
+/// By any way: nobody knows how far.
+void ReferenceBodies::find_where_they_stand(ContactParticles& particles, Team& team) {
+  if (!clock_.stands()) return;
+  meshes_.predict(particles, clock_, team);
+  meshes_.advance(clock_);
+}
+
 TouchedSurface ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& x, Vector& v) {
   TouchedSurface surface;
   if (model_.inverse_mass[slot] == 0) return surface;

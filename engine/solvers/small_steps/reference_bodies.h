@@ -30,13 +30,11 @@ class ReferenceBodies {
   MeshContacts& meshes() { return meshes_; }
   const MeshContacts& meshes() const { return meshes_; }
   const BodyClock& clock() const { return clock_; }
+  /// Where positions are put right, before meshes hold: what may touch.
+  void find_where_they_stand(ContactParticles& particles, Team& team);
   /// After the particles were held one by one, by meshes. moved(slot, by): by how much (m).
   template <class Moved>
   void hold_by_meshes(ContactParticles& particles, Team& team, Moved&& moved) {
-    if (clock_.stands()) {  // positions are put right, by any way: nobody knows how far
-      meshes_.predict(particles, clock_, team);
-      meshes_.advance(clock_);
-    }
     meshes_.sweep(particles, clock_, team, moved);
   }
   /// Before the next substep, or after the last. Returns whether particles had to be moved.

@@ -88,9 +88,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
   arrived_.clear();
   has_past_ = !plan.placed && h <= SubstepFormula::kLargestRatio * past_.h;
   anchors_.begin(plan.anchors, h, plan.substeps);
-  bodies_.begin(plan.bodies, h, plan.substeps, plan.projects,
-                has_past_ && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
-                plan.placed || plan.bodies_are_new, past_.misplaced);
+  begin_bodies(plan);
   at_limit_.assign(at_limit_.size(), false);
   if (has_past_ && !plan.anchors.moving) at_limit_ = past_.at_limit;
   last_ = 0;
@@ -109,9 +107,7 @@ void ReferenceSmallSteps::begin(kernels::VectorsView x, kernels::VectorsView v, 
     v_before_.set(i, past_.v_before[i] + jump);
     before_.set(i, x[i] - (past_.moved[i] + past_.h * jump));
   }
-  const Points points = this->points(true);
-  Particles particles(points);
-  if (projects_) bodies_.advance(1, particles, team);
+  if (projects_) advance_bodies(1, team);
   next_formula_ = formula_after(has_past_ ? past_.h : h);
 }
 
@@ -151,9 +147,7 @@ void ReferenceSmallSteps::advance(Team& team) {
   last_ = bh;
   bend();
   anchors_.advance();
-  const Points points = this->points(true);
-  Particles particles(points);
-  bodies_.advance(formula_.part, particles, team);
+  advance_bodies(formula_.part, team);
   at_limit_before_.swap(at_limit_);
   at_limit_.assign(at_limit_.size(), false);
   if (has_attached_) hold_anchors();

@@ -115,6 +115,8 @@ class ReferenceSmallSteps final : public SmallSteps {
   void hold_anchors();
   void hold_bodies(Team& team);
   void hold_by_meshes(Team& team);
+  void begin_bodies(const FramePlan& plan);
+  void advance_bodies(double part, Team& team);
   void end_motions();
   void stop_at_contact(std::size_t slot);
   void begin_at_limit(const Arrival& arrival);

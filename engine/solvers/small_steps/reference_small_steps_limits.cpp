@@ -31,12 +31,14 @@ void ReferenceSmallSteps::hold_bodies(Team& team) {
   if (bodies_.empty()) return;
   const Points points = this->points(true);
   const double strain = tuning::kLocalShare * settings_.tolerance;
-  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
-    if (!is_free(slot)) continue;
-    const Vector from = x_[slot];
-    if (points.grip_by_bodies(slot) && length(x_[slot] - from) > strain * shortest_[slot])
-      passes_.look_at(slot);
-  }
+  contact_times.timed(&ContactMs::sweep, [&] {
+    for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
+      if (!is_free(slot)) continue;
+      const Vector from = x_[slot];
+      if (points.grip_by_bodies(slot) && length(x_[slot] - from) > strain * shortest_[slot])
+        passes_.look_at(slot);
+    }
+  });
   hold_by_meshes(team);
 }
 
@@ -45,23 +47,45 @@ void ReferenceSmallSteps::hold_by_meshes(Team& team) {
   const Points points = this->points(true);
   Particles particles(points);
   const double strain = tuning::kLocalShare * settings_.tolerance;
-  bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot, double by) {
-    if (by > strain * shortest_[slot]) passes_.look_at(slot);
+  contact_times.timed(&ContactMs::find, [&] { bodies_.find_where_they_stand(particles, team); });
+  contact_times.timed(&ContactMs::sweep, [&] {
+    bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot, double by) {
+      if (by > strain * shortest_[slot]) passes_.look_at(slot);
+    });
   });
+}
+
+void ReferenceSmallSteps::begin_bodies(const FramePlan& plan) {
+  const bool goes_on = has_past_ && !plan.bodies_move;
+  const auto begin = [&] {
+    bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects,
+                  goes_on ? past_.touching : ReferenceBodies::Touching{},
+                  plan.placed || plan.bodies_are_new, past_.misplaced);
+  };
+  plan.bodies.empty() ? begin() : contact_times.timed(&ContactMs::find, begin);
+}
+
+void ReferenceSmallSteps::advance_bodies(double part, Team& team) {
+  if (bodies_.empty()) return;
+  const Points points = this->points(true);
+  Particles particles(points);
+  contact_times.timed(&ContactMs::find, [&] { bodies_.advance(part, particles, team); });
 }
 
 bool ReferenceSmallSteps::end_contacts(Team& team) {
   if (!bodies_.has_meshes()) return false;
   const Points points = this->points(true);
   Particles particles(points);
-  return bodies_.end_interval(particles, team);
+  return contact_times.timed(&ContactMs::verify,
+                             [&] { return bodies_.end_interval(particles, team); });
 }
 
 double ReferenceSmallSteps::deepest_in_body(Team& team) {
   if (bodies_.empty()) return 0;
   const Points points = this->points(true);
   Particles particles(points);
-  return bodies_.deepest(before_, x_, particles, team);
+  return contact_times.timed(&ContactMs::verify,
+                             [&] { return bodies_.deepest(before_, x_, particles, team); });
 }
 
 void ReferenceSmallSteps::read_contacts(std::vector<BodyTouch>& contacts) {

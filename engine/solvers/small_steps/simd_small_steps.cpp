@@ -188,9 +188,7 @@ void SmallStepsSolver::begin(kernels::VectorsView x, kernels::VectorsView v,
   anchors_.begin(plan.anchors, plan.h, plan.substeps,
                  has_past_ ? past_.at_limit : std::span<const std::uint16_t>{});
   anchors_.measure_base(base_.data());
-  bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects,
-                has_past_ && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
-                plan.placed || plan.bodies_are_new, past_.misplaced);
+  begin_bodies(plan);
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());
   });

@@ -127,6 +127,7 @@ class SmallStepsSolver final : public SmallSteps {
   void hold_anchors(Team& team);
   void hold_bodies(Team& team);
   void hold_by_meshes(Team& team);
+  void begin_bodies(const FramePlan& plan);
   void advance_bodies(double part, Team& team);
   void end_motions();
   void stop_at_contact(std::uint32_t slot);

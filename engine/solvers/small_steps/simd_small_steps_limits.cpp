@@ -11,17 +11,29 @@ void SmallStepsSolver::hold_anchors(Team& team) {
                   [&](std::uint32_t slot) { passes_.look_at(slot); });
 }
 
+void SmallStepsSolver::begin_bodies(const FramePlan& plan) {
+  const bool goes_on = has_past_ && !plan.bodies_move;
+  const auto begin = [&] {
+    bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects,
+                  goes_on ? past_.touching : std::span<const std::uint16_t>{},
+                  plan.placed || plan.bodies_are_new, past_.misplaced);
+  };
+  plan.bodies.empty() ? begin() : contact_times.timed(&ContactMs::find, begin);
+}
+
 /// Contacts come last.
 void SmallStepsSolver::hold_bodies(Team& team) {
   if (bodies_.empty()) return;
-  bodies_.hold(flight(), base_.data(), weights_.last.rate, team);
-  const LanePoints points = this->points(true);
-  bodies_.report(
-      [&](std::uint32_t slot) {
-        arrived_.push_back({slot, bodies_.touched_by(slot, points.place(u_.data(), slot))});
-      },
-      [&](std::uint32_t slot) { passes_.look_at(slot); },
-      [&](std::uint32_t slot) { points.grip(slot); });
+  contact_times.timed(&ContactMs::sweep, [&] {
+    bodies_.hold(flight(), base_.data(), weights_.last.rate, team);
+    const LanePoints points = this->points(true);
+    bodies_.report(
+        [&](std::uint32_t slot) {
+          arrived_.push_back({slot, bodies_.touched_by(slot, points.place(u_.data(), slot))});
+        },
+        [&](std::uint32_t slot) { passes_.look_at(slot); },
+        [&](std::uint32_t slot) { points.grip(slot); });
+  });
   hold_by_meshes(team);
 }
 
@@ -29,21 +41,26 @@ void SmallStepsSolver::hold_by_meshes(Team& team) {
   if (!bodies_.has_meshes()) return;
   const LanePoints points = this->points(true);
   LaneParticles particles(points);
-  bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot) { passes_.look_at(slot); });
+  contact_times.timed(&ContactMs::find, [&] { bodies_.find_where_they_stand(particles, team); });
+  contact_times.timed(&ContactMs::sweep, [&] {
+    bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot) { passes_.look_at(slot); });
+  });
 }
 
 void SmallStepsSolver::advance_bodies(double part, Team& team) {
   if (bodies_.empty()) return;
   const LanePoints points = this->points(true);
   LaneParticles particles(points);
-  bodies_.advance(flight(), base_.data(), part, particles, team);
+  contact_times.timed(&ContactMs::find,
+                      [&] { bodies_.advance(flight(), base_.data(), part, particles, team); });
 }
 
 bool SmallStepsSolver::end_contacts(Team& team) {
   if (!bodies_.has_meshes()) return false;
   const LanePoints points = this->points(true);
   LaneParticles particles(points);
-  return bodies_.end_interval(particles, team);
+  return contact_times.timed(&ContactMs::verify,
+                             [&] { return bodies_.end_interval(particles, team); });
 }
 
 void SmallStepsSolver::report_bodies(BodyReport& report) { bodies_.sum(report); }
@@ -52,7 +69,8 @@ double SmallStepsSolver::deepest_in_body(Team& team) {
   if (bodies_.empty()) return 0;
   const LanePoints points = this->points(true);
   LaneParticles particles(points);
-  return bodies_.deepest(flight(), base_.data(), particles, team);
+  return contact_times.timed(
+      &ContactMs::verify, [&] { return bodies_.deepest(flight(), base_.data(), particles, team); });
 }
 
 void SmallStepsSolver::read_contacts(std::vector<BodyTouch>& contacts) {

@@ -14,6 +14,7 @@
 #include "engine/saving/archive.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
 #include "engine/solvers/small_steps/body_report.h"
+#include "engine/solvers/small_steps/contact_times.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/seams.h"
 #include "engine/spheres/sphere_contacts.h"
@@ -189,6 +190,8 @@ class SmallSteps {
   /// The past happened in other directions. Positions are new ones.
   virtual void turn(const Turn& by) = 0;
   virtual std::size_t bytes() const = 0;
+
+  ContactTimes contact_times;
 };
 
 /// On the backend of the settings.
