@@ -1,9 +1,9 @@
-/// What verification of contacts with meshes has found, and what became of it.
+/// What verification has found, and what became of it.
 #pragma once
 
 namespace weft {
 
-struct FailSafeReport {
+struct RescueReport {
   int failures = 0;  // pairs that were caught
   int zones = 0;     // pairs that were taken along
   int left = 0;      // triangles of the cloth that cross in the end, and particles inside

@@ -1,0 +1,184 @@
+#include "engine/contact/interval.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/bytes_of.h"
+#include "engine/contact/look.h"
+#include "engine/tuning.h"
+
+namespace weft {
+
+using kernels::Vector;
+
+namespace {
+
+/// In which pairs that have come near unexpectedly are put right, before the rest is verified.
+constexpr int kLateRounds = 3;
+
+}  // namespace
+
+void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
+  points_.begin(clock);
+  left_ = 0;
+  interval_ = late_depth_ = 0;
+  failures_ = {};
+  for (NearPairs& near : near_) near.clear();
+  if (empty()) return;
+  impulses_.begin(clock.bodies());
+  is_new_ = is_new;
+  tangles_.begin(points_.cloth(), misplaced);
+}
+
+/// s. Bodies that are fast are looked at more often: on their way they turn, and take cloth along.
+double SurfaceContacts::interval_for(const BodyClock& clock) const {
+  const double fastest = points_.fastest(clock);
+  const double way = tuning::kMeshWay * points_.largest_thickness();
+  return fastest > 0 ? std::min(tuning::kContactInterval, way / fastest) : tuning::kContactInterval;
+}
+
+void SurfaceContacts::predict(ContactParticles& particles, const BodyClock& clock, Team& team) {
+  if (empty() || still_holds(particles, clock)) return;
+  if (left_ == 0) {
+    left_ = clock.stands() ? 1 : clock.substeps_in(interval_for(clock));
+    begin_interval(particles, clock, left_, team);
+  }
+  --left_;
+}
+
+/// Where positions are put right, by any way, until a particle comes to a place that was not
+/// expected.
+bool SurfaceContacts::still_holds(const ContactParticles& particles, const BodyClock& clock) const {
+  return clock.stands() && interval_ > 0 && points_.hold(particles);
+}
+
+void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyClock& clock,
+                                     int substeps, Team& team) {
+  points_.begin_interval(particles, clock, substeps);
+  search_.find(points_, candidates_);
+  near_search_.measure(points_, candidates_, team);
+  if (is_new_) tangles_.find(points_);
+  is_new_ = false;
+  near_search_.find(points_, candidates_, tangles_, near_);
+  tangles_.come_out(points_, near_);
+  response_.begin(scene(particles, clock), near_);
+  interval_ = substeps * clock.h();
+}
+
+void SurfaceContacts::advance(const BodyClock& clock) {
+  if (!empty()) response_.advance(clock, points_, near_);
+}
+
+bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock& clock,
+                                   Team& team) {
+  if (empty() || clock.stands() || left_ > 0 || interval_ == 0) return false;
+  const ContactScene scene = this->scene(particles, clock);
+  points_.measure_moves(particles, clock);
+  late_depth_ = 0;
+  bool has_moved = push_late_apart(scene, team);
+  verification_.find(scene, search_, near_search_, candidates_, team);
+  const bool has_failed = !verification_.failures().empty();
+  has_moved = has_moved || has_failed;
+  if (has_moved) {
+    expect_failures(scene);
+    stop_failures(scene, search_, near_search_, verification_, candidates_, interval_, failures_,
+                  team);
+    for (const Failure& failure : verification_.failures())
+      tangles_.take_in(points_, candidates_[failure.list].pairs[failure.pair]);
+  }
+  // Only tangles, and what had to be stopped, lead others through a body.
+  if (tangles_.any() || has_failed) tangles_.find_crossing_at_end(points_);
+  if (!has_moved) return false;
+  verification_.find_late(scene, near_search_, candidates_, team);
+  for (const Failure& late : verification_.failures())
+    late_depth_ = std::max(late_depth_, late.depth);
+  return true;
+}
+
+/// Before the rest is verified. Returns whether particles had to be moved.
+bool SurfaceContacts::push_late_apart(const ContactScene& scene, Team& team) {
+  for (int round = 0; round < kLateRounds; ++round) {
+    verification_.find_late(scene, near_search_, candidates_, team);
+    if (verification_.failures().empty()) return round > 0;
+    expect_failures(scene);
+    for (const Failure& late : verification_.failures())
+      rescue::blow(scene, candidates_[late.list], late, interval_);
+  }
+  return true;
+}
+
+/// What was not expected to touch is near from now on, so that what puts the cloth right until the
+/// step is over keeps it apart. What went through each other unnoticed was taken to be on the other
+/// side: now it is known on which it was.
+void SurfaceContacts::expect_failures(const ContactScene& scene) {
+  bool any = false;
+  for (const Failure& failure : verification_.failures()) {
+    const Pair& pair = candidates_[failure.list].pairs[failure.pair];
+    NearPairs& near = near_[failure.list];
+    const std::size_t known = near.find(pair);
+    const bool is_known = known < near.list.size();
+    const bool is_late = failure.depth > 0;
+    if (is_known && is_late) continue;
+    const auto four = candidates_[failure.list].points(failure.pair);
+    ContactSurface& later = points_.later(pair);
+    const Vector normal = look(later, pair, points_.starts_of(four)).normal;
+    if (is_known) {
+      near.set_normal(known, normal);
+      near.states[known].is_under = false;
+    } else {
+      near.add(pair, four, normal, later.thickness, false);
+      any = true;
+    }
+  }
+  if (!any) return;
+  response_.begin(scene, near_);
+  points_.place_vertices_asked(scene.clock);
+}
+
+int SurfaceContacts::count_touching() const {
+  int count = 0;
+  for (const NearPairs& near : near_)
+    count += static_cast<int>(std::ranges::count_if(near.states, &NearState::is_touching));
+  return count;
+}
+
+void SurfaceContacts::read_touching(const ContactParticles& particles, const BodyClock& clock,
+                                    std::vector<BodyTouch>& touches) const {
+  const auto at = [&](std::uint32_t point) {
+    return points_.is_of_cloth(point) ? particles.position(point) : points_.to(point);
+  };
+  for (const NearPairs& near : near_) {
+    for (std::size_t i = 0; i < near.list.size(); ++i) {
+      if (!near.states[i].is_touching) continue;
+      const Pair& pair = near.list.pairs[i];
+      const auto four = near.list.points(i);
+      const reference::Nearest found =
+          nearest(pair.kind, {at(four[0]), at(four[1]), at(four[2]), at(four[3])});
+      BodyTouch touch{.body = clock.bodies()[points_.later(pair).body].id,
+                      .push = near.states[i].push};
+      touch.normal = pair.outward() * near.normal(i);
+      double most = -1;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double weight = std::abs(found.weight[k]);
+        if (!points_.is_of_cloth(four[k])) {
+          touch.point = touch.point + weight * at(four[k]);
+        } else if (weight > most) {
+          most = weight;
+          touch.slot = four[k];
+        }
+      }
+      touches.push_back(touch);
+    }
+  }
+}
+
+std::size_t SurfaceContacts::bytes() const {
+  std::size_t bytes = points_.bytes() + search_.bytes() + near_search_.bytes() + response_.bytes() +
+                      tangles_.bytes() + bytes_of(impulses_.of_body);
+  for (const PairList& list : candidates_) bytes += list.bytes();
+  for (const NearPairs& near : near_)
+    bytes += near.list.bytes() + bytes_of(near.sides) + bytes_of(near.states);
+  return bytes;
+}
+
+}  // namespace weft

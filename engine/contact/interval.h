@@ -1,0 +1,109 @@
+/// Contacts of surfaces of triangles: of a cloth with bodies that are meshes. An interval of some
+/// substeps (tuning::kContactInterval), which the clock of the bodies counts, has these stages:
+///
+///   1  points: where all points are, and the boxes that they are expected to stay in
+///   2  candidates: which pairs of features may meet at all
+///   3  near: which of them may touch; tangles: what comes out
+///      in each substep:
+///   4  points: where the vertices of bodies are that near pairs have
+///   5  respond: lanes find which near pairs touch
+///   6  respond: these are pushed apart, along normals of that moment, with friction
+///      when the interval is over:
+///   7  verify: what came near unexpectedly, and what went through each other
+///   8  rescue: that is stopped
+///   9  tangles: what could not be stopped, or crossed a body from the beginning
+///
+/// Particles that are inside of a one-sided body when it appears, or when positions are written,
+/// are known as such until they are out, and triangles that cross a body until they do no longer.
+#pragma once
+
+#include <vector>
+
+#include "engine/contact/rescue.h"
+#include "engine/contact/respond.h"
+#include "engine/contact/touch.h"
+
+namespace weft {
+
+class SurfaceContacts {
+ public:
+  SurfaceContacts(const Model& model, const simd::Table& table)
+      : model_(model),
+        points_(model),
+        search_(table),
+        near_search_(table),
+        response_(table),
+        verification_(table),
+        tangles_(table) {}
+
+  bool empty() const { return points_.surface_pairs().empty(); }
+  /// Of a frame. is_new: positions were given, or a body was: tangles are looked for. Else they are
+  /// as the frame before left them.
+  void begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced);
+  /// A substep is predicted, and the clock stands where it begins: an interval begins with it if
+  /// the last one is over.
+  void predict(ContactParticles& particles, const BodyClock& clock, Team& team);
+  /// The clock has advanced to the end of the substep.
+  void advance(const BodyClock& clock);
+  /// moved(slot, by): by how much (m).
+  template <class Moved>
+  void sweep(ContactParticles& particles, const BodyClock& clock, Team& team, Moved&& moved) {
+    response_.sweep(scene(particles, clock), near_, team, moved);
+  }
+  /// Over what the slot has touched in this substep. Returns whether it was pushed.
+  bool hold(ContactParticles& particles, const BodyClock& clock, std::uint32_t slot) {
+    return response_.hold(scene(particles, clock), near_, slot);
+  }
+  /// Slots that have touched a mesh in this substep.
+  const std::vector<std::uint32_t>& touching() const { return response_.touching(); }
+  /// After a substep, which may be the last of an interval, and again if particles were moved
+  /// since. Returns whether particles had to be moved.
+  bool end_interval(ContactParticles& particles, const BodyClock& clock, Team& team);
+
+  /// m, of a pair that is nearer than its thickness.
+  double deepest(ContactParticles& particles, const BodyClock& clock, Team& team) {
+    if (empty()) return 0;
+    return std::max(late_depth_, response_.deepest(scene(particles, clock), near_, team));
+  }
+  const ContactImpulses& impulses() const { return impulses_; }
+  /// Left are triangles that cross, and particles inside.
+  RescueReport failures() const {
+    RescueReport report = failures_;
+    report.left = tangles_.count();
+    return report;
+  }
+  int count_touching() const;
+  void read_touching(const ContactParticles& particles, const BodyClock& clock,
+                     std::vector<BodyTouch>& touches) const;
+  const Misplaced& misplaced() const { return tangles_.misplaced(); }
+  std::size_t bytes() const;
+
+ private:
+  ContactScene scene(ContactParticles& particles, const BodyClock& clock) {
+    return {model_, clock, points_, particles, impulses_, tangles_};
+  }
+  void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
+                      Team& team);
+  bool still_holds(const ContactParticles& particles, const BodyClock& clock) const;
+  double interval_for(const BodyClock& clock) const;
+  bool push_late_apart(const ContactScene& scene, Team& team);
+  void expect_failures(const ContactScene& scene);
+
+  const Model& model_;
+  ContactPoints points_;
+  CandidateSearch search_;
+  NearSearch near_search_;
+  Response response_;
+  Verification verification_;
+  Candidates candidates_;
+  Near near_;
+  ContactImpulses impulses_;
+  RescueReport failures_;
+  bool is_new_ = false;    // tangles are not known yet
+  int left_ = 0;           // substeps of the present interval
+  double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
+  double interval_ = 0;    // s
+  Tangles tangles_;
+};
+
+}  // namespace weft

@@ -1,0 +1,268 @@
+#include "engine/contact/respond.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/bytes_of.h"
+#include "engine/contact/look.h"
+
+namespace weft {
+
+using kernels::kLanes;
+using kernels::Vector;
+
+/// Its points where the substep began and where they are, and how it stands to its thickness.
+struct Response::Encounter {
+  std::array<std::uint32_t, 4> points{};
+  std::array<ContactParticle, 4> at{};
+  FourPoints start{}, x{};
+  reference::Nearest nearest{};
+  Vector normal{};        // from the second feature to the first, where both were on their sides
+  double gap = 0;         // m
+  bool is_under = false;  // one is on the wrong side of the other
+  bool pushes = false;
+
+  FourPoints at_share(double share) const {
+    FourPoints there;
+    for (std::size_t k = 0; k < 4; ++k) there[k] = start[k] + share * (x[k] - start[k]);
+    return there;
+  }
+};
+
+namespace {
+
+/// The sine by which a neighbour may stand out of a pair that pushes.
+constexpr double kLean = 0.02;
+
+double volume(PairKind kind, const FourPoints& x) {
+  if (kind == PairKind::edges) return dot(cross(x[1] - x[0], x[3] - x[2]), x[2] - x[0]);
+  return dot(cross(x[2] - x[1], x[3] - x[1]), x[0] - x[1]);
+}
+
+/// The share of a substep at which the four points of a pair lie in one plane: where the volume
+/// that they span, which has different signs at both ends, is 0. (Regula falsi, Illinois.)
+double time_in_plane(PairKind kind, const auto& pair, double before, double after) {
+  double from = 0, to = 1, at_from = before, at_to = after, share = 0;
+  for (int i = 0; i < 16; ++i) {
+    share = from + (to - from) * at_from / (at_from - at_to);
+    const double here = volume(kind, pair.at_share(share));
+    if (here == 0) return share;
+    if ((here > 0) == (at_to > 0)) {
+      to = share;
+      at_to = here;
+      at_from *= 0.5;
+    } else {
+      from = share;
+      at_from = here;
+      at_to *= 0.5;
+    }
+  }
+  return share;
+}
+
+/// Whether the features went through each other in this substep: where their points lie in a plane
+/// they are at one place.
+bool has_crossed(PairKind kind, const auto& pair, double thickness) {
+  const double before = volume(kind, pair.start), after = volume(kind, pair.x);
+  if ((before > 0) == (after > 0)) return false;
+  const double share = time_in_plane(kind, pair, before, after);
+  constexpr double kTogether = 0.01;  // of the thickness
+  return length(nearest(kind, pair.at_share(share)).r) < kTogether * thickness + 1e-9;
+}
+
+/// Whether one feature is on the wrong side of the other. r: between them as they are; side: the
+/// normal as last seen. A feature beyond it went through in this substep, or was under when it
+/// began; else it went around an edge.
+bool is_now_under(PairKind kind, const auto& pair, Vector r, Vector side, bool was_under,
+                  double thickness) {
+  if (dot(r, side) > 0) return false;
+  const Vector before = nearest(kind, pair.start).r;
+  if (was_under && dot(before, side) <= 0) return true;
+  if (length(before) <= kTouching) return dot(r, side) < -kTouching;  // else it slid along
+  return has_crossed(kind, pair, thickness);
+}
+
+}  // namespace
+
+double least_weight(const ContactPoints& points, const std::array<std::uint32_t, 4>& four) {
+  constexpr double kLeast = 0.05;
+  return kLeast * points.largest_inverse_mass(four);
+}
+
+void Response::begin(const ContactScene& scene, const Near& near) {
+  for (const std::uint32_t point : asked_) is_asked_[point] = false;
+  asked_.clear();
+  for (std::size_t list = 0; list < kPairLists; ++list) {
+    touching_[list].assign(near[list].list.blocks.size(), 0);
+    for (std::size_t i = 0; i < near[list].list.size(); ++i) {
+      for (const std::uint32_t point : near[list].list.points(i)) {
+        if (point >= is_asked_.size()) is_asked_.resize(point + 1);
+        if (is_asked_[point]) continue;
+        is_asked_[point] = true;
+        asked_.push_back(point);
+      }
+    }
+  }
+  scene.points.ask_for(asked_);
+  first_link_.resize(scene.model.slots(), kNoIndex);
+}
+
+void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near) {
+  points.place_vertices_asked(clock);
+  for (NearPairs& pairs : near) {
+    for (NearState& state : pairs.states) {
+      state.is_touching = false;
+      state.push = 0;
+      state.grip = {};
+    }
+  }
+  for (const std::uint32_t slot : linked_) first_link_[slot] = kNoIndex;
+  linked_.clear();
+  links_.clear();
+}
+
+void Response::find_touching(const ContactScene& scene, Near& near, Team& team) {
+  scene.points.read_cloth(scene.particles);
+  for (std::size_t list = 0; list < kPairLists; ++list) {
+    NearPairs& pairs = near[list];
+    const simd::PairTouch touch{.pairs = pairs.list.blocks.data(),
+                                .points = scene.points.places(),
+                                .sides = pairs.sides.data(),
+                                .touching = touching_[list].data()};
+    team.for_each_share(pairs.list.blocks.size(), [&](std::size_t first, std::size_t last) {
+      table_.touch_pairs(touch, has_edges(list), first, last);
+    });
+  }
+}
+
+/// Where neighbours are nearer, or the features are not beside each other, it does not push.
+Response::Encounter Response::meet(const ContactScene& scene, const NearPairs& near,
+                                   std::size_t i) {
+  const Pair& pair = near.list.pairs[i];
+  Encounter e{.points = near.list.points(i)};
+  for (std::size_t k = 0; k < 4; ++k) {
+    e.at[k] = scene.read(e.points[k]);
+    e.start[k] = e.at[k].start;
+    e.x[k] = e.at[k].x;
+  }
+  const double thickness = scene.points.later(pair).thickness;
+  e.nearest = nearest(pair.kind, e.x);
+  const double l = length(e.nearest.r);
+  const Vector direct = l > kTouching ? (1 / l) * e.nearest.r : near.normal(i);
+  e.is_under =
+      is_now_under(pair.kind, e, e.nearest.r, near.normal(i), near.states[i].is_under, thickness);
+  e.normal = e.is_under ? -1.0 * direct : direct;
+  e.gap = (e.is_under ? -l : l) - thickness;
+  if (!(e.gap < 0) || !is_in_place(pair.kind, e.nearest)) return e;
+  const Vector seen = pair.kind == PairKind::edges ? e.normal : direct;
+  e.pushes = !is_ghost(scene.points.surfaces(), pair, e.x, e.nearest, seen, kLean,
+                       [&](std::uint32_t point) { return scene.now(point); });
+  return e;
+}
+
+bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i) {
+  const Pair& pair = near.list.pairs[i];
+  NearState& state = near.states[i];
+  const Encounter e = meet(scene, near, i);
+  state.is_under = e.is_under;
+  near.set_normal(i, e.normal);
+  if (!e.pushes) return false;
+  Vector slip{};
+  double weight = 0;  // sum of W w^2
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double w = e.nearest.weight[k];
+    slip = slip + w * (e.x[k] - e.start[k]);
+    weight += scene.points.inverse_mass(e.points[k]) * w * w;
+  }
+  if (!(weight > 0)) return false;
+  weight = std::max(weight, least_weight(scene.points, e.points));
+  const ContactSurface& later = scene.points.later(pair);
+  const reference::Stop stop =
+      reference::stop({e.normal, e.gap, slip}, later.friction, scene.clock.h(), state.grip);
+  if (!(stop.push > 0)) return false;
+  state.is_touching = true;
+  state.push += stop.push;
+  push(scene, e, pair, stop, weight, state.grip);
+  return true;
+}
+
+/// Moves what can move, and loads the body.
+void Response::push(const ContactScene& scene, const Encounter& e, const Pair& pair,
+                    const reference::Stop& stop, double weight, reference::Grip& grip) {
+  const ContactSurface& later = scene.points.later(pair);
+  TouchedSurface surface{.body = later.body};
+  Vector relative{}, on_body{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double w = e.nearest.weight[k], outward = pair.outward() * w;
+    relative = relative + w * e.at[k].v;
+    if (scene.points.is_of_cloth(e.points[k])) continue;
+    surface.velocity = surface.velocity - outward * e.at[k].v;
+    on_body = on_body - outward * e.x[k];
+  }
+  const reference::Slowed slow = reference::slow(e.normal, relative, later.friction, grip);
+  Vector impulse{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k];
+    if (share == 0) continue;
+    const double part = share / weight;
+    ContactParticle p = e.at[k];
+    p.start = p.start + (part * stop.comes_out) * e.normal;
+    p.x = p.x + part * stop.by;
+    p.v = p.v + part * slow.change;
+    scene.particles.write(e.points[k], p);
+    scene.particles.touch(e.points[k], surface);
+    const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
+    impulse = impulse + (momentum * part) * slow.change;
+  }
+  scene.impulses.add(later.body, scene.clock.motions()[later.body].to.centre, on_body, impulse,
+                     surface.velocity);
+  const double l_change = length(slow.change);
+  if (l_change > 0) {
+    scene.impulses.friction +=
+        length(impulse) / l_change * slow.taken * (stop.slid / scene.clock.h());
+  }
+}
+
+void Response::remember(const ContactScene& scene, NearPairs& near, std::size_t list,
+                        std::size_t i) {
+  for (const std::uint32_t point : near.list.points(i)) {
+    if (!scene.points.is_of_cloth(point)) continue;
+    bool is_known = false;
+    for (std::uint32_t link = first_link_[point]; link != kNoIndex && !is_known;
+         link = links_[link].next)
+      is_known = links_[link].list == list && links_[link].pair == i;
+    if (is_known) continue;
+    if (first_link_[point] == kNoIndex) linked_.push_back(point);
+    links_.push_back(
+        {static_cast<std::uint32_t>(list), static_cast<std::uint32_t>(i), first_link_[point]});
+    first_link_[point] = static_cast<std::uint32_t>(links_.size() - 1);
+  }
+}
+
+bool Response::hold(const ContactScene& scene, Near& near, std::uint32_t slot) {
+  bool is_pushed = false;
+  for (std::uint32_t link = slot < first_link_.size() ? first_link_[slot] : kNoIndex;
+       link != kNoIndex; link = links_[link].next) {
+    is_pushed = resist(scene, near[links_[link].list], links_[link].pair) || is_pushed;
+  }
+  return is_pushed;
+}
+
+double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
+  find_touching(scene, near, team);
+  double deepest = 0;
+  for (std::size_t list = 0; list < kPairLists; ++list) {
+    for_each_touching(list, [&](std::size_t i) {
+      const Encounter e = meet(scene, near[list], i);
+      if (e.pushes) deepest = std::max(deepest, -e.gap);
+    });
+  }
+  return deepest;
+}
+
+std::size_t Response::bytes() const {
+  return bytes_of(touching_[0]) + bytes_of(touching_[1]) + bytes_of(asked_) +
+         is_asked_.capacity() / 8 + bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
+}
+
+}  // namespace weft

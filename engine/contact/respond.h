@@ -1,0 +1,114 @@
+/// Stages 4 to 6 of an interval: in each substep, after the cloth has been swept, pairs that are
+/// nearer than the thickness are pushed apart, with friction, along normals of that very moment.
+/// Lanes find them; they are few, and are treated one after the other, so that what touches in many
+/// places is pushed no farther than it must.
+///
+/// A touch does what it does with closed forms (kernels/reference/bodies.h): it stops what came
+/// nearer in this substep, lets what was deeper come out slowly and without speed, and gives
+/// friction what Coulomb's law allows of this substep's push. Here it acts on two features, whose
+/// points count by w_i: each is moved by W_i w_i / sum of W_j w_j^2 times that, with W_i its
+/// inverse mass. Points of bodies have none: what they do not take loads the body.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "engine/contact/near_pairs.h"
+#include "engine/contact/scene.h"
+#include "engine/parallel/team.h"
+#include "engine/tuning.h"
+
+namespace weft {
+
+/// 1/kg: a lower bound for the sum of W w^2. Where a feature is fixed but for a particle that has a
+/// small part in its nearest point, that particle is not thrown far for it.
+double least_weight(const ContactPoints& points, const std::array<std::uint32_t, 4>& four);
+
+class Response {
+ public:
+  explicit Response(const simd::Table& table) : table_(table) {}
+
+  /// Of an interval.
+  void begin(const ContactScene& scene, const Near& near);
+  /// Of a substep.
+  void advance(const BodyClock& clock, ContactPoints& points, Near& near);
+  /// Over all pairs. moved(slot, by): by how much (m).
+  template <class Moved>
+  void sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved);
+  /// Over pairs of the slot that have touched in this substep. Returns whether one was pushed.
+  bool hold(const ContactScene& scene, Near& near, std::uint32_t slot);
+  /// Slots that have touched in this substep.
+  const std::vector<std::uint32_t>& touching() const { return linked_; }
+  /// m, by which a pair is nearer than its thickness.
+  double deepest(const ContactScene& scene, Near& near, Team& team);
+  std::size_t bytes() const;
+
+ private:
+  /// A sweep goes through all pairs of one turn, then through those of the next.
+  enum class Turn : std::uint8_t { points, edges, points_of_bodies };
+  static Turn turn_of(const Pair& pair) {
+    if (pair.kind == PairKind::edges) return Turn::edges;
+    return pair.is_turned() ? Turn::points_of_bodies : Turn::points;
+  }
+  /// A pair in the present substep.
+  struct Encounter;
+  static Encounter meet(const ContactScene& scene, const NearPairs& near, std::size_t i);
+  template <class Visit>
+  void for_each_touching(std::size_t list, Visit&& visit) const;
+  template <class Moved>
+  void push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved);
+  /// Returns whether it was pushed apart.
+  static bool resist(const ContactScene& scene, NearPairs& near, std::size_t i);
+  static void push(const ContactScene& scene, const Encounter& e, const Pair& pair,
+                   const reference::Stop& stop, double weight, reference::Grip& grip);
+  void find_touching(const ContactScene& scene, Near& near, Team& team);
+  void remember(const ContactScene& scene, NearPairs& near, std::size_t list, std::size_t i);
+
+  const simd::Table& table_;
+  std::array<std::vector<std::uint16_t>, kPairLists> touching_;  // per block, a bit per lane
+  std::vector<std::uint32_t> asked_;                             // points of near pairs
+  std::vector<bool> is_asked_;                                   // per point
+  /// Pairs that have touched in this substep, in lists by slot.
+  struct Link {
+    std::uint32_t list = 0, pair = 0, next = 0;
+  };
+  std::vector<std::uint32_t> first_link_;  // per slot
+  std::vector<Link> links_;
+  std::vector<std::uint32_t> linked_;  // slots
+};
+
+/// visit(i), of each pair of the list that the lanes found.
+template <class Visit>
+void Response::for_each_touching(std::size_t list, Visit&& visit) const {
+  for (std::size_t block = 0; block < touching_[list].size(); ++block) {
+    for (std::uint32_t bits = touching_[list][block]; bits != 0; bits &= bits - 1)
+      visit(block * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits)));
+  }
+}
+
+/// Particles first: of a pair that is a mean of several, which a push moves all at once, the
+/// corners are then where they may be, and what lies flat has nothing left to push.
+template <class Moved>
+void Response::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved) {
+  find_touching(scene, near, team);
+  for (int round = 0; round < tuning::kMeshRounds; ++round) {
+    for (const Turn turn : {Turn::points, Turn::edges, Turn::points_of_bodies})
+      push_apart(scene, near, turn, moved);
+  }
+}
+
+template <class Moved>
+void Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved) {
+  const std::size_t list = turn == Turn::edges ? 1 : 0;
+  for_each_touching(list, [&](std::size_t i) {
+    if (turn_of(near[list].list.pairs[i]) != turn || !resist(scene, near[list], i)) return;
+    remember(scene, near[list], list, i);
+    for (const std::uint32_t point : near[list].list.points(i)) {
+      if (scene.points.is_of_cloth(point)) moved(point, near[list].states[i].push);
+    }
+  });
+}
+
+}  // namespace weft
