@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "engine/contact/contact_particles.h"
+#include "engine/contact/particles.h"
 
 namespace weft {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/bodies/bodies.h"
-#include "engine/contact/fail_safe_report.h"
+#include "engine/contact/rescue_report.h"
 
 namespace weft {
 
@@ -20,7 +20,7 @@ struct BodyReport {
   double work = 0;                    // J, that bodies did on the cloth
   double friction = 0;                // J, that friction took
   int contacts = 0;                   // when the last substep ended
-  FailSafeReport failures;            // of meshes
+  RescueReport failures;            // of meshes
 
   void clear() {
     impulses.clear();

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "engine/contact/mesh_contacts.h"
+#include "engine/contact/interval.h"
 #include "engine/solvers/small_steps/body_report.h"
 
 namespace weft {
@@ -44,13 +44,13 @@ inline void add(const ContactImpulses& impulses, const BodyClock& clock, BodyRep
 }
 
 /// Adds what meshes have done.
-inline void add_report(const MeshContacts& meshes, const BodyClock& clock, BodyReport& report) {
+inline void add_report(const SurfaceContacts& meshes, const BodyClock& clock, BodyReport& report) {
   if (meshes.empty()) return;
   add(meshes.impulses(), clock, report);
   report.contacts += meshes.count_touching();
   report.failures = meshes.failures();
 }
-inline void add_touches(const MeshContacts& meshes, const ContactParticles& particles,
+inline void add_touches(const SurfaceContacts& meshes, const ContactParticles& particles,
                         const BodyClock& clock, std::vector<BodyTouch>& contacts) {
   if (meshes.empty()) return;
   std::vector<MeshTouch> touches;

@@ -1,7 +1,7 @@
 /// Particles of small steps as contacts with meshes see them, in lanes and in double.
 #pragma once
 
-#include "engine/contact/contact_particles.h"
+#include "engine/contact/particles.h"
 
 namespace weft {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/bodies/body_clock.h"
-#include "engine/contact/mesh_contacts.h"
+#include "engine/contact/interval.h"
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/body_report.h"
 
@@ -27,8 +27,8 @@ class ReferenceBodies {
   /// part: of h, by the scheme.
   void advance(double part, ContactParticles& particles, Team& team);
   bool has_meshes() const { return !meshes_.empty(); }
-  MeshContacts& meshes() { return meshes_; }
-  const MeshContacts& meshes() const { return meshes_; }
+  SurfaceContacts& meshes() { return meshes_; }
+  const SurfaceContacts& meshes() const { return meshes_; }
   const BodyClock& clock() const { return clock_; }
   /// After the particles were held one by one, by meshes. moved(slot, by): by how much (m).
   template <class Moved>
@@ -65,7 +65,7 @@ class ReferenceBodies {
 
   const Model& model_;
   BodyClock clock_;
-  MeshContacts meshes_;
+  SurfaceContacts meshes_;
   double momentum_share_ = 1;
   std::vector<reference::Grip> grips_;  // per slot and body
   Touching on_, before_;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/bodies/body_clock.h"
-#include "engine/contact/mesh_contacts.h"
+#include "engine/contact/interval.h"
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/body_layout.h"
@@ -60,7 +60,7 @@ class SimdBodies {
   }
   /// As ContactParticles::momentum_share().
   double momentum_share() const { return momentum_share_; }
-  const MeshContacts& meshes() const { return meshes_; }
+  const SurfaceContacts& meshes() const { return meshes_; }
   /// Of one particle. Returns the surface that it touches, the last of several, if there is one.
   TouchedSurface hold(std::uint32_t slot, Particle& particle);
   /// After that: whether it did not in this substep before, and not when the last one ended.
@@ -121,7 +121,7 @@ class SimdBodies {
   const double contact_tolerance_;  // m
   const simd::Table& table_;
   BodyClock clock_;
-  MeshContacts meshes_;
+  SurfaceContacts meshes_;
   BodyLayout layout_;  // made when the first body is there
   double h_ = 0;
   double momentum_share_ = 1;

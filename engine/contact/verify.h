@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "engine/contact/contact_sweep.h"
+#include "engine/contact/respond.h"
 
 namespace weft {
 
@@ -25,20 +25,20 @@ class Verification {
   explicit Verification(const simd::Table& table) : table_(table) {}
 
   /// Moves are measured. Points that left their boxes have new candidates.
-  void find(const ContactScene& scene, const BroadPhase& broad, NarrowPhase& narrow,
+  void find(const ContactScene& scene, const CandidateSearch& broad, NearSearch& narrow,
             Candidates& candidates, Team& team);
   const std::vector<Failure>& failures() const { return failures_; }
   /// Instead, pairs that have met no other, but have come nearer than their thickness where nothing
   /// was expected: time is 1.
-  void find_late(const ContactScene& scene, NarrowPhase& narrow, const Candidates& candidates,
+  void find_late(const ContactScene& scene, NearSearch& narrow, const Candidates& candidates,
                  Team& team);
 
  private:
-  void find_moved(const ContactScene& scene, const NarrowPhase& narrow,
-                  const Candidates& candidates, std::uint32_t list, double near, Team& team);
+  void find_moved(const ContactScene& scene, const NearSearch& narrow, const Candidates& candidates,
+                  std::uint32_t list, double near, Team& team);
   void leave_each_once(const Candidates& candidates);
-  void look_beside_strayed(const ContactScene& scene, const BroadPhase& broad, NarrowPhase& narrow,
-                           Candidates& candidates, Team& team);
+  void look_beside_strayed(const ContactScene& scene, const CandidateSearch& broad,
+                           NearSearch& narrow, Candidates& candidates, Team& team);
 
   const simd::Table& table_;
   std::vector<Failure> failures_;

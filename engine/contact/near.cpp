@@ -1,9 +1,9 @@
-#include "engine/contact/narrow_phase.h"
+#include "engine/contact/near.h"
 
 #include <algorithm>
 
 #include "engine/bytes_of.h"
-#include "engine/contact/geometry.h"
+#include "engine/contact/look.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -37,7 +37,7 @@ void NearPairs::set_normal(std::size_t i, Vector normal) {
   n.z[lane] = static_cast<float>(normal.z);
 }
 
-void NarrowPhase::measure(const ContactPoints& points, const Candidates& candidates, Team& team) {
+void NearSearch::measure(const ContactPoints& points, const Candidates& candidates, Team& team) {
   for (std::size_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
     Distances& to = distances_[list];
@@ -59,9 +59,8 @@ void NarrowPhase::measure(const ContactPoints& points, const Candidates& candida
   }
 }
 
-void NarrowPhase::find_near(const Model& model, ContactPoints& points, const Candidates& candidates,
-                            Near& near, const Misplaced& misplaced,
-                            const Crossings& crossings) const {
+void NearSearch::find_near(const Model& model, ContactPoints& points, const Candidates& candidates,
+                           Near& near, const Misplaced& misplaced, const Tangles& tangles) const {
   for (std::size_t list = 0; list < kPairLists; ++list) {
     near[list].clear();
     const PairList& pairs = candidates[list];
@@ -74,7 +73,7 @@ void NarrowPhase::find_near(const Model& model, ContactPoints& points, const Can
       });
       // Faces and edges between particles that are inside follow these.
       if (inside && pair.kind != PairKind::particle_triangle) continue;
-      if (crossings.leaves_out(pair)) continue;
+      if (tangles.leaves_out(pair)) continue;
       kernels::Vector normal{};
       bool is_under = false;
       if (!see(model, points, pair, four, inside, normal, is_under)) continue;
@@ -83,8 +82,8 @@ void NarrowPhase::find_near(const Model& model, ContactPoints& points, const Can
   }
 }
 
-bool NarrowPhase::can_move(const Model& model, const Pair& pair,
-                           const std::array<std::uint32_t, 4>& points) {
+bool NearSearch::can_move(const Model& model, const Pair& pair,
+                          const std::array<std::uint32_t, 4>& points) {
   const auto is_free = [&](std::uint32_t slot) { return model.inverse_mass[slot] > 0; };
   switch (pair.kind) {
     case PairKind::particle_triangle:
@@ -99,8 +98,8 @@ bool NarrowPhase::can_move(const Model& model, const Pair& pair,
 
 /// Candidates are those of hulls. So that what is near depends on the state alone, and not on when
 /// candidates were looked for, boxes of this interval are to meet.
-bool NarrowPhase::may_meet(const ContactPoints& points, PairKind kind,
-                           const std::array<std::uint32_t, 4>& four) {
+bool NearSearch::may_meet(const ContactPoints& points, PairKind kind,
+                          const std::array<std::uint32_t, 4>& four) {
   const std::size_t firsts = kind == PairKind::edges ? 2 : 1;
   Box first = points.box(four[0]), second = points.box(four[3]);
   for (std::size_t k = 1; k < 3; ++k) (k < firsts ? first : second).add(points.box(four[k]));
@@ -109,8 +108,8 @@ bool NarrowPhase::may_meet(const ContactPoints& points, PairKind kind,
 
 /// m, by which two features come nearer to each other along n at most, if their points go on as
 /// expected, but for their reach.
-double NarrowPhase::closing(const ContactPoints& points, PairKind kind,
-                            const std::array<std::uint32_t, 4>& four, Vector n) {
+double NearSearch::closing(const ContactPoints& points, PairKind kind,
+                           const std::array<std::uint32_t, 4>& four, Vector n) {
   const auto by = [&](std::size_t k) { return dot(n, points.way(four[k])); };
   const bool edges = kind == PairKind::edges;
   const double first = edges ? std::min(by(0), by(1)) : by(0);
@@ -120,9 +119,9 @@ double NarrowPhase::closing(const ContactPoints& points, PairKind kind,
   return std::max(0.0, second - first) + reach;
 }
 
-bool NarrowPhase::see(const Model& model, ContactPoints& points, const Pair& pair,
-                      const std::array<std::uint32_t, 4>& four, bool is_inside, Vector& normal,
-                      bool& is_under) {
+bool NearSearch::see(const Model& model, ContactPoints& points, const Pair& pair,
+                     const std::array<std::uint32_t, 4>& four, bool is_inside, Vector& normal,
+                     bool& is_under) {
   if (!can_move(model, pair, four) || !may_meet(points, pair.kind, four)) return false;
   const auto at = [&](std::uint32_t point) { return points.start(point); };
   const FourPoints x{at(four[0]), at(four[1]), at(four[2]), at(four[3])};
@@ -148,7 +147,7 @@ bool NarrowPhase::see(const Model& model, ContactPoints& points, const Pair& pai
   return true;
 }
 
-std::size_t NarrowPhase::bytes() const {
+std::size_t NearSearch::bytes() const {
   std::size_t bytes = 0;
   for (const Distances& d : distances_) bytes += bytes_of(d.distance) + bytes_of(d.near);
   return bytes;

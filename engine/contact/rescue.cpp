@@ -1,10 +1,10 @@
-#include "engine/contact/fail_safe.h"
+#include "engine/contact/rescue.h"
 
 #include <algorithm>
 
-#include "engine/contact/geometry.h"
+#include "engine/contact/look.h"
 
-namespace weft::fail_safe {
+namespace weft::rescue {
 
 using kernels::Vector;
 
@@ -103,21 +103,21 @@ void take_along(const ContactScene& scene, const PairList& pairs, const Failure&
   }
 }
 
-}  // namespace weft::fail_safe
+}  // namespace weft::rescue
 
 namespace weft {
 
-void stop_failures(const ContactScene& scene, const BroadPhase& broad, NarrowPhase& narrow,
+void stop_failures(const ContactScene& scene, const CandidateSearch& broad, NearSearch& narrow,
                    Verification& verification, Candidates& candidates, double time,
-                   FailSafeReport& report, Team& team) {
+                   RescueReport& report, Team& team) {
   constexpr int kBlows = 8, kZones = 12;  // rounds
   report.failures += static_cast<int>(verification.failures().size());
   for (int round = 0; round < kBlows + kZones && !verification.failures().empty(); ++round) {
     for (const Failure& failure : verification.failures()) {
       if (round < kBlows)
-        fail_safe::blow(scene, candidates[failure.list], failure, time);
+        rescue::blow(scene, candidates[failure.list], failure, time);
       else
-        fail_safe::take_along(scene, candidates[failure.list], failure, time);
+        rescue::take_along(scene, candidates[failure.list], failure, time);
     }
     if (round >= kBlows) report.zones += static_cast<int>(verification.failures().size());
     verification.find(scene, broad, narrow, candidates, team);

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/contact/broad_phase.h"
-#include "engine/contact/crossings.h"
+#include "engine/contact/candidates.h"
 #include "engine/contact/misplaced.h"
+#include "engine/contact/tangles.h"
 #include "engine/parallel/team.h"
 #include "kernels/reference/bodies.h"
 
@@ -58,15 +58,15 @@ struct NearPairs {
 };
 using Near = std::array<NearPairs, kPairLists>;
 
-class NarrowPhase {
+class NearSearch {
  public:
-  explicit NarrowPhase(const simd::Table& table) : table_(table) {}
+  explicit NearSearch(const simd::Table& table) : table_(table) {}
 
   void measure(const ContactPoints& points, const Candidates& candidates, Team& team);
   /// Pairs with a surface that the cloth is behind are left out, but for particles that are known
   /// to be inside: the cloth lies beside another surface there.
   void find_near(const Model& model, ContactPoints& points, const Candidates& candidates,
-                 Near& near, const Misplaced& misplaced, const Crossings& crossings) const;
+                 Near& near, const Misplaced& misplaced, const Tangles& tangles) const;
   const std::array<Distances, kPairLists>& distances() const { return distances_; }
   std::array<Distances, kPairLists>& distances() { return distances_; }
   std::size_t bytes() const;

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/contact/contact_points.h"
-#include "engine/contact/pairs.h"
+#include "engine/contact/features.h"
+#include "engine/contact/points.h"
 #include "kernels/reference/distances.h"
 
 namespace weft {

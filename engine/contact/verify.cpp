@@ -1,11 +1,11 @@
-#include "engine/contact/verification.h"
+#include "engine/contact/verify.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <optional>
 
-#include "engine/contact/geometry.h"
+#include "engine/contact/look.h"
 
 namespace weft {
 
@@ -79,7 +79,7 @@ std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, do
 
 }  // namespace
 
-void Verification::find(const ContactScene& scene, const BroadPhase& broad, NarrowPhase& narrow,
+void Verification::find(const ContactScene& scene, const CandidateSearch& broad, NearSearch& narrow,
                         Candidates& candidates, Team& team) {
   failures_.clear();
   look_beside_strayed(scene, broad, narrow, candidates, team);
@@ -95,7 +95,7 @@ void Verification::find(const ContactScene& scene, const BroadPhase& broad, Narr
         const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
         if (i >= pairs.size()) continue;
         const Pair& pair = pairs.pairs[i];
-        if (scene.crossings.leaves_out(pair)) continue;
+        if (scene.tangles.leaves_out(pair)) continue;
         PairMotion way;
         const auto four = pairs.points(i);
         for (std::size_t k = 0; k < 4; ++k) {
@@ -118,7 +118,7 @@ void Verification::find(const ContactScene& scene, const BroadPhase& broad, Narr
 }
 
 /// Which pairs of a list may have come nearer than `near`.
-void Verification::find_moved(const ContactScene& scene, const NarrowPhase& narrow,
+void Verification::find_moved(const ContactScene& scene, const NearSearch& narrow,
                               const Candidates& candidates, std::uint32_t list, double near,
                               Team& team) {
   const PairList& pairs = candidates[list];
@@ -134,7 +134,7 @@ void Verification::find_moved(const ContactScene& scene, const NarrowPhase& narr
   });
 }
 
-void Verification::find_late(const ContactScene& scene, NarrowPhase& narrow,
+void Verification::find_late(const ContactScene& scene, NearSearch& narrow,
                              const Candidates& candidates, Team& team) {
   failures_.clear();
   const ContactPoints& points = scene.points;
@@ -150,7 +150,7 @@ void Verification::find_late(const ContactScene& scene, NarrowPhase& narrow,
         const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
         if (i >= pairs.size()) continue;
         const Pair& pair = pairs.pairs[i];
-        if (scene.crossings.leaves_out(pair)) continue;
+        if (scene.tangles.leaves_out(pair)) continue;
         const ContactMesh& mesh = points.meshes()[pair.mesh];
         const auto four = pairs.points(i);
         const FourPoints x{at(four[0]), at(four[1]), at(four[2]), at(four[3])};
@@ -183,8 +183,8 @@ void Verification::leave_each_once(const Candidates& candidates) {
 
 /// Boxes hold what points were expected to do. Of those that did something else candidates are
 /// found anew, by boxes around the ways of their triangles.
-void Verification::look_beside_strayed(const ContactScene& scene, const BroadPhase& broad,
-                                       NarrowPhase& narrow, Candidates& candidates, Team& team) {
+void Verification::look_beside_strayed(const ContactScene& scene, const CandidateSearch& broad,
+                                       NearSearch& narrow, Candidates& candidates, Team& team) {
   ContactPoints& points = scene.points;
   has_strayed_.assign(points.slots(), 0);
   bool any = false;

@@ -1,10 +1,10 @@
-#include "engine/contact/contact_sweep.h"
+#include "engine/contact/respond.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/bytes_of.h"
-#include "engine/contact/geometry.h"
+#include "engine/contact/look.h"
 
 namespace weft {
 
@@ -106,7 +106,7 @@ double least_weight(const Model& model, const std::array<std::uint32_t, 4>& poin
   return kLeast * lightest;
 }
 
-void ContactSweep::begin(const ContactScene& scene, const Near& near) {
+void Response::begin(const ContactScene& scene, const Near& near) {
   for (const std::uint32_t point : asked_) is_asked_[point] = false;
   asked_.clear();
   for (std::size_t list = 0; list < kPairLists; ++list) {
@@ -124,7 +124,7 @@ void ContactSweep::begin(const ContactScene& scene, const Near& near) {
   first_link_.resize(scene.model.slots(), kNoIndex);
 }
 
-void ContactSweep::advance(const BodyClock& clock, ContactPoints& points, Near& near) {
+void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near) {
   points.place_vertices_asked(clock);
   for (NearPairs& pairs : near) {
     for (NearState& state : pairs.states) {
@@ -138,7 +138,7 @@ void ContactSweep::advance(const BodyClock& clock, ContactPoints& points, Near& 
   links_.clear();
 }
 
-void ContactSweep::find_touching(const ContactScene& scene, Near& near, Team& team) {
+void Response::find_touching(const ContactScene& scene, Near& near, Team& team) {
   scene.points.read_cloth(scene.particles);
   for (std::size_t list = 0; list < kPairLists; ++list) {
     NearPairs& pairs = near[list];
@@ -152,7 +152,7 @@ void ContactSweep::find_touching(const ContactScene& scene, Near& near, Team& te
   }
 }
 
-bool ContactSweep::resist(const ContactScene& scene, NearPairs& near, std::size_t i) {
+bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i) {
   const Pair& pair = near.list.pairs[i];
   NearState& state = near.states[i];
   const ContactMesh& mesh = scene.points.meshes()[pair.mesh];
@@ -222,8 +222,8 @@ bool ContactSweep::resist(const ContactScene& scene, NearPairs& near, std::size_
   return true;
 }
 
-void ContactSweep::remember(const ContactScene& scene, NearPairs& near, std::size_t list,
-                            std::size_t i) {
+void Response::remember(const ContactScene& scene, NearPairs& near, std::size_t list,
+                        std::size_t i) {
   for (const std::uint32_t point : near.list.points(i)) {
     if (!scene.points.is_of_cloth(point)) continue;
     bool is_known = false;
@@ -238,7 +238,7 @@ void ContactSweep::remember(const ContactScene& scene, NearPairs& near, std::siz
   }
 }
 
-bool ContactSweep::hold(const ContactScene& scene, Near& near, std::uint32_t slot) {
+bool Response::hold(const ContactScene& scene, Near& near, std::uint32_t slot) {
   bool is_pushed = false;
   for (std::uint32_t link = slot < first_link_.size() ? first_link_[slot] : kNoIndex;
        link != kNoIndex; link = links_[link].next) {
@@ -247,7 +247,7 @@ bool ContactSweep::hold(const ContactScene& scene, Near& near, std::uint32_t slo
   return is_pushed;
 }
 
-double ContactSweep::deepest(const ContactScene& scene, Near& near, Team& team) {
+double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
   find_touching(scene, near, team);
   double deepest = 0;
   for (std::size_t list = 0; list < kPairLists; ++list) {
@@ -261,8 +261,7 @@ double ContactSweep::deepest(const ContactScene& scene, Near& near, Team& team) 
   return deepest;
 }
 
-double ContactSweep::depth_of(const ContactScene& scene, const NearPairs& near,
-                              std::size_t i) const {
+double Response::depth_of(const ContactScene& scene, const NearPairs& near, std::size_t i) const {
   const Pair& pair = near.list.pairs[i];
   const ContactMesh& mesh = scene.points.meshes()[pair.mesh];
   const Encountered e = look_at(scene, near.list.points(i), scene.clock.motions()[mesh.body].h);
@@ -282,7 +281,7 @@ double ContactSweep::depth_of(const ContactScene& scene, const NearPairs& near,
   return mesh.thickness - (is_under ? -l : l);
 }
 
-std::size_t ContactSweep::bytes() const {
+std::size_t Response::bytes() const {
   return bytes_of(touching_[0]) + bytes_of(touching_[1]) + bytes_of(asked_) +
          is_asked_.capacity() / 8 + bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
 }

@@ -1,4 +1,4 @@
-#include "engine/contact/broad_phase.h"
+#include "engine/contact/candidates.h"
 
 namespace weft {
 namespace {
@@ -80,7 +80,7 @@ class Features {
 
 /// Whether hulls hold, or may be renewed without a new candidate: what flutters far from all bodies
 /// asks for no others.
-bool BroadPhase::still_holds(const TriangleSurface& cloth, ContactPoints& points) {
+bool CandidateSearch::still_holds(const TriangleSurface& cloth, ContactPoints& points) {
   has_moved_.assign(points.slots(), 0);
   bool any = false;
   const bool bodies_hold = points.renew_hulls_of_cloth([&](std::uint32_t slot) {
@@ -102,7 +102,8 @@ bool BroadPhase::still_holds(const TriangleSurface& cloth, ContactPoints& points
   return true;
 }
 
-void BroadPhase::find(const TriangleSurface& cloth, ContactPoints& points, Candidates& candidates) {
+void CandidateSearch::find(const TriangleSurface& cloth, ContactPoints& points,
+                           Candidates& candidates) {
   if (points.has_hulls() && still_holds(cloth, points)) return;
   points.renew_hulls();
   if (!is_built_) tree_ = BoxTree(cloth.in_order);
@@ -126,8 +127,9 @@ void BroadPhase::find(const TriangleSurface& cloth, ContactPoints& points, Candi
   }
 }
 
-void BroadPhase::find_beside(const TriangleSurface& cloth, const ContactPoints& points,
-                             std::uint32_t triangle, const Box& box, Candidates& candidates) const {
+void CandidateSearch::find_beside(const TriangleSurface& cloth, const ContactPoints& points,
+                                  std::uint32_t triangle, const Box& box,
+                                  Candidates& candidates) const {
   for (std::uint16_t i = 0; i < points.meshes().size(); ++i) {
     Features features(cloth, points, i, candidates);
     points.meshes()[i].tree.find(table_, box, [&](std::uint32_t other) {

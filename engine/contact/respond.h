@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "engine/bodies/bodies.h"
-#include "engine/contact/contact_particles.h"
-#include "engine/contact/crossings.h"
 #include "engine/contact/misplaced.h"
-#include "engine/contact/narrow_phase.h"
+#include "engine/contact/near.h"
+#include "engine/contact/particles.h"
+#include "engine/contact/tangles.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -54,7 +54,7 @@ struct ContactScene {
   ContactParticles& particles;
   ContactImpulses& impulses;
   const Misplaced& misplaced;
-  const Crossings& crossings;
+  const Tangles& tangles;
 };
 
 /// 1/kg: a lower bound for the sum of W w^2. Where a feature is fixed but for a particle that has a
@@ -62,9 +62,9 @@ struct ContactScene {
 double least_weight(const Model& model, const std::array<std::uint32_t, 4>& points,
                     const ContactPoints& of);
 
-class ContactSweep {
+class Response {
  public:
-  explicit ContactSweep(const simd::Table& table) : table_(table) {}
+  explicit Response(const simd::Table& table) : table_(table) {}
 
   /// Of an interval.
   void begin(const ContactScene& scene, const Near& near);
@@ -106,7 +106,7 @@ class ContactSweep {
 /// Particles first: of a pair that is a mean of several, which a push moves all at once, the
 /// corners are then where they may be, and what lies flat has nothing left to push.
 template <class Moved>
-void ContactSweep::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved) {
+void Response::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved) {
   find_touching(scene, near, team);
   for (int round = 0; round < tuning::kMeshRounds; ++round) {
     for (const PairKind kind :
@@ -116,7 +116,7 @@ void ContactSweep::sweep(const ContactScene& scene, Near& near, Team& team, Move
 }
 
 template <class Moved>
-void ContactSweep::push_apart(const ContactScene& scene, Near& near, PairKind kind, Moved& moved) {
+void Response::push_apart(const ContactScene& scene, Near& near, PairKind kind, Moved& moved) {
   const std::size_t list = list_of(kind);
   for (std::size_t block = 0; block < touching_[list].size(); ++block) {
     for (std::uint32_t bits = touching_[list][block]; bits != 0; bits &= bits - 1) {

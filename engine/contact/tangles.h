@@ -8,14 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "engine/contact/contact_points.h"
-#include "engine/contact/pairs.h"
+#include "engine/contact/features.h"
+#include "engine/contact/points.h"
 
 namespace weft {
 
-class Crossings {
+class Tangles {
  public:
-  explicit Crossings(const simd::Table& table) : table_(table) {}
+  explicit Tangles(const simd::Table& table) : table_(table) {}
 
   /// Of a frame. slots: those of the frame before, when it was over.
   void begin(const TriangleSurface& cloth, std::span<const std::uint32_t> slots);

@@ -1,4 +1,4 @@
-#include "engine/contact/contact_points.h"
+#include "engine/contact/points.h"
 
 #include <algorithm>
 #include <cmath>

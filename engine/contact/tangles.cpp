@@ -1,11 +1,11 @@
-#include "engine/contact/crossings.h"
+#include "engine/contact/tangles.h"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
 #include "engine/bytes_of.h"
-#include "engine/contact/geometry.h"
+#include "engine/contact/look.h"
 
 namespace weft {
 
@@ -38,7 +38,7 @@ bool edges_lead_through(const Corners& edges, const Corners& triangle) {
 
 }  // namespace
 
-void Crossings::begin(const TriangleSurface& cloth, std::span<const std::uint32_t> slots) {
+void Tangles::begin(const TriangleSurface& cloth, std::span<const std::uint32_t> slots) {
   forget();
   cloth_ = &cloth;
   slots_.assign(slots.begin(), slots.end());
@@ -49,7 +49,7 @@ void Crossings::begin(const TriangleSurface& cloth, std::span<const std::uint32_
   }
 }
 
-void Crossings::forget() {
+void Tangles::forget() {
   for (const std::uint32_t t : triangles_) {
     has_triangle_[t] = false;
     for (const std::uint32_t edge : cloth_->edges_of[t]) has_edge_[edge] = false;
@@ -57,7 +57,7 @@ void Crossings::forget() {
   triangles_.clear();
 }
 
-void Crossings::add(std::uint32_t triangle) {
+void Tangles::add(std::uint32_t triangle) {
   has_triangle_.resize(cloth_->triangles.size());
   has_edge_.resize(cloth_->edges.size());
   has_triangle_[triangle] = true;
@@ -65,7 +65,7 @@ void Crossings::add(std::uint32_t triangle) {
   triangles_.push_back(triangle);
 }
 
-void Crossings::gather_slots() {
+void Tangles::gather_slots() {
   slots_.clear();
   for (const std::uint32_t t : triangles_)
     slots_.insert(slots_.end(), cloth_->triangles[t].begin(), cloth_->triangles[t].end());
@@ -75,7 +75,7 @@ void Crossings::gather_slots() {
 }
 
 template <class At>
-bool Crossings::crosses(const ContactPoints& points, std::uint32_t triangle, At&& at) const {
+bool Tangles::crosses(const ContactPoints& points, std::uint32_t triangle, At&& at) const {
   const auto [a, b, c] = cloth_->triangles[triangle];
   const Corners corners{at(a), at(b), at(c)};
   Box box = Box::none();
@@ -98,7 +98,7 @@ bool Crossings::crosses(const ContactPoints& points, std::uint32_t triangle, At&
   return does;
 }
 
-void Crossings::find(const ContactPoints& points, Moment moment) {
+void Tangles::find(const ContactPoints& points, Moment moment) {
   forget();
   const bool begins = moment == Moment::start;
   const auto at = [&](std::uint32_t p) { return begins ? points.start(p) : points.end(p); };
@@ -108,7 +108,7 @@ void Crossings::find(const ContactPoints& points, Moment moment) {
   gather_slots();
 }
 
-std::size_t Crossings::bytes() const {
+std::size_t Tangles::bytes() const {
   return bytes_of(triangles_) + bytes_of(slots_) +
          (has_triangle_.capacity() + has_edge_.capacity()) / 8;
 }

@@ -6,17 +6,17 @@
 
 #include <array>
 
-#include "engine/contact/contact_points.h"
-#include "engine/contact/pairs.h"
+#include "engine/contact/features.h"
+#include "engine/contact/points.h"
 
 namespace weft {
 
 /// Candidates, by lists of pairs.
 using Candidates = std::array<PairList, kPairLists>;
 
-class BroadPhase {
+class CandidateSearch {
  public:
-  explicit BroadPhase(const simd::Table& table) : table_(table) {}
+  explicit CandidateSearch(const simd::Table& table) : table_(table) {}
 
   /// Where hulls no longer hold: renews them, refits all trees, and finds the candidates.
   void find(const TriangleSurface& cloth, ContactPoints& points, Candidates& candidates);

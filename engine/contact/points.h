@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/bodies/body_clock.h"
-#include "engine/contact/contact_particles.h"
+#include "engine/contact/particles.h"
 #include "engine/contact/side_normals.h"
 #include "engine/model/model.h"
 #include "engine/triangles/box_tree.h"

@@ -4,23 +4,23 @@
 /// to it: a rigid impact zone (Bridson, Fedkiw and Anderson, 2002) whose motion is the body's.
 #pragma once
 
-#include "engine/contact/fail_safe_report.h"
-#include "engine/contact/verification.h"
+#include "engine/contact/rescue_report.h"
+#include "engine/contact/verify.h"
 
 namespace weft {
 
 /// Until all is verified, or its rounds are over: then failures are left.
-void stop_failures(const ContactScene& scene, const BroadPhase& broad, NarrowPhase& narrow,
+void stop_failures(const ContactScene& scene, const CandidateSearch& broad, NearSearch& narrow,
                    Verification& verification, Candidates& candidates, double time,
-                   FailSafeReport& report, Team& team);
+                   RescueReport& report, Team& team);
 
-namespace fail_safe {
+namespace rescue {
 
 /// time: s, of the interval.
 void blow(const ContactScene& scene, const PairList& pairs, const Failure& failure, double time);
 void take_along(const ContactScene& scene, const PairList& pairs, const Failure& failure,
                 double time);
 
-}  // namespace fail_safe
+}  // namespace rescue
 
 }  // namespace weft

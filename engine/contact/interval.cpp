@@ -1,4 +1,4 @@
-#include "engine/contact/mesh_contacts.h"
+#include "engine/contact/interval.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
-#include "engine/contact/geometry.h"
+#include "engine/contact/look.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -20,7 +20,7 @@ constexpr int kLateRounds = 3;
 
 }  // namespace
 
-void MeshContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
+void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
   points_.begin(model_, clock);
   left_ = 0;
   interval_ = late_depth_ = 0;
@@ -31,17 +31,17 @@ void MeshContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& m
   impulses_.begin(clock.bodies());
   is_new_ = is_new;
   misplaced_ = misplaced;
-  crossings_.begin(*cloth_, misplaced_.crossing);
+  tangles_.begin(*cloth_, misplaced_.crossing);
 }
 
 /// s. Bodies that are fast are looked at more often: on their way they turn, and take cloth along.
-double MeshContacts::interval_for(const BodyClock& clock) const {
+double SurfaceContacts::interval_for(const BodyClock& clock) const {
   const double fastest = points_.fastest(clock);
   const double way = tuning::kMeshWay * points_.largest_thickness();
   return fastest > 0 ? std::min(tuning::kContactInterval, way / fastest) : tuning::kContactInterval;
 }
 
-void MeshContacts::predict(ContactParticles& particles, const BodyClock& clock, Team& team) {
+void SurfaceContacts::predict(ContactParticles& particles, const BodyClock& clock, Team& team) {
   if (empty() || still_holds(particles, clock)) return;
   if (left_ == 0) {
     left_ = clock.stands() ? 1 : clock.substeps_in(interval_for(clock));
@@ -52,35 +52,35 @@ void MeshContacts::predict(ContactParticles& particles, const BodyClock& clock, 
 
 /// Where positions are put right, by any way, until a particle comes to a place that was not
 /// expected.
-bool MeshContacts::still_holds(const ContactParticles& particles, const BodyClock& clock) const {
+bool SurfaceContacts::still_holds(const ContactParticles& particles, const BodyClock& clock) const {
   return clock.stands() && interval_ > 0 && points_.hold(model_, particles);
 }
 
-void MeshContacts::begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
-                                  Team& team) {
+void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyClock& clock,
+                                     int substeps, Team& team) {
   points_.begin_interval(model_, particles, clock, substeps);
-  broad_.find(*cloth_, points_, candidates_);
+  search_.find(*cloth_, points_, candidates_);
   narrow_.measure(points_, candidates_, team);
   if (is_new_) {
     find_inside();
-    crossings_.find(points_, Crossings::Moment::start);
-    misplaced_.crossing = crossings_.slots();
+    tangles_.find(points_, Tangles::Moment::start);
+    misplaced_.crossing = tangles_.slots();
   }
   is_new_ = false;
-  narrow_.find_near(model_, points_, candidates_, near_, misplaced_, crossings_);
+  narrow_.find_near(model_, points_, candidates_, near_, misplaced_, tangles_);
   come_out();
-  sweep_.begin(scene(particles, clock), near_);
+  response_.begin(scene(particles, clock), near_);
   interval_ = substeps * clock.motions().front().h;
 }
 
-void MeshContacts::advance(const BodyClock& clock) {
-  if (!empty()) sweep_.advance(clock, points_, near_);
+void SurfaceContacts::advance(const BodyClock& clock) {
+  if (!empty()) response_.advance(clock, points_, near_);
 }
 
 /// The triangle of the mesh that is nearest to the particle when the interval begins.
-bool MeshContacts::find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pair,
-                                std::array<std::uint32_t, 4>& four,
-                                reference::Nearest& found) const {
+bool SurfaceContacts::find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pair,
+                                   std::array<std::uint32_t, 4>& four,
+                                   reference::Nearest& found) const {
   const ContactMesh& m = points_.meshes()[mesh];
   const Vector x = points_.start(slot), from = x - points_.origin();
   double least = std::numeric_limits<double>::infinity();
@@ -103,7 +103,7 @@ bool MeshContacts::find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pa
   return least < std::numeric_limits<double>::infinity();
 }
 
-void MeshContacts::find_inside() {
+void SurfaceContacts::find_inside() {
   misplaced_.inside.clear();
   for (std::uint32_t slot = 0; slot < points_.slots(); ++slot) {
     if (!model_.is_particle(slot) || model_.inverse_mass[slot] == 0) continue;
@@ -123,7 +123,7 @@ void MeshContacts::find_inside() {
 
 /// Those that are inside are near to the surface that they leave by, however deep they are. Those
 /// that are out are forgotten.
-void MeshContacts::come_out() {
+void SurfaceContacts::come_out() {
   std::erase_if(misplaced_.inside, [&](std::uint32_t slot) {
     bool is_out = true;
     for (std::uint16_t i = 0; i < points_.meshes().size(); ++i) {
@@ -141,7 +141,8 @@ void MeshContacts::come_out() {
   });
 }
 
-bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& clock, Team& team) {
+bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock& clock,
+                                   Team& team) {
   if (empty() || clock.stands() || left_ > 0 || interval_ == 0) return false;
   points_.measure_moves(model_, particles, clock);
   late_depth_ = 0;
@@ -151,23 +152,23 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
     verification_.find_late(scene, narrow_, candidates_, team);
     expect_failures(clock, particles);
     for (const Failure& late : verification_.failures())
-      fail_safe::blow(scene, candidates_[late.list], late, interval_);
+      rescue::blow(scene, candidates_[late.list], late, interval_);
     if (verification_.failures().empty()) break;
     has_moved = true;
   }
-  verification_.find(scene, broad_, narrow_, candidates_, team);
+  verification_.find(scene, search_, narrow_, candidates_, team);
   const bool has_failed = !verification_.failures().empty();
   has_moved = has_moved || has_failed;
   if (has_moved) {
     expect_failures(clock, particles);
-    stop_failures(scene, broad_, narrow_, verification_, candidates_, interval_, failures_, team);
+    stop_failures(scene, search_, narrow_, verification_, candidates_, interval_, failures_, team);
     for (const Failure& failure : verification_.failures())
       misplace(candidates_[failure.list].pairs[failure.pair]);
   }
   // Only what is misplaced, and what had to be stopped, leads others through a body.
-  if (crossings_.count() > 0 || !misplaced_.inside.empty() || has_failed) {
-    crossings_.find(points_, Crossings::Moment::end);
-    misplaced_.crossing = crossings_.slots();
+  if (tangles_.count() > 0 || !misplaced_.inside.empty() || has_failed) {
+    tangles_.find(points_, Tangles::Moment::end);
+    misplaced_.crossing = tangles_.slots();
   }
   if (!has_moved) return false;
   verification_.find_late(scene, narrow_, candidates_, team);
@@ -179,7 +180,7 @@ bool MeshContacts::end_interval(ContactParticles& particles, const BodyClock& cl
 /// What was not expected to touch is near from now on, so that what puts the cloth right until the
 /// step is over keeps it apart. What went through each other unnoticed was taken to be on the other
 /// side: now it is known on which it was.
-void MeshContacts::expect_failures(const BodyClock& clock, ContactParticles& particles) {
+void SurfaceContacts::expect_failures(const BodyClock& clock, ContactParticles& particles) {
   bool any = false;
   for (const Failure& failure : verification_.failures()) {
     const Pair& pair = candidates_[failure.list].pairs[failure.pair];
@@ -202,12 +203,12 @@ void MeshContacts::expect_failures(const BodyClock& clock, ContactParticles& par
     }
   }
   if (!any) return;
-  sweep_.begin(scene(particles, clock), near_);
+  response_.begin(scene(particles, clock), near_);
   points_.place_vertices_asked(clock);
 }
 
 /// Of what could not be kept apart: the particle is inside from now on.
-void MeshContacts::misplace(const Pair& pair) {
+void SurfaceContacts::misplace(const Pair& pair) {
   if (pair.kind != PairKind::particle_triangle || points_.meshes()[pair.mesh].mesh().two_sided)
     return;
   std::vector<std::uint32_t>& inside = misplaced_.inside;
@@ -215,15 +216,15 @@ void MeshContacts::misplace(const Pair& pair) {
     inside.insert(std::ranges::lower_bound(inside, pair.of_cloth), pair.of_cloth);
 }
 
-int MeshContacts::count_touching() const {
+int SurfaceContacts::count_touching() const {
   int count = 0;
   for (const NearPairs& near : near_)
     count += static_cast<int>(std::ranges::count_if(near.states, &NearState::is_touching));
   return count;
 }
 
-void MeshContacts::read_touching(const ContactParticles& particles,
-                                 std::vector<MeshTouch>& touches) const {
+void SurfaceContacts::read_touching(const ContactParticles& particles,
+                                    std::vector<MeshTouch>& touches) const {
   const auto at = [&](std::uint32_t point) {
     return points_.is_of_cloth(point) ? particles.position(point) : points_.to(point);
   };
@@ -251,9 +252,9 @@ void MeshContacts::read_touching(const ContactParticles& particles,
   }
 }
 
-std::size_t MeshContacts::bytes() const {
-  std::size_t bytes = points_.bytes() + broad_.bytes() + narrow_.bytes() + sweep_.bytes() +
-                      misplaced_.bytes() + crossings_.bytes() + bytes_of(impulses_.of_body);
+std::size_t SurfaceContacts::bytes() const {
+  std::size_t bytes = points_.bytes() + search_.bytes() + narrow_.bytes() + response_.bytes() +
+                      misplaced_.bytes() + tangles_.bytes() + bytes_of(impulses_.of_body);
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
     bytes += near.list.bytes() + bytes_of(near.sides) + bytes_of(near.states);

@@ -1,14 +1,14 @@
 /// Contacts of a cloth with bodies that are triangle meshes: the stages of an interval, in order.
 ///
 /// - intervals of 2 ms (tuning::kContactInterval) begin when a substep is predicted;
-/// - broad_phase tells which pairs of features may meet in an interval at all;
-/// - narrow_phase tells which of them may touch;
-/// - contact_sweep pushes apart, in each substep, what is nearer than the thickness, along normals
+/// - candidates tells which pairs of features may meet in an interval at all;
+/// - near tells which of them may touch;
+/// - respond pushes apart, in each substep, what is nearer than the thickness, along normals
 ///   of that moment, lets what was deeper come out slowly, and holds by friction what Coulomb's law
 ///   lets it (kernels/reference/bodies.h);
-/// - verification tells, when an interval is over, what went through each other;
-/// - fail_safe stops that;
-/// - crossings knows what could not be stopped, or crossed a body from the beginning.
+/// - verify tells, when an interval is over, what went through each other;
+/// - rescue stops that;
+/// - tangles knows what could not be stopped, or crossed a body from the beginning.
 ///
 /// Particles that are inside of a one-sided body when it appears, or when positions are written,
 /// are known as such until they are out, and triangles that cross a body until they do no longer.
@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/contact/fail_safe.h"
+#include "engine/contact/rescue.h"
 #include "kernels/reference/distances.h"
 
 namespace weft {
@@ -30,15 +30,15 @@ struct MeshTouch {
   kernels::Vector point{}, normal{};
 };
 
-class MeshContacts {
+class SurfaceContacts {
  public:
-  MeshContacts(const Model& model, const simd::Table& table)
+  SurfaceContacts(const Model& model, const simd::Table& table)
       : model_(model),
-        broad_(table),
+        search_(table),
         narrow_(table),
-        sweep_(table),
+        response_(table),
         verification_(table),
-        crossings_(table) {}
+        tangles_(table) {}
 
   bool empty() const { return points_.meshes().empty(); }
   /// Of a frame. is_new: positions were given, or a body was: what is misplaced is looked for.
@@ -52,14 +52,14 @@ class MeshContacts {
   /// moved(slot, by): by how much (m).
   template <class Moved>
   void sweep(ContactParticles& particles, const BodyClock& clock, Team& team, Moved&& moved) {
-    sweep_.sweep(scene(particles, clock), near_, team, moved);
+    response_.sweep(scene(particles, clock), near_, team, moved);
   }
   /// Over what the slot has touched in this substep. Returns whether it was pushed.
   bool hold(ContactParticles& particles, const BodyClock& clock, std::uint32_t slot) {
-    return sweep_.hold(scene(particles, clock), near_, slot);
+    return response_.hold(scene(particles, clock), near_, slot);
   }
   /// Slots that have touched a mesh in this substep.
-  const std::vector<std::uint32_t>& touching() const { return sweep_.touching(); }
+  const std::vector<std::uint32_t>& touching() const { return response_.touching(); }
   /// After a substep, which may be the last of an interval, and again if particles were moved
   /// since. Returns whether particles had to be moved.
   bool end_interval(ContactParticles& particles, const BodyClock& clock, Team& team);
@@ -67,13 +67,13 @@ class MeshContacts {
   /// m, of a pair that is nearer than its thickness.
   double deepest(ContactParticles& particles, const BodyClock& clock, Team& team) {
     if (empty()) return 0;
-    return std::max(late_depth_, sweep_.deepest(scene(particles, clock), near_, team));
+    return std::max(late_depth_, response_.deepest(scene(particles, clock), near_, team));
   }
   const ContactImpulses& impulses() const { return impulses_; }
   /// Left are triangles that cross, and particles inside.
-  FailSafeReport failures() const {
-    FailSafeReport report = failures_;
-    report.left = crossings_.count() + static_cast<int>(misplaced_.inside.size());
+  RescueReport failures() const {
+    RescueReport report = failures_;
+    report.left = tangles_.count() + static_cast<int>(misplaced_.inside.size());
     return report;
   }
   int count_touching() const;
@@ -83,7 +83,7 @@ class MeshContacts {
 
  private:
   ContactScene scene(ContactParticles& particles, const BodyClock& clock) {
-    return {model_, *cloth_, clock, points_, particles, impulses_, misplaced_, crossings_};
+    return {model_, *cloth_, clock, points_, particles, impulses_, misplaced_, tangles_};
   }
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
@@ -99,20 +99,20 @@ class MeshContacts {
   const Model& model_;
   const TriangleSurface* cloth_ = nullptr;  // the model's, when a mesh is there
   ContactPoints points_;
-  BroadPhase broad_;
-  NarrowPhase narrow_;
-  ContactSweep sweep_;
+  CandidateSearch search_;
+  NearSearch narrow_;
+  Response response_;
   Verification verification_;
   Candidates candidates_;
   Near near_;
   ContactImpulses impulses_;
-  FailSafeReport failures_;
+  RescueReport failures_;
   bool is_new_ = false;    // it is not known yet what is misplaced
   int left_ = 0;           // substeps of the present interval
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
   Misplaced misplaced_;
-  Crossings crossings_;
+  Tangles tangles_;
 };
 
 }  // namespace weft

@@ -3,7 +3,7 @@
 
 namespace weft {
 
-struct FailSafeReport {
+struct RescueReport {
   int failures = 0;  // pairs that were caught
   int zones = 0;     // pairs that were taken along
   int left = 0;      // triangles of the cloth that cross in the end, and particles inside
