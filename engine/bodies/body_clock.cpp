@@ -31,9 +31,11 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int subs
                    .spin = per_second * body.travel.turn(),
                    .thickness = body.thickness,
                    .friction = stands ? 0 : body.friction,
-                   .h = stands ? kAtOnce : h};
+                   .h = this->h()};
   }
 }
+
+double BodyClock::h() const { return stands_ ? kAtOnce : h_; }
 
 int BodyClock::substeps_in(double time) const {
   const double interval = std::max(1.0, std::floor(time / h_));

@@ -40,6 +40,8 @@ class BodyClock {
   double share_after(int substeps) const { return share(done_ + substeps); }
   bool stands() const { return stands_; }
   double time() const { return h_ * substeps_; }  // s, of the step
+  /// s, of a substep; while bodies stand so long that what is under a surface comes out at once.
+  double h() const;
   std::size_t bytes() const {
     return motions_.capacity() * sizeof(motions_[0]) + bodies_.capacity() * sizeof(bodies_[0]);
   }

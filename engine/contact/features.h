@@ -1,9 +1,8 @@
-/// Pairs of features of the cloth and of a body that is a mesh.
+/// Features of surfaces, and pairs of them that may touch.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "kernels/simd/table.h"
@@ -11,20 +10,22 @@
 
 namespace weft {
 
-/// Which features a pair has. Its four points are those of the first, then those of the second.
-enum class PairKind : std::uint8_t {
-  particle_triangle,  ///< a particle of the cloth, a triangle of the body
-  vertex_triangle,    ///< a vertex of the body, a triangle of the cloth
-  edges               ///< an edge of the cloth, an edge of the body
-};
+enum class PairKind : std::uint8_t { point_triangle, edges };
 
-/// The numbers of its features are those of their surfaces.
+/// A feature of the surface a and one of the surface b, by their numbers there. The point of a
+/// point and a triangle comes first. Its four points are those of the first feature, then those of
+/// the second.
 struct Pair {
-  std::uint32_t of_cloth = 0, of_body = 0;
-  std::uint16_t mesh = 0;  // its place among the meshes
+  std::uint32_t first = 0, second = 0;
+  std::uint16_t a = 0, b = 0;
   PairKind kind = PairKind::edges;
 
   bool operator==(const Pair&) const = default;
+  /// The point is of the surface that comes later, the triangle of the one before.
+  bool is_turned() const { return a > b; }
+  /// 1 where a vector from the second feature to the first leads away from the later surface, else
+  /// -1.
+  double outward() const { return is_turned() ? -1 : 1; }
 };
 
 /// Pairs in blocks of lanes: of one kind of kernel, points beside triangles or edges.

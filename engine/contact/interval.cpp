@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/contact/look.h"
@@ -15,23 +13,21 @@ using kernels::Vector;
 
 namespace {
 
-/// In which pairs that have come near unexpectedly are put right, before what is left is verified.
+/// In which pairs that have come near unexpectedly are put right, before the rest is verified.
 constexpr int kLateRounds = 3;
 
 }  // namespace
 
 void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
-  points_.begin(model_, clock);
+  points_.begin(clock);
   left_ = 0;
   interval_ = late_depth_ = 0;
   failures_ = {};
   for (NearPairs& near : near_) near.clear();
   if (empty()) return;
-  cloth_ = &model_.touched_surface();
   impulses_.begin(clock.bodies());
   is_new_ = is_new;
-  misplaced_ = misplaced;
-  tangles_.begin(*cloth_, misplaced_.crossing);
+  tangles_.begin(points_.cloth(), misplaced);
 }
 
 /// s. Bodies that are fast are looked at more often: on their way they turn, and take cloth along.
@@ -53,134 +49,68 @@ void SurfaceContacts::predict(ContactParticles& particles, const BodyClock& cloc
 /// Where positions are put right, by any way, until a particle comes to a place that was not
 /// expected.
 bool SurfaceContacts::still_holds(const ContactParticles& particles, const BodyClock& clock) const {
-  return clock.stands() && interval_ > 0 && points_.hold(model_, particles);
+  return clock.stands() && interval_ > 0 && points_.hold(particles);
 }
 
 void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyClock& clock,
                                      int substeps, Team& team) {
-  points_.begin_interval(model_, particles, clock, substeps);
-  search_.find(*cloth_, points_, candidates_);
-  narrow_.measure(points_, candidates_, team);
-  if (is_new_) {
-    find_inside();
-    tangles_.find(points_, Tangles::Moment::start);
-    misplaced_.crossing = tangles_.slots();
-  }
+  points_.begin_interval(particles, clock, substeps);
+  search_.find(points_, candidates_);
+  near_search_.measure(points_, candidates_, team);
+  if (is_new_) tangles_.find(points_);
   is_new_ = false;
-  narrow_.find_near(model_, points_, candidates_, near_, misplaced_, tangles_);
-  come_out();
+  near_search_.find(points_, candidates_, tangles_, near_);
+  tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);
-  interval_ = substeps * clock.motions().front().h;
+  interval_ = substeps * clock.h();
 }
 
 void SurfaceContacts::advance(const BodyClock& clock) {
   if (!empty()) response_.advance(clock, points_, near_);
 }
 
-/// The triangle of the mesh that is nearest to the particle when the interval begins.
-bool SurfaceContacts::find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pair,
-                                   std::array<std::uint32_t, 4>& four,
-                                   reference::Nearest& found) const {
-  const ContactMesh& m = points_.meshes()[mesh];
-  const Vector x = points_.start(slot), from = x - points_.origin();
-  double least = std::numeric_limits<double>::infinity();
-  m.tree.near({static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)},
-              [&](std::uint32_t triangle) {
-                const auto [a, b, c] = m.mesh().surface.triangles[triangle];
-                const std::uint32_t first = m.first_point;
-                const reference::Nearest other = reference::nearest_in_triangle(
-                    x, points_.start(first + a), points_.start(first + b),
-                    points_.start(first + c));
-                const double square = dot(other.r, other.r);
-                if (square < least) {
-                  least = square;
-                  found = other;
-                  pair = {slot, triangle, mesh, PairKind::particle_triangle};
-                  four = {slot, first + a, first + b, first + c};
-                }
-                return static_cast<float>(least);
-              });
-  return least < std::numeric_limits<double>::infinity();
-}
-
-void SurfaceContacts::find_inside() {
-  misplaced_.inside.clear();
-  for (std::uint32_t slot = 0; slot < points_.slots(); ++slot) {
-    if (!model_.is_particle(slot) || model_.inverse_mass[slot] == 0) continue;
-    for (std::uint16_t i = 0; i < points_.meshes().size(); ++i) {
-      ContactMesh& mesh = points_.meshes()[i];
-      if (mesh.mesh().two_sided || !mesh.tree.bounds().meets(points_.box(slot))) continue;
-      Pair pair;
-      std::array<std::uint32_t, 4> four{};
-      reference::Nearest found;
-      if (find_nearest(slot, i, pair, four, found) && is_behind(mesh, pair, found, found.r)) {
-        misplaced_.inside.push_back(slot);
-        break;
-      }
-    }
-  }
-}
-
-/// Those that are inside are near to the surface that they leave by, however deep they are. Those
-/// that are out are forgotten.
-void SurfaceContacts::come_out() {
-  std::erase_if(misplaced_.inside, [&](std::uint32_t slot) {
-    bool is_out = true;
-    for (std::uint16_t i = 0; i < points_.meshes().size(); ++i) {
-      ContactMesh& mesh = points_.meshes()[i];
-      Pair pair;
-      std::array<std::uint32_t, 4> four{};
-      reference::Nearest found;
-      if (mesh.mesh().two_sided || !find_nearest(slot, i, pair, four, found)) continue;
-      if (!is_behind(mesh, pair, found, found.r)) continue;
-      is_out = false;
-      const Vector n = kernels::direction(found.r, length(found.r));
-      near_[list_of(pair.kind)].add(pair, four, -1.0 * n, mesh.thickness, true);
-    }
-    return is_out;
-  });
-}
-
 bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock& clock,
                                    Team& team) {
   if (empty() || clock.stands() || left_ > 0 || interval_ == 0) return false;
-  points_.measure_moves(model_, particles, clock);
-  late_depth_ = 0;
   const ContactScene scene = this->scene(particles, clock);
-  bool has_moved = false;
-  for (int round = 0; round < kLateRounds; ++round) {
-    verification_.find_late(scene, narrow_, candidates_, team);
-    expect_failures(clock, particles);
-    for (const Failure& late : verification_.failures())
-      rescue::blow(scene, candidates_[late.list], late, interval_);
-    if (verification_.failures().empty()) break;
-    has_moved = true;
-  }
-  verification_.find(scene, search_, narrow_, candidates_, team);
+  points_.measure_moves(particles, clock);
+  late_depth_ = 0;
+  bool has_moved = push_late_apart(scene, team);
+  verification_.find(scene, search_, near_search_, candidates_, team);
   const bool has_failed = !verification_.failures().empty();
   has_moved = has_moved || has_failed;
   if (has_moved) {
-    expect_failures(clock, particles);
-    stop_failures(scene, search_, narrow_, verification_, candidates_, interval_, failures_, team);
+    expect_failures(scene);
+    stop_failures(scene, search_, near_search_, verification_, candidates_, interval_, failures_,
+                  team);
     for (const Failure& failure : verification_.failures())
-      misplace(candidates_[failure.list].pairs[failure.pair]);
+      tangles_.take_in(points_, candidates_[failure.list].pairs[failure.pair]);
   }
-  // Only what is misplaced, and what had to be stopped, leads others through a body.
-  if (tangles_.count() > 0 || !misplaced_.inside.empty() || has_failed) {
-    tangles_.find(points_, Tangles::Moment::end);
-    misplaced_.crossing = tangles_.slots();
-  }
+  // Only tangles, and what had to be stopped, lead others through a body.
+  if (tangles_.any() || has_failed) tangles_.find_crossing_at_end(points_);
   if (!has_moved) return false;
-  verification_.find_late(scene, narrow_, candidates_, team);
+  verification_.find_late(scene, near_search_, candidates_, team);
   for (const Failure& late : verification_.failures())
     late_depth_ = std::max(late_depth_, late.depth);
+  return true;
+}
+
+/// Before the rest is verified. Returns whether particles had to be moved.
+bool SurfaceContacts::push_late_apart(const ContactScene& scene, Team& team) {
+  for (int round = 0; round < kLateRounds; ++round) {
+    verification_.find_late(scene, near_search_, candidates_, team);
+    if (verification_.failures().empty()) return round > 0;
+    expect_failures(scene);
+    for (const Failure& late : verification_.failures())
+      rescue::blow(scene, candidates_[late.list], late, interval_);
+  }
   return true;
 }
 
 /// What was not expected to touch is near from now on, so that what puts the cloth right until the
 /// step is over keeps it apart. What went through each other unnoticed was taken to be on the other
 /// side: now it is known on which it was.
-void SurfaceContacts::expect_failures(const BodyClock& clock, ContactParticles& particles) {
+void SurfaceContacts::expect_failures(const ContactScene& scene) {
   bool any = false;
   for (const Failure& failure : verification_.failures()) {
     const Pair& pair = candidates_[failure.list].pairs[failure.pair];
@@ -190,30 +120,19 @@ void SurfaceContacts::expect_failures(const BodyClock& clock, ContactParticles& 
     const bool is_late = failure.depth > 0;
     if (is_known && is_late) continue;
     const auto four = candidates_[failure.list].points(failure.pair);
-    FourPoints before;
-    for (std::size_t k = 0; k < 4; ++k) before[k] = points_.start(four[k]);
-    const Vector normal =
-        direction_apart(points_.meshes()[pair.mesh], pair, nearest(pair.kind, before));
+    ContactSurface& later = points_.later(pair);
+    const Vector normal = look(later, pair, points_.starts_of(four)).normal;
     if (is_known) {
       near.set_normal(known, normal);
       near.states[known].is_under = false;
     } else {
-      near.add(pair, four, normal, points_.meshes()[pair.mesh].thickness, false);
+      near.add(pair, four, normal, later.thickness, false);
       any = true;
     }
   }
   if (!any) return;
-  response_.begin(scene(particles, clock), near_);
-  points_.place_vertices_asked(clock);
-}
-
-/// Of what could not be kept apart: the particle is inside from now on.
-void SurfaceContacts::misplace(const Pair& pair) {
-  if (pair.kind != PairKind::particle_triangle || points_.meshes()[pair.mesh].mesh().two_sided)
-    return;
-  std::vector<std::uint32_t>& inside = misplaced_.inside;
-  if (!misplaced_.is_inside(pair.of_cloth))
-    inside.insert(std::ranges::lower_bound(inside, pair.of_cloth), pair.of_cloth);
+  response_.begin(scene, near_);
+  points_.place_vertices_asked(scene.clock);
 }
 
 int SurfaceContacts::count_touching() const {
@@ -223,8 +142,8 @@ int SurfaceContacts::count_touching() const {
   return count;
 }
 
-void SurfaceContacts::read_touching(const ContactParticles& particles,
-                                    std::vector<MeshTouch>& touches) const {
+void SurfaceContacts::read_touching(const ContactParticles& particles, const BodyClock& clock,
+                                    std::vector<BodyTouch>& touches) const {
   const auto at = [&](std::uint32_t point) {
     return points_.is_of_cloth(point) ? particles.position(point) : points_.to(point);
   };
@@ -235,8 +154,9 @@ void SurfaceContacts::read_touching(const ContactParticles& particles,
       const auto four = near.list.points(i);
       const reference::Nearest found =
           nearest(pair.kind, {at(four[0]), at(four[1]), at(four[2]), at(four[3])});
-      MeshTouch touch{.body = points_.meshes()[pair.mesh].body, .push = near.states[i].push};
-      touch.normal = towards_cloth(pair.kind) * near.normal(i);
+      BodyTouch touch{.body = clock.bodies()[points_.later(pair).body].id,
+                      .push = near.states[i].push};
+      touch.normal = pair.outward() * near.normal(i);
       double most = -1;
       for (std::size_t k = 0; k < 4; ++k) {
         const double weight = std::abs(found.weight[k]);
@@ -253,8 +173,8 @@ void SurfaceContacts::read_touching(const ContactParticles& particles,
 }
 
 std::size_t SurfaceContacts::bytes() const {
-  std::size_t bytes = points_.bytes() + search_.bytes() + narrow_.bytes() + response_.bytes() +
-                      misplaced_.bytes() + tangles_.bytes() + bytes_of(impulses_.of_body);
+  std::size_t bytes = points_.bytes() + search_.bytes() + near_search_.bytes() + response_.bytes() +
+                      tangles_.bytes() + bytes_of(impulses_.of_body);
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
     bytes += near.list.bytes() + bytes_of(near.sides) + bytes_of(near.states);

@@ -1,48 +1,44 @@
-/// Contacts of a cloth with bodies that are triangle meshes: the stages of an interval, in order.
+/// Contacts of surfaces of triangles: of a cloth with bodies that are meshes. An interval of some
+/// substeps (tuning::kContactInterval), which the clock of the bodies counts, has these stages:
 ///
-/// - intervals of 2 ms (tuning::kContactInterval) begin when a substep is predicted;
-/// - candidates tells which pairs of features may meet in an interval at all;
-/// - near tells which of them may touch;
-/// - respond pushes apart, in each substep, what is nearer than the thickness, along normals
-///   of that moment, lets what was deeper come out slowly, and holds by friction what Coulomb's law
-///   lets it (kernels/reference/bodies.h);
-/// - verify tells, when an interval is over, what went through each other;
-/// - rescue stops that;
-/// - tangles knows what could not be stopped, or crossed a body from the beginning.
+///   1  points: where all points are, and the boxes that they are expected to stay in
+///   2  candidates: which pairs of features may meet at all
+///   3  near: which of them may touch; tangles: what comes out
+///      in each substep:
+///   4  points: where the vertices of bodies are that near pairs have
+///   5  respond: lanes find which near pairs touch
+///   6  respond: these are pushed apart, along normals of that moment, with friction
+///      when the interval is over:
+///   7  verify: what came near unexpectedly, and what went through each other
+///   8  rescue: that is stopped
+///   9  tangles: what could not be stopped, or crossed a body from the beginning
 ///
 /// Particles that are inside of a one-sided body when it appears, or when positions are written,
 /// are known as such until they are out, and triangles that cross a body until they do no longer.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "engine/contact/rescue.h"
-#include "kernels/reference/distances.h"
+#include "engine/contact/respond.h"
+#include "engine/contact/touch.h"
 
 namespace weft {
-
-/// A particle that touches a mesh where the last substep ended.
-struct MeshTouch {
-  std::uint32_t slot = 0;
-  std::size_t body = 0;  // of the clock
-  double push = 0;       // m
-  kernels::Vector point{}, normal{};
-};
 
 class SurfaceContacts {
  public:
   SurfaceContacts(const Model& model, const simd::Table& table)
       : model_(model),
+        points_(model),
         search_(table),
-        narrow_(table),
+        near_search_(table),
         response_(table),
         verification_(table),
         tangles_(table) {}
 
-  bool empty() const { return points_.meshes().empty(); }
-  /// Of a frame. is_new: positions were given, or a body was: what is misplaced is looked for.
-  /// Else it is as the frame before left it.
+  bool empty() const { return points_.surface_pairs().empty(); }
+  /// Of a frame. is_new: positions were given, or a body was: tangles are looked for. Else they are
+  /// as the frame before left them.
   void begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced);
   /// A substep is predicted, and the clock stands where it begins: an interval begins with it if
   /// the last one is over.
@@ -73,45 +69,40 @@ class SurfaceContacts {
   /// Left are triangles that cross, and particles inside.
   RescueReport failures() const {
     RescueReport report = failures_;
-    report.left = tangles_.count() + static_cast<int>(misplaced_.inside.size());
+    report.left = tangles_.count();
     return report;
   }
   int count_touching() const;
-  void read_touching(const ContactParticles& particles, std::vector<MeshTouch>& touches) const;
-  const Misplaced& misplaced() const { return misplaced_; }
+  void read_touching(const ContactParticles& particles, const BodyClock& clock,
+                     std::vector<BodyTouch>& touches) const;
+  const Misplaced& misplaced() const { return tangles_.misplaced(); }
   std::size_t bytes() const;
 
  private:
   ContactScene scene(ContactParticles& particles, const BodyClock& clock) {
-    return {model_, *cloth_, clock, points_, particles, impulses_, misplaced_, tangles_};
+    return {model_, clock, points_, particles, impulses_, tangles_};
   }
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
   bool still_holds(const ContactParticles& particles, const BodyClock& clock) const;
   double interval_for(const BodyClock& clock) const;
-  void find_inside();
-  void come_out();
-  void expect_failures(const BodyClock& clock, ContactParticles& particles);
-  void misplace(const Pair& pair);
-  bool find_nearest(std::uint32_t slot, std::uint16_t mesh, Pair& pair,
-                    std::array<std::uint32_t, 4>& four, reference::Nearest& found) const;
+  bool push_late_apart(const ContactScene& scene, Team& team);
+  void expect_failures(const ContactScene& scene);
 
   const Model& model_;
-  const TriangleSurface* cloth_ = nullptr;  // the model's, when a mesh is there
   ContactPoints points_;
   CandidateSearch search_;
-  NearSearch narrow_;
+  NearSearch near_search_;
   Response response_;
   Verification verification_;
   Candidates candidates_;
   Near near_;
   ContactImpulses impulses_;
   RescueReport failures_;
-  bool is_new_ = false;    // it is not known yet what is misplaced
+  bool is_new_ = false;    // tangles are not known yet
   int left_ = 0;           // substeps of the present interval
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
-  Misplaced misplaced_;
   Tangles tangles_;
 };
 

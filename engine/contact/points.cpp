@@ -30,77 +30,100 @@ Box box_around(Vector a, Vector b, double reach) {
 
 }  // namespace
 
-void ContactPoints::begin(const Model& model, const BodyClock& clock) {
-  slots_ = model.slots();
-  std::size_t count = 0, points = slots_;
+void ContactPoints::begin(const BodyClock& clock) {
+  slots_ = model_.slots();
   largest_thickness_ = 0;
+  surface_pairs_.clear();
+  std::size_t points = slots_, count = 1;
   for (std::size_t body = 0; body < clock.bodies().size(); ++body) {
-    const TravellingBody& b = clock.bodies()[body];
-    if (b.shape->mesh() == nullptr) continue;
-    if (count == meshes_.size()) meshes_.emplace_back();
-    ContactMesh& mesh = meshes_[count++];
-    if (mesh.shape != b.shape) {
-      mesh.tree = BoxTree(b.shape->mesh()->surface.in_order);
-      mesh.shape = b.shape;
-      has_hulls_ = false;
-    }
-    mesh.body = body;
-    mesh.thickness = b.thickness;
-    mesh.first_point = static_cast<std::uint32_t>(points);
-    points += b.from.size();
-    largest_thickness_ = std::max(largest_thickness_, b.thickness);
+    if (clock.bodies()[body].shape->mesh() == nullptr) continue;
+    add_cloth();
+    ContactSurface& surface = surface_for(clock, body, count);
+    surface.first_point = static_cast<std::uint32_t>(points);
+    points += clock.bodies()[body].from.size();
+    surface_pairs_.push_back({kClothSurface, static_cast<std::uint16_t>(count)});
+    ++count;
   }
-  has_hulls_ = has_hulls_ && count == meshes_.size();
-  meshes_.resize(count);
+  if (surface_pairs_.empty()) count = 0;
+  has_wide_boxes_ = has_wide_boxes_ && count == surfaces_.size();
+  surfaces_.resize(count);
   if (count == 0) return;
   for (auto* vectors : {&start_, &end_}) vectors->resize(points);
   for (auto* vectors : {&from_, &to_}) vectors->resize(points - slots_);
   for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->resize(4 * points);
   box_.resize(points);
-  hull_.resize(points);
-  mesh_of_.resize(points - slots_);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::size_t first = meshes_[i].first_point - slots_;
-    std::fill_n(mesh_of_.begin() + static_cast<std::ptrdiff_t>(first),
-                meshes_[i].mesh().vertices.size(), i);
+  wide_box_.resize(points);
+  surface_of_.clear();
+  for (std::uint16_t i = 1; i < count; ++i) {
+    const std::size_t vertices = clock.bodies()[surfaces_[i].body].from.size();
+    surface_of_.insert(surface_of_.end(), vertices, i);
   }
 }
 
-/// Whether meshes are where they were when the last interval began.
+/// It is there as soon as there is something to touch.
+void ContactPoints::add_cloth() {
+  if (!surfaces_.empty()) return;
+  ContactSurface& cloth = surfaces_.emplace_back();
+  cloth.triangles = &model_.touched_surface();
+  cloth.tree = BoxTree(cloth.triangles->in_order);
+}
+
+/// The surface of a body, which is the one that was there in the last frame if that had its shape.
+ContactSurface& ContactPoints::surface_for(const BodyClock& clock, std::size_t body,
+                                           std::size_t place) {
+  const TravellingBody& b = clock.bodies()[body];
+  if (place == surfaces_.size()) surfaces_.emplace_back();
+  ContactSurface& surface = surfaces_[place];
+  if (surface.shape != b.shape) {
+    const MeshShape& mesh = *b.shape->mesh();
+    surface.triangles = &mesh.surface;
+    surface.two_sided = mesh.two_sided;
+    surface.tree = BoxTree(mesh.surface.in_order);
+    surface.shape = b.shape;
+    has_wide_boxes_ = false;
+  }
+  surface.body = static_cast<std::uint32_t>(body);
+  surface.thickness = b.thickness;
+  surface.friction = clock.motions()[body].friction;
+  largest_thickness_ = std::max(largest_thickness_, b.thickness);
+  return surface;
+}
+
+/// Whether bodies are where they were when the last interval began.
 void ContactPoints::note_moves(const BodyClock& clock) {
   const double share = clock.share_after(0);
-  for (ContactMesh& mesh : meshes_) {
-    const TravellingBody& body = clock.bodies()[mesh.body];
+  for (ContactSurface& surface : of_bodies()) {
+    const TravellingBody& body = clock.bodies()[surface.body];
     const reference::Placement at = body.travel.at(share);
-    mesh.has_moved = false;
-    for (std::size_t i = 0; i < body.from.size() && !mesh.has_moved; ++i) {
-      const Vector d = clock.vertex(mesh.body, i, at, share) - start_[mesh.first_point + i];
-      mesh.has_moved = dot(d, d) > 0;
+    surface.has_moved = false;
+    for (std::size_t i = 0; i < body.from.size() && !surface.has_moved; ++i) {
+      const Vector d = clock.vertex(surface.body, i, at, share) - start_[surface.first_point + i];
+      surface.has_moved = dot(d, d) > 0;
     }
   }
 }
 
-/// Of all meshes, when some substeps from now are over.
+/// Of all bodies, when some substeps from now are over.
 void ContactPoints::place_vertices(const BodyClock& clock, int substeps,
                                    std::vector<Vector>& to) const {
   const double share = clock.share_after(substeps);
-  for (const ContactMesh& mesh : meshes_) {
-    const TravellingBody& body = clock.bodies()[mesh.body];
+  for (const ContactSurface& surface : of_bodies()) {
+    const TravellingBody& body = clock.bodies()[surface.body];
     const reference::Placement at = body.travel.at(share);
     for (std::size_t i = 0; i < body.from.size(); ++i)
-      to[mesh.first_point + i] = clock.vertex(mesh.body, i, at, share);
+      to[surface.first_point + i] = clock.vertex(surface.body, i, at, share);
   }
 }
 
-void ContactPoints::begin_interval(const Model& model, const ContactParticles& cloth,
-                                   const BodyClock& clock, int substeps) {
+void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyClock& clock,
+                                   int substeps) {
   note_moves(clock);
   place_vertices(clock, 0, start_);
   place_vertices(clock, substeps, end_);
   Vector sum{};
   double particles = 0;
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (!model.is_particle(slot)) continue;
+    if (!model_.is_particle(slot)) continue;
     const Vector x = cloth.position(slot);
     start_[slot] = clock.stands() ? x : cloth.start(slot);
     end_[slot] = start_[slot] + substeps * (x - start_[slot]);
@@ -108,7 +131,7 @@ void ContactPoints::begin_interval(const Model& model, const ContactParticles& c
     ++particles;
   }
   const Vector origin = rounded((1 / std::max(1.0, particles)) * sum);
-  has_hulls_ = has_hulls_ && length(origin - origin_) == 0;
+  has_wide_boxes_ = has_wide_boxes_ && length(origin - origin_) == 0;
   origin_ = origin;
   double farthest = 0;
   for (std::size_t point = 0; point < start_.size(); ++point) {
@@ -118,17 +141,17 @@ void ContactPoints::begin_interval(const Model& model, const ContactParticles& c
     write(way_quads_, point, end_[point] - start_[point]);
   }
   rounding_ = static_cast<float>(0x1p-21 * std::sqrt(farthest));
-  find_reach(model.touched_surface());
+  find_reach();
   write_boxes();
-  for (ContactMesh& mesh : meshes_)
-    mesh.normals.begin(mesh.mesh().surface, &start_[mesh.first_point], !mesh.has_moved);
+  for (ContactSurface& surface : of_bodies())
+    surface.normals.begin(*surface.triangles, &start_[surface.first_point], !surface.has_moved);
 }
 
 double ContactPoints::fastest(const BodyClock& clock) const {
   double fastest = 0;
-  for (const ContactMesh& mesh : meshes_) {
-    const TravellingBody& body = clock.bodies()[mesh.body];
-    const reference::BodyMotion& motion = clock.motions()[mesh.body];
+  for (const ContactSurface& surface : of_bodies()) {
+    const TravellingBody& body = clock.bodies()[surface.body];
+    const reference::BodyMotion& motion = clock.motions()[surface.body];
     double farthest = 0, longest = 0;
     for (std::size_t i = 0; i < body.from.size(); ++i) {
       const Vector way = body.to[i] - body.from[i];
@@ -141,7 +164,7 @@ double ContactPoints::fastest(const BodyClock& clock) const {
   return fastest;
 }
 
-void ContactPoints::find_reach(const TriangleSurface& cloth) {
+void ContactPoints::find_reach() {
   const auto way_of = [&](std::uint32_t point) { return length(way(point)); };
   double of_bodies = 0;
   for (auto point = static_cast<std::uint32_t>(slots_); point < start_.size(); ++point)
@@ -149,7 +172,7 @@ void ContactPoints::find_reach(const TriangleSurface& cloth) {
   ways_.resize(slots_);
   reach_.resize(slots_);
   for (std::uint32_t slot = 0; slot < slots_; ++slot) ways_[slot] = reach_[slot] = way_of(slot);
-  for (const auto& [a, b] : cloth.edges) {
+  for (const auto& [a, b] : cloth().edges) {
     reach_[a] = std::max(reach_[a], ways_[b]);
     reach_[b] = std::max(reach_[b], ways_[a]);
   }
@@ -164,36 +187,38 @@ void ContactPoints::find_reach(const TriangleSurface& cloth) {
 void ContactPoints::write_boxes() {
   const double rounding = static_cast<double>(rounding_);
   for (std::size_t point = 0; point < start_.size(); ++point) {
-    const double reach =
-        point < slots_ ? reach_[point] : meshes_[mesh_of_[point - slots_]].thickness + rounding;
+    const double reach = point < slots_
+                             ? reach_[point]
+                             : surface_of(static_cast<std::uint32_t>(point)).thickness + rounding;
     box_[point] = box_around(start_[point] - origin_, end_[point] - origin_, reach);
   }
 }
 
 /// If the point goes on as in this interval it holds for kContactHull of them.
-Box ContactPoints::hull_around(std::size_t point) const {
+Box ContactPoints::wide_box_around(std::size_t point) const {
   const Vector from = start_[point] - origin_, way = end_[point] - start_[point];
   const double spare = tuning::kContactReach * length(way);
-  const double reach =
-      point < slots_
-          ? 3 * reach_[point] + tuning::kContactHullSpare * largest_thickness_
-          : meshes_[mesh_of_[point - slots_]].thickness + 2 * static_cast<double>(rounding_);
+  const double reach = point < slots_
+                           ? 3 * reach_[point] + tuning::kContactHullSpare * largest_thickness_
+                           : surface_of(static_cast<std::uint32_t>(point)).thickness +
+                                 2 * static_cast<double>(rounding_);
   return box_around(from, from + tuning::kContactHull * way, reach + spare);
 }
 
-void ContactPoints::renew_hulls() {
-  for (std::size_t point = 0; point < start_.size(); ++point) hull_[point] = hull_around(point);
-  has_hulls_ = true;
+void ContactPoints::widen_boxes() {
+  for (std::size_t point = 0; point < start_.size(); ++point)
+    wide_box_[point] = wide_box_around(point);
+  has_wide_boxes_ = true;
 }
 
 void ContactPoints::place_vertices_asked(const BodyClock& clock) {
   for (const std::uint32_t point : asked_) {
     if (is_of_cloth(point)) continue;
-    const ContactMesh& mesh = meshes_[mesh_of_[point - slots_]];
-    const reference::BodyMotion& motion = clock.motions()[mesh.body];
-    const std::uint32_t vertex = point - mesh.first_point;
-    from_[point - slots_] = clock.vertex(mesh.body, vertex, motion.from, clock.share_after(-1));
-    to_[point - slots_] = clock.vertex(mesh.body, vertex, motion.to, clock.share_after(0));
+    const ContactSurface& surface = surface_of(point);
+    const reference::BodyMotion& motion = clock.motions()[surface.body];
+    const std::uint32_t vertex = point - surface.first_point;
+    from_[point - slots_] = clock.vertex(surface.body, vertex, motion.from, clock.share_after(-1));
+    to_[point - slots_] = clock.vertex(surface.body, vertex, motion.to, clock.share_after(0));
     set_place(point, to_[point - slots_]);
   }
 }
@@ -204,11 +229,10 @@ void ContactPoints::read_cloth(const ContactParticles& cloth) {
   }
 }
 
-void ContactPoints::measure_moves(const Model& model, const ContactParticles& cloth,
-                                  const BodyClock& clock) {
+void ContactPoints::measure_moves(const ContactParticles& cloth, const BodyClock& clock) {
   place_vertices(clock, 0, end_);
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (model.is_particle(slot)) end_[slot] = cloth.position(slot);
+    if (model_.is_particle(slot)) end_[slot] = cloth.position(slot);
   }
   for (std::size_t point = 0; point < start_.size(); ++point)
     write(way_quads_, point, end_[point] - start_[point]);
@@ -216,9 +240,9 @@ void ContactPoints::measure_moves(const Model& model, const ContactParticles& cl
 
 bool ContactPoints::holds_end(std::uint32_t point) const { return holds(point, end_[point]); }
 
-bool ContactPoints::hold(const Model& model, const ContactParticles& cloth) const {
+bool ContactPoints::hold(const ContactParticles& cloth) const {
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (model.is_particle(slot) && !holds(slot, cloth.position(slot))) return false;
+    if (model_.is_particle(slot) && !holds(slot, cloth.position(slot))) return false;
   }
   return true;
 }
@@ -242,11 +266,13 @@ void ContactPoints::set_end(std::uint32_t point, Vector x) {
 }
 
 std::size_t ContactPoints::bytes() const {
-  std::size_t bytes = bytes_of(meshes_) + bytes_of(mesh_of_) + bytes_of(start_) + bytes_of(end_) +
-                      bytes_of(reach_) + bytes_of(ways_) + bytes_of(box_) + bytes_of(hull_) +
-                      bytes_of(start_quads_) + bytes_of(way_quads_) + bytes_of(place_quads_) +
-                      bytes_of(asked_) + bytes_of(from_) + bytes_of(to_);
-  for (const ContactMesh& mesh : meshes_) bytes += mesh.tree.bytes() + mesh.normals.bytes();
+  std::size_t bytes = bytes_of(surfaces_) + bytes_of(surface_pairs_) + bytes_of(surface_of_) +
+                      bytes_of(start_) + bytes_of(end_) + bytes_of(reach_) + bytes_of(ways_) +
+                      bytes_of(box_) + bytes_of(wide_box_) + bytes_of(start_quads_) +
+                      bytes_of(way_quads_) + bytes_of(place_quads_) + bytes_of(asked_) +
+                      bytes_of(from_) + bytes_of(to_);
+  for (const ContactSurface& surface : surfaces_)
+    bytes += surface.tree.bytes() + surface.normals.bytes();
   return bytes;
 }
 

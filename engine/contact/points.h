@@ -1,47 +1,53 @@
-/// The points whose features may touch, in an interval of some substeps: the slots of the cloth,
-/// and then the vertices of each body that is a mesh.
+/// The surfaces that may touch in an interval of some substeps, and their points: the slots of the
+/// cloth, and then the vertices of each body that is a mesh.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "engine/bodies/body_clock.h"
+#include "engine/contact/features.h"
+#include "engine/contact/look.h"
 #include "engine/contact/particles.h"
-#include "engine/contact/side_normals.h"
+#include "engine/contact/surface.h"
 #include "engine/model/model.h"
 #include "engine/triangles/box_tree.h"
 #include "kernels/vectors.h"
 
 namespace weft {
 
-/// A body that is a mesh, in the present frame.
-struct ContactMesh {
-  std::size_t body = 0;  // its place among the bodies of the clock
-  std::shared_ptr<const BodyShape> shape;
-  std::uint32_t first_point = 0;
-  double thickness = 0;
-  BoxTree tree;  // of its triangles, around hulls
-
-  SideNormals normals;     // of a one-sided one
-  bool has_moved = false;  // since the last interval began
-
-  const MeshShape& mesh() const { return *shape->mesh(); }
-};
-
 class ContactPoints {
  public:
+  explicit ContactPoints(const Model& model) : model_(model) {}
+
   /// Of a frame.
-  void begin(const Model& model, const BodyClock& clock);
-  const std::vector<ContactMesh>& meshes() const { return meshes_; }
-  std::vector<ContactMesh>& meshes() { return meshes_; }
+  void begin(const BodyClock& clock);
+  /// The cloth's first, where there is something to touch.
+  const std::vector<ContactSurface>& surfaces() const { return surfaces_; }
+  std::vector<ContactSurface>& surfaces() { return surfaces_; }
+  const TriangleSurface& cloth() const { return *surfaces_[kClothSurface].triangles; }
+  /// Which of them may touch.
+  const std::vector<SurfacePair>& surface_pairs() const { return surface_pairs_; }
+  const ContactSurface& later(const Pair& pair) const { return later_surface(surfaces_, pair); }
+  ContactSurface& later(const Pair& pair) { return later_surface(surfaces_, pair); }
   std::size_t slots() const { return slots_; }
   bool is_of_cloth(std::uint32_t point) const { return point < slots_; }
+  /// 1/kg; 0 of the vertices of bodies.
+  double inverse_mass(std::uint32_t point) const {
+    return is_of_cloth(point) ? model_.inverse_mass[point] : 0;
+  }
+  double largest_inverse_mass(const std::array<std::uint32_t, 4>& points) const {
+    double largest = 0;
+    for (const std::uint32_t point : points) largest = std::max(largest, inverse_mass(point));
+    return largest;
+  }
 
   /// Of an interval, whose first substep is predicted. All that follows from it does so from the
   /// state alone, whatever was looked for before.
-  void begin_interval(const Model& model, const ContactParticles& cloth, const BodyClock& clock,
-                      int substeps);
+  void begin_interval(const ContactParticles& cloth, const BodyClock& clock, int substeps);
   /// m, that a point may come off the way that it is expected to take: a share of the ways that its
   /// neighbours take, and that bodies do, for these may take it along.
   double reach(std::uint32_t point) const { return point < slots_ ? reach_[point] : 0; }
@@ -55,16 +61,22 @@ class ContactPoints {
   kernels::Vector start(std::uint32_t point) const { return start_[point]; }
   /// What holds all places that it is expected to come to in the interval.
   const Box& box(std::uint32_t point) const { return box_[point]; }
-  /// What held those of some intervals when the broad phase looked.
-  const Box& hull(std::uint32_t point) const { return hull_[point]; }
-  bool has_hulls() const { return has_hulls_; }
-  void renew_hulls();
+  /// What held those of some intervals when candidates were looked for.
+  const Box& wide_box(std::uint32_t point) const { return wide_box_[point]; }
+  Box wide_box(const TriangleSurface::Triangle& points) const {
+    Box box = wide_box_[points[0]];
+    box.add(wide_box_[points[1]]);
+    box.add(wide_box_[points[2]]);
+    return box;
+  }
+  bool has_wide_boxes() const { return has_wide_boxes_; }
+  void widen_boxes();
   /// Renews those of cloth that hold no longer; moved(slot), of each. Returns whether those of
   /// bodies do.
   template <class Moved>
-  bool renew_hulls_of_cloth(Moved&& moved);
+  bool widen_boxes_of_cloth(Moved&& moved);
   /// They hold no longer.
-  void forget_hulls() { has_hulls_ = false; }
+  void forget_wide_boxes() { has_wide_boxes_ = false; }
   /// In quads, from the origin.
   const float* starts() const { return start_quads_.data(); }
   const float* ways() const { return way_quads_.data(); }
@@ -87,21 +99,27 @@ class ContactPoints {
 
   /// Where any vertex is when the present substep ends.
   kernels::Vector vertex_now(const BodyClock& clock, std::uint32_t point) const {
-    const ContactMesh& mesh = meshes_[mesh_of_[point - slots_]];
-    return clock.vertex(mesh.body, point - mesh.first_point, clock.motions()[mesh.body].to,
+    const ContactSurface& surface = surface_of(point);
+    return clock.vertex(surface.body, point - surface.first_point, clock.motions()[surface.body].to,
                         clock.share_after(0));
   }
 
   /// From the start of the interval to now, of all points, in quads.
-  void measure_moves(const Model& model, const ContactParticles& cloth, const BodyClock& clock);
+  void measure_moves(const ContactParticles& cloth, const BodyClock& clock);
   const float* moves() const { return way_quads_.data(); }
   /// Where a point is now, once moves are measured.
   kernels::Vector end(std::uint32_t point) const { return end_[point]; }
   void set_end(std::uint32_t point, kernels::Vector x);
+  FourPoints starts_of(const std::array<std::uint32_t, 4>& points) const {
+    return {start(points[0]), start(points[1]), start(points[2]), start(points[3])};
+  }
+  FourPoints ends_of(const std::array<std::uint32_t, 4>& points) const {
+    return {end(points[0]), end(points[1]), end(points[2]), end(points[3])};
+  }
   /// Whether the point came to a place that was expected.
   bool holds_end(std::uint32_t point) const;
   /// Whether all particles are now where they were expected in the interval.
-  bool hold(const Model& model, const ContactParticles& cloth) const;
+  bool hold(const ContactParticles& cloth) const;
   /// Makes the box of a point hold its way.
   void take_way_in(std::uint32_t point);
   /// m, of quads.
@@ -114,36 +132,46 @@ class ContactPoints {
     quads[4 * point + 1] = static_cast<float>(v.y);
     quads[4 * point + 2] = static_cast<float>(v.z);
   }
+  /// Of a vertex of a body.
+  const ContactSurface& surface_of(std::uint32_t point) const {
+    return surfaces_[surface_of_[point - slots_]];
+  }
+  std::span<ContactSurface> of_bodies() { return std::span(surfaces_).subspan(1); }
+  std::span<const ContactSurface> of_bodies() const { return std::span(surfaces_).subspan(1); }
+  void add_cloth();
+  ContactSurface& surface_for(const BodyClock& clock, std::size_t body, std::size_t place);
   bool holds(std::uint32_t point, kernels::Vector place) const;
   void note_moves(const BodyClock& clock);
   void place_vertices(const BodyClock& clock, int substeps, std::vector<kernels::Vector>& to) const;
-  Box hull_around(std::size_t point) const;
-  void find_reach(const TriangleSurface& cloth);
+  Box wide_box_around(std::size_t point) const;
+  void find_reach();
   void write_boxes();
 
+  const Model& model_;
   std::size_t slots_ = 0;
-  std::vector<ContactMesh> meshes_;
-  std::vector<std::uint32_t> mesh_of_;  // per vertex
+  std::vector<ContactSurface> surfaces_;
+  std::vector<SurfacePair> surface_pairs_;
+  std::vector<std::uint16_t> surface_of_;  // per vertex
   kernels::Vector origin_{};
   double largest_reach_ = 0, largest_thickness_ = 0;
   float rounding_ = 0;
   std::vector<kernels::Vector> start_, end_;
   std::vector<double> reach_, ways_;  // per slot
-  std::vector<Box> box_, hull_;
-  bool has_hulls_ = false;
+  std::vector<Box> box_, wide_box_;
+  bool has_wide_boxes_ = false;
   kernels::AlignedVector<float> start_quads_, way_quads_, place_quads_;
   std::vector<std::uint32_t> asked_;
   std::vector<kernels::Vector> from_, to_;  // per vertex
 };
 
 template <class Moved>
-bool ContactPoints::renew_hulls_of_cloth(Moved&& moved) {
+bool ContactPoints::widen_boxes_of_cloth(Moved&& moved) {
   for (std::size_t point = slots_; point < box_.size(); ++point) {
-    if (!hull_[point].holds(box_[point])) return false;
+    if (!wide_box_[point].holds(box_[point])) return false;
   }
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (hull_[slot].holds(box_[slot])) continue;
-    hull_[slot] = hull_around(slot);
+    if (wide_box_[slot].holds(box_[slot])) continue;
+    wide_box_[slot] = wide_box_around(slot);
     moved(slot);
   }
   return true;

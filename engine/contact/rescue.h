@@ -1,4 +1,4 @@
-/// Stage 8 of contacts with meshes: what to do about pairs that went through each other. First they
+/// Stage 8 of an interval: what to do about pairs that went through each other. First they
 /// are stopped where they would have met, as by inelastic blows; that may send others through each
 /// other, so it is done in rounds. Then what still fails is taken along by the body as if it stuck
 /// to it: a rigid impact zone (Bridson, Fedkiw and Anderson, 2002) whose motion is the body's.
@@ -10,9 +10,9 @@
 namespace weft {
 
 /// Until all is verified, or its rounds are over: then failures are left.
-void stop_failures(const ContactScene& scene, const CandidateSearch& broad, NearSearch& narrow,
-                   Verification& verification, Candidates& candidates, double time,
-                   RescueReport& report, Team& team);
+void stop_failures(const ContactScene& scene, const CandidateSearch& search,
+                   NearSearch& near_search, Verification& verification, Candidates& candidates,
+                   double time, RescueReport& report, Team& team);
 
 namespace rescue {
 

@@ -1,4 +1,4 @@
-/// What verification of contacts with meshes has found, and what became of it.
+/// What verification has found, and what became of it.
 #pragma once
 
 namespace weft {

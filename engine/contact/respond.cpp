@@ -11,13 +11,16 @@ namespace weft {
 using kernels::kLanes;
 using kernels::Vector;
 
-namespace {
-
-/// A pair in the present substep: its points where the substep began and where they are.
-struct Encountered {
+/// Its points where the substep began and where they are, and how it stands to its thickness.
+struct Response::Encounter {
   std::array<std::uint32_t, 4> points{};
-  std::array<ContactParticle, 4> at{};  // of the body: without a velocity of their own
+  std::array<ContactParticle, 4> at{};
   FourPoints start{}, x{};
+  reference::Nearest nearest{};
+  Vector normal{};        // from the second feature to the first, where both were on their sides
+  double gap = 0;         // m
+  bool is_under = false;  // one is on the wrong side of the other
+  bool pushes = false;
 
   FourPoints at_share(double share) const {
     FourPoints there;
@@ -26,22 +29,7 @@ struct Encountered {
   }
 };
 
-Encountered look_at(const ContactScene& scene, const std::array<std::uint32_t, 4>& points,
-                    double h) {
-  Encountered pair{.points = points};
-  for (std::size_t k = 0; k < 4; ++k) {
-    const std::uint32_t point = points[k];
-    if (scene.points.is_of_cloth(point)) {
-      pair.at[k] = scene.particles.read(point);
-    } else {
-      const Vector from = scene.points.from(point), to = scene.points.to(point);
-      pair.at[k] = {from, to, (1 / h) * (to - from)};
-    }
-    pair.start[k] = pair.at[k].start;
-    pair.x[k] = pair.at[k].x;
-  }
-  return pair;
-}
+namespace {
 
 /// The sine by which a neighbour may stand out of a pair that pushes.
 constexpr double kLean = 0.02;
@@ -53,7 +41,7 @@ double volume(PairKind kind, const FourPoints& x) {
 
 /// The share of a substep at which the four points of a pair lie in one plane: where the volume
 /// that they span, which has different signs at both ends, is 0. (Regula falsi, Illinois.)
-double time_in_plane(PairKind kind, const Encountered& pair, double before, double after) {
+double time_in_plane(PairKind kind, const auto& pair, double before, double after) {
   double from = 0, to = 1, at_from = before, at_to = after, share = 0;
   for (int i = 0; i < 16; ++i) {
     share = from + (to - from) * at_from / (at_from - at_to);
@@ -74,7 +62,7 @@ double time_in_plane(PairKind kind, const Encountered& pair, double before, doub
 
 /// Whether the features went through each other in this substep: where their points lie in a plane
 /// they are at one place.
-bool has_crossed(PairKind kind, const Encountered& pair, double thickness) {
+bool has_crossed(PairKind kind, const auto& pair, double thickness) {
   const double before = volume(kind, pair.start), after = volume(kind, pair.x);
   if ((before > 0) == (after > 0)) return false;
   const double share = time_in_plane(kind, pair, before, after);
@@ -82,10 +70,10 @@ bool has_crossed(PairKind kind, const Encountered& pair, double thickness) {
   return length(nearest(kind, pair.at_share(share)).r) < kTogether * thickness + 1e-9;
 }
 
-/// Whether the cloth is on the wrong side. r: between the features as they are; side: the normal as
-/// last seen. Who is beyond it went through in this substep, or was under when it began; else the
-/// cloth went around an edge of the body.
-bool is_now_under(PairKind kind, const Encountered& pair, Vector r, Vector side, bool was_under,
+/// Whether one feature is on the wrong side of the other. r: between them as they are; side: the
+/// normal as last seen. A feature beyond it went through in this substep, or was under when it
+/// began; else it went around an edge.
+bool is_now_under(PairKind kind, const auto& pair, Vector r, Vector side, bool was_under,
                   double thickness) {
   if (dot(r, side) > 0) return false;
   const Vector before = nearest(kind, pair.start).r;
@@ -96,14 +84,9 @@ bool is_now_under(PairKind kind, const Encountered& pair, Vector r, Vector side,
 
 }  // namespace
 
-double least_weight(const Model& model, const std::array<std::uint32_t, 4>& points,
-                    const ContactPoints& of) {
+double least_weight(const ContactPoints& points, const std::array<std::uint32_t, 4>& four) {
   constexpr double kLeast = 0.05;
-  double lightest = 0;
-  for (const std::uint32_t point : points) {
-    if (of.is_of_cloth(point)) lightest = std::max(lightest, model.inverse_mass[point]);
-  }
-  return kLeast * lightest;
+  return kLeast * points.largest_inverse_mass(four);
 }
 
 void Response::begin(const ContactScene& scene, const Near& near) {
@@ -152,62 +135,78 @@ void Response::find_touching(const ContactScene& scene, Near& near, Team& team) 
   }
 }
 
+/// Where neighbours are nearer, or the features are not beside each other, it does not push.
+Response::Encounter Response::meet(const ContactScene& scene, const NearPairs& near,
+                                   std::size_t i) {
+  const Pair& pair = near.list.pairs[i];
+  Encounter e{.points = near.list.points(i)};
+  for (std::size_t k = 0; k < 4; ++k) {
+    e.at[k] = scene.read(e.points[k]);
+    e.start[k] = e.at[k].start;
+    e.x[k] = e.at[k].x;
+  }
+  const double thickness = scene.points.later(pair).thickness;
+  e.nearest = nearest(pair.kind, e.x);
+  const double l = length(e.nearest.r);
+  const Vector direct = l > kTouching ? (1 / l) * e.nearest.r : near.normal(i);
+  e.is_under =
+      is_now_under(pair.kind, e, e.nearest.r, near.normal(i), near.states[i].is_under, thickness);
+  e.normal = e.is_under ? -1.0 * direct : direct;
+  e.gap = (e.is_under ? -l : l) - thickness;
+  if (!(e.gap < 0) || !is_in_place(pair.kind, e.nearest)) return e;
+  const Vector seen = pair.kind == PairKind::edges ? e.normal : direct;
+  e.pushes = !is_ghost(scene.points.surfaces(), pair, e.x, e.nearest, seen, kLean,
+                       [&](std::uint32_t point) { return scene.now(point); });
+  return e;
+}
+
 bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i) {
   const Pair& pair = near.list.pairs[i];
   NearState& state = near.states[i];
-  const ContactMesh& mesh = scene.points.meshes()[pair.mesh];
-  const reference::BodyMotion& body = scene.clock.motions()[mesh.body];
-  Encountered e = look_at(scene, near.list.points(i), body.h);
-  const reference::Nearest found = nearest(pair.kind, e.x);
-  const double l = length(found.r);
-  const Vector direct = l > kTouching ? (1 / l) * found.r : near.normal(i);
-  state.is_under =
-      is_now_under(pair.kind, e, found.r, near.normal(i), state.is_under, mesh.thickness);
-  const Vector along = state.is_under ? -1.0 * direct : direct;
-  const double gap = (state.is_under ? -l : l) - mesh.thickness;
-  const double sign = towards_cloth(pair.kind);
-  const auto at = [&](std::uint32_t point) {
-    return scene.points.is_of_cloth(point) ? scene.particles.position(point)
-                                           : scene.points.vertex_now(scene.clock, point);
-  };
-  const Vector n = sign * along;
-  near.set_normal(i, along);
-  if (!(gap < 0)) return false;
-  const Vector seen = pair.kind == PairKind::edges ? n : sign * direct;
-  if (!is_in_place(pair.kind, found) ||
-      is_ghost(scene.cloth, mesh, pair, e.x, found, seen, kLean, at))
-    return false;
-
-  Vector slip{}, relative{};
+  const Encounter e = meet(scene, near, i);
+  state.is_under = e.is_under;
+  near.set_normal(i, e.normal);
+  if (!e.pushes) return false;
+  Vector slip{};
   double weight = 0;  // sum of W w^2
-  std::array<double, 4> share{};
   for (std::size_t k = 0; k < 4; ++k) {
-    slip = slip + (sign * found.weight[k]) * (e.x[k] - e.start[k]);
-    if (!scene.points.is_of_cloth(e.points[k])) continue;
-    share[k] = scene.model.inverse_mass[e.points[k]] * sign * found.weight[k];
-    weight += share[k] * sign * found.weight[k];
+    const double w = e.nearest.weight[k];
+    slip = slip + w * (e.x[k] - e.start[k]);
+    weight += scene.points.inverse_mass(e.points[k]) * w * w;
   }
   if (!(weight > 0)) return false;
-  weight = std::max(weight, least_weight(scene.model, e.points, scene.points));
-  const reference::Stop stop = reference::stop({n, gap, slip}, body.friction, body.h, state.grip);
+  weight = std::max(weight, least_weight(scene.points, e.points));
+  const ContactSurface& later = scene.points.later(pair);
+  const reference::Stop stop =
+      reference::stop({e.normal, e.gap, slip}, later.friction, scene.clock.h(), state.grip);
   if (!(stop.push > 0)) return false;
   state.is_touching = true;
   state.push += stop.push;
-  TouchedSurface surface{.body = static_cast<std::uint32_t>(mesh.body)};
-  Vector on_body{};
+  push(scene, e, pair, stop, weight, state.grip);
+  return true;
+}
+
+/// Moves what can move, and loads the body.
+void Response::push(const ContactScene& scene, const Encounter& e, const Pair& pair,
+                    const reference::Stop& stop, double weight, reference::Grip& grip) {
+  const ContactSurface& later = scene.points.later(pair);
+  TouchedSurface surface{.body = later.body};
+  Vector relative{}, on_body{};
   for (std::size_t k = 0; k < 4; ++k) {
-    relative = relative + (sign * found.weight[k]) * e.at[k].v;
+    const double w = e.nearest.weight[k], outward = pair.outward() * w;
+    relative = relative + w * e.at[k].v;
     if (scene.points.is_of_cloth(e.points[k])) continue;
-    surface.velocity = surface.velocity - (sign * found.weight[k]) * e.at[k].v;
-    on_body = on_body - (sign * found.weight[k]) * e.x[k];
+    surface.velocity = surface.velocity - outward * e.at[k].v;
+    on_body = on_body - outward * e.x[k];
   }
-  const reference::Slowed slow = reference::slow(n, relative, body.friction, state.grip);
+  const reference::Slowed slow = reference::slow(e.normal, relative, later.friction, grip);
   Vector impulse{};
   for (std::size_t k = 0; k < 4; ++k) {
-    if (share[k] == 0) continue;
-    const double part = share[k] / weight;
+    const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k];
+    if (share == 0) continue;
+    const double part = share / weight;
     ContactParticle p = e.at[k];
-    p.start = p.start + (part * stop.comes_out) * n;
+    p.start = p.start + (part * stop.comes_out) * e.normal;
     p.x = p.x + part * stop.by;
     p.v = p.v + part * slow.change;
     scene.particles.write(e.points[k], p);
@@ -215,11 +214,13 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
     const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
     impulse = impulse + (momentum * part) * slow.change;
   }
-  scene.impulses.add(mesh.body, body.to.centre, on_body, impulse, surface.velocity);
+  scene.impulses.add(later.body, scene.clock.motions()[later.body].to.centre, on_body, impulse,
+                     surface.velocity);
   const double l_change = length(slow.change);
-  if (l_change > 0)
-    scene.impulses.friction += length(impulse) / l_change * slow.taken * (stop.slid / body.h);
-  return true;
+  if (l_change > 0) {
+    scene.impulses.friction +=
+        length(impulse) / l_change * slow.taken * (stop.slid / scene.clock.h());
+  }
 }
 
 void Response::remember(const ContactScene& scene, NearPairs& near, std::size_t list,
@@ -251,34 +252,12 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
   find_touching(scene, near, team);
   double deepest = 0;
   for (std::size_t list = 0; list < kPairLists; ++list) {
-    for (std::size_t block = 0; block < touching_[list].size(); ++block) {
-      for (std::uint32_t bits = touching_[list][block]; bits != 0; bits &= bits - 1) {
-        const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
-        deepest = std::max(deepest, depth_of(scene, near[list], i));
-      }
-    }
+    for_each_touching(list, [&](std::size_t i) {
+      const Encounter e = meet(scene, near[list], i);
+      if (e.pushes) deepest = std::max(deepest, -e.gap);
+    });
   }
   return deepest;
-}
-
-double Response::depth_of(const ContactScene& scene, const NearPairs& near, std::size_t i) const {
-  const Pair& pair = near.list.pairs[i];
-  const ContactMesh& mesh = scene.points.meshes()[pair.mesh];
-  const Encountered e = look_at(scene, near.list.points(i), scene.clock.motions()[mesh.body].h);
-  const reference::Nearest found = nearest(pair.kind, e.x);
-  const double l = length(found.r);
-  const bool is_under =
-      is_now_under(pair.kind, e, found.r, near.normal(i), near.states[i].is_under, mesh.thickness);
-  const auto at = [&](std::uint32_t point) {
-    return scene.points.is_of_cloth(point) ? scene.particles.position(point)
-                                           : scene.points.vertex_now(scene.clock, point);
-  };
-  const Vector direct = towards_cloth(pair.kind) * kernels::direction(found.r, l);
-  const Vector seen = pair.kind == PairKind::edges && is_under ? -1.0 * direct : direct;
-  if (!is_in_place(pair.kind, found) ||
-      is_ghost(scene.cloth, mesh, pair, e.x, found, seen, kLean, at))
-    return 0;
-  return mesh.thickness - (is_under ? -l : l);
 }
 
 std::size_t Response::bytes() const {

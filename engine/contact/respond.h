@@ -1,66 +1,30 @@
-/// Stages 4 to 6 of contacts with meshes: in each substep, after the cloth has been swept, pairs
-/// that are nearer than the thickness are pushed apart, with friction, along normals of that very
-/// moment. Lanes find them; they are few, and are treated one after the other, so that what touches
-/// in many places is pushed no farther than it must.
+/// Stages 4 to 6 of an interval: in each substep, after the cloth has been swept, pairs that are
+/// nearer than the thickness are pushed apart, with friction, along normals of that very moment.
+/// Lanes find them; they are few, and are treated one after the other, so that what touches in many
+/// places is pushed no farther than it must.
 ///
-/// What a contact does is that of closed forms (kernels/reference/bodies.h): it stops what came
+/// A touch does what it does with closed forms (kernels/reference/bodies.h): it stops what came
 /// nearer in this substep, lets what was deeper come out slowly and without speed, and gives
-/// friction what Coulomb's law allows of this substep's push. Here it acts on a point of the cloth
-/// that is a mean of up to three particles, w_i: each is moved by W_i w_i / sum of W_j w_j^2 times
-/// that, with W_i its inverse mass.
+/// friction what Coulomb's law allows of this substep's push. Here it acts on two features, whose
+/// points count by w_i: each is moved by W_i w_i / sum of W_j w_j^2 times that, with W_i its
+/// inverse mass. Points of bodies have none: what they do not take loads the body.
 #pragma once
 
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "engine/bodies/bodies.h"
-#include "engine/contact/misplaced.h"
-#include "engine/contact/near.h"
-#include "engine/contact/particles.h"
-#include "engine/contact/tangles.h"
+#include "engine/contact/near_pairs.h"
+#include "engine/contact/scene.h"
+#include "engine/parallel/team.h"
 #include "engine/tuning.h"
 
 namespace weft {
 
-/// What contacts have given to the cloth, per body of the clock.
-struct ContactImpulses {
-  std::vector<BodyImpulse> of_body;
-  double work = 0;      // J, that bodies did
-  double friction = 0;  // J, that it took
-
-  /// An impulse at x on a surface that moves with `velocity`.
-  void add(std::size_t body, kernels::Vector centre, kernels::Vector x, kernels::Vector impulse,
-           kernels::Vector velocity) {
-    of_body[body].linear = of_body[body].linear + impulse;
-    of_body[body].angular = of_body[body].angular + cross(x - centre, impulse);
-    work += dot(impulse, velocity);
-  }
-  void begin(std::span<const TravellingBody> bodies) {
-    of_body.clear();
-    for (const TravellingBody& body : bodies) of_body.push_back({.id = body.id});
-    work = friction = 0;
-  }
-};
-
-/// What a sweep needs to know of a substep.
-struct ContactScene {
-  const Model& model;
-  const TriangleSurface& cloth;
-  const BodyClock& clock;
-  ContactPoints& points;
-  ContactParticles& particles;
-  ContactImpulses& impulses;
-  const Misplaced& misplaced;
-  const Tangles& tangles;
-};
-
 /// 1/kg: a lower bound for the sum of W w^2. Where a feature is fixed but for a particle that has a
 /// small part in its nearest point, that particle is not thrown far for it.
-double least_weight(const Model& model, const std::array<std::uint32_t, 4>& points,
-                    const ContactPoints& of);
+double least_weight(const ContactPoints& points, const std::array<std::uint32_t, 4>& four);
 
 class Response {
  public:
@@ -82,12 +46,24 @@ class Response {
   std::size_t bytes() const;
 
  private:
+  /// A sweep goes through all pairs of one turn, then through those of the next.
+  enum class Turn : std::uint8_t { points, edges, points_of_bodies };
+  static Turn turn_of(const Pair& pair) {
+    if (pair.kind == PairKind::edges) return Turn::edges;
+    return pair.is_turned() ? Turn::points_of_bodies : Turn::points;
+  }
+  /// A pair in the present substep.
+  struct Encounter;
+  static Encounter meet(const ContactScene& scene, const NearPairs& near, std::size_t i);
+  template <class Visit>
+  void for_each_touching(std::size_t list, Visit&& visit) const;
   template <class Moved>
-  void push_apart(const ContactScene& scene, Near& near, PairKind kind, Moved& moved);
+  void push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved);
   /// Returns whether it was pushed apart.
-  bool resist(const ContactScene& scene, NearPairs& near, std::size_t i);
+  static bool resist(const ContactScene& scene, NearPairs& near, std::size_t i);
+  static void push(const ContactScene& scene, const Encounter& e, const Pair& pair,
+                   const reference::Stop& stop, double weight, reference::Grip& grip);
   void find_touching(const ContactScene& scene, Near& near, Team& team);
-  double depth_of(const ContactScene& scene, const NearPairs& near, std::size_t i) const;
   void remember(const ContactScene& scene, NearPairs& near, std::size_t list, std::size_t i);
 
   const simd::Table& table_;
@@ -103,32 +79,36 @@ class Response {
   std::vector<std::uint32_t> linked_;  // slots
 };
 
+/// visit(i), of each pair of the list that the lanes found.
+template <class Visit>
+void Response::for_each_touching(std::size_t list, Visit&& visit) const {
+  for (std::size_t block = 0; block < touching_[list].size(); ++block) {
+    for (std::uint32_t bits = touching_[list][block]; bits != 0; bits &= bits - 1)
+      visit(block * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits)));
+  }
+}
+
 /// Particles first: of a pair that is a mean of several, which a push moves all at once, the
 /// corners are then where they may be, and what lies flat has nothing left to push.
 template <class Moved>
 void Response::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved) {
   find_touching(scene, near, team);
   for (int round = 0; round < tuning::kMeshRounds; ++round) {
-    for (const PairKind kind :
-         {PairKind::particle_triangle, PairKind::edges, PairKind::vertex_triangle})
-      push_apart(scene, near, kind, moved);
+    for (const Turn turn : {Turn::points, Turn::edges, Turn::points_of_bodies})
+      push_apart(scene, near, turn, moved);
   }
 }
 
 template <class Moved>
-void Response::push_apart(const ContactScene& scene, Near& near, PairKind kind, Moved& moved) {
-  const std::size_t list = list_of(kind);
-  for (std::size_t block = 0; block < touching_[list].size(); ++block) {
-    for (std::uint32_t bits = touching_[list][block]; bits != 0; bits &= bits - 1) {
-      const std::size_t i =
-          block * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits));
-      if (near[list].list.pairs[i].kind != kind || !resist(scene, near[list], i)) continue;
-      remember(scene, near[list], list, i);
-      for (const std::uint32_t point : near[list].list.points(i)) {
-        if (scene.points.is_of_cloth(point)) moved(point, near[list].states[i].push);
-      }
+void Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved) {
+  const std::size_t list = turn == Turn::edges ? 1 : 0;
+  for_each_touching(list, [&](std::size_t i) {
+    if (turn_of(near[list].list.pairs[i]) != turn || !resist(scene, near[list], i)) return;
+    remember(scene, near[list], list, i);
+    for (const std::uint32_t point : near[list].list.points(i)) {
+      if (scene.points.is_of_cloth(point)) moved(point, near[list].states[i].push);
     }
-  }
+  });
 }
 
 }  // namespace weft

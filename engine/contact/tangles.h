@@ -1,14 +1,18 @@
-/// Triangles of the cloth that cross a body which is a mesh: one was put there, positions were
-/// written, or more came together than could be kept apart. Which way they would come apart cannot
-/// be told from where they are, so their edges and faces are no contacts until they have. Their
-/// particles are kept out as all others are.
+/// The particles that are inside a one-sided body, and the triangles of the cloth that cross a
+/// body: it was put there, positions were written, or more came together than could be kept apart.
+///
+/// A particle that is inside is known as such until it is out, and is pushed out by the nearest
+/// way. The way in which triangles that cross would come apart cannot be told from where they are,
+/// so their edges and faces are no contacts until they have. Their particles are kept out as all
+/// others are.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "engine/contact/features.h"
+#include "engine/contact/misplaced.h"
+#include "engine/contact/near_pairs.h"
 #include "engine/contact/points.h"
 
 namespace weft {
@@ -17,32 +21,47 @@ class Tangles {
  public:
   explicit Tangles(const simd::Table& table) : table_(table) {}
 
-  /// Of a frame. slots: those of the frame before, when it was over.
-  void begin(const TriangleSurface& cloth, std::span<const std::uint32_t> slots);
-  enum class Moment { start, end };
-  /// Among all triangles, where an interval begins or ends.
-  void find(const ContactPoints& points, Moment moment);
+  /// Of a frame: what the frame before left.
+  void begin(const TriangleSurface& cloth, const Misplaced& misplaced);
+  /// Instead, finds anew what is inside and what crosses where an interval begins.
+  void find(ContactPoints& points);
+  /// Adds to near pairs those by which particles come out that are inside. Forgets those that are
+  /// out.
+  void come_out(ContactPoints& points, Near& near);
+  /// The pair could not be kept apart.
+  void take_in(const ContactPoints& points, const Pair& pair);
+  /// Finds what crosses where an interval ends.
+  void find_crossing_at_end(const ContactPoints& points);
 
-  int count() const { return static_cast<int>(triangles_.size()); }
+  bool any() const { return !triangles_.empty() || !misplaced_.inside.empty(); }
+  bool is_inside(std::uint32_t slot) const { return misplaced_.is_inside(slot); }
+  bool is_inside(const std::array<std::uint32_t, 4>& points) const;
   /// Whether the pair is left alone.
   bool leaves_out(const Pair& pair) const {
-    if (triangles_.empty() || pair.kind == PairKind::particle_triangle) return false;
-    return pair.kind == PairKind::edges ? has_edge_[pair.of_cloth] : has_triangle_[pair.of_cloth];
+    if (triangles_.empty()) return false;
+    if (pair.kind == PairKind::edges) return has_edge_[pair.first];
+    return pair.b == kClothSurface && has_triangle_[pair.second];
   }
-  /// Corners of triangles that cross, ascending.
-  const std::vector<std::uint32_t>& slots() const { return slots_; }
+  /// Triangles that cross, and particles inside.
+  int count() const {
+    return static_cast<int>(triangles_.size()) + static_cast<int>(misplaced_.inside.size());
+  }
+  const Misplaced& misplaced() const { return misplaced_; }
   std::size_t bytes() const;
 
  private:
   template <class At>
+  void find_crossing(const ContactPoints& points, At&& at);
+  template <class At>
   bool crosses(const ContactPoints& points, std::uint32_t triangle, At&& at) const;
-  void forget();
-  void add(std::uint32_t triangle);
+  void forget_crossing();
+  void add_crossing(std::uint32_t triangle);
   void gather_slots();
 
   const simd::Table& table_;
   const TriangleSurface* cloth_ = nullptr;
-  std::vector<std::uint32_t> triangles_, slots_;
+  Misplaced misplaced_;
+  std::vector<std::uint32_t> triangles_;       // that cross
   std::vector<bool> has_triangle_, has_edge_;  // empty until the first one crosses
 };
 

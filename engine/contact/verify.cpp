@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "engine/contact/look.h"
 
@@ -79,93 +80,77 @@ std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, do
 
 }  // namespace
 
-void Verification::find(const ContactScene& scene, const CandidateSearch& broad, NearSearch& narrow,
-                        Candidates& candidates, Team& team) {
-  failures_.clear();
-  look_beside_strayed(scene, broad, narrow, candidates, team);
-  const ContactPoints& points = scene.points;
-  const auto is_inside = [&](std::uint32_t point) {
-    return points.is_of_cloth(point) && scene.misplaced.is_inside(point);
-  };
+/// visit(list, i, points), of each pair of candidates that may have come nearer than `near` and is
+/// not left alone.
+template <class Visit>
+void Verification::for_each_moved(const ContactScene& scene, const NearSearch& near_search,
+                                  const Candidates& candidates, double near, Team& team,
+                                  Visit&& visit) {
   for (std::uint32_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
-    find_moved(scene, narrow, candidates, list, 0, team);
+    moved_.resize(pairs.blocks.size());
+    const simd::PairMoves moves{.pairs = pairs.blocks.data(),
+                                .moves = scene.points.moves(),
+                                .distance = reinterpret_cast<const float(*)[kLanes]>(
+                                    near_search.distances()[list].distance.data()),
+                                .rounding = scene.points.rounding() + static_cast<float>(near),
+                                .moved = moved_.data()};
+    team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
+      table_.find_moved_pairs(moves, has_edges(list), first, last);
+    });
     for (std::size_t block = 0; block < moved_.size(); ++block) {
       for (std::uint32_t bits = moved_[block]; bits != 0; bits &= bits - 1) {
         const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
-        if (i >= pairs.size()) continue;
-        const Pair& pair = pairs.pairs[i];
-        if (scene.tangles.leaves_out(pair)) continue;
-        PairMotion way;
-        const auto four = pairs.points(i);
-        for (std::size_t k = 0; k < 4; ++k) {
-          way.from[k] = points.start(four[k]);
-          way.to[k] = points.end(four[k]);
-        }
-        const reference::Nearest found = nearest(pair.kind, way.from);
-        ContactMesh& mesh = scene.points.meshes()[pair.mesh];
-        const double distance = std::max(length(found.r), kTouching);
-        const Vector r = distance > kTouching ? found.r : direction_apart(mesh, pair, found);
-        const auto time = meeting(pair.kind, way, r, distance, mesh.thickness);
-        if (!time) continue;
-        // It comes out, which is what it should.
-        if (!mesh.mesh().two_sided && std::ranges::any_of(four, is_inside)) continue;
-        failures_.push_back({list, static_cast<std::uint32_t>(i), *time, 0});
+        if (i < pairs.size() && !scene.tangles.leaves_out(pairs.pairs[i]))
+          visit(list, static_cast<std::uint32_t>(i), pairs.points(i));
       }
     }
   }
+}
+
+void Verification::find(const ContactScene& scene, const CandidateSearch& search,
+                        NearSearch& near_search, Candidates& candidates, Team& team) {
+  failures_.clear();
+  look_beside_strayed(scene, search, near_search, candidates, team);
+  ContactPoints& points = scene.points;
+  for_each_moved(
+      scene, near_search, candidates, 0, team,
+      [&](std::uint32_t list, std::uint32_t i, const std::array<std::uint32_t, 4>& four) {
+        const Pair& pair = candidates[list].pairs[i];
+        const PairMotion way{points.starts_of(four), points.ends_of(four)};
+        ContactSurface& later = points.later(pair);
+        const Look seen = look(later, pair, way.from);
+        const double distance = std::max(seen.distance, kTouching);
+        const Vector r = distance > kTouching ? seen.nearest.r : seen.normal;
+        const auto time = meeting(pair.kind, way, r, distance, later.thickness);
+        if (!time) return;
+        // It comes out, which is what it should.
+        if (!later.two_sided && scene.tangles.is_inside(four)) return;
+        failures_.push_back({list, i, *time, 0});
+      });
   leave_each_once(candidates);
 }
 
-/// Which pairs of a list may have come nearer than `near`.
-void Verification::find_moved(const ContactScene& scene, const NearSearch& narrow,
-                              const Candidates& candidates, std::uint32_t list, double near,
-                              Team& team) {
-  const PairList& pairs = candidates[list];
-  moved_.resize(pairs.blocks.size());
-  const simd::PairMoves moves{.pairs = pairs.blocks.data(),
-                              .moves = scene.points.moves(),
-                              .distance = reinterpret_cast<const float(*)[kLanes]>(
-                                  narrow.distances()[list].distance.data()),
-                              .rounding = scene.points.rounding() + static_cast<float>(near),
-                              .moved = moved_.data()};
-  team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
-    table_.find_moved_pairs(moves, has_edges(list), first, last);
-  });
-}
-
-void Verification::find_late(const ContactScene& scene, NearSearch& narrow,
+void Verification::find_late(const ContactScene& scene, const NearSearch& near_search,
                              const Candidates& candidates, Team& team) {
   failures_.clear();
   const ContactPoints& points = scene.points;
   const auto at = [&](std::uint32_t point) { return points.end(point); };
-  const auto is_inside = [&](std::uint32_t point) {
-    return points.is_of_cloth(point) && scene.misplaced.is_inside(point);
-  };
-  for (std::uint32_t list = 0; list < kPairLists; ++list) {
-    const PairList& pairs = candidates[list];
-    find_moved(scene, narrow, candidates, list, points.largest_thickness(), team);
-    for (std::size_t block = 0; block < moved_.size(); ++block) {
-      for (std::uint32_t bits = moved_[block]; bits != 0; bits &= bits - 1) {
-        const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
-        if (i >= pairs.size()) continue;
-        const Pair& pair = pairs.pairs[i];
-        if (scene.tangles.leaves_out(pair)) continue;
-        const ContactMesh& mesh = points.meshes()[pair.mesh];
-        const auto four = pairs.points(i);
-        const FourPoints x{at(four[0]), at(four[1]), at(four[2]), at(four[3])};
+  for_each_moved(
+      scene, near_search, candidates, points.largest_thickness(), team,
+      [&](std::uint32_t list, std::uint32_t i, const std::array<std::uint32_t, 4>& four) {
+        const Pair& pair = candidates[list].pairs[i];
+        const ContactSurface& later = points.later(pair);
+        const FourPoints x = points.ends_of(four);
         const reference::Nearest found = nearest(pair.kind, x);
         const double l = length(found.r);
         constexpr double kLate = 0.99;  // of the thickness: what is nearer is no rounding
-        if (!(l < kLate * mesh.thickness) || l == 0 || !is_in_place(pair.kind, found)) continue;
-        const Vector n = (towards_cloth(pair.kind) / l) * found.r;
+        if (!(l < kLate * later.thickness) || l == 0 || !is_in_place(pair.kind, found)) return;
         constexpr double kLean = 0.02;
-        if (is_ghost(scene.cloth, mesh, pair, x, found, n, kLean, at)) continue;
-        if (!mesh.mesh().two_sided && std::ranges::any_of(four, is_inside)) continue;
-        failures_.push_back({list, static_cast<std::uint32_t>(i), 1, mesh.thickness - l});
-      }
-    }
-  }
+        if (is_ghost(points.surfaces(), pair, x, found, (1 / l) * found.r, kLean, at)) return;
+        if (!later.two_sided && scene.tangles.is_inside(four)) return;
+        failures_.push_back({list, i, 1, later.thickness - l});
+      });
   leave_each_once(candidates);
 }
 
@@ -173,8 +158,10 @@ void Verification::find_late(const ContactScene& scene, NearSearch& narrow,
 void Verification::leave_each_once(const Candidates& candidates) {
   const auto key = [&](const Failure& f) {
     const Pair& pair = candidates[f.list].pairs[f.pair];
-    return std::array{static_cast<std::uint32_t>(pair.kind), std::uint32_t{pair.mesh},
-                      pair.of_cloth, pair.of_body};
+    const auto [earlier, later] =
+        pair.is_turned() ? std::pair(pair.second, pair.first) : std::pair(pair.first, pair.second);
+    return std::array{static_cast<std::uint32_t>(pair.kind), std::uint32_t{pair.a},
+                      std::uint32_t{pair.b}, earlier, later};
   };
   std::ranges::sort(failures_, {}, key);
   const auto rest = std::ranges::unique(failures_, {}, key);
@@ -183,8 +170,9 @@ void Verification::leave_each_once(const Candidates& candidates) {
 
 /// Boxes hold what points were expected to do. Of those that did something else candidates are
 /// found anew, by boxes around the ways of their triangles.
-void Verification::look_beside_strayed(const ContactScene& scene, const CandidateSearch& broad,
-                                       NearSearch& narrow, Candidates& candidates, Team& team) {
+void Verification::look_beside_strayed(const ContactScene& scene, const CandidateSearch& search,
+                                       NearSearch& near_search, Candidates& candidates,
+                                       Team& team) {
   ContactPoints& points = scene.points;
   has_strayed_.assign(points.slots(), 0);
   bool any = false;
@@ -195,16 +183,16 @@ void Verification::look_beside_strayed(const ContactScene& scene, const Candidat
     any = true;
   }
   if (!any) return;
-  for (std::uint32_t t = 0; t < scene.cloth.triangles.size(); ++t) {
-    const auto [a, b, c] = scene.cloth.triangles[t];
+  for (std::uint32_t t = 0; t < points.cloth().triangles.size(); ++t) {
+    const auto [a, b, c] = points.cloth().triangles[t];
     if ((has_strayed_[a] | has_strayed_[b] | has_strayed_[c]) == 0) continue;
     Box box = points.box(a);
     box.add(points.box(b));
     box.add(points.box(c));
-    broad.find_beside(scene.cloth, points, t, box, candidates);
+    search.find_beside(points, t, box, candidates);
   }
-  narrow.measure(points, candidates, team);
-  scene.points.forget_hulls();
+  near_search.measure(points, candidates, team);
+  points.forget_wide_boxes();
 }
 
 }  // namespace weft

@@ -1,4 +1,4 @@
-/// Stage 7 of contacts with meshes: whether features went through each other in an interval, their
+/// Stage 7 of an interval: whether features went through each other in an interval, their
 /// points moving in straight lines from where they were to where they are. A cloth that crosses no
 /// body at the start, and no pair of which fails here, crosses none at the end.
 ///
@@ -9,7 +9,8 @@
 
 #include <vector>
 
-#include "engine/contact/respond.h"
+#include "engine/contact/near.h"
+#include "engine/contact/scene.h"
 
 namespace weft {
 
@@ -25,20 +26,21 @@ class Verification {
   explicit Verification(const simd::Table& table) : table_(table) {}
 
   /// Moves are measured. Points that left their boxes have new candidates.
-  void find(const ContactScene& scene, const CandidateSearch& broad, NearSearch& narrow,
+  void find(const ContactScene& scene, const CandidateSearch& search, NearSearch& near_search,
             Candidates& candidates, Team& team);
   const std::vector<Failure>& failures() const { return failures_; }
   /// Instead, pairs that have met no other, but have come nearer than their thickness where nothing
   /// was expected: time is 1.
-  void find_late(const ContactScene& scene, NearSearch& narrow, const Candidates& candidates,
-                 Team& team);
+  void find_late(const ContactScene& scene, const NearSearch& near_search,
+                 const Candidates& candidates, Team& team);
 
  private:
-  void find_moved(const ContactScene& scene, const NearSearch& narrow, const Candidates& candidates,
-                  std::uint32_t list, double near, Team& team);
+  template <class Visit>
+  void for_each_moved(const ContactScene& scene, const NearSearch& near_search,
+                      const Candidates& candidates, double near, Team& team, Visit&& visit);
   void leave_each_once(const Candidates& candidates);
-  void look_beside_strayed(const ContactScene& scene, const CandidateSearch& broad,
-                           NearSearch& narrow, Candidates& candidates, Team& team);
+  void look_beside_strayed(const ContactScene& scene, const CandidateSearch& search,
+                           NearSearch& near_search, Candidates& candidates, Team& team);
 
   const simd::Table& table_;
   std::vector<Failure> failures_;

@@ -5,22 +5,16 @@
 
 #include "engine/bodies/bodies.h"
 #include "engine/contact/rescue_report.h"
+#include "engine/contact/touch.h"
 
 namespace weft {
-
-/// A particle that touches a body where the last substep ended.
-struct BodyTouch {
-  std::uint32_t slot = 0, body = 0;   // the body's id
-  double push = 0;                    // m, along the normal, in that substep
-  kernels::Vector point{}, normal{};  // on the surface
-};
 
 struct BodyReport {
   std::vector<BodyImpulse> impulses;  // per body, of what it gave to the cloth
   double work = 0;                    // J, that bodies did on the cloth
   double friction = 0;                // J, that friction took
   int contacts = 0;                   // when the last substep ended
-  RescueReport failures;            // of meshes
+  RescueReport failures;              // of meshes
 
   void clear() {
     impulses.clear();

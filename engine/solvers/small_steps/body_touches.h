@@ -50,15 +50,5 @@ inline void add_report(const SurfaceContacts& meshes, const BodyClock& clock, Bo
   report.contacts += meshes.count_touching();
   report.failures = meshes.failures();
 }
-inline void add_touches(const SurfaceContacts& meshes, const ContactParticles& particles,
-                        const BodyClock& clock, std::vector<BodyTouch>& contacts) {
-  if (meshes.empty()) return;
-  std::vector<MeshTouch> touches;
-  meshes.read_touching(particles, touches);
-  for (const MeshTouch& touch : touches) {
-    contacts.push_back(
-        {touch.slot, clock.bodies()[touch.body].id, touch.push, touch.point, touch.normal});
-  }
-}
 
 }  // namespace weft

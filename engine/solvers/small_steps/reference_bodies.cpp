@@ -94,7 +94,7 @@ void ReferenceBodies::read_contacts(const ContactParticles& particles,
     contacts.push_back(
         touch_of(clock_, i % count, slot, particles.position(slot), grips_[i].pushed));
   }
-  add_touches(meshes_, particles, clock_, contacts);
+  meshes_.read_touching(particles, clock_, contacts);
 }
 
 }  // namespace weft

@@ -225,7 +225,7 @@ simd::BodyHold SimdBodies::hold_of(const simd::Flight& flight, const float* base
           .woven = model_.small_steps().places().woven(),
           .rate = rate,
           .momentum_share = static_cast<float>(momentum_share_),
-          .h = static_cast<float>(clock_.motions().front().h)};
+          .h = static_cast<float>(clock_.h())};
 }
 
 void SimdBodies::hold(const simd::Flight& flight, const float* base, float rate, Team& team) {
@@ -348,7 +348,7 @@ void SimdBodies::read_contacts(const ContactParticles& particles,
   for_each_contact([&](std::uint32_t slot, std::size_t body, double push) {
     contacts.push_back(touch_of(clock_, body, slot, particles.position(slot), push));
   });
-  add_touches(meshes_, particles, clock_, contacts);
+  meshes_.read_touching(particles, clock_, contacts);
 }
 
 void SimdBodies::collect_impulses() {

@@ -1,0 +1,45 @@
+/// Pairs that may touch within an interval, and what is known of each.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/contact/features.h"
+#include "kernels/reference/bodies.h"
+
+namespace weft {
+
+/// A near pair, and what its touch has done in the present substep.
+struct NearState {
+  bool is_under = false;     // one is on the wrong side of the other
+  bool is_touching = false;  // in this substep
+  double push = 0;           // m, along the normal, in this substep
+  reference::Grip grip{};
+};
+
+/// Near pairs of one list.
+struct NearPairs {
+  PairList list;
+  kernels::AlignedVector<simd::PairSide> sides;  // per block
+  std::vector<NearState> states;                 // per pair
+
+  void clear() {
+    list.clear();
+    sides.clear();
+    states.clear();
+  }
+  void add(const Pair& pair, const std::array<std::uint32_t, 4>& points, kernels::Vector normal,
+           double thickness, bool is_under);
+  /// Its place, or size().
+  std::size_t find(const Pair& pair) const {
+    return static_cast<std::size_t>(std::ranges::find(list.pairs, pair) - list.pairs.begin());
+  }
+  /// From the second feature to the first, as last seen there.
+  kernels::Vector normal(std::size_t i) const;
+  void set_normal(std::size_t i, kernels::Vector normal);
+};
+using Near = std::array<NearPairs, kPairLists>;
+
+}  // namespace weft

@@ -1,0 +1,31 @@
+/// All that the stages of an interval share in a substep.
+#pragma once
+
+#include "engine/contact/impulses.h"
+#include "engine/contact/particles.h"
+#include "engine/contact/points.h"
+#include "engine/contact/tangles.h"
+
+namespace weft {
+
+struct ContactScene {
+  const Model& model;
+  const BodyClock& clock;
+  ContactPoints& points;
+  ContactParticles& particles;
+  ContactImpulses& impulses;
+  const Tangles& tangles;
+
+  /// A point in the present substep; a vertex of a body is one that was asked for.
+  ContactParticle read(std::uint32_t point) const {
+    if (points.is_of_cloth(point)) return particles.read(point);
+    const kernels::Vector from = points.from(point), to = points.to(point);
+    return {from, to, (1 / clock.h()) * (to - from)};
+  }
+  /// Where any point is when the present substep ends.
+  kernels::Vector now(std::uint32_t point) const {
+    return points.is_of_cloth(point) ? particles.position(point) : points.vertex_now(clock, point);
+  }
+};
+
+}  // namespace weft
