@@ -20,6 +20,7 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int subs
   h_ = h;
   substeps_ = substeps;
   done_ = 0;
+  interval_ = interval_left_ = 0;
   stands_ = stands;
   motions_.resize(bodies.size());
   const double per_second = stands ? 0 : 1 / (h * substeps);
@@ -37,13 +38,15 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int subs
 
 double BodyClock::h() const { return stands_ ? kAtOnce : h_; }
 
-int BodyClock::substeps_in(double time) const {
-  const double interval = std::max(1.0, std::floor(time / h_));
-  return static_cast<int>(std::min<double>(interval, substeps_left()));
+void BodyClock::begin_interval(double time) {
+  const double substeps = std::max(1.0, std::floor(time / h_));
+  interval_ = static_cast<int>(std::min<double>(substeps, substeps_ - done_));
+  interval_left_ = interval_;
 }
 
 void BodyClock::advance() {
   ++done_;
+  --interval_left_;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     motions_[i].from = motions_[i].to;
     motions_[i].to = bodies_[i].travel.at(share(done_));

@@ -27,9 +27,12 @@ class BodyClock {
   Box box(std::size_t body, int substeps) const;
   /// m/s: no point of the body is faster in this step; of what has no end, its centre.
   double fastest(std::size_t body) const;
-  int substeps_left() const { return substeps_ - done_; }
-  /// Of those that are left as many as such a time has, one at least.
-  int substeps_in(double time) const;
+  /// Intervals of some substeps: contacts of all kinds are looked for when one begins. It has as
+  /// many of the substeps that are left as such a time has, one at least.
+  void begin_interval(double time);
+  int substeps_of_interval() const { return interval_; }
+  bool begins_interval() const { return interval_ > 0 && interval_left_ == interval_; }
+  bool is_interval_over() const { return interval_left_ == 0; }
   /// Where a vertex of a body that is a mesh is at a share of the step, when its pose is `at`.
   kernels::Vector vertex(std::size_t body, std::size_t vertex, const reference::Placement& at,
                          double share) const {
@@ -55,6 +58,7 @@ class BodyClock {
   std::vector<reference::BodyMotion> motions_;
   double h_ = 0;
   int substeps_ = 1, done_ = 0;
+  int interval_ = 0, interval_left_ = 0;  // substeps
   bool stands_ = false;
 };
 

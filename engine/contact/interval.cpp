@@ -20,7 +20,6 @@ constexpr int kLateRounds = 3;
 
 void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
   points_.begin(clock);
-  left_ = 0;
   interval_ = late_depth_ = 0;
   failures_ = {};
   for (NearPairs& near : near_) near.clear();
@@ -30,7 +29,6 @@ void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced
   tangles_.begin(points_.cloth(), misplaced);
 }
 
-/// s. Bodies that are fast are looked at more often: on their way they turn, and take cloth along.
 double SurfaceContacts::interval_for(const BodyClock& clock) const {
   const double fastest = points_.fastest(clock);
   const double way = tuning::kMeshWay * points_.largest_thickness();
@@ -39,11 +37,10 @@ double SurfaceContacts::interval_for(const BodyClock& clock) const {
 
 void SurfaceContacts::predict(ContactParticles& particles, const BodyClock& clock, Team& team) {
   if (empty() || still_holds(particles, clock)) return;
-  if (left_ == 0) {
-    left_ = clock.stands() ? 1 : clock.substeps_in(interval_for(clock));
-    begin_interval(particles, clock, left_, team);
-  }
-  --left_;
+  if (clock.stands())
+    begin_interval(particles, clock, 1, team);
+  else if (clock.begins_interval())
+    begin_interval(particles, clock, clock.substeps_of_interval(), team);
 }
 
 /// Where positions are put right, by any way, until a particle comes to a place that was not
@@ -71,7 +68,7 @@ void SurfaceContacts::advance(const BodyClock& clock) {
 
 bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock& clock,
                                    Team& team) {
-  if (empty() || clock.stands() || left_ > 0 || interval_ == 0) return false;
+  if (empty() || clock.stands() || !clock.is_interval_over() || interval_ == 0) return false;
   const ContactScene scene = this->scene(particles, clock);
   points_.measure_moves(particles, clock);
   late_depth_ = 0;

@@ -40,8 +40,11 @@ class SurfaceContacts {
   /// Of a frame. is_new: positions were given, or a body was: tangles are looked for. Else they are
   /// as the frame before left them.
   void begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced);
-  /// A substep is predicted, and the clock stands where it begins: an interval begins with it if
-  /// the last one is over.
+  /// s. Bodies that are fast are looked at more often: on their way they turn, and take cloth
+  /// along.
+  double interval_for(const BodyClock& clock) const;
+  /// A substep is predicted, and the clock is where it begins: an interval of the clock may begin
+  /// with it.
   void predict(ContactParticles& particles, const BodyClock& clock, Team& team);
   /// The clock has advanced to the end of the substep.
   void advance(const BodyClock& clock);
@@ -85,7 +88,6 @@ class SurfaceContacts {
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
   bool still_holds(const ContactParticles& particles, const BodyClock& clock) const;
-  double interval_for(const BodyClock& clock) const;
   bool push_late_apart(const ContactScene& scene, Team& team);
   void expect_failures(const ContactScene& scene);
 
@@ -100,7 +102,6 @@ class SurfaceContacts {
   ContactImpulses impulses_;
   RescueReport failures_;
   bool is_new_ = false;    // tangles are not known yet
-  int left_ = 0;           // substeps of the present interval
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
   Tangles tangles_;

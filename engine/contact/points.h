@@ -136,8 +136,12 @@ class ContactPoints {
   const ContactSurface& surface_of(std::uint32_t point) const {
     return surfaces_[surface_of_[point - slots_]];
   }
-  std::span<ContactSurface> of_bodies() { return std::span(surfaces_).subspan(1); }
-  std::span<const ContactSurface> of_bodies() const { return std::span(surfaces_).subspan(1); }
+  std::span<ContactSurface> of_bodies() {
+    return std::span(surfaces_).subspan(std::min<std::size_t>(1, surfaces_.size()));
+  }
+  std::span<const ContactSurface> of_bodies() const {
+    return std::span(surfaces_).subspan(std::min<std::size_t>(1, surfaces_.size()));
+  }
   void add_cloth();
   ContactSurface& surface_for(const BodyClock& clock, std::size_t body, std::size_t place);
   bool holds(std::uint32_t point, kernels::Vector place) const;

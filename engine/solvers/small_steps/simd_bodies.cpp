@@ -63,7 +63,6 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
   if (bodies.empty()) return;
   make_room();
   h_ = h;
-  until_search_ = 0;
   std::ranges::fill(on_, std::uint16_t{0});
   if (before.size() == on_.size()) std::ranges::copy(before, on_.begin());
   impulses_.begin(bodies);
@@ -72,9 +71,11 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
 void SimdBodies::advance(const simd::Flight& flight, const float* base, double part,
                          ContactParticles& particles, Team& team) {
   if (empty()) return;
-  if (until_search_ == 0) search(flight, base);
+  if (clock_.is_interval_over()) {
+    clock_.begin_interval(meshes_.interval_for(clock_));
+    search(flight, base);
+  }
   meshes_.predict(particles, clock_, team);
-  --until_search_;
   clock_.advance();
   meshes_.advance(clock_);
   write_frames();
@@ -135,15 +136,15 @@ bool SimdBodies::may_touch(const Extent& extent, std::size_t body, const BodyClo
 /// Which blocks may meet which bodies until the next search.
 void SimdBodies::search(const simd::Flight& flight, const float* base) {
   collect_impulses();
-  until_search_ = clock_.substeps_in(tuning::kContactInterval);
+  const int substeps = clock_.substeps_of_interval();
   pairs_.clear();
   first_pair_.clear();
   pairs_of_.clear();
   std::vector<BodyClock::Box>& boxes = boxes_;
   boxes.clear();
   for (std::size_t body = 0; body < clock_.bodies().size(); ++body)
-    boxes.push_back(clock_.box(body, until_search_));  // of a mesh: nobody asks for it
-  const double share = static_cast<double>(until_search_) * h_;
+    boxes.push_back(clock_.box(body, substeps));  // of a mesh: nobody asks for it
+  const double share = static_cast<double>(substeps) * h_;
   Vector sum{};
   extents_.clear();
   // What a body or the fabric takes along becomes as fast as that, whatever its own way was.
@@ -151,7 +152,7 @@ void SimdBodies::search(const simd::Flight& flight, const float* base) {
   for (std::size_t body = 0; body < boxes.size(); ++body)
     longest = std::max(longest, share * clock_.fastest(body));
   for (std::uint32_t block = 0; block < layout_.blocks.size(); ++block) {
-    extents_.push_back(extent_of(block, until_search_, flight, base));
+    extents_.push_back(extent_of(block, substeps, flight, base));
     longest = std::max(longest, extents_.back().way);
   }
   for (std::uint32_t block = 0; block < layout_.blocks.size(); ++block) {

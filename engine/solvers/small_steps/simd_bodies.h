@@ -125,7 +125,6 @@ class SimdBodies {
   BodyLayout layout_;  // made when the first body is there
   double h_ = 0;
   double momentum_share_ = 1;
-  int until_search_ = 0;      // substeps
   kernels::Vector origin_{};  // of frames
 
   std::vector<simd::BodyFrame> frames_;            // per body
