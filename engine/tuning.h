@@ -46,10 +46,39 @@ inline constexpr double kContactSpare = 0.3;
 inline constexpr double kContactBeyond = 0.2, kContactLean = 0.6, kContactPassing = 0.5;
 /// For so many intervals boxes hold points that go on as they do: candidates are looked for once in
 /// that time. Wider boxes hold more of them.
-inline constexpr double kContactHull = 4;
-/// In thicknesses: what hulls hold beyond. Without it a sheet of 60 x 60 on a ball takes 1.3 times
-/// as long, for what flutters leaves its hull; with four times as much 1.3 times, too.
-inline constexpr double kContactHullSpare = 0.5;
+inline constexpr double kContactWide = 4;
+/// In thicknesses: what wide boxes hold beyond. Without it a sheet of 60 x 60 on a ball takes 1.3
+/// times as long, for what flutters leaves its box; with four times as much 1.3 times, too.
+inline constexpr double kContactWideSpare = 0.5;
+/// In reaches of an interval: what wide boxes hold beyond the way of a particle.
+inline constexpr double kContactWideReach = 3;
+/// m: places are floats from an origin, which is a multiple of this.
+inline constexpr double kContactGrid = 2;
+/// m: features that are no farther apart are on no side of each other.
+inline constexpr double kTouching = 1e-9;
+/// The sine by which a neighbour may stand out of a pair that pushes.
+inline constexpr double kTouchLean = 0.02;
+/// In thicknesses: features that are nearer where their points lie in a plane went through each
+/// other there; and the steps in which that moment is found.
+inline constexpr double kTogether = 0.01;
+inline constexpr int kPlaneSteps = 16;
+/// In the largest inverse mass of a pair: the least that counts.
+inline constexpr double kLeastTouchWeight = 0.05;
+/// In thicknesses: what is nearer when an interval is over, and was not expected, is no rounding;
+/// and the rounds in which such pairs are put right before the rest is verified.
+inline constexpr double kLate = 0.99;
+inline constexpr int kLateRounds = 3;
+/// Of the thickness, or of the first distance if that is less: features that come nearer meet. Of
+/// the distance that is left the time of meeting is looked for in steps of the next share, at most
+/// so many.
+inline constexpr double kMeetingLeft = 0.1;
+inline constexpr double kMeetingStep = 0.9;
+inline constexpr int kMeetingSteps = 200;
+/// Rounds of blows to pairs that went through each other, and then of rigid zones.
+inline constexpr int kBlowRounds = 8;
+inline constexpr int kZoneRounds = 12;
+/// s, of a substep in which bodies stand: what is under a surface comes out wherever it is.
+inline constexpr double kAtOnce = 1e6;
 /// Compliance of a yarn's constraints in a sweep, relative to the diagonal of its matrix. That of a
 /// yarn that two fixed particles hold is singular where it is straight: a smaller compliance lifts
 /// banners, a larger one is softer, and farther from the true motion. All other yarns have only

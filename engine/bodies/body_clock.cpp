@@ -4,16 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/tuning.h"
+
 namespace weft {
 
 using kernels::Vector;
-
-namespace {
-
-/// s, in which what is under a surface comes out wherever it is.
-constexpr double kAtOnce = 1e6;
-
-}  // namespace
 
 void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands) {
   bodies_.assign(bodies.begin(), bodies.end());
@@ -36,7 +31,7 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int subs
   }
 }
 
-double BodyClock::h() const { return stands_ ? kAtOnce : h_; }
+double BodyClock::h() const { return stands_ ? tuning::kAtOnce : h_; }
 
 void BodyClock::begin_interval(double time) {
   const double substeps = std::max(1.0, std::floor(time / h_));

@@ -11,13 +11,6 @@ namespace weft {
 
 using kernels::Vector;
 
-namespace {
-
-/// In which pairs that have come near unexpectedly are put right, before the rest is verified.
-constexpr int kLateRounds = 3;
-
-}  // namespace
-
 void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
   points_.begin(clock);
   interval_ = late_depth_ = 0;
@@ -94,7 +87,7 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
 
 /// Before the rest is verified. Returns whether particles had to be moved.
 bool SurfaceContacts::push_late_apart(const ContactScene& scene, Team& team) {
-  for (int round = 0; round < kLateRounds; ++round) {
+  for (int round = 0; round < tuning::kLateRounds; ++round) {
     verification_.find_late(scene, near_search_, candidates_, team);
     if (verification_.failures().empty()) return round > 0;
     expect_failures(scene);

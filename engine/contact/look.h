@@ -66,9 +66,9 @@ inline kernels::Vector side_normal(ContactSurface& later, const Pair& pair,
   }
 }
 
-/// Features that are no farther apart touch: where they are does not tell on which side the other
-/// surface is. It is in front then.
-inline constexpr double kTouching = 1e-9;  // m
+/// Where features that are no farther apart are does not tell on which side the other surface is.
+/// It is in front then.
+using tuning::kTouching;
 
 /// Whether the other surface is behind the later one, which is one-sided, where both are nearest.
 inline bool is_behind(ContactSurface& later, const Pair& pair, const reference::Nearest& nearest) {

@@ -12,11 +12,11 @@ using kernels::Vector;
 
 namespace {
 
-/// m: the origin is a multiple of it, and changes seldom.
-constexpr double kGrid = 2;
-
+/// The origin changes seldom.
 Vector rounded(Vector v) {
-  const auto round = [](double x) { return kGrid * std::round(x / kGrid); };
+  const auto round = [](double x) {
+    return tuning::kContactGrid * std::round(x / tuning::kContactGrid);
+  };
   return {round(v.x), round(v.y), round(v.z)};
 }
 
@@ -194,15 +194,15 @@ void ContactPoints::write_boxes() {
   }
 }
 
-/// If the point goes on as in this interval it holds for kContactHull of them.
+/// If the point goes on as in this interval it holds for kContactWide of them.
 Box ContactPoints::wide_box_around(std::size_t point) const {
   const Vector from = start_[point] - origin_, way = end_[point] - start_[point];
   const double spare = tuning::kContactReach * length(way);
-  const double reach = point < slots_
-                           ? 3 * reach_[point] + tuning::kContactHullSpare * largest_thickness_
-                           : surface_of(static_cast<std::uint32_t>(point)).thickness +
-                                 2 * static_cast<double>(rounding_);
-  return box_around(from, from + tuning::kContactHull * way, reach + spare);
+  const double reach = point < slots_ ? tuning::kContactWideReach * reach_[point] +
+                                            tuning::kContactWideSpare * largest_thickness_
+                                      : surface_of(static_cast<std::uint32_t>(point)).thickness +
+                                            2 * static_cast<double>(rounding_);
+  return box_around(from, from + tuning::kContactWide * way, reach + spare);
 }
 
 void ContactPoints::widen_boxes() {

@@ -105,16 +105,17 @@ namespace weft {
 void stop_failures(const ContactScene& scene, const CandidateSearch& search,
                    NearSearch& near_search, Verification& verification, Candidates& candidates,
                    double time, RescueReport& report, Team& team) {
-  constexpr int kBlows = 8, kZones = 12;  // rounds
+  using tuning::kBlowRounds, tuning::kZoneRounds;
   report.failures += static_cast<int>(verification.failures().size());
-  for (int round = 0; round < kBlows + kZones && !verification.failures().empty(); ++round) {
+  for (int round = 0; round < kBlowRounds + kZoneRounds && !verification.failures().empty();
+       ++round) {
     for (const Failure& failure : verification.failures()) {
-      if (round < kBlows)
+      if (round < kBlowRounds)
         rescue::blow(scene, candidates[failure.list], failure, time);
       else
         rescue::take_along(scene, candidates[failure.list], failure, time);
     }
-    if (round >= kBlows) report.zones += static_cast<int>(verification.failures().size());
+    if (round >= kBlowRounds) report.zones += static_cast<int>(verification.failures().size());
     verification.find(scene, search, near_search, candidates, team);
   }
 }

@@ -31,9 +31,6 @@ struct Response::Encounter {
 
 namespace {
 
-/// The sine by which a neighbour may stand out of a pair that pushes.
-constexpr double kLean = 0.02;
-
 double volume(PairKind kind, const FourPoints& x) {
   if (kind == PairKind::edges) return dot(cross(x[1] - x[0], x[3] - x[2]), x[2] - x[0]);
   return dot(cross(x[2] - x[1], x[3] - x[1]), x[0] - x[1]);
@@ -43,7 +40,7 @@ double volume(PairKind kind, const FourPoints& x) {
 /// that they span, which has different signs at both ends, is 0. (Regula falsi, Illinois.)
 double time_in_plane(PairKind kind, const auto& pair, double before, double after) {
   double from = 0, to = 1, at_from = before, at_to = after, share = 0;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < tuning::kPlaneSteps; ++i) {
     share = from + (to - from) * at_from / (at_from - at_to);
     const double here = volume(kind, pair.at_share(share));
     if (here == 0) return share;
@@ -66,8 +63,7 @@ bool has_crossed(PairKind kind, const auto& pair, double thickness) {
   const double before = volume(kind, pair.start), after = volume(kind, pair.x);
   if ((before > 0) == (after > 0)) return false;
   const double share = time_in_plane(kind, pair, before, after);
-  constexpr double kTogether = 0.01;  // of the thickness
-  return length(nearest(kind, pair.at_share(share)).r) < kTogether * thickness + 1e-9;
+  return length(nearest(kind, pair.at_share(share)).r) < tuning::kTogether * thickness + kTouching;
 }
 
 /// Whether one feature is on the wrong side of the other. r: between them as they are; side: the
@@ -85,8 +81,7 @@ bool is_now_under(PairKind kind, const auto& pair, Vector r, Vector side, bool w
 }  // namespace
 
 double least_weight(const ContactPoints& points, const std::array<std::uint32_t, 4>& four) {
-  constexpr double kLeast = 0.05;
-  return kLeast * points.largest_inverse_mass(four);
+  return tuning::kLeastTouchWeight * points.largest_inverse_mass(four);
 }
 
 void Response::begin(const ContactScene& scene, const Near& near) {
@@ -155,7 +150,7 @@ Response::Encounter Response::meet(const ContactScene& scene, const NearPairs& n
   e.gap = (e.is_under ? -l : l) - thickness;
   if (!(e.gap < 0) || !is_in_place(pair.kind, e.nearest)) return e;
   const Vector seen = pair.kind == PairKind::edges ? e.normal : direct;
-  e.pushes = !is_ghost(scene.points.surfaces(), pair, e.x, e.nearest, seen, kLean,
+  e.pushes = !is_ghost(scene.points.surfaces(), pair, e.x, e.nearest, seen, tuning::kTouchLean,
                        [&](std::uint32_t point) { return scene.now(point); });
   return e;
 }

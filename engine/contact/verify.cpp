@@ -50,13 +50,13 @@ double largest_move(PairKind kind, const PairMotion& way) {
 /// if that is less, if they do.
 std::optional<double> time_of_meeting(PairKind kind, const PairMotion& way, double distance,
                                       double thickness) {
-  constexpr double kLeft = 0.1, kStep = 0.9;
-  constexpr int kMostSteps = 200;
+  using tuning::kMeetingLeft;
   const double move = largest_move(kind, way),
-               least = kLeft * std::min(distance, std::max(thickness, kLeft * distance));
+               least =
+                   kMeetingLeft * std::min(distance, std::max(thickness, kMeetingLeft * distance));
   double time = 0, here = distance;
-  for (int i = 0; i < kMostSteps; ++i) {
-    const double next = time + kStep * (here - 0.5 * least) / move;
+  for (int i = 0; i < tuning::kMeetingSteps; ++i) {
+    const double next = time + tuning::kMeetingStep * (here - 0.5 * least) / move;
     if (next >= 1) return std::nullopt;
     here = length(nearest(kind, way.at(next)).r);
     if (here < least) return time;
@@ -144,10 +144,10 @@ void Verification::find_late(const ContactScene& scene, const NearSearch& near_s
         const FourPoints x = points.ends_of(four);
         const reference::Nearest found = nearest(pair.kind, x);
         const double l = length(found.r);
-        constexpr double kLate = 0.99;  // of the thickness: what is nearer is no rounding
-        if (!(l < kLate * later.thickness) || l == 0 || !is_in_place(pair.kind, found)) return;
-        constexpr double kLean = 0.02;
-        if (is_ghost(points.surfaces(), pair, x, found, (1 / l) * found.r, kLean, at)) return;
+        if (!(l < tuning::kLate * later.thickness) || l == 0 || !is_in_place(pair.kind, found))
+          return;
+        if (is_ghost(points.surfaces(), pair, x, found, (1 / l) * found.r, tuning::kTouchLean, at))
+          return;
         if (!later.two_sided && scene.tangles.is_inside(four)) return;
         failures_.push_back({list, i, 1, later.thickness - l});
       });
