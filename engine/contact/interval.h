@@ -57,8 +57,6 @@ class SurfaceContacts {
   bool hold(ContactParticles& particles, const BodyClock& clock, std::uint32_t slot) {
     return response_.hold(scene(particles, clock), near_, slot);
   }
-  /// Slots that have touched a mesh in this substep.
-  const std::vector<std::uint32_t>& touching() const { return response_.touching(); }
   /// After a substep, which may be the last of an interval, and again if particles were moved
   /// since. Returns whether particles had to be moved.
   bool end_interval(ContactParticles& particles, const BodyClock& clock, Team& team);

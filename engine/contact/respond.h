@@ -39,8 +39,6 @@ class Response {
   void sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved);
   /// Over pairs of the slot that have touched in this substep. Returns whether one was pushed.
   bool hold(const ContactScene& scene, Near& near, std::uint32_t slot);
-  /// Slots that have touched in this substep.
-  const std::vector<std::uint32_t>& touching() const { return linked_; }
   /// m, by which a pair is nearer than its thickness.
   double deepest(const ContactScene& scene, Near& near, Team& team);
   std::size_t bytes() const;

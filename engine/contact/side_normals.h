@@ -1,7 +1,7 @@
-/// Normals of the features of a one-sided mesh where an interval begins: they tell on which side of
-/// it the cloth is, by that of the feature that is nearest to it (Baerentzen and Aanaes, 2005: each
-/// triangle counts by its angle there). On the border of a mesh that is open they are 0. Each is
-/// computed when it is first asked for.
+/// Normals of the features of a one-sided surface where an interval begins: they tell on which side
+/// of it the cloth is, by that of the feature that is nearest to it (Baerentzen and Aanaes, 2005:
+/// each triangle counts by its angle there). On the border of a surface that is open they are 0.
+/// Each is computed when it is first asked for.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace weft {
 
 class SideNormals {
  public:
-  /// places: of the points of the mesh. are_same: where they were before.
+  /// places: of the points of the surface. are_same: where they were before.
   void begin(const TriangleSurface& surface, const kernels::Vector* places, bool are_same);
   kernels::Vector of_triangle(std::uint32_t triangle);
   kernels::Vector of_edge(std::uint32_t triangle, std::size_t k);  // its k-th

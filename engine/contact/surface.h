@@ -25,7 +25,6 @@ struct ContactSurface {
   bool has_moved = false;                  // a body's, since the last interval began
   std::shared_ptr<const BodyShape> shape;  // a body's: keeps its triangles
 
-  bool is_of_cloth() const { return body == kNoIndex; }
   TriangleSurface::Triangle points_of(std::uint32_t triangle) const {
     const auto [a, b, c] = triangles->triangles[triangle];
     return {first_point + a, first_point + b, first_point + c};

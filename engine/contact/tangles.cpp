@@ -99,7 +99,7 @@ void Tangles::find(ContactPoints& points) {
     if (points.inverse_mass(slot) == 0) continue;
     const bool is_inside = std::ranges::any_of(points.surface_pairs(), [&](SurfacePair pair) {
       const BoxTree& tree = points.surfaces()[pair.b].tree;
-      return tree.bounds().meets(points.box(slot)) && find_left_by(points, slot, pair).is_there;
+      return tree.box().meets(points.box(slot)) && find_left_by(points, slot, pair).is_there;
     });
     if (is_inside) misplaced_.inside.push_back(slot);
   }

@@ -64,7 +64,7 @@ class BoxTree {
   template <class Visit>
   void near(const std::array<float, 3>& point, Visit&& visit) const;
   /// Around all of it; of a tree that has primitives.
-  const Box& bounds() const { return nodes_[1]; }
+  const Box& box() const { return nodes_[1]; }
   std::size_t bytes() const;
 
  private:

@@ -160,9 +160,9 @@ TEST_CASE("the bounds of a tree hold its boxes, and no more") {
     const Grown grown(count, random);
     Box all = grown.boxes[0];
     for (const Box& box : grown.boxes) all.add(box);
-    CHECK(grown.tree.bounds().low == all.low);
-    CHECK(grown.tree.bounds().high == all.high);
-    CHECK(grown.tree.bounds().holds(grown.boxes[count / 2]));
+    CHECK(grown.tree.box().low == all.low);
+    CHECK(grown.tree.box().high == all.high);
+    CHECK(grown.tree.box().holds(grown.boxes[count / 2]));
   }
 }
 
