@@ -50,31 +50,43 @@ inline constexpr double kContactWide = 4;
 /// In thicknesses: what wide boxes hold beyond. Without it a sheet of 60 x 60 on a ball takes 1.3
 /// times as long, for what flutters leaves its box; with four times as much 1.3 times, too.
 inline constexpr double kContactWideSpare = 0.5;
-/// In reaches of an interval: what wide boxes hold beyond the way of a particle.
+/// In reaches of an interval: what wide boxes hold beyond the way of a particle. It is about time
+/// alone: at 1, 2 and 6 all results are the same bits (perf/tried.md has all of these ablations).
 inline constexpr double kContactWideReach = 3;
-/// m: places are floats from an origin, which is a multiple of this.
+/// m: places are floats from an origin, which is a multiple of this. A finer grid moves the origin
+/// more often, and candidates are looked for anew.
 inline constexpr double kContactGrid = 2;
-/// m: features that are no farther apart are on no side of each other.
+/// m: features that are no farther apart are on no side of each other. At 1e-15 cloth that begins
+/// exactly on a mesh does not come to lie on it; 1e-7 changes nothing.
 inline constexpr double kTouching = 1e-9;
-/// The sine by which a neighbour may stand out of a pair that pushes.
+/// The sine by which a neighbour may stand out of a pair that pushes. At 0 cloth on a knife edge
+/// is 0.4 mm too deep, at 0.04 a sheet does not hang over a ball of triangles as over a ball, and
+/// without a limit a sheet does not glide over triangles as over a plane.
 inline constexpr double kTouchLean = 0.02;
 /// In thicknesses: features that are nearer where their points lie in a plane went through each
-/// other there; and the steps in which that moment is found.
+/// other there; and the steps in which that moment is found. Where any
+/// change of side counts `mesh_spins` reports what is not true; at 0 nothing fails. With one step
+/// two hard cases miss a frame, with 4 and 8 none.
 inline constexpr double kTogether = 0.01;
 inline constexpr int kPlaneSteps = 16;
-/// In the largest inverse mass of a pair: the least that counts.
+/// In the largest inverse mass of a pair: the least that counts. A particle that has the part w in
+/// the nearest point of a feature that is fixed otherwise would be thrown 1 / w times as far as
+/// the pair is deep. No test meets such a pair: at 0 and 0.2 nothing changes.
 inline constexpr double kLeastTouchWeight = 0.05;
 /// In thicknesses: what is nearer when an interval is over, and was not expected, is no rounding;
-/// and the rounds in which such pairs are put right before the rest is verified.
+/// and the rounds in which such pairs are put right before the rest is verified. Without either two
+/// hard cases are 0.3 and 0.5 mm too deep and do not say so; with one round none.
 inline constexpr double kLate = 0.99;
 inline constexpr int kLateRounds = 3;
 /// Of the thickness, or of the first distance if that is less: features that come nearer meet. Of
 /// the distance that is left the time of meeting is looked for in steps of the next share, at most
-/// so many.
+/// so many. With half of the distance, or 10 steps, a sheet does not glide over triangles as over a
+/// plane; with a hundredth, 50 steps, and shares of 0.45 and 0.99 all tests pass.
 inline constexpr double kMeetingLeft = 0.1;
 inline constexpr double kMeetingStep = 0.9;
 inline constexpr int kMeetingSteps = 200;
-/// Rounds of blows to pairs that went through each other, and then of rigid zones.
+/// Rounds of blows to pairs that went through each other, and then of rigid zones. Without blows
+/// `mesh_appears_in_cloth` gains 0.1 J; with four rounds it does not. No test needs zones.
 inline constexpr int kBlowRounds = 8;
 inline constexpr int kZoneRounds = 12;
 /// s, of a substep in which bodies stand: what is under a surface comes out wherever it is.
