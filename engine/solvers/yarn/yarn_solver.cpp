@@ -16,7 +16,7 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// The measured errors: the largest strain, and the largest error of contacts and slack ropes in
 /// units of their tolerance.
-struct Look {
+struct Errors {
   double strain, violation;
 };
 
@@ -257,23 +257,23 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
   kernels::LoopResult result;
   const Aim aim = this->aim();
   Stall stall(from_start_ ? tuning::kShortPatience : tuning::kYarnPatience);
-  const auto look = [&] {
+  const auto measured = [&] {
     if (task.laws != nullptr) {
       join(x, team);
       keep_multipliers(*task.laws);
       const double left = largest_violation(*task.laws, model_.constraints, x);
-      return Look{settings_.tolerance * left, singles_.violation(base_.data(), u_.data())};
+      return Errors{settings_.tolerance * left, singles_.violation(base_.data(), u_.data())};
     }
     const double strain = measure_.max_strain(
         x, team, [&](std::size_t first, std::size_t last) { join(x, first, last); });
-    return Look{strain, singles_.violation(base_.data(), u_.data())};
+    return Errors{strain, singles_.violation(base_.data(), u_.data())};
   };
   double before = kNoBound;
   int sweeps = 1;                 // since the last measurement
   bool newton_converged = false;  // a Newton step reached the goal; t_ is its result
   sweep(aim.block, team, result);
   for (;;) {
-    const auto [strain, violation] = look();
+    const auto [strain, violation] = measured();
     const bool singles_within = violation <= 1;
     result.converged = strain <= settings_.tolerance && singles_within;
     if (strain <= aim.goal && singles_within) return result;
@@ -303,7 +303,7 @@ kernels::LoopResult YarnSolver::solve_positions(const PositionTask& task, Team& 
         return result;
       }
       if (may_take_newton(task.contacts)) {
-        const Look after = look();
+        const Errors after = measured();
         newton_converged = after.strain <= aim.goal && after.violation <= 1;
         if (newton_converged) std::ranges::copy(u_, t_.begin());
       }
