@@ -6,51 +6,11 @@
 #include <vector>
 
 #include "engine/c_interface/handles.h"
+#include "engine/c_interface/report.h"
 #include "engine/c_interface/structs.h"
 
 namespace weft::c_interface {
 namespace {
-
-weft_report report_of(const StepReport& r) {
-  weft_report out{.size = sizeof(weft_report),
-                  .status = static_cast<int>(r.status),
-                  .asleep = r.asleep,
-                  .substeps = r.substeps,
-                  .halvings = r.halvings,
-                  .iterations = r.iterations,
-                  .direction_updates = r.direction_updates,
-                  .velocity_iterations = r.velocity_iterations,
-                  .visits = r.visits,
-                  .corrections = r.corrections,
-                  .scheme_fallbacks = r.scheme_fallbacks,
-                  .contacts = r.contacts,
-                  .max_strain = r.max_strain,
-                  .rms_strain = r.rms_strain,
-                  .max_shear = r.max_shear,
-                  .max_error = r.max_error,
-                  .worst_constraint = r.worst_constraint,
-                  .worst_element = r.worst_element,
-                  .max_penetration = r.max_penetration,
-                  .body_contacts = r.body_contacts,
-                  .contact_failures = r.contact_failures,
-                  .zones = r.zones,
-                  .intersecting = r.intersecting,
-                  .max_anchor_error = r.max_anchor_error,
-                  .open_seams = r.open_seams,
-                  .max_seam_gap = r.max_seam_gap,
-                  .seam_work = r.seam_work,
-                  .motion_error = r.motion_error,
-                  .energy_lost = r.energy_lost,
-                  .pin_work = r.pin_work,
-                  .body_work = r.body_work,
-                  .friction_work = r.friction_work,
-                  .failed_particle = r.failed_particle,
-                  .passed_particle = r.passed_particle,
-                  .stage_seconds = {}};
-  static_assert(sizeof out.stage_seconds == sizeof r.stage_seconds);
-  std::copy(r.stage_seconds.begin(), r.stage_seconds.end(), out.stage_seconds);
-  return out;
-}
 
 weft_batch_step default_step() {
   weft_batch_step step{};

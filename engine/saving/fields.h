@@ -1,6 +1,7 @@
 /// The fields of public structures, for archives.
 #pragma once
 
+#include <weft/report_fields.h>
 #include <weft/weft.h>
 
 #include "engine/saving/archive.h"
@@ -105,19 +106,13 @@ void visit_fields(Is<AnchorLimit> auto& limit, auto& archive) {
   archive(max_distance, backstop);
 }
 
+void visit_fields(Is<ContactMs> auto& ms, auto& archive) {
+  auto& [find, sweep, verify] = ms;
+  archive(find, sweep, verify);
+}
+
 void visit_fields(Is<StepReport> auto& report, auto& archive) {
-  auto& [status, asleep, substeps, halvings, iterations, direction_updates, velocity_iterations,
-         visits, corrections, scheme_fallbacks, contacts, max_strain, rms_strain, max_shear,
-         max_error, worst_constraint, worst_element, max_penetration, body_contacts,
-         contact_failures, zones, intersecting, max_anchor_error, open_seams, max_seam_gap,
-         seam_work, motion_error, energy_lost, pin_work, body_work, friction_work, failed_particle,
-         passed_particle, stage_seconds] = report;
-  archive(status, asleep, substeps, halvings, iterations, direction_updates, velocity_iterations,
-          visits, corrections, scheme_fallbacks, contacts, max_strain, rms_strain, max_shear,
-          max_error, worst_constraint, worst_element, max_penetration, body_contacts,
-          contact_failures, zones, intersecting, max_anchor_error, open_seams, max_seam_gap,
-          seam_work, motion_error, energy_lost, pin_work, body_work, friction_work, failed_particle,
-          passed_particle, stage_seconds);
+  for_each_report_field([&](const auto& field) { archive(report.*field.member); });
 }
 
 }  // namespace weft

@@ -7,17 +7,28 @@
 #include "engine/spheres/passages.h"
 #include "engine/spheres/sphere_contacts.h"
 #include "engine/step/frame_places.h"
+#include "engine/step/reporting.h"
 #include "engine/tuning.h"
 
 namespace weft {
 
 class FrameSpheres {
  public:
-  FrameSpheres(State& s, FramePlaces& places) : s_(s), places_(places) {}
+  FrameSpheres(State& s, FramePlaces& places, StepReport& report)
+      : s_(s), places_(places), report_(report) {}
 
   /// Pairs that may touch are found anew when something may have come from beyond them.
   void find_contacts(Team& team) {
-    if (!s_.model->has_spheres()) return;
+    if (s_.model->has_spheres()) timed(report_, Stage::find_contacts, [&] { find(team); });
+  }
+  void watch_crossings(Team& team) {
+    if (s_.model->has_spheres()) timed(report_, Stage::find_contacts, [&] { watch(team); });
+  }
+  /// The description's number, or kNoIndex.
+  std::uint32_t passed_particle() const { return passed_particle_; }
+
+ private:
+  void find(Team& team) {
     const double way = s_.small_steps->largest_move(team);
     if (!s_.nearby.hold_after(way)) {
       places_.read(team);
@@ -27,8 +38,7 @@ class FrameSpheres {
     }
     s_.nearby.list_contacts(*s_.model, s_.solved.view(), s_.contacts);
   }
-  void watch_crossings(Team& team) {
-    if (!s_.model->has_spheres()) return;
+  void watch(Team& team) {
     const double way = s_.small_steps->largest_move(team);
     s_.nearby.move(way);
     if (!may_have_passed(*s_.model, way)) return;
@@ -38,10 +48,6 @@ class FrameSpheres {
                                               s_.solved.view(), s_.contacts);
     if (passed != kNoIndex) passed_particle_ = s_.model->ordering.particle_at[passed];
   }
-  /// The description's number, or kNoIndex.
-  std::uint32_t passed_particle() const { return passed_particle_; }
-
- private:
   /// m, for the substeps to come, if they go on as this one. Wider margins hold more pairs.
   double margin_for(double way) const {
     double radius = 0;
@@ -53,6 +59,7 @@ class FrameSpheres {
 
   State& s_;
   FramePlaces& places_;
+  StepReport& report_;
   std::uint32_t passed_particle_ = kNoIndex;
 };
 

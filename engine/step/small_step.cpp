@@ -165,7 +165,7 @@ class Frame {
       const double error = std::max(report_.max_error / s_.settings.tolerance,
                                     distance / s_.settings.contact_tolerance);
       if (stall.has_stalled(error)) return Status::infeasible;
-      timed(report_, Stage::solve_positions, [&] { put_right(); });
+      put_right();
     }
   }
   /// By whole sweeps: where the last substep has left so much, as under what falls into the cloth,
@@ -210,10 +210,23 @@ class Frame {
   FramePlaces places_{s_, plan_};
   FramePasses passes_{*s_.model, s_.contacts, report_};
   FrameAir air_{s_, plan_, places_};
-  FrameSpheres spheres_{s_, places_};
+  FrameSpheres spheres_{s_, places_, report_};
   double give_ = 0;                   // s^2, give_per_mass()
   double elastic_energy_before_ = 0;  // J, in the beginning
 };
+
+/// As timed. To find contacts with bodies is a stage of its own.
+template <class Work>
+void timed_with_contacts(State& s, StepReport& report, Stage stage, Work&& work) {
+  timed(report, stage, [&] {
+    work();
+    const ContactMs ms = s.small_steps->take_contact_ms();
+    report.stage_seconds[static_cast<std::size_t>(Stage::find_contacts)] += 1e-3 * ms.find;
+    report.contact_ms.find += ms.find;
+    report.contact_ms.sweep += ms.sweep;
+    report.contact_ms.verify += ms.verify;
+  });
+}
 
 /// What a frame leaves to those after it, besides positions and velocities.
 struct Remains {
@@ -254,16 +267,17 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   Trial trial;
   Frame frame(s, report, team);
   FramePlan plan;
-  timed(report, Stage::predict, [&] {
+  timed_with_contacts(s, report, Stage::predict, [&] {
     plan = plan_of_step(s, attempt, h, budget);
     frame.begin_motion(plan);
   });
-  timed(report, Stage::solve_positions, [&] {
+  bool is_in_body = false;
+  timed_with_contacts(s, report, Stage::solve_positions, [&] {
     for (int i = 0; i < plan.substeps; ++i) frame.substep();
+    trial.status = frame.finish();
+    is_in_body = frame.is_in_body();
   });
   trial.substeps = plan.substeps;
-  trial.status = frame.finish();
-  const bool is_in_body = frame.is_in_body();
   if (trial.status != Status::converged && !attempt.is_last) {
     trial.outcome = Outcome::rejected;
     return trial;
@@ -302,12 +316,14 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
 
 void project_by_small_steps(State& s, double softest, double h, const Budget& budget,
                             StepReport& report, Team& team) {
-  Frame frame(s, report, team);
-  frame.begin_at_rest(plan_of_projection(s, softest, h, budget));
-  if (softest > 0)
-    frame.give_way();
-  else
-    frame.put_right_at_once();
+  timed_with_contacts(s, report, Stage::solve_positions, [&] {
+    Frame frame(s, report, team);
+    frame.begin_at_rest(plan_of_projection(s, softest, h, budget));
+    if (softest > 0)
+      frame.give_way();
+    else
+      frame.put_right_at_once();
+  });
 }
 
 void look_ahead_by_small_steps(State& s, double h, StepReport& report, Team& team) {

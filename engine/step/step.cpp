@@ -85,16 +85,20 @@ class OneStep {
 
   /// Returns whether all of dt was done.
   bool run(double dt) {
-    if (const OutOfPlace found = find_out_of_place(s_, team_); found.any()) {
+    timed(report_, Stage::solve_positions, [&] {
+      const OutOfPlace found = find_out_of_place(s_, team_);
+      if (!found.any()) return;
       transaction_.move();
       project(s_, found, dt, report_, team_);
-    }
+    });
     if (s_.placed) {
       s_.longest_substep = 0;
       s_.seams.begin(*s_.model, s_.position, s_.settings.contact_tolerance);
     }
-    plan_ = plan_for(s_, dt, report_, team_);
-    if (s_.laws && (s_.placed || s_.displaced)) find_elastic_energy(s_, dt / plan_.substeps);
+    timed(report_, Stage::predict, [&] {
+      plan_ = plan_for(s_, dt, report_, team_);
+      if (s_.laws && (s_.placed || s_.displaced)) find_elastic_energy(s_, dt / plan_.substeps);
+    });
     for (int left = plan_.substeps; left > 0; --left) {
       if (!do_substep(dt / plan_.substeps, left)) return false;
     }
@@ -123,7 +127,7 @@ class OneStep {
       } else if (!attempt.is_last) {
         ++i;
       } else {
-        explain(s_, h, report_, team_);
+        timed(report_, Stage::report, [&] { explain(s_, h, report_, team_); });
         return false;
       }
     }
@@ -245,11 +249,7 @@ void fall_asleep(State& s, StepReport& report) {
               .max_anchor_error = report.max_anchor_error};
 }
 
-}  // namespace
-
-StepReport step(State& s, double dt, Team& team) {
-  if (s.rest.is_asleep()) return s.asleep;
-  StepReport report;
+void advance(State& s, double dt, StepReport& report, Team& team) {
   bool done = false;
   s.way_per_second = 1 / dt;
   std::ranges::fill(s.contacts.met, 0);
@@ -273,6 +273,14 @@ StepReport step(State& s, double dt, Team& team) {
     timed(report, Stage::report, [&] { report_errors(s, s.position, done, report, team); });
   }
   if (done && s.settings.sleep && s.rest.watch(s.position, dt)) fall_asleep(s, report);
+}
+
+}  // namespace
+
+StepReport step(State& s, double dt, Team& team) {
+  if (s.rest.is_asleep()) return s.asleep;
+  StepReport report;
+  timed(report, Stage::commit, [&] { advance(s, dt, report, team); });
   return report;
 }
 

@@ -65,9 +65,9 @@ constexpr bool committed(Status status) { return status < Status::non_finite_inp
 /// The stages of a step, in order.
 enum class Stage : std::uint8_t {
   predict,  ///< chooses the number of automatic substeps, too; small_steps: the start of a step
-  find_contacts,
+  find_contacts,    ///< with spheres, and with bodies (ContactMs::find)
   solve_positions,  ///< small_steps: all substeps
-  commit,
+  commit,           ///< and what belongs to no other stage
   correct_velocities,
   report
 };
@@ -75,6 +75,15 @@ inline constexpr std::size_t kStageCount = 6;
 
 WEFT_API std::string_view name(Status);
 WEFT_API std::string_view name(Stage);
+
+/// ms, that contacts with bodies took in the thread that called the step. Holding particles within
+/// local passes is not told apart from these passes: it is part of no figure.
+struct ContactMs {
+  double find = 0;    ///< which particles, faces and edges may touch
+  double sweep = 0;   ///< pushing apart those that touch, after each sweep over the constraints
+  double verify = 0;  ///< whether something went through, stopping it, and how deep contacts are
+  bool operator==(const ContactMs&) const = default;
+};
 
 /// The work of one step and the errors at its end. Counts and seconds are summed over the substeps;
 /// the status is the worst of theirs.
@@ -138,7 +147,9 @@ struct StepReport {
   double friction_work = 0;                  ///< J, that friction with bodies took
   std::uint32_t failed_particle = kNoIndex;  ///< with non_finite, non_finite_input: one of them
   std::uint32_t passed_particle = kNoIndex;  ///< with passed_through: one of them
+  /// Their sum is the time of the step, but for a few microseconds.
   std::array<double, kStageCount> stage_seconds{};
+  ContactMs contact_ms{};  ///< part of stage_seconds
 };
 
 /// Strain of all constraints, and of triangles of fabric | |f_u| - 1 | and | |f_v| - 1 |, for the

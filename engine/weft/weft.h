@@ -16,8 +16,9 @@
 ///   batch.h     many cloths at once
 ///   jobs.h      threads of a job system
 ///
-/// It does not include mesh.h, which makes a SceneDescription of a mesh and a material, or
-/// surface.h, which gives a renderer its vertices. weft_c.h is all of them in C.
+/// It does not include mesh.h, which makes a SceneDescription of a mesh and a material, surface.h,
+/// which gives a renderer its vertices, or report_fields.h, which lists the fields of a report.
+/// weft_c.h is all of them in C.
 ///
 /// Design:
 ///  1. The user asks for an error, not for an iteration count. Every step reports the error it

@@ -228,6 +228,10 @@ WEFT_API const char* weft_stage_name(int stage);
 /* Whether a step with this status changed the state. */
 WEFT_API int weft_committed(int status);
 
+typedef struct weft_contact_ms { /* ContactMs */
+  double find, sweep, verify;
+} weft_contact_ms;
+
 typedef struct weft_report { /* StepReport */
   size_t size;
   int status, asleep, substeps, halvings;
@@ -243,6 +247,7 @@ typedef struct weft_report { /* StepReport */
   uint32_t failed_particle, passed_particle;
   double stage_seconds[6]; /* predict, find_contacts, solve_positions, commit,
                               correct_velocities, report */
+  weft_contact_ms contact_ms;
 } weft_report;
 
 /* JobSystem. Set both functions or neither; they must not throw. NULL in place of the struct is the

@@ -1,7 +1,5 @@
 #include <pybind11/stl.h>
-#include <weft/cloth.h>
-
-#include <cstdio>
+#include <weft/report_fields.h>
 
 #include "arrays.h"
 #include "parts.h"
@@ -29,79 +27,35 @@ void add_report_enumerations(py::module_& m) {
   m.def("committed", &committed, py::arg("status"), "Whether such a step changed the state.");
 }
 
+/// "<weft.StepReport: converged, substeps 3, max_strain 0.001>": the status, and the fields that
+/// differ from those of a step that did nothing.
 std::string description_of(const StepReport& report) {
-  char line[160];
-  std::snprintf(line, sizeof line,
-                "<weft.StepReport: %s, max_strain %.3g, max_error %.3g, %d substeps>",
-                std::string(name(report.status)).c_str(), report.max_strain, report.max_error,
-                report.substeps);
-  return line;
-}
-
-template <class Class>
-void add_work(Class& report) {
-  report.def_readonly("status", &StepReport::status, "a Status")
-      .def_readonly("asleep", &StepReport::asleep, "no work was done")
-      .def_readonly("substeps", &StepReport::substeps, "done")
-      .def_readonly("halvings", &StepReport::halvings, "attempts that were rejected")
-      .def_readonly("iterations", &StepReport::iterations, "passes over the position constraints")
-      .def_readonly("direction_updates", &StepReport::direction_updates, "renewals of directions")
-      .def_readonly("velocity_iterations", &StepReport::velocity_iterations,
-                    "passes of the velocity loop")
-      .def_readonly("visits", &StepReport::visits, "constraints whose error was looked at")
-      .def_readonly("corrections", &StepReport::corrections, "impulses applied")
-      .def_readonly("scheme_fallbacks", &StepReport::scheme_fallbacks,
-                    "attempts that rattle left to the other scheme")
-      .def_readonly("stage_seconds", &StepReport::stage_seconds, "s, of each Stage of the step");
-}
-
-template <class Class>
-void add_errors(Class& report) {
-  report.def_readonly("max_strain", &StepReport::max_strain, "recomputed from the positions")
-      .def_readonly("rms_strain", &StepReport::rms_strain, "root mean square")
-      .def_readonly("max_shear", &StepReport::max_shear, "rad")
-      .def_readonly("max_error", &StepReport::max_error,
-                    "the largest error of a law; `tolerance` bounds it")
-      .def_readonly("worst_constraint", &StepReport::worst_constraint,
-                    "its number in the description, or kNoIndex")
-      .def_readonly("worst_element", &StepReport::worst_element,
-                    "likewise, of the largest strain or shear")
-      .def_readonly("max_anchor_error", &StepReport::max_anchor_error, "m")
-      .def_readonly("open_seams", &StepReport::open_seams, "seams that have not come together")
-      .def_readonly("max_seam_gap", &StepReport::max_seam_gap, "m")
-      .def_readonly("motion_error", &StepReport::motion_error, "m/s, estimated")
-      .def_readonly("failed_particle", &StepReport::failed_particle,
-                    "one that is not finite, or kNoIndex")
-      .def_readonly("passed_particle", &StepReport::passed_particle,
-                    "one that passed through, or kNoIndex");
-}
-
-template <class Class>
-void add_contacts(Class& report) {
-  report.def_readonly("contacts", &StepReport::contacts, "candidate pairs of spheres")
-      .def_readonly("max_penetration", &StepReport::max_penetration, "m, beyond the thickness")
-      .def_readonly("body_contacts", &StepReport::body_contacts, "pairs that touch")
-      .def_readonly("contact_failures", &StepReport::contact_failures,
-                    "pairs that verification stopped")
-      .def_readonly("zones", &StepReport::zones, "pairs that were moved with a body, as if glued")
-      .def_readonly("intersecting", &StepReport::intersecting,
-                    "triangles that cross a mesh when the step ends")
-      .def_readonly("seam_work", &StepReport::seam_work, "J")
-      .def_readonly("energy_lost", &StepReport::energy_lost, "J")
-      .def_readonly("pin_work", &StepReport::pin_work, "J")
-      .def_readonly("body_work", &StepReport::body_work, "J")
-      .def_readonly("friction_work", &StepReport::friction_work, "J");
+  std::string text = "<weft.StepReport: " + std::string(name(report.status));
+  for_each_report_field([&]<class T>(const ReportField<T>& field) {
+    const T& value = report.*field.member;
+    if (std::is_same_v<T, Status> || value == StepReport{}.*field.member) return;
+    text += ", " + std::string(field.name) + " " +
+            py::str("{!r}").format(value).template cast<std::string>();
+  });
+  return text + ">";
 }
 
 }  // namespace
 
 void add_report(py::module_& m) {
   add_report_enumerations(m);
+  py::class_<ContactMs>(m, "ContactMs", "ms, that contacts with bodies took in a step.")
+      .def_readonly("find", &ContactMs::find, "which may touch")
+      .def_readonly("sweep", &ContactMs::sweep, "pushing apart")
+      .def_readonly("verify", &ContactMs::verify, "whether something went through, and stopping it")
+      .def("__repr__", [](const ContactMs& ms) {
+        return py::str("<weft.ContactMs: find {:.3g}, sweep {:.3g}, verify {:.3g}>")
+            .format(ms.find, ms.sweep, ms.verify);
+      });
   py::class_<StepReport> report(m, "StepReport", "The work of one step and the errors at its end.");
   report.def("__repr__", &description_of);
-  add_work(report);
-  add_errors(report);
-  add_contacts(report);
+  for_each_report_field(
+      [&](const auto& field) { report.def_readonly(field.name, field.member, field.text); });
   py::class_<Strain>(m, "Strain", "Strain of all constraints and triangles of fabric.")
       .def_readonly("max", &Strain::max, "the largest")
       .def_readonly("rms", &Strain::rms, "root mean square")

@@ -158,10 +158,6 @@ void LaneStore::begin(kernels::VectorsView x, kernels::VectorsView v, const Fram
   anchors_.begin(plan.anchors, plan.h, plan.substeps,
                  now_.has_past ? past_.at_limit : std::span<const std::uint16_t>{});
   anchors_.measure_base(base_.data());
-  bodies_.begin(
-      plan.bodies, plan.h, plan.substeps, plan.projects(),
-      now_.has_past && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
-      plan.placed || plan.bodies_are_new, past_.misplaced);
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     layout_.places().narrow(table_, v, first, last, v_.data());
   });

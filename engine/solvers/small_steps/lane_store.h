@@ -86,6 +86,7 @@ class LaneStore {
 
   // Limits, and where a motion ends.
   void advance_anchors() { anchors_.advance(); }
+  void begin_bodies(const FramePlan& plan);
   void advance_bodies(double part, Team& team);
   void hold_anchors(Team& team);
   void hold_bodies(Team& team);

@@ -20,18 +20,22 @@ void LaneStore::hold_bodies(Team& team) {
       },
       [&](std::uint32_t slot) { now_.passes.look_at(slot); },
       [&](std::uint32_t slot) { points.grip(slot); });
-  hold_by_meshes(team);
 }
 
 void LaneStore::hold_by_meshes(Team& team) {
-  if (!bodies_.has_meshes()) return;
   const LanePoints points = this->points(true);
   LaneParticles particles(points);
   bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot) { now_.passes.look_at(slot); });
 }
 
+void LaneStore::begin_bodies(const FramePlan& plan) {
+  bodies_.begin(
+      plan.bodies, plan.h, plan.substeps, plan.projects(),
+      now_.has_past && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
+      plan.placed || plan.bodies_are_new, past_.misplaced);
+}
+
 void LaneStore::advance_bodies(double part, Team& team) {
-  if (bodies_.empty()) return;
   const LanePoints points = this->points(true);
   LaneParticles particles(points);
   bodies_.advance(flight(), base_.data(), part, particles, team);

@@ -31,6 +31,13 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
   on_.assign(model_.slots(), false);
 }
 
+/// They move by any way: nobody knows how far.
+void ReferenceBodies::find_standing(ContactParticles& particles, Team& team) {
+  if (!clock_.stands()) return;
+  meshes_.predict(particles, clock_, team);
+  meshes_.advance(clock_);
+}
+
 TouchedSurface ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& x, Vector& v) {
   TouchedSurface surface;
   if (model_.inverse_mass[slot] == 0) return surface;

@@ -30,13 +30,11 @@ class ReferenceBodies {
   SurfaceContacts& meshes() { return meshes_; }
   const SurfaceContacts& meshes() const { return meshes_; }
   const BodyClock& clock() const { return clock_; }
+  /// Finds what may touch, where positions are put right and bodies stand.
+  void find_standing(ContactParticles& particles, Team& team);
   /// After the particles were held one by one, by meshes. moved(slot, by): by how much (m).
   template <class Moved>
   void hold_by_meshes(ContactParticles& particles, Team& team, Moved&& moved) {
-    if (clock_.stands()) {  // positions are put right, by any way: nobody knows how far
-      meshes_.predict(particles, clock_, team);
-      meshes_.advance(clock_);
-    }
     meshes_.sweep(particles, clock_, team, moved);
   }
   /// Before the next substep, or after the last. Returns whether particles had to be moved.

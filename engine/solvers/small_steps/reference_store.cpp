@@ -60,9 +60,6 @@ void ReferenceStore::begin(kernels::VectorsView x, kernels::VectorsView v, const
   anchors_.begin(plan.anchors, plan.h, plan.substeps);
   at_limit_.assign(at_limit_.size(), false);
   if (now_.has_past && !plan.anchors.moving) at_limit_ = past_.at_limit;
-  bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects(),
-                now_.has_past && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
-                plan.placed || plan.bodies_are_new, past_.misplaced);
   last_ = 0;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     x_.set(i, x[i]);
@@ -333,13 +330,19 @@ void ReferenceStore::advance_anchors() {
   at_limit_.assign(at_limit_.size(), false);
 }
 
+void ReferenceStore::begin_bodies(const FramePlan& plan) {
+  bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects(),
+                now_.has_past && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
+                plan.placed || plan.bodies_are_new, past_.misplaced);
+}
+
 void ReferenceStore::advance_bodies(double part, Team& team) {
   const Points points = this->points(true);
   PointParticles particles(points);
   bodies_.advance(part, particles, team);
 }
 
-void ReferenceStore::hold_bodies(Team& team) {
+void ReferenceStore::hold_bodies(Team&) {
   const Points points = this->points(true);
   const double strain = now_.local_tolerance();
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
@@ -348,11 +351,9 @@ void ReferenceStore::hold_bodies(Team& team) {
     if (points.grip_by_bodies(slot) && length(x_[slot] - from) > strain * shortest_[slot])
       now_.passes.look_at(slot);
   }
-  hold_by_meshes(team);
 }
 
 void ReferenceStore::hold_by_meshes(Team& team) {
-  if (!bodies_.has_meshes()) return;
   const Points points = this->points(true);
   PointParticles particles(points);
   const double strain = now_.local_tolerance();

@@ -74,6 +74,7 @@ class ReferenceStore {
   }
 
   void advance_anchors();
+  void begin_bodies(const FramePlan& plan);
   void advance_bodies(double part, Team& team);
   void hold_anchors(Team& team);
   void hold_bodies(Team& team);

@@ -89,6 +89,13 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   for (auto* bits : {&touching_, &moved_, &quick_}) std::ranges::fill(*bits, std::uint16_t{0});
 }
 
+/// They move by any way: nobody knows how far.
+void SimdBodies::find_standing(ContactParticles& particles, Team& team) {
+  if (!clock_.stands()) return;
+  meshes_.predict(particles, clock_, team);
+  meshes_.advance(clock_);
+}
+
 SimdBodies::Extent SimdBodies::extent_of(std::size_t block, int substeps,
                                          const simd::Flight& flight, const float* base) const {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

@@ -52,6 +52,8 @@ class SimdBodies {
   }
   /// After a sweep; v settles by `rate`.
   void hold(const simd::Flight& flight, const float* base, float rate, Team& team);
+  /// Finds what may touch, where positions are put right and bodies stand.
+  void find_standing(ContactParticles& particles, Team& team);
   /// After that, by meshes. moved(slot): as in report.
   template <class Moved>
   void hold_by_meshes(ContactParticles& particles, Team& team, Moved&& moved);
@@ -174,11 +176,6 @@ void SimdBodies::for_each_contact(Visit&& visit) const {
 
 template <class Moved>
 void SimdBodies::hold_by_meshes(ContactParticles& particles, Team& team, Moved&& moved) {
-  if (!has_meshes()) return;
-  if (clock_.stands()) {  // positions are put right, by any way: nobody knows how far
-    meshes_.predict(particles, clock_, team);
-    meshes_.advance(clock_);
-  }
   meshes_.sweep(particles, clock_, team, [&](std::uint32_t slot, double by) {
     const std::uint32_t place = layout_.place_of[slot];
     if (place == kNoIndex) return;

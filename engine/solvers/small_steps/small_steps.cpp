@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/solvers/small_steps/contact_times.h"
 #include "engine/solvers/small_steps/lane_store.h"
 #include "engine/solvers/small_steps/reference_store.h"
 #include "engine/solvers/small_steps/substep.h"
@@ -40,7 +41,7 @@ class StoredSmallSteps final : public SmallSteps {
     store_.begin(x, v, plan, team);
     store_.accelerate(gravity, force);
     store_.begin_past(team);
-    if (plan.projects()) store_.advance_bodies(1, team);
+    begin_bodies(plan, team);
     now_.next_formula = now_.formula_after(now_.has_past ? store_.past_h() : now_.h);
   }
   void accelerate(kernels::Vector gravity, kernels::VectorsView force) override {
@@ -61,7 +62,7 @@ class StoredSmallSteps final : public SmallSteps {
     now_.formula = std::exchange(now_.next_formula, now_.formula_after(now_.h));
     store_.bend(team);
     store_.advance_anchors();
-    store_.advance_bodies(now_.formula.part, team);
+    advance_bodies(now_.formula.part, team);
     if (model_.has_attached()) store_.hold_anchors(team);  // before constraints are swept
   }
 
@@ -100,7 +101,8 @@ class StoredSmallSteps final : public SmallSteps {
     if (!store_.bodies().has_meshes()) return false;
     const Points points = store_.points(true);
     PointParticles particles(points);
-    return store_.bodies().end_interval(particles, team);
+    return contact_times_.timed(&ContactMs::verify,
+                                [&] { return store_.bodies().end_interval(particles, team); });
   }
   void settle(Team& team) override {
     end_motions(team);
@@ -121,7 +123,8 @@ class StoredSmallSteps final : public SmallSteps {
     return store_.bending_energy(give, team);
   }
   double deepest_in_body(Team& team) override {
-    return store_.bodies().empty() ? 0 : store_.deepest_in_body(team);
+    if (store_.bodies().empty()) return 0;
+    return contact_times_.timed(&ContactMs::verify, [&] { return store_.deepest_in_body(team); });
   }
   const SeamThreads& seams() const override { return seams_; }
   void report_bodies(BodyReport& report) override { store_.bodies().sum(report); }
@@ -155,6 +158,7 @@ class StoredSmallSteps final : public SmallSteps {
   void save_past(ArchiveWriter& archive) const override { store_.save_past(archive); }
   bool load_past(ArchiveReader& archive) override { return store_.load_past(archive); }
   void turn(const Turn& by) override { store_.turn(by); }
+  ContactMs take_contact_ms() override { return contact_times_.take(); }
   std::size_t bytes() const override { return now_.bytes() + seams_.bytes() + store_.bytes(); }
 
  private:
@@ -170,7 +174,7 @@ class StoredSmallSteps final : public SmallSteps {
     store_.sweep_membrane(team);
     if (layout_.has_single_constraints() || !layout_.has_yarns()) store_.hold_anchors(team);
     draw_seams();
-    if (!store_.bodies().empty()) store_.hold_bodies(team);
+    hold_bodies(team);
     now_.is_begun = true;
   }
   LocalWork run_passes(const SphereContacts& contacts, std::int64_t most_visits, Team& team) {
@@ -184,8 +188,32 @@ class StoredSmallSteps final : public SmallSteps {
         .laws = now_.law_step()};
     const LocalWork work = now_.passes.run(points, contacts, limits);
     draw_seams();
-    store_.hold_by_meshes(team);
+    hold_by_meshes(team);
     return work;
+  }
+  void begin_bodies(const FramePlan& plan, Team& team) {
+    if (plan.bodies.empty())
+      store_.begin_bodies(plan);
+    else
+      contact_times_.timed(&ContactMs::find, [&] { store_.begin_bodies(plan); });
+    if (plan.projects()) advance_bodies(1, team);
+  }
+  /// part: of a substep.
+  void advance_bodies(double part, Team& team) {
+    if (store_.bodies().empty()) return;
+    contact_times_.timed(&ContactMs::find, [&] { store_.advance_bodies(part, team); });
+  }
+  void hold_bodies(Team& team) {
+    if (store_.bodies().empty()) return;
+    contact_times_.timed(&ContactMs::sweep, [&] { store_.hold_bodies(team); });
+    hold_by_meshes(team);
+  }
+  void hold_by_meshes(Team& team) {
+    if (!store_.bodies().has_meshes()) return;
+    const Points points = store_.points(true);
+    PointParticles particles(points);
+    contact_times_.timed(&ContactMs::find, [&] { store_.bodies().find_standing(particles, team); });
+    contact_times_.timed(&ContactMs::sweep, [&] { store_.hold_by_meshes(team); });
   }
   void draw_seams() {
     if (seams_.empty()) return;
@@ -234,6 +262,7 @@ class StoredSmallSteps final : public SmallSteps {
   Substep now_;
   SeamThreads seams_;
   Departures departures_;
+  ContactTimes contact_times_;
   Store store_;
 };
 

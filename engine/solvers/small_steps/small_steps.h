@@ -192,6 +192,8 @@ class SmallSteps {
   /// The past happened in other directions. Positions are new ones.
   virtual void turn(const Turn& by) = 0;
   virtual std::size_t bytes() const = 0;
+  /// Since this was last asked. Reports add it up.
+  virtual ContactMs take_contact_ms() = 0;
 };
 
 /// On the backend of the settings.

@@ -60,6 +60,9 @@ class Kinds(unittest.TestCase):
                 report = run(cloth, 60)[-1]
                 self.assertAlmostEqual(cloth.position(0)[1], top + THICKNESS, delta=1e-5)
                 self.assertEqual(report.body_contacts, 1)
+                self.assertGreater(report.contact_ms.find, 0)
+                self.assertGreater(report.contact_ms.sweep, 0)
+                self.assertIn("contact_ms <weft.ContactMs: find ", repr(report))
                 self.assertTrue(np.allclose(cloth.body_load(body).force, -MASS * GRAVITY * UP, atol=2e-3))
                 contact, = cloth.body_contacts()
                 self.assertEqual((contact["particle"], contact["body"]), (0, body))

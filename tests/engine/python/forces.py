@@ -122,6 +122,10 @@ class Reports(unittest.TestCase):
         self.assertEqual(len(report.stage_seconds), len(weft.Stage.__members__))
         self.assertGreater(report.stage_seconds[int(weft.Stage.solve_positions)], 0)
         self.assertGreater(report.motion_error, 0)
+        ms = report.contact_ms
+        self.assertEqual((ms.find, ms.sweep, ms.verify), (0, 0, 0))
+        self.assertRegex(repr(report), r"\A<weft.StepReport: \w+, substeps 7, .*max_strain [\d.e-]+, .*>\Z")
+        self.assertNotIn("halvings", repr(report))
 
     def test_a_lift_is_work_of_its_pin(self):
         cloth = cloth_of_scene(positions=[(0, 0, 0), (0, -1, 0)], masses=[1, 2], fixed=[0],

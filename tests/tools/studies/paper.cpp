@@ -98,7 +98,7 @@ TEST_CASE("a measured cell reaches its strain with every variant") {
   all.push_back(previewed);
   for (const Row& row : all) {
     CAPTURE(row.variant.label());
-    CHECK(row.summary.status == Status::converged);
+    CHECK(row.summary.total.status == Status::converged);
     CHECK(row.summary.max_strain <= cell.strain);
     CHECK(row.summary.frames == 10);
     CHECK(row.seconds > 0);
@@ -106,7 +106,7 @@ TEST_CASE("a measured cell reaches its strain with every variant") {
     CHECK(row.seconds == row.summary.solver_seconds);
     CHECK(row.times_faster == rows.front().seconds / row.seconds);
     CHECK(row.times_faster_than_previewed == previewed.seconds / row.seconds);
-    CHECK(row.summary.velocity_iterations == 0);
+    CHECK(row.summary.total.velocity_iterations == 0);
   }
 }
 
@@ -122,13 +122,13 @@ TEST_CASE("the previewed original does what the original does, frame by frame") 
     REQUIRE(measurement);
     const RunSummary& original = measurement.value().rows.front().summary;
     const RunSummary& previewed = measurement.value().previewed.summary;
-    CHECK(previewed.status == Status::converged);
+    CHECK(previewed.total.status == Status::converged);
     CHECK(previewed.frames == original.frames);
-    CHECK(previewed.iterations == original.iterations);
-    CHECK(previewed.velocity_iterations == original.velocity_iterations);
-    CHECK(previewed.direction_updates == original.direction_updates);
-    CHECK(previewed.visits == original.visits);
-    CHECK(previewed.corrections == original.corrections);
+    CHECK(previewed.total.iterations == original.total.iterations);
+    CHECK(previewed.total.velocity_iterations == original.total.velocity_iterations);
+    CHECK(previewed.total.direction_updates == original.total.direction_updates);
+    CHECK(previewed.total.visits == original.total.visits);
+    CHECK(previewed.total.corrections == original.total.corrections);
     CHECK(std::abs(previewed.max_strain - original.max_strain) <= 1e-9);
   }
 }
@@ -140,8 +140,8 @@ TEST_CASE("velocities are corrected in the cells that say so") {
   cell.steps = 10;
   const auto rows = measure(cell, 1, {});
   REQUIRE(rows);
-  for (const Row& row : rows.value().rows) CHECK(row.summary.velocity_iterations > 0);
-  CHECK(rows.value().previewed.summary.velocity_iterations > 0);
+  for (const Row& row : rows.value().rows) CHECK(row.summary.total.velocity_iterations > 0);
+  CHECK(rows.value().previewed.summary.total.velocity_iterations > 0);
 }
 
 TEST_CASE("the fastest run of a row counts, not the last") {
@@ -211,12 +211,12 @@ Row made_up_row() {
           .runs = 3,
           .summary = {}};
   row.summary.frames = 4;
-  row.summary.status = Status::iteration_limit;
+  row.summary.total.status = Status::iteration_limit;
   row.summary.step_seconds = 17;
   row.summary.solver_seconds = 18;
-  row.summary.iterations = 10;
-  row.summary.visits = 11;
-  row.summary.corrections = 12;
+  row.summary.total.iterations = 10;
+  row.summary.total.visits = 11;
+  row.summary.total.corrections = 12;
   row.summary.max_strain = 0.0625;
   row.summary.mean_max_strain = 0.03125;
   row.summary.rms_strain = 0.015625;

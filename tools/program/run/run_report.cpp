@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <weft/report_fields.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <type_traits>
 
 #include <nlohmann/json.hpp>
 
@@ -25,10 +31,10 @@ double real_time_factor(const RunReport& report) {
 }
 
 double nanoseconds_per_constraint_iteration(const RunSummary& summary) {
-  const double visits =
-      static_cast<double>(summary.model.constraints) * static_cast<double>(summary.iterations);
+  const double visits = static_cast<double>(summary.model.constraints) *
+                        static_cast<double>(summary.total.iterations);
   const auto stage = static_cast<std::size_t>(Stage::solve_positions);
-  return visits > 0 ? 1e9 * summary.stage_seconds[stage] / visits : 0;
+  return visits > 0 ? 1e9 * summary.total.stage_seconds[stage] / visits : 0;
 }
 
 double bytes_per_particle(const RunSummary& summary) {
@@ -53,7 +59,7 @@ Json stages_json(const RunSummary& summary) {
   Json stages = Json::object();
   for (std::size_t i = 0; i < kStageCount; ++i) {
     stages[std::string(name(static_cast<Stage>(i)))] =
-        milliseconds_per_frame(summary, summary.stage_seconds[i]);
+        milliseconds_per_frame(summary, summary.total.stage_seconds[i]);
   }
   return stages;
 }
@@ -62,7 +68,7 @@ std::string stages_text(const RunSummary& summary) {
   std::string text;
   for (std::size_t i = 0; i < kStageCount; ++i) {
     text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", name(static_cast<Stage>(i)),
-                        milliseconds_per_frame(summary, summary.stage_seconds[i]));
+                        milliseconds_per_frame(summary, summary.total.stage_seconds[i]));
   }
   return text;
 }
@@ -85,7 +91,7 @@ std::string goal_text(const Settings& settings) {
 /// Of a frame: as asked for, or the mean of those chosen.
 Json substeps(const RunReport& report) {
   if (report.settings.substeps != kAutomaticSubsteps) return report.settings.substeps;
-  return mean(report.summary.substeps, report.summary.frames);
+  return mean(report.summary.total.substeps, report.summary.frames);
 }
 
 /// Of rigid constraints the error is their strain.
@@ -110,17 +116,18 @@ std::string_view verb_of(std::int64_t count) { return count == 1 ? "was" : "were
 
 /// Of the cloth and bodies that are meshes; empty where there is nothing to say.
 std::string crossings_text(const RunSummary& summary) {
+  const StepReport& total = summary.total;
   std::string text;
-  if (summary.contact_failures > 0) {
-    text = fmt::format("{} {} stopped", counted(summary.contact_failures, "crossing"),
-                       verb_of(summary.contact_failures));
+  if (total.contact_failures > 0) {
+    text = fmt::format("{} {} stopped", counted(total.contact_failures, "crossing"),
+                       verb_of(total.contact_failures));
   }
-  if (summary.zones > 0) {
-    text += fmt::format("{}{} taken along by bodies", text.empty() ? "" : ", ", summary.zones);
+  if (total.zones > 0) {
+    text += fmt::format("{}{} taken along by bodies", text.empty() ? "" : ", ", total.zones);
   }
-  if (summary.max_intersecting > 0) {
+  if (total.intersecting > 0) {
     text += fmt::format("{}at most {} could not be stopped in a frame", text.empty() ? "" : ", ",
-                        summary.max_intersecting);
+                        total.intersecting);
   }
   if (summary.intersections) {
     text += fmt::format("{}{} of triangles at most in a frame", text.empty() ? "" : "; ",
@@ -165,10 +172,40 @@ std::string mesh_text(const MeshCounts& mesh) {
   return text;
 }
 
+/// Numbers of StepReport that the JSON has in a form of its own: per frame, under the name of a
+/// setting, or as the program measures them.
+constexpr std::string_view kInOwnForm[] = {
+    "asleep",   "substeps",   "iterations", "velocity_iterations", "direction_updates",
+    "contacts", "max_strain", "rms_strain", "max_shear",           "motion_error"};
+
+/// All other numbers of the total, by their names.
+void add_total(const StepReport& total, Json& json) {
+  for_each_report_field([&]<class T>(const ReportField<T>& field) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      if (field.over_steps == OverSteps::none) return;
+      if (std::ranges::find(kInOwnForm, field.name) != std::end(kInOwnForm)) return;
+      json[field.name] = total.*field.member;
+    }
+  });
+}
+
+/// Of a frame, the mean.
+ContactMs contact_ms(const RunSummary& summary) {
+  const ContactMs& ms = summary.total.contact_ms;
+  const double frames = std::max(summary.frames, 1);
+  return {ms.find / frames, ms.sweep / frames, ms.verify / frames};
+}
+
+Json contact_ms_json(const RunSummary& summary) {
+  const ContactMs ms = contact_ms(summary);
+  return {{"find", ms.find}, {"sweep", ms.sweep}, {"verify", ms.verify}};
+}
+
 }  // namespace
 
 Json to_json(const RunReport& report) {
   const RunSummary& summary = report.summary;
+  const StepReport& total = summary.total;
   const Settings& settings = report.settings;
   Json json{
       {"scene", report.scene},
@@ -184,7 +221,6 @@ Json to_json(const RunReport& report) {
       {"solver", name(settings.solver)},
       {"solver_used", name(summary.solver)},
       {"scheme", name(summary.scheme)},
-      {"scheme_fallbacks", summary.scheme_fallbacks},
       {"backend", name(settings.backend)},
       {"anticipate_products", settings.anticipate_products},
       {"isa", isa(report)},
@@ -194,53 +230,38 @@ Json to_json(const RunReport& report) {
       {"frames", summary.frames},
       {"asleep_frames", summary.asleep_frames},
       {"substeps", substeps(report)},
-      {"halvings", summary.halvings},
       {"tolerance", settings.tolerance},
       {"iterations", settings.iterations},
-      {"status", name(summary.status)},
+      {"status", name(total.status)},
       {"missed_frames", summary.missed_frames},
       {"ms_per_frame", 1e3 * summary.seconds_per_frame()},
       {"max_ms_per_frame", 1e3 * summary.longest_step_seconds},
       {"real_time_factor", real_time_factor(report)},
-      {"rejected", summary.halvings + summary.scheme_fallbacks},
-      {"max_error", summary.max_error},
+      {"rejected", total.halvings + total.scheme_fallbacks},
       {"max_strain", summary.max_strain},
       {"mean_max_strain", summary.mean_max_strain},
       {"rms_strain", summary.rms_strain},
-      {"max_penetration", summary.max_penetration},
-      {"max_anchor_error", summary.max_anchor_error},
-      {"open_seams", summary.open_seams},
-      {"max_seam_gap", summary.max_seam_gap},
-      {"seam_work", summary.seam_work},
-      {"max_contacts", summary.max_contacts},
+      {"max_contacts", total.contacts},
       {"bodies", report.plan.bodies.size()},
       {"body_triangles", count_triangles(report.plan.bodies)},
-      {"body_contacts", summary.max_body_contacts},
-      {"contact_failures", summary.contact_failures},
-      {"zones", summary.zones},
-      {"intersecting", summary.max_intersecting},
-      {"friction_work", summary.friction_work},
-      {"body_work", summary.body_work},
       {"iterations_per_step", summary.iterations_per_step()},
-      {"velocity_iterations_per_step", mean(summary.velocity_iterations, summary.frames)},
-      {"direction_updates_per_step", mean(summary.direction_updates, summary.frames)},
-      {"visits", summary.visits},
-      {"corrections", summary.corrections},
+      {"velocity_iterations_per_step", mean(total.velocity_iterations, summary.frames)},
+      {"direction_updates_per_step", mean(total.direction_updates, summary.frames)},
       {"ns_per_constraint_iteration", nanoseconds_per_constraint_iteration(summary)},
       {"energy_start", summary.energy_start},
       {"energy_end", summary.energy_end},
-      {"pin_work", summary.pin_work},
       {"energy_gain", summary.energy_gain},
-      {"energy_lost", summary.energy_lost},
       {"motion_tolerance", settings.motion_tolerance},
       {"motion_error", summary.mean_motion_error},
-      {"max_motion_error", summary.max_motion_error},
+      {"max_motion_error", total.motion_error},
       {lowest_name(report.plan), summary.lowest},
       {"state_hash", fmt::format("{:016x}", summary.state_hash)},
       {"bytes_per_particle", bytes_per_particle(summary)},
       {"stages", stages_json(summary)},
+      {"contact_ms", contact_ms_json(summary)},
       {"peak_rss_mb", peak_rss_mb()},
   };
+  add_total(total, json);
   if (summary.intersections) json["intersections"] = *summary.intersections;
   if (summary.fabric) {
     json["max_warp"] = summary.fabric->warp;
@@ -253,6 +274,7 @@ Json to_json(const RunReport& report) {
 
 std::string to_table(const RunReport& report) {
   const RunSummary& summary = report.summary;
+  const StepReport& total = summary.total;
   const Settings& settings = report.settings;
   std::string text;
   const auto row = [&text](std::string_view label, const std::string& value) {
@@ -268,26 +290,26 @@ std::string to_table(const RunReport& report) {
   row("solver", fmt::format("{}, scheme {}, backend {}, {}", solver_text(report),
                             name(summary.scheme), name(settings.backend), goal_text(settings)));
   if (summary.scheme == Scheme::rattle) {
-    row("scheme", fmt::format("{} of {} left to scheme paper", summary.scheme_fallbacks,
-                              counted(summary.substeps, "substep")));
+    row("scheme", fmt::format("{} of {} left to scheme paper", total.scheme_fallbacks,
+                              counted(total.substeps, "substep")));
   }
   const auto in_substeps =
       settings.substeps != 1
-          ? fmt::format(" in {:.3g} substeps each", mean(summary.substeps, summary.frames))
+          ? fmt::format(" in {:.3g} substeps each", mean(total.substeps, summary.frames))
           : "";
   const auto asleep =
       summary.asleep_frames > 0 ? fmt::format(", {} asleep", summary.asleep_frames) : "";
   const auto missed =
       summary.missed_frames > 0 ? fmt::format(", {} out of tolerance", summary.missed_frames) : "";
   row("frames", fmt::format("{} of {:.6g} s{}{}{}, status {}", summary.frames, report.plan.dt,
-                            in_substeps, asleep, missed, name(summary.status)));
+                            in_substeps, asleep, missed, name(total.status)));
   row("time",
       fmt::format("{:.4g} ms per frame, {:.3g} the longest, {} times real time, at max {} {}",
                   1e3 * summary.seconds_per_frame(), 1e3 * summary.longest_step_seconds,
                   factor_text(real_time_factor(report)), error_name(summary),
-                  measured_percent(summary.max_error)));
+                  measured_percent(total.max_error)));
   row("stages", fmt::format("{} ms at max {} {}", stages_text(summary), error_name(summary),
-                            measured_percent(summary.max_error)));
+                            measured_percent(total.max_error)));
   row("strain",
       fmt::format("max {}, mean of the frames' max {}, rms {}",
                   measured_percent(summary.max_strain), measured_percent(summary.mean_max_strain),
@@ -298,7 +320,7 @@ std::string to_table(const RunReport& report) {
                               measured_percent(summary.fabric->weft), summary.fabric->shear));
   }
   if (summary.model.spheres > 0) {
-    row("contacts", fmt::format("{:.3g} m deepest penetration", summary.max_penetration));
+    row("contacts", fmt::format("{:.3g} m deepest penetration", total.max_penetration));
   }
   if (!report.plan.bodies.empty()) {
     row("bodies", fmt::format("{}, {} at most, {:.3g} m deepest penetration, {:.3g} J by friction, "
@@ -306,31 +328,34 @@ std::string to_table(const RunReport& report) {
                               report.plan.bodies.size() == 1
                                   ? "1 body"
                                   : fmt::format("{} bodies", report.plan.bodies.size()),
-                              counted(summary.max_body_contacts, "contact"),
-                              summary.max_penetration, summary.friction_work, summary.body_work));
+                              counted(total.body_contacts, "contact"), total.max_penetration,
+                              total.friction_work, total.body_work));
+    const ContactMs ms = contact_ms(summary);
+    row("", fmt::format("{:.3g} ms per frame to find contacts, {:.3g} in sweeps, {:.3g} to verify",
+                        ms.find, ms.sweep, ms.verify));
   }
   if (const auto crossed = crossings_text(summary); !crossed.empty()) row("crossings", crossed);
   if (summary.model.anchors > 0) {
     row("anchors", fmt::format("{}, {:.3g} m beyond their limits at most", summary.model.anchors,
-                               summary.max_anchor_error));
+                               total.max_anchor_error));
   }
   if (summary.model.seams > 0) {
-    row("seams", fmt::format("{}, {} open in the end, closed ones {:.3g} m apart at most, {:.3g} J",
-                             summary.model.seams, summary.open_seams, summary.max_seam_gap,
-                             summary.seam_work));
+    row("seams",
+        fmt::format("{}, {} open in the end, closed ones {:.3g} m apart at most, {:.3g} J",
+                    summary.model.seams, total.open_seams, total.max_seam_gap, total.seam_work));
   }
   row("work",
       fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {}, {}",
-                  summary.iterations_per_step(), mean(summary.direction_updates, summary.frames),
-                  counted(summary.visits, "visit"), counted(summary.corrections, "correction")));
+                  summary.iterations_per_step(), mean(total.direction_updates, summary.frames),
+                  counted(total.visits, "visit"), counted(total.corrections, "correction")));
   const auto by_pins =
-      summary.pin_work != 0 ? fmt::format(", {:.6g} J by moved pins", summary.pin_work) : "";
+      total.pin_work != 0 ? fmt::format(", {:.6g} J by moved pins", total.pin_work) : "";
   row("energy", fmt::format("{:.6g} J to {:.6g} J{}, largest gain {:.3g} J, {:.3g} J lost",
                             summary.energy_start, summary.energy_end, by_pins, summary.energy_gain,
-                            summary.energy_lost));
+                            total.energy_lost));
   if (summary.solver == Solver::small_steps) {
     row("motion", fmt::format("{:.3g} m/s away from the true one by estimate, {:.3g} at most",
-                              summary.mean_motion_error, summary.max_motion_error));
+                              summary.mean_motion_error, total.motion_error));
   }
   row("state", fmt::format("{:016x}, lowest {} {:.6g} m", summary.state_hash, axis(report.plan),
                            summary.lowest));

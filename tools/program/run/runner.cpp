@@ -12,6 +12,7 @@
 
 #include "tools/program/measure/cpu_time.h"
 #include "tools/program/measure/crossings.h"
+#include "tools/program/run/step_total.h"
 #include "tools/program/run/warm_up.h"
 #include "tools/program/text/wording.h"
 #include "tools/scenes/body_moves.h"
@@ -50,38 +51,13 @@ void look_for_miss(RunSummary& summary, const StepReport& report) {
 }
 
 void add_work(RunSummary& summary, const StepReport& report) {
-  summary.status = std::max(summary.status, report.status);
-  summary.substeps += report.substeps;
+  add_step(summary.total, report);
   summary.asleep_frames += report.asleep ? 1 : 0;
-  summary.halvings += report.halvings;
-  summary.iterations += report.iterations;
-  summary.velocity_iterations += report.velocity_iterations;
-  summary.direction_updates += report.direction_updates;
-  summary.visits += report.visits;
-  summary.corrections += report.corrections;
-  summary.scheme_fallbacks += report.scheme_fallbacks;
-  summary.max_contacts = std::max(summary.max_contacts, report.contacts);
-  summary.max_error = std::max(summary.max_error, report.max_error);
-  summary.max_anchor_error = std::max(summary.max_anchor_error, report.max_anchor_error);
-  summary.open_seams = report.open_seams;
-  summary.max_seam_gap = std::max(summary.max_seam_gap, report.max_seam_gap);
-  summary.seam_work += report.seam_work;
-  summary.pin_work += report.pin_work;
-  summary.max_body_contacts = std::max(summary.max_body_contacts, report.body_contacts);
-  summary.contact_failures += report.contact_failures;
-  summary.zones += report.zones;
-  summary.max_intersecting = std::max(summary.max_intersecting, report.intersecting);
-  summary.body_work += report.body_work;
-  summary.friction_work += report.friction_work;
-  summary.max_penetration = std::max(summary.max_penetration, report.max_penetration);
-  summary.energy_lost += report.energy_lost;
-  summary.max_motion_error = std::max(summary.max_motion_error, report.motion_error);
   summary.mean_motion_error += (report.motion_error - summary.mean_motion_error) / summary.frames;
   summary.solver_seconds = 0;
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
-    summary.stage_seconds[stage] += report.stage_seconds[stage];
     const bool is_report = static_cast<Stage>(stage) == Stage::report;
-    if (!is_report) summary.solver_seconds += summary.stage_seconds[stage];
+    if (!is_report) summary.solver_seconds += summary.total.stage_seconds[stage];
   }
 }
 
@@ -98,10 +74,10 @@ void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth, const R
   errors.square_strain_sum += strain.rms * strain.rms;
   if (!plan.fabric.is_empty())
     summary.fabric = largest(summary.fabric.value_or(FabricStrain{}), plan.fabric(cloth));
-  summary.max_penetration = std::max(summary.max_penetration, cloth.max_penetration());
+  summary.total.max_penetration = std::max(summary.total.max_penetration, cloth.max_penetration());
   summary.lowest = std::min(summary.lowest, lowest_of(cloth, plan.up));
-  const double gain =
-      cloth.energy().total() - summary.energy_start - summary.pin_work - summary.body_work;
+  const double gain = cloth.energy().total() - summary.energy_start - summary.total.pin_work -
+                      summary.total.body_work;
   summary.energy_gain = summary.frames == 1 ? gain : std::max(summary.energy_gain, gain);
 }
 
@@ -151,7 +127,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   summary.energy_start = cloth.energy().total();
   summary.lowest = std::numeric_limits<double>::infinity();
   while (summary.last_frame() < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
-         committed(summary.status) && !summary.stopped) {
+         committed(summary.total.status) && !summary.stopped) {
     if (auto sent = pins.send(cloth, (summary.last_frame() + 1) * plan.dt); !sent) {
       return Error{sent.error()};
     }

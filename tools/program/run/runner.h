@@ -76,7 +76,6 @@ struct RunSummary {
   /// Runs that came to their end, the one to warm up included. Where a later one was stopped the
   /// figures are those of the best before it; 0: of the one that was stopped.
   int finished_runs = 0;
-  Status status = Status::converged;  ///< the worst of all frames
   std::optional<Miss> first_miss;
   int missed_frames = 0;  ///< that were not brought within their tolerances
 
@@ -84,48 +83,23 @@ struct RunSummary {
   double longest_step_seconds = 0;  ///< of one frame
   double cpu_seconds = 0;           ///< processor time in step(), all threads together
   double solver_seconds = 0;  ///< of all stages but `report`, as the steps themselves measured it
-  std::array<double, kStageCount> stage_seconds{};
-
-  std::int64_t substeps = 0;
-  std::int64_t halvings = 0;
-  std::int64_t iterations = 0;
-  std::int64_t velocity_iterations = 0;
-  std::int64_t direction_updates = 0;
-  std::int64_t visits = 0;
-  std::int64_t corrections = 0;
-  std::int64_t scheme_fallbacks = 0;
+  StepReport total;           ///< of all frames (add_step)
   int asleep_frames = 0;
-  int max_contacts = 0;  ///< most pairs watched in one frame
 
-  double max_error = 0;                ///< of the constraints' laws, over all frames (StepReport)
   double max_strain = 0;               ///< over all frames and constraints
   double mean_max_strain = 0;          ///< mean over the frames of each frame's largest strain
   double rms_strain = 0;               ///< over all frames and constraints
   std::optional<FabricStrain> fabric;  ///< over all frames; none without a fabric
-  double max_penetration = 0;          ///< m, over all frames and sphere pairs
-  double max_anchor_error = 0;         ///< m, over all frames and anchors
-  int open_seams = 0;                  ///< in the end
-  double max_seam_gap = 0;             ///< m, over all frames and closed seams
-  double seam_work = 0;                ///< J
-  int max_body_contacts = 0;           ///< in one frame
-  std::int64_t contact_failures = 0;   ///< over all frames (StepReport)
-  std::int64_t zones = 0;              ///< likewise
-  int max_intersecting = 0;            ///< in one frame, likewise
   /// Most pairs in one frame of a triangle of the cloth and one of a body that crossed
   /// (crossings.h); none where it was not asked for.
   std::optional<std::size_t> intersections;
-  double body_work = 0;      ///< J, done by moved bodies
-  double friction_work = 0;  ///< J
 
   double energy_start = 0;  ///< J, before the first frame
   double energy_end = 0;    ///< J, after the last frame
-  double pin_work = 0;      ///< J, done by moved pins
   /// J, the largest over the frames of energy - energy_start - the work of moved pins until then.
   /// (By scheme paper what hangs and sinks at u seems to have m u g h / 2 too much meanwhile: its
   /// velocities are those of Cloth::velocity().)
   double energy_gain = 0;
-  double energy_lost = 0;        ///< J, over all frames (StepReport)
-  double max_motion_error = 0;   ///< m/s, over all frames (StepReport)
   double mean_motion_error = 0;  ///< m/s, mean over the frames
   double lowest = 0;             ///< m along RunPlan::up, over all frames and particles
 
@@ -136,7 +110,7 @@ struct RunSummary {
   bool reached_tolerance() const { return !first_miss; }
   double seconds_per_frame() const { return frames > 0 ? step_seconds / frames : 0; }
   double iterations_per_step() const {
-    return frames > 0 ? static_cast<double>(iterations) / frames : 0;
+    return frames > 0 ? static_cast<double>(total.iterations) / frames : 0;
   }
 };
 

@@ -26,7 +26,7 @@ Result<RunSummary> run_previewed(std::shared_ptr<const Model> model, const Setti
   summary.solver = state.settings.solver;
   summary.scheme = state.settings.scheme;
   summary.isa = state.settings.isa;
-  while (summary.frames < plan.steps && committed(summary.status)) {
+  while (summary.frames < plan.steps && committed(summary.total.status)) {
     const StepReport report = step(state, plan.dt);
     add_frame(summary, report);
     summary.max_strain = std::max(summary.max_strain, report.max_strain);

@@ -42,11 +42,11 @@ Json row_json(const Row& row) {
           {"directions", name(row.variant.directions)},
           {"seconds", row.seconds},
           {"iterations_per_step", row.summary.iterations_per_step()},
-          {"corrections", row.summary.corrections},
+          {"corrections", row.summary.total.corrections},
           {"times_faster", row.times_faster},
           {"times_faster_than_previewed", row.times_faster_than_previewed},
           {"max_strain", row.summary.max_strain},
-          {"status", name(row.summary.status)}};
+          {"status", name(row.summary.total.status)}};
 }
 
 Json sized_row_json(const Row& row) {
@@ -166,8 +166,8 @@ void write_rows(Text out, const std::vector<Row>& rows, std::string_view title) 
                    cell.scene, fmt::format("{0} x {0}", cell.size), percent(cell.strain),
                    cell.velocity_correction ? "corrected" : "-", row.variant.label(), row.seconds,
                    row.times_faster, row.times_faster_than_previewed,
-                   row.summary.iterations_per_step(), row.summary.corrections,
-                   measured_percent(row.summary.max_strain), name(row.summary.status));
+                   row.summary.iterations_per_step(), row.summary.total.corrections,
+                   measured_percent(row.summary.max_strain), name(row.summary.total.status));
   }
 }
 
@@ -230,8 +230,8 @@ std::string rows_csv(const std::vector<Row>& rows) {
         "{},{},{},{},{},{},{},{},{:.6g},{:.6g},{},{:.6g},{:.6g},{},{:.6g}\n", row.cell.scene,
         row.cell.size, row.cell.strain, row.cell.velocity_correction ? "on" : "off",
         row.variant.method, name(row.variant.directions), row.cell.steps, row.runs, row.seconds,
-        row.summary.iterations_per_step(), row.summary.corrections, row.times_faster,
-        row.summary.max_strain, name(row.summary.status), row.times_faster_than_previewed);
+        row.summary.iterations_per_step(), row.summary.total.corrections, row.times_faster,
+        row.summary.max_strain, name(row.summary.total.status), row.times_faster_than_previewed);
   }
   return csv;
 }

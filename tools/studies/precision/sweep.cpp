@@ -97,13 +97,13 @@ Outcome outcome_of(const Task& task, const RunSummary& summary) {
   Outcome outcome;
   outcome.frames = summary.frames;
   outcome.ms_per_frame = 1000 * seconds_of(task, summary) / std::max(summary.frames, 1);
-  outcome.max_strain = task.has_material() ? summary.max_error : summary.max_strain;
+  outcome.max_strain = task.has_material() ? summary.total.max_error : summary.max_strain;
   outcome.motion_error = summary.mean_motion_error;
   outcome.mean_max_strain = summary.mean_max_strain;
   outcome.energy_gain = summary.energy_gain;
-  outcome.substeps = static_cast<double>(summary.substeps) / std::max(summary.frames, 1);
-  const bool out_of_time = summary.frames < task.frames && committed(summary.status);
-  outcome.status = out_of_time ? "out_of_time" : name(summary.status);
+  outcome.substeps = static_cast<double>(summary.total.substeps) / std::max(summary.frames, 1);
+  const bool out_of_time = summary.frames < task.frames && committed(summary.total.status);
+  outcome.status = out_of_time ? "out_of_time" : name(summary.total.status);
   return outcome;
 }
 

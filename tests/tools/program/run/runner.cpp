@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
 #include "tests/tools/slowness.h"
+#include "tools/program/run/step_total.h"
 #include "tools/scenes/scenes.h"
 
 namespace weft::tools {
@@ -25,22 +27,23 @@ struct Frames {
 
   void add(const Cloth& cloth, const StepReport& report) {
     ++sums.frames;
-    sums.substeps += report.substeps;
-    sums.halvings += report.halvings;
-    sums.iterations += report.iterations;
-    sums.velocity_iterations += report.velocity_iterations;
-    sums.direction_updates += report.direction_updates;
-    sums.visits += report.visits;
-    sums.corrections += report.corrections;
-    sums.scheme_fallbacks += report.scheme_fallbacks;
-    sums.max_contacts = std::max(sums.max_contacts, report.contacts);
-    for (std::size_t i = 0; i < kStageCount; ++i) sums.stage_seconds[i] += report.stage_seconds[i];
+    sums.total.substeps += report.substeps;
+    sums.total.halvings += report.halvings;
+    sums.total.iterations += report.iterations;
+    sums.total.velocity_iterations += report.velocity_iterations;
+    sums.total.direction_updates += report.direction_updates;
+    sums.total.visits += report.visits;
+    sums.total.corrections += report.corrections;
+    sums.total.scheme_fallbacks += report.scheme_fallbacks;
+    sums.total.contacts = std::max(sums.total.contacts, report.contacts);
+    for (std::size_t i = 0; i < kStageCount; ++i)
+      sums.total.stage_seconds[i] += report.stage_seconds[i];
     sums.longest_step_seconds = std::max(sums.longest_step_seconds, seconds(report.stage_seconds));
     const Strain strain = cloth.strain();
     sums.max_strain = std::max(sums.max_strain, strain.max);
     strain_sum += strain.max;
     square_sum += strain.rms * strain.rms;
-    sums.max_penetration = std::max(sums.max_penetration, cloth.max_penetration());
+    sums.total.max_penetration = std::max(sums.total.max_penetration, cloth.max_penetration());
     lowest_y = cloth.position(0).y;
     for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
       lowest_y = std::min(lowest_y, cloth.position(i).y);
@@ -73,45 +76,54 @@ TEST_CASE("a summary sums up what the steps reported and what the cloth measured
   REQUIRE(summary);
   const RunSummary &actual = summary.value(), &expected = frames.sums;
   CHECK(actual.frames == kSteps);
-  CHECK(actual.status == Status::converged);
-  CHECK(actual.substeps == expected.substeps);
-  CHECK(actual.halvings == expected.halvings);
-  CHECK(actual.iterations == expected.iterations);
-  CHECK(actual.velocity_iterations == expected.velocity_iterations);
-  CHECK(actual.direction_updates == expected.direction_updates);
-  CHECK(actual.visits == expected.visits);
-  CHECK(actual.corrections == expected.corrections);
-  CHECK(actual.scheme_fallbacks == expected.scheme_fallbacks);
-  CHECK(actual.max_contacts == expected.max_contacts);
+  CHECK(actual.total.status == Status::converged);
+  CHECK(actual.total.substeps == expected.total.substeps);
+  CHECK(actual.total.halvings == expected.total.halvings);
+  CHECK(actual.total.iterations == expected.total.iterations);
+  CHECK(actual.total.velocity_iterations == expected.total.velocity_iterations);
+  CHECK(actual.total.direction_updates == expected.total.direction_updates);
+  CHECK(actual.total.visits == expected.total.visits);
+  CHECK(actual.total.corrections == expected.total.corrections);
+  CHECK(actual.total.scheme_fallbacks == expected.total.scheme_fallbacks);
+  CHECK(actual.total.contacts == expected.total.contacts);
   CHECK(actual.max_strain == expected.max_strain);
   CHECK(actual.mean_max_strain == frames.strain_sum / kSteps);
   CHECK(actual.rms_strain == std::sqrt(frames.square_sum / kSteps));
-  CHECK(actual.max_penetration == expected.max_penetration);
+  CHECK(actual.total.max_penetration == expected.total.max_penetration);
   CHECK(actual.lowest == expected.lowest);
   CHECK(actual.state_hash == expected.state_hash);
   CHECK(actual.energy_end == expected.energy_end);
   CHECK(actual.energy_gain == expected.energy_gain - actual.energy_start);
-  CHECK(actual.stage_seconds == expected.stage_seconds);
-  CHECK(actual.step_seconds >= Frames::seconds(actual.stage_seconds));
+  CHECK(actual.total.stage_seconds == expected.total.stage_seconds);
+  CHECK(actual.step_seconds >= Frames::seconds(actual.total.stage_seconds));
   CHECK(actual.longest_step_seconds >= expected.longest_step_seconds);
   CHECK(actual.longest_step_seconds < actual.step_seconds);
   CHECK(actual.cpu_seconds > 0);
   CHECK(actual.cpu_seconds != actual.step_seconds);  // of another clock
   double other_stages = 0;
   for (std::size_t i = 0; i < kStageCount; ++i) {
-    if (static_cast<Stage>(i) != Stage::report) other_stages += actual.stage_seconds[i];
+    if (static_cast<Stage>(i) != Stage::report) other_stages += actual.total.stage_seconds[i];
   }
   CHECK(actual.solver_seconds == other_stages);
   CHECK(actual.bytes == expected.bytes);
   CHECK(actual.model.particles == 82);
 
   // The last frame is not the one with the most of anything.
-  CHECK(frames.last.velocity_iterations < expected.velocity_iterations);
-  CHECK(frames.last.scheme_fallbacks < expected.scheme_fallbacks);
-  CHECK(frames.last.contacts < expected.max_contacts);
+  CHECK(frames.last.velocity_iterations < expected.total.velocity_iterations);
+  CHECK(frames.last.scheme_fallbacks < expected.total.scheme_fallbacks);
+  CHECK(frames.last.contacts < expected.total.contacts);
   CHECK(frames.last.max_strain < expected.max_strain);
-  CHECK(frames.last.max_penetration < expected.max_penetration);
+  CHECK(frames.last.max_penetration < expected.total.max_penetration);
   CHECK(frames.lowest_y > expected.lowest);
+}
+
+TEST_CASE("sums of int stop at the largest") {
+  StepReport total{.substeps = std::numeric_limits<int>::max() - 3};
+  add_step(total, {.substeps = 2, .open_seams = 5});
+  CHECK(total.substeps == std::numeric_limits<int>::max() - 1);
+  add_step(total, {.substeps = 2, .open_seams = 4});
+  CHECK(total.substeps == std::numeric_limits<int>::max());
+  CHECK(total.open_seams == 4);
 }
 
 TEST_CASE("a summary tells of halves, contacts and memory") {
@@ -124,9 +136,9 @@ TEST_CASE("a summary tells of halves, contacts and memory") {
             [&](int, const Cloth& cloth, const StepReport& report) { frames.add(cloth, report); });
     REQUIRE(summary);
     const RunSummary& expected = frames.sums;
-    CHECK((scene == &corners ? expected.halvings : expected.max_contacts) > 0);
-    CHECK(summary.value().halvings == expected.halvings);
-    CHECK(summary.value().max_contacts == expected.max_contacts);
+    CHECK((scene == &corners ? expected.total.halvings : expected.total.contacts) > 0);
+    CHECK(summary.value().total.halvings == expected.total.halvings);
+    CHECK(summary.value().total.contacts == expected.total.contacts);
     CHECK(summary.value().bytes == expected.bytes);
   }
 }
@@ -155,7 +167,7 @@ TEST_CASE("repeats differ in nothing but their time, and only the first is shown
   CHECK(shown == 10);
   CHECK(best.value().frames == 10);
   CHECK(best.value().state_hash == once.value().state_hash);
-  CHECK(best.value().visits == once.value().visits);
+  CHECK(best.value().total.visits == once.value().total.visits);
 }
 
 TEST_CASE("of repeats the fastest is reported, not the last") {
@@ -205,7 +217,7 @@ TEST_CASE("the worst status of all frames is told") {
   const SceneDescription scene = hang(8);
   const auto limited = run(scene, {.tolerance = 1e-9, .max_iterations = 2}, {.steps = 5});
   REQUIRE(limited);
-  CHECK(limited.value().status == Status::iteration_limit);
+  CHECK(limited.value().total.status == Status::iteration_limit);
   CHECK_FALSE(limited.value().reached_tolerance());
   REQUIRE(limited.value().first_miss);
   CHECK(limited.value().first_miss->frame == 1);
@@ -227,7 +239,7 @@ TEST_CASE("a frame that missed is not forgotten over those that did not") {
           [&](int, const Cloth&, const StepReport& report) { last = report.status; });
   REQUIRE(summary);
   CHECK(last == Status::converged);
-  CHECK(summary.value().status == Status::passed_through);
+  CHECK(summary.value().total.status == Status::passed_through);
   REQUIRE(summary.value().first_miss);
   CHECK(summary.value().first_miss->frame == 1);
   CHECK(summary.value().first_miss->passed_particle == 1);
@@ -236,15 +248,15 @@ TEST_CASE("a frame that missed is not forgotten over those that did not") {
 TEST_CASE("a fixed number of iterations misses nothing") {
   const auto fixed = run(hang(8), {.iterations = 2}, {.steps = 5});
   REQUIRE(fixed);
-  CHECK(fixed.value().status == Status::fixed_iterations);
-  CHECK(fixed.value().iterations == 10);
+  CHECK(fixed.value().total.status == Status::fixed_iterations);
+  CHECK(fixed.value().total.iterations == 10);
   CHECK(fixed.value().reached_tolerance());
 }
 
 TEST_CASE("a run ends with the frame that would not be finite") {
   const auto summary = run(hang(4), {}, {.dt = 1e200, .steps = 5});
   REQUIRE(summary);
-  CHECK(summary.value().status == Status::non_finite_input);
+  CHECK(summary.value().total.status == Status::non_finite_input);
   CHECK(summary.value().frames == 1);
   CHECK_FALSE(summary.value().reached_tolerance());
   CHECK(text(*summary.value().first_miss).starts_with("frame 1: non_finite_input at particle "));
@@ -304,7 +316,7 @@ TEST_CASE("the work of moved pins is summed up, and no gain of energy") {
                              });
     REQUIRE(summary);
     const RunSummary& actual = summary.value();
-    CHECK(actual.pin_work == work);
+    CHECK(actual.total.pin_work == work);
     CHECK(actual.energy_gain == doctest::Approx(most_beyond - actual.energy_start).epsilon(1e-9));
     CHECK(work > 1);
     CHECK(most - actual.energy_start > 0.1);
@@ -315,7 +327,7 @@ TEST_CASE("the work of moved pins is summed up, and no gain of energy") {
 TEST_CASE("where pins stay the work is none") {
   const auto summary = run(hang(5), {}, {.steps = 10});
   REQUIRE(summary);
-  CHECK(summary.value().pin_work == 0);
+  CHECK(summary.value().total.pin_work == 0);
 }
 
 TEST_CASE("what the library refuses is passed on") {
