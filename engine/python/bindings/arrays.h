@@ -1,5 +1,5 @@
-/// NumPy arrays to what weft takes and back. Arrays that are returned are copies; those of fields
-/// cannot be written, since that would not change the field.
+/// NumPy arrays to what weft takes and back. Arrays that are returned are copies which cannot be
+/// written, since that would not change the field.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -11,6 +11,9 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "errors.h"
@@ -72,6 +75,32 @@ inline py::array read_only(py::array array) {
   return array;
 }
 
+/// The numbers that a T consists of, and nothing else.
+template <class T>
+struct NumbersOf {
+  using Type = double;
+};
+template <>
+struct NumbersOf<std::uint32_t> {
+  using Type = std::uint32_t;
+};
+template <std::size_t N>
+struct NumbersOf<std::array<std::uint32_t, N>> {
+  using Type = std::uint32_t;
+};
+template <class T>
+using NumberOf = typename NumbersOf<T>::Type;
+
+template <class T>
+std::vector<T> elements(py::handle value, const std::string& field) {
+  if constexpr (std::is_same_v<NumberOf<T>, double>)
+    return vectors<T>(value, field);
+  else if constexpr (std::is_same_v<T, std::uint32_t>)
+    return indices(value, field);
+  else
+    return index_tuples<std::tuple_size_v<T>>(value, field);
+}
+
 /// T: some numbers of type Number and nothing else.
 template <class Number, class T>
 py::array rows(const std::vector<T>& values) {
@@ -87,7 +116,7 @@ py::array rows(const std::vector<T>& values) {
 
 namespace pybind11::detail {
 
-/// Three numbers; an array of them on the way back.
+/// Three numbers; a read-only array of them on the way back.
 template <>
 struct type_caster<weft::Vec3> {
   PYBIND11_TYPE_CASTER(weft::Vec3, const_name("numpy.ndarray"));
@@ -101,11 +130,11 @@ struct type_caster<weft::Vec3> {
   static handle cast(const weft::Vec3& v, return_value_policy, handle) {
     array_t<double> out(3);
     std::memcpy(out.mutable_data(), &v, sizeof v);
-    return out.release();
+    return weft::python::read_only(std::move(out)).release();
   }
 };
 
-/// Four numbers x, y, z, w; an array of them on the way back.
+/// Four numbers x, y, z, w; a read-only array of them on the way back.
 template <>
 struct type_caster<weft::Rotation> {
   PYBIND11_TYPE_CASTER(weft::Rotation, const_name("numpy.ndarray"));
@@ -119,7 +148,7 @@ struct type_caster<weft::Rotation> {
   static handle cast(const weft::Rotation& q, return_value_policy, handle) {
     array_t<double> out(4);
     std::memcpy(out.mutable_data(), &q, sizeof q);
-    return out.release();
+    return weft::python::read_only(std::move(out)).release();
   }
 };
 

@@ -8,6 +8,7 @@
 #include "arrays.h"
 #include "buffers.h"
 #include "bytes.h"
+#include "fields.h"
 #include "parts.h"
 
 namespace weft::python {
@@ -28,7 +29,8 @@ void add_arena(py::module_& m) {
            py::arg("threads"), "threads: the calling one is among them.");
 }
 
-StepReport step(HeldCloth& cloth, double dt, Arena* arena) {
+StepReport step(HeldCloth& cloth, const Given<double>& given, Arena* arena) {
+  const double dt = taken(given, "dt");
   const auto used = use(cloth);
   const py::gil_scoped_release release;
   return value_of(in_arena(arena, [&] { return cloth.value.step(dt); }));
@@ -197,14 +199,16 @@ void add_writing(ClothClass& cloth) {
            "N, one per particle; empty: none")
       .def(
           "set_gravity",
-          [](HeldCloth& c, Vec3 gravity) {
+          [](HeldCloth& c, const Given<Vec3>& given) {
+            const Vec3 gravity = taken(given, "gravity");
             const auto used = use(c);
             check(c.value.set_gravity(gravity));
           },
           py::arg("gravity"), "m/s^2, from the next step on")
       .def(
           "set_wind",
-          [](HeldCloth& c, Vec3 wind) {
+          [](HeldCloth& c, const Given<Vec3>& given) {
+            const Vec3 wind = taken(given, "wind");
             const auto used = use(c);
             check(c.value.set_wind(wind));
           },

@@ -11,7 +11,9 @@ namespace weft::python {
 namespace {
 
 /// Pairs (index, value).
-std::vector<ChangedValue> changed_values(const py::iterable& value, const std::string& field) {
+std::vector<ChangedValue> changed_values(const py::object& value, const std::string& field) {
+  if (!py::isinstance<py::iterable>(value))
+    refuse(field + ": " + py::repr(value).cast<std::string>() + " is not a list of pairs");
   std::vector<ChangedValue> out;
   for (const py::handle pair : value) {
     try {
@@ -27,9 +29,8 @@ std::vector<ChangedValue> changed_values(const py::iterable& value, const std::s
 
 using Values = std::vector<ChangedValue> Changes::*;
 
-template <class Class>
-void add_values(Class& changes, const char* name, Values values, const char* meaning) {
-  changes.def_property(
+void add_values(Fields<Changes>& changes, const char* name, Values values, const char* meaning) {
+  changes.property(
       name,
       [values](const Changes& c) {
         py::list pairs;
@@ -37,34 +38,26 @@ void add_values(Class& changes, const char* name, Values values, const char* mea
           pairs.append(py::make_tuple(one.index, one.value));
         return pairs;
       },
-      [values, name](Changes& c, const py::iterable& v) { c.*values = changed_values(v, name); },
+      [values, name](Changes& c, const py::object& v) { c.*values = changed_values(v, name); },
       meaning);
 }
 
 void add_changes(py::module_& m) {
-  py::class_<ChangedMembrane> membrane(m, "ChangedMembrane", "New stiffnesses of a triangle.");
-  add_keywords<ChangedMembrane>(membrane);
-  membrane.def_readwrite("index", &ChangedMembrane::index, "its number in the description")
-      .def_readwrite("warp", &ChangedMembrane::warp, "N/m")
-      .def_readwrite("weft", &ChangedMembrane::weft, "N/m")
-      .def_readwrite("shear", &ChangedMembrane::shear, "N/m per radian");
-  py::class_<ChangedAir> air(m, "ChangedAir", "New numbers of the air.");
-  add_keywords<ChangedAir>(air);
-  air.def_readwrite("density", &ChangedAir::density, "kg/m^3")
-      .def_readwrite("drag", &ChangedAir::drag, "as Air.drag")
-      .def_readwrite("lift", &ChangedAir::lift, "as Air.lift");
-  py::class_<Changes> changes(m, "Changes", "Changes of a cloth that moves.");
-  add_keywords<Changes>(changes);
-  changes
-      .def_property(
-          "fix", [](const Changes& c) { return rows<std::uint32_t>(c.fix); },
-          [](Changes& c, py::object v) { c.fix = indices(v, "fix"); }, "particles")
-      .def_property(
-          "release", [](const Changes& c) { return rows<std::uint32_t>(c.release); },
-          [](Changes& c, py::object v) { c.release = indices(v, "release"); }, "fixed particles")
-      .def_readwrite("membrane", &Changes::membrane, "a list of ChangedMembrane")
-      .def_readwrite("damping", &Changes::damping, "a Damping, or None")
-      .def_readwrite("air", &Changes::air, "a ChangedAir, or None");
+  Fields<ChangedMembrane> membrane(m, "ChangedMembrane", "New stiffnesses of a triangle.");
+  membrane.field("index", &ChangedMembrane::index, "its number in the description")
+      .field("warp", &ChangedMembrane::warp, "N/m")
+      .field("weft", &ChangedMembrane::weft, "N/m")
+      .field("shear", &ChangedMembrane::shear, "N/m per radian");
+  Fields<ChangedAir> air(m, "ChangedAir", "New numbers of the air.");
+  air.field("density", &ChangedAir::density, "kg/m^3")
+      .field("drag", &ChangedAir::drag, "as Air.drag")
+      .field("lift", &ChangedAir::lift, "as Air.lift");
+  Fields<Changes> changes(m, "Changes", "Changes of a cloth that moves.");
+  changes.array("fix", &Changes::fix, "particles")
+      .array("release", &Changes::release, "fixed particles")
+      .field("membrane", &Changes::membrane, "a list of ChangedMembrane")
+      .field("damping", &Changes::damping, "a Damping, or None")
+      .field("air", &Changes::air, "a ChangedAir, or None");
   add_values(changes, "masses", &Changes::masses, "pairs (particle, kg)");
   add_values(changes, "rest_lengths", &Changes::rest_lengths, "pairs (constraint, m)");
   add_values(changes, "compliances", &Changes::compliances, "pairs (constraint, m/N)");
@@ -75,17 +68,20 @@ void add_pins(ClothClass& cloth) {
   using Fixed = Result<void> (Cloth::*)(std::span<const std::uint32_t>, std::span<const Vec3>);
   const auto fixed = [](Fixed give) {
     return [give](HeldCloth& c, py::object particles, py::object positions) {
-      const auto who = indices(particles, "particles");
-      const auto where = vectors<Vec3>(positions, "positions");
+      const bool is_one = PyIndex_Check(particles.ptr()) && !py::isinstance<py::array>(particles);
+      const auto who = is_one ? std::vector{taken(Given<std::uint32_t>{particles}, "particles")}
+                              : indices(particles, "particles");
+      const auto where = is_one ? std::vector{taken(Given<Vec3>{positions}, "positions")}
+                                : vectors<Vec3>(positions, "positions");
       const auto used = use(c);
       check((c.value.*give)(who, where));
     };
   };
   cloth
       .def("move_fixed", fixed(&Cloth::move_fixed), py::arg("particles"), py::arg("positions"),
-           "Moves fixed particles: they travel there during the next step.")
+           "Moves fixed particles, or one: they travel there during the next step.")
       .def("place_fixed", fixed(&Cloth::place_fixed), py::arg("particles"), py::arg("positions"),
-           "Puts fixed particles down somewhere else, without a way between.")
+           "Puts fixed particles, or one, down somewhere else, without a way between.")
       .def(
           "change",
           [](HeldCloth& c, const Changes& changes) {
@@ -98,10 +94,9 @@ void add_pins(ClothClass& cloth) {
 }
 
 void add_anchors(py::module_& m, ClothClass& cloth) {
-  py::class_<AnchorLimit> limit(m, "AnchorLimit", "New limits of an anchor.");
-  add_keywords<AnchorLimit>(limit);
-  limit.def_readwrite("max_distance", &AnchorLimit::max_distance, "m; infinite: let go")
-      .def_readwrite("backstop", &AnchorLimit::backstop, "whether the backstop counts");
+  Fields<AnchorLimit> limit(m, "AnchorLimit", "New limits of an anchor.");
+  limit.field("max_distance", &AnchorLimit::max_distance, "m; infinite: let go")
+      .field("backstop", &AnchorLimit::backstop, "whether the backstop counts");
   cloth
       .def(
           "move_anchors",
@@ -115,21 +110,25 @@ void add_anchors(py::module_& m, ClothClass& cloth) {
           "Moves the points of all anchors; they travel there during the next step.")
       .def(
           "limit_anchors",
-          [](HeldCloth& c, const std::vector<AnchorLimit>& limits) {
+          [](HeldCloth& c, const Given<std::vector<AnchorLimit>>& given) {
+            const auto limits = taken(given, "limits");
             const auto used = use(c);
             check(c.value.limit_anchors(limits));
           },
           py::arg("limits"), "New limits of all anchors, a list of AnchorLimit.")
       .def(
           "limit_anchor",
-          [](HeldCloth& c, std::uint32_t anchor, const AnchorLimit& one) {
+          [](HeldCloth& c, const Given<std::uint32_t>& given, const Given<AnchorLimit>& limit) {
+            const auto anchor = taken(given, "anchor");
+            const auto one = taken(limit, "limit");
             const auto used = use(c);
             check(c.value.limit_anchor(anchor, one));
           },
           py::arg("anchor"), py::arg("limit"), "Sets the limits of one anchor.")
       .def(
           "scale_anchors",
-          [](HeldCloth& c, double scale) {
+          [](HeldCloth& c, const Given<double>& given) {
+            const double scale = taken(given, "scale");
             const auto used = use(c);
             check(c.value.scale_anchors(scale));
           },
@@ -137,22 +136,24 @@ void add_anchors(py::module_& m, ClothClass& cloth) {
 }
 
 void add_rigid_motion(py::module_& m, ClothClass& cloth) {
-  py::class_<RigidMotion> motion(m, "RigidMotion", "x -> about + R (x - about) + translation.");
-  add_keywords<RigidMotion>(motion);
-  motion.def_readwrite("translation", &RigidMotion::translation, "m")
-      .def_readwrite("rotation", &RigidMotion::rotation, "rad, about this axis")
-      .def_readwrite("about", &RigidMotion::about, "m");
+  Fields<RigidMotion> motion(m, "RigidMotion", "x -> about + R (x - about) + translation.");
+  motion.field("translation", &RigidMotion::translation, "m")
+      .field("rotation", &RigidMotion::rotation, "rad, about this axis")
+      .field("about", &RigidMotion::about, "m");
   cloth
       .def(
           "carry",
-          [](HeldCloth& c, const RigidMotion& by, double share) {
+          [](HeldCloth& c, const Given<RigidMotion>& motion, const Given<double>& share) {
+            const auto by = taken(motion, "motion");
+            const double so_far = taken(share, "share");
             const auto used = use(c);
-            check(c.value.carry(by, share));
+            check(c.value.carry(by, so_far));
           },
           py::arg("motion"), py::arg("share"), "Takes the whole cloth along, by a share.")
       .def(
           "teleport",
-          [](HeldCloth& c, const RigidMotion& by) {
+          [](HeldCloth& c, const Given<RigidMotion>& motion) {
+            const auto by = taken(motion, "motion");
             const auto used = use(c);
             check(c.value.teleport(by));
           },
@@ -163,22 +164,26 @@ void add_bodies(ClothClass& cloth) {
   using Move = Result<void> (Cloth::*)(std::uint32_t, const Pose&);
   using MoveVertices = Result<void> (Cloth::*)(std::uint32_t, std::span<const Vec3>);
   const auto posed = [](Move move) {
-    return [move](HeldCloth& c, std::uint32_t id, const Pose& pose) {
+    return [move](HeldCloth& c, const Given<std::uint32_t>& id, const Given<Pose>& pose) {
+      const auto which = taken(id, "id");
+      const auto where = taken(pose, "pose");
       const auto used = use(c);
-      check((c.value.*move)(id, pose));
+      check((c.value.*move)(which, where));
     };
   };
   const auto deformed = [](MoveVertices move) {
-    return [move](HeldCloth& c, std::uint32_t id, py::object vertices) {
+    return [move](HeldCloth& c, const Given<std::uint32_t>& id, py::object vertices) {
+      const auto which = taken(id, "id");
       const auto where = vectors<Vec3>(vertices, "vertices");
       const auto used = use(c);
-      check((c.value.*move)(id, where));
+      check((c.value.*move)(which, where));
     };
   };
   cloth
       .def(
           "add_body",
-          [](HeldCloth& c, const Body& body) {
+          [](HeldCloth& c, const Given<Body>& given) {
+            const Body body = taken(given, "body");
             const auto used = use(c);
             return value_of(c.value.add_body(body));
           },

@@ -12,19 +12,18 @@ namespace {
 using Mesh = MeshDescription;
 
 void add_materials(py::module_& m) {
-  py::class_<Material> material(m, "Material", "A cloth's own properties, whatever its mesh.");
-  add_keywords<Material>(material);
-  material.def_readwrite("density", &Material::density, "kg/m^2")
-      .def_readwrite("thickness", &Material::thickness, "m")
-      .def_readwrite("warp", &Material::warp, "N/m")
-      .def_readwrite("weft", &Material::weft, "N/m")
-      .def_readwrite("shear", &Material::shear, "N/m per radian")
-      .def_readwrite("bending", &Material::bending, "N m")
-      .def_readwrite("damping_stretch", &Material::damping_stretch, "s")
-      .def_readwrite("damping_bending", &Material::damping_bending, "s")
-      .def_readwrite("damping_motion", &Material::damping_motion, "1/s")
-      .def_readwrite("drag", &Material::drag, "as Air.drag")
-      .def_readwrite("lift", &Material::lift, "as Air.lift");
+  Fields<Material> material(m, "Material", "A cloth's own properties, whatever its mesh.");
+  material.field("density", &Material::density, "kg/m^2")
+      .field("thickness", &Material::thickness, "m")
+      .field("warp", &Material::warp, "N/m")
+      .field("weft", &Material::weft, "N/m")
+      .field("shear", &Material::shear, "N/m per radian")
+      .field("bending", &Material::bending, "N m")
+      .field("damping_stretch", &Material::damping_stretch, "s")
+      .field("damping_bending", &Material::damping_bending, "s")
+      .field("damping_motion", &Material::damping_motion, "1/s")
+      .field("drag", &Material::drag, "as Air.drag")
+      .field("lift", &Material::lift, "as Air.lift");
   m.def(
       "check_material", [](const Material& given) { check(check_material(given)); },
       py::arg("material"), "Raises Error with the field and the value that are refused.");
@@ -53,48 +52,19 @@ void set_faces(Mesh& mesh, py::object value) {
   mesh.face_sizes.assign(mesh.corners.size() / sides, sides);
 }
 
-template <class Class>
-void add_shape(Class& mesh) {
-  mesh.def_property(
-          "positions", [](const Mesh& d) { return rows<double>(d.positions); },
-          [](Mesh& d, py::object v) { d.positions = vectors<Vec3>(v, "positions"); },
-          "m, an array (vertices, 3)")
-      .def_property(
-          "corners", [](const Mesh& d) { return rows<std::uint32_t>(d.corners); },
-          [](Mesh& d, py::object v) { d.corners = indices(v, "corners"); },
-          "vertices, face after face")
-      .def_property(
-          "face_sizes", [](const Mesh& d) { return rows<std::uint32_t>(d.face_sizes); },
-          [](Mesh& d, py::object v) { d.face_sizes = indices(v, "face_sizes"); },
-          "corners of each face; empty: triangles")
-      .def("set_faces", &set_faces, py::arg("faces"),
-           "Sets corners and face_sizes to those of an array (faces, corners).")
-      .def_property(
-          "lines", [](const Mesh& d) { return rows<std::uint32_t>(d.lines); },
-          [](Mesh& d, py::object v) { d.lines = index_tuples<2>(v, "lines"); },
-          "threads, an array (n, 2)")
-      .def_property(
-          "rest_positions", [](const Mesh& d) { return rows<double>(d.rest_positions); },
-          [](Mesh& d, py::object v) { d.rest_positions = vectors<Vec3>(v, "rest_positions"); },
-          "m, the shape at rest in space")
-      .def_property(
-          "rest_corners", [](const Mesh& d) { return rows<double>(d.rest_corners); },
-          [](Mesh& d, py::object v) {
-            d.rest_corners = vectors<std::array<double, 2>>(v, "rest_corners");
-          },
-          "m, the shape at rest when flat, one (u, v) per corner")
-      .def_property(
-          "warp", [](const Mesh& d) { return rows<double>(d.warp); },
-          [](Mesh& d, py::object v) { d.warp = vectors<Vec3>(v, "warp"); },
-          "where the warp runs, one direction or one per face")
-      .def_property(
-          "seams", [](const Mesh& d) { return rows<std::uint32_t>(d.seams); },
-          [](Mesh& d, py::object v) { d.seams = index_tuples<2>(v, "seams"); },
-          "pairs of vertices that are sewn together, an array (n, 2)")
-      .def_property(
-          "pins", [](const Mesh& d) { return rows<std::uint32_t>(d.pins); },
-          [](Mesh& d, py::object v) { d.pins = indices(v, "pins"); },
-          "vertices whose particles are fixed");
+void add_shape(Fields<Mesh>& mesh) {
+  mesh.array("positions", &Mesh::positions, "m, an array (vertices, 3)")
+      .array("corners", &Mesh::corners, "vertices, face after face")
+      .array("face_sizes", &Mesh::face_sizes, "corners of each face; empty: triangles")
+      .array("lines", &Mesh::lines, "threads, an array (n, 2)")
+      .array("rest_positions", &Mesh::rest_positions, "m, the shape at rest in space")
+      .array("rest_corners", &Mesh::rest_corners,
+             "m, the shape at rest when flat, one (u, v) per corner")
+      .array("warp", &Mesh::warp, "where the warp runs, one direction or one per face")
+      .array("seams", &Mesh::seams, "pairs of vertices that are sewn together, an array (n, 2)")
+      .array("pins", &Mesh::pins, "vertices whose particles are fixed");
+  mesh.def("set_faces", &set_faces, py::arg("faces"),
+           "Sets corners and face_sizes to those of an array (faces, corners).");
 }
 
 void add_description(py::module_& m) {
@@ -102,18 +72,17 @@ void add_description(py::module_& m) {
       .value("none", Ropes::none)
       .value("diagonals", Ropes::diagonals)
       .value("all", Ropes::all);
-  py::class_<Mesh> mesh(m, "MeshDescription",
-                        "A surface, where it begins and in its shape at rest. Arrays that it "
-                        "returns are copies and cannot be written: assign whole ones.");
-  add_keywords<Mesh>(mesh);
+  Fields<Mesh> mesh(m, "MeshDescription",
+                    "A surface, where it begins and in its shape at rest. Arrays that it "
+                    "returns are copies and cannot be written: assign whole ones.");
   add_shape(mesh);
-  mesh.def_readwrite("material", &Mesh::material, "a Material; None: rigid edges")
-      .def_readwrite("mass", &Mesh::mass, "kg of the whole, without a material")
-      .def_readwrite("thread_density", &Mesh::thread_density, "kg/m")
-      .def_readwrite("weld_distance", &Mesh::weld_distance, "m")
-      .def_readwrite("seam_time", &Mesh::seam_time, "s")
-      .def_readwrite("seam_force", &Mesh::seam_force, "N")
-      .def_readwrite("ropes", &Mesh::ropes, "Ropes");
+  mesh.field("material", &Mesh::material, "a Material; None: rigid edges")
+      .field("mass", &Mesh::mass, "kg of the whole, without a material")
+      .field("thread_density", &Mesh::thread_density, "kg/m")
+      .field("weld_distance", &Mesh::weld_distance, "m")
+      .field("seam_time", &Mesh::seam_time, "s")
+      .field("seam_force", &Mesh::seam_force, "N")
+      .field("ropes", &Mesh::ropes, "Ropes");
 }
 
 void add_made(py::module_& m) {
@@ -131,9 +100,9 @@ void add_made(py::module_& m) {
       .def_readonly("pieces", &MeshCounts::pieces, "that nothing joins")
       .def_readonly("loose_pieces", &MeshCounts::loose_pieces, "of these, without a pin")
       .def_readonly("suggested_weld", &MeshCounts::suggested_weld, "m; 0: none");
-  py::class_<MeshCloth>(m, "MeshCloth", "The result of cloth_from_mesh.")
-      .def_readwrite("scene", &MeshCloth::scene, "a SceneDescription, which may be changed")
-      .def_property_readonly(
+  py::class_<MeshCloth> made(m, "MeshCloth", "The result of cloth_from_mesh.");
+  add_field(made, "scene", &MeshCloth::scene, "a SceneDescription, which may be changed");
+  made.def_property_readonly(
           "particle_of_vertex",
           [](const MeshCloth& made) { return rows<std::uint32_t>(made.particle_of_vertex); },
           "one per vertex; kNoIndex: none")

@@ -39,82 +39,53 @@ void add_scene_enumerations(py::module_& m) {
 }
 
 void add_parts(py::module_& m) {
-  py::class_<Damping> damping(m, "Damping",
-                              "Damping times of springs, and the decay of all motion.");
-  add_keywords<Damping>(damping);
-  damping.def_readwrite("stretch", &Damping::stretch, "s")
-      .def_readwrite("bending", &Damping::bending, "s")
-      .def_readwrite("motion", &Damping::motion, "1/s");
+  Fields<Damping> damping(m, "Damping", "Damping times of springs, and the decay of all motion.");
+  damping.field("stretch", &Damping::stretch, "s")
+      .field("bending", &Damping::bending, "s")
+      .field("motion", &Damping::motion, "1/s");
 
-  py::class_<Air> air(m, "Air", "Drag and lift on triangles of the cloth.");
-  add_keywords<Air>(air);
-  air.def_property(
-         "triangles", [](const Air& a) { return rows<std::uint32_t>(a.triangles); },
-         [](Air& a, py::object v) { a.triangles = index_tuples<3>(v, "air.triangles"); },
-         "an array (n, 3) of particles")
-      .def_readwrite("density", &Air::density, "kg/m^3")
-      .def_readwrite("drag", &Air::drag, "of the area that a triangle shows")
-      .def_readwrite("lift", &Air::lift, "across the wind")
-      .def_readwrite("wind", &Air::wind, "m/s");
+  Fields<Air> air(m, "Air", "Drag and lift on triangles of the cloth.");
+  air.array("triangles", &Air::triangles, "an array (n, 3) of particles", "air.triangles")
+      .field("density", &Air::density, "kg/m^3")
+      .field("drag", &Air::drag, "of the area that a triangle shows")
+      .field("lift", &Air::lift, "across the wind")
+      .field("wind", &Air::wind, "m/s");
 }
 
-template <class Class>
-void add_particles(Class& scene) {
-  scene
-      .def_property(
-          "positions", [](const Scene& s) { return rows<double>(s.positions); },
-          [](Scene& s, py::object v) { s.positions = vectors<Vec3>(v, "positions"); },
-          "m, an array (particles, 3)")
-      .def_property(
-          "velocities", [](const Scene& s) { return rows<double>(s.velocities); },
-          [](Scene& s, py::object v) { s.velocities = vectors<Vec3>(v, "velocities"); },
-          "m/s, one per particle; empty: at rest")
-      .def_property(
-          "masses", [](const Scene& s) { return rows<double>(s.masses); },
-          [](Scene& s, py::object v) { s.masses = vectors<double>(v, "masses"); },
-          "kg, one per particle")
-      .def_property(
-          "fixed", [](const Scene& s) { return rows<std::uint32_t>(s.fixed); },
-          [](Scene& s, py::object v) { s.fixed = indices(v, "fixed"); },
-          "particles of infinite inertia")
-      .def_property(
-          "surface", [](const Scene& s) { return rows<std::uint32_t>(s.surface); },
-          [](Scene& s, py::object v) { s.surface = index_tuples<3>(v, "surface"); },
-          "triangles of the cloth, which meshes touch, an array (n, 3)")
-      .def_property(
-          "spheres", [](const Scene& s) { return rows<std::uint32_t>(s.spheres); },
-          [](Scene& s, py::object v) { s.spheres = indices(v, "spheres"); },
-          "particles that others collide with")
-      .def_property(
-          "radii", [](const Scene& s) { return rows<double>(s.radii); },
-          [](Scene& s, py::object v) { s.radii = vectors<double>(v, "radii"); },
-          "m, one per particle; empty without spheres");
+void add_particles(Fields<Scene>& scene) {
+  scene.array("positions", &Scene::positions, "m, an array (particles, 3)")
+      .array("velocities", &Scene::velocities, "m/s, one per particle; empty: at rest")
+      .array("masses", &Scene::masses, "kg, one per particle")
+      .array("fixed", &Scene::fixed, "particles of infinite inertia")
+      .array("surface", &Scene::surface,
+             "triangles of the cloth, which meshes touch, an array (n, 3)")
+      .array("spheres", &Scene::spheres, "particles that others collide with")
+      .array("radii", &Scene::radii, "m, one per particle; empty without spheres");
 }
 
-template <class Class>
-void add_joints(Class& scene) {
+void add_joints(Fields<Scene>& scene) {
   scene
-      .def_property(
+      .property(
           "constraints", [](const Scene& s) { return array_of_records(s.constraints); },
           [](Scene& s, py::object v) {
             s.constraints = checked_records<Constraint>(v, "constraints");
           },
           "records of weft.Constraint")
-      .def_property(
+      .property(
           "membrane", [](const Scene& s) { return array_of_records(s.membrane); },
           [](Scene& s, py::object v) {
             s.membrane = checked_records<MembraneElement>(v, "membrane");
           },
           "records of weft.MembraneElement")
-      .def_property(
+      .property(
           "bending", [](const Scene& s) { return array_of_records(s.bending); },
           [](Scene& s, py::object v) { s.bending = records<BendingElement>(v, "bending"); },
           "records of weft.BendingElement")
-      .def_property(
+      .property(
           "anchors", [](const Scene& s) { return array_of_records(s.anchors); },
           [](Scene& s, py::object v) { s.anchors = records<Anchor>(v, "anchors"); },
           "records of weft.Anchor")
-      .def_property(
+      .property(
           "seams", [](const Scene& s) { return array_of_records(s.seams); },
           [](Scene& s, py::object v) { s.seams = records<Seam>(v, "seams"); },
           "records of weft.Seam");
@@ -176,16 +147,15 @@ void add_model(py::module_& m) {
 void add_scene(py::module_& m) {
   add_scene_enumerations(m);
   add_parts(m);
-  py::class_<Scene> scene(m, "SceneDescription",
-                          "Particles and what joins them. Arrays that it returns are copies and "
-                          "cannot be written: assign whole ones.");
-  add_keywords<Scene>(scene);
+  Fields<Scene> scene(m, "SceneDescription",
+                      "Particles and what joins them. Arrays that it returns are copies and "
+                      "cannot be written: assign whole ones.");
   add_particles(scene);
   add_joints(scene);
-  scene.def_readwrite("damping", &Scene::damping, "a Damping")
-      .def_readwrite("air", &Scene::air, "an Air")
-      .def_readwrite("friction", &Scene::friction, "Coulomb's, of the cloth beside bodies")
-      .def_readwrite("gravity", &Scene::gravity, "m/s^2");
+  scene.field("damping", &Scene::damping, "a Damping")
+      .field("air", &Scene::air, "an Air")
+      .field("friction", &Scene::friction, "Coulomb's, of the cloth beside bodies")
+      .field("gravity", &Scene::gravity, "m/s^2");
   add_model(m);
 }
 

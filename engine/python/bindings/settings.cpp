@@ -40,32 +40,31 @@ void add_setting_enumerations(py::module_& m) {
 
 void add_settings(py::module_& m) {
   add_setting_enumerations(m);
-  py::class_<Settings> settings(m, "Settings",
-                                "How a cloth is solved, and to which error; see settings.h.");
-  add_keywords<Settings>(settings);
+  Fields<Settings> settings(m, "Settings",
+                            "How a cloth is solved, and to which error; see settings.h.");
   settings
-      .def_readwrite("tolerance", &Settings::tolerance,
-                     "the strain that every step must reach; of springs and fabric, "
-                     "the distance from their laws")
-      .def_readwrite("substeps", &Settings::substeps, "0: automatic")
-      .def_readwrite("iterations", &Settings::iterations, "0: to the tolerance")
-      .def_readwrite("renew_after", &Settings::renew_after, "iterations along the same directions")
-      .def_readwrite("max_iterations", &Settings::max_iterations, "of a whole step")
-      .def_readwrite("contact_tolerance", &Settings::contact_tolerance, "m")
-      .def_readwrite("velocity_tolerance", &Settings::velocity_tolerance, "m/s")
-      .def_readwrite("motion_tolerance", &Settings::motion_tolerance, "m/s; 0: not asked for")
-      .def_readwrite("impulse_limit", &Settings::impulse_limit, "N s; 0: none")
-      .def_readwrite("solver", &Settings::solver, "a Solver")
-      .def_readwrite("scheme", &Settings::scheme, "a Scheme")
-      .def_readwrite("backend", &Settings::backend, "a Backend")
-      .def_readwrite("isa", &Settings::isa, "an Isa")
-      .def_readwrite("threads", &Settings::threads, "most threads of an Arena; 0: all")
-      .def_readwrite("directions", &Settings::directions, "Directions")
-      .def_readwrite("anticipate", &Settings::anticipate, "section 4.2 of the paper")
-      .def_readwrite("anticipate_products", &Settings::anticipate_products, "by stored products")
-      .def_readwrite("sleep", &Settings::sleep, "a cloth that rests costs nothing")
-      .def_readwrite("skip", &Settings::skip, "section 4.3 of the paper")
-      .def_readwrite("velocity_correction", &Settings::velocity_correction, "a second loop");
+      .field("tolerance", &Settings::tolerance,
+             "the strain that every step must reach; of springs and fabric, "
+             "the distance from their laws")
+      .field("substeps", &Settings::substeps, "0: automatic")
+      .field("iterations", &Settings::iterations, "0: to the tolerance")
+      .field("renew_after", &Settings::renew_after, "iterations along the same directions")
+      .field("max_iterations", &Settings::max_iterations, "of a whole step")
+      .field("contact_tolerance", &Settings::contact_tolerance, "m")
+      .field("velocity_tolerance", &Settings::velocity_tolerance, "m/s")
+      .field("motion_tolerance", &Settings::motion_tolerance, "m/s; 0: not asked for")
+      .field("impulse_limit", &Settings::impulse_limit, "N s; 0: none")
+      .field("solver", &Settings::solver, "a Solver")
+      .field("scheme", &Settings::scheme, "a Scheme")
+      .field("backend", &Settings::backend, "a Backend")
+      .field("isa", &Settings::isa, "an Isa")
+      .field("threads", &Settings::threads, "most threads of an Arena; 0: all")
+      .field("directions", &Settings::directions, "Directions")
+      .field("anticipate", &Settings::anticipate, "section 4.2 of the paper")
+      .field("anticipate_products", &Settings::anticipate_products, "by stored products")
+      .field("sleep", &Settings::sleep, "a cloth that rests costs nothing")
+      .field("skip", &Settings::skip, "section 4.3 of the paper")
+      .field("velocity_correction", &Settings::velocity_correction, "a second loop");
   m.def("paper_settings", &paper_settings, "The settings of the paper: Gauss-Seidel, one substep.");
 }
 

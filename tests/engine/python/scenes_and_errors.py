@@ -25,8 +25,50 @@ class Scenes(unittest.TestCase):
 
     def test_keywords_are_fields(self):
         self.assertEqual(weft.Settings(tolerance=0.5, solver=weft.Solver.yarn).solver, weft.Solver.yarn)
-        with self.assertRaisesRegex(TypeError, "Settings has no field tolerence"):
+        with self.assertRaisesRegex(weft.Error, "Settings has no field tolerence"):
             weft.Settings(tolerence=1)
+
+    def test_a_value_that_does_not_fit_is_told_in_one_line(self):
+        for make, line in (
+            (lambda: weft.Settings(tolerance="1%"), "tolerance: '1%' is not a number"),
+            (lambda: weft.Settings(solver="yarn"), "solver: 'yarn' is not a Solver: gauss_seidel, direct, yarn, "
+                                                   "small_steps, automatic"),
+            (lambda: weft.Settings(substeps=1.5), "substeps: 1.5 is not a whole number that fits"),
+            (lambda: weft.Pose(rotation=[0, 0, 1]), r"rotation: \[0, 0, 1\] is not four numbers x, y, z, w"),
+            (lambda: weft.SceneDescription(gravity=[0, -9.81]), r"gravity: \[0, -9.81\] is not three numbers"),
+            (lambda: weft.Body(shape=weft.Ball(radius=1)), r"shape: weft.Ball\(radius=1.0\) is not a BodyShape"),
+            (lambda: weft.Body(pose=1), "pose: 1 is not a Pose"),
+            (lambda: weft.Changes(masses=3), "masses: 3 is not a list of pairs"),
+        ):
+            with self.subTest(line=line), self.assertRaisesRegex(weft.Error, f"^{line}$"):
+                make()
+        cloth = weft.Cloth.create(weft.build_model(weft.cloth_from_mesh(sheet(3)).scene))
+        with self.assertRaisesRegex(weft.Error, r"^gravity: \[0, -9.81\] is not three numbers$"):
+            cloth.set_gravity([0, -9.81])
+        with self.assertRaisesRegex(weft.Error, "^dt: '1/60' is not a number$"):
+            cloth.step("1/60")
+
+    def test_parts_of_fields_cannot_be_written(self):
+        for owner, field in ((weft.SceneDescription(), "gravity"), (weft.Pose(), "position"),
+                             (weft.Ball(), "centre"), (weft.Air(), "wind"), (weft.RigidMotion(), "translation")):
+            with self.subTest(field=field), self.assertRaises(ValueError):
+                getattr(owner, field)[1] = 1
+
+    def test_objects_show_what_differs_from_the_defaults(self):
+        self.assertEqual(repr(weft.Settings(tolerance=0.5, solver=weft.Solver.yarn)),
+                         "weft.Settings(tolerance=0.5, solver=Solver.yarn)")
+        self.assertEqual(repr(weft.Pose(position=(0, 1, 0))), "weft.Pose(position=[0.0, 1.0, 0.0])")
+        self.assertEqual(repr(weft.SceneDescription(positions=[[0, 0, 0]] * 9)),
+                         "weft.SceneDescription(positions=<array (9, 3)>)")
+
+    def test_one_fixed_particle_is_moved(self):
+        made = weft.cloth_from_mesh(sheet(3))
+        made.scene.fixed = [4]
+        cloth = weft.Cloth.create(weft.build_model(made.scene))
+        cloth.place_fixed(4, (0.5, 1, 0.5))
+        self.assertEqual(list(cloth.position(4)), [0.5, 1, 0.5])
+        with self.assertRaises(weft.Error):
+            cloth.move_fixed(4, [(0.5, 1, 0.5)])
 
     def test_version_is_that_of_the_library(self):
         self.assertEqual(weft.__version__, weft._weft.__version__)
