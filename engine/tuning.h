@@ -97,6 +97,13 @@ inline constexpr double kAtOnce = 1e6;
 /// what keeps rounding in bounds: a sweep carries a load along 1 / sqrt(2 compliance) constraints.
 inline constexpr double kHeldCompliance = 3e-3;
 inline constexpr double kCompliance = 1e-4;
+/// The same of a linkage, which is solved in double.
+inline constexpr double kLinkageCompliance = 1e-9;
+/// A linkage is solved again where its tensions change by more than this share of the largest, or
+/// where another rope is taut, so many times at most. At a half a chain of 200 links under 100
+/// times its weight shakes until it is out of tolerance; at a tenth it keeps 0.9996 of its swing.
+inline constexpr double kLinkageTension = 0.1;
+inline constexpr int kLinkageRounds = 8;
 /// s. No substep is longer. It bounds the error of motion where nothing hangs on a pin.
 inline constexpr double kLongestSubstep = 0.005;
 /// A substep is no longer than this part of the time in which a falling particle passes the length

@@ -7,26 +7,12 @@
 
 #include "engine/model/model.h"
 #include "engine/solvers/direct/direct_bodies.h"
+#include "engine/solvers/small_steps/linkage_layout.h"
 #include "engine/step/sphere_paths.h"
 #include "engine/tuning.h"
 
 namespace weft {
 namespace {
-
-/// Those that an active constraint joins to another: what decides is about them alone.
-std::size_t joined_particles(const Model& model) {
-  std::vector<std::uint8_t> joined(model.slots());
-  for (const auto* ends : {&model.constraints.a, &model.constraints.b}) {
-    for (const std::uint32_t slot : *ends) joined[slot] = 1;
-  }
-  return static_cast<std::size_t>(std::ranges::count(joined, 1));
-}
-
-/// Whether few constraints close a loop: chains, trees, bridges (a third do; of a grid half do).
-bool is_a_chain(const Model& model) {
-  const auto all = static_cast<double>(model.constraints.size());
-  return all - static_cast<double>(joined_particles(model)) <= tuning::kChainLoops * all;
-}
 
 bool has_ropes(const ConstraintStore& constraints) {
   return constraints.size() > constraints.bilateral;
@@ -47,22 +33,24 @@ bool are_light(const Model& model, const std::vector<std::uint32_t>& spheres) {
 }
 
 /// Sweeps crawl where masses are unequal, and under heavy spheres. Tighter tolerances take more
-/// substeps than an exact solution costs.
+/// substeps than an exact solution costs. But a linkage is solved at once.
 bool takes_small_steps(const Model& model, const Settings& settings,
                        const std::vector<std::uint32_t>& spheres) {
-  return settings.scheme == Scheme::automatic && !settings.velocity_correction &&
-         settings.tolerance >= tuning::kLeastTolerance &&
-         model.uneven.ratio <= tuning::kNearlyEqualMasses && are_light(model, spheres);
+  if (settings.scheme != Scheme::automatic || settings.velocity_correction) return false;
+  if (!are_light(model, spheres)) return false;
+  return is_linkage(model) ||
+         (model.constraints.size() > 0 && settings.tolerance >= tuning::kLeastTolerance &&
+          model.uneven.ratio <= tuning::kNearlyEqualMasses);
 }
 
 /// Sweeps leave a rope too long by up to the tolerance, and so do yarns, to which ropes are single
 /// constraints; the direct solver has all lengths of a chain right at once. Its bodies are few.
 Solver solver_for(const Model& model, const Settings& settings) {
-  const bool chain = is_a_chain(model);
   const std::vector<std::uint32_t> spheres = free_spheres_that_matter(model);
-  if (!chain && takes_small_steps(model, settings, spheres)) return Solver::small_steps;
+  if (takes_small_steps(model, settings, spheres)) return Solver::small_steps;
   const bool few_bodies = spheres.size() <= tuning::kMostBodies;
-  return chain && has_ropes(model.constraints) && few_bodies ? Solver::direct : Solver::yarn;
+  const bool ropes = closes_few_loops(model) && has_ropes(model.constraints);
+  return ropes && few_bodies ? Solver::direct : Solver::yarn;
 }
 
 /// Small steps alone solve triangles of fabric, bending, anchors and seams, and are chosen for

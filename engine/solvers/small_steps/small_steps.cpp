@@ -8,6 +8,7 @@
 
 #include "engine/solvers/small_steps/contact_times.h"
 #include "engine/solvers/small_steps/lane_store.h"
+#include "engine/solvers/small_steps/linkage.h"
 #include "engine/solvers/small_steps/reference_store.h"
 #include "engine/solvers/small_steps/substep.h"
 
@@ -22,6 +23,7 @@ class StoredSmallSteps final : public SmallSteps {
         layout_(model.small_steps()),
         now_{model, settings},
         seams_(model),
+        linkage_(model, layout_.linkage),
         store_(now_, table) {
     now_.arrived.reserve(model.anchors.size());
   }
@@ -75,12 +77,15 @@ class StoredSmallSteps final : public SmallSteps {
     if (model_.constraints.has_springs()) store_.judge_springs(team);
     store_.judge_membrane(team);
   }
-  std::int64_t count_out() const override { return store_.count_out(); }
+  std::int64_t count_out() const override {
+    return store_.count_out() + std::ssize(linkage_.out());
+  }
 
   /// Constraints that a sweep found out of tolerance have been relaxed since, and so have their
   /// neighbours: all of these are looked at again.
   LocalWork repair(const SphereContacts& contacts, std::int64_t most_visits, Team& team) override {
     store_.for_each_out([&](std::uint32_t item) { now_.passes.look_near(item); });
+    for (const std::uint32_t c : linkage_.out()) now_.passes.look_near(c);
     return run_passes(contacts, most_visits, team);
   }
   LocalWork repair_everywhere(const SphereContacts& contacts, std::int64_t most_visits,
@@ -159,7 +164,9 @@ class StoredSmallSteps final : public SmallSteps {
   bool load_past(ArchiveReader& archive) override { return store_.load_past(archive); }
   void turn(const Turn& by) override { store_.turn(by); }
   ContactMs take_contact_ms() override { return contact_times_.take(); }
-  std::size_t bytes() const override { return now_.bytes() + seams_.bytes() + store_.bytes(); }
+  std::size_t bytes() const override {
+    return now_.bytes() + seams_.bytes() + linkage_.bytes() + store_.bytes();
+  }
 
  private:
   using Points = typename Store::Points;
@@ -170,6 +177,8 @@ class StoredSmallSteps final : public SmallSteps {
   /// Contacts come last.
   void sweep(const Relaxation& by, Team& team) {
     store_.sweep_yarns(by, team, [&] { store_.hold_anchors(team); });
+    if (!linkage_.empty())
+      linkage_.sweep(store_.points(false), by, now_.local_tolerance(), now_.is_begun);
     store_.sweep_edges(by, team);
     store_.sweep_membrane(team);
     if (layout_.has_single_constraints() || !layout_.has_yarns()) store_.hold_anchors(team);
@@ -263,6 +272,7 @@ class StoredSmallSteps final : public SmallSteps {
   SeamThreads seams_;
   Departures departures_;
   ContactTimes contact_times_;
+  Linkage linkage_;
   Store store_;
 };
 

@@ -149,13 +149,17 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
   const bool weaves = store.plain == store.size() && !store.has_springs() &&
                       layout.membrane.empty() && layout.bending.empty();
   const YarnMemory memory = weaves ? YarnMemory::woven_if_possible : YarnMemory::quads;
-  const std::vector<std::uint32_t> in_yarns = constraints_of_yarns(model);
+  layout.linkage = make_linkage_layout(model);
+  const bool is_linkage = !layout.linkage.empty();
+  const std::vector<std::uint32_t> in_yarns =
+      is_linkage ? std::vector<std::uint32_t>() : constraints_of_yarns(model);
   layout.yarns =
       in_yarns.empty() ? no_yarns(model) : make_yarn_layout(model, in_yarns, memory, true);
   set_compliances(model, layout.yarns);
-  SmallStepsLayoutBuilder(model, in_yarns, layout).add_batches();
-  for (const auto* hubs : {&store.hub_distances, &store.hub_ropes}) {
-    layout.serial.insert(layout.serial.end(), hubs->begin(), hubs->end());
+  if (!is_linkage) {
+    SmallStepsLayoutBuilder(model, in_yarns, layout).add_batches();
+    for (const auto* hubs : {&store.hub_distances, &store.hub_ropes})
+      layout.serial.insert(layout.serial.end(), hubs->begin(), hubs->end());
   }
   if (store.has_springs()) add_springs(model, layout);
   layout.cell = layout.has_yarns() ? layout.yarns.cell : cell_of(model);
@@ -205,8 +209,8 @@ double compliance_of_yarn(const Model& model, std::span<const std::uint32_t> slo
 std::size_t SmallStepsLayout::bytes() const {
   return yarns.bytes() + bytes_of(blocks) + bytes_of(constraint) + bytes_of(used) +
          bytes_of(springs) + bytes_of(multiplier_place) + bytes_of(batches) + bytes_of(tiles) +
-         bytes_of(serial) + membrane.bytes() + bending.bytes() + anchors.bytes() + items.bytes() +
-         bytes_of(load.spans) + bytes_of(load.ways);
+         bytes_of(serial) + membrane.bytes() + bending.bytes() + anchors.bytes() + linkage.bytes() +
+         items.bytes() + bytes_of(load.spans) + bytes_of(load.ways);
 }
 
 const SmallStepsLayout& Model::small_steps() const {

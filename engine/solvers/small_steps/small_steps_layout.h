@@ -2,6 +2,7 @@
 /// constraints as blocks, in the order of a sweep, and where their particles stand.
 ///
 ///   bending       elements of one colour each, before all constraints
+///   linkage       all constraints together, where they are chains, trees and bridges
 ///   yarn blocks   family by family, where the distance constraints make yarns; in woven rows where
 ///                 yarns are all there is, else in quads
 ///   edge blocks   kLanes constraints of one colour each: tile by tile, then between the tiles
@@ -18,6 +19,7 @@
 
 #include "engine/solvers/small_steps/anchor_layout.h"
 #include "engine/solvers/small_steps/bending_layout.h"
+#include "engine/solvers/small_steps/linkage_layout.h"
 #include "engine/solvers/small_steps/local_items.h"
 #include "engine/solvers/small_steps/membrane_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
@@ -56,6 +58,7 @@ struct SmallStepsLayout {
   MembraneLayout membrane;
   BendingLayout bending;
   AnchorLayout anchors;
+  LinkageLayout linkage;  // all constraints, or none
   LocalItems items;
 
   double cell = 0;         // that positions are split by

@@ -72,6 +72,16 @@ std::vector<bool> find_tethers(const Model& model) {
   return tethers;
 }
 
+/// One block carries whatever hangs on it.
+std::vector<std::uint32_t> slots_of_linkage(const ConstraintStore& s) {
+  std::vector<std::uint32_t> slots(s.a);
+  slots.insert(slots.end(), s.b.begin(), s.b.end());
+  std::ranges::sort(slots);
+  const auto twice = std::ranges::unique(slots);
+  slots.erase(twice.begin(), twice.end());
+  return slots;
+}
+
 Blocks find_blocks(const Model& model, const SmallStepsLayout& layout,
                    std::span<const std::uint32_t> anchored, const std::vector<bool>& tethers) {
   Blocks blocks;
@@ -82,6 +92,7 @@ Blocks find_blocks(const Model& model, const SmallStepsLayout& layout,
   for_each_yarn(layout.yarns, [&](std::span<const std::uint32_t> links) {
     blocks.slots_of.push_back(slots_of(s, links));
   });
+  if (!layout.linkage.empty()) blocks.slots_of.push_back(slots_of_linkage(s));
   std::ranges::for_each(layout.constraint, add);
   std::ranges::for_each(layout.serial, add);
   for (const auto& corners : model.membrane.slots) blocks.slots_of.push_back(std::span(corners));
@@ -102,8 +113,13 @@ Blocks find_blocks(const Model& model, const SmallStepsLayout& layout,
 /// From the blocks at pins over those that share free particles with them, level by level.
 class Levels {
  public:
-  Levels(const Model& model, const Blocks& blocks)
-      : model_(model), blocks_(blocks), reached_(blocks.slots_of.size()), held_(model.slots()) {}
+  /// own: what a sweep leaves of the particles of a block itself.
+  Levels(const Model& model, const Blocks& blocks, double own)
+      : model_(model),
+        blocks_(blocks),
+        own_(own),
+        reached_(blocks.slots_of.size()),
+        held_(model.slots()) {}
 
   /// kg, of the particles on blocks at pins, after carried().
   double held_mass() const { return first_mass_; }
@@ -122,8 +138,7 @@ class Levels {
       mass += held;
       if (first_mass_ == 0) first_mass_ = mass;
     }
-    constexpr double kOwn = (1 - tuning::kOmega) / 2;
-    return depth == 0 ? 0 : std::max(mass / first_mass_, depth) - 1 + kOwn;
+    return depth == 0 ? 0 : std::max(mass / first_mass_, depth) - 1 + own_;
   }
 
  private:
@@ -152,6 +167,7 @@ class Levels {
 
   const Model& model_;
   const Blocks& blocks_;
+  const double own_;
   std::vector<bool> reached_, held_;
   double first_mass_ = 0;
 };
@@ -347,7 +363,7 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   leave_tethers_out(model, anchored, tethers, joins, way);
   load.mean_length = mean_length(joins_of(model, tethers));
   const Blocks blocks = find_blocks(model, layout, anchored, tethers);
-  Levels levels(model, blocks);
+  Levels levels(model, blocks, layout.linkage.empty() ? (1 - tuning::kOmega) / 2 : 0);
   load.particles = levels.carried();
   load.held_mass = levels.held_mass();
   const bool has_ropes = std::ranges::any_of(layout.constraint, [&](std::uint32_t c) {
@@ -358,7 +374,7 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   const bool is_by_ways = has_edges || has_ropes || !hangs;
   load.way = std::max(load.particles, way.joins - 1);
   if (is_by_ways) load.particles = load.way;
-  load.reach = way.length;
+  load.reach = layout.linkage.empty() ? way.length : 0;
   load.ways = find_ways(model);
   std::vector<bool> holds(model.slots());
   for (const auto* slots : {&model.pins, &anchored}) {

@@ -35,8 +35,11 @@
 /// the elements at least; but a cloth that is as stiff as a board gets no more substeps for it than
 /// twice its load would ask for along constraints.
 ///
-/// No constraint should turn over within a substep. What has fallen as far as the cloth reaches
-/// from its pins, D, has the speed sqrt(2 g D), and h is at most a part of L over that speed.
+/// A linkage (linkage.h) is one block, which leaves nothing of its load and may turn over.
+///
+/// No other constraint should turn over within a substep. What has fallen as far as the cloth
+/// reaches from its pins, D, has the speed sqrt(2 g D), and h is at most a part of L over that
+/// speed.
 #pragma once
 
 #include <algorithm>

@@ -119,7 +119,7 @@ TEST_CASE("contacts of the last step are known when their body is gone") {
 }
 
 TEST_CASE("a cloth that takes over another one's state takes its bodies over") {
-  const SceneDescription scene = scene_of("hang", 8);
+  const SceneDescription scene = scene_of("hang", 12);
   const auto model = model_of(scene);
   const Settings exact{.tolerance = 1e-4, .threads = 1};
   Cloth from = Cloth::create(model, exact).value(), to = Cloth::create(model, exact).value();

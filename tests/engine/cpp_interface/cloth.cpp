@@ -50,7 +50,8 @@ TEST_CASE("automatic is small steps for cloth, where these are said to be the fa
     CHECK(chosen(scene, {.backend = Backend::reference}) == Solver::gauss_seidel);
   }
   CHECK(chosen(scene_of("sphere_drop", 9), {}) == Solver::yarn);
-  CHECK(chosen(scene_of("chain", 9), {}) == Solver::yarn);
+  CHECK(chosen(scene_of("chain", 9), {}) == Solver::small_steps);
+  CHECK(chosen(scene_of("chain", 9), {.tolerance = 0.9e-3}) == Solver::yarn);
   SceneDescription uneven = scene_of("hang", 9);
   uneven.masses.back() *= 99;
   CHECK(chosen(uneven, {}) == Solver::small_steps);
@@ -88,11 +89,13 @@ TEST_CASE("the solver that automatic stands for: another than yarns where they h
   SceneDescription heavy = scene_of("chain", 4);
   for (const double ratio : {9e3, 2e4, 2e6}) {
     heavy.masses.back() = ratio * heavy.masses[1];
-    CHECK(chosen(heavy, {}) == Solver::yarn);
-    CHECK(chosen(heavy, {.substeps = 2}) == Solver::yarn);
+    CHECK(chosen(heavy, {}) == Solver::small_steps);
+    CHECK(chosen(heavy, {.substeps = 2}) == Solver::small_steps);
+    CHECK(chosen(heavy, {.tolerance = 1e-6}) == Solver::small_steps);
+    CHECK(chosen(heavy, paper) == Solver::yarn);
   }
   heavy.constraints.back().kind = ConstraintKind::rope;
-  CHECK(chosen(heavy, {}) == Solver::direct);
+  CHECK(chosen(heavy, paper) == Solver::direct);
   SceneDescription net = scene_of("hang", 33);
   for (std::size_t c = 0; c < net.constraints.size(); ++c) {
     if (c % 5 > 0) net.constraints[c].kind = ConstraintKind::rope;
@@ -119,14 +122,15 @@ SceneDescription cord(std::uint32_t ropes, double length) {
   return scene;
 }
 
-TEST_CASE("automatic: chains of ropes are for the direct solver") {
-  CHECK(chosen(cord(1, 2), {}) == Solver::direct);
-  CHECK(chosen(cord(40, 1.1), {}) == Solver::direct);
-  CHECK(chosen(cord(40, 0.9), {}) == Solver::direct);
-  CHECK(chosen(cord(40, 0.9), {.tolerance = 0.02}) == Solver::direct);
+TEST_CASE(
+    "automatic: chains of ropes are for small steps, and those with heavy spheres for direct") {
+  CHECK(chosen(cord(1, 2), {}) == Solver::small_steps);
+  CHECK(chosen(cord(40, 1.1), {}) == Solver::small_steps);
+  CHECK(chosen(cord(40, 0.9), {.tolerance = 1e-6}) == Solver::small_steps);
+  CHECK(chosen(cord(40, 0.9), {.scheme = Scheme::paper}) == Solver::direct);
   SceneDescription loaded = cord(40, 0.9);
   loaded.masses.back() = 200;
-  CHECK(chosen(loaded, {}) == Solver::direct);
+  CHECK(chosen(loaded, {}) == Solver::small_steps);
   SceneDescription bridge = cord(40, 2);  // of two cords
   const SceneDescription other = cord(40, 2);
   bridge.positions.insert(bridge.positions.end(), other.positions.begin(), other.positions.end());
@@ -138,13 +142,15 @@ TEST_CASE("automatic: chains of ropes are for the direct solver") {
     bridge.positions[i + 41].z = 1;
     bridge.constraints.push_back({i, i + 41, 1});
   }
-  CHECK(chosen(bridge, {}) == Solver::direct);
+  CHECK(chosen(bridge, {}) == Solver::small_steps);
   SceneDescription net = scene_of("hang", 20);
   for (Constraint& c : net.constraints) c.kind = ConstraintKind::rope;
   CHECK(chosen(net, {.scheme = Scheme::paper}) == Solver::yarn);
   SceneDescription beads = cord(17, 2);
   beads.radii.assign(18, 0.01);
   for (std::uint32_t i = 0; i <= 16; ++i) beads.spheres.push_back(i);  // the first one is fixed
+  CHECK(chosen(beads, {}) == Solver::small_steps);
+  beads.masses.back() = beads.masses[16] = 200;
   CHECK(chosen(beads, {}) == Solver::direct);
   beads.spheres.push_back(17);
   CHECK(chosen(beads, {}) == Solver::yarn);

@@ -255,7 +255,7 @@ TEST_CASE("a cloth that sleeps, or is about to, falls asleep and wakes as one th
 }
 
 TEST_CASE("a cloth whose solver became small steps for a body goes on so, even without the body") {
-  const SceneDescription scene = scene_of("hang", 6);
+  const SceneDescription scene = scene_of("hang", 12);
   Settings settings;
   settings.tolerance = 1e-4;  // automatic is yarn
   Cloth cloth = cloth_of(scene, settings), other = cloth_of(scene, settings);

@@ -110,7 +110,7 @@ TEST_CASE("and by the other solvers, within what their tolerances leave") {
 
 TEST_CASE("moves of pins that were asked for before are carried along") {
   for (const Backend backend : kBackends) {
-    const SceneDescription scene = scene_of("hang", 7);
+    const SceneDescription scene = scene_of("hang", 9);
     const Settings settings{.solver = Solver::small_steps};
     Cloth first = cloth_of(scene, on(backend, settings)), second = first.clone();
     const Vec3 by{0.05, 0, 0};

@@ -106,8 +106,7 @@ TEST_CASE("sheets and chains under loads converge, and soon") {
     SceneDescription scene = scene_of(name, size);
     scene.masses.back() *= load;
     REQUIRE(scene.fixed[0] == 0);
-    Cloth cloth = cloth_of(scene, {});
-    REQUIRE(cloth.settings().solver == Solver::yarn);
+    Cloth cloth = cloth_of(scene, {.solver = Solver::yarn});
     const double start = cloth.energy().total();
     for (int k = 0; k < 100; ++k) {
       const StepReport report = step(cloth, 0.01);

@@ -215,7 +215,8 @@ TEST_CASE("where a repeat is stopped the best run before it is reported, whole")
 
 TEST_CASE("the worst status of all frames is told") {
   const SceneDescription scene = hang(8);
-  const auto limited = run(scene, {.tolerance = 1e-9, .max_iterations = 2}, {.steps = 5});
+  const auto limited =
+      run(scene, {.tolerance = 1e-9, .max_iterations = 2, .solver = Solver::yarn}, {.steps = 5});
   REQUIRE(limited);
   CHECK(limited.value().total.status == Status::iteration_limit);
   CHECK_FALSE(limited.value().reached_tolerance());

@@ -1,0 +1,148 @@
+#include "engine/solvers/small_steps/linkage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/bytes_of.h"
+#include "engine/tuning.h"
+#include "kernels/reference/small_steps.h"
+
+namespace weft {
+namespace {
+
+using Axes = LinkageLayout::Places::Axes;
+
+double squared(double strain) { return 2 * strain + strain * strain; }
+
+void add(double* values, const Axes& at, double value) {
+  for (const int place : at) {
+    if (place >= 0) values[place] += value;
+  }
+}
+void set(double* values, const Axes& at, kernels::Vector v) {
+  if (at[0] < 0) return;
+  values[at[0]] = v.x;
+  values[at[1]] = v.y;
+  values[at[2]] = v.z;
+}
+
+}  // namespace
+
+Linkage::Linkage(const Model& model, const LinkageLayout& layout) : model_(model), layout_(layout) {
+  if (layout_.empty()) return;
+  const std::size_t links = model.constraints.size();
+  d_.resize(links);
+  error_.resize(links);
+  impulse_.resize(links);
+  tension_.resize(links);
+  is_taut_.resize(links);
+  out_.reserve(links);
+  solution_.resize(static_cast<std::size_t>(layout_.size()));
+  matrix_.resize(layout_.size(), layout_.size());
+  matrix_.resizeNonZeros(static_cast<int>(layout_.rows.size()));
+  std::ranges::copy(layout_.column_begin, matrix_.outerIndexPtr());
+  std::ranges::copy(layout_.rows, matrix_.innerIndexPtr());
+  factors_.analyzePattern(matrix_);
+}
+
+void Linkage::begin(bool continues) {
+  out_.clear();
+  if (!continues) std::ranges::fill(impulse_, 0);
+}
+
+void Linkage::take(std::uint32_t c, kernels::Vector d, double left, double tolerance) {
+  const double rest = model_.constraints.rest_length[c], square = rest * rest;
+  const double error = dot(d, d) - square, most = squared(tolerance) * square;
+  d_[c] = d;
+  error_[c] = 0.5 * reference::beyond(error, squared(left) * square);
+  is_taut_[c] = dot(d, d) > 0 && (!is_rope(c) || error > -most);
+  if ((is_rope(c) ? error : std::abs(error)) > most) out_.push_back(c);
+}
+
+/// What is left of a slack rope is its own.
+void Linkage::solve_once() {
+  double* values = matrix_.valuePtr();
+  std::fill_n(values, layout_.rows.size(), 0.0);
+  std::ranges::fill(solution_, 0);
+  for (std::size_t i = 0; i < layout_.slots.size(); ++i)
+    add(values, layout_.places_of_slot[i], 1 / model_.inverse_mass[layout_.slots[i]]);
+  for (std::size_t c = 0; c < d_.size(); ++c) {
+    const LinkageLayout::Places& at = layout_.places[c];
+    values[at.own] = -1;
+    if (!is_taut_[c]) continue;
+    values[at.own] =
+        -tuning::kLinkageCompliance * dot(d_[c], d_[c]) / model_.constraints.effective_mass[c];
+    add(values, at.of_a, tension_[c]);
+    add(values, at.of_b, tension_[c]);
+    add(values, at.between, -tension_[c]);
+    set(values, at.with_a, d_[c]);
+    set(values, at.with_b, -1.0 * d_[c]);
+    solution_[static_cast<std::size_t>(layout_.row_of_link[c])] = -error_[c];
+  }
+  factors_.factorize(matrix_);
+  if (factors_.info() != Eigen::Success) {
+    std::ranges::fill(solution_, 0);
+    return;
+  }
+  Eigen::Map<Eigen::VectorXd> solution(solution_.data(), layout_.size());
+  factors_.matrixL().solveInPlace(solution);
+  solution.array() /= factors_.vectorD().array();
+  factors_.matrixU().solveInPlace(solution);
+}
+
+/// Returns whether it was found otherwise.
+bool Linkage::find_taut() {
+  const ConstraintStore& s = model_.constraints;
+  const auto move = [&](std::uint32_t slot) {
+    const int row = layout_.row_of_slot[slot];
+    if (row < 0) return kernels::Vector{};
+    const double* by = solution_.data() + row;
+    return kernels::Vector{by[0], by[1], by[2]};
+  };
+  bool changes = false;
+  for (std::size_t c = s.bilateral; c < s.size(); ++c) {
+    const double beyond = error_[c] + dot(d_[c], move(s.a[c]) - move(s.b[c]));
+    const std::uint8_t taut = is_taut_[c] ? impulse_[c] + lambda(c) > 0 : beyond > 0;
+    changes |= taut != is_taut_[c];
+    is_taut_[c] = taut;
+  }
+  return changes;
+}
+
+/// Returns the largest change as a share of the largest tension.
+double Linkage::update_tension() {
+  double most = 0, change = 0;
+  for (std::size_t c = 0; c < d_.size(); ++c) {
+    const double tension = is_taut_[c] ? std::max(0.0, impulse_[c] + lambda(c)) : 0;
+    most = std::max(most, tension);
+    change = std::max(change, std::abs(tension - tension_[c]));
+    tension_[c] = tension;
+  }
+  return most > 0 ? change / most : 0;
+}
+
+void Linkage::solve() {
+  for (std::size_t c = 0; c < d_.size(); ++c) tension_[c] = std::max(0.0, impulse_[c]);
+  for (int round = 1;; ++round) {
+    solve_once();
+    const bool changes = find_taut();
+    const bool settles = update_tension() <= tuning::kLinkageTension;
+    if (round >= tuning::kLinkageRounds || (settles && !changes)) break;
+  }
+  for (std::size_t c = 0; c < d_.size(); ++c)
+    impulse_[c] = is_taut_[c] ? impulse_[c] + lambda(c) : 0;
+}
+
+std::size_t Linkage::bytes() const {
+  if (layout_.empty()) return 0;
+  const auto of_matrix = [&](std::size_t entries) {
+    return entries * (sizeof(double) + sizeof(int)) + solution_.size() * 2 * sizeof(int);
+  };
+  const auto of_factors =
+      static_cast<std::size_t>(factors_.matrixL().nestedExpression().nonZeros());
+  return bytes_of(solution_) + bytes_of(d_) + bytes_of(error_) + bytes_of(impulse_) +
+         bytes_of(tension_) + bytes_of(is_taut_) + bytes_of(out_) + of_matrix(layout_.rows.size()) +
+         of_matrix(of_factors);
+}
+
+}  // namespace weft

@@ -1,0 +1,91 @@
+/// Chains, trees and bridges of rigid links and ropes, solved as one system: what hangs at the end
+/// of a chain pulls at its beginning in the same sweep, whatever the ratio of the masses.
+///
+/// The links act along their directions at the end of the substep: with C = (l^2 - L^2) / 2 of
+/// each, whose gradient J is d at one end and -d at the other,
+///
+///     M (x - x*) = -J(x)^T lambda,     C(x) = 0
+///
+/// J is linear in x, so that Newton's step for both is
+///
+///     | M + G   J^T | | dx     |   |  0 |
+///     | J       0   | | lambda | = | -C |,     G = sum of lambda over the links (1 -1; -1 1)
+///
+/// G holds a taut chain straight, which impulses along the predicted directions alone would shake
+/// the more the heavier its end is. It needs lambda, so that the system is solved until lambda
+/// changes little, from G = 0 on. Its unknowns are ordered so that the factorisation fills in
+/// little, in a tree not at all.
+///
+/// A rope pulls alone: its law is lambda >= 0, C + J dx <= 0, and one of the two holds with
+/// equality. Which ropes are taut is found by the same solutions (a primal-dual active set method:
+/// Hintermueller, Ito, Kunisch, "The primal-dual active set strategy as a semismooth Newton
+/// method", 2002), which begin with those that are not shorter than their length by more than the
+/// tolerance.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <cstdint>
+#include <vector>
+
+#include "engine/model/model.h"
+#include "engine/solvers/small_steps/linkage_layout.h"
+#include "engine/solvers/small_steps/substep.h"
+#include "kernels/vectors.h"
+
+namespace weft {
+
+class Linkage {
+ public:
+  Linkage(const Model& model, const LinkageLayout& layout);
+
+  bool empty() const { return layout_.empty(); }
+  /// Moves the ends of all links. continues: the substep has been swept before.
+  template <class Points>
+  void sweep(const Points& points, const Relaxation& by, double tolerance, bool continues) {
+    const ConstraintStore& s = model_.constraints;
+    begin(continues);
+    for (std::uint32_t c = 0; c < s.size(); ++c)
+      take(c, points.difference(s.a[c], s.b[c]), by.left, tolerance);
+    solve();
+    for (const std::uint32_t slot : layout_.slots) {
+      const double* by_axes = solution_.data() + layout_.row_of_slot[slot];
+      points.move(slot, {by_axes[0], by_axes[1], by_axes[2]});
+    }
+  }
+  /// Constraints that the last sweep found out of tolerance.
+  const std::vector<std::uint32_t>& out() const { return out_; }
+  /// Of a constraint, since the substep began: lambda.
+  double impulse(std::size_t constraint) const { return impulse_[constraint]; }
+  std::size_t bytes() const;
+
+ private:
+  using Matrix = Eigen::SparseMatrix<double>;
+
+  void begin(bool continues);
+  void take(std::uint32_t c, kernels::Vector d, double left, double tolerance);
+  void solve();
+  void solve_once();
+  bool find_taut();
+  double update_tension();
+
+  bool is_rope(std::size_t c) const { return c >= model_.constraints.bilateral; }
+  double lambda(std::size_t c) const {
+    return solution_[static_cast<std::size_t>(layout_.row_of_link[c])];
+  }
+
+  const Model& model_;
+  const LinkageLayout& layout_;
+  Matrix matrix_;
+  // In the order of the layout.
+  Eigen::SimplicialLDLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<int>> factors_;
+  std::vector<double> solution_;
+  // Per constraint.
+  std::vector<kernels::Vector> d_;
+  std::vector<double> error_;    // C
+  std::vector<double> impulse_;  // of the sweeps before
+  std::vector<double> tension_;  // lambda, as G has it
+  std::vector<std::uint8_t> is_taut_;
+  std::vector<std::uint32_t> out_;
+};
+
+}  // namespace weft

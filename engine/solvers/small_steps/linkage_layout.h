@@ -1,0 +1,44 @@
+/// Chains, trees and bridges of rigid links and ropes: which constraints linkage.h solves together.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace weft {
+
+class Model;
+
+/// The unknowns of a linkage in the order of their elimination: three of each particle that moves,
+/// and one of each link behind those of its first particle.
+struct LinkageLayout {
+  /// Where the values of a link are among those of the matrix, -1 where an end is fixed.
+  struct Places {
+    using Axes = std::array<int, 3>;
+    Axes of_a, of_b;      // on the diagonal
+    Axes between;         // of a and b
+    Axes with_a, with_b;  // of the link and an end
+    int own = 0;          // on the diagonal
+  };
+  std::vector<std::uint32_t> slots;  // particles that move
+  std::vector<int> row_of_slot;      // one per particle: the first of its three unknowns
+  std::vector<int> row_of_link;      // one per constraint
+  // Above and on the diagonal, column by column.
+  std::vector<int> column_begin, rows;
+  std::vector<Places> places;                // one per constraint
+  std::vector<Places::Axes> places_of_slot;  // one per particle, on the diagonal
+  bool empty() const { return row_of_link.empty(); }
+  int size() const { return static_cast<int>(column_begin.size()) - 1; }
+  std::size_t bytes() const;
+};
+
+/// Of all constraints of a model that is_linkage(); empty of any other model.
+LinkageLayout make_linkage_layout(const Model& model);
+
+/// Whether few constraints close a loop: chains, trees, bridges (a third do; of a grid half do).
+bool closes_few_loops(const Model& model);
+/// Whether also none is a spring.
+bool is_linkage(const Model& model);
+
+}  // namespace weft
