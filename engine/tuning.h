@@ -44,14 +44,11 @@ inline constexpr double kContactSpare = 0.3;
 /// other by more than this share of their distance, may become those that touch within an interval.
 /// Others are left to their neighbours, and to the verification.
 inline constexpr double kContactBeyond = 0.2, kContactLean = 0.6, kContactPassing = 0.5;
-/// For so many intervals boxes hold points that go on as they do: candidates are looked for once in
-/// that time. Wider boxes hold more of them.
-inline constexpr double kContactWide = 4;
-/// In thicknesses: what wide boxes hold beyond. Without it a sheet of 60 x 60 on a ball takes 1.3
-/// times as long, for what flutters leaves its box; with four times as much 1.3 times, too.
+/// In thicknesses: what boxes that hold points until a step ends hold beyond. What flutters leaves
+/// them, and its candidates are renewed.
 inline constexpr double kContactWideSpare = 0.5;
 /// In reaches of an interval: what wide boxes hold beyond the way of a particle. It is about time
-/// alone: at 1, 2 and 6 all results are the same bits (perf/tried.md has all of these ablations).
+/// and the order of pairs alone (perf/tried.md has all of these ablations).
 inline constexpr double kContactWideReach = 3;
 /// m: places are floats from an origin, which is a multiple of this. A finer grid moves the origin
 /// more often, and candidates are looked for anew.

@@ -31,6 +31,8 @@ class BodyClock {
   /// many of the substeps that are left as such a time has, one at least.
   void begin_interval(double time);
   int substeps_of_interval() const { return interval_; }
+  /// Of the step, the present one included; while bodies stand one.
+  int substeps_left() const { return stands_ ? 1 : substeps_ - done_; }
   bool begins_interval() const { return interval_ > 0 && interval_left_ == interval_; }
   bool is_interval_over() const { return interval_left_ == 0; }
   /// Where a vertex of a body that is a mesh is at a share of the step, when its pose is `at`.

@@ -1,62 +1,82 @@
 #include "engine/contact/candidates.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "engine/bytes_of.h"
 
 namespace weft {
 namespace {
 
-using PointBoxes = std::array<Box, 3>;
+/// Directions along which the boxes of triangles are to meet besides x, y and z: the normal of a
+/// triangle of the cloth, and in its plane the three across its edges. By x, y and z alone big
+/// boxes of slanted triangles and edges meet those of dozens that lie beside them. Lengths do not
+/// matter.
+struct TriangleAxes {
+  alignas(16) float x[4]{}, y[4]{}, z[4]{};
 
-/// What a box reaches along a direction.
-struct Extent {
-  float low = 0, high = 0;
-
-  void add(const Extent& other) {
-    low = std::min(low, other.low);
-    high = std::max(high, other.high);
+  void set(std::size_t i, kernels::Vector v) {
+    const double l = length(v), scale = l > 0 ? 1 / l : 0;
+    x[i] = static_cast<float>(scale * v.x);
+    y[i] = static_cast<float>(scale * v.y);
+    z[i] = static_cast<float>(scale * v.z);
   }
-  bool meets(const Extent& other) const { return low <= other.high && high >= other.low; }
 };
-using PointExtents = std::array<Extent, 3>;
 
-Extent sum(const PointExtents& extents) {
-  Extent all = extents[0];
-  all.add(extents[1]);
-  all.add(extents[2]);
-  return all;
-}
+/// What something reaches along x, y, z and an unused direction, and along the four axes.
+struct Reach {
+  alignas(16) float low[8], high[8];
 
-/// Of a box along n, which may have any length, and what rounding adds.
-Extent extent_along(const std::array<float, 3>& n, const Box& box) {
-  float middle = 0, half = 0, size = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float m = 0.5f * (box.low[k] + box.high[k]), h = box.high[k] - m, by = std::abs(n[k]);
-    middle += n[k] * m;
-    half += by * h;
-    size += by * (std::abs(m) + h);
+  void add(const Reach& other) {
+    for (std::size_t k = 0; k < 8; ++k) {
+      low[k] = std::min(low[k], other.low[k]);
+      high[k] = std::max(high[k], other.high[k]);
+    }
   }
-  half += 0x1p-20f * size;
-  return {middle - half, middle + half};
-}
+  bool meets(const Reach& other) const {
+    int apart = 0;
+    for (std::size_t k = 0; k < 8; ++k)
+      apart |= static_cast<int>(low[k] > other.high[k]) | static_cast<int>(high[k] < other.low[k]);
+    return apart == 0;
+  }
+};
+using CornerReaches = std::array<Reach, 3>;
 
-PointExtents extents_along(const std::array<float, 3>& n, const PointBoxes& boxes) {
-  return {extent_along(n, boxes[0]), extent_along(n, boxes[1]), extent_along(n, boxes[2])};
-}
-
-Box sum(const PointBoxes& boxes) {
-  Box all = boxes[0];
-  all.add(boxes[1]);
-  all.add(boxes[2]);
+Reach sum(const Reach& a, const Reach& b) {
+  Reach all = a;
+  all.add(b);
   return all;
 }
+Reach sum(const CornerReaches& reaches) { return sum(sum(reaches[0], reaches[1]), reaches[2]); }
 
-/// Adds the pairs of features that a triangle of one surface and one of another
-/// own. Their boxes meet, and what they reach along the normal of the first
-/// triangle does: big boxes of slanted triangles hold dozens of small ones that
-/// lie beside them.
+/// Of a box, and what rounding adds along the axes.
+Reach reach_along(const TriangleAxes& axes, const Box& box) {
+  Reach reach;
+  float middle[3], half[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    reach.low[k] = box.low[k];
+    reach.high[k] = box.high[k];
+    middle[k] = 0.5f * (box.low[k] + box.high[k]);
+    half[k] = box.high[k] - middle[k];
+  }
+  reach.low[3] = reach.high[3] = 0;
+  const float size =
+      std::abs(middle[0]) + std::abs(middle[1]) + std::abs(middle[2]) + half[0] + half[1] + half[2];
+  for (std::size_t i = 0; i < 4; ++i) {
+    const float m = axes.x[i] * middle[0] + axes.y[i] * middle[1] + axes.z[i] * middle[2];
+    const float wide = std::abs(axes.x[i]) * half[0] + std::abs(axes.y[i]) * half[1] +
+                       std::abs(axes.z[i]) * half[2] + 0x1p-20f * size;
+    reach.low[4 + i] = m - wide;
+    reach.high[4 + i] = m + wide;
+  }
+  return reach;
+}
+
+/// Adds the pairs of features that a triangle of one surface and one of another own.
 class OwnedFeatures {
  public:
-  OwnedFeatures(const ContactPoints& points, SurfacePair surfaces, Candidates& candidates)
+  OwnedFeatures(ContactPoints& points, SurfacePair surfaces, Candidates& candidates)
       : points_(points),
         surfaces_(surfaces),
         a_(points.surfaces()[surfaces.a]),
@@ -64,143 +84,184 @@ class OwnedFeatures {
         candidates_(candidates) {}
 
   /// The triangle of the first surface that others are beside from now on.
-  void begin(std::uint32_t a) { begin(a, boxes_of(a_.points_of(a))); }
-  /// boxes: of its corners.
-  void begin(std::uint32_t a, const PointBoxes& boxes) {
-    triangle_ = a;
-    corners_ = a_.points_of(a);
-    boxes_a_ = boxes;
-    whole_a_ = sum(boxes);
-    const kernels::Vector x = points_.start(corners_[0]);
-    const kernels::Vector n = cross(points_.start(corners_[1]) - x, points_.start(corners_[2]) - x);
-    const double l = length(n), scale = l > 0 ? 1 / l : 0;
-    normal_ = {static_cast<float>(scale * n.x), static_cast<float>(scale * n.y),
-               static_cast<float>(scale * n.z)};
-    extents_a_ = extents_along(normal_, boxes);
-    extent_a_ = sum(extents_a_);
+  void begin(std::uint32_t a) {
+    const TriangleSurface::Triangle t = a_.points_of(a);
+    begin(a, {points_.wide_box(t[0]), points_.wide_box(t[1]), points_.wide_box(t[2])});
   }
-  std::uint32_t triangle() const { return triangle_; }
+  /// boxes: of its corners.
+  void begin(std::uint32_t a, const std::array<Box, 3>& boxes) {
+    triangle_a_ = a;
+    corners_a_ = a_.points_of(a);
+    set_axes();
+    for (std::size_t k = 0; k < 3; ++k) corner_a_[k] = reach_along(axes_, boxes[k]);
+    for (std::size_t k = 0; k < 3; ++k) edge_a_[k] = sum(corner_a_[k], corner_a_[(k + 1) % 3]);
+    whole_a_ = sum(corner_a_);
+  }
+  std::uint32_t triangle() const { return triangle_a_; }
 
   void add(std::uint32_t b) {
-    const TriangleSurface::Triangle tb = b_.points_of(b);
-    boxes_b_ = boxes_of(tb);
-    extents_b_ = extents_along(normal_, boxes_b_);
-    const Extent extent_b = sum(extents_b_);
-    if (!extent_a_.meets(extent_b)) return;
-    const Box whole_b = sum(boxes_b_);
+    triangle_b_ = b;
+    corners_b_ = b_.points_of(b);
+    for (std::size_t k = 0; k < 3; ++k)
+      corner_b_[k] = reach_along(axes_, points_.wide_box(corners_b_[k]));
+    const Reach whole_b = sum(corner_b_);
+    if (!whole_a_.meets(whole_b)) return;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!a_.triangles->owns_corner(triangle_, k) || !boxes_a_[k].meets(whole_b) ||
-          !extents_a_[k].meets(extent_b))
-        continue;
+      if (!a_.triangles->owns_corner(triangle_a_, k) || !corner_a_[k].meets(whole_b)) continue;
       add_pair(
-          {corners_[k] - a_.first_point, b, surfaces_.a, surfaces_.b, PairKind::point_triangle},
-          {corners_[k], tb[0], tb[1], tb[2]});
+          {corners_a_[k] - a_.first_point, b, surfaces_.a, surfaces_.b, PairKind::point_triangle},
+          {corners_a_[k], corners_b_[0], corners_b_[1], corners_b_[2]});
     }
-    if (a_.triangles->is_point(triangle_)) return;
+    if (a_.triangles->is_point(triangle_a_)) return;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!b_.triangles->owns_corner(b, k) || !boxes_b_[k].meets(whole_a_) ||
-          !extents_b_[k].meets(extent_a_))
-        continue;
-      add_pair(
-          {tb[k] - b_.first_point, triangle_, surfaces_.b, surfaces_.a, PairKind::point_triangle},
-          {tb[k], corners_[0], corners_[1], corners_[2]});
+      if (!b_.triangles->owns_corner(b, k) || !corner_b_[k].meets(whole_a_)) continue;
+      add_pair({corners_b_[k] - b_.first_point, triangle_a_, surfaces_.b, surfaces_.a,
+                PairKind::point_triangle},
+               {corners_b_[k], corners_a_[0], corners_a_[1], corners_a_[2]});
     }
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (!a_.triangles->owns_edge(triangle_, i)) continue;
-      const std::size_t next = (i + 1) % 3;
-      Box edge = boxes_a_[i];
-      edge.add(boxes_a_[next]);
-      Extent extent = extents_a_[i];
-      extent.add(extents_a_[next]);
-      if (edge.meets(whole_b) && extent.meets(extent_b)) add_edges(i, b, edge, extent);
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (b_.triangles->owns_edge(b, j)) add_edges(j);
     }
   }
 
  private:
-  PointBoxes boxes_of(const TriangleSurface::Triangle& t) const {
-    return {points_.wide_box(t[0]), points_.wide_box(t[1]), points_.wide_box(t[2])};
+  /// In the plane of the triangle, where the interval begins.
+  void set_axes() {
+    const kernels::Vector x[] = {points_.start(corners_a_[0]), points_.start(corners_a_[1]),
+                                 points_.start(corners_a_[2])};
+    const kernels::Vector n = cross(x[1] - x[0], x[2] - x[0]);
+    axes_.set(0, n);
+    for (std::size_t k = 0; k < 3; ++k) axes_.set(1 + k, cross(n, x[(k + 1) % 3] - x[k]));
   }
-  /// edge, extent: of the edge i of the first triangle.
-  void add_edges(std::size_t i, std::uint32_t b, const Box& edge, const Extent& extent) {
-    const TriangleSurface::Triangle tb = b_.points_of(b);
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (!b_.triangles->owns_edge(b, j)) continue;
-      const std::size_t next = (j + 1) % 3;
-      Box other = boxes_b_[j];
-      other.add(boxes_b_[next]);
-      Extent reaches = extents_b_[j];
-      reaches.add(extents_b_[next]);
-      if (!edge.meets(other) || !extent.meets(reaches)) continue;
-      add_pair({a_.triangles->edges_of[triangle_][i], b_.triangles->edges_of[b][j], surfaces_.a,
-                surfaces_.b, PairKind::edges},
-               {corners_[i], corners_[(i + 1) % 3], tb[j], tb[next]});
+  /// Of the first triangle with the edge j of the second.
+  void add_edges(std::size_t j) {
+    const std::size_t next = (j + 1) % 3;
+    const Reach edge_b = sum(corner_b_[j], corner_b_[next]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!a_.triangles->owns_edge(triangle_a_, i) || !edge_a_[i].meets(edge_b)) continue;
+      add_pair({a_.triangles->edges_of[triangle_a_][i], b_.triangles->edges_of[triangle_b_][j],
+                surfaces_.a, surfaces_.b, PairKind::edges},
+               {corners_a_[i], corners_a_[(i + 1) % 3], corners_b_[j], corners_b_[next]});
     }
   }
   void add_pair(const Pair& pair, const std::array<std::uint32_t, 4>& points) {
     candidates_[list_of(pair.kind)].add(pair, points);
+    if (std::exchange(active_, triangle_b_) != triangle_b_)
+      points_.activate(surfaces_.b, triangle_b_);
   }
 
-  const ContactPoints& points_;
+  ContactPoints& points_;
   const SurfacePair surfaces_;
   const ContactSurface &a_, &b_;
   Candidates& candidates_;
-  std::uint32_t triangle_ = kNoIndex;
-  TriangleSurface::Triangle corners_{};
-  std::array<float, 3> normal_{};
-  PointBoxes boxes_a_{}, boxes_b_{};
-  PointExtents extents_a_{}, extents_b_{};
-  Box whole_a_{};
-  Extent extent_a_{};
+  std::uint32_t triangle_a_ = kNoIndex, triangle_b_ = kNoIndex, active_ = kNoIndex;
+  TriangleSurface::Triangle corners_a_{}, corners_b_{};
+  TriangleAxes axes_;
+  CornerReaches corner_a_{}, edge_a_{}, corner_b_{};
+  Reach whole_a_{};
 };
 
 }  // namespace
 
-/// Whether wide boxes hold, or may be renewed without a new candidate: cloth
-/// that flutters far from all others asks for none.
-bool CandidateSearch::still_holds(ContactPoints& points) {
-  has_moved_.assign(points.slots(), 0);
-  bool any = false;
-  const bool bodies_hold = points.widen_boxes_of_cloth([&](std::uint32_t slot) {
-    has_moved_[slot] = 1;
-    any = true;
-  });
-  if (!bodies_hold) return false;
-  if (!any) return true;
-  for (const TriangleSurface::Triangle& t : points.cloth().triangles) {
-    if ((has_moved_[t[0]] | has_moved_[t[1]] | has_moved_[t[2]]) == 0) continue;
-    const Box box = points.wide_box(t);
-    bool is_near = false;
-    for (const SurfacePair pair : points.surface_pairs())
-      points.surfaces()[pair.b].tree.find(table_, box, [&](std::uint32_t) { is_near = true; });
-    if (is_near) return false;
+void CandidateSearch::find_all(ContactPoints& points, SurfacePair pair, Candidates& candidates) {
+  ContactSurface& body = points.surfaces()[pair.b];
+  const ContactSurface& cloth = points.surfaces()[pair.a];
+  OwnedFeatures features(points, pair, candidates);
+  const auto add = [&](std::uint32_t a, std::uint32_t b) {
+    if (features.triangle() != a) features.begin(a);
+    features.add(b);
+  };
+  if (!body.is_rigid) {
+    body.tree.refit([&](std::uint32_t t) { return points.wide_box(body.points_of(t)); });
+    BoxTree::meet(table_, cloth.tree, body.tree, add);
+    return;
   }
+  if (!body.seen(cloth.tree.box()).meets(body.tree.box())) return;
+  seen_cloth_.refit(
+      [&](std::uint32_t t) { return body.seen(points.wide_box(cloth.points_of(t))); });
+  BoxTree::meet(table_, seen_cloth_, body.tree, add);
+}
+
+bool CandidateSearch::find(ContactPoints& points, Candidates& candidates) {
+  if (points.has_wide_boxes()) return renew(points, candidates);
+  points.widen_boxes();
+  ContactSurface& cloth = points.surfaces()[kClothSurface];
+  cloth.tree.refit([&](std::uint32_t t) { return points.wide_box(cloth.points_of(t)); });
+  if (owner_of_edge_.empty()) find_owners(cloth);
+  for (PairList& list : candidates) list.clear();
+  for (const SurfacePair pair : points.surface_pairs()) find_all(points, pair, candidates);
   return true;
 }
 
-void CandidateSearch::find(ContactPoints& points, Candidates& candidates) {
-  if (points.has_wide_boxes() && still_holds(points)) return;
-  points.widen_boxes();
-  for (ContactSurface& surface : points.surfaces())
-    surface.tree.refit([&](std::uint32_t t) { return points.wide_box(surface.points_of(t)); });
-  for (PairList& list : candidates) list.clear();
-  for (const SurfacePair pair : points.surface_pairs()) {
-    OwnedFeatures features(points, pair, candidates);
-    BoxTree::meet(table_, points.surfaces()[pair.a].tree, points.surfaces()[pair.b].tree,
-                  [&](std::uint32_t a, std::uint32_t b) {
-                    if (features.triangle() != a) features.begin(a);
-                    features.add(b);
-                  });
+void CandidateSearch::find_owners(const ContactSurface& cloth) {
+  const TriangleSurface& s = *cloth.triangles;
+  seen_cloth_ = cloth.tree;
+  owner_of_edge_.resize(s.edges.size());
+  owner_of_point_.resize(s.triangles_at.size());
+  has_moved_.resize(s.triangles_at.size());
+  is_renewed_.resize(s.triangles.size());
+  for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (s.owns_corner(t, k)) owner_of_point_[s.triangles[t][k]] = t;
+      if (s.owns_edge(t, k)) owner_of_edge_[s.edges_of[t][k]] = t;
+    }
   }
 }
 
-void CandidateSearch::find_beside(const ContactPoints& points, std::uint32_t triangle,
-                                  const Box& box, Candidates& candidates) const {
+/// The triangle of the cloth that owns its feature of the pair.
+std::uint32_t CandidateSearch::owner(const Pair& pair) const {
+  if (pair.kind == PairKind::edges) return owner_of_edge_[pair.first];
+  return pair.is_turned() ? pair.second : owner_of_point_[pair.first];
+}
+
+/// Candidates of triangles with a corner that has left its wide box, and of these alone.
+bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
+  std::ranges::fill(has_moved_, std::uint8_t{0});
+  bool any = false;
+  points.renew_wide_boxes([&](std::uint32_t slot) {
+    has_moved_[slot] = 1;
+    any = true;
+  });
+  if (!any) return false;
+  const TriangleSurface& cloth = points.cloth();
+  Box all = Box::none();
+  for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
+    const auto [a, b, c] = cloth.triangles[t];
+    is_renewed_[t] = has_moved_[a] | has_moved_[b] | has_moved_[c];
+    if (is_renewed_[t] != 0) all.add(points.wide_box(cloth.triangles[t]));
+  }
+  bool have_moved = false;
+  for (PairList& list : candidates) {
+    have_moved = list.leave_out([&](const Pair& pair) { return is_renewed_[owner(pair)] != 0; }) ||
+                 have_moved;
+  }
+  for (const SurfacePair pair : points.surface_pairs()) {
+    const ContactSurface& body = points.surfaces()[pair.b];
+    if (!body.as_in_tree(all).meets(body.tree.box())) continue;
+    OwnedFeatures features(points, pair, candidates);
+    for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
+      if (is_renewed_[t] == 0) continue;
+      features.begin(t);
+      body.tree.find(table_, body.as_in_tree(points.wide_box(cloth.triangles[t])),
+                     [&](std::uint32_t other) { features.add(other); });
+    }
+  }
+  return have_moved;
+}
+
+void CandidateSearch::find_beside(ContactPoints& points, std::uint32_t triangle, const Box& box,
+                                  Candidates& candidates) const {
   for (const SurfacePair pair : points.surface_pairs()) {
     OwnedFeatures features(points, pair, candidates);
     features.begin(triangle, {box, box, box});
-    points.surfaces()[pair.b].tree.find(table_, box,
-                                        [&](std::uint32_t other) { features.add(other); });
+    const ContactSurface& body = points.surfaces()[pair.b];
+    body.tree.find(table_, body.as_in_tree(box), [&](std::uint32_t other) { features.add(other); });
   }
+}
+
+std::size_t CandidateSearch::bytes() const {
+  return seen_cloth_.bytes() + bytes_of(has_moved_) + bytes_of(is_renewed_) +
+         bytes_of(owner_of_edge_) + bytes_of(owner_of_point_);
 }
 
 }  // namespace weft

@@ -1,7 +1,8 @@
-/// Stage 2 of an interval: which pairs of features may meet at all. Wide boxes hold all places that
-/// points are expected to come to, for some intervals; while they do candidates stay. Candidates of
-/// points that leave their boxes are looked for anew (verify.h). The order of candidates does not
-/// depend on the boxes, but on the trees alone.
+/// Stage 2 of an interval: which pairs of features may meet at all. They are looked for once a
+/// step, by wide boxes, which hold all places that points are expected to come to until it ends.
+/// When the next interval begins candidates are renewed of the triangles whose corners have left
+/// theirs, and of no others. Those of points that leave the boxes of an interval are looked for
+/// when it ends (verify.h). So candidates follow from the state in which a step begins.
 #pragma once
 
 #include <array>
@@ -18,18 +19,24 @@ class CandidateSearch {
  public:
   explicit CandidateSearch(const simd::Table& table) : table_(table) {}
 
-  /// Where wide boxes no longer hold: renews them, refits all trees, and finds the candidates.
-  void find(ContactPoints& points, Candidates& candidates);
+  /// Of an interval. Returns whether candidates have other places than before.
+  bool find(ContactPoints& points, Candidates& candidates);
   /// Adds candidates of a triangle of the cloth within a box of its own.
-  void find_beside(const ContactPoints& points, std::uint32_t triangle, const Box& box,
+  void find_beside(ContactPoints& points, std::uint32_t triangle, const Box& box,
                    Candidates& candidates) const;
-  std::size_t bytes() const { return has_moved_.capacity(); }
+  std::size_t bytes() const;
 
  private:
-  bool still_holds(ContactPoints& points);
+  void find_all(ContactPoints& points, SurfacePair pair, Candidates& candidates);
+  void find_owners(const ContactSurface& cloth);
+  std::uint32_t owner(const Pair& pair) const;
+  bool renew(ContactPoints& points, Candidates& candidates);
 
   const simd::Table& table_;
-  std::vector<std::uint8_t> has_moved_;  // per slot, out of its wide box; scratch
+  BoxTree seen_cloth_;                                         // in coordinates of a body; scratch
+  std::vector<std::uint32_t> owner_of_edge_, owner_of_point_;  // triangles of the cloth
+  std::vector<std::uint8_t> has_moved_;   // per slot, out of its wide box; scratch
+  std::vector<std::uint8_t> is_renewed_;  // per triangle of the cloth; scratch
 };
 
 }  // namespace weft

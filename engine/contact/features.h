@@ -32,21 +32,44 @@ struct Pair {
 struct PairList {
   std::vector<Pair> pairs;
   kernels::AlignedVector<simd::PairBlock> blocks;
+  std::vector<std::uint16_t> used;  // per block, a bit per lane: others were left out, or are not
+                                    // there yet
+  std::size_t left_out = 0;
 
   void clear() {
     pairs.clear();
     blocks.clear();
+    used.clear();
+    left_out = 0;
   }
   std::size_t size() const { return pairs.size(); }
   void add(const Pair& pair, const std::array<std::uint32_t, 4>& points) {
-    const std::size_t lane = pairs.size() % kernels::kLanes;
-    if (lane == 0) blocks.emplace_back();
-    for (std::size_t k = 0; k < 4; ++k) {
-      // Lanes that are not used yet repeat this one.
-      for (std::size_t i = lane; i < (lane == 0 ? kernels::kLanes : lane + 1); ++i)
-        blocks.back().point[k][i] = points[k];
+    const std::size_t at = pairs.size(), lane = at % kernels::kLanes;
+    if (lane == 0) {
+      blocks.emplace_back();
+      used.push_back(0);
     }
-    pairs.push_back(pair);
+    pairs.emplace_back();
+    put(at, pair, points);
+    if (lane == 0) repeat(at);
+    used.back() = static_cast<std::uint16_t>(used.back() | 1u << lane);
+  }
+  /// Leaves out those of which leaves_out(pair). Where most are gone the others move up: returns
+  /// whether they did.
+  template <class LeavesOut>
+  bool leave_out(LeavesOut&& leaves_out) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (!is_used(i) || !leaves_out(pairs[i])) continue;
+      std::uint16_t& lanes = used[i / kernels::kLanes];
+      lanes = static_cast<std::uint16_t>(lanes & ~(1u << i % kernels::kLanes));
+      ++left_out;
+    }
+    if (2 * left_out <= pairs.size()) return false;
+    move_up();
+    return true;
+  }
+  bool is_used(std::size_t i) const {
+    return (used[i / kernels::kLanes] >> i % kernels::kLanes & 1) != 0;
   }
   std::array<std::uint32_t, 4> points(std::size_t i) const {
     const simd::PairBlock& block = blocks[i / kernels::kLanes];
@@ -54,7 +77,35 @@ struct PairList {
     return {block.point[0][lane], block.point[1][lane], block.point[2][lane], block.point[3][lane]};
   }
   std::size_t bytes() const {
-    return pairs.capacity() * sizeof(Pair) + blocks.capacity() * sizeof(simd::PairBlock);
+    return pairs.capacity() * sizeof(Pair) + blocks.capacity() * sizeof(simd::PairBlock) +
+           used.capacity() * sizeof(used[0]);
+  }
+
+ private:
+  void put(std::size_t at, const Pair& pair, const std::array<std::uint32_t, 4>& points) {
+    pairs[at] = pair;
+    for (std::size_t k = 0; k < 4; ++k)
+      blocks[at / kernels::kLanes].point[k][at % kernels::kLanes] = points[k];
+  }
+  /// In lanes after this one, which are not used yet.
+  void repeat(std::size_t at) {
+    for (auto& lanes : blocks[at / kernels::kLanes].point) {
+      for (std::size_t i = at % kernels::kLanes + 1; i < kernels::kLanes; ++i)
+        lanes[i] = lanes[at % kernels::kLanes];
+    }
+  }
+  void move_up() {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (is_used(i)) put(count++, pairs[i], points(i));
+    }
+    pairs.resize(count);
+    blocks.resize((count + kernels::kLanes - 1) / kernels::kLanes);
+    used.assign(blocks.size(), 0xffff);
+    left_out = 0;
+    if (count % kernels::kLanes == 0) return;
+    repeat(count - 1);
+    used.back() = static_cast<std::uint16_t>((1u << count % kernels::kLanes) - 1);
   }
 };
 

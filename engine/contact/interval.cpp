@@ -45,8 +45,9 @@ bool SurfaceContacts::still_holds(const ContactParticles& particles, const BodyC
 void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyClock& clock,
                                      int substeps, Team& team) {
   points_.begin_interval(particles, clock, substeps);
-  search_.find(points_, candidates_);
-  near_search_.measure(points_, candidates_, team);
+  const bool have_moved = search_.find(points_, candidates_);
+  if (is_new_ || tangles_.any()) points_.activate_all();
+  near_search_.measure(points_, candidates_, have_moved, team);
   if (is_new_) tangles_.find(points_);
   is_new_ = false;
   near_search_.find(points_, candidates_, tangles_, near_);
@@ -63,7 +64,7 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
                                    Team& team) {
   if (empty() || clock.stands() || !clock.is_interval_over() || interval_ == 0) return false;
   const ContactScene scene = this->scene(particles, clock);
-  points_.measure_moves(particles, clock);
+  points_.measure_moves(particles);
   late_depth_ = 0;
   bool has_moved = push_late_apart(scene, team);
   verification_.find(scene, search_, near_search_, candidates_, team);
@@ -77,7 +78,10 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
       tangles_.take_in(points_, candidates_[failure.list].pairs[failure.pair]);
   }
   // Only tangles, and what had to be stopped, lead others through a body.
-  if (tangles_.any() || has_failed) tangles_.find_crossing_at_end(points_);
+  if (tangles_.any() || has_failed) {
+    points_.activate_all();
+    tangles_.find_crossing_at_end(points_);
+  }
   if (!has_moved) return false;
   verification_.find_late(scene, near_search_, candidates_, team);
   for (const Failure& late : verification_.failures())
@@ -114,7 +118,7 @@ void SurfaceContacts::expect_failures(const ContactScene& scene) {
     const Vector normal = look(later, pair, points_.starts_of(four)).normal;
     if (is_known) {
       near.set_normal(known, normal);
-      near.states[known].is_under = false;
+      near.set_under(known, false);
     } else {
       near.add(pair, four, normal, later.thickness, false);
       any = true;
@@ -167,7 +171,8 @@ std::size_t SurfaceContacts::bytes() const {
                       tangles_.bytes() + bytes_of(impulses_.of_body);
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
-    bytes += near.list.bytes() + bytes_of(near.sides) + bytes_of(near.states);
+    bytes +=
+        near.list.bytes() + bytes_of(near.sides) + bytes_of(near.states) + bytes_of(near.turned);
   return bytes;
 }
 

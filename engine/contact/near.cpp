@@ -1,6 +1,7 @@
 #include "engine/contact/near.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "engine/bytes_of.h"
 #include "engine/contact/look.h"
@@ -12,6 +13,9 @@ using kernels::kLanes;
 using kernels::Vector;
 
 namespace {
+
+/// Of a distance in floats: as in find_moved_pairs (kernels/simd/distances.h).
+constexpr float kSurely = 0.95f;
 
 using Four = std::array<std::uint32_t, 4>;
 
@@ -66,25 +70,73 @@ Seen see(ContactPoints& points, const Pair& pair, const Four& four, bool is_insi
 
 }  // namespace
 
-void NearSearch::measure(const ContactPoints& points, const Candidates& candidates, Team& team) {
+simd::PairMeasure NearSearch::measure_of(const ContactPoints& points, const PairList& pairs,
+                                         Distances& distances) const {
+  return {.pairs = pairs.blocks.data(),
+          .points = points.starts(),
+          .ways = points.ways(),
+          .reach = static_cast<float>(points.largest_thickness() + points.largest_reach()),
+          .beyond = static_cast<float>(tuning::kContactBeyond),
+          .distance = reinterpret_cast<float(*)[kLanes]>(distances.distance.data()),
+          .near = distances.near.data()};
+}
+
+void NearSearch::measure_block(const simd::PairMeasure& measure, std::size_t list,
+                               const PairList& pairs, std::size_t block) {
+  Distances& d = distances_[list];
+  table_.measure_pairs(measure, has_edges(list), block, block + 1);
+  d.near[block] = static_cast<std::uint16_t>(d.near[block] & pairs.used[block]);
+  float least = d.distance[block][0];
+  for (const float distance : d.distance[block]) least = std::min(least, distance);
+  d.least[block] = kSurely * least + travelled_;
+  d.sleeps[block] = 0;
+}
+
+void NearSearch::measure(const ContactPoints& points, const Candidates& candidates, bool have_moved,
+                         Team& team) {
+  travelled_ = have_moved ? 0 : travelled_ + (1 + 0x1p-20f) * points.travelled();
   for (std::size_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
-    Distances& to = distances_[list];
-    to.resize(pairs.blocks.size());
-    simd::PairMeasure measure{
-        .pairs = pairs.blocks.data(),
-        .points = points.starts(),
-        .ways = points.ways(),
-        .reach = static_cast<float>(points.largest_thickness() + points.largest_reach()),
-        .beyond = static_cast<float>(tuning::kContactBeyond),
-        .distance = reinterpret_cast<float(*)[kLanes]>(to.distance.data()),
-        .near = to.near.data()};
+    Distances& d = distances_[list];
+    d.resize(pairs.blocks.size());
+    const simd::PairMeasure measure = measure_of(points, pairs, d);
+    const float near = travelled_ + measure.reach + points.largest_way() + 4 * points.rounding();
+    const std::size_t known = have_moved ? 0 : d.count / kLanes;
     team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
-      table_.measure_pairs(measure, has_edges(list), first, last);
+      for (std::size_t block = first; block < last; ++block) {
+        if (block < known && d.least[block] > near) {
+          d.near[block] = 0;
+          d.sleeps[block] = 1;
+        } else {
+          measure_block(measure, list, pairs, block);
+        }
+      }
     });
-    if (pairs.size() % kLanes != 0)
-      to.near.back() =
-          static_cast<std::uint16_t>(to.near.back() & ((1u << pairs.size() % kLanes) - 1));
+    d.count = pairs.size();
+  }
+}
+
+void NearSearch::wake(const ContactPoints& points, const Candidates& candidates, std::size_t list,
+                      std::size_t block) {
+  if (distances_[list].sleeps[block] == 0) return;
+  measure_block(measure_of(points, candidates[list], distances_[list]), list, candidates[list],
+                block);
+}
+
+void NearSearch::measure_new(const ContactPoints& points, const Candidates& candidates,
+                             Team& team) {
+  for (std::size_t list = 0; list < kPairLists; ++list) {
+    const PairList& pairs = candidates[list];
+    Distances& d = distances_[list];
+    if (d.count == pairs.size()) continue;
+    d.resize(pairs.blocks.size());
+    const simd::PairMeasure measure = measure_of(points, pairs, d);
+    const std::size_t known = d.count / kLanes;
+    team.for_each_share(pairs.blocks.size() - known, [&](std::size_t first, std::size_t last) {
+      for (std::size_t block = known + first; block < known + last; ++block)
+        measure_block(measure, list, pairs, block);
+    });
+    d.count = pairs.size();
   }
 }
 
@@ -93,24 +145,27 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
   for (std::size_t list = 0; list < kPairLists; ++list) {
     near[list].clear();
     const PairList& pairs = candidates[list];
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if ((distances_[list].near[i / kLanes] >> i % kLanes & 1) == 0) continue;
-      const Pair& pair = pairs.pairs[i];
-      const Four four = pairs.points(i);
-      const bool is_inside = tangles.is_inside(four);
-      // Faces and edges between particles that are inside follow these.
-      const bool is_of_particle = pair.kind == PairKind::point_triangle && !pair.is_turned();
-      if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) continue;
-      const Seen seen = see(points, pair, four, is_inside);
-      if (!seen.is_near) continue;
-      near[list].add(pair, four, seen.normal, points.later(pair).thickness, seen.is_under);
+    for (std::size_t block = 0; block < distances_[list].near.size(); ++block) {
+      for (std::uint32_t bits = distances_[list].near[block]; bits != 0; bits &= bits - 1) {
+        const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
+        const Pair& pair = pairs.pairs[i];
+        const Four four = pairs.points(i);
+        const bool is_inside = tangles.is_inside(four);
+        // Faces and edges between particles that are inside follow these.
+        const bool is_of_particle = pair.kind == PairKind::point_triangle && !pair.is_turned();
+        if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) continue;
+        const Seen seen = see(points, pair, four, is_inside);
+        if (!seen.is_near) continue;
+        near[list].add(pair, four, seen.normal, points.later(pair).thickness, seen.is_under);
+      }
     }
   }
 }
 
 std::size_t NearSearch::bytes() const {
   std::size_t bytes = 0;
-  for (const Distances& d : distances_) bytes += bytes_of(d.distance) + bytes_of(d.near);
+  for (const Distances& d : distances_)
+    bytes += bytes_of(d.distance) + bytes_of(d.near) + bytes_of(d.least) + bytes_of(d.sleeps);
   return bytes;
 }
 

@@ -8,11 +8,16 @@ using kernels::Vector;
 void NearPairs::add(const Pair& pair, const std::array<std::uint32_t, 4>& points, Vector normal,
                     double thickness, bool is_under) {
   const std::size_t lane = list.size() % kLanes;
-  if (lane == 0) sides.emplace_back();
+  if (lane == 0) {
+    sides.emplace_back();
+    turned.push_back(0);
+  }
   list.add(pair, points);
   sides.back().used |= 1u << lane;
   sides.back().thickness[lane] = static_cast<float>(thickness);
-  states.push_back({.is_under = is_under});
+  if (pair.is_turned()) turned.back() = static_cast<std::uint16_t>(turned.back() | 1u << lane);
+  states.push_back({});
+  set_under(list.size() - 1, is_under);
   set_normal(list.size() - 1, normal);
 }
 

@@ -13,7 +13,6 @@ namespace weft {
 
 /// A near pair, and what its touch has done in the present substep.
 struct NearState {
-  bool is_under = false;     // one is on the wrong side of the other
   bool is_touching = false;  // in this substep
   double push = 0;           // m, along the normal, in this substep
   reference::Grip grip{};
@@ -24,11 +23,13 @@ struct NearPairs {
   PairList list;
   kernels::AlignedVector<simd::PairSide> sides;  // per block
   std::vector<NearState> states;                 // per pair
+  std::vector<std::uint16_t> turned;             // per block, a bit per lane: Pair::is_turned()
 
   void clear() {
     list.clear();
     sides.clear();
     states.clear();
+    turned.clear();
   }
   void add(const Pair& pair, const std::array<std::uint32_t, 4>& points, kernels::Vector normal,
            double thickness, bool is_under);
@@ -36,9 +37,20 @@ struct NearPairs {
   std::size_t find(const Pair& pair) const {
     return static_cast<std::size_t>(std::ranges::find(list.pairs, pair) - list.pairs.begin());
   }
+  /// Whether one is on the wrong side of the other.
+  bool is_under(std::size_t i) const { return (sides[i / kernels::kLanes].used & under(i)) != 0; }
+  void set_under(std::size_t i, bool is_under) {
+    std::uint32_t& used = sides[i / kernels::kLanes].used;
+    used = is_under ? used | under(i) : used & ~under(i);
+  }
   /// From the second feature to the first, as last seen there.
   kernels::Vector normal(std::size_t i) const;
   void set_normal(std::size_t i, kernels::Vector normal);
+
+ private:
+  static std::uint32_t under(std::size_t i) {
+    return std::uint32_t{1} << (kernels::kLanes + i % kernels::kLanes);
+  }
 };
 using Near = std::array<NearPairs, kPairLists>;
 

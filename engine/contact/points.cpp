@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/tuning.h"
@@ -28,31 +29,48 @@ Box box_around(Vector a, Vector b, double reach) {
           {high(a.x, b.x), high(a.y, b.y), high(a.z, b.z)}};
 }
 
+/// Of two, that is not less.
+float next_power(double x) {
+  int exponent = 0;
+  std::frexp(x, &exponent);
+  return std::ldexp(1.f, exponent);
+}
+
+bool is_same(const reference::Placement& a, const reference::Placement& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z && a.centre == b.centre;
+}
+
 }  // namespace
 
 void ContactPoints::begin(const BodyClock& clock) {
   slots_ = model_.slots();
   largest_thickness_ = 0;
+  has_wide_boxes_ = false;
   surface_pairs_.clear();
   std::size_t points = slots_, count = 1;
   for (std::size_t body = 0; body < clock.bodies().size(); ++body) {
     if (clock.bodies()[body].shape->mesh() == nullptr) continue;
     add_cloth();
     ContactSurface& surface = surface_for(clock, body, count);
-    surface.first_point = static_cast<std::uint32_t>(points);
+    if (std::exchange(surface.first_point, static_cast<std::uint32_t>(points)) != points)
+      surface.placing = 0;
     points += clock.bodies()[body].from.size();
     surface_pairs_.push_back({kClothSurface, static_cast<std::uint16_t>(count)});
     ++count;
   }
   if (surface_pairs_.empty()) count = 0;
-  has_wide_boxes_ = has_wide_boxes_ && count == surfaces_.size();
   surfaces_.resize(count);
   if (count == 0) return;
   for (auto* vectors : {&start_, &end_}) vectors->resize(points);
-  for (auto* vectors : {&from_, &to_}) vectors->resize(points - slots_);
+  for (auto* vectors : {&substep_from_, &substep_to_}) vectors->resize(points - slots_);
   for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->resize(4 * points);
   box_.resize(points);
   wide_box_.resize(points);
+  widened_.assign(points - slots_, 0);
+  widenings_ = 0;
+  placed_.resize(points - slots_);
+  is_active_.assign(points - slots_, 0);
+  active_.clear();
   surface_of_.clear();
   for (std::uint16_t i = 1; i < count; ++i) {
     const std::size_t vertices = clock.bodies()[surfaces_[i].body].from.size();
@@ -80,135 +98,205 @@ ContactSurface& ContactPoints::surface_for(const BodyClock& clock, std::size_t b
     surface.two_sided = mesh.two_sided;
     surface.tree = BoxTree(mesh.surface.in_order);
     surface.shape = b.shape;
-    has_wide_boxes_ = false;
+    surface.is_rigid = false;
+    surface.placing = 0;
   }
+  if (std::exchange(surface.thickness, b.thickness) != b.thickness) surface.placing = 0;
+  take_vertices(surface, b);
   surface.body = static_cast<std::uint32_t>(body);
-  surface.thickness = b.thickness;
   surface.friction = clock.motions()[body].friction;
   largest_thickness_ = std::max(largest_thickness_, b.thickness);
   return surface;
 }
 
-/// Whether bodies are where they were when the last interval began.
-void ContactPoints::note_moves(const BodyClock& clock) {
-  const double share = clock.share_after(0);
-  for (ContactSurface& surface : of_bodies()) {
-    const TravellingBody& body = clock.bodies()[surface.body];
-    const reference::Placement at = body.travel.at(share);
-    surface.has_moved = false;
-    for (std::size_t i = 0; i < body.from.size() && !surface.has_moved; ++i) {
-      const Vector d = clock.vertex(surface.body, i, at, share) - start_[surface.first_point + i];
-      surface.has_moved = dot(d, d) > 0;
-    }
+/// A tree in coordinates of the body is made when it begins to keep its shape.
+void ContactPoints::take_vertices(ContactSurface& surface, const TravellingBody& body) {
+  const Vector* of_shape = surface.shape->mesh()->vertices.data();
+  const bool is_rigid = body.from.data() == of_shape && body.to.data() == of_shape;
+  surface.from = body.from;
+  surface.to = body.to;
+  if (is_rigid && surface.is_rigid) return;
+  surface.is_rigid = is_rigid;
+  surface.farthest = surface.longest = 0;
+  for (std::size_t i = 0; i < body.from.size(); ++i) {
+    const Vector way = body.to[i] - body.from[i];
+    surface.farthest = std::max(surface.farthest, dot(body.from[i], body.from[i]));
+    surface.longest = std::max(surface.longest, dot(way, way));
   }
-}
-
-/// Of all bodies, when some substeps from now are over.
-void ContactPoints::place_vertices(const BodyClock& clock, int substeps,
-                                   std::vector<Vector>& to) const {
-  const double share = clock.share_after(substeps);
-  for (const ContactSurface& surface : of_bodies()) {
-    const TravellingBody& body = clock.bodies()[surface.body];
-    const reference::Placement at = body.travel.at(share);
-    for (std::size_t i = 0; i < body.from.size(); ++i)
-      to[surface.first_point + i] = clock.vertex(surface.body, i, at, share);
-  }
+  surface.farthest = std::sqrt(surface.farthest);
+  surface.longest = std::sqrt(surface.longest);
+  if (!is_rigid) return;
+  surface.tree.refit([&](std::uint32_t t) {
+    Box box = Box::none();
+    for (const std::uint32_t point : surface.triangles->triangles[t])
+      box.add(box_around(body.from[point], body.from[point], 0));
+    return box;
+  });
 }
 
 void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyClock& clock,
                                    int substeps) {
-  note_moves(clock);
-  place_vertices(clock, 0, start_);
-  place_vertices(clock, substeps, end_);
+  const double before = std::exchange(from_, clock.share_after(0));
+  to_ = clock.share_after(substeps);
+  until_ = clock.share_after(clock.substeps_left());
+  intervals_left_ = static_cast<double>(clock.substeps_left()) / substeps;
   Vector sum{};
-  double particles = 0;
+  double particles = 0, travelled = 0;
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
     if (!model_.is_particle(slot)) continue;
     const Vector x = cloth.position(slot);
-    start_[slot] = clock.stands() ? x : cloth.start(slot);
+    const Vector start = clock.stands() ? x : cloth.start(slot), by = start - start_[slot];
+    travelled = std::max(travelled, dot(by, by));
+    start_[slot] = start;
     end_[slot] = start_[slot] + substeps * (x - start_[slot]);
     sum = sum + start_[slot];
     ++particles;
   }
   const Vector origin = rounded((1 / std::max(1.0, particles)) * sum);
-  has_wide_boxes_ = has_wide_boxes_ && length(origin - origin_) == 0;
+  bool are_floats_same = origin == origin_;
+  has_wide_boxes_ = has_wide_boxes_ && are_floats_same;
   origin_ = origin;
   double farthest = 0;
-  for (std::size_t point = 0; point < start_.size(); ++point) {
-    const Vector from = start_[point] - origin_;
-    if (point < slots_) farthest = std::max(farthest, dot(from, from));
-    write(start_quads_, point, from);
-    write(way_quads_, point, end_[point] - start_[point]);
+  for (std::size_t slot = 0; slot < slots_; ++slot) {
+    const Vector from = start_[slot] - origin_;
+    farthest = std::max(farthest, dot(from, from));
+    write_start_and_way(slot);
   }
-  rounding_ = static_cast<float>(0x1p-21 * std::sqrt(farthest));
+  const float rounding = 0x1p-21f * next_power(std::sqrt(farthest));
+  are_floats_same = are_floats_same && rounding == rounding_;
+  rounding_ = rounding;
+  const double step_of_bodies = clock.stands() ? 0 : fastest(clock) * clock.time();
+  way_of_bodies_ = (to_ - from_) * step_of_bodies;
+  travelled_ = std::sqrt(travelled) + (from_ - before) * step_of_bodies;
   find_reach();
-  write_boxes();
-  for (ContactSurface& surface : of_bodies())
-    surface.normals.begin(*surface.triangles, &start_[surface.first_point], !surface.has_moved);
+  for (std::size_t slot = 0; slot < slots_; ++slot) write_box(slot, reach_[slot]);
+  for (ContactSurface& surface : of_bodies()) {
+    const PoseTravel& travel = clock.bodies()[surface.body].travel;
+    const auto before = std::exchange(surface.begins, travel.at(from_));
+    const auto end_before = std::exchange(surface.ends, travel.at(to_));
+    const bool has_moved = !surface.is_rigid || !is_same(before, surface.begins);
+    surface.normals.begin(*surface.triangles, &start_[surface.first_point], !has_moved);
+    if (has_moved || surface.placing == 0 || !are_floats_same || !is_same(end_before, surface.ends))
+      surface.placing = ++placings_;
+    if (!has_wide_boxes_) see_from(surface, travel);
+  }
+  for (const std::uint32_t point : active_) place_vertex(point);
+}
+
+void ContactPoints::see_from(ContactSurface& surface, const PoseTravel& travel) const {
+  surface.seen = {.begins = surface.begins,
+                  .ends = travel.at(until_),
+                  .turn = (until_ - from_) * length(travel.turn()),
+                  .way = (until_ - from_) * length(travel.way()),
+                  .beyond = surface.thickness + 2 * static_cast<double>(rounding_)};
+  for (reference::Placement* at : {&surface.seen.begins, &surface.seen.ends})
+    at->centre = at->centre - origin_;
+}
+
+void ContactPoints::write_start_and_way(std::size_t point) {
+  write(start_quads_, point, start_[point] - origin_);
+  write(way_quads_, point, end_[point] - start_[point]);
+}
+
+void ContactPoints::activate(std::uint16_t surface, std::uint32_t triangle) {
+  ContactSurface& s = surfaces_[surface];
+  if (std::exchange(s.is_near[triangle], std::uint8_t{1}) != 0) return;
+  for (const std::uint32_t corner : s.triangles->triangles[triangle]) {
+    activate_vertex(s.first_point + corner);
+    for (const std::uint32_t other : s.triangles->neighbours[corner])
+      activate_vertex(s.first_point + other);
+  }
+}
+
+void ContactPoints::activate_all() {
+  for (auto point = static_cast<std::uint32_t>(slots_); point < start_.size(); ++point)
+    activate_vertex(point);
+}
+
+void ContactPoints::activate_vertex(std::uint32_t point) {
+  if (std::exchange(is_active_[point - slots_], std::uint8_t{1}) != 0) return;
+  active_.push_back(point);
+  place_vertex(point);
+}
+
+/// In the present interval.
+void ContactPoints::place_vertex(std::uint32_t point) {
+  const ContactSurface& surface = surface_of(point);
+  if (std::exchange(placed_[point - slots_], surface.placing) == surface.placing) return;
+  const std::size_t i = point - surface.first_point;
+  const Vector from = surface.from[i], way = surface.to[i] - from;
+  start_[point] = surface.begins.placed(from + from_ * way);
+  end_[point] = surface.ends.placed(from + to_ * way);
+  write_start_and_way(point);
+  write_box(point, surface.thickness + static_cast<double>(rounding_));
 }
 
 double ContactPoints::fastest(const BodyClock& clock) const {
   double fastest = 0;
   for (const ContactSurface& surface : of_bodies()) {
-    const TravellingBody& body = clock.bodies()[surface.body];
     const reference::BodyMotion& motion = clock.motions()[surface.body];
-    double farthest = 0, longest = 0;
-    for (std::size_t i = 0; i < body.from.size(); ++i) {
-      const Vector way = body.to[i] - body.from[i];
-      farthest = std::max(farthest, dot(body.from[i], body.from[i]));
-      longest = std::max(longest, dot(way, way));
-    }
-    const double by_pose = length(motion.velocity) + length(motion.spin) * std::sqrt(farthest);
-    fastest = std::max(fastest, by_pose + std::sqrt(longest) / clock.time());
+    const double by_pose = length(motion.velocity) + length(motion.spin) * surface.farthest;
+    fastest = std::max(fastest, by_pose + surface.longest / clock.time());
   }
   return fastest;
 }
 
 void ContactPoints::find_reach() {
-  const auto way_of = [&](std::uint32_t point) { return length(way(point)); };
-  double of_bodies = 0;
-  for (auto point = static_cast<std::uint32_t>(slots_); point < start_.size(); ++point)
-    of_bodies = std::max(of_bodies, way_of(point));
   ways_.resize(slots_);
   reach_.resize(slots_);
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) ways_[slot] = reach_[slot] = way_of(slot);
+  largest_way_ = 0;
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
+    ways_[slot] = reach_[slot] = length(way(slot));
+    largest_way_ = std::max(largest_way_, ways_[slot]);
+  }
   for (const auto& [a, b] : cloth().edges) {
     reach_[a] = std::max(reach_[a], ways_[b]);
     reach_[b] = std::max(reach_[b], ways_[a]);
   }
   largest_reach_ = 0;
   for (double& reach : reach_) {
-    reach = tuning::kContactReach * std::max(reach, of_bodies) +
+    reach = tuning::kContactReach * std::max(reach, way_of_bodies_) +
             tuning::kContactSpare * largest_thickness_;
     largest_reach_ = std::max(largest_reach_, reach);
   }
 }
 
-void ContactPoints::write_boxes() {
-  const double rounding = static_cast<double>(rounding_);
-  for (std::size_t point = 0; point < start_.size(); ++point) {
-    const double reach = point < slots_
-                             ? reach_[point]
-                             : surface_of(static_cast<std::uint32_t>(point)).thickness + rounding;
-    box_[point] = box_around(start_[point] - origin_, end_[point] - origin_, reach);
-  }
+void ContactPoints::write_box(std::size_t point, double reach) {
+  box_[point] = box_around(start_[point] - origin_, end_[point] - origin_, reach);
 }
 
-/// If the point goes on as in this interval it holds for kContactWide of them.
-Box ContactPoints::wide_box_around(std::size_t point) const {
-  const Vector from = start_[point] - origin_, way = end_[point] - start_[point];
-  const double spare = tuning::kContactReach * length(way);
-  const double reach = point < slots_ ? tuning::kContactWideReach * reach_[point] +
-                                            tuning::kContactWideSpare * largest_thickness_
-                                      : surface_of(static_cast<std::uint32_t>(point)).thickness +
-                                            2 * static_cast<double>(rounding_);
-  return box_around(from, from + tuning::kContactWide * way, reach + spare);
+/// It holds until the step ends if the point goes on as in this interval.
+Box ContactPoints::wide_box_around(std::uint32_t slot) const {
+  const Vector from = start_[slot] - origin_, way = end_[slot] - start_[slot];
+  const double reach = tuning::kContactReach * length(way) +
+                       tuning::kContactWideReach * reach_[slot] +
+                       tuning::kContactWideSpare * largest_thickness_;
+  return box_around(from, from + intervals_left_ * way, reach);
 }
 
 void ContactPoints::widen_boxes() {
-  for (std::size_t point = 0; point < start_.size(); ++point)
-    wide_box_[point] = wide_box_around(point);
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) wide_box_[slot] = wide_box_around(slot);
+  ++widenings_;
+  widened_from_ = from_;
+  for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
+  active_.clear();
+  for (ContactSurface& surface : of_bodies())
+    surface.is_near.assign(surface.triangles->triangles.size(), 0);
   has_wide_boxes_ = true;
+}
+
+/// A vertex stays within an eighth of the square of a turn, and what it does beside, of the line
+/// between its ends.
+void ContactPoints::widen_vertex(std::uint32_t point) {
+  const ContactSurface& surface = surface_of(point);
+  const std::size_t i = point - surface.first_point;
+  const Vector way = surface.to[i] - surface.from[i];
+  const Vector a = surface.from[i] + widened_from_ * way, b = surface.from[i] + until_ * way;
+  const SeenFromBody& seen = surface.seen;
+  const double far = std::max(length(a), length(b));
+  const double beyond = (seen.turn * far + 2 * length(b - a)) * seen.turn / 8;
+  wide_box_[point] = box_around(seen.begins.placed(a), seen.ends.placed(b), seen.beyond + beyond);
+  widened_[point - slots_] = widenings_;
 }
 
 void ContactPoints::place_vertices_asked(const BodyClock& clock) {
@@ -217,9 +305,11 @@ void ContactPoints::place_vertices_asked(const BodyClock& clock) {
     const ContactSurface& surface = surface_of(point);
     const reference::BodyMotion& motion = clock.motions()[surface.body];
     const std::uint32_t vertex = point - surface.first_point;
-    from_[point - slots_] = clock.vertex(surface.body, vertex, motion.from, clock.share_after(-1));
-    to_[point - slots_] = clock.vertex(surface.body, vertex, motion.to, clock.share_after(0));
-    set_place(point, to_[point - slots_]);
+    substep_from_[point - slots_] =
+        clock.vertex(surface.body, vertex, motion.from, clock.share_after(-1));
+    substep_to_[point - slots_] =
+        clock.vertex(surface.body, vertex, motion.to, clock.share_after(0));
+    set_place(point, to(point));
   }
 }
 
@@ -229,13 +319,19 @@ void ContactPoints::read_cloth(const ContactParticles& cloth) {
   }
 }
 
-void ContactPoints::measure_moves(const ContactParticles& cloth, const BodyClock& clock) {
-  place_vertices(clock, 0, end_);
+void ContactPoints::measure_moves(const ContactParticles& cloth) {
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (model_.is_particle(slot)) end_[slot] = cloth.position(slot);
+    if (model_.is_particle(slot)) set_end(slot, cloth.position(slot));
   }
-  for (std::size_t point = 0; point < start_.size(); ++point)
-    write(way_quads_, point, end_[point] - start_[point]);
+}
+
+float ContactPoints::largest_move() const {
+  double largest = 0;
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
+    const Vector by = way(slot);
+    largest = std::max(largest, dot(by, by));
+  }
+  return static_cast<float>(std::sqrt(largest) + way_of_bodies_);
 }
 
 bool ContactPoints::holds_end(std::uint32_t point) const { return holds(point, end_[point]); }
@@ -270,9 +366,10 @@ std::size_t ContactPoints::bytes() const {
                       bytes_of(start_) + bytes_of(end_) + bytes_of(reach_) + bytes_of(ways_) +
                       bytes_of(box_) + bytes_of(wide_box_) + bytes_of(start_quads_) +
                       bytes_of(way_quads_) + bytes_of(place_quads_) + bytes_of(asked_) +
-                      bytes_of(from_) + bytes_of(to_);
+                      bytes_of(substep_from_) + bytes_of(substep_to_) + bytes_of(widened_) +
+                      bytes_of(placed_) + bytes_of(active_) + bytes_of(is_active_);
   for (const ContactSurface& surface : surfaces_)
-    bytes += surface.tree.bytes() + surface.normals.bytes();
+    bytes += surface.tree.bytes() + surface.normals.bytes() + bytes_of(surface.is_near);
   return bytes;
 }
 

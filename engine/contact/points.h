@@ -45,9 +45,12 @@ class ContactPoints {
     return largest;
   }
 
-  /// Of an interval, whose first substep is predicted. All that follows from it does so from the
-  /// state alone, whatever was looked for before.
+  /// Of an interval, whose first substep is predicted. Of bodies those vertices are placed that are
+  /// active: those that candidates have, and their neighbours.
   void begin_interval(const ContactParticles& cloth, const BodyClock& clock, int substeps);
+  /// The triangle of a body has candidates: its vertices are active until boxes are widened anew.
+  void activate(std::uint16_t surface, std::uint32_t triangle);
+  void activate_all();
   /// m, that a point may come off the way that it is expected to take: a share of the ways that its
   /// neighbours take, and that bodies do, for these may take it along.
   double reach(std::uint32_t point) const { return point < slots_ ? reach_[point] : 0; }
@@ -55,28 +58,37 @@ class ContactPoints {
   kernels::Vector way(std::uint32_t point) const { return end_[point] - start_[point]; }
   /// m/s, of the vertices in this step, at most.
   double fastest(const BodyClock& clock) const;
+  /// m, that a point of the cloth and one of a body may be expected to move beside each other, at
+  /// most: in the interval, and since the last one began.
+  float largest_way() const { return static_cast<float>(largest_way_ + way_of_bodies_); }
+  float travelled() const { return static_cast<float>(travelled_); }
+  /// m, that they have moved in the interval, once moves are measured.
+  float largest_move() const;
   double largest_thickness() const { return largest_thickness_; }
   kernels::Vector origin() const { return origin_; }
   /// Where the point was when the interval began.
   kernels::Vector start(std::uint32_t point) const { return start_[point]; }
   /// What holds all places that it is expected to come to in the interval.
   const Box& box(std::uint32_t point) const { return box_[point]; }
-  /// What held those of some intervals when candidates were looked for.
-  const Box& wide_box(std::uint32_t point) const { return wide_box_[point]; }
-  Box wide_box(const TriangleSurface::Triangle& points) const {
-    Box box = wide_box_[points[0]];
-    box.add(wide_box_[points[1]]);
-    box.add(wide_box_[points[2]]);
+  /// What holds those of all intervals until the step ends, as far as it was known when candidates
+  /// were looked for. Those of vertices are made when they are first asked for.
+  const Box& wide_box(std::uint32_t point) {
+    if (point >= slots_ && widened_[point - slots_] != widenings_) widen_vertex(point);
+    return wide_box_[point];
+  }
+  Box wide_box(const TriangleSurface::Triangle& points) {
+    Box box = wide_box(points[0]);
+    box.add(wide_box(points[1]));
+    box.add(wide_box(points[2]));
     return box;
   }
   bool has_wide_boxes() const { return has_wide_boxes_; }
   void widen_boxes();
-  /// Renews those of cloth that hold no longer; moved(slot), of each. Returns whether those of
-  /// bodies do.
+  /// Renews those of cloth that hold no longer; moved(slot), of each.
   template <class Moved>
-  bool widen_boxes_of_cloth(Moved&& moved);
-  /// They hold no longer.
-  void forget_wide_boxes() { has_wide_boxes_ = false; }
+  void renew_wide_boxes(Moved&& moved);
+  /// It holds no longer.
+  void forget_wide_box(std::uint32_t slot) { wide_box_[slot] = Box::none(); }
   /// In quads, from the origin.
   const float* starts() const { return start_quads_.data(); }
   const float* ways() const { return way_quads_.data(); }
@@ -94,8 +106,8 @@ class ContactPoints {
     write(place_quads_, point, x - origin_);
   }
   /// Of a vertex that was asked for, where the substep begins and ends.
-  kernels::Vector from(std::uint32_t point) const { return from_[point - slots_]; }
-  kernels::Vector to(std::uint32_t point) const { return to_[point - slots_]; }
+  kernels::Vector from(std::uint32_t point) const { return substep_from_[point - slots_]; }
+  kernels::Vector to(std::uint32_t point) const { return substep_to_[point - slots_]; }
 
   /// Where any vertex is when the present substep ends.
   kernels::Vector vertex_now(const BodyClock& clock, std::uint32_t point) const {
@@ -104,8 +116,8 @@ class ContactPoints {
                         clock.share_after(0));
   }
 
-  /// From the start of the interval to now, of all points, in quads.
-  void measure_moves(const ContactParticles& cloth, const BodyClock& clock);
+  /// From the start of the interval to now, in quads. Vertices have moved as they were to.
+  void measure_moves(const ContactParticles& cloth);
   const float* moves() const { return way_quads_.data(); }
   /// Where a point is now, once moves are measured.
   kernels::Vector end(std::uint32_t point) const { return end_[point]; }
@@ -145,11 +157,15 @@ class ContactPoints {
   void add_cloth();
   ContactSurface& surface_for(const BodyClock& clock, std::size_t body, std::size_t place);
   bool holds(std::uint32_t point, kernels::Vector place) const;
-  void note_moves(const BodyClock& clock);
-  void place_vertices(const BodyClock& clock, int substeps, std::vector<kernels::Vector>& to) const;
-  Box wide_box_around(std::size_t point) const;
+  static void take_vertices(ContactSurface& surface, const TravellingBody& body);
+  void see_from(ContactSurface& surface, const PoseTravel& travel) const;
+  void activate_vertex(std::uint32_t point);
+  void place_vertex(std::uint32_t point);
+  void write_start_and_way(std::size_t point);
+  Box wide_box_around(std::uint32_t slot) const;
+  void widen_vertex(std::uint32_t point);
   void find_reach();
-  void write_boxes();
+  void write_box(std::size_t point, double reach);
 
   const Model& model_;
   std::size_t slots_ = 0;
@@ -158,27 +174,33 @@ class ContactPoints {
   std::vector<std::uint16_t> surface_of_;  // per vertex
   kernels::Vector origin_{};
   double largest_reach_ = 0, largest_thickness_ = 0;
+  double largest_way_ = 0, way_of_bodies_ = 0, travelled_ = 0;  // m
   float rounding_ = 0;
   std::vector<kernels::Vector> start_, end_;
   std::vector<double> reach_, ways_;  // per slot
   std::vector<Box> box_, wide_box_;
   bool has_wide_boxes_ = false;
+  double intervals_left_ = 1;             // of the step, the present one included
+  double from_ = 0, to_ = 0, until_ = 0;  // shares of the step: of the interval, and to its end
+  double widened_from_ = 0;               // likewise: when boxes were widened
+  std::uint32_t widenings_ = 0;
+  std::vector<std::uint32_t> widened_;  // per vertex: in which its wide box was made
+  std::uint32_t placings_ = 0;
+  std::vector<std::uint32_t> placed_;    // per vertex: ContactSurface::placing when it was placed
+  std::vector<std::uint32_t> active_;    // vertices
+  std::vector<std::uint8_t> is_active_;  // per vertex
   kernels::AlignedVector<float> start_quads_, way_quads_, place_quads_;
   std::vector<std::uint32_t> asked_;
-  std::vector<kernels::Vector> from_, to_;  // per vertex
+  std::vector<kernels::Vector> substep_from_, substep_to_;  // per vertex that was asked for
 };
 
 template <class Moved>
-bool ContactPoints::widen_boxes_of_cloth(Moved&& moved) {
-  for (std::size_t point = slots_; point < box_.size(); ++point) {
-    if (!wide_box_[point].holds(box_[point])) return false;
-  }
+void ContactPoints::renew_wide_boxes(Moved&& moved) {
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
     if (wide_box_[slot].holds(box_[slot])) continue;
     wide_box_[slot] = wide_box_around(slot);
     moved(slot);
   }
-  return true;
 }
 
 }  // namespace weft

@@ -14,14 +14,16 @@ using kernels::Vector;
 /// Its points where the substep began and where they are, and how it stands to its thickness.
 struct Response::Encounter {
   std::array<std::uint32_t, 4> points{};
-  std::array<ContactParticle, 4> at{};
-  FourPoints start{}, x{};
+  FourPoints start{}, x{};  // start: once it is read
   reference::Nearest nearest{};
   Vector normal{};        // from the second feature to the first, where both were on their sides
   double gap = 0;         // m
   bool is_under = false;  // one is on the wrong side of the other
   bool pushes = false;
 
+  void read_start(const ContactScene& scene) {
+    for (std::size_t k = 0; k < 4; ++k) start[k] = scene.start(points[k]);
+  }
   FourPoints at_share(double share) const {
     FourPoints there;
     for (std::size_t k = 0; k < 4; ++k) there[k] = start[k] + share * (x[k] - start[k]);
@@ -88,7 +90,8 @@ void Response::begin(const ContactScene& scene, const Near& near) {
   for (const std::uint32_t point : asked_) is_asked_[point] = false;
   asked_.clear();
   for (std::size_t list = 0; list < kPairLists; ++list) {
-    touching_[list].assign(near[list].list.blocks.size(), 0);
+    for (auto* bits : {&touching_[list], &touching_now_[list]})
+      bits->assign(near[list].list.blocks.size(), 0);
     for (std::size_t i = 0; i < near[list].list.size(); ++i) {
       for (const std::uint32_t point : near[list].list.points(i)) {
         if (point >= is_asked_.size()) is_asked_.resize(point + 1);
@@ -116,14 +119,19 @@ void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near
   links_.clear();
 }
 
+simd::PairTouch Response::touch_of(const ContactScene& scene, NearPairs& near,
+                                   std::vector<std::uint16_t>& touching) const {
+  return {.pairs = near.list.blocks.data(),
+          .points = scene.points.places(),
+          .sides = near.sides.data(),
+          .touching = touching.data()};
+}
+
 void Response::find_touching(const ContactScene& scene, Near& near, Team& team) {
   scene.points.read_cloth(scene.particles);
   for (std::size_t list = 0; list < kPairLists; ++list) {
     NearPairs& pairs = near[list];
-    const simd::PairTouch touch{.pairs = pairs.list.blocks.data(),
-                                .points = scene.points.places(),
-                                .sides = pairs.sides.data(),
-                                .touching = touching_[list].data()};
+    const simd::PairTouch touch = touch_of(scene, pairs, touching_[list]);
     team.for_each_share(pairs.list.blocks.size(), [&](std::size_t first, std::size_t last) {
       table_.touch_pairs(touch, has_edges(list), first, last);
     });
@@ -135,17 +143,16 @@ Response::Encounter Response::meet(const ContactScene& scene, const NearPairs& n
                                    std::size_t i) {
   const Pair& pair = near.list.pairs[i];
   Encounter e{.points = near.list.points(i)};
-  for (std::size_t k = 0; k < 4; ++k) {
-    e.at[k] = scene.read(e.points[k]);
-    e.start[k] = e.at[k].start;
-    e.x[k] = e.at[k].x;
-  }
+  for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.place(e.points[k]);
   const double thickness = scene.points.later(pair).thickness;
   e.nearest = nearest(pair.kind, e.x);
+  const Vector side = near.normal(i);
   const double l = length(e.nearest.r);
-  const Vector direct = l > kTouching ? (1 / l) * e.nearest.r : near.normal(i);
-  e.is_under =
-      is_now_under(pair.kind, e, e.nearest.r, near.normal(i), near.states[i].is_under, thickness);
+  const Vector direct = l > kTouching ? (1 / l) * e.nearest.r : side;
+  if (!(dot(e.nearest.r, side) > 0)) {
+    e.read_start(scene);
+    e.is_under = is_now_under(pair.kind, e, e.nearest.r, side, near.is_under(i), thickness);
+  }
   e.normal = e.is_under ? -1.0 * direct : direct;
   e.gap = (e.is_under ? -l : l) - thickness;
   if (!(e.gap < 0) || !is_in_place(pair.kind, e.nearest)) return e;
@@ -158,10 +165,11 @@ Response::Encounter Response::meet(const ContactScene& scene, const NearPairs& n
 bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i) {
   const Pair& pair = near.list.pairs[i];
   NearState& state = near.states[i];
-  const Encounter e = meet(scene, near, i);
-  state.is_under = e.is_under;
+  Encounter e = meet(scene, near, i);
+  near.set_under(i, e.is_under);
   near.set_normal(i, e.normal);
   if (!e.pushes) return false;
+  e.read_start(scene);
   Vector slip{};
   double weight = 0;  // sum of W w^2
   for (std::size_t k = 0; k < 4; ++k) {
@@ -187,11 +195,13 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
   const ContactSurface& later = scene.points.later(pair);
   TouchedSurface surface{.body = later.body};
   Vector relative{}, on_body{};
+  std::array<ContactParticle, 4> at;
   for (std::size_t k = 0; k < 4; ++k) {
     const double w = e.nearest.weight[k], outward = pair.outward() * w;
-    relative = relative + w * e.at[k].v;
+    at[k] = scene.read(e.points[k]);
+    relative = relative + w * at[k].v;
     if (scene.points.is_of_cloth(e.points[k])) continue;
-    surface.velocity = surface.velocity - outward * e.at[k].v;
+    surface.velocity = surface.velocity - outward * at[k].v;
     on_body = on_body - outward * e.x[k];
   }
   const reference::Slowed slow = reference::slow(e.normal, relative, later.friction, grip);
@@ -200,11 +210,12 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
     const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k];
     if (share == 0) continue;
     const double part = share / weight;
-    ContactParticle p = e.at[k];
+    ContactParticle p = at[k];
     p.start = p.start + (part * stop.comes_out) * e.normal;
     p.x = p.x + part * stop.by;
     p.v = p.v + part * slow.change;
     scene.particles.write(e.points[k], p);
+    scene.points.set_place(e.points[k], p.x);
     scene.particles.touch(e.points[k], surface);
     const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
     impulse = impulse + (momentum * part) * slow.change;
@@ -247,17 +258,20 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
   find_touching(scene, near, team);
   double deepest = 0;
   for (std::size_t list = 0; list < kPairLists; ++list) {
-    for_each_touching(list, [&](std::size_t i) {
-      const Encounter e = meet(scene, near[list], i);
-      if (e.pushes) deepest = std::max(deepest, -e.gap);
-    });
+    for (std::size_t block = 0; block < touching_[list].size(); ++block) {
+      for_each_lane(block, touching_[list][block], [&](std::size_t i) {
+        const Encounter e = meet(scene, near[list], i);
+        if (e.pushes) deepest = std::max(deepest, -e.gap);
+      });
+    }
   }
   return deepest;
 }
 
 std::size_t Response::bytes() const {
-  return bytes_of(touching_[0]) + bytes_of(touching_[1]) + bytes_of(asked_) +
-         is_asked_.capacity() / 8 + bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
+  return bytes_of(touching_[0]) + bytes_of(touching_[1]) + bytes_of(touching_now_[0]) +
+         bytes_of(touching_now_[1]) + bytes_of(asked_) + is_asked_.capacity() / 8 +
+         bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
 }
 
 }  // namespace weft

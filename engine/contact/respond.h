@@ -46,15 +46,13 @@ class Response {
  private:
   /// A sweep goes through all pairs of one turn, then through those of the next.
   enum class Turn : std::uint8_t { points, edges, points_of_bodies };
-  static Turn turn_of(const Pair& pair) {
-    if (pair.kind == PairKind::edges) return Turn::edges;
-    return pair.is_turned() ? Turn::points_of_bodies : Turn::points;
-  }
   /// A pair in the present substep.
   struct Encounter;
   static Encounter meet(const ContactScene& scene, const NearPairs& near, std::size_t i);
   template <class Visit>
-  void for_each_touching(std::size_t list, Visit&& visit) const;
+  static void for_each_lane(std::size_t block, std::uint32_t bits, Visit&& visit);
+  simd::PairTouch touch_of(const ContactScene& scene, NearPairs& near,
+                           std::vector<std::uint16_t>& touching) const;
   template <class Moved>
   void push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved);
   /// Returns whether it was pushed apart.
@@ -65,9 +63,10 @@ class Response {
   void remember(const ContactScene& scene, NearPairs& near, std::size_t list, std::size_t i);
 
   const simd::Table& table_;
-  std::array<std::vector<std::uint16_t>, kPairLists> touching_;  // per block, a bit per lane
-  std::vector<std::uint32_t> asked_;                             // points of near pairs
-  std::vector<bool> is_asked_;                                   // per point
+  /// Per block, a bit per lane: when a sweep began, and as of late.
+  std::array<std::vector<std::uint16_t>, kPairLists> touching_, touching_now_;
+  std::vector<std::uint32_t> asked_;  // points of near pairs
+  std::vector<bool> is_asked_;        // per point
   /// Pairs that have touched in this substep, in lists by slot.
   struct Link {
     std::uint32_t list = 0, pair = 0, next = 0;
@@ -77,15 +76,16 @@ class Response {
   std::vector<std::uint32_t> linked_;  // slots
 };
 
-/// visit(i), of each pair of the list that the lanes found.
+/// visit(i), of pairs of the block.
 template <class Visit>
-void Response::for_each_touching(std::size_t list, Visit&& visit) const {
-  for (std::size_t block = 0; block < touching_[list].size(); ++block) {
-    for (std::uint32_t bits = touching_[list][block]; bits != 0; bits &= bits - 1)
-      visit(block * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits)));
-  }
+void Response::for_each_lane(std::size_t block, std::uint32_t bits, Visit&& visit) {
+  for (; bits != 0; bits &= bits - 1)
+    visit(block * kernels::kLanes + static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
+/// Most pairs that touched when the sweep began do so no longer once others were pushed: lanes tell
+/// which do, block by block, and these alone are looked at in double.
+///
 /// Particles first: of a pair that is a mean of several, which a push moves all at once, the
 /// corners are then where they may be, and what lies flat has nothing left to push.
 template <class Moved>
@@ -100,13 +100,22 @@ void Response::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& 
 template <class Moved>
 void Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved) {
   const std::size_t list = turn == Turn::edges ? 1 : 0;
-  for_each_touching(list, [&](std::size_t i) {
-    if (turn_of(near[list].list.pairs[i]) != turn || !resist(scene, near[list], i)) return;
-    remember(scene, near[list], list, i);
-    for (const std::uint32_t point : near[list].list.points(i)) {
-      if (scene.points.is_of_cloth(point)) moved(point, near[list].states[i].push);
-    }
-  });
+  NearPairs& pairs = near[list];
+  const simd::PairTouch touch = touch_of(scene, pairs, touching_now_[list]);
+  for (std::size_t block = 0; block < touching_[list].size(); ++block) {
+    const std::uint32_t turned = pairs.turned[block];
+    const std::uint32_t bits =
+        touching_[list][block] & (turn == Turn::points_of_bodies ? turned : ~turned);
+    if (bits == 0) continue;
+    table_.touch_pairs(touch, has_edges(list), block, block + 1);
+    for_each_lane(block, bits & touching_now_[list][block], [&](std::size_t i) {
+      if (!resist(scene, pairs, i)) return;
+      remember(scene, pairs, list, i);
+      for (const std::uint32_t point : pairs.list.points(i)) {
+        if (scene.points.is_of_cloth(point)) moved(point, pairs.states[i].push);
+      }
+    });
+  }
 }
 
 }  // namespace weft

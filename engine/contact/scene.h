@@ -22,6 +22,14 @@ struct ContactScene {
     const kernels::Vector from = points.from(point), to = points.to(point);
     return {from, to, (1 / clock.h()) * (to - from)};
   }
+  /// Where that is.
+  kernels::Vector place(std::uint32_t point) const {
+    return points.is_of_cloth(point) ? particles.position(point) : points.to(point);
+  }
+  /// And where it was when the substep began.
+  kernels::Vector start(std::uint32_t point) const {
+    return points.is_of_cloth(point) ? particles.start(point) : points.from(point);
+  }
   /// Where any point is when the present substep ends.
   kernels::Vector now(std::uint32_t point) const {
     return points.is_of_cloth(point) ? particles.position(point) : points.vertex_now(clock, point);

@@ -31,6 +31,27 @@ bool leads_through(Vector from, Vector to, const Corners& t) {
   return least >= 0 || most <= 0;
 }
 
+Box box_of(const ContactPoints& points, const Corners& corners) {
+  Box box = Box::none();
+  for (const Vector corner : corners) {
+    const Vector from = corner - points.origin();
+    const std::array<float, 3> place{static_cast<float>(from.x), static_cast<float>(from.y),
+                                     static_cast<float>(from.z)};
+    box.add({place, place});
+  }
+  return box;
+}
+
+/// All corners of one triangle are on one side of the other, farther than what only touches it.
+bool are_beside(const Corners& one, const Corners& other) {
+  const Vector n = cross(other[1] - other[0], other[2] - other[0]);
+  const double touches = kTouching * length(n);
+  const double at[] = {dot(n, one[0] - other[0]), dot(n, one[1] - other[0]),
+                       dot(n, one[2] - other[0])};
+  const auto [least, most] = std::ranges::minmax(at);
+  return least > touches || most < -touches;
+}
+
 bool edges_lead_through(const Corners& edges, const Corners& triangle) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (leads_through(edges[k], edges[(k + 1) % 3], triangle)) return true;
@@ -48,7 +69,8 @@ struct NearestTriangle {
 
 NearestTriangle find_nearest(const ContactPoints& points, std::uint32_t slot, SurfacePair pair) {
   const ContactSurface& surface = points.surfaces()[pair.b];
-  const Vector x = points.start(slot), from = x - points.origin();
+  const Vector x = points.start(slot);
+  const Vector from = surface.is_rigid ? surface.begins.from_place(x) : x - points.origin();
   double least = std::numeric_limits<double>::infinity();
   NearestTriangle found;
   surface.tree.near(
@@ -98,8 +120,9 @@ void Tangles::find(ContactPoints& points) {
   for (std::uint32_t slot = 0; slot < points.slots(); ++slot) {
     if (points.inverse_mass(slot) == 0) continue;
     const bool is_inside = std::ranges::any_of(points.surface_pairs(), [&](SurfacePair pair) {
-      const BoxTree& tree = points.surfaces()[pair.b].tree;
-      return tree.box().meets(points.box(slot)) && find_left_by(points, slot, pair).is_there;
+      const ContactSurface& surface = points.surfaces()[pair.b];
+      return surface.tree.box().meets(surface.as_in_tree(points.box(slot))) &&
+             find_left_by(points, slot, pair).is_there;
     });
     if (is_inside) misplaced_.inside.push_back(slot);
   }
@@ -120,6 +143,83 @@ void Tangles::come_out(ContactPoints& points, Near& near) {
     }
     return is_out;
   });
+  for (const std::uint32_t t : triangles_) come_off(points, t, near);
+}
+
+/// What leads through a triangle whose particles are all out is a corner or an edge of a one-sided
+/// body: it shows the way by its normal. Between two bodies it would lead into the other one.
+void Tangles::come_off(ContactPoints& points, std::uint32_t triangle, Near& near) const {
+  const TriangleSurface::Triangle& t = cloth_->triangles[triangle];
+  if (is_inside(t[0]) || is_inside(t[1]) || is_inside(t[2])) return;
+  const Corners corners{points.start(t[0]), points.start(t[1]), points.start(t[2])};
+  const Box box = box_of(points, corners);
+  const auto bodies = std::ranges::count_if(points.surface_pairs(), [&](SurfacePair pair) {
+    const ContactSurface& body = points.surfaces()[pair.b];
+    bool is_near = false;
+    body.tree.find(table_, body.as_in_tree(box), [&](std::uint32_t) { is_near = true; });
+    return is_near;
+  });
+  if (bodies > 1) return;
+  for (const SurfacePair pair : points.surface_pairs()) {
+    ContactSurface& body = points.surfaces()[pair.b];
+    if (body.two_sided) continue;
+    body.tree.find(table_, body.as_in_tree(box), [&](std::uint32_t other) {
+      const TriangleSurface::Triangle its = body.points_of(other);
+      const Corners there{points.start(its[0]), points.start(its[1]), points.start(its[2])};
+      if (are_beside(corners, there) || are_beside(there, corners)) return;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (leads_through(there[k], there[(k + 1) % 3], corners))
+          come_off_corner(points, pair, triangle, {its[k], its[(k + 1) % 3]}, near);
+        if (leads_through(corners[k], corners[(k + 1) % 3], there))
+          come_off_edges(points, pair, cloth_->edges_of[triangle][k], other, near);
+      }
+    });
+  }
+}
+
+/// The end of the edge that is nearer to the triangle, if its normal leads on through that.
+void Tangles::come_off_corner(ContactPoints& points, SurfacePair pair, std::uint32_t triangle,
+                              std::array<std::uint32_t, 2> edge, Near& near) {
+  ContactSurface& body = points.surfaces()[pair.b];
+  const TriangleSurface::Triangle t = points.surfaces()[pair.a].points_of(triangle);
+  const auto from = [&](std::uint32_t point) {
+    return reference::nearest_in_triangle(points.start(point), points.start(t[0]),
+                                          points.start(t[1]), points.start(t[2]));
+  };
+  const Vector a = from(edge[0]).r, b = from(edge[1]).r;
+  if (dot(b, b) < dot(a, a)) std::swap(edge[0], edge[1]);
+  const Vector sum = body.normals.of_point(edge[0] - body.first_point);
+  const Vector n = kernels::direction(sum, length(sum));
+  if (!(dot(n, points.start(edge[0]) - points.start(edge[1])) > 0)) return;
+  add_under(points,
+            {edge[0] - body.first_point, triangle, pair.b, pair.a, PairKind::point_triangle},
+            {edge[0], t[0], t[1], t[2]}, -1.0 * n, near);
+}
+
+/// The edges of the triangle that the edge of the cloth is under, beside them.
+void Tangles::come_off_edges(ContactPoints& points, SurfacePair pair, std::uint32_t edge,
+                             std::uint32_t triangle, Near& near) const {
+  ContactSurface& body = points.surfaces()[pair.b];
+  const auto [a, b] = cloth_->edges[edge];
+  const TriangleSurface::Triangle t = body.points_of(triangle);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::array<std::uint32_t, 4> four{a, b, t[k], t[(k + 1) % 3]};
+    const FourPoints x = points.starts_of(four);
+    const reference::Nearest found = reference::nearest_of_edges(x[0], x[1], x[2], x[3]);
+    const Vector sum = body.normals.of_edge(triangle, k);
+    if (!is_within_edges(found) || !(dot(found.r, sum) < 0)) continue;
+    add_under(points,
+              {edge, body.triangles->edges_of[triangle][k], pair.a, pair.b, PairKind::edges}, four,
+              kernels::direction(sum, length(sum)), near);
+  }
+}
+
+/// Each pair once.
+void Tangles::add_under(const ContactPoints& points, const Pair& pair,
+                        const std::array<std::uint32_t, 4>& four, Vector normal, Near& near) {
+  NearPairs& pairs = near[list_of(pair.kind)];
+  if (pairs.find(pair) == pairs.list.size())
+    pairs.add(pair, four, normal, points.later(pair).thickness, true);
 }
 
 /// The particle is inside from now on.
@@ -131,7 +231,7 @@ void Tangles::take_in(const ContactPoints& points, const Pair& pair) {
     inside.insert(std::ranges::lower_bound(inside, pair.first), pair.first);
 }
 
-bool Tangles::is_inside(const std::array<std::uint32_t, 4>& points) const {
+bool Tangles::any_is_inside(const std::array<std::uint32_t, 4>& points) const {
   return std::ranges::any_of(points, [&](std::uint32_t point) { return is_inside(point); });
 }
 
@@ -165,20 +265,15 @@ template <class At>
 bool Tangles::crosses(const ContactPoints& points, std::uint32_t triangle, At&& at) const {
   const auto [a, b, c] = cloth_->triangles[triangle];
   const Corners corners{at(a), at(b), at(c)};
-  Box box = Box::none();
-  for (const Vector corner : corners) {
-    const Vector from = corner - points.origin();
-    const std::array<float, 3> place{static_cast<float>(from.x), static_cast<float>(from.y),
-                                     static_cast<float>(from.z)};
-    box.add({place, place});
-  }
+  const Box box = box_of(points, corners);
   bool does = false;
   for (const SurfacePair pair : points.surface_pairs()) {
     const ContactSurface& surface = points.surfaces()[pair.b];
-    surface.tree.find(table_, box, [&](std::uint32_t other) {
+    surface.tree.find(table_, surface.as_in_tree(box), [&](std::uint32_t other) {
       if (does) return;
       const auto [p, q, r] = surface.points_of(other);
       const Corners its{at(p), at(q), at(r)};
+      if (are_beside(corners, its) || are_beside(its, corners)) return;
       does = edges_lead_through(corners, its) || edges_lead_through(its, corners);
     });
   }

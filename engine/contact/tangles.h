@@ -2,9 +2,9 @@
 /// body: it was put there, positions were written, or more came together than could be kept apart.
 ///
 /// A particle that is inside is known as such until it is out, and is pushed out by the nearest
-/// way. The way in which triangles that cross would come apart cannot be told from where they are,
-/// so their edges and faces are no contacts until they have. Their particles are kept out as all
-/// others are.
+/// way. The edges and faces of triangles that cross are no contacts until they have come apart, but
+/// for those that a corner or an edge of a one-sided body leads through: they come off it along its
+/// normal. Their particles are kept out as all others are.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ class Tangles {
   void begin(const TriangleSurface& cloth, const Misplaced& misplaced);
   /// Instead, finds anew what is inside and what crosses where an interval begins.
   void find(ContactPoints& points);
-  /// Adds to near pairs those by which particles come out that are inside. Forgets those that are
-  /// out.
+  /// Adds to near pairs those by which particles come out that are inside, and triangles off what
+  /// leads through them. Forgets particles that are out.
   void come_out(ContactPoints& points, Near& near);
   /// The pair could not be kept apart.
   void take_in(const ContactPoints& points, const Pair& pair);
@@ -35,7 +35,9 @@ class Tangles {
 
   bool any() const { return !triangles_.empty() || !misplaced_.inside.empty(); }
   bool is_inside(std::uint32_t slot) const { return misplaced_.is_inside(slot); }
-  bool is_inside(const std::array<std::uint32_t, 4>& points) const;
+  bool is_inside(const std::array<std::uint32_t, 4>& points) const {
+    return !misplaced_.inside.empty() && any_is_inside(points);
+  }
   /// Whether the pair is left alone.
   bool leaves_out(const Pair& pair) const {
     if (triangles_.empty()) return false;
@@ -54,6 +56,15 @@ class Tangles {
   void find_crossing(const ContactPoints& points, At&& at);
   template <class At>
   bool crosses(const ContactPoints& points, std::uint32_t triangle, At&& at) const;
+  bool any_is_inside(const std::array<std::uint32_t, 4>& points) const;
+  void come_off(ContactPoints& points, std::uint32_t triangle, Near& near) const;
+  static void come_off_corner(ContactPoints& points, SurfacePair pair, std::uint32_t triangle,
+                              std::array<std::uint32_t, 2> edge, Near& near);
+  void come_off_edges(ContactPoints& points, SurfacePair pair, std::uint32_t edge,
+                      std::uint32_t triangle, Near& near) const;
+  static void add_under(const ContactPoints& points, const Pair& pair,
+                        const std::array<std::uint32_t, 4>& four, kernels::Vector normal,
+                        Near& near);
   void forget_crossing();
   void add_crossing(std::uint32_t triangle);
   void gather_slots();

@@ -83,25 +83,32 @@ std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, do
 /// visit(list, i, points), of each pair of candidates that may have come nearer than `near` and is
 /// not left alone.
 template <class Visit>
-void Verification::for_each_moved(const ContactScene& scene, const NearSearch& near_search,
+void Verification::for_each_moved(const ContactScene& scene, NearSearch& near_search,
                                   const Candidates& candidates, double near, Team& team,
                                   Visit&& visit) {
   for (std::uint32_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
     moved_.resize(pairs.blocks.size());
+    const float within = static_cast<float>(near);
+    const float most = within + scene.points.largest_move() + 4 * scene.points.rounding();
     const simd::PairMoves moves{.pairs = pairs.blocks.data(),
                                 .moves = scene.points.moves(),
                                 .distance = reinterpret_cast<const float(*)[kLanes]>(
                                     near_search.distances()[list].distance.data()),
-                                .rounding = scene.points.rounding() + static_cast<float>(near),
+                                .rounding = scene.points.rounding() + within,
                                 .moved = moved_.data()};
     team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
-      table_.find_moved_pairs(moves, has_edges(list), first, last);
+      for (std::size_t block = first; block < last; ++block) {
+        moved_[block] = 0;
+        if (near_search.least(list, block) > most) continue;
+        near_search.wake(scene.points, candidates, list, block);
+        table_.find_moved_pairs(moves, has_edges(list), block, block + 1);
+      }
     });
     for (std::size_t block = 0; block < moved_.size(); ++block) {
-      for (std::uint32_t bits = moved_[block]; bits != 0; bits &= bits - 1) {
+      for (std::uint32_t bits = moved_[block] & pairs.used[block]; bits != 0; bits &= bits - 1) {
         const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
-        if (i < pairs.size() && !scene.tangles.leaves_out(pairs.pairs[i]))
+        if (!scene.tangles.leaves_out(pairs.pairs[i]))
           visit(list, static_cast<std::uint32_t>(i), pairs.points(i));
       }
     }
@@ -131,7 +138,7 @@ void Verification::find(const ContactScene& scene, const CandidateSearch& search
   leave_each_once(candidates);
 }
 
-void Verification::find_late(const ContactScene& scene, const NearSearch& near_search,
+void Verification::find_late(const ContactScene& scene, NearSearch& near_search,
                              const Candidates& candidates, Team& team) {
   failures_.clear();
   const ContactPoints& points = scene.points;
@@ -179,6 +186,7 @@ void Verification::look_beside_strayed(const ContactScene& scene, const Candidat
   for (std::uint32_t slot = 0; slot < points.slots(); ++slot) {
     if (!scene.model.is_particle(slot) || points.holds_end(slot)) continue;
     points.take_way_in(slot);
+    points.forget_wide_box(slot);
     has_strayed_[slot] = 1;
     any = true;
   }
@@ -191,8 +199,7 @@ void Verification::look_beside_strayed(const ContactScene& scene, const Candidat
     box.add(points.box(c));
     search.find_beside(points, t, box, candidates);
   }
-  near_search.measure(points, candidates, team);
-  points.forget_wide_boxes();
+  near_search.measure_new(points, candidates, team);
 }
 
 }  // namespace weft

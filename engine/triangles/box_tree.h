@@ -150,14 +150,12 @@ void BoxTree::meet(const simd::Table& table, const BoxTree& a, const BoxTree& b,
       waiting[count++] = {i, 2 * j};
       continue;
     }
-    const std::size_t first = (i - a.leaves_) * kernels::kLanes, cluster = j - b.leaves_;
-    const std::size_t last = std::min(first + kernels::kLanes, a.count_);
-    for (std::size_t at = first; at < last; ++at) {
-      const Box box = a.box_in(i - a.leaves_, at - first);
-      if (!box.meets(b.nodes_[j])) continue;
-      for (std::uint32_t met = b.met_in(table, cluster, box); met != 0; met &= met - 1) {
+    const std::size_t mine = i - a.leaves_, its = j - b.leaves_;
+    for (std::uint32_t left = a.met_in(table, mine, b.nodes_[j]); left != 0; left &= left - 1) {
+      const auto at = static_cast<std::size_t>(std::countr_zero(left));
+      for (std::uint32_t met = b.met_in(table, its, a.box_in(mine, at)); met != 0; met &= met - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(met));
-        visit(a.items_[at], b.items_[cluster * kernels::kLanes + lane]);
+        visit(a.items_[mine * kernels::kLanes + at], b.items_[its * kernels::kLanes + lane]);
       }
     }
   }

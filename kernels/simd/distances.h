@@ -128,29 +128,37 @@ void measure_pairs(const PairMeasure& measure, bool edges, std::size_t first, st
   }
 }
 
+/// What is past its ends by so much of the length of an edge is so by floats, too.
+constexpr float kSurelyPast = 1e-3f;
+
+/// Edges that are nearest to each other at an end of one do not touch: their corners do.
 template <class From>
-[[gnu::always_inline]] inline void touch_block(const PairTouch& t, std::size_t i, From from) {
+[[gnu::always_inline]] inline void touch_block(const PairTouch& t, std::size_t i, From from,
+                                               bool edges) {
   std::uint32_t touching = 0;
   PairSide& side = t.sides[i];
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    FloatVector r = from(corners_of(t.points, t.pairs[i], lane));
+    const PairCorners corners = corners_of(t.points, t.pairs[i], lane);
+    FloatVector r = from(corners);
     const Floats distance = xsimd::sqrt(dot(r, r));
     FloatVector before = load(side.normal, lane);
     const FloatMask stays = dot(r, before) > Floats(0.f);
     FloatVector n = (Floats(1.f) / xsimd::max(distance, tiny())) * r;
     store(side.normal, lane, select(stays, n, before));
-    touching |= bits(!stays || distance < load(side.thickness + lane)) << lane;
+    FloatMask is_near = distance < load(side.thickness + lane);
+    if (edges) is_near = is_near && may_face(corners, kSurelyPast);
+    touching |= bits(!stays || is_near) << lane;
   }
-  t.touching[i] = static_cast<std::uint16_t>(touching & side.used);
+  t.touching[i] = static_cast<std::uint16_t>((touching | side.used >> kernels::kLanes) & side.used);
 }
 
 void touch_pairs(const PairTouch& touch, bool edges, std::size_t first, std::size_t last) {
   const PairTouch t = touch;
   for (std::size_t i = first; i < last; ++i) {
     if (edges)
-      touch_block(t, i, FromEdge{});
+      touch_block(t, i, FromEdge{}, true);
     else
-      touch_block(t, i, FromTriangle{});
+      touch_block(t, i, FromTriangle{}, false);
   }
 }
 

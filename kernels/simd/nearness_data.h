@@ -29,13 +29,13 @@ struct PairMeasure {
 struct alignas(64) PairSide {
   LaneVectors normal;  // from the second to the first, as last seen there
   float thickness[kernels::kLanes];
-  std::uint32_t used = 0;  // a bit per lane
+  std::uint32_t used = 0;  // a bit per lane; 16 above it: whether to be looked at in any case
 };
 struct PairTouch {
   const PairBlock* pairs = nullptr;
   const float* points = nullptr;
   PairSide* sides = nullptr;
-  std::uint16_t* touching = nullptr;  // written: nearer than the thickness, or on the other side
+  std::uint16_t* touching = nullptr;  // written: nearer than the thickness, or not as last seen
 };
 /// Whether features may have met between two states.
 struct PairMoves {

@@ -1,0 +1,57 @@
+/// What boxes of the world are in coordinates of a body that travels: so the tree of a body that
+/// keeps its shape stands still, and its vertices need not be placed to be looked for.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/triangles/box_tree.h"
+#include "kernels/reference/bodies.h"
+
+namespace weft {
+
+struct SeenFromBody {
+  reference::Placement begins, ends;  // from the origin of boxes
+  double turn = 0, way = 0;           // rad, and m of its centre, between them
+  double beyond = 0;                  // m: what the body keeps away
+
+  /// Holds all places of the body, at any time on its way, that may be within `beyond` of the box.
+  /// A place that turns by an angle stays within a part of its way of the line between its ends.
+  Box operator()(const Box& box) const {
+    kernels::Vector middle, half;
+    double* const m[] = {&middle.x, &middle.y, &middle.z};
+    double* const h[] = {&half.x, &half.y, &half.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double low = static_cast<double>(box.low[k]), high = static_cast<double>(box.high[k]);
+      *m[k] = 0.5 * (low + high);
+      *h[k] = 0.5 * (high - low);
+    }
+    const double far =
+        std::max(length(middle - begins.centre), length(middle - ends.centre)) + length(half) + way;
+    const double spare = beyond + (turn * far + 2 * way) * turn / 8;
+    Box seen = at(begins, middle, half, spare);
+    if (turn > 0 || way > 0) seen.add(at(ends, middle, half, spare));
+    return seen;
+  }
+
+ private:
+  static Box at(const reference::Placement& place, kernels::Vector middle, kernels::Vector half,
+                double spare) {
+    const kernels::Vector c = place.from_place(middle);
+    Box box;
+    const kernels::Vector axes[] = {place.x, place.y, place.z};
+    const double centre[] = {c.x, c.y, c.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double wide = std::abs(axes[k].x) * half.x + std::abs(axes[k].y) * half.y +
+                          std::abs(axes[k].z) * half.z + spare;
+      const double with_rounding = wide + kRounding * (std::abs(centre[k]) + wide);
+      box.low[k] = static_cast<float>(centre[k] - with_rounding);
+      box.high[k] = static_cast<float>(centre[k] + with_rounding);
+    }
+    return box;
+  }
+  static constexpr double kRounding = 0x1p-21;  // of floats, here and in the tree
+};
+
+}  // namespace weft
