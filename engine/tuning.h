@@ -68,7 +68,7 @@ inline constexpr double kTogether = 0.01;
 inline constexpr int kPlaneSteps = 16;
 /// In the largest inverse mass of a pair: the least that counts. A particle that has the part w in
 /// the nearest point of a feature that is fixed otherwise would be thrown 1 / w times as far as
-/// the pair is deep. No test meets such a pair: at 0 and 0.2 nothing changes.
+/// the pair is deep: at 0 a sheet is thrown that the tip of a body touches beside its pins.
 inline constexpr double kLeastTouchWeight = 0.05;
 /// In thicknesses: what is nearer when an interval is over, and was not expected, is no rounding;
 /// and the rounds in which such pairs are put right before the rest is verified. Without either two
