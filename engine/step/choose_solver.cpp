@@ -38,6 +38,7 @@ bool takes_small_steps(const Model& model, const Settings& settings,
                        const std::vector<std::uint32_t>& spheres) {
   if (settings.scheme != Scheme::automatic || settings.velocity_correction) return false;
   if (!are_light(model, spheres)) return false;
+  if (closes_few_loops(model) && is_held_twice(model)) return false;
   return is_linkage(model) ||
          (model.constraints.size() > 0 && settings.tolerance >= tuning::kLeastTolerance &&
           model.uneven.ratio <= tuning::kNearlyEqualMasses);

@@ -38,8 +38,8 @@ namespace weft {
 ///   small_steps   triangles of fabric, bending, anchors, seams or bodies; scheme implicit or bdf2;
 ///                 a motion_tolerance; springs, if the scheme is automatic
 ///   gauss_seidel  the reference backend, or `iterations`
-///   small_steps   chains, trees and bridges, of ropes at any tolerance; cloth, woven or a mesh, at
-///                 0.1 % and looser, with nearly equal masses: without heavy free spheres and
+///   small_steps   chains and trees that hang from one particle; cloth, woven or a mesh, at 0.1 %
+///                 and looser, with nearly equal masses: without heavy free spheres and
 ///                 velocity_correction, if the scheme is automatic
 ///   direct        other chains, trees and bridges of ropes
 ///   yarn          all else
@@ -49,8 +49,9 @@ namespace weft {
 ///   follow. A sweep leaves a strain that falls with the square of the substep. The length of a
 ///   substep follows in closed form from the load that hangs on the pins and from the tolerance
 ///   (engine/solvers/small_steps/small_steps_load.h). Use it for any mesh at 0.1 % and looser, and
-///   for a motion that is near the true one. Chains, trees and bridges of rigid links and ropes are
-///   solved as one system, at any tolerance and for masses that differ by a hundred thousand. In
+///   for a motion that is near the true one. Chains and trees of rigid links and ropes that hang
+///   from one particle are solved as one system, at any tolerance and for masses that differ by a
+///   hundred thousand. In
 ///   other cloth masses should not differ by more than a hundred.
 ///   Keep to substeps of one length: a change by half costs some energy. Only small_steps solves
 ///   triangles of fabric, bending, anchors, seams and bodies.

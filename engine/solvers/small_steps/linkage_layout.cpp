@@ -140,9 +140,15 @@ bool closes_few_loops(const Model& model) {
   return all - joined <= tuning::kChainLoops * all;
 }
 
+bool is_held_twice(const Model& model) {
+  return std::ranges::any_of(model.holds,
+                             [&](std::uint32_t slot) { return slot != model.holds.front(); });
+}
+
 bool is_linkage(const Model& model) {
   const ConstraintStore& s = model.constraints;
-  return s.size() > 0 && !s.has_springs() && closes_few_loops(model) && !are_yarns_enough(model);
+  return s.size() > 0 && !s.has_springs() && !is_held_twice(model) && closes_few_loops(model) &&
+         !are_yarns_enough(model);
 }
 
 LinkageLayout make_linkage_layout(const Model& model) {

@@ -38,7 +38,9 @@ LinkageLayout make_linkage_layout(const Model& model);
 
 /// Whether few constraints close a loop: chains, trees, bridges (a third do; of a grid half do).
 bool closes_few_loops(const Model& model);
-/// Whether also none is a spring.
+/// By more than one fixed particle: it may be too short.
+bool is_held_twice(const Model& model);
+/// Whether also none is a spring, one particle at most is held, and no yarns in lanes will do.
 bool is_linkage(const Model& model);
 
 }  // namespace weft
