@@ -51,8 +51,7 @@ namespace weft {
 ///   (engine/solvers/small_steps/small_steps_load.h). Use it for any mesh at 0.1 % and looser, and
 ///   for a motion that is near the true one. Chains and trees of rigid links and ropes that hang
 ///   from one particle are solved as one system, at any tolerance and for masses that differ by a
-///   hundred thousand. In
-///   other cloth masses should not differ by more than a hundred.
+///   hundred thousand. In other cloth masses should not differ by more than a hundred.
 ///   Keep to substeps of one length: a change by half costs some energy. Only small_steps solves
 ///   triangles of fabric, bending, anchors, seams and bodies.
 /// yarn: splits the cloth into yarns, chains of constraints that run straight on through it, as

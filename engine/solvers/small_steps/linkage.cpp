@@ -43,6 +43,7 @@ Linkage::Linkage(const Model& model, const LinkageLayout& layout) : model_(model
   std::ranges::copy(layout_.column_begin, matrix_.outerIndexPtr());
   std::ranges::copy(layout_.rows, matrix_.innerIndexPtr());
   factors_.analyzePattern(matrix_);
+  solve_once();  // of slack links: bytes() asks for the factors before the first sweep
 }
 
 void Linkage::begin(bool continues) {
