@@ -14,9 +14,6 @@ using kernels::Vector;
 
 namespace {
 
-/// Of a distance in floats: as in find_moved_pairs (kernels/simd/distances.h).
-constexpr float kSurely = 0.95f;
-
 using Four = std::array<std::uint32_t, 4>;
 
 /// Candidates are those of wide boxes. So that what is near depends on the state alone, and not on
@@ -88,7 +85,7 @@ void NearSearch::measure_block(const simd::PairMeasure& measure, std::size_t lis
   d.near[block] = static_cast<std::uint16_t>(d.near[block] & pairs.used[block]);
   float least = d.distance[block][0];
   for (const float distance : d.distance[block]) least = std::min(least, distance);
-  d.least[block] = kSurely * least + travelled_;
+  d.least[block] = simd::kSurelyApart * least + travelled_;
   d.sleeps[block] = 0;
 }
 

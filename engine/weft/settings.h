@@ -38,9 +38,10 @@ namespace weft {
 ///   small_steps   triangles of fabric, bending, anchors, seams or bodies; scheme implicit or bdf2;
 ///                 a motion_tolerance; springs, if the scheme is automatic
 ///   gauss_seidel  the reference backend, or `iterations`
-///   small_steps   chains and trees that hang from one particle; cloth, woven or a mesh, at 0.1 %
-///                 and looser, with nearly equal masses: without heavy free spheres and
-///                 velocity_correction, if the scheme is automatic
+///   small_steps   chains and trees that hang from one particle, of ropes, of unequal masses or of
+///                 few links; at 0.1 % and looser those of bars, and cloth, woven or a mesh, with
+///                 nearly equal masses: without heavy free spheres and velocity_correction, if the
+///                 scheme is automatic
 ///   direct        other chains, trees and bridges of ropes
 ///   yarn          all else
 ///   The thresholds are no part of the interface.

@@ -56,6 +56,9 @@ inline void advance(const Flight& f, std::size_t i, kernels::Vector a, double c,
   f.x.set(i, x_next);
 }
 
+/// l^2 / L^2 - 1 of the strain l / L - 1.
+inline double squared_strain(double strain) { return 2 * strain + strain * strain; }
+
 /// What of an error exceeds `most`, in either direction.
 inline double beyond(double error, double most) { return error - std::clamp(error, -most, most); }
 

@@ -179,7 +179,7 @@ void find_moved_pairs(const PairMoves& moves, bool edges, std::size_t first, std
     std::uint32_t moved = 0;
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
       const PairCorners by = corners_of(m.moves, m.pairs[i], lane);
-      const Floats least = load(m.distance[i] + lane) * Floats(0.95f) - Floats(m.rounding);
+      const Floats least = load(m.distance[i] + lane) * Floats(kSurelyApart) - Floats(m.rounding);
       const Floats most = largest_move_of(by, edges);
       moved |= bits(least <= Floats(0.f) || most >= least * least) << lane;
     }

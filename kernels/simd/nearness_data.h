@@ -15,6 +15,8 @@ namespace weft::simd {
 struct alignas(64) PairBlock {
   std::uint32_t point[4][kernels::kLanes];
 };
+/// The share of a distance in floats that the true one is not below.
+inline constexpr float kSurelyApart = 0.95f;
 /// What is known of pairs when an interval begins.
 struct PairMeasure {
   const PairBlock* pairs = nullptr;

@@ -12,8 +12,6 @@ namespace {
 
 using Axes = LinkageLayout::Places::Axes;
 
-double squared(double strain) { return 2 * strain + strain * strain; }
-
 void add(double* values, const Axes& at, double value) {
   for (const int place : at) {
     if (place >= 0) values[place] += value;
@@ -28,7 +26,8 @@ void set(double* values, const Axes& at, kernels::Vector v) {
 
 }  // namespace
 
-Linkage::Linkage(const Model& model, const LinkageLayout& layout) : model_(model), layout_(layout) {
+Linkage::Linkage(const Model& model, const LinkageLayout& layout)
+    : model_(model), layout_(layout), factor_(layout.matrix, layout.factor) {
   if (layout_.empty()) return;
   const std::size_t links = model.constraints.size();
   d_.resize(links);
@@ -37,13 +36,8 @@ Linkage::Linkage(const Model& model, const LinkageLayout& layout) : model_(model
   tension_.resize(links);
   is_taut_.resize(links);
   out_.reserve(links);
-  solution_.resize(static_cast<std::size_t>(layout_.size()));
-  matrix_.resize(layout_.size(), layout_.size());
-  matrix_.resizeNonZeros(static_cast<int>(layout_.rows.size()));
-  std::ranges::copy(layout_.column_begin, matrix_.outerIndexPtr());
-  std::ranges::copy(layout_.rows, matrix_.innerIndexPtr());
-  factors_.analyzePattern(matrix_);
-  solve_once();  // of slack links: bytes() asks for the factors before the first sweep
+  values_.resize(layout_.matrix.rows.size());
+  solution_.resize(3 * layout_.slots.size() + links);
 }
 
 void Linkage::begin(bool continues) {
@@ -53,17 +47,17 @@ void Linkage::begin(bool continues) {
 
 void Linkage::take(std::uint32_t c, kernels::Vector d, double left, double tolerance) {
   const double rest = model_.constraints.rest_length[c], square = rest * rest;
-  const double error = dot(d, d) - square, most = squared(tolerance) * square;
+  const double error = dot(d, d) - square, most = reference::squared_strain(tolerance) * square;
   d_[c] = d;
-  error_[c] = 0.5 * reference::beyond(error, squared(left) * square);
+  error_[c] = 0.5 * reference::beyond(error, reference::squared_strain(left) * square);
   is_taut_[c] = dot(d, d) > 0 && (!is_rope(c) || error > -most);
   if ((is_rope(c) ? error : std::abs(error)) > most) out_.push_back(c);
 }
 
 /// What is left of a slack rope is its own.
 void Linkage::solve_once() {
-  double* values = matrix_.valuePtr();
-  std::fill_n(values, layout_.rows.size(), 0.0);
+  double* values = values_.data();
+  std::ranges::fill(values_, 0);
   std::ranges::fill(solution_, 0);
   for (std::size_t i = 0; i < layout_.slots.size(); ++i)
     add(values, layout_.places_of_slot[i], 1 / model_.inverse_mass[layout_.slots[i]]);
@@ -80,15 +74,10 @@ void Linkage::solve_once() {
     set(values, at.with_b, -1.0 * d_[c]);
     solution_[static_cast<std::size_t>(layout_.row_of_link[c])] = -error_[c];
   }
-  factors_.factorize(matrix_);
-  if (factors_.info() != Eigen::Success) {
+  if (factor_.factorise(values_))
+    factor_.solve(solution_);
+  else
     std::ranges::fill(solution_, 0);
-    return;
-  }
-  Eigen::Map<Eigen::VectorXd> solution(solution_.data(), layout_.size());
-  factors_.matrixL().solveInPlace(solution);
-  solution.array() /= factors_.vectorD().array();
-  factors_.matrixU().solveInPlace(solution);
 }
 
 /// Returns whether it was found otherwise.
@@ -135,15 +124,9 @@ void Linkage::solve() {
 }
 
 std::size_t Linkage::bytes() const {
-  if (layout_.empty()) return 0;
-  const auto of_matrix = [&](std::size_t entries) {
-    return entries * (sizeof(double) + sizeof(int)) + solution_.size() * 2 * sizeof(int);
-  };
-  const auto of_factors =
-      static_cast<std::size_t>(factors_.matrixL().nestedExpression().nonZeros());
-  return bytes_of(solution_) + bytes_of(d_) + bytes_of(error_) + bytes_of(impulse_) +
-         bytes_of(tension_) + bytes_of(is_taut_) + bytes_of(out_) + of_matrix(layout_.rows.size()) +
-         of_matrix(of_factors);
+  return factor_.bytes() + bytes_of(values_) + bytes_of(solution_) + bytes_of(d_) +
+         bytes_of(error_) + bytes_of(impulse_) + bytes_of(tension_) + bytes_of(is_taut_) +
+         bytes_of(out_);
 }
 
 }  // namespace weft

@@ -1,5 +1,7 @@
-/// Chains, trees and bridges of rigid links and ropes, solved as one system: what hangs at the end
-/// of a chain pulls at its beginning in the same sweep, whatever the ratio of the masses.
+/// Chains, trees and bridges of rigid links and ropes that hang from one particle at most, solved
+/// as one system: what hangs at the end of a chain pulls at its beginning in the same sweep,
+/// whatever the ratio of the masses. Between two held particles a chain may be too short: an exact
+/// solution does not share out what is too much, so that other solvers have it.
 ///
 /// The links act along their directions at the end of the substep: with C = (l^2 - L^2) / 2 of
 /// each, whose gradient J is d at one end and -d at the other,
@@ -23,11 +25,11 @@
 /// tolerance.
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <cstdint>
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/solvers/small_steps/linkage_factor.h"
 #include "engine/solvers/small_steps/linkage_layout.h"
 #include "engine/solvers/small_steps/substep.h"
 #include "kernels/vectors.h"
@@ -59,8 +61,6 @@ class Linkage {
   std::size_t bytes() const;
 
  private:
-  using Matrix = Eigen::SparseMatrix<double>;
-
   void begin(bool continues);
   void take(std::uint32_t c, kernels::Vector d, double left, double tolerance);
   void solve();
@@ -75,9 +75,8 @@ class Linkage {
 
   const Model& model_;
   const LinkageLayout& layout_;
-  Matrix matrix_;
-  // In the order of the layout.
-  Eigen::SimplicialLDLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<int>> factors_;
+  LinkageFactor factor_;
+  std::vector<double> values_;  // of the matrix
   std::vector<double> solution_;
   // Per constraint.
   std::vector<kernels::Vector> d_;

@@ -165,15 +165,17 @@ LinkageLayout make_linkage_layout(const Model& model) {
   Pattern pattern(size, size);
   pattern.setFromTriplets(entries.begin(), entries.end());
   pattern.makeCompressed();
-  layout.column_begin.assign(pattern.outerIndexPtr(), pattern.outerIndexPtr() + size + 1);
-  layout.rows.assign(pattern.innerIndexPtr(), pattern.innerIndexPtr() + pattern.nonZeros());
+  layout.matrix.column_begin.assign(pattern.outerIndexPtr(), pattern.outerIndexPtr() + size + 1);
+  layout.matrix.rows.assign(pattern.innerIndexPtr(), pattern.innerIndexPtr() + pattern.nonZeros());
+  layout.factor = find_factor_pattern(layout.matrix);
   find_places(model, pattern, layout);
   return layout;
 }
 
 std::size_t LinkageLayout::bytes() const {
-  return bytes_of(slots) + bytes_of(row_of_slot) + bytes_of(row_of_link) + bytes_of(column_begin) +
-         bytes_of(rows) + bytes_of(places) + bytes_of(places_of_slot);
+  return bytes_of(slots) + bytes_of(row_of_slot) + bytes_of(row_of_link) +
+         bytes_of(matrix.column_begin) + bytes_of(matrix.rows) + factor.bytes() + bytes_of(places) +
+         bytes_of(places_of_slot);
 }
 
 }  // namespace weft

@@ -1,10 +1,13 @@
-/// Chains, trees and bridges of rigid links and ropes: which constraints linkage.h solves together.
+/// Chains, trees and bridges of rigid links and ropes that hang from one particle at most: which
+/// constraints linkage.h solves together.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "engine/solvers/small_steps/linkage_factor.h"
 
 namespace weft {
 
@@ -24,12 +27,11 @@ struct LinkageLayout {
   std::vector<std::uint32_t> slots;  // particles that move
   std::vector<int> row_of_slot;      // one per particle: the first of its three unknowns
   std::vector<int> row_of_link;      // one per constraint
-  // Above and on the diagonal, column by column.
-  std::vector<int> column_begin, rows;
+  SparsePattern matrix;
+  FactorPattern factor;
   std::vector<Places> places;                // one per constraint
   std::vector<Places::Axes> places_of_slot;  // one per particle, on the diagonal
   bool empty() const { return row_of_link.empty(); }
-  int size() const { return static_cast<int>(column_begin.size()) - 1; }
   std::size_t bytes() const;
 };
 

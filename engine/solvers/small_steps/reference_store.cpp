@@ -178,8 +178,9 @@ void ReferenceStore::relax_chain(std::span<const std::uint32_t> slots,
     const double rest = model_.constraints.rest_length[links[k]];
     if (std::abs(length(d) - rest) > now_.local_tolerance() * rest) out_.push_back(links[k]);
     system.d.push_back(d);
-    system.error.push_back(
-        0.5 * reference::beyond(dot(d, d) - rest * rest, left_squared(by) * rest * rest));
+    system.error.push_back(0.5 *
+                           reference::beyond(dot(d, d) - rest * rest,
+                                             reference::squared_strain(by.left) * rest * rest));
   }
   system.solve(by.omega, compliance_of_yarn(model_, slots));
   apply_impulses(slots);
@@ -232,8 +233,8 @@ void ReferenceStore::relax_edge(std::uint32_t c, const Relaxation& by) {
   const bool rope = c >= s.bilateral;
   if ((rope ? error : std::abs(error)) > now_.local_tolerance() * rest) out_.push_back(c);
   if (rope && error <= 0) return;
-  const double impulse =
-      reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c], by.omega, left_squared(by));
+  const double impulse = reference::relaxed_impulse(d, rest, 1 / s.effective_mass[c], by.omega,
+                                                    reference::squared_strain(by.left));
   x_.view().add(a, (-model_.inverse_mass[a] * impulse) * d);
   x_.view().add(b, (model_.inverse_mass[b] * impulse) * d);
 }

@@ -112,7 +112,6 @@ class ReferenceStore {
     return {s.slots[i], s.weights[i], s.rest[i], s.compliance[i]};
   }
   /// Of l^2 / rest^2 - 1.
-  static double left_squared(const Relaxation& by) { return by.left * (2 + by.left); }
   void relax_chain(std::span<const std::uint32_t> slots, std::span<const std::uint32_t> links,
                    const Relaxation& by);
   void relax_spring_chain(std::span<const std::uint32_t> slots,

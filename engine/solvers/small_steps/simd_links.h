@@ -12,6 +12,7 @@
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/laws.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
+#include "kernels/reference/small_steps.h"
 #include "kernels/simd/table.h"
 
 namespace weft {
@@ -56,7 +57,9 @@ class SimdLinks {
 
   /// What the lanes count as out of tolerance, of length^2 / rest^2 - 1.
   float squared_tolerance() const;
-  static float squared(double strain) { return static_cast<float>(2 * strain + strain * strain); }
+  static float squared(double strain) {
+    return static_cast<float>(reference::squared_strain(strain));
+  }
   /// In places of the layout.
   float* multipliers() { return multiplier_.data(); }
   std::size_t bytes() const;

@@ -225,6 +225,27 @@ TEST_CASE("without contacts no step of yarns does, however late it first wants a
   }
 }
 
+TEST_CASE("without contacts no step of ropes in a row does, however many there are") {
+  for (const std::uint32_t links : {10u, 9000u}) {
+    CAPTURE(links);
+    SceneDescription scene;
+    for (std::uint32_t i = 0; i <= links; ++i) {
+      scene.positions.push_back({0.01 * i, 0, 0});
+      if (i > 0) scene.constraints.push_back({i - 1, i, 0.01, ConstraintKind::rope});
+    }
+    scene.masses.assign(links + 1, 0.01);
+    scene.fixed = {0};
+    Cloth cloth = cloth_of(scene, {});
+    REQUIRE(cloth.settings().solver == Solver::small_steps);
+    const std::size_t before = allocations();
+    std::size_t failed = 0;
+    for (int k = 0; k < 3; ++k) failed += !cloth.step(0.01);
+    const std::size_t after = allocations();
+    CHECK(failed == 0);
+    CHECK(after == before);
+  }
+}
+
 TEST_CASE("nor does a step that begins with a projection") {
   for (const Method& method : kAllMethods) {
     CAPTURE(text(method));

@@ -167,6 +167,50 @@ TEST_CASE("a chain swings on, whatever hangs at its end") {
   }
 }
 
+TEST_CASE("a chain follows its pin, however far that jumps, and comes to hang below it") {
+  for (const ConstraintKind kind : {ConstraintKind::distance, ConstraintKind::rope}) {
+    SceneDescription scene = pendulum(20, 1, kind, 0);
+    scene.damping.motion = 2;
+    Cloth cloth = cloth_of(scene, Settings{});
+    Vec3 pin{0, 0, 0};
+    for (int i = 0; i < 40; ++i) {
+      pin = {0.1 * i, 0.3 * (i % 2), 0};  // m a frame
+      REQUIRE(cloth.move_fixed(0, pin));
+      step(cloth, 1.0 / 60);
+    }
+    for (int i = 0; i < 600; ++i) {
+      const StepReport report = step(cloth, 1.0 / 60);
+      CHECK(report.status == Status::converged);
+      CHECK(report.max_strain <= 0.01);
+    }
+    const Vec3 end = cloth.position(20);
+    CHECK(std::hypot(end.x - pin.x, end.y - (pin.y - 1), end.z) < 2e-3);
+  }
+}
+
+/// Two rails, one of bars and one of ropes, and rungs of bars: a third of the links close a loop.
+TEST_CASE("a ladder that hangs from one particle falls and swings within tolerance") {
+  Shape shape;
+  shape.scene.positions = {{0, 0, 0}};
+  shape.scene.masses = {1};
+  shape.scene.fixed = {0};
+  for (std::uint32_t i = 1; i <= 30; ++i) {
+    const double x = 0.05 * ((i + 1) / 2), y = i % 2 == 0 ? 0.05 : 0;
+    shape.add({x, y, 0}, 0.02, i < 3 ? 0 : i - 2,
+              i % 2 == 0 ? ConstraintKind::rope : ConstraintKind::distance);
+    if (i % 2 == 0) shape.scene.constraints.push_back({i - 1, i, 0.05, ConstraintKind::distance});
+  }
+  Cloth cloth = cloth_of(shape.scene, Settings{});
+  REQUIRE(is_linkage(*cloth.model()));
+  const double start = cloth.energy().total();
+  for (int i = 0; i < 300; ++i) {
+    const StepReport report = step(cloth, 1.0 / 60);
+    CHECK(report.status == Status::converged);
+    CHECK(report.max_strain <= 0.01);
+    CHECK(cloth.energy().total() <= start + 1e-3);
+  }
+}
+
 TEST_CASE("what hangs on a chain is still") {
   for (const ConstraintKind kind : {ConstraintKind::distance, ConstraintKind::rope}) {
     for (const int links : {10, 200}) {
