@@ -101,6 +101,9 @@ inline constexpr double kLinkageCompliance = 1e-9;
 /// times its weight shakes until it is out of tolerance; at a tenth it keeps 0.9996 of its swing.
 inline constexpr double kLinkageTension = 0.1;
 inline constexpr int kLinkageRounds = 8;
+/// A rope was slack where the square of its length was less by this share: a taut one has only
+/// rounding. A chain that a pin drags by jerks bounces without (`engine/step/carry`).
+inline constexpr double kLinkageSlack = 1e-6;
 /// s. No substep is longer. It bounds the error of motion where nothing hangs on a pin.
 inline constexpr double kLongestSubstep = 0.005;
 /// A substep is no longer than this part of the time in which a falling particle passes the length

@@ -1,5 +1,5 @@
-/// Particles whose motion a body or the limit of an anchor ended in a substep: they go on at first
-/// order.
+/// Particles whose motion a body, the limit of an anchor or a rope ended in a substep: they go on
+/// at first order.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace weft {
 
 struct Arrival {
   std::uint32_t slot = 0;
-  TouchedSurface surface{};  // of no body: an anchor's limit
+  TouchedSurface surface{};  // of no body: an anchor's limit, or a rope
 };
 
 /// Visits the first arrival of each particle, those at bodies first, and empties the list.

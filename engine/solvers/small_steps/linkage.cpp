@@ -36,6 +36,7 @@ Linkage::Linkage(const Model& model, const LinkageLayout& layout)
   tension_.resize(links);
   is_taut_.resize(links);
   out_.reserve(links);
+  arrives_.resize(model.slots());
   values_.resize(layout_.matrix.rows.size());
   solution_.resize(3 * layout_.slots.size() + links);
 }
@@ -123,10 +124,32 @@ void Linkage::solve() {
     impulse_[c] = is_taut_[c] ? impulse_[c] + lambda(c) : 0;
 }
 
+bool Linkage::was_slack(std::size_t rope, kernels::Vector d) const {
+  const double rest = model_.constraints.rest_length[rope];
+  return dot(d, d) < (1 - tuning::kLinkageSlack) * rest * rest;
+}
+
+/// Along taut links, there and back: twice over a chain that is numbered along itself.
+void Linkage::spread_arrivals() {
+  const ConstraintStore& s = model_.constraints;
+  const auto spread = [&](std::size_t c) {
+    const auto may_move = [&](std::uint32_t slot) { return model_.inverse_mass[slot] > 0; };
+    if (!is_taut_[c] || !may_move(s.a[c]) || !may_move(s.b[c])) return false;
+    if (arrives_[s.a[c]] == arrives_[s.b[c]]) return false;
+    arrives_[s.a[c]] = arrives_[s.b[c]] = true;
+    return true;
+  };
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (std::size_t c = 0; c < s.size(); ++c) grows |= spread(c);
+    for (std::size_t c = s.size(); c-- > 0;) grows |= spread(c);
+  }
+}
+
 std::size_t Linkage::bytes() const {
   return factor_.bytes() + bytes_of(values_) + bytes_of(solution_) + bytes_of(d_) +
          bytes_of(error_) + bytes_of(impulse_) + bytes_of(tension_) + bytes_of(is_taut_) +
-         bytes_of(out_);
+         bytes_of(out_) + bytes_of(arrives_);
 }
 
 }  // namespace weft

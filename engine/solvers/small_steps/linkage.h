@@ -23,9 +23,15 @@
 /// Hintermueller, Ito, Kunisch, "The primal-dual active set strategy as a semismooth Newton
 /// method", 2002), which begin with those that are not shorter than their length by more than the
 /// tolerance.
+///
+/// A rope that becomes taut ends a motion, as the limit of an anchor does (arrivals.h): all that
+/// taut links join to it goes on at first order. BDF2 would let it bounce, by what it remembers of
+/// the flight.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "engine/model/model.h"
@@ -54,6 +60,23 @@ class Linkage {
       points.move(slot, {by_axes[0], by_axes[1], by_axes[2]});
     }
   }
+  /// After the last sweep of a substep: visits the slots whose motion a rope has ended.
+  template <class Points, class Visit>
+  void for_each_arrival(const Points& points, Visit&& visit) {
+    const ConstraintStore& s = model_.constraints;
+    bool any = false;
+    for (std::size_t c = s.bilateral; c < s.size(); ++c) {
+      if (impulse_[c] <= 0 || !was_slack(c, points.start_difference(s.a[c], s.b[c]))) continue;
+      if (!std::exchange(any, true)) std::ranges::fill(arrives_, false);
+      arrives_[s.a[c]] = arrives_[s.b[c]] = true;
+    }
+    if (!any) return;
+    spread_arrivals();
+    for (const std::uint32_t slot : layout_.slots) {
+      if (arrives_[slot]) visit(slot);
+    }
+  }
+  std::size_t slots() const { return layout_.slots.size(); }
   /// Constraints that the last sweep found out of tolerance.
   const std::vector<std::uint32_t>& out() const { return out_; }
   /// Of a constraint, since the substep began: lambda.
@@ -67,6 +90,8 @@ class Linkage {
   void solve_once();
   bool find_taut();
   double update_tension();
+  bool was_slack(std::size_t rope, kernels::Vector d) const;
+  void spread_arrivals();
 
   bool is_rope(std::size_t c) const { return c >= model_.constraints.bilateral; }
   double lambda(std::size_t c) const {
@@ -85,6 +110,7 @@ class Linkage {
   std::vector<double> tension_;  // lambda, as G has it
   std::vector<std::uint8_t> is_taut_;
   std::vector<std::uint32_t> out_;
+  std::vector<std::uint8_t> arrives_;  // per slot
 };
 
 }  // namespace weft

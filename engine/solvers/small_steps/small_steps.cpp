@@ -25,7 +25,7 @@ class StoredSmallSteps final : public SmallSteps {
         seams_(model),
         linkage_(model, layout_.linkage),
         store_(now_, table) {
-    now_.arrived.reserve(model.anchors.size());
+    now_.arrived.reserve(model.anchors.size() + linkage_.slots());
   }
 
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
@@ -236,14 +236,18 @@ class StoredSmallSteps final : public SmallSteps {
   void set_aside() {
     if (model_.has_laws() && !std::exchange(now_.is_aside, true)) store_.set_aside();
   }
-  /// A contact ends a motion, and so does a limit: from there a particle goes on at first order.
-  /// Where mending has moved one its past is moved alike, but for those that a sphere has pushed:
-  /// they begin a new one, by where they are.
+  /// A contact ends a motion, and so do a limit and a rope that becomes taut: from there a particle
+  /// goes on at first order. Where mending has moved one its past is moved alike, but for those
+  /// that a sphere has pushed: they begin a new one, by where they are.
   void end_motions(Team& team) {
     if (std::exchange(now_.is_aside, false)) store_.take_past_along(team);
     take_each_once(now_.touched, [&](std::uint32_t slot) {
       if (now_.is_free(slot)) store_.stop_at_contact(slot);
     });
+    if (now_.is_begun && !linkage_.empty()) {
+      linkage_.for_each_arrival(store_.points(false),
+                                [&](std::uint32_t slot) { now_.arrived.push_back({slot}); });
+    }
     take_arrivals(now_.arrived, [&](const Arrival& arrival) { begin_at_limit(arrival); });
   }
   /// The velocity is that at the end of this substep, and the past a free flight that leads to it.
