@@ -215,12 +215,9 @@ void check(std::uint32_t seed, bool moves, bool deforms) {
 }
 
 TEST_CASE("pairs that may come near in an interval are among the candidates; others may sleep") {
-  for (std::uint32_t seed = 1; seed <= 2; ++seed) {
-    CAPTURE(seed);
-    SUBCASE("of a body that is still") { check(seed, false, false); }
-    SUBCASE("of one that moves") { check(seed, true, false); }
-    SUBCASE("of one that moves and deforms") { check(seed, true, true); }
-  }
+  SUBCASE("of a body that is still") { check(1, false, false); }
+  SUBCASE("of one that moves") { check(1, true, false); }
+  SUBCASE("of one that moves and deforms") { check(1, true, true); }
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ constexpr double kTooFar = 1.1;  // of the chain's length
 /// particle moves from place to place in the end.
 Outcome run_pulled(const Setup& setup) {
   Trial trial{pulled_chain(kTooFar), setup.settings(0.001)};
-  trial.steps = setup.steps(120, 60);
+  trial.steps = setup.steps(120, 20);
   const auto last = std::make_shared<Snapshot>();
   const auto speed = std::make_shared<double>(0);
   trial.after_step = [last, speed, &trial](const Cloth& cloth, int) {
@@ -42,8 +42,8 @@ Outcome run_pulled(const Setup& setup) {
 Outcome run_return(const Setup& setup) {
   Trial trial{pulled_chain(kTooFar), setup.settings(0.001)};
   trial.scene.gravity = {0, 0, 0};
-  trial.steps = setup.steps(200, 150);
-  const int there = setup.steps(30, 10), back = 100;
+  trial.steps = setup.steps(200, 110);
+  const int there = setup.steps(30, 5), back = 100;
   const auto end = static_cast<std::uint32_t>(trial.scene.positions.size() - 1);
   const double taut = trial.scene.positions[end].x / kTooFar;
   trial.before_step = [=](Cloth& cloth, int step) {
