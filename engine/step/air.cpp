@@ -95,23 +95,29 @@ void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, d
   });
 }
 
-double parts_for_air(const State& s, double dt) {
+AirPace find_air_pace(const State& s) {
   const Model& model = *s.model;
-  if (!model.has_air()) return 1;
+  if (!model.has_air()) return {};
   const AirStore& air = model.air;
-  double sum = 0, mass = 0;
+  double area2 = 0, flow = 0, mass = 0;
   for (const auto& [a, b, c] : air.triangles) {
     const Vector from = s.position[a], way = s.position[b] - from, across = s.position[c] - from;
     const Vector v = (1. / 3) * (s.velocity[a] + s.velocity[b] + s.velocity[c]) - s.wind_at(from);
-    const Vector area2 = cross(way, across);
-    sum += std::sqrt(dot(area2, area2) * dot(v, v));
+    const double size = length(cross(way, across));
+    area2 += size;
+    flow += size * length(v);
   }
   for (std::size_t slot = 0; slot < model.slots(); ++slot) {
     if (is_free_cloth(model, slot)) mass += model.mass[slot];
   }
-  if (!(mass > 0)) return 1;
-  const double rate = 0.25 * air.density * (air.drag + air.lift) * sum / mass;
-  return std::max(1.0, std::ceil(rate * dt / tuning::kAirShare));
+  if (!(mass > 0) || !(area2 > 0)) return {};
+  const double rate = 0.25 * air.density * (air.drag + air.lift) * flow / mass;
+  const double cell = std::sqrt(area2 / static_cast<double>(air.triangles.size()));
+  return {rate, std::sqrt(rate * (flow / area2) / cell)};
+}
+
+double parts_for_air(const AirPace& pace, double dt) {
+  return std::max(1.0, std::ceil(pace.rate * dt / tuning::kAirShare));
 }
 
 void decay(State& s, double h) {

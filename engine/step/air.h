@@ -41,11 +41,20 @@ void find_resistance(State& s, double c, double h, Team& team);
 /// The same for particles at x with the velocities v.
 void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, double c, double h,
                      Team& team);
+/// How fast the air acts, in the mean over the cloth: with U the speed of the cloth relative to it,
+/// C the sum of drag and lift, s the mass of the cloth per area and l the size of its cells,
+///
+///     rate = density / 2 C U / s        at which it takes the velocity of cloth across the wind
+///     turning^2 = rate U / l            of a wave of one cell, which the wind turns
+struct AirPace {
+  double rate = 0, turning = 0;  // 1/s
+};
+/// 0 without air.
+AirPace find_air_pace(const State& s);
 /// In how many parts of dt the forces are to be found anew, 1 or more. What stands across the wind
 /// and is turned along it loses its force, at once and not at the end of a step: in a part the air
-/// is not to take more than the share tuning::kAirShare of the velocity that cloth which stands
-/// across it has relative to it.
-double parts_for_air(const State& s, double dt);
+/// is not to take more than the share tuning::kAirShare of a velocity.
+double parts_for_air(const AirPace& pace, double dt);
 /// State::velocity, before h.
 void decay(State& s, double h);
 

@@ -25,15 +25,20 @@ double length_for_onset(const State& s, double a, double dt) {
   return s.settings.scheme == Scheme::bdf2 ? std::sqrt(0.5 * length * dt) : length;
 }
 
-/// s, of the longest substep that the strain tolerance and the motion tolerance allow. What a frame
-/// will be like is not known: State::refinement says what the last ones were. Where that is below 0
-/// the cloth pulls less than at the bottom of a swing.
+/// s, of substeps that follow the waves that the wind makes.
+double length_for_air(const State& s) {
+  return s.air_turning > 0 ? tuning::kAirTurn / s.air_turning : tuning::kLongestSubstep;
+}
+
+/// s, of the longest substep that the strain tolerance, the motion tolerance and the air allow.
+/// What a frame will be like is not known: State::refinement says what the last ones were. Where
+/// that is below 0 the cloth pulls less than at the bottom of a swing.
 double usual_length(State& s, double dt) {
   Burden burden = burden_of(s, dt);
   burden.weights *= std::exp2(2 * std::min(0.0, s.refinement));
-  const double length = std::min(
-      tuning::kLongestSubstep,
-      substep_length(s.model->small_steps().load, s.position.view(), burden, s.settings.tolerance));
+  const double of_load =
+      substep_length(s.model->small_steps().load, s.position.view(), burden, s.settings.tolerance);
+  const double length = std::min({tuning::kLongestSubstep, length_for_air(s), of_load});
   if (!refines_substeps(s)) return length;
   const double shorter = std::exp2(-std::max(0.0, s.refinement));
   if (s.settings.motion_tolerance == 0) return length * shorter;

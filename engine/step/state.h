@@ -114,6 +114,7 @@ struct State : LastingState {
   std::vector<Resistance> resistances;     // per triangle
   kernels::Vectors air_from, air_impulse;  // of small steps: in a part of a frame, m and N s
   double air_parts = 1;       // of a frame of small steps, in which the air is looked at (air.h)
+  double air_turning = 0;     // 1/s, when the frame begins (AirPace)
   double way_per_second = 0;  // 1 over the length of the present step
   /// m/s, of the air about x, as the cloth sees it.
   kernels::Vector wind_at(kernels::Vector x) const { return wind - way_per_second * way.at(x); }

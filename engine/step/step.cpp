@@ -165,7 +165,9 @@ class OneStep {
   void resist(const Attempt& attempt, double h) {
     const bool decays = decays_before(attempt);
     if (attempt.method == Method::by_small_steps) {
-      s_.air_parts = parts_for_air(s_, h);
+      const AirPace air = find_air_pace(s_);
+      s_.air_parts = parts_for_air(air, h);
+      s_.air_turning = air.turning;
       return find_resistance(s_, 0, h / s_.air_parts, team_);
     }
     find_resistance(s_, decays ? s_.model->damping.motion : 0, h, team_);

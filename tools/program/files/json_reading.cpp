@@ -31,6 +31,39 @@ std::string with_short_quote(std::string message) {
   return message.replace(begin, end - begin, shown(message.substr(begin, end - begin)));
 }
 
+/// Visits values, and keeps nothing but where the parser came to an error.
+class ErrorFinder final : public nlohmann::json_sax<Json> {
+ public:
+  std::size_t bytes_read() const { return bytes_read_; }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t position, const std::string&, const Json::exception&) override {
+    bytes_read_ = position;
+    return false;
+  }
+
+ private:
+  std::size_t bytes_read_ = 0;
+};
+
+std::string line_of_error(std::string_view text) {
+  ErrorFinder finder;
+  Json::sax_parse(text, &finder);
+  const std::string_view read = text.substr(0, finder.bytes_read());
+  return fmt::format("line {}", 1 + std::ranges::count(read, '\n'));
+}
+
 }  // namespace
 
 std::string in_quotes(const Json& key) {
@@ -42,11 +75,13 @@ void refuse(const std::string& place, std::string_view expected, const Json& fou
   throw Refused{fmt::format("{}: expected {}, not {}", place, expected, brief(found))};
 }
 
-std::string plain_message(const Json::exception& exception) {
-  const std::string_view text = exception.what();
-  const std::size_t bracket = text.find("] ");
-  return with_short_quote(
-      std::string(bracket == std::string_view::npos ? text : text.substr(bracket + 2)));
+std::string plain_message(const Json::exception& exception, std::string_view text) {
+  const std::string_view message = exception.what();
+  const std::size_t bracket = message.find("] ");
+  const std::string plain = with_short_quote(
+      std::string(bracket == std::string_view::npos ? message : message.substr(bracket + 2)));
+  const bool is_out_of_range = dynamic_cast<const Json::out_of_range*>(&exception) != nullptr;
+  return is_out_of_range ? fmt::format("{}: {}", line_of_error(text), plain) : plain;
 }
 
 double read_number(const Json& json, const std::string& place) {

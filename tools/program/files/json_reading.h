@@ -32,8 +32,9 @@ inline std::string within(const std::string& place, std::string_view key) {
 /// "place: expected ..., not ..."
 [[noreturn]] void refuse(const std::string& place, std::string_view expected, const Json& found);
 
-/// "[json.exception.parse_error.101] parse error at line 2, ..." without the brackets.
-std::string plain_message(const Json::exception& exception);
+/// "[json.exception.parse_error.101] parse error at line 2, ..." without the brackets; with the
+/// line of `text` where it is not in there.
+std::string plain_message(const Json::exception& exception, std::string_view text);
 
 double read_number(const Json& json, const std::string& place);
 std::uint32_t read_index(const Json& json, const std::string& place);  // of a particle

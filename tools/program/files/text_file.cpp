@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -11,6 +12,14 @@
 #include <memory>
 
 namespace weft::tools {
+namespace {
+
+bool is_device(std::FILE* file) {
+  struct stat status {};
+  return fstat(fileno(file), &status) == 0 && (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode));
+}
+
+}  // namespace
 
 Result<std::string> read_text_file(const std::string& path) {
   const auto refused = [&] {
@@ -19,6 +28,8 @@ Result<std::string> read_text_file(const std::string& path) {
   const auto close = [](std::FILE* stream) { std::fclose(stream); };
   const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rbe"), close);
   if (!file) return refused();
+  if (is_device(file.get()))
+    return Error{fmt::format("cannot read '{}': it is a device, not a file", path)};
   std::string text;
   std::array<char, 1 << 16> block{};
   while (const std::size_t size = std::fread(block.data(), 1, block.size(), file.get())) {

@@ -8,7 +8,8 @@
 
 namespace weft::tools {
 
-/// The whole file. An error names the path and says why.
+/// The whole file, or what a pipe has. An error names the path and says why. A device is refused:
+/// it need not end.
 Result<std::string> read_text_file(const std::string& path);
 
 /// To standard output, with nothing left in a buffer. An error if it did not get there.

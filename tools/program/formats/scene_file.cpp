@@ -198,7 +198,7 @@ Result<SceneFile> parse_scene(std::string_view text, const std::string& folder) 
   } catch (const Refused& refused) {
     return Error{refused.message};
   } catch (const Json::exception& exception) {
-    return Error{plain_message(exception)};
+    return Error{plain_message(exception, text)};
   }
 }
 

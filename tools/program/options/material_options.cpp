@@ -154,7 +154,7 @@ Result<Material> parse_material(std::string_view text) {
   } catch (const Refused& refused) {
     return Error{refused.message};
   } catch (const Json::exception& exception) {
-    return Error{plain_message(exception)};
+    return Error{plain_message(exception, text)};
   }
 }
 

@@ -33,6 +33,11 @@ std::string missing_verb(const CLI::App& app, int argc, char** argv) {
   return fmt::format("'{}' is not a verb: {}", first, verbs(app));
 }
 
+/// In their order; CLI11's own message has it reversed.
+std::string unexpected(const std::vector<std::string>& arguments) {
+  return fmt::format("not expected: {}", fmt::join(arguments, " "));
+}
+
 template <class Value>
 struct Plain {
   using Type = Value;
@@ -130,9 +135,9 @@ int CommandLine::run(int argc, char** argv) {
   try {
     app_->parse(argc, argv);
     if (app_->get_subcommands().empty()) return refuse(missing_verb(*app_, argc, argv));
-  } catch (const CLI::ExtrasError& error) {
+  } catch (const CLI::ExtrasError&) {
     const bool is_verb = argc > 1 && argv[1][0] != '-' && app_->get_subcommands().empty();
-    return refuse(is_verb ? missing_verb(*app_, argc, argv) : error.what());
+    return refuse(is_verb ? missing_verb(*app_, argc, argv) : unexpected(app_->remaining(true)));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return refuse(error.what());
     app_->exit(error);  // help, or the version

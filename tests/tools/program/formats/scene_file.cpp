@@ -449,6 +449,11 @@ TEST_CASE("unknown, missing and contradicting keys are refused") {
         "total_mass: expected a mass above 0, not 0");
 }
 
+TEST_CASE("a number beyond all doubles is refused with its line") {
+  CHECK(error_of("{\"gravity\": [0, 0, 0],\n\"positions\": [[0, -1e999, 0]]}") ==
+        "line 2: number overflow parsing '-1e999'");
+}
+
 TEST_CASE("text that is not JSON is refused in one line") {
   for (const std::string text : {"", "{", "weft", R"({"positions": [[1e999,0,0]]})", "\xff\xfe"}) {
     CAPTURE(text);

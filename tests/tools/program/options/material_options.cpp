@@ -36,6 +36,7 @@ TEST_CASE("errors of a material file name the field") {
   CHECK(material_error(R"({"warp": "x"})") == R"(warp: expected a number, not "x")");
   CHECK(material_error(R"({"warp": 1, "warp": 2})") == "the key 'warp' is given twice");
   CHECK(material_error("{").find("parse error") != std::string::npos);
+  CHECK(material_error("{\n\"warp\":\n1e999}") == "line 3: number overflow parsing '1e999'");
 }
 
 TEST_CASE("options change a named material, or are one by themselves") {

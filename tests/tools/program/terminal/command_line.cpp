@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -50,6 +51,7 @@ TEST_CASE("the table tells no time without its strain") {
 
 TEST_CASE("what is refused exits with 2 and one line that names it") {
   const TemporaryFolder folder;
+  std::filesystem::create_symlink("/dev/zero", folder.file("zero.json"));
   const struct {
     std::string arguments;
     std::string named;
@@ -96,7 +98,9 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
       {"run hang --json missing/a.json", "'missing/a.json'"},
       {"run hang --out a.json --json ./a.json", "'a.json'"},
       {"run hang --out a.json --json $PWD/a.json", "'a.json'"},
-      {"run hang --colour red", "--colour"},
+      {"run hang --colour red --shade 1 blue",
+       "weft: not expected: --colour red --shade 1 blue"},
+      {"run " + folder.file("zero.json"), "it is a device, not a file"},
       {"scene hang --out a.obj", "'a.obj'"},
       {"precision --scene curtain", "'curtain'"},
       {"precision --scene hang_sphere", "--scene hang_sphere"},
