@@ -89,7 +89,7 @@ void add_hard_command(CommandLine& line) {
         return result ? result.value() : refuse(result.error());
       });
   add_study_options(verb, *options, "write hard.csv and hard.md into a folder",
-                    "fewer steps: under a minute");
+                    "fewer steps: some two minutes");
   verb.option("--case", options->name, "only cases with this in their name");
 }
 
