@@ -194,9 +194,9 @@ inline constexpr Patience kRoundPatience{0.999, 16};
 /// looks at the air (engine/step/air.h). A flag flutters too fast where it is larger; looks take
 /// time.
 inline constexpr double kAirShare = 0.3;
-/// A substep is no longer than this over the rate at which the air turns cells (AirPace). Longer ones
-/// damp what flutters: a flag of silk in 20 m/s, 60 Hz, has 0.88 of its speed at 0.25, 0.83 at 0.3
-/// and 0.73 without.
+/// A substep is no longer than this over the rate at which the air turns cells (AirPace). Longer
+/// ones damp what flutters: a flag of silk in 20 m/s, 60 Hz, has 0.88 of its speed at 0.25, 0.83 at
+/// 0.3 and 0.73 without.
 inline constexpr double kAirTurn = 0.22;
 /// s, and a share of the mean length of constraints. Cloth rests of which no particle comes farther
 /// than that in that time: 1e-4 m/s with constraints of 5 cm. Of sheets that rest rounding moves
