@@ -140,23 +140,32 @@ inline constexpr Patience kPlacingPatience{0.9, 8};
 inline constexpr double kMisplacedSpeed = 0.5;
 /// m/s, the speed of its fastest particle at which it is left, below which nobody sees it start.
 inline constexpr double kPlacedSpeed = 0.005;
-/// The bound on (n h)^2 W / compliance where bending elements are visited in every n-th substep
-/// (engine/solvers/small_steps/bending_pace.h), and the largest n. Fewer visits are cheaper; more
-/// are closer to the true stiffness.
-inline constexpr double kBendingPace = 0.05;
-/// The bound on h^2 W / compliance of the median element, where what bends asks for substeps. A
-/// visit makes its law hold in the end of the sweep, so that statics are the same up to here
-/// (perf/tried.md).
-inline constexpr double kBendingSubsteps = 0.2;
+/// Bending is solved for n substeps at once while n^2 (b h)^2 K_ii / m_i is at most kBendingGroup
+/// in the mean, and n at most kLongestGroup (engine/solvers/small_steps/bending_solver.h). More
+/// take less time; fewer resolve the swings of smaller folds.
+inline constexpr double kBendingGroup = 0.1;
 inline constexpr int kLongestGroup = 8;
-/// Elements are visited in at most kMostClasses classes, each at a pace of its own; those of one
-/// class differ in stiffness by less than the factor kLikeStiffness, if there are fewer. More
-/// classes mean fewer visits, and blocks that are less full.
-inline constexpr std::size_t kMostClasses = 4;
-inline constexpr double kLikeStiffness = 0.5;
-/// The largest n h tau W / compliance that an element is damped with: beyond that its neighbours
-/// and it would take from their motion more than there is.
-inline constexpr double kMostBendingDamping = 0.2;
+/// Damping makes the stiffness of bending in a substep at most 1 + kBendingDamping / (n (b h)^2
+/// K_ii / m_i) times as large, but at most twice where that is less. More damps small folds as
+/// asked for; less takes fewer steps.
+inline constexpr double kBendingDamping = 0.5;
+/// The share of a force that bending is solved to, over the tolerance, and the largest tolerance
+/// that it is taken from. A cloth that nothing holds would be pushed and turned by what is left.
+inline constexpr double kBendingPart = 0.5;
+inline constexpr double kFreeBendingPart = 0.02;
+inline constexpr double kLoosestBending = 0.05;
+/// Along the diagonal, forces of less than kBendingUnseen times that share of the weight are left.
+inline constexpr double kBendingUnseen = 0.5;
+inline constexpr int kMostBendingSteps = 200;
+/// Steps along the diagonal, over the root of n (b h)^2 K_ii / m_i in the mean (4 to 5 were
+/// measured of grids and irregular triangles). A factorisation is made where that is at least
+/// kLeastFactored, of at most kMostFactored particles, and where it is estimated to take less time
+/// (ns): for each row and step, and for each value of the factor.
+inline constexpr double kBendingStepsPerRoot = 4.5;
+inline constexpr double kLeastFactored = 12;
+inline constexpr std::size_t kMostFactored = 100000;
+inline constexpr double kBendingStepTime = 13;
+inline constexpr double kFactorTime = 4;
 /// While more than this share of all constraints is out of tolerance a substep sweeps again, which
 /// is cheaper than local passes.
 inline constexpr double kManyOut = 0.02;

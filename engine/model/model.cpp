@@ -417,7 +417,7 @@ std::size_t Model::bytes() const {
          bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() + bytes_of(surface) +
          bytes_of(air.triangles) + air.at.bytes() + reference_.bytes() + simd_.bytes() +
          chunk_neighbours_.bytes() + pulls_.bytes() + direct_.bytes() + yarns_.bytes() +
-         small_steps_.bytes() + touched_surface_.bytes();
+         small_steps_.bytes() + bending_fronts_.bytes() + touched_surface_.bytes();
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

@@ -26,6 +26,7 @@
 namespace weft {
 
 struct ChunkNeighbours;
+struct BendingFronts;
 struct DirectLayout;
 struct PullLayout;
 struct ReferenceLayout;
@@ -222,6 +223,7 @@ class Model {
   const DirectLayout& direct() const;
   const YarnLayout& yarns() const;
   const SmallStepsLayout& small_steps() const;
+  const BendingFronts& bending_fronts() const;
   /// The triangles of `surface`, and free particles that are in none.
   const TriangleSurface& touched_surface() const;
 
@@ -254,6 +256,7 @@ class Model {
   OnDemand<DirectLayout> direct_;
   OnDemand<YarnLayout> yarns_;
   OnDemand<SmallStepsLayout> small_steps_;
+  OnDemand<BendingFronts> bending_fronts_;
   OnDemand<TriangleSurface> touched_surface_;
 };
 

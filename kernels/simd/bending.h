@@ -1,19 +1,14 @@
-/// Bending elements of small steps, in lanes. Of particle i, with the weight c_i and the inverse
-/// mass w_i,
+/// Bending elements of small steps, in lanes. Of particle i, with the weight c_i,
 ///
 ///     d = sum of c_i x_i = span + c_0 (u_0 - u_2) + c_1 (u_1 - u_2) + c_3 (u_3 - u_2)
 ///
-/// since the weights sum to zero; span is the same sum over the base. In a substep of h, whose
-/// positions move by (b h)^2 w f under a force f that acts during n substeps, a visit changes d by
+/// since the weights sum to zero; span is the same sum over the base. An element pulls particle i
+/// by c_i f,
 ///
-///     nu = - (1 - rest / |d| + tau (d . d') / |d|^2) d / max(a + 1/2, 1 / omega)
-///     a  = s / (n (b h)^2),   s = compliance / W,   W = sum of w_i c_i^2
+///     f = - k (1 - rest / |d| + tau (d . d') / |d|^2) d,
 ///
-/// and moves x_i by (w_i c_i / W) nu. With a + 1 the law would hold when the element has been
-/// visited; but those that are visited later take, where all bend alike, half of nu back, since
-/// weights sum to zero: it holds in the end of the sweep with a + 1/2. What is too stiff for that
-/// is relaxed by omega. d', the rate of d, is that in the beginning of the substep: what has come
-/// to rest is not damped, though within a substep it moves.
+/// where d' is the rate of d. What rounding does to d is a moment, and to a sum of pulls no more
+/// than to these: a stiff cloth is not pushed away by it.
 #pragma once
 
 #include <limits>
@@ -40,13 +35,6 @@ struct BentQuads {
     if constexpr (kFour) d = fused(load(block.weight[2] + lane), x[3] - x[2], d);
     return d;
   }
-  [[gnu::always_inline]] void move(float* u, const BendingBlock& block, std::uint32_t lane,
-                                   const FloatVector& by) {
-    for (std::size_t k = 0; k < (kFour ? 4 : 3); ++k) {
-      x[k] = fused(load(block.share[k] + lane), by, x[k]);
-      QuadLanes{}.put(u, block.slot[k] + lane, x[k]);
-    }
-  }
 };
 
 template <bool kFour>
@@ -67,8 +55,8 @@ template <bool kFour>
   return {load(span.x + lane), load(span.y + lane), load(span.z + lane)};
 }
 
-/// The factor of d in nu. Where d all but vanishes it has no direction, and what the factor makes
-/// of it falls to 0 with it.
+/// The factor of d in f, over - k. Where d all but vanishes it has no direction, and what the
+/// factor makes of it falls to 0 with it.
 template <bool kFour, bool kCurved, bool kDamped>
 [[gnu::always_inline]] inline Floats stretched(const Bending& b, const BendingBlock& block,
                                                std::uint32_t lane, const FloatVector& d) {
@@ -83,38 +71,51 @@ template <bool kFour, bool kCurved, bool kDamped>
     }
     if constexpr (kDamped) {
       const FloatVector rate = BentQuads<kFour>(b.v, block, lane).sum(block, lane);
-      const Floats tau =
-          xsimd::min(Floats(b.damping), Floats(b.most) * load(block.softness + lane));
-      factor = fused(tau, dot(d, rate) / xsimd::max(square, least), factor);
+      factor = fused(Floats(b.damping), dot(d, rate) / xsimd::max(square, least), factor);
     }
   }
   return factor;
 }
 
+/// The weights sum to zero as they are rounded: so do the pulls, but for their own rounding.
+template <bool kFour>
+[[gnu::always_inline]] inline void pull_quads(float* to, const BendingBlock& block,
+                                              std::uint32_t lane, const FloatVector& f) {
+  const auto pull = [&](std::size_t k, Floats weight) {
+    const std::uint32_t* const slot = block.slot[k] + lane;
+    QuadLanes{}.put(to, slot, fused(weight, f, QuadLanes{}.get(to, slot)));
+  };
+  const Floats w0 = load(block.weight[0] + lane), w1 = load(block.weight[1] + lane);
+  pull(0, w0);
+  pull(1, w1);
+  if constexpr (kFour) {
+    const Floats w3 = load(block.weight[2] + lane);
+    pull(2, Floats(0.f) - (w0 + w1 + w3));
+    pull(3, w3);
+  } else {
+    pull(2, Floats(0.f) - (w0 + w1));
+  }
+}
+
 template <bool kFour, bool kCurved, bool kDamped>
-[[gnu::always_inline]] inline void bend_elements(const Bending& b, std::size_t first,
+[[gnu::always_inline]] inline void pull_elements(const Bending& b, float* to, std::size_t first,
                                                  std::size_t last) {
-  float* const u = b.u;
-  const Floats own(b.own), rate(b.rate), none(0.f);
   for (std::size_t i = first; i < last; ++i) {
     const BendingBlock& block = b.blocks[i];
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      BentQuads<kFour> particles(u, block, lane);
-      FloatVector d = load_span(b.spans[i], lane) + particles.sum(block, lane);
-      const Floats divisor =
-          xsimd::max(fused(rate, load(block.softness + lane), Floats(0.5f)), own);
+      FloatVector d =
+          load_span(b.spans[i], lane) + BentQuads<kFour>(b.u, block, lane).sum(block, lane);
       const Floats factor = stretched<kFour, kCurved, kDamped>(b, block, lane, d);
-      particles.move(u, block, lane, (none - factor / divisor) * d);
+      pull_quads<kFour>(to, block, lane, (Floats(0.f) - factor * load(block.stiffness + lane)) * d);
     }
   }
 }
 
-/// (|d| - rest)^2 / (2 compliance), of what is stiffer than a substep resolves as if it were just
-/// resolved. The lanes of a block are added up one after the other, whatever the width of a vector.
+/// (|d| - rest)^2 k / 2, of what is stiffer than a substep resolves as if it were just resolved.
+/// The lanes of a block are added up one after the other, whatever the width of a vector.
 template <bool kFour>
-[[gnu::always_inline]] inline void measure_energies(const Bending& b, const float* stiffness,
-                                                    double* energy, std::size_t first,
-                                                    std::size_t last) {
+[[gnu::always_inline]] inline void measure_energies(const Bending& b, double* energy,
+                                                    std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
     const BendingBlock& block = b.blocks[i];
     alignas(64) float of_lane[kernels::kLanes];
@@ -123,7 +124,7 @@ template <bool kFour>
           load_span(b.spans[i], lane) + BentQuads<kFour>(b.u, block, lane).sum(block, lane);
       const Floats bent = xsimd::sqrt(dot(d, d)) - load(block.rest + lane);
       const Floats part = xsimd::min(Floats(1.f), Floats(b.resolved) * load(block.softness + lane));
-      (Floats(0.5f) * part * load(stiffness + kernels::kLanes * i + lane) * bent * bent)
+      (Floats(0.5f) * part * load(block.stiffness + lane) * bent * bent)
           .store_unaligned(of_lane + lane);
     }
     energy[i] = 0;
@@ -132,16 +133,16 @@ template <bool kFour>
 }
 
 template <bool kFour, bool kCurved>
-[[gnu::always_inline]] inline void bend_elements(const Bending& b, std::size_t first,
+[[gnu::always_inline]] inline void pull_elements(const Bending& b, float* to, std::size_t first,
                                                  std::size_t last) {
-  if (b.damping > 0) return bend_elements<kFour, kCurved, true>(b, first, last);
-  bend_elements<kFour, kCurved, false>(b, first, last);
+  if (b.damping > 0) return pull_elements<kFour, kCurved, true>(b, to, first, last);
+  pull_elements<kFour, kCurved, false>(b, to, first, last);
 }
 template <bool kFour>
-[[gnu::always_inline]] inline void bend_elements(const Bending& b, std::size_t first,
+[[gnu::always_inline]] inline void pull_elements(const Bending& b, float* to, std::size_t first,
                                                  std::size_t last) {
-  if (b.curved) return bend_elements<kFour, true>(b, first, last);
-  bend_elements<kFour, false>(b, first, last);
+  if (b.curved) return pull_elements<kFour, true>(b, to, first, last);
+  pull_elements<kFour, false>(b, to, first, last);
 }
 
 void measure_bending(const BendingBlock* blocks, EdgeSpans* spans, const float* base, bool four,
@@ -149,15 +150,15 @@ void measure_bending(const BendingBlock* blocks, EdgeSpans* spans, const float* 
   if (four) return measure_elements<true>(blocks, spans, base, first, last);
   measure_elements<false>(blocks, spans, base, first, last);
 }
-void bend(const Bending& b, bool four, std::size_t first, std::size_t last) {
-  if (four) return bend_elements<true>(b, first, last);
-  bend_elements<false>(b, first, last);
+void pull_bending(const Bending& b, float* to, bool four, std::size_t first, std::size_t last) {
+  if (four) return pull_elements<true>(b, to, first, last);
+  pull_elements<false>(b, to, first, last);
 }
 
-void bending_energy(const Bending& b, const float* stiffness, double* energy, bool four,
-                    std::size_t first, std::size_t last) {
-  if (four) return measure_energies<true>(b, stiffness, energy, first, last);
-  measure_energies<false>(b, stiffness, energy, first, last);
+void bending_energy(const Bending& b, double* energy, bool four, std::size_t first,
+                    std::size_t last) {
+  if (four) return measure_energies<true>(b, energy, first, last);
+  measure_energies<false>(b, energy, first, last);
 }
 
 }  // namespace

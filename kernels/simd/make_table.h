@@ -4,6 +4,7 @@
 #include "kernels/simd/anchors.h"
 #include "kernels/simd/anticipate.h"
 #include "kernels/simd/bending.h"
+#include "kernels/simd/bending_system.h"
 #include "kernels/simd/bodies.h"
 #include "kernels/simd/directions.h"
 #include "kernels/simd/distances.h"
@@ -115,7 +116,7 @@ constexpr Table make_table() {
           .relax_springs = relax_springs,
           .judge_springs = judge_springs,
           .measure_bending = measure_bending,
-          .bend = bend,
+          .pull_bending = pull_bending,
           .bending_energy = bending_energy,
           .measure_membrane = measure_membrane,
           .relax_membrane = relax_membrane,
@@ -139,6 +140,13 @@ constexpr Table make_table() {
           .eliminate_front = eliminate_front,
           .solve_front_forward = solve_front_forward,
           .solve_front_backward = solve_front_backward,
+          .multiply_bending = multiply_bending,
+          .step_gradients = step_gradients,
+          .turn_gradients = turn_gradients,
+          .turn_gradients_to = turn_gradients_to,
+          .dot_vectors = dot_vectors,
+          .solve_vectors_forward = solve_vectors_forward,
+          .solve_vectors_backward = solve_vectors_backward,
           .bound = bound,
           .find_boxes = find_boxes,
           .find_near = find_near,

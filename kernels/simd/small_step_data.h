@@ -89,24 +89,21 @@ struct SpringRelaxation {
   SpringLaws laws;
 };
 /// Bending elements of small steps (bending.h), in blocks of kLanes, of three particles or of four;
-/// particles in quads. Padding: spare slots, with weights and shares of 0.
+/// particles in quads. Padding: spare slots, with weights and a stiffness of 0.
 struct alignas(64) BendingBlock {
   std::uint32_t slot[4][kernels::kLanes];
   float weight[3][kernels::kLanes];  // of particles 0, 1 and 3: c_i. That of 2 makes their sum 0
-  float share[4][kernels::kLanes];   // w_i c_i / W, W = sum of w_i c_i^2
   float rest[kernels::kLanes];       // m
-  float softness[kernels::kLanes];   // compliance / W, s^2
+  float stiffness[kernels::kLanes];  // k = 1 / compliance, N/m
+  float softness[kernels::kLanes];   // compliance / W, W = sum of w_i c_i^2, s^2
 };
 struct Bending {
-  float* u = nullptr;
-  const float* v = nullptr;  // in the beginning of the substep
+  const float* u = nullptr;
+  const float* v = nullptr;
   const BendingBlock* blocks = nullptr;
   const EdgeSpans* spans = nullptr;  // d of the base
   bool curved = false;               // a rest is not 0
-  float own = 1;                     // 1 / omega
-  float rate = 0;                    // 1 / (n (b h)^2)
   float damping = 0;                 // tau, s
-  float most = 0;                    // 1/s: tau is softness times this at most
   float resolved = 0;                // 1/s^2: what is stiffer has a softness of less than 1 / this
 };
 

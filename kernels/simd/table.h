@@ -1,12 +1,13 @@
 /// The vector kernels, one function pointer per stage, one table per instruction set. What they
-/// read and write stands in sweep_data.h, yarn_data.h, front_data.h, small_step_data.h, grip_data.h
-/// and nearness_data.h.
+/// read and write stands in sweep_data.h, yarn_data.h, front_data.h, small_step_data.h,
+/// bending_data.h, grip_data.h and nearness_data.h.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
 #include "kernels/impulse_energy.h"
+#include "kernels/simd/bending_data.h"
 #include "kernels/simd/front_data.h"
 #include "kernels/simd/grip_data.h"
 #include "kernels/simd/isa.h"
@@ -172,10 +173,11 @@ struct Table {
   void (*judge_springs)(const SpringRelaxation&, bool rope, std::size_t first, std::size_t last);
   void (*measure_bending)(const BendingBlock*, EdgeSpans*, const float* base, bool four,
                           std::size_t first, std::size_t last);
-  void (*bend)(const Bending&, bool four, std::size_t first, std::size_t last);
-  /// J, of each block; stiffness: 1 / compliance per block and lane.
-  void (*bending_energy)(const Bending&, const float* stiffness, double* energy, bool four,
-                         std::size_t first, std::size_t last);
+  /// Adds the pulls of elements that share no particle to quads.
+  void (*pull_bending)(const Bending&, float* to, bool four, std::size_t first, std::size_t last);
+  /// J, of each block.
+  void (*bending_energy)(const Bending&, double* energy, bool four, std::size_t first,
+                         std::size_t last);
   void (*measure_membrane)(const MembraneBlock*, MembraneSpans*, const float* base,
                            std::size_t first, std::size_t last);
   /// continues: from the multipliers, else from none.
@@ -219,6 +221,24 @@ struct Table {
   /// Substitutions with one front, z having its rows; panel and reciprocal are read.
   void (*solve_front_forward)(const Front&, double* z);
   void (*solve_front_backward)(const Front&, double* z);
+
+  // The linear system of bending (bending_system.h).
+  /// q = A p, of groups of rows first ... last - 1; returns p . q.
+  double (*multiply_bending)(const BendingMatrix&, const double* p, double* q, std::size_t first,
+                             std::size_t last);
+  /// Of slots first ... last - 1: x += alpha p, r -= alpha A p, which returns r . r / diagonal;
+  /// p = r / diagonal + beta p; p = z + beta p; a . b.
+  double (*step_gradients)(const BendingGradients&, double alpha, std::size_t first,
+                           std::size_t last);
+  void (*turn_gradients)(const BendingGradients&, double beta, std::size_t first, std::size_t last);
+  void (*turn_gradients_to)(const BendingGradients&, const double* z, double beta,
+                            std::size_t first, std::size_t last);
+  double (*dot_vectors)(const double* a, const double* b, std::size_t first, std::size_t last);
+  /// Substitutions with one front, of three right sides.
+  void (*solve_vectors_forward)(const Front&, const FrontVectors&, std::size_t columns,
+                                std::size_t rows);
+  void (*solve_vectors_backward)(const Front&, const FrontVectors&, std::size_t columns,
+                                 std::size_t rows);
 
   /// Boxes grow to hold what has mass.
   void (*bound)(kernels::VectorsView x, const double* mass, std::size_t slots, const Boxes&);

@@ -1,7 +1,4 @@
-/// The factorisation A = L D L^T on the fixed fronts of a DirectLayout. A front is the sum of the
-/// matrix entries in its columns and the updates of its children. It is eliminated as a dense
-/// matrix (kernels/simd/fronts.h), and its own update goes to its parent. Nothing is allocated
-/// after construction.
+/// The factorisation of the direct solver's matrix, on the fronts of a DirectLayout.
 ///
 /// Redundant constraints make A singular: the pivot of the last of them vanishes up to rounding.
 /// The diagonal w_a + w_b is therefore raised by the share kShift, which the outer iteration
@@ -12,8 +9,7 @@
 #include <cstddef>
 
 #include "engine/solvers/direct/direct_layout.h"
-#include "kernels/simd/table.h"
-#include "kernels/vectors.h"
+#include "engine/solvers/direct/front_factor.h"
 
 namespace weft {
 
@@ -28,34 +24,26 @@ class DirectFactor {
   template <class Entry, class Diagonal>
   void factorise(Entry&& entry, Diagonal&& diagonal) {
     for (std::size_t i = 0; i < layout_.fronts.fronts.size(); ++i) {
-      clear(i);
+      factor_.clear(i);
       for (std::size_t e = layout_.entry_begin[i]; e < layout_.entry_begin[i + 1]; ++e) {
-        lower_[layout_.entry_place[e]] = entry(e);
+        factor_.at(layout_.entry_place[e]) = entry(e);
       }
       const DirectFront& front = layout_.fronts.fronts[i];
       for (std::size_t c = 0; c < front.count; ++c) {
         const std::size_t k = front.first + c;
-        lower_[front.panel + c * front.stride() + c] = diagonal(k) + kShift * layout_.diagonal[k];
+        factor_.at(front.panel + c * front.stride() + c) =
+            diagonal(k) + kShift * layout_.diagonal[k];
       }
-      eliminate(i);
+      factor_.eliminate(i);
     }
   }
   /// Replaces b by A^-1 b.
-  void solve(double* b);
-  std::size_t bytes() const;
+  void solve(double* b) { factor_.solve(b); }
+  std::size_t bytes() const { return factor_.bytes(); }
 
  private:
-  simd::Front front_at(std::size_t i);
-  void clear(std::size_t i);
-  void eliminate(std::size_t i);
-  void add_update(const DirectFront& child, std::size_t number, const simd::Front& parent) const;
-
   const DirectLayout& layout_;
-  const simd::Table& kernels_;
-  kernels::AlignedVector<double> lower_;               // the panels of all fronts
-  kernels::AlignedVector<double> reciprocal_, least_;  // per padded column
-  kernels::AlignedVector<double> updates_[2];          // stacks of even and odd levels
-  kernels::AlignedVector<double> scratch_, part_;      // for a panel; for a right side
+  FrontFactor factor_;
 };
 
 }  // namespace weft

@@ -1,12 +1,11 @@
 #include "engine/solvers/direct/direct_layout.h"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <limits>
 #include <new>
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
+#include "engine/solvers/direct/elimination_order.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -65,36 +64,12 @@ Lists neighbours_of(const Model& model, const DirectLayout& layout, const Lists&
   return neighbours;
 }
 
-/// Sorts the members for little fill-in of the factor, by approximate minimum degree.
-std::vector<std::uint32_t> least_fill(const Lists& neighbours,
-                                      std::span<const std::uint32_t> members) {
-  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
-  std::vector<Eigen::Triplet<double, int>> entries;
-  const auto size = static_cast<int>(members.size());
-  for (int k = 0; k < size; ++k) {
-    entries.emplace_back(k, k, 1.0);
-    for (const std::uint32_t j : neighbours[static_cast<std::size_t>(k)]) {
-      entries.emplace_back(k, static_cast<int>(j), 1.0);
-    }
-  }
-  Matrix matrix(size, size);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(matrix, permutation);
+std::vector<std::uint32_t> order_of_members(const Model& model, const DirectLayout& layout,
+                                            const Lists& at,
+                                            std::span<const std::uint32_t> members) {
   std::vector<std::uint32_t> order;
-  for (int i = 0; i < size; ++i) {
-    order.push_back(members[static_cast<std::size_t>(permutation.indices()[i])]);
-  }
-  return order;
-}
-
-std::vector<std::uint32_t> elimination_order(const Model& model, const DirectLayout& layout,
-                                             const Lists& at,
-                                             std::span<const std::uint32_t> members) {
-  const auto filling = least_fill(neighbours_of(model, layout, at, members), members);
-  std::vector<std::uint32_t> order;
-  const auto tree = elimination_tree(neighbours_of(model, layout, at, filling));
-  for (const std::uint32_t k : postorder(tree)) order.push_back(filling[k]);
+  for (const std::uint32_t i : elimination_order(neighbours_of(model, layout, at, members)))
+    order.push_back(members[i]);
   return order;
 }
 
@@ -155,7 +130,7 @@ DirectLayout make_direct_layout(const Model& model) {
       add(s.b[c], c);
     }
   });
-  layout.row_constraint = elimination_order(model, layout, at, members);
+  layout.row_constraint = order_of_members(model, layout, at, members);
   store_rows(model, layout);
   layout.fronts = make_direct_fronts(neighbours_of(model, layout, at, layout.row_constraint));
   store_entries(model, at, layout);

@@ -22,7 +22,7 @@ LaneStore::LaneStore(Substep& now, const simd::Table& table)
       table_(table),
       links_(model_, now.settings, table),
       membrane_(model_, table),
-      bending_(model_, table),
+      bending_(model_, now.settings, table),
       anchors_(model_, now.settings, table),
       bodies_(model_, now.settings, table),
       largest_((layout_.floats + kPart - 1) / kPart) {
@@ -108,6 +108,10 @@ void LaneStore::accelerate(kernels::Vector gravity, kernels::VectorsView force) 
   }
 }
 
+void LaneStore::begin_bending(const FramePlan& plan) {
+  bending_.begin(plan, acceleration_.data());
+}
+
 /// Without a past the particles are taken to have been in free flight.
 void LaneStore::begin_past(Team& team) {
   if (!now_.has_past) {
@@ -153,7 +157,6 @@ void LaneStore::split(kernels::VectorsView x, int substeps, Team& team) {
 
 void LaneStore::begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan,
                       Team& team) {
-  bending_.begin(plan);
   split(x, plan.substeps, team);
   anchors_.begin(plan.anchors, plan.h, plan.substeps,
                  now_.has_past ? past_.at_limit : std::span<const std::uint16_t>{});

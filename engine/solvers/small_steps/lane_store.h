@@ -55,6 +55,8 @@ class LaneStore {
   // The beginning of a frame, in this order.
   void begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan, Team& team);
   void accelerate(kernels::Vector gravity, kernels::VectorsView force);
+  /// Of a frame with these accelerations.
+  void begin_bending(const FramePlan& plan);
   void begin_past(Team& team);
 
   // The prediction of a substep, by Substep::next_formula. What ends the last one returns the
@@ -63,7 +65,7 @@ class LaneStore {
   std::optional<double> settle(bool measures, Team& team);
   void decay(double to, Team& team);
   std::optional<double> predict(Team& team);
-  void bend(Team& team) { bending_.bend(u_.data(), v_before_.data(), give(), team); }
+  void bend(Team& team) { bending_.bend(u_.data(), v_.data(), give(), team); }
 
   // A sweep. after(): after each family of yarns.
   template <class After>
@@ -107,6 +109,7 @@ class LaneStore {
   void read_velocities(kernels::VectorsView v, Team& team) const;
   double largest_move(Team& team);
   double bending_energy(double give, Team& team) { return bending_.energy(u_.data(), give, team); }
+  double bending_error() const { return bending_.error(); }
   double rounding_error(double h) const;
 
   double past_h() const { return past_.h; }

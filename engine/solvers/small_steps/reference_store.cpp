@@ -18,7 +18,7 @@ ReferenceStore::ReferenceStore(Substep& now, const simd::Table& table)
     : now_(now),
       model_(now.model),
       layout_(model_.small_steps()),
-      paces_(paces_of(layout_.bending, model_.damping.bending)),
+      bending_(model_, now.settings, table),
       anchors_(model_.anchors),
       bodies_(model_, table),
       shortest_(shortest_lengths(model_)),
@@ -56,7 +56,6 @@ reference::Flight ReferenceStore::flight() {
 
 void ReferenceStore::begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan,
                            Team&) {
-  for (BendingPace& pace : paces_) pace.begin(plan);
   anchors_.begin(plan.anchors, plan.h, plan.substeps);
   at_limit_.assign(at_limit_.size(), false);
   if (now_.has_past && !plan.anchors.moving) at_limit_ = past_.at_limit;
@@ -73,6 +72,13 @@ void ReferenceStore::accelerate(Vector gravity, kernels::VectorsView force) {
     const Vector pull = force.x != nullptr ? gravity + w * force[i] : gravity;
     acceleration_.set(i, w == 0 ? Vector{0, 0, 0} : pull);
   }
+}
+
+void ReferenceStore::begin_bending(const FramePlan& plan) {
+  double weight = 0;
+  for (std::size_t i = 0; i < model_.slots(); ++i)
+    weight += model_.mass[i] * dot(acceleration_[i], acceleration_[i]);
+  bending_.begin(plan, weight);
 }
 
 /// Without a past the particles are taken to have been in free flight.
@@ -123,29 +129,35 @@ void ReferenceStore::decay(double to, Team&) {
   }
 }
 
-void ReferenceStore::bend(Team&) {
-  const BendingLayout& layout = layout_.bending;
-  for (std::size_t k = 0; k < paces_.size(); ++k) {
-    const int n = paces_[k].next();
-    if (n == 0) continue;
-    const reference::BendingVisit visit = paces_[k].visit(n, now_.formula.give(now_.h));
-    const BendingClass& c = layout.classes[k];
-    for (std::uint32_t lane = layout.first_lane(c); lane < layout.last_lane(c); ++lane) {
-      const std::uint32_t i = layout.element[lane];
-      if (i == kNoIndex) continue;
-      reference::bend(element(i), visit, model_.inverse_mass.data(), x_.view(), v_before_.view());
+/// Of all elements at once, from where the particles were predicted.
+void ReferenceStore::bend(Team& team) {
+  const int n = bending_.next();
+  if (n == 0) return;
+  double* const residual = bending_.residual();
+  std::fill_n(residual, 4 * model_.slots(), 0.0);
+  for (std::uint32_t i = 0; i < model_.bending.size(); ++i) {
+    const reference::BendingElement e = element(i);
+    const Vector f = reference::pull(e, bending_.damping(), x_.view(), v_.view());
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!now_.is_free(e.slots[k])) continue;
+      double* const of = residual + 4 * std::size_t{e.slots[k]};
+      const Vector pull = e.weights[k] * f;
+      of[0] += pull.x;
+      of[1] += pull.y;
+      of[2] += pull.z;
     }
   }
+  bending_.solve(n, now_.formula.give(now_.h), team);
+  const double* const by = bending_.solution();
+  for (std::size_t i = 0; i < model_.slots(); ++i)
+    x_.view().add(i, {by[4 * i], by[4 * i + 1], by[4 * i + 2]});
 }
 
 double ReferenceStore::bending_energy(double give, Team&) {
-  if (paces_.empty()) return 0;
-  const double resolved = paces_.front().resolved(give);
+  const double resolved = bending_.resolved(give);
   double sum = 0;
-  for (const std::uint32_t i : layout_.bending.element) {
-    if (i == kNoIndex) continue;
+  for (std::uint32_t i = 0; i < model_.bending.size(); ++i)
     sum += reference::energy(element(i), resolved, model_.inverse_mass.data(), x_.view());
-  }
   return sum;
 }
 

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "engine/parallel/team.h"
-#include "engine/solvers/small_steps/bending_pace.h"
+#include "engine/solvers/small_steps/bending_solver.h"
 #include "engine/solvers/small_steps/point_particles.h"
 #include "engine/solvers/small_steps/reference_bodies.h"
 #include "engine/solvers/small_steps/substep.h"
+#include "kernels/reference/bending.h"
 #include "kernels/reference/small_steps.h"
 
 namespace weft {
@@ -40,6 +41,8 @@ class ReferenceStore {
 
   void begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan, Team& team);
   void accelerate(kernels::Vector gravity, kernels::VectorsView force);
+  /// Of a frame with these accelerations.
+  void begin_bending(const FramePlan& plan);
   void begin_past(Team& team);
   void renew_base(Team&) {}
   std::optional<double> predict(Team& team);
@@ -92,6 +95,7 @@ class ReferenceStore {
   void read_velocities(kernels::VectorsView v, Team& team) const;
   double largest_move(Team& team);
   double bending_energy(double give, Team& team);
+  double bending_error() const { return bending_.error(); }
   double rounding_error(double) const { return 0; }
 
   double past_h() const { return past_.h; }
@@ -123,7 +127,7 @@ class ReferenceStore {
   Substep& now_;
   const Model& model_;
   const SmallStepsLayout& layout_;
-  std::vector<BendingPace> paces_;
+  BendingSolver bending_;
   AnchorClock anchors_;
   ReferenceBodies bodies_;
   Past past_;

@@ -42,6 +42,7 @@ class StoredSmallSteps final : public SmallSteps {
     departures_.begin();
     store_.begin(x, v, plan, team);
     store_.accelerate(gravity, force);
+    store_.begin_bending(plan);
     store_.begin_past(team);
     begin_bodies(plan, team);
     now_.next_formula = now_.formula_after(now_.has_past ? store_.past_h() : now_.h);
@@ -62,10 +63,10 @@ class StoredSmallSteps final : public SmallSteps {
     }
     add_departure(store_.predict(team));
     now_.formula = std::exchange(now_.next_formula, now_.formula_after(now_.h));
-    store_.bend(team);
     store_.advance_anchors();
     advance_bodies(now_.formula.part, team);
     if (model_.has_attached()) store_.hold_anchors(team);  // before constraints are swept
+    store_.bend(team);
   }
 
   void sweep(Team& team) override { sweep({now_.omega, 0}, team); }
@@ -123,6 +124,7 @@ class StoredSmallSteps final : public SmallSteps {
     return std::max(most, largest_violation(model_.constraints, points, step));
   }
   double motion_error() const override { return departures_.mean_error(); }
+  double bending_error() const override { return store_.bending_error(); }
   double rounding_error(double h) const override { return store_.rounding_error(h); }
   double bending_energy(double give, Team& team) override {
     return store_.bending_energy(give, team);

@@ -163,10 +163,10 @@ class SmallSteps {
   virtual void read_starts(kernels::VectorsView x, Team& team) const = 0;
   /// m; since the present substep began no particle has moved farther.
   virtual double largest_move(Team& team) = 0;
-  /// J, of the bending elements, where the particles are. An element that is too stiff for the
-  /// substeps has no more energy than they resolve: those of the frame that a sweep gives by `give`
-  /// in, (b h)^2 / omega.
+  /// J, of the bending elements, where the particles are (BendingSolver::resolved()).
   virtual double bending_energy(double give, Team& team) = 0;
+  /// What the solutions of the frame have left of the law of bending (StepReport).
+  virtual double bending_error() const = 0;
   /// After the last substep.
   virtual void settle(Team& team) = 0;
   virtual void read_velocities(kernels::VectorsView v, Team& team) const = 0;

@@ -172,7 +172,6 @@ SmallStepsLayout make_small_steps_layout(const Model& model) {
 
 SmallStepsLayout with_bending_of(const Model& model, SmallStepsLayout layout) {
   layout.bending = make_bending_layout(model);
-  layout.load.bending = median_stiffness(layout.bending);
   return layout;
 }
 

@@ -343,18 +343,8 @@ std::vector<SmallStepsLoad::Span> find_ways(const Model& model) {
 
 }  // namespace
 
-double median_stiffness(const BendingLayout& bending) {
-  std::uint32_t lanes = 0;
-  for (const BendingClass& c : bending.classes) {
-    lanes += bending.last_lane(c) - bending.first_lane(c);
-    if (2 * lanes >= bending.element.size()) return c.stiffest;
-  }
-  return 0;
-}
-
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   SmallStepsLoad load;
-  load.bending = median_stiffness(layout.bending);
   std::vector<bool> tethers(model.constraints.size());
   std::vector<Join> joins = joins_of(model, tethers);
   const std::vector<std::uint32_t> anchored = anchors_that_hold(model, mean_length(joins));
@@ -372,8 +362,7 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout) {
   const bool has_edges = !layout.has_yarns() && !layout.blocks.empty();
   const bool hangs = !model.holds.empty() || model.has_attached();
   const bool is_by_ways = has_edges || has_ropes || !hangs;
-  load.way = std::max(load.particles, way.joins - 1);
-  if (is_by_ways) load.particles = load.way;
+  if (is_by_ways) load.particles = std::max(load.particles, way.joins - 1);
   load.reach = layout.linkage.empty() ? way.length : 0;
   load.ways = find_ways(model);
   std::vector<bool> holds(model.slots());
@@ -403,10 +392,6 @@ double substep_length(const SmallStepsLoad& load, kernels::VectorsView x, const 
   const double speed = std::sqrt(2 * burden.acceleration * load.reach);
   double h = length_for(load.particles, burden.weights);
   if (speed > 0) h = std::min(h, tuning::kPassing * load.mean_length / speed);
-  if (load.bending > 0) {
-    const double bent = std::sqrt(tuning::kBendingSubsteps / load.bending);
-    h = std::min(h, std::max(bent, length_for(2 * load.way, kWeightsOfSwing)));
-  }
   return h;
 }
 

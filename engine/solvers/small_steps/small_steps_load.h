@@ -29,12 +29,6 @@
 /// so they count as nothing, unless some particle hangs on them alone. Free spheres that come to
 /// lie on a cloth are more to carry.
 ///
-/// What a cloth carries by its bending each element gives anew in every substep. Elements all alike
-/// give it in the sweep's end (kernels/simd/bending.h), others are softer than they should be by a
-/// part of the share h^2 W / compliance. This stays within tuning::kBendingSubsteps, for half of
-/// the elements at least; but a cloth that is as stiff as a board gets no more substeps for it than
-/// twice its load would ask for along constraints.
-///
 /// A linkage (linkage.h) is one block, which leaves nothing of its load and may turn over.
 ///
 /// No other constraint should turn over within a substep. What has fallen as far as the cloth
@@ -52,7 +46,6 @@ namespace weft {
 
 class Model;
 struct SmallStepsLayout;
-struct BendingLayout;
 
 /// What hangs on the pins.
 struct SmallStepsLoad {
@@ -65,14 +58,9 @@ struct SmallStepsLoad {
   double held_mass = 0;    // kg, of the particles of all blocks at pins
   double mean_length = 0;  // m, of the constraints and sides of triangles of fabric
   double reach = 0;        // m, the longest way from a particle to its nearest pin
-  double bending = 0;      // 1/s^2, W / compliance of the median bending element, or somewhat more
-  double way = 0;          // particles, on the longest way of constraints from a pin
   std::vector<Span> spans;
   std::vector<Span> ways;  // the shortest between neighbouring pins, along what cannot lengthen
 };
-
-/// 1/s^2, W / compliance of the class which has the median element.
-double median_stiffness(const BendingLayout& bending);
 
 SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
 

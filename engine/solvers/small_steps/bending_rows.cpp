@@ -1,0 +1,90 @@
+#include "engine/solvers/small_steps/bending_rows.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/bytes_of.h"
+#include "engine/model/model.h"
+
+namespace weft {
+namespace {
+
+constexpr std::size_t kRows = simd::kBendingRows;
+
+/// work(row, column, value) for each product of two weights of an element; free particles only.
+template <class Work>
+void for_each_product(const Model& model, Work&& work) {
+  const BendingStore& store = model.bending;
+  for (std::size_t e = 0; e < store.size(); ++e) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < 4; ++j) {
+        const std::uint32_t row = store.slots[e][i], column = store.slots[e][j];
+        const double product = store.weights[e][i] * store.weights[e][j];
+        if (product == 0 || model.inverse_mass[row] == 0 || model.inverse_mass[column] == 0)
+          continue;
+        work(row, column, product / store.compliance[e]);
+      }
+    }
+  }
+}
+
+void add_sorted(std::vector<std::pair<std::uint32_t, double>>& row, BendingRows& rows) {
+  std::ranges::stable_sort(row, {}, &std::pair<std::uint32_t, double>::first);
+  std::vector<std::uint32_t> columns;
+  for (const auto& [column, value] : row) {
+    if (columns.empty() || columns.back() != column) {
+      columns.push_back(column);
+      rows.values.push_back(0);
+    }
+    rows.values.back() += value;
+  }
+  rows.columns.push_back(columns);
+}
+
+/// Rows with fewer entries than others of their group have zeros times themselves.
+void add_groups(BendingRows& rows) {
+  rows.begin.push_back(0);
+  for (std::size_t first = 0; first < rows.slots(); first += kRows) {
+    std::size_t longest = 0;
+    for (std::size_t row = first; row < first + kRows; ++row)
+      longest = std::max(longest, rows.columns[row].size());
+    for (std::size_t k = 0; k < longest; ++k) {
+      for (std::size_t row = first; row < first + kRows; ++row) {
+        const auto columns = rows.columns[row];
+        const bool holds = k < columns.size();
+        rows.column.push_back(4 * (holds ? columns[k] : static_cast<std::uint32_t>(row)));
+        rows.value.push_back(holds ? rows.values[rows.columns.begin[row] + k] : 0);
+      }
+    }
+    rows.begin.push_back(static_cast<std::uint32_t>(rows.column.size() / kRows));
+  }
+}
+
+}  // namespace
+
+BendingRows make_bending_rows(const Model& model) {
+  BendingRows rows;
+  if (model.bending.size() == 0) return rows;
+  std::vector<std::vector<std::pair<std::uint32_t, double>>> entries(model.slots());
+  for_each_product(model, [&](std::uint32_t row, std::uint32_t column, double value) {
+    entries[row].emplace_back(column, value);
+  });
+  rows.mass.resize(model.slots());
+  rows.diagonal.resize(model.slots());
+  for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
+    for (const auto& [column, value] : entries[slot]) {
+      if (column == slot) rows.diagonal[slot] += value;
+    }
+    if (model.inverse_mass[slot] > 0) rows.mass[slot] = 1 / model.inverse_mass[slot];
+    add_sorted(entries[slot], rows);
+  }
+  add_groups(rows);
+  return rows;
+}
+
+std::size_t BendingRows::bytes() const {
+  return columns.bytes() + bytes_of(values) + bytes_of(begin) + bytes_of(column) + bytes_of(value) +
+         bytes_of(mass) + bytes_of(diagonal);
+}
+
+}  // namespace weft

@@ -1,0 +1,134 @@
+/// The linear system of bending, (M / (b h)^2 + K) x = b, whose matrix is the same for x, y and z.
+///
+/// All sums run in one order, whatever the instruction set and the number of threads. A sum over
+/// particles is added up for ranges, which are the same for any number of threads.
+#pragma once
+
+#include "kernels/simd/bending_data.h"
+#include "kernels/simd/fours.h"
+
+namespace weft::simd {
+inline namespace WEFT_LANES {
+namespace {
+
+/// q = A p of the groups first ... last - 1. Returns p . q of their slots.
+double multiply_bending(const BendingMatrix& a, const double* p, double* q, std::size_t first,
+                        std::size_t last) {
+  const Four none = Four::all(0);
+  const Four inertia = Four::all(a.inertia), stiffness = Four::all(a.stiffness);
+  Four product = none;
+  for (std::size_t group = first; group < last; ++group) {
+    Four k[kBendingRows] = {none, none, none, none};
+    for (std::size_t i = a.begin[group]; i < a.begin[group + 1]; ++i) {
+      const std::uint32_t* const column = a.column + kBendingRows * i;
+      const double* const value = a.value + kBendingRows * i;
+#pragma GCC unroll 4
+      for (std::size_t row = 0; row < kBendingRows; ++row)
+        k[row] = fused(Four::all(value[row]), Four::load(p + column[row]), k[row]);
+    }
+#pragma GCC unroll 4
+    for (std::size_t row = 0; row < kBendingRows; ++row) {
+      const std::size_t slot = kBendingRows * group + row;
+      const Four own = Four::load(p + 4 * slot);
+      const Four moved = fused(inertia * Four::all(a.mass[slot]), own, stiffness * k[row]);
+      moved.store(q + 4 * slot);
+      product = fused(own, moved, product);
+    }
+  }
+  return sum(product);
+}
+
+/// x += alpha p and r -= alpha A p, of the slots first ... last - 1. Returns r . r / diagonal.
+double step_gradients(const BendingGradients& g, double alpha, std::size_t first,
+                      std::size_t last) {
+  const Four by = Four::all(alpha);
+  Four product = Four::all(0);
+  for (std::size_t slot = first; slot < last; ++slot) {
+    const std::size_t i = 4 * slot;
+    fused(by, Four::load(g.direction + i), Four::load(g.x + i)).store(g.x + i);
+    const Four r = fused_from(by, Four::load(g.product + i), Four::load(g.residual + i));
+    r.store(g.residual + i);
+    product = fused(Four::all(g.reciprocal[slot]) * r, r, product);
+  }
+  return sum(product);
+}
+
+/// p = r / diagonal + beta p
+void turn_gradients(const BendingGradients& g, double beta, std::size_t first, std::size_t last) {
+  const Four by = Four::all(beta);
+  for (std::size_t slot = first; slot < last; ++slot) {
+    const std::size_t i = 4 * slot;
+    const Four r = Four::load(g.residual + i);
+    fused(by, Four::load(g.direction + i), Four::all(g.reciprocal[slot]) * r)
+        .store(g.direction + i);
+  }
+}
+
+/// p = z + beta p
+void turn_gradients_to(const BendingGradients& g, const double* z, double beta, std::size_t first,
+                       std::size_t last) {
+  const Four by = Four::all(beta);
+  for (std::size_t i = 4 * first; i < 4 * last; i += 4)
+    fused(by, Four::load(g.direction + i), Four::load(z + i)).store(g.direction + i);
+}
+
+double dot_vectors(const double* a, const double* b, std::size_t first, std::size_t last) {
+  Four product = Four::all(0);
+  for (std::size_t i = 4 * first; i < 4 * last; i += 4)
+    product = fused(Four::load(a + i), Four::load(b + i), product);
+  return sum(product);
+}
+
+/// own = L^-1 own of a front of `columns` columns and `rows` rows below them; from below what own
+/// subtracts there.
+void solve_vectors_forward(const Front& f, const FrontVectors& v, std::size_t columns,
+                           std::size_t rows) {
+  for (std::size_t i = 1; i < columns; ++i) {
+    Four x = Four::load(v.own + 4 * i);
+    for (std::size_t k = 0; k < i; ++k)
+      x = fused_from(Four::all(f.panel[k * f.stride + i]), Four::load(v.own + 4 * k), x);
+    x.store(v.own + 4 * i);
+  }
+  const double* const panel = f.panel + (f.stride - f.below);
+  std::size_t i = 0;
+  for (; i + 4 <= rows; i += 4) {
+    Four x[4];
+    for (std::size_t j = 0; j < 4; ++j) x[j] = Four::load(v.below + 4 * (i + j));
+    for (std::size_t k = 0; k < columns; ++k) {
+      const Four by = Four::load(v.own + 4 * k);
+      const double* const l = panel + k * f.stride + i;
+#pragma GCC unroll 4
+      for (std::size_t j = 0; j < 4; ++j) x[j] = fused_from(Four::all(l[j]), by, x[j]);
+    }
+    for (std::size_t j = 0; j < 4; ++j) x[j].store(v.below + 4 * (i + j));
+  }
+  for (; i < rows; ++i) {
+    Four x = Four::load(v.below + 4 * i);
+    for (std::size_t k = 0; k < columns; ++k)
+      x = fused_from(Four::all(panel[k * f.stride + i]), Four::load(v.own + 4 * k), x);
+    x.store(v.below + 4 * i);
+  }
+}
+
+/// own = L^-T (D^-1 own), where below is the solution of the rows below.
+void solve_vectors_backward(const Front& f, const FrontVectors& v, std::size_t columns,
+                            std::size_t rows) {
+  const std::size_t triangle = f.stride - f.below;
+  for (std::size_t i = columns; i-- > 0;) {
+    const double* const l = f.panel + i * f.stride;
+    Four x[2] = {Four::all(f.reciprocal[i]) * Four::load(v.own + 4 * i), Four::all(0)};
+    std::size_t k = 0;
+    for (; k + 2 <= rows; k += 2) {
+      for (std::size_t j = 0; j < 2; ++j)
+        x[j] = fused_from(Four::all(l[triangle + k + j]), Four::load(v.below + 4 * (k + j)), x[j]);
+    }
+    if (k < rows) x[0] = fused_from(Four::all(l[triangle + k]), Four::load(v.below + 4 * k), x[0]);
+    for (k = i + 1; k < columns; ++k)
+      x[k & 1] = fused_from(Four::all(l[k]), Four::load(v.own + 4 * k), x[k & 1]);
+    (x[0] + x[1]).store(v.own + 4 * i);
+  }
+}
+
+}  // namespace
+}  // namespace WEFT_LANES
+}  // namespace weft::simd
