@@ -140,22 +140,24 @@ inline constexpr Patience kPlacingPatience{0.9, 8};
 inline constexpr double kMisplacedSpeed = 0.5;
 /// m/s, the speed of its fastest particle at which it is left, below which nobody sees it start.
 inline constexpr double kPlacedSpeed = 0.005;
-/// Bending is solved for n substeps at once while n^2 (b h)^2 K_ii / m_i is at most kBendingGroup
-/// in the mean, and n at most kLongestGroup (engine/solvers/small_steps/bending_solver.h). More
-/// take less time; fewer resolve the swings of smaller folds.
-inline constexpr double kBendingGroup = 0.1;
+/// Bending is solved for n substeps at once while (n h)^2 K_ii / m_i is at most kBendingGroup in
+/// the mean, and n at most kLongestGroup (engine/solvers/small_steps/bending_pace.h). More take
+/// less time; fewer resolve the swings of smaller folds.
+inline constexpr double kBendingGroup = 15;
 inline constexpr int kLongestGroup = 8;
+/// Over (n h)^2, of a group of n > 1. An impulse every n substeps gains energy of what is stiff at
+/// 1/4, of two substeps up to 0.29 (perf/tried.md); the more, the slower stiff swings are.
+inline constexpr double kBendingFilter = 0.3;
 /// Damping makes the stiffness of bending in a substep at most 1 + kBendingDamping / (n (b h)^2
 /// K_ii / m_i) times as large, but at most twice where that is less. More damps small folds as
 /// asked for; less takes fewer steps.
 inline constexpr double kBendingDamping = 0.5;
+inline constexpr double kLeastBendingDamping = 0.5;
 /// The share of a force that bending is solved to, over the tolerance, and the largest tolerance
 /// that it is taken from. A cloth that nothing holds would be pushed and turned by what is left.
-inline constexpr double kBendingPart = 0.5;
+inline constexpr double kBendingPart = 1;
 inline constexpr double kFreeBendingPart = 0.02;
 inline constexpr double kLoosestBending = 0.05;
-/// Along the diagonal, forces of less than kBendingUnseen times that share of the weight are left.
-inline constexpr double kBendingUnseen = 0.5;
 inline constexpr int kMostBendingSteps = 200;
 /// Steps along the diagonal, over the root of n (b h)^2 K_ii / m_i in the mean (4 to 5 were
 /// measured of grids and irregular triangles). A factorisation is made where that is at least

@@ -1,5 +1,5 @@
-/// What kernels of the linear system of bending read and write (bending_system.h): vectors in
-/// double, four numbers for each slot, | x y z - |, 64-byte aligned.
+/// What kernels of the linear system of bending read and write (bending_system.h): vectors of four
+/// numbers for each slot, | x y z - |, 64-byte aligned, in float or in double.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,30 @@ inline constexpr std::size_t kBendingRows = 4;
 
 /// The matrix A = inertia M + stiffness K, by groups of kBendingRows slots. An entry is that of
 /// each row of the group; where a row has fewer it has zeros.
+template <class Real>
 struct BendingMatrix {
   const std::uint32_t* begin = nullptr;   // per group: its first entry, and the end of the last
   const std::uint32_t* column = nullptr;  // per entry and row: 4 slot
-  const double* value = nullptr;          // per entry and row: of K, N/m
-  const double* mass = nullptr;           // per slot, kg; of what is fixed: 0
-  double inertia = 0;                     // 1 / (b h)^2, 1/s^2
-  double stiffness = 1;
+  const Real* value = nullptr;            // per entry and row: of K, N/m
+  const Real* mass = nullptr;             // per slot, kg; of what is fixed: 0
+  Real inertia = 0;                       // 1/s^2
+  Real stiffness = 1;
 };
 
-/// Conjugate gradients on A x = b.
+/// Conjugate gradients on A (guess + change) = b.
+template <class Real>
 struct BendingGradients {
-  double* x = nullptr;
-  double* residual = nullptr;          // r = b - A x
-  double* direction = nullptr;         // p
-  double* product = nullptr;           // A p
-  const double* reciprocal = nullptr;  // per slot: 1 over the diagonal of A; of what is fixed: 0
+  Real* residual = nullptr;          // r; in the beginning b - stiffness K guess
+  Real* direction = nullptr;         // p
+  Real* product = nullptr;           // A p
+  Real* change = nullptr;            // of the guess; in the beginning unwritten
+  const Real* guess = nullptr;       // of what is fixed: 0
+  const Real* reciprocal = nullptr;  // per slot: 1 over the diagonal of A; of what is fixed: 0
+};
+
+/// In the norm of 1 / diagonal: what is left, and the force that the guess stands for.
+struct BendingNorms {
+  double left = 0, force = 0;
 };
 
 /// A front of a sparse factorisation, and three right sides at once.

@@ -1,7 +1,8 @@
-/// The linear system of bending, (M / (b h)^2 + K) x = b, whose matrix is the same for x, y and z.
+/// The linear system of bending, A x = b, whose matrix is the same for x, y and z.
 ///
 /// All sums run in one order, whatever the instruction set and the number of threads. A sum over
-/// particles is added up for ranges, which are the same for any number of threads.
+/// particles is added up for ranges, which are the same for any number of threads. In floats a
+/// range is short enough that its sum is right to five digits.
 #pragma once
 
 #include "kernels/simd/bending_data.h"
@@ -12,8 +13,10 @@ inline namespace WEFT_LANES {
 namespace {
 
 /// q = A p of the groups first ... last - 1. Returns p . q of their slots.
-double multiply_bending(const BendingMatrix& a, const double* p, double* q, std::size_t first,
+template <class Real>
+double multiply_bending(const BendingMatrix<Real>& a, const Real* p, Real* q, std::size_t first,
                         std::size_t last) {
+  using Four = FourOf<Real>;
   const Four none = Four::all(0);
   const Four inertia = Four::all(a.inertia), stiffness = Four::all(a.stiffness);
   Four product = none;
@@ -21,7 +24,7 @@ double multiply_bending(const BendingMatrix& a, const double* p, double* q, std:
     Four k[kBendingRows] = {none, none, none, none};
     for (std::size_t i = a.begin[group]; i < a.begin[group + 1]; ++i) {
       const std::uint32_t* const column = a.column + kBendingRows * i;
-      const double* const value = a.value + kBendingRows * i;
+      const Real* const value = a.value + kBendingRows * i;
 #pragma GCC unroll 4
       for (std::size_t row = 0; row < kBendingRows; ++row)
         k[row] = fused(Four::all(value[row]), Four::load(p + column[row]), k[row]);
@@ -38,14 +41,38 @@ double multiply_bending(const BendingMatrix& a, const double* p, double* q, std:
   return sum(product);
 }
 
-/// x += alpha p and r -= alpha A p, of the slots first ... last - 1. Returns r . r / diagonal.
-double step_gradients(const BendingGradients& g, double alpha, std::size_t first,
+/// r -= inertia M guess and p = r / diagonal, of the slots first ... last - 1.
+template <class Real>
+BendingNorms begin_gradients(const BendingGradients<Real>& g, const Real* mass, Real inertia,
+                             std::size_t first, std::size_t last) {
+  using Four = FourOf<Real>;
+  Four left = Four::all(0), force = left;
+  for (std::size_t slot = first; slot < last; ++slot) {
+    const std::size_t i = 4 * slot;
+    const Four reciprocal = Four::all(g.reciprocal[slot]);
+    const Four f = Four::all(inertia * mass[slot]) * Four::load(g.guess + i);
+    const Four r = fused_from(Four::all(1), f, Four::load(g.residual + i));
+    const Four p = reciprocal * r;
+    r.store(g.residual + i);
+    p.store(g.direction + i);
+    left = fused(p, r, left);
+    force = fused(reciprocal * f, f, force);
+  }
+  return {sum(left), sum(force)};
+}
+
+/// change += alpha p, or = alpha p if it is the first, and r -= alpha A p, of the slots first ...
+/// last - 1. Returns r . r / diagonal.
+template <class Real>
+double step_gradients(const BendingGradients<Real>& g, Real alpha, bool is_first, std::size_t first,
                       std::size_t last) {
+  using Four = FourOf<Real>;
   const Four by = Four::all(alpha);
   Four product = Four::all(0);
   for (std::size_t slot = first; slot < last; ++slot) {
     const std::size_t i = 4 * slot;
-    fused(by, Four::load(g.direction + i), Four::load(g.x + i)).store(g.x + i);
+    const Four p = Four::load(g.direction + i);
+    (is_first ? by * p : fused(by, p, Four::load(g.change + i))).store(g.change + i);
     const Four r = fused_from(by, Four::load(g.product + i), Four::load(g.residual + i));
     r.store(g.residual + i);
     product = fused(Four::all(g.reciprocal[slot]) * r, r, product);
@@ -54,7 +81,10 @@ double step_gradients(const BendingGradients& g, double alpha, std::size_t first
 }
 
 /// p = r / diagonal + beta p
-void turn_gradients(const BendingGradients& g, double beta, std::size_t first, std::size_t last) {
+template <class Real>
+void turn_gradients(const BendingGradients<Real>& g, Real beta, std::size_t first,
+                    std::size_t last) {
+  using Four = FourOf<Real>;
   const Four by = Four::all(beta);
   for (std::size_t slot = first; slot < last; ++slot) {
     const std::size_t i = 4 * slot;
@@ -64,18 +94,24 @@ void turn_gradients(const BendingGradients& g, double beta, std::size_t first, s
   }
 }
 
+template <class Real>
+constexpr BendingKernels<Real> bending_kernels() {
+  return {multiply_bending<Real>, begin_gradients<Real>, step_gradients<Real>,
+          turn_gradients<Real>};
+}
+
 /// p = z + beta p
-void turn_gradients_to(const BendingGradients& g, const double* z, double beta, std::size_t first,
+void turn_gradients_to(double* p, const double* z, double beta, std::size_t first,
                        std::size_t last) {
-  const Four by = Four::all(beta);
+  const FourDoubles by = FourDoubles::all(beta);
   for (std::size_t i = 4 * first; i < 4 * last; i += 4)
-    fused(by, Four::load(g.direction + i), Four::load(z + i)).store(g.direction + i);
+    fused(by, FourDoubles::load(p + i), FourDoubles::load(z + i)).store(p + i);
 }
 
 double dot_vectors(const double* a, const double* b, std::size_t first, std::size_t last) {
-  Four product = Four::all(0);
+  FourDoubles product = FourDoubles::all(0);
   for (std::size_t i = 4 * first; i < 4 * last; i += 4)
-    product = fused(Four::load(a + i), Four::load(b + i), product);
+    product = fused(FourDoubles::load(a + i), FourDoubles::load(b + i), product);
   return sum(product);
 }
 
@@ -84,28 +120,30 @@ double dot_vectors(const double* a, const double* b, std::size_t first, std::siz
 void solve_vectors_forward(const Front& f, const FrontVectors& v, std::size_t columns,
                            std::size_t rows) {
   for (std::size_t i = 1; i < columns; ++i) {
-    Four x = Four::load(v.own + 4 * i);
+    FourDoubles x = FourDoubles::load(v.own + 4 * i);
     for (std::size_t k = 0; k < i; ++k)
-      x = fused_from(Four::all(f.panel[k * f.stride + i]), Four::load(v.own + 4 * k), x);
+      x = fused_from(FourDoubles::all(f.panel[k * f.stride + i]), FourDoubles::load(v.own + 4 * k),
+                     x);
     x.store(v.own + 4 * i);
   }
   const double* const panel = f.panel + (f.stride - f.below);
   std::size_t i = 0;
   for (; i + 4 <= rows; i += 4) {
-    Four x[4];
-    for (std::size_t j = 0; j < 4; ++j) x[j] = Four::load(v.below + 4 * (i + j));
+    FourDoubles x[4];
+    for (std::size_t j = 0; j < 4; ++j) x[j] = FourDoubles::load(v.below + 4 * (i + j));
     for (std::size_t k = 0; k < columns; ++k) {
-      const Four by = Four::load(v.own + 4 * k);
+      const FourDoubles by = FourDoubles::load(v.own + 4 * k);
       const double* const l = panel + k * f.stride + i;
 #pragma GCC unroll 4
-      for (std::size_t j = 0; j < 4; ++j) x[j] = fused_from(Four::all(l[j]), by, x[j]);
+      for (std::size_t j = 0; j < 4; ++j) x[j] = fused_from(FourDoubles::all(l[j]), by, x[j]);
     }
     for (std::size_t j = 0; j < 4; ++j) x[j].store(v.below + 4 * (i + j));
   }
   for (; i < rows; ++i) {
-    Four x = Four::load(v.below + 4 * i);
+    FourDoubles x = FourDoubles::load(v.below + 4 * i);
     for (std::size_t k = 0; k < columns; ++k)
-      x = fused_from(Four::all(panel[k * f.stride + i]), Four::load(v.own + 4 * k), x);
+      x = fused_from(FourDoubles::all(panel[k * f.stride + i]), FourDoubles::load(v.own + 4 * k),
+                     x);
     x.store(v.below + 4 * i);
   }
 }
@@ -116,15 +154,19 @@ void solve_vectors_backward(const Front& f, const FrontVectors& v, std::size_t c
   const std::size_t triangle = f.stride - f.below;
   for (std::size_t i = columns; i-- > 0;) {
     const double* const l = f.panel + i * f.stride;
-    Four x[2] = {Four::all(f.reciprocal[i]) * Four::load(v.own + 4 * i), Four::all(0)};
+    FourDoubles x[2] = {FourDoubles::all(f.reciprocal[i]) * FourDoubles::load(v.own + 4 * i),
+                        FourDoubles::all(0)};
     std::size_t k = 0;
     for (; k + 2 <= rows; k += 2) {
       for (std::size_t j = 0; j < 2; ++j)
-        x[j] = fused_from(Four::all(l[triangle + k + j]), Four::load(v.below + 4 * (k + j)), x[j]);
+        x[j] = fused_from(FourDoubles::all(l[triangle + k + j]),
+                          FourDoubles::load(v.below + 4 * (k + j)), x[j]);
     }
-    if (k < rows) x[0] = fused_from(Four::all(l[triangle + k]), Four::load(v.below + 4 * k), x[0]);
+    if (k < rows)
+      x[0] =
+          fused_from(FourDoubles::all(l[triangle + k]), FourDoubles::load(v.below + 4 * k), x[0]);
     for (k = i + 1; k < columns; ++k)
-      x[k & 1] = fused_from(Four::all(l[k]), Four::load(v.own + 4 * k), x[k & 1]);
+      x[k & 1] = fused_from(FourDoubles::all(l[k]), FourDoubles::load(v.own + 4 * k), x[k & 1]);
     (x[0] + x[1]).store(v.own + 4 * i);
   }
 }

@@ -1,4 +1,4 @@
-/// Four doubles: a particle's vector in double, | x y z - |. On AVX2 and AVX-512 one register, else
+/// Four numbers: a particle's vector, | x y z - |. On AVX2 and AVX-512 one register, else one or
 /// two.
 #pragma once
 
@@ -8,29 +8,59 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
+template <class Real>
+struct FourOf;
+
 #if defined(__AVX2__)
-struct Four {
+template <>
+struct FourOf<double> {
   __m256d v;
-  [[gnu::always_inline]] static Four all(double a) { return {_mm256_set1_pd(a)}; }
-  [[gnu::always_inline]] static Four load(const double* p) { return {_mm256_load_pd(p)}; }
+  [[gnu::always_inline]] static FourOf all(double a) { return {_mm256_set1_pd(a)}; }
+  [[gnu::always_inline]] static FourOf load(const double* p) { return {_mm256_load_pd(p)}; }
   [[gnu::always_inline]] void store(double* p) const { _mm256_store_pd(p, v); }
 };
-[[gnu::always_inline]] inline Four operator+(Four a, Four b) { return {_mm256_add_pd(a.v, b.v)}; }
-[[gnu::always_inline]] inline Four operator*(Four a, Four b) { return {_mm256_mul_pd(a.v, b.v)}; }
+template <>
+struct FourOf<float> {
+  __m128 v;
+  [[gnu::always_inline]] static FourOf all(float a) { return {_mm_set1_ps(a)}; }
+  [[gnu::always_inline]] static FourOf load(const float* p) { return {_mm_load_ps(p)}; }
+  [[gnu::always_inline]] void store(float* p) const { _mm_store_ps(p, v); }
+};
+using FourDoubles = FourOf<double>;
+using FourFloats = FourOf<float>;
+[[gnu::always_inline]] inline FourDoubles operator+(FourDoubles a, FourDoubles b) {
+  return {_mm256_add_pd(a.v, b.v)};
+}
+[[gnu::always_inline]] inline FourFloats operator+(FourFloats a, FourFloats b) {
+  return {_mm_add_ps(a.v, b.v)};
+}
+[[gnu::always_inline]] inline FourDoubles operator*(FourDoubles a, FourDoubles b) {
+  return {_mm256_mul_pd(a.v, b.v)};
+}
+[[gnu::always_inline]] inline FourFloats operator*(FourFloats a, FourFloats b) {
+  return {_mm_mul_ps(a.v, b.v)};
+}
 /// x y + z
-[[gnu::always_inline]] inline Four fused(Four x, Four y, Four z) {
+[[gnu::always_inline]] inline FourDoubles fused(FourDoubles x, FourDoubles y, FourDoubles z) {
   return {_mm256_fmadd_pd(x.v, y.v, z.v)};
 }
+[[gnu::always_inline]] inline FourFloats fused(FourFloats x, FourFloats y, FourFloats z) {
+  return {_mm_fmadd_ps(x.v, y.v, z.v)};
+}
 /// z - x y
-[[gnu::always_inline]] inline Four fused_from(Four x, Four y, Four z) {
+[[gnu::always_inline]] inline FourDoubles fused_from(FourDoubles x, FourDoubles y, FourDoubles z) {
   return {_mm256_fnmadd_pd(x.v, y.v, z.v)};
 }
+[[gnu::always_inline]] inline FourFloats fused_from(FourFloats x, FourFloats y, FourFloats z) {
+  return {_mm_fnmadd_ps(x.v, y.v, z.v)};
+}
 #else
-static_assert(kDoubles == 2);
-struct Four {
+static_assert(kDoubles == 2 && kFloats == 4);
+template <>
+struct FourOf<double> {
   Doubles low, high;
-  [[gnu::always_inline]] static Four all(double a) { return {Doubles(a), Doubles(a)}; }
-  [[gnu::always_inline]] static Four load(const double* p) {
+  [[gnu::always_inline]] static FourOf all(double a) { return {Doubles(a), Doubles(a)}; }
+  [[gnu::always_inline]] static FourOf load(const double* p) {
     return {Doubles::load_aligned(p), Doubles::load_aligned(p + 2)};
   }
   [[gnu::always_inline]] void store(double* p) const {
@@ -38,25 +68,47 @@ struct Four {
     high.store_aligned(p + 2);
   }
 };
-[[gnu::always_inline]] inline Four operator+(Four a, Four b) {
+template <>
+struct FourOf<float> {
+  Floats v;
+  [[gnu::always_inline]] static FourOf all(float a) { return {Floats(a)}; }
+  [[gnu::always_inline]] static FourOf load(const float* p) { return {Floats::load_aligned(p)}; }
+  [[gnu::always_inline]] void store(float* p) const { v.store_aligned(p); }
+};
+using FourDoubles = FourOf<double>;
+using FourFloats = FourOf<float>;
+[[gnu::always_inline]] inline FourDoubles operator+(FourDoubles a, FourDoubles b) {
   return {a.low + b.low, a.high + b.high};
 }
-[[gnu::always_inline]] inline Four operator*(Four a, Four b) {
+[[gnu::always_inline]] inline FourFloats operator+(FourFloats a, FourFloats b) {
+  return {a.v + b.v};
+}
+[[gnu::always_inline]] inline FourDoubles operator*(FourDoubles a, FourDoubles b) {
   return {a.low * b.low, a.high * b.high};
 }
-[[gnu::always_inline]] inline Four fused(Four x, Four y, Four z) {
+[[gnu::always_inline]] inline FourFloats operator*(FourFloats a, FourFloats b) {
+  return {a.v * b.v};
+}
+[[gnu::always_inline]] inline FourDoubles fused(FourDoubles x, FourDoubles y, FourDoubles z) {
   return {fused(x.low, y.low, z.low), fused(x.high, y.high, z.high)};
 }
-[[gnu::always_inline]] inline Four fused_from(Four x, Four y, Four z) {
+[[gnu::always_inline]] inline FourFloats fused(FourFloats x, FourFloats y, FourFloats z) {
+  return {fused(x.v, y.v, z.v)};
+}
+[[gnu::always_inline]] inline FourDoubles fused_from(FourDoubles x, FourDoubles y, FourDoubles z) {
   return {fused(-x.low, y.low, z.low), fused(-x.high, y.high, z.high)};
+}
+[[gnu::always_inline]] inline FourFloats fused_from(FourFloats x, FourFloats y, FourFloats z) {
+  return {fused_from(x.v, y.v, z.v)};
 }
 #endif
 
 /// In one order, whatever the registers.
-[[gnu::always_inline]] inline double sum(Four a) {
-  alignas(32) double of[4];
+template <class Real>
+[[gnu::always_inline]] inline double sum(FourOf<Real> a) {
+  alignas(32) Real of[4];
   a.store(of);
-  return (of[0] + of[1]) + (of[2] + of[3]);
+  return static_cast<double>((of[0] + of[1]) + (of[2] + of[3]));
 }
 
 }  // namespace

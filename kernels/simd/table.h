@@ -19,6 +19,22 @@
 
 namespace weft::simd {
 
+/// Conjugate gradients on the linear system of bending (bending_system.h), in float or in double.
+template <class Real>
+struct BendingKernels {
+  /// q = A p, of groups of rows first ... last - 1; returns p . q.
+  double (*multiply)(const BendingMatrix<Real>&, const Real* p, Real* q, std::size_t first,
+                     std::size_t last);
+  /// Of slots first ... last - 1: r -= inertia M guess and p = r / diagonal.
+  BendingNorms (*begin)(const BendingGradients<Real>&, const Real* mass, Real inertia,
+                        std::size_t first, std::size_t last);
+  /// Likewise: change += alpha p, or = alpha p, and r -= alpha A p; returns r . r / diagonal.
+  double (*step)(const BendingGradients<Real>&, Real alpha, bool is_first, std::size_t first,
+                 std::size_t last);
+  /// Likewise: p = r / diagonal + beta p.
+  void (*turn)(const BendingGradients<Real>&, Real beta, std::size_t first, std::size_t last);
+};
+
 /// Ranges of slots are multiples of kLanes; runs and singles likewise. Kernels for runs take planar
 /// displacements.
 struct Table {
@@ -223,16 +239,11 @@ struct Table {
   void (*solve_front_backward)(const Front&, double* z);
 
   // The linear system of bending (bending_system.h).
-  /// q = A p, of groups of rows first ... last - 1; returns p . q.
-  double (*multiply_bending)(const BendingMatrix&, const double* p, double* q, std::size_t first,
-                             std::size_t last);
-  /// Of slots first ... last - 1: x += alpha p, r -= alpha A p, which returns r . r / diagonal;
-  /// p = r / diagonal + beta p; p = z + beta p; a . b.
-  double (*step_gradients)(const BendingGradients&, double alpha, std::size_t first,
-                           std::size_t last);
-  void (*turn_gradients)(const BendingGradients&, double beta, std::size_t first, std::size_t last);
-  void (*turn_gradients_to)(const BendingGradients&, const double* z, double beta,
-                            std::size_t first, std::size_t last);
+  BendingKernels<float> bend_floats;
+  BendingKernels<double> bend_doubles;
+  /// Of slots first ... last - 1: p = z + beta p; a . b.
+  void (*turn_gradients_to)(double* p, const double* z, double beta, std::size_t first,
+                            std::size_t last);
   double (*dot_vectors)(const double* a, const double* b, std::size_t first, std::size_t last);
   /// Substitutions with one front, of three right sides.
   void (*solve_vectors_forward)(const Front&, const FrontVectors&, std::size_t columns,

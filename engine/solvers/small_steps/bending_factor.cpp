@@ -33,7 +33,7 @@ BendingFronts make_bending_fronts(const BendingRows& rows) {
   BendingFronts layout;
   std::vector<std::uint32_t> free;
   for (std::uint32_t slot = 0; slot < rows.slots(); ++slot) {
-    if (rows.mass[slot] > 0) free.push_back(slot);
+    if (rows.is_free(slot)) free.push_back(slot);
   }
   const Lists neighbours = neighbours_of(rows, free);
   const std::vector<std::uint32_t> order = elimination_order(neighbours);
@@ -70,15 +70,15 @@ BendingFactor::BendingFactor(const BendingRows& rows, const BendingFronts& front
       factor_(fronts.fronts, kernels),
       right_(4 * fronts.slots.size()) {}
 
-void BendingFactor::factorise(double inertia, double stiffness) {
+void BendingFactor::factorise(const BendingLaw& law) {
   for (std::size_t i = 0; i < fronts_.fronts.fronts.size(); ++i) {
     const DirectFront& front = fronts_.fronts.fronts[i];
     factor_.clear(i);
     for (std::size_t e = fronts_.entry_begin[i]; e < fronts_.entry_begin[i + 1]; ++e)
-      factor_.at(fronts_.entry_place[e]) = stiffness * rows_.values[fronts_.entry_value[e]];
+      factor_.at(fronts_.entry_place[e]) = law.stiffness * rows_.values[fronts_.entry_value[e]];
     for (std::size_t c = 0; c < front.count; ++c) {
       factor_.at(front.panel + c * (front.stride() + 1)) +=
-          inertia * rows_.mass[fronts_.slots[front.first + c]];
+          law.inertia * rows_.doubles.mass[fronts_.slots[front.first + c]];
     }
     factor_.eliminate(i);
   }

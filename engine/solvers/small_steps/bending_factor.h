@@ -27,7 +27,7 @@ class BendingFactor {
  public:
   BendingFactor(const BendingRows& rows, const BendingFronts& fronts, const simd::Table& kernels);
 
-  void factorise(double inertia, double stiffness);
+  void factorise(const BendingLaw& law);
   /// z = A^-1 r, four numbers for each slot; those of what is fixed stay as they are.
   void solve(const double* r, double* z);
   std::size_t bytes() const;

@@ -1,6 +1,7 @@
 #include "engine/solvers/small_steps/bending_rows.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -53,11 +54,23 @@ void add_groups(BendingRows& rows) {
         const auto columns = rows.columns[row];
         const bool holds = k < columns.size();
         rows.column.push_back(4 * (holds ? columns[k] : static_cast<std::uint32_t>(row)));
-        rows.value.push_back(holds ? rows.values[rows.columns.begin[row] + k] : 0);
+        rows.doubles.value.push_back(holds ? rows.values[rows.columns.begin[row] + k] : 0);
       }
     }
     rows.begin.push_back(static_cast<std::uint32_t>(rows.column.size() / kRows));
   }
+}
+
+void narrow(const kernels::AlignedVector<double>& from, kernels::AlignedVector<float>& to) {
+  to.resize(from.size());
+  std::ranges::transform(from, to.begin(), [](double number) {
+    return static_cast<float>(std::min<double>(number, std::numeric_limits<float>::max()));
+  });
+}
+void narrow(const BendingValues<double>& from, BendingValues<float>& to) {
+  narrow(from.value, to.value);
+  narrow(from.mass, to.mass);
+  narrow(from.diagonal, to.diagonal);
 }
 
 }  // namespace
@@ -69,22 +82,26 @@ BendingRows make_bending_rows(const Model& model) {
   for_each_product(model, [&](std::uint32_t row, std::uint32_t column, double value) {
     entries[row].emplace_back(column, value);
   });
-  rows.mass.resize(model.slots());
-  rows.diagonal.resize(model.slots());
+  rows.doubles.mass.resize(model.slots());
+  rows.doubles.diagonal.resize(model.slots());
   for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {
     for (const auto& [column, value] : entries[slot]) {
-      if (column == slot) rows.diagonal[slot] += value;
+      if (column == slot) rows.doubles.diagonal[slot] += value;
     }
-    if (model.inverse_mass[slot] > 0) rows.mass[slot] = 1 / model.inverse_mass[slot];
+    if (model.inverse_mass[slot] > 0) rows.doubles.mass[slot] = 1 / model.inverse_mass[slot];
     add_sorted(entries[slot], rows);
   }
   add_groups(rows);
+  narrow(rows.doubles, rows.floats);
   return rows;
 }
 
 std::size_t BendingRows::bytes() const {
-  return columns.bytes() + bytes_of(values) + bytes_of(begin) + bytes_of(column) + bytes_of(value) +
-         bytes_of(mass) + bytes_of(diagonal);
+  const auto of = [](const auto& v) {
+    return bytes_of(v.value) + bytes_of(v.mass) + bytes_of(v.diagonal);
+  };
+  return columns.bytes() + bytes_of(values) + bytes_of(begin) + bytes_of(column) + of(floats) +
+         of(doubles);
 }
 
 }  // namespace weft

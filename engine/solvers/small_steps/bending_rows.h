@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "engine/lists.h"
@@ -14,20 +15,48 @@ namespace weft {
 
 class Model;
 
+/// Of A = inertia M + stiffness K: 1/s^2, and a factor.
+struct BendingLaw {
+  double inertia = 0, stiffness = 1;
+  friend bool operator==(const BendingLaw&, const BendingLaw&) = default;
+};
+
+/// Values of rows, in float or in double.
+template <class Real>
+struct BendingValues {
+  kernels::AlignedVector<Real> value;     // by groups of rows (simd::BendingMatrix)
+  kernels::AlignedVector<Real> mass;      // per slot, kg; of what is fixed: 0
+  kernels::AlignedVector<Real> diagonal;  // per slot, of K
+};
+
 struct BendingRows {
   Lists columns;               // per slot: slots, ascending, its own among them
   std::vector<double> values;  // in the order of columns.items, N/m
-  // The same by groups of rows (simd::BendingMatrix).
+  // The same by groups of rows.
   std::vector<std::uint32_t> begin, column;
-  kernels::AlignedVector<double> value;
-  kernels::AlignedVector<double> mass;      // per slot, kg; of what is fixed: 0
-  kernels::AlignedVector<double> diagonal;  // per slot, of K
+  BendingValues<float> floats;
+  BendingValues<double> doubles;
 
   bool empty() const { return values.empty(); }
-  std::size_t slots() const { return mass.size(); }
+  std::size_t slots() const { return doubles.mass.size(); }
   std::size_t groups() const { return begin.empty() ? 0 : begin.size() - 1; }
-  simd::BendingMatrix matrix(double inertia, double stiffness) const {
-    return {begin.data(), column.data(), value.data(), mass.data(), inertia, stiffness};
+  bool is_free(std::size_t slot) const { return doubles.mass[slot] > 0; }
+  template <class Real>
+  const BendingValues<Real>& of() const {
+    if constexpr (std::is_same_v<Real, float>)
+      return floats;
+    else
+      return doubles;
+  }
+  template <class Real>
+  simd::BendingMatrix<Real> matrix(const BendingLaw& law) const {
+    const BendingValues<Real>& v = of<Real>();
+    return {begin.data(),
+            column.data(),
+            v.value.data(),
+            v.mass.data(),
+            static_cast<Real>(law.inertia),
+            static_cast<Real>(law.stiffness)};
   }
   std::size_t bytes() const;
 };

@@ -1,23 +1,25 @@
-/// The linear system of bending in a substep: the displacement x by which the force of all bending
-/// elements holds in its end,
+/// The linear system of bending: the displacement x by which the law of all bending elements holds
+/// (bending_pace.h),
 ///
-///     A x = r,   A = M / (b h)^2 + s K,
+///     A x = b,   A = inertia M + stiffness K,
 ///
-/// where r is the force of the elements on the predicted positions (bending_rows.h). A is constant
-/// and positive, and the same for x, y and z. Conjugate gradients solve it with one of two
-/// preconditioners:
+/// where b is the force of the elements on the predicted positions (bending_rows.h). A is constant
+/// and positive, and the same for x, y and z. Conjugate gradients solve it from a guess, with one
+/// of two preconditioners:
 ///
 ///   diagonal   that of A: cloth that is soft in a substep takes a few steps
 ///   factor     a sparse factorisation (bending_factor.h) of A, or of that of nearly the same
-///              substep: a step or two, however stiff
+///              substep: a step or two, however stiff; in double alone
 ///
-/// Vectors are in double, four numbers for each slot. A vector of what is fixed is 0. Results do
-/// not depend on the number of threads. Nothing is allocated once every preconditioner has been
-/// made that the substeps ask for.
+/// Vectors have four numbers for each slot. A vector of what is fixed is 0. Results do not depend
+/// on the number of threads. Nothing is allocated once every preconditioner has been made that the
+/// substeps ask for.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "engine/parallel/team.h"
@@ -26,54 +28,71 @@
 
 namespace weft {
 
-enum class BendingMethod : std::uint8_t { diagonal, factor };
+/// When a solution is good enough.
+struct BendingLimits {
+  double part = 0;    // of the force, in the norm of the preconditioner, that may be left
+  double weight = 0;  // of what else acts, in that norm squared: a force counts as at least that
+  int most_steps = 1;
+};
 
+template <class Real>
 class BendingSystem {
  public:
   BendingSystem(const BendingRows& rows, const simd::Table& table);
 
-  /// Substeps of this inertia, 1 / (b h)^2, or nearly so, are to come. stiffness: s.
-  void prepare_diagonal(double inertia, double stiffness);
-  void prepare_factor(const BendingFronts& fronts, double inertia, double stiffness);
+  /// What a solution needs. Else the first preparation does it.
+  void allocate();
+  /// Solutions by this law, or nearly so, are to come.
+  void prepare_diagonal(const BendingLaw& law);
+  void prepare_factor(const BendingFronts& fronts,
+                      const BendingLaw& law) requires std::is_same_v<Real, double>;
 
-  /// r, to be written before a solution; in its end what is left.
-  double* residual() { return residual_.data(); }
-  const double* solution() const { return x_.data(); }
-  /// Solves until r . P r, P the preconditioner, is at most `part` squared of what it was in the
-  /// beginning, or at most `least`, in at most so many steps. inertia: of this substep. Returns the
-  /// root of what is left of r . P r, as a share; 0 where it is at most `least`.
-  double solve(double inertia, double part, double least, int most_iterations, Team& team);
+  /// Of the last solution, or 0 of none.
+  Real* guess() { return guess_.data(); }
+  void forget_guess() { std::ranges::fill(guess_, Real{0}); }
+  /// b - stiffness K guess, to be written before a solution; in its end what is left.
+  Real* residual() { return residual_.data(); }
+  /// Solves within the limits. Returns which share of the force is left, in the norm of the
+  /// preconditioner.
+  double solve(const BendingLaw& law, const BendingLimits& limits, Team& team);
+  /// x - guess; unwritten where no steps were taken.
+  const Real* change() const { return change_.data(); }
+  int steps() const { return steps_; }
 
-  int iterations() const { return iterations_; }
   std::size_t bytes() const;
 
  private:
-  simd::BendingGradients gradients();
+  simd::BendingGradients<Real> gradients();
+  template <class Result, class Work>
+  Result sum(Team& team, std::vector<Result>& parts, Work&& work) const;
   template <class Work>
-  double sum(Team& team, Work&& work) const;
-  double precondition(Team& team);
-  bool is_prepared(BendingMethod method, double inertia, double stiffness) const {
-    return method == method_ && inertia == inertia_ && stiffness == stiffness_;
+  double sum(Team& team, Work&& work) {
+    return sum(team, sums_, work);
   }
+  template <class Work>
+  void for_slots(Team& team, Work&& work) const;
+  double precondition(Team& team);
+  void turn(double beta, Team& team);
 
   /// One that has been made, for substeps of nearly this length.
   struct Factor {
-    double inertia = 0, stiffness = 0;
+    BendingLaw law{};
     std::uint64_t used = 0;
     std::unique_ptr<BendingFactor> factor;
   };
 
   const BendingRows& rows_;
   const simd::Table& table_;
-  BendingMethod method_ = BendingMethod::diagonal;
-  double inertia_ = 0, stiffness_ = 1;  // what is prepared
-  kernels::AlignedVector<double> x_, residual_, direction_, product_, z_;
-  mutable std::vector<double> sums_;           // per range
-  kernels::AlignedVector<double> reciprocal_;  // per slot
+  BendingLaw prepared_;
+  kernels::AlignedVector<Real> guess_, change_, residual_, direction_, product_;
+  kernels::AlignedVector<Real> reciprocal_;  // per slot
+  std::vector<double> sums_;                 // per range
+  std::vector<simd::BendingNorms> norms_;
+  kernels::AlignedVector<double> z_;  // the residual, preconditioned
   std::vector<Factor> made_;
-  BendingFactor* factor_ = nullptr;
+  BendingFactor* factor_ = nullptr;  // or null: the diagonal
   std::uint64_t uses_ = 0;
-  int iterations_ = 0;
+  int steps_ = 0;
 };
 
 }  // namespace weft

@@ -108,9 +108,7 @@ void LaneStore::accelerate(kernels::Vector gravity, kernels::VectorsView force) 
   }
 }
 
-void LaneStore::begin_bending(const FramePlan& plan) {
-  bending_.begin(plan, acceleration_.data());
-}
+void LaneStore::begin_bending(const FramePlan& plan) { bending_.begin(plan, acceleration_.data()); }
 
 /// Without a past the particles are taken to have been in free flight.
 void LaneStore::begin_past(Team& team) {

@@ -18,17 +18,19 @@ ReferenceStore::ReferenceStore(Substep& now, const simd::Table& table)
     : now_(now),
       model_(now.model),
       layout_(model_.small_steps()),
-      bending_(model_, now.settings, table),
+      pace_(model_, now.settings),
+      bending_(layout_.bending.rows, table),
       anchors_(model_.anchors),
       bodies_(model_, table),
       shortest_(shortest_lengths(model_)),
       at_limit_(model_.anchors.size()),
       at_limit_before_(model_.anchors.size()) {
-  for (auto* vectors : {&x_, &before_, &predicted_, &v_, &v_before_, &acceleration_, &past_.v,
-                        &past_.v_before, &past_.moved}) {
+  for (auto* vectors : {&x_, &before_, &predicted_, &v_, &v_before_, &acceleration_, &rate_,
+                        &past_.v, &past_.v_before, &past_.moved}) {
     vectors->resize(model_.slots());
   }
   past_.at_limit = at_limit_;
+  if (!layout_.bending.empty()) bending_.allocate();
   if (model_.constraints.has_springs()) multiplier_.resize(model_.constraints.size());
   membrane_multiplier_.resize(model_.membrane.size());
   if (model_.has_laws()) aside_.resize(model_.slots());
@@ -78,7 +80,14 @@ void ReferenceStore::begin_bending(const FramePlan& plan) {
   double weight = 0;
   for (std::size_t i = 0; i < model_.slots(); ++i)
     weight += model_.mass[i] * dot(acceleration_[i], acceleration_[i]);
-  bending_.begin(plan, weight);
+  pace_.begin(plan, weight);
+  filter_ = bending_error_ = 0;
+  if (layout_.bending.empty()) return;
+  bending_.forget_guess();
+  if (pace_.is_factored())
+    bending_.prepare_factor(model_.bending_fronts(), pace_.usual().law());
+  else
+    bending_.prepare_diagonal(pace_.usual().law());
 }
 
 /// Without a past the particles are taken to have been in free flight.
@@ -129,32 +138,50 @@ void ReferenceStore::decay(double to, Team&) {
   }
 }
 
-/// Of all elements at once, from where the particles were predicted.
+/// Of all elements at once. Particles go where the last force of bending takes them, and from there
+/// to where they bend to.
 void ReferenceStore::bend(Team& team) {
-  const int n = bending_.next();
-  if (n == 0) return;
+  const std::optional<BendingGroup> group = pace_.next(now_.formula.give(now_.h));
+  if (!group) return;
+  double* const guess = bending_.guess();
+  const double scale = filter_ > 0 ? group->filter / filter_ : 0;
+  filter_ = group->filter;
+  for (std::size_t i = 0; i < 4 * model_.slots(); ++i) guess[i] *= scale;
+  const auto at = [&](std::size_t i) {
+    return Vector{guess[4 * i], guess[4 * i + 1], guess[4 * i + 2]};
+  };
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    x_.view().add(i, at(i));
+    rate_.set(i, v_[i] + group->rate * at(i));
+  }
+  pull(*group);
+  bending_error_ = std::max(bending_error_, bending_.solve(group->law(), pace_.limits(), team));
+  for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, -1 * at(i));
+  for (std::size_t i = 0; bending_.steps() > 0 && i < 4 * model_.slots(); ++i)
+    guess[i] += bending_.change()[i];
+  for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, group->move * at(i));
+  if (pace_.is_factored()) filter_ = 0;
+}
+
+void ReferenceStore::pull(const BendingGroup& group) {
   double* const residual = bending_.residual();
   std::fill_n(residual, 4 * model_.slots(), 0.0);
   for (std::uint32_t i = 0; i < model_.bending.size(); ++i) {
     const reference::BendingElement e = element(i);
-    const Vector f = reference::pull(e, bending_.damping(), x_.view(), v_.view());
+    const Vector f = reference::pull(e, group.damping, x_.view(), rate_.view());
     for (std::size_t k = 0; k < 4; ++k) {
       if (!now_.is_free(e.slots[k])) continue;
       double* const of = residual + 4 * std::size_t{e.slots[k]};
-      const Vector pull = e.weights[k] * f;
-      of[0] += pull.x;
-      of[1] += pull.y;
-      of[2] += pull.z;
+      const Vector by = e.weights[k] * f;
+      of[0] += by.x;
+      of[1] += by.y;
+      of[2] += by.z;
     }
   }
-  bending_.solve(n, now_.formula.give(now_.h), team);
-  const double* const by = bending_.solution();
-  for (std::size_t i = 0; i < model_.slots(); ++i)
-    x_.view().add(i, {by[4 * i], by[4 * i + 1], by[4 * i + 2]});
 }
 
 double ReferenceStore::bending_energy(double give, Team&) {
-  const double resolved = bending_.resolved(give);
+  const double resolved = pace_.resolved(give);
   double sum = 0;
   for (std::uint32_t i = 0; i < model_.bending.size(); ++i)
     sum += reference::energy(element(i), resolved, model_.inverse_mass.data(), x_.view());
@@ -438,8 +465,8 @@ void ReferenceStore::turn(const Turn& by) {
 }
 
 std::size_t ReferenceStore::bytes() const {
-  return 9 * x_.bytes() + bytes_of(out_) + bytes_of(multiplier_) + bytes_of(membrane_multiplier_) +
-         aside_.bytes();
+  return 10 * x_.bytes() + bending_.bytes() + bytes_of(out_) + bytes_of(multiplier_) +
+         bytes_of(membrane_multiplier_) + aside_.bytes();
 }
 
 }  // namespace weft

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "engine/parallel/team.h"
-#include "engine/solvers/small_steps/bending_solver.h"
+#include "engine/solvers/small_steps/bending_pace.h"
+#include "engine/solvers/small_steps/bending_system.h"
 #include "engine/solvers/small_steps/point_particles.h"
 #include "engine/solvers/small_steps/reference_bodies.h"
 #include "engine/solvers/small_steps/substep.h"
@@ -95,7 +96,7 @@ class ReferenceStore {
   void read_velocities(kernels::VectorsView v, Team& team) const;
   double largest_move(Team& team);
   double bending_energy(double give, Team& team);
-  double bending_error() const { return bending_.error(); }
+  double bending_error() const { return bending_error_; }
   double rounding_error(double) const { return 0; }
 
   double past_h() const { return past_.h; }
@@ -111,6 +112,7 @@ class ReferenceStore {
  private:
   reference::Flight flight();
   std::optional<double> departure();
+  void pull(const BendingGroup& group);
   reference::BendingElement element(std::uint32_t i) const {
     const BendingStore& s = model_.bending;
     return {s.slots[i], s.weights[i], s.rest[i], s.compliance[i]};
@@ -127,13 +129,15 @@ class ReferenceStore {
   Substep& now_;
   const Model& model_;
   const SmallStepsLayout& layout_;
-  BendingSolver bending_;
+  BendingPace pace_;
+  BendingSystem<double> bending_;
+  double filter_ = 0, bending_error_ = 0;  // as SimdBending has them
   AnchorClock anchors_;
   ReferenceBodies bodies_;
   Past past_;
   reference::ChainSystem system_;
   double last_ = 0;  // b h of the last substep; 0: velocities are settled
-  kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_;
+  kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_, rate_;
   std::vector<std::uint32_t> out_;      // items (local_passes.h) that were found out of tolerance
   const std::vector<double> shortest_;  // m, per slot: of its constraints
   std::vector<bool> at_limit_, at_limit_before_;  // per anchor, in this substep and in the last

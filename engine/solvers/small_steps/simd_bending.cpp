@@ -6,11 +6,12 @@
 
 #include "engine/bytes_of.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace {
 
-constexpr std::size_t kPart = 256;  // slots that a thread takes at a time
+constexpr std::size_t kFloatsOfPart = 4 * 256;  // that a thread takes at a time
 
 float to_finite_float(double number) {
   return static_cast<float>(std::min<double>(number, std::numeric_limits<float>::max()));
@@ -22,10 +23,13 @@ SimdBending::SimdBending(const Model& model, const Settings& settings, const sim
     : model_(model),
       layout_(model.small_steps().bending),
       table_(table),
-      solver_(model, settings, table),
+      pace_(model, settings),
+      soft_(layout_.rows, table),
+      stiff_(layout_.rows, table),
       spans_(layout_.blocks.size()),
       energies_(layout_.blocks.size()) {
-  if (!layout_.empty()) pulls_.resize(4 * model.slots());
+  if (!layout_.empty()) soft_.allocate();
+  if (!layout_.empty() && model.damping.bending > 0) rate_.resize(4 * layout_.rows.slots());
 }
 
 template <class Work>
@@ -38,21 +42,26 @@ void SimdBending::for_blocks(Team& team, Work&& work) const {
 }
 
 template <class Work>
-void SimdBending::for_slots(Team& team, Work&& work) const {
-  team.for_each_part(model_.slots(), kPart, work);
+void SimdBending::for_floats(Team& team, Work&& work) const {
+  team.for_each_part(4 * layout_.rows.slots(), kFloatsOfPart, work);
 }
 
 void SimdBending::begin(const FramePlan& plan, const float* acceleration) {
   if (layout_.empty()) return;
   double weight = 0;
-  for (std::size_t slot = 0; slot < model_.slots(); ++slot) {
-    if (!solver_.is_free(slot)) continue;
+  for (std::size_t slot = 0; slot < layout_.rows.slots(); ++slot) {
+    if (!layout_.rows.is_free(slot)) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto a = static_cast<double>(acceleration[4 * slot + k]);
       weight += model_.mass[slot] * a * a;
     }
   }
-  solver_.begin(plan, weight);
+  pace_.begin(plan, weight);
+  filter_ = error_ = 0;
+  if (pace_.is_factored())
+    stiff_.prepare_factor(model_.bending_fronts(), pace_.usual().law());
+  else
+    soft_.prepare_diagonal(pace_.usual().law());
 }
 
 void SimdBending::measure_base(const float* base, Team& team) {
@@ -62,41 +71,93 @@ void SimdBending::measure_base(const float* base, Team& team) {
 }
 
 void SimdBending::bend(float* u, const float* v, double give, Team& team) {
-  const int n = solver_.next();
-  if (n == 0) return;
-  const simd::Bending bending{.u = u,
-                              .v = v,
-                              .blocks = layout_.blocks.data(),
-                              .spans = spans_.data(),
-                              .curved = layout_.curved,
-                              .damping = static_cast<float>(solver_.damping())};
-  for_slots(team, [&](std::size_t first, std::size_t last) {
-    std::fill(pulls_.data() + 4 * first, pulls_.data() + 4 * last, 0.f);
-  });
+  const std::optional<BendingGroup> group = pace_.next(give);
+  if (!group) return;
+  if (pace_.is_factored())
+    bend_stiffly(u, v, *group, team);
+  else
+    bend_softly(u, v, *group, team);
+}
+
+simd::Bending SimdBending::arrays(const float* u) const {
+  return {
+      .u = u, .blocks = layout_.blocks.data(), .spans = spans_.data(), .curved = layout_.curved};
+}
+
+/// Into the residual of soft_.
+void SimdBending::pull(const float* u, const float* v, double damping, Team& team) {
+  simd::Bending bending = arrays(u);
+  bending.v = v;
+  bending.damping = static_cast<float>(damping);
   for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
-    table_.pull_bending(bending, pulls_.data(), four, first, last);
+    table_.pull_bending(bending, soft_.residual(), four, first, last);
   });
-  double* const residual = solver_.residual();
-  for_slots(team, [&](std::size_t first, std::size_t last) {
-    for (std::size_t slot = first; slot < last; ++slot) {
-      const float free = solver_.is_free(slot) ? 1.f : 0.f;
-      for (std::size_t k = 4 * slot; k < 4 * slot + 4; ++k)
-        residual[k] = static_cast<double>(free * pulls_[k]);
+}
+
+/// Particles go where the last force of bending takes them: what is new since then is little.
+void SimdBending::begin_from_guess(float* u, const float* v, const BendingGroup& group,
+                                   Team& team) {
+  const bool is_first = filter_ == 0, is_damped = group.damping > 0;
+  const float scale = is_first ? 0 : static_cast<float>(group.filter / filter_);
+  const auto rate = static_cast<float>(group.rate);
+  float* const guess = soft_.guess();
+  float* const residual = soft_.residual();
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    std::fill(residual + first, residual + last, 0.f);
+    if (is_first) {
+      std::fill(guess + first, guess + last, 0.f);
+      if (is_damped) std::copy(v + first, v + last, rate_.data() + first);
+      return;
+    }
+    for (std::size_t i = first; i < last; ++i) {
+      const float by = scale * guess[i];
+      guess[i] = by;
+      u[i] += by;
+      if (is_damped) rate_[i] = v[i] + rate * by;
     }
   });
-  solver_.solve(n, give, team);
-  const double* const by = solver_.solution();
-  for_slots(team, [&](std::size_t first, std::size_t last) {
-    for (std::size_t k = 4 * first; k < 4 * last; ++k) u[k] += static_cast<float>(by[k]);
+  filter_ = group.filter;
+}
+
+void SimdBending::bend_softly(float* u, const float* v, const BendingGroup& group, Team& team) {
+  begin_from_guess(u, v, group, team);
+  pull(u, rate_.data(), group.damping, team);
+  error_ = std::max(error_, soft_.solve(group.law(), pace_.limits(), team));
+  float* const guess = soft_.guess();
+  const float* const change = soft_.change();
+  const auto move = static_cast<float>(group.move);
+  const bool has_changed = soft_.steps() > 0;
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const float from = guess[i], to = has_changed ? from + change[i] : from;
+      guess[i] = to;
+      u[i] += move * to - from;
+    }
+  });
+}
+
+void SimdBending::bend_stiffly(float* u, const float* v, const BendingGroup& group, Team& team) {
+  float* const pulls = soft_.residual();
+  double* const residual = stiff_.residual();
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    std::fill(pulls + first, pulls + last, 0.f);
+  });
+  pull(u, v, group.damping, team);
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) residual[i] = static_cast<double>(pulls[i]);
+  });
+  error_ = std::max(error_, stiff_.solve(group.law(), pace_.limits(), team));
+  if (stiff_.steps() == 0) return;
+  const double* const by = stiff_.change();
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) u[i] += static_cast<float>(by[i]);
   });
 }
 
 double SimdBending::energy(const float* u, double give, Team& team) {
   if (layout_.empty()) return 0;
-  const simd::Bending bending{.u = u,
-                              .blocks = layout_.blocks.data(),
-                              .spans = spans_.data(),
-                              .resolved = to_finite_float(solver_.resolved(give))};
+  simd::Bending bending = arrays(u);
+  bending.resolved = to_finite_float(pace_.resolved(give));
   for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
     table_.bending_energy(bending, energies_.data(), four, first, last);
   });
@@ -104,7 +165,7 @@ double SimdBending::energy(const float* u, double give, Team& team) {
 }
 
 std::size_t SimdBending::bytes() const {
-  return bytes_of(spans_) + bytes_of(energies_) + bytes_of(pulls_) + solver_.bytes();
+  return bytes_of(spans_) + bytes_of(energies_) + bytes_of(rate_) + soft_.bytes() + stiff_.bytes();
 }
 
 }  // namespace weft

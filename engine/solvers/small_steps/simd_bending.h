@@ -6,7 +6,8 @@
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/bending_layout.h"
-#include "engine/solvers/small_steps/bending_solver.h"
+#include "engine/solvers/small_steps/bending_pace.h"
+#include "engine/solvers/small_steps/bending_system.h"
 
 namespace weft {
 
@@ -14,7 +15,7 @@ class SimdBending {
  public:
   SimdBending(const Model& model, const Settings& settings, const simd::Table& table);
 
-  /// As BendingSolver's; of a frame with these accelerations of particles.
+  /// Of a frame with these accelerations of particles.
   void begin(const FramePlan& plan, const float* acceleration);
   /// Of a new base.
   void measure_base(const float* base, Team& team);
@@ -22,22 +23,32 @@ class SimdBending {
   void bend(float* u, const float* v, double give, Team& team);
   /// J, with positions at base + u, of substeps of `give`.
   double energy(const float* u, double give, Team& team);
-  double error() const { return solver_.error(); }
+  /// The largest share of a force of bending that a solution of the frame has left.
+  double error() const { return error_; }
   std::size_t bytes() const;
 
  private:
   template <class Work>
   void for_blocks(Team& team, Work&& work) const;
   template <class Work>
-  void for_slots(Team& team, Work&& work) const;
+  void for_floats(Team& team, Work&& work) const;
+  simd::Bending arrays(const float* u) const;
+  void pull(const float* u, const float* v, double damping, Team& team);
+  void begin_from_guess(float* u, const float* v, const BendingGroup& group, Team& team);
+  void bend_softly(float* u, const float* v, const BendingGroup& group, Team& team);
+  void bend_stiffly(float* u, const float* v, const BendingGroup& group, Team& team);
 
   const Model& model_;
   const BendingLayout& layout_;
   const simd::Table& table_;
-  BendingSolver solver_;
+  BendingPace pace_;
+  BendingSystem<float> soft_;
+  BendingSystem<double> stiff_;
+  double filter_ = 0;  // s^2, of the last solution in the frame; 0: there was none
+  double error_ = 0;
   kernels::AlignedVector<simd::EdgeSpans> spans_;  // d of the base
-  kernels::AlignedVector<float> pulls_;            // in quads
-  std::vector<double> energies_;                   // J, per block
+  kernels::AlignedVector<float> rate_;  // of particles on their way to where they bend to
+  std::vector<double> energies_;        // J, per block
 };
 
 }  // namespace weft

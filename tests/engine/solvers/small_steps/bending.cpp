@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
-#include "engine/solvers/small_steps/bending_solver.h"
+#include "engine/solvers/small_steps/bending_pace.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/tuning.h"
 #include "tests/support/bending.h"
@@ -109,27 +109,70 @@ TEST_CASE("an element whose free particles have no weight is passed over") {
 
 // ------------------------------------------------------------------------------ when it is visited
 
-/// How often bending is solved in a frame.
-int solutions(BendingSolver& bending, const FramePlan& plan) {
+/// How often bending is solved in a frame. Its impulses are those of all substeps, and each is in
+/// the middle of its group.
+int solutions(BendingPace& bending, const FramePlan& plan) {
   bending.begin(plan, 1);
-  int count = 0, sum = 0;
+  const double give = SubstepFormula::of(Scheme::bdf2, 1).give(plan.h);
+  int count = 0;
+  double impulses = 0, moments = 0;
   for (int k = 0; k < plan.substeps; ++k) {
-    const int n = bending.next();
-    CHECK(n <= tuning::kLongestGroup);
-    count += n > 0;
-    sum += n;
+    const auto group = bending.next(give);
+    if (!group) continue;
+    ++count;
+    const double n = group->filter * group->move / give;
+    CHECK(n <= tuning::kLongestGroup + 1e-9);
+    impulses += n;
+    moments += n * (k + 1);
   }
-  CHECK(sum == plan.substeps);
+  CHECK(impulses == doctest::Approx(plan.substeps));
+  CHECK(std::abs(moments / impulses - 0.5 * plan.substeps) <= 0.5 + 1e-9);
   return count;
 }
 
 TEST_CASE("solutions stand for all substeps of a frame, and soft cloth has few") {
   const auto model = model_of(cantilever({}));
-  BendingSolver bending(*model, settings_on(Backend::simd, 1), simd::table(simd::best_isa()));
+  BendingPace bending(*model, settings_on(Backend::simd, 1));
   for (const int substeps : {1, 2, 3, 7, 8, 9, 31, 64}) {
     CHECK(solutions(bending, {.h = 0.01, .substeps = substeps}) == substeps);
     CHECK(solutions(bending, {.h = 1e-6, .substeps = substeps}) ==
           (substeps + tuning::kLongestGroup - 1) / tuning::kLongestGroup);
+  }
+}
+
+/// How far a swing of w h = `stiffness` has gone at most in the last of many groups of n substeps,
+/// over where it began.
+double swing_in_groups(BendingPace& bending, int n, double stiffness) {
+  constexpr double kStep = 1e-6;
+  constexpr int kGroups = 400;
+  const SubstepFormula formula = SubstepFormula::of(Scheme::bdf2, 1);
+  const double part = formula.part * kStep, square = std::pow(stiffness / kStep, 2);
+  double x = 1, x_before = 1, v = 0, v_before = 0, most = 0;
+  for (int group = 0; group < kGroups; ++group) {
+    bending.begin({.h = kStep, .substeps = n}, 1);
+    for (int k = 0; k < n; ++k) {
+      const double begins = v + formula.past * (v - v_before);
+      const double predicted = x + formula.past * (x - x_before) + part * begins;
+      double moved = 0;
+      if (const auto of = bending.next(formula.give(kStep)))
+        moved = -of->move * of->filter * square / (1 + of->filter * square) * predicted;
+      x_before = std::exchange(x, predicted + moved);
+      v_before = std::exchange(v, begins + moved / part);
+    }
+    if (group >= kGroups - 20) most = std::max(most, std::abs(x));
+  }
+  return most;
+}
+
+TEST_CASE("an impulse for several substeps gains nothing, however stiff a swing is") {
+  const auto model = model_of(cantilever({}));
+  BendingPace bending(*model, settings_on(Backend::simd, 1));
+  for (int n = 1; n <= tuning::kLongestGroup; ++n) {
+    CAPTURE(n);
+    for (double stiffness = 1e-3; stiffness < 1e5; stiffness *= 1.3) {
+      CAPTURE(stiffness);
+      CHECK(swing_in_groups(bending, n, stiffness) < 1.3);
+    }
   }
 }
 
