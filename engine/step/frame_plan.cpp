@@ -162,4 +162,10 @@ double next_refinement(const State& s, const FramePlan& plan, double error, doub
                                          : refinement_for_laws(s, plan, beyond, budget);
 }
 
+double refinement_for_bending(const State& s, const FramePlan& plan, double refinement,
+                              const Budget& budget) {
+  if (plan.substeps >= most_substeps(budget)) return refinement;
+  return std::max(refinement, s.refinement + 1);
+}
+
 }  // namespace weft

@@ -30,4 +30,8 @@ double give_per_mass(const State& s, const FramePlan& plan);
 double next_refinement(const State& s, const FramePlan& plan, double error, double beyond,
                        const Budget& budget);
 
+/// The same, at least so much that bending, which was not solved to the tolerance, is softer.
+double refinement_for_bending(const State& s, const FramePlan& plan, double refinement,
+                              const Budget& budget);
+
 }  // namespace weft

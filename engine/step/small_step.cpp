@@ -23,6 +23,11 @@
 namespace weft {
 namespace {
 
+/// Where bending takes more steps than a solution may have it leaves more than the tolerance.
+bool leaves_bending(const State& s) {
+  return s.small_steps->bending_error() > s.settings.tolerance;
+}
+
 /// The frame that is being done, by its plan.
 class Frame {
  public:
@@ -254,8 +259,11 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double h, const
   if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
   trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;
   if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
-  if (refines_substeps(s))
+  if (refines_substeps(s)) {
     trial.refinement = next_refinement(s, plan, trial.motion_error, frame.passes_taken(), budget);
+    if (leaves_bending(s))
+      trial.refinement = refinement_for_bending(s, plan, trial.refinement, budget);
+  }
   return remains;
 }
 
@@ -278,6 +286,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     is_in_body = frame.is_in_body();
   });
   trial.substeps = plan.substeps;
+  report.max_bending_error = std::max(report.max_bending_error, s.small_steps->bending_error());
   if (trial.status != Status::converged && !attempt.is_last) {
     trial.outcome = Outcome::rejected;
     return trial;
@@ -303,7 +312,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   }
   if (fixed)
     trial.worsen(Status::fixed_iterations);
-  else if (is_in_body || s.body_report.failures.left > 0)
+  else if (is_in_body || s.body_report.failures.left > 0 || leaves_bending(s))
     trial.worsen(Status::iteration_limit);
   if (frame.passed_particle() != kNoIndex) {
     trial.passed_particle = frame.passed_particle();

@@ -243,6 +243,7 @@ void fall_asleep(State& s, StepReport& report) {
               .rms_strain = report.rms_strain,
               .max_shear = report.max_shear,
               .max_error = report.max_error,
+              .max_bending_error = report.max_bending_error,
               .worst_constraint = report.worst_constraint,
               .worst_element = report.worst_element,
               .max_penetration = report.max_penetration,

@@ -60,6 +60,8 @@ inline constexpr std::tuple kReportFields{
     ReportField{"max_shear", &StepReport::max_shear, OverSteps::largest, "rad"},
     ReportField{"max_error", &StepReport::max_error, OverSteps::largest,
                 "the largest error of a law; `tolerance` bounds it"},
+    ReportField{"max_bending_error", &StepReport::max_bending_error, OverSteps::largest,
+                "the share of the forces of bending that is left; `tolerance` bounds it"},
     ReportField{"worst_constraint", &StepReport::worst_constraint, OverSteps::none,
                 "its number in the description, or kNoIndex"},
     ReportField{"worst_element", &StepReport::worst_element, OverSteps::none,

@@ -118,9 +118,10 @@ inline constexpr int kAutomaticSubsteps = 0;
 /// each says whether it is for every day.
 struct Settings {
   /// Everyday. The strain, | |a-b| - rest | / rest, that every step must reach; of a spring, the
-  /// distance from its law. > 0. The simd backend works in floats. So Cloth::create refuses rest
-  /// lengths, tolerance * rest length, and those of the tolerances below that are used, outside
-  /// 1e-18 to 1e18.
+  /// distance from its law; and the share of the forces of bending that may be left over
+  /// (StepReport::max_bending_error). > 0. The simd backend works in floats. So Cloth::create
+  /// refuses rest lengths, tolerance * rest length, and those of the tolerances below that are
+  /// used, outside 1e-18 to 1e18.
   double tolerance = 0.01;
   /// Everyday. Number of substeps of a step; 0 (kAutomaticSubsteps): chosen. Fine meshes need small
   /// substeps.

@@ -237,7 +237,7 @@ typedef struct weft_report { /* StepReport */
   int status, asleep, substeps, halvings;
   int64_t iterations, direction_updates, velocity_iterations, visits, corrections;
   int scheme_fallbacks, contacts;
-  double max_strain, rms_strain, max_shear, max_error;
+  double max_strain, rms_strain, max_shear, max_error, max_bending_error;
   uint32_t worst_constraint, worst_element;
   double max_penetration;
   int body_contacts, contact_failures, zones, intersecting;

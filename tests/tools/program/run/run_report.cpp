@@ -49,6 +49,7 @@ RunReport report() {
   summary.rms_strain = 0.015625;
   summary.total.max_penetration = 0.75;
   summary.total.max_anchor_error = 0.5;
+  summary.total.max_bending_error = 0.375;
   summary.energy_start = -1.5;
   summary.energy_end = -2.5;
   summary.total.pin_work = 0.875;
@@ -83,7 +84,7 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
     "tolerance": 0.0625, "iterations": 0, "status": "infeasible", "missed_frames": 37,
     "ms_per_frame": 250, "max_ms_per_frame": 500, "real_time_factor": 2,
     "max_strain": 0.125, "mean_max_strain": 0.03125, "rms_strain": 0.015625,
-    "max_penetration": 0.75, "max_anchor_error": 0.5, "max_contacts": 19,
+    "max_penetration": 0.75, "max_bending_error": 0.375, "max_anchor_error": 0.5, "max_contacts": 19,
     "bodies": 1, "body_triangles": 2, "body_contacts": 31, "body_work": 0.125,
     "friction_work": 0.0625, "contact_failures": 41, "zones": 43, "intersecting": 47,
     "iterations_per_step": 5, "velocity_iterations_per_step": 3, "direction_updates_per_step": 9,
