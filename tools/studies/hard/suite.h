@@ -23,6 +23,7 @@ std::vector<Case> input_cases();
 std::vector<Case> sheet_cases();
 std::vector<Case> budget_cases();
 std::vector<Case> rest_cases();
+std::vector<Case> bending_cases();
 std::vector<Case> body_cases();
 std::vector<Case> mesh_cases();
 
