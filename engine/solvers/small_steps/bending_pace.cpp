@@ -51,15 +51,16 @@ void BendingPace::begin(const FramePlan& plan, double weight) {
   };
   int n = 1;
   while (n < std::min(tuning::kLongestGroup, substeps_) && is_soft(n + 1)) ++n;
-  groups_ = (substeps_ - 1) / n + 1;
+  while (substeps_ % n != 0) --n;  // groups of two lengths would gain energy (perf/tried.md)
+  groups_ = substeps_ / n;
   damping_ = model_.damping.bending;
   usual_ = group_of(n, give);
   is_factored_ = n == 1 && is_to_be_factored();
   weight_ = 0;
   if (is_factored_) return;
   const double most =
-      std::max(tuning::kLeastBendingDamping, tuning::kBendingDamping / (usual_.filter * mean_));
-  damping_ = std::min(damping_, most / usual_.rate);
+      std::max(tuning::kLeastBendingDamping, tuning::kBendingDamping / (give * mean_));
+  damping_ = std::min(damping_, most * step_);
   usual_.damping = damping_;
   weight_ = weight / (usual_.law().inertia + usual_.law().stiffness * mean_);
 }

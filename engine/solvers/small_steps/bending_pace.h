@@ -1,8 +1,8 @@
 /// When and how the bending of a frame is solved (bending_system.h).
 ///
 /// Cloth bends softly: it swings far slower than what stretches, and one solution may stand for n
-/// substeps, with the impulse of all of them. A frame is cut into groups of n substeps or one
-/// fewer, and the impulse is in the middle of a group. There the force is that of a shape q,
+/// substeps, with the impulse of all of them. A frame is cut into groups of n substeps, all of
+/// one length, and the impulse is in the middle of a group. There the force is that of a shape q,
 ///
 ///     M (q - p) / f = - K q - tau K (v + (q - p) rate),
 ///

@@ -58,7 +58,7 @@ Reading cantilever_of(Pattern pattern, double bending, int refinement) {
                           .shear = kTensile / 2,
                           .bending = bending,
                           .damping_motion = swings};
-  const double width = pattern == Pattern::quads ? length / 4 : 2 * length;
+  const double width = pattern == Pattern::quads ? length / 2 : 2 * length;
   const int frames = static_cast<int>(std::ceil(20 / (swings * kFrame)));
   return hung(pattern, material, length, width, 4 << refinement, frames,
               -heavy_elastica(load).y * length);
