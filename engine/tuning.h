@@ -145,12 +145,15 @@ inline constexpr double kPlacedSpeed = 0.005;
 /// less time; fewer resolve the swings of smaller folds.
 inline constexpr double kBendingGroup = 15;
 inline constexpr int kLongestGroup = 8;
+/// The same, up to which groups of a frame may differ in length by one. With 15 a cantilever gained
+/// energy (perf/tried.md).
+inline constexpr double kUnevenGroups = 1;
 /// Over (n h)^2, of a group of n > 1. An impulse every n substeps gains energy of what is stiff at
 /// 1/4, of two substeps up to 0.29 (perf/tried.md); the more, the slower stiff swings are.
 inline constexpr double kBendingFilter = 0.3;
-/// Damping makes the stiffness of bending in a substep at most 1 + kBendingDamping / (n (b h)^2
-/// K_ii / m_i) times as large, but at most twice where that is less. More damps small folds as
-/// asked for; less takes fewer steps.
+/// Damping adds to the stiffness of bending in a substep at most kBendingDamping / ((b h)^2 K_ii /
+/// m_i) of it, or kLeastBendingDamping where that is more. More damps small folds as asked for;
+/// less takes fewer steps.
 inline constexpr double kBendingDamping = 0.5;
 inline constexpr double kLeastBendingDamping = 0.5;
 /// The share of a force that bending is solved to, over the tolerance, and the largest tolerance

@@ -11,10 +11,6 @@
 namespace weft {
 namespace {
 
-/// (n h)^2 K_ii / m_i in the mean, up to which groups of a frame may differ in length by one. With
-/// 15 a cantilever gained energy (perf/tried.md).
-constexpr double kUnevenGroups = 1;
-
 /// 1/s^2, of K_ii / m_i over all free particles.
 double mean_stiffness(const BendingRows& rows) {
   double sum = 0, count = 0;
@@ -55,7 +51,7 @@ void BendingPace::begin(const FramePlan& plan, double weight) {
   };
   int n = 1;
   while (n < std::min(tuning::kLongestGroup, substeps_) && is_soft(n + 1)) ++n;
-  while (substeps_ % n != 0 && n * h_ * (n * h_) * mean_ > kUnevenGroups) --n;
+  while (substeps_ % n != 0 && n * h_ * (n * h_) * mean_ > tuning::kUnevenGroups) --n;
   groups_ = (substeps_ - 1) / n + 1;
   damping_ = model_.damping.bending;
   usual_ = group_of(n, give);
