@@ -33,7 +33,7 @@ BendingFronts make_bending_fronts(const BendingRows& rows) {
   BendingFronts layout;
   std::vector<std::uint32_t> free;
   for (std::uint32_t slot = 0; slot < rows.slots(); ++slot) {
-    if (rows.is_free(slot)) free.push_back(slot);
+    if (rows.bends(slot)) free.push_back(slot);
   }
   const Lists neighbours = neighbours_of(rows, free);
   const std::vector<std::uint32_t> order = elimination_order(neighbours);

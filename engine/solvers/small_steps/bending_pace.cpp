@@ -11,19 +11,23 @@
 namespace weft {
 namespace {
 
-/// 1/s^2, of K_ii / m_i over all free particles.
+double count_that_bend(const BendingRows& rows) {
+  double count = 0;
+  for (std::size_t slot = 0; slot < rows.slots(); ++slot) count += rows.bends(slot) ? 1 : 0;
+  return count;
+}
+
+/// 1/s^2, of K_ii / m_i over all that bend.
 double mean_stiffness(const BendingRows& rows) {
-  double sum = 0, count = 0;
+  double sum = 0;
   for (std::size_t slot = 0; slot < rows.slots(); ++slot) {
-    if (!rows.is_free(slot)) continue;
-    sum += rows.doubles.diagonal[slot] / rows.doubles.mass[slot];
-    ++count;
+    if (rows.bends(slot)) sum += rows.doubles.diagonal[slot] / rows.doubles.mass[slot];
   }
-  return count > 0 ? sum / count : 0;
+  return sum / std::max(1.0, count_that_bend(rows));
 }
 
 /// By anything that takes up what a solution leaves of a balance of forces.
-bool has_holds(const Model& model) { return !model.pins.empty() || model.has_attached(); }
+bool has_holds(const Model& model) { return !model.holds.empty() || model.has_attached(); }
 
 }  // namespace
 
@@ -32,6 +36,7 @@ BendingPace::BendingPace(const Model& model, const Settings& settings)
       rows_(model.small_steps().bending.rows),
       part_((has_holds(model) ? tuning::kBendingPart : tuning::kFreeBendingPart) *
             std::min(settings.tolerance, tuning::kLoosestBending)),
+      particles_(count_that_bend(rows_)),
       mean_(mean_stiffness(rows_)),
       scheme_(settings.scheme),
       is_timed_(settings.motion_tolerance > 0) {}
@@ -82,10 +87,10 @@ bool BendingPace::is_to_be_factored() const {
       1 + std::min(damping_ * usual_.rate,
                    std::max(tuning::kLeastBendingDamping, tuning::kBendingDamping / share));
   const double steps = tuning::kBendingStepsPerRoot * std::sqrt(stiffness * share);
-  if (steps < tuning::kLeastFactored || model_.particles > tuning::kMostFactored) return false;
-  const auto rows = static_cast<double>(rows_.slots());
+  if (steps < tuning::kLeastFactored || particles_ > static_cast<double>(tuning::kMostFactored))
+    return false;
   const auto values = static_cast<double>(model_.bending_fronts().fronts.values);
-  return tuning::kBendingStepTime * steps * rows > tuning::kFactorTime * values;
+  return tuning::kBendingStepTime * steps * particles_ > tuning::kFactorTime * values;
 }
 
 /// The impulse acts from the end of its substep on, which is in the middle of the group.

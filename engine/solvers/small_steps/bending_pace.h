@@ -41,7 +41,7 @@ class BendingPace {
  public:
   BendingPace(const Model& model, const Settings& settings);
 
-  /// weight: of a frame, the sum of m a^2 over all particles, of what accelerates them from
+  /// weight: of a frame, the sum of m a^2 over all that bend, of what accelerates them from
   /// outside.
   void begin(const FramePlan& plan, double weight);
   /// Of the next substep, with its give; nothing where its group is solved in another.
@@ -63,7 +63,8 @@ class BendingPace {
   const Model& model_;
   const BendingRows& rows_;
   const double part_;
-  const double mean_;  // 1/s^2, of K_ii / m_i
+  const double particles_;  // that bend
+  const double mean_;       // 1/s^2, of K_ii / m_i
   const Scheme scheme_;
   const bool is_timed_;  // the error of motion is measured
   BendingGroup usual_;

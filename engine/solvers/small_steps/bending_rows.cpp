@@ -88,7 +88,7 @@ BendingRows make_bending_rows(const Model& model) {
     for (const auto& [column, value] : entries[slot]) {
       if (column == slot) rows.doubles.diagonal[slot] += value;
     }
-    if (model.inverse_mass[slot] > 0) rows.doubles.mass[slot] = 1 / model.inverse_mass[slot];
+    if (rows.doubles.diagonal[slot] > 0) rows.doubles.mass[slot] = 1 / model.inverse_mass[slot];
     add_sorted(entries[slot], rows);
   }
   add_groups(rows);

@@ -25,7 +25,7 @@ struct BendingLaw {
 template <class Real>
 struct BendingValues {
   kernels::AlignedVector<Real> value;     // by groups of rows (simd::BendingMatrix)
-  kernels::AlignedVector<Real> mass;      // per slot, kg; of what is fixed: 0
+  kernels::AlignedVector<Real> mass;      // per slot, kg; of what is fixed or in no element: 0
   kernels::AlignedVector<Real> diagonal;  // per slot, of K
 };
 
@@ -40,7 +40,8 @@ struct BendingRows {
   bool empty() const { return values.empty(); }
   std::size_t slots() const { return doubles.mass.size(); }
   std::size_t groups() const { return begin.empty() ? 0 : begin.size() - 1; }
-  bool is_free(std::size_t slot) const { return doubles.mass[slot] > 0; }
+  /// Whether it is free and in an element.
+  bool bends(std::size_t slot) const { return doubles.mass[slot] > 0; }
   template <class Real>
   const BendingValues<Real>& of() const {
     if constexpr (std::is_same_v<Real, float>)

@@ -77,12 +77,14 @@ void ReferenceStore::accelerate(Vector gravity, kernels::VectorsView force) {
 }
 
 void ReferenceStore::begin_bending(const FramePlan& plan) {
-  double weight = 0;
-  for (std::size_t i = 0; i < model_.slots(); ++i)
-    weight += model_.mass[i] * dot(acceleration_[i], acceleration_[i]);
-  pace_.begin(plan, weight);
   filter_ = bending_error_ = 0;
   if (layout_.bending.empty()) return;
+  double weight = 0;
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    if (layout_.bending.rows.bends(i))
+      weight += model_.mass[i] * dot(acceleration_[i], acceleration_[i]);
+  }
+  pace_.begin(plan, weight);
   bending_.forget_guess();
   if (pace_.is_factored())
     bending_.prepare_factor(model_.bending_fronts(), pace_.usual().law());

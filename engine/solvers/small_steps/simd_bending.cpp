@@ -50,7 +50,7 @@ void SimdBending::begin(const FramePlan& plan, const float* acceleration) {
   if (layout_.empty()) return;
   double weight = 0;
   for (std::size_t slot = 0; slot < layout_.rows.slots(); ++slot) {
-    if (!layout_.rows.is_free(slot)) continue;
+    if (!layout_.rows.bends(slot)) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto a = static_cast<double>(acceleration[4 * slot + k]);
       weight += model_.mass[slot] * a * a;

@@ -465,8 +465,8 @@ TEST_CASE("the format is the one of its version") {
   }
   CHECK(state[8] == std::byte{3});
   CHECK(model[8] == std::byte{1});
-  CHECK(state.size() == 11059);
-  CHECK(checksum(state) == 0xc23d609c9be49e1c);
+  CHECK(state.size() == 11067);
+  CHECK(checksum(state) == 0x0415237666ec9e1c);
   CHECK(model.size() == 690);
   CHECK(checksum(model) == 0xc856bfa46954d81d);
 }

@@ -89,7 +89,7 @@ struct System {
     for (std::size_t slot = 0; slot < rows.slots(); ++slot) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double value = random.between(-1, 1);
-        if (rows.is_free(slot)) vector[4 * slot + axis] = value;
+        if (rows.bends(slot)) vector[4 * slot + axis] = value;
       }
     }
     return vector;
@@ -301,7 +301,7 @@ TEST_CASE("what is nothing beside the weight is left") {
   const BendingLaw law{1e5, 1};
   double all = 0;  // r . r / diagonal
   for (std::size_t slot = 0; slot < system.rows.slots(); ++slot) {
-    if (!system.rows.is_free(slot)) continue;
+    if (!system.rows.bends(slot)) continue;
     const double own =
         law.inertia * system.rows.doubles.mass[slot] + system.rows.doubles.diagonal[slot];
     for (std::size_t k = 4 * slot; k < 4 * slot + 3; ++k) all += right[k] * right[k] / own;
