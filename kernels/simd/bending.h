@@ -77,24 +77,24 @@ template <bool kFour, bool kCurved, bool kDamped>
   return factor;
 }
 
+[[gnu::always_inline]] inline void pull_quad(float* to, const std::uint32_t* slot, Floats weight,
+                                             const FloatVector& f) {
+  QuadLanes{}.put(to, slot, fused(weight, f, QuadLanes{}.get(to, slot)));
+}
 /// The weights sum to zero as they are rounded: so do the pulls, but for their own rounding.
 template <bool kFour>
 [[gnu::always_inline]] inline void pull_quads(float* to, const BendingBlock& block,
                                               std::uint32_t lane, const FloatVector& f) {
-  const auto pull = [&](std::size_t k, Floats weight) {
-    const std::uint32_t* const slot = block.slot[k] + lane;
-    QuadLanes{}.put(to, slot, fused(weight, f, QuadLanes{}.get(to, slot)));
-  };
   const Floats w0 = load(block.weight[0] + lane), w1 = load(block.weight[1] + lane);
-  pull(0, w0);
-  pull(1, w1);
+  Floats others = w0 + w1;
+  pull_quad(to, block.slot[0] + lane, w0, f);
+  pull_quad(to, block.slot[1] + lane, w1, f);
   if constexpr (kFour) {
     const Floats w3 = load(block.weight[2] + lane);
-    pull(2, Floats(0.f) - (w0 + w1 + w3));
-    pull(3, w3);
-  } else {
-    pull(2, Floats(0.f) - (w0 + w1));
+    others = others + w3;
+    pull_quad(to, block.slot[3] + lane, w3, f);
   }
+  pull_quad(to, block.slot[2] + lane, Floats(0.f) - others, f);
 }
 
 template <bool kFour, bool kCurved, bool kDamped>

@@ -1,5 +1,5 @@
 /// The linear system of bending: the displacement x by which the law of all bending elements holds
-/// (bending_pace.h),
+/// (bending_frame.h),
 ///
 ///     A x = b,   A = inertia M + stiffness K,
 ///

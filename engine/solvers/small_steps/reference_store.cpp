@@ -18,7 +18,7 @@ ReferenceStore::ReferenceStore(Substep& now, const simd::Table& table)
     : now_(now),
       model_(now.model),
       layout_(model_.small_steps()),
-      pace_(model_, now.settings),
+      bending_frame_(model_, now.settings),
       bending_(layout_.bending.rows, table),
       anchors_(model_.anchors),
       bodies_(model_, table),
@@ -77,19 +77,19 @@ void ReferenceStore::accelerate(Vector gravity, kernels::VectorsView force) {
 }
 
 void ReferenceStore::begin_bending(const FramePlan& plan) {
-  filter_ = bending_error_ = 0;
+  give_ = bending_error_ = 0;
   if (layout_.bending.empty()) return;
   double weight = 0;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     if (layout_.bending.rows.bends(i))
       weight += model_.mass[i] * dot(acceleration_[i], acceleration_[i]);
   }
-  pace_.begin(plan, weight);
+  bending_frame_.begin(plan, weight);
   bending_.forget_guess();
-  if (pace_.is_factored())
-    bending_.prepare_factor(model_.bending_fronts(), pace_.usual().law());
+  if (bending_frame_.is_factored())
+    bending_.prepare_factor(model_.bending_fronts(), bending_frame_.usual().law());
   else
-    bending_.prepare_diagonal(pace_.usual().law());
+    bending_.prepare_diagonal(bending_frame_.usual().law());
 }
 
 /// Without a past the particles are taken to have been in free flight.
@@ -143,34 +143,37 @@ void ReferenceStore::decay(double to, Team&) {
 /// Of all elements at once. Particles go where the last force of bending takes them, and from there
 /// to where they bend to.
 void ReferenceStore::bend(Team& team) {
-  const std::optional<BendingGroup> group = pace_.next(now_.formula.give(now_.h));
-  if (!group) return;
+  if (layout_.bending.empty()) return;
+  const BendingStep step = bending_frame_.step(now_.formula.give(now_.h));
   double* const guess = bending_.guess();
-  const double scale = filter_ > 0 ? group->filter / filter_ : 0;
-  filter_ = group->filter;
+  const double scale = give_ > 0 ? step.give / give_ : 0;
+  give_ = step.give;
   for (std::size_t i = 0; i < 4 * model_.slots(); ++i) guess[i] *= scale;
   const auto at = [&](std::size_t i) {
     return Vector{guess[4 * i], guess[4 * i + 1], guess[4 * i + 2]};
   };
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     x_.view().add(i, at(i));
-    rate_.set(i, v_[i] + group->rate * at(i));
+    rate_.set(i, v_[i] + step.rate * at(i));
   }
-  pull(*group);
-  bending_error_ = std::max(bending_error_, bending_.solve(group->law(), pace_.limits(), team));
-  for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, -1 * at(i));
-  for (std::size_t i = 0; bending_.steps() > 0 && i < 4 * model_.slots(); ++i)
-    guess[i] += bending_.change()[i];
-  for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, group->move * at(i));
-  if (pace_.is_factored()) filter_ = 0;
+  pull(step);
+  bending_error_ =
+      std::max(bending_error_, bending_.solve(step.law(), bending_frame_.limits(), team));
+  if (bending_.steps() > 0) {
+    const double* const change = bending_.change();
+    for (std::size_t i = 0; i < 4 * model_.slots(); ++i) guess[i] += change[i];
+    for (std::size_t i = 0; i < model_.slots(); ++i)
+      x_.view().add(i, {change[4 * i], change[4 * i + 1], change[4 * i + 2]});
+  }
+  if (bending_frame_.is_factored()) give_ = 0;
 }
 
-void ReferenceStore::pull(const BendingGroup& group) {
+void ReferenceStore::pull(const BendingStep& step) {
   double* const residual = bending_.residual();
   std::fill_n(residual, 4 * model_.slots(), 0.0);
   for (std::uint32_t i = 0; i < model_.bending.size(); ++i) {
     const reference::BendingElement e = element(i);
-    const Vector f = reference::pull(e, group.damping, x_.view(), rate_.view());
+    const Vector f = reference::pull(e, step.damping, x_.view(), rate_.view());
     for (std::size_t k = 0; k < 4; ++k) {
       if (!now_.is_free(e.slots[k])) continue;
       double* const of = residual + 4 * std::size_t{e.slots[k]};
@@ -183,7 +186,7 @@ void ReferenceStore::pull(const BendingGroup& group) {
 }
 
 double ReferenceStore::bending_energy(double give, Team&) {
-  const double resolved = pace_.resolved(give);
+  const double resolved = bending_frame_.resolved(give);
   double sum = 0;
   for (std::uint32_t i = 0; i < model_.bending.size(); ++i)
     sum += reference::energy(element(i), resolved, model_.inverse_mass.data(), x_.view());

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/parallel/team.h"
-#include "engine/solvers/small_steps/bending_pace.h"
+#include "engine/solvers/small_steps/bending_frame.h"
 #include "engine/solvers/small_steps/bending_system.h"
 #include "engine/solvers/small_steps/point_particles.h"
 #include "engine/solvers/small_steps/reference_bodies.h"
@@ -112,7 +112,7 @@ class ReferenceStore {
  private:
   reference::Flight flight();
   std::optional<double> departure();
-  void pull(const BendingGroup& group);
+  void pull(const BendingStep& step);
   reference::BendingElement element(std::uint32_t i) const {
     const BendingStore& s = model_.bending;
     return {s.slots[i], s.weights[i], s.rest[i], s.compliance[i]};
@@ -129,9 +129,9 @@ class ReferenceStore {
   Substep& now_;
   const Model& model_;
   const SmallStepsLayout& layout_;
-  BendingPace pace_;
+  BendingFrame bending_frame_;
   BendingSystem<double> bending_;
-  double filter_ = 0, bending_error_ = 0;  // as SimdBending has them
+  double give_ = 0, bending_error_ = 0;  // as SimdBending has them
   AnchorClock anchors_;
   ReferenceBodies bodies_;
   Past past_;

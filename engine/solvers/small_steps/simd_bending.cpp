@@ -23,7 +23,7 @@ SimdBending::SimdBending(const Model& model, const Settings& settings, const sim
     : model_(model),
       layout_(model.small_steps().bending),
       table_(table),
-      pace_(model, settings),
+      frame_(model, settings),
       soft_(layout_.rows, table),
       stiff_(layout_.rows, table),
       spans_(layout_.blocks.size()),
@@ -56,12 +56,12 @@ void SimdBending::begin(const FramePlan& plan, const float* acceleration) {
       weight += model_.mass[slot] * a * a;
     }
   }
-  pace_.begin(plan, weight);
-  filter_ = error_ = 0;
-  if (pace_.is_factored())
-    stiff_.prepare_factor(model_.bending_fronts(), pace_.usual().law());
+  frame_.begin(plan, weight);
+  give_ = error_ = 0;
+  if (frame_.is_factored())
+    stiff_.prepare_factor(model_.bending_fronts(), frame_.usual().law());
   else
-    soft_.prepare_diagonal(pace_.usual().law());
+    soft_.prepare_diagonal(frame_.usual().law());
 }
 
 void SimdBending::measure_base(const float* base, Team& team) {
@@ -71,12 +71,12 @@ void SimdBending::measure_base(const float* base, Team& team) {
 }
 
 void SimdBending::bend(float* u, const float* v, double give, Team& team) {
-  const std::optional<BendingGroup> group = pace_.next(give);
-  if (!group) return;
-  if (pace_.is_factored())
-    bend_stiffly(u, v, *group, team);
+  if (layout_.empty()) return;
+  const BendingStep step = frame_.step(give);
+  if (frame_.is_factored())
+    bend_stiffly(u, v, step, team);
   else
-    bend_softly(u, v, *group, team);
+    bend_softly(u, v, step, team);
 }
 
 simd::Bending SimdBending::arrays(const float* u) const {
@@ -95,11 +95,10 @@ void SimdBending::pull(const float* u, const float* v, double damping, Team& tea
 }
 
 /// Particles go where the last force of bending takes them: what is new since then is little.
-void SimdBending::begin_from_guess(float* u, const float* v, const BendingGroup& group,
-                                   Team& team) {
-  const bool is_first = filter_ == 0, is_damped = group.damping > 0;
-  const float scale = is_first ? 0 : static_cast<float>(group.filter / filter_);
-  const auto rate = static_cast<float>(group.rate);
+void SimdBending::begin_from_guess(float* u, const float* v, const BendingStep& step, Team& team) {
+  const bool is_first = give_ == 0, is_damped = step.damping > 0;
+  const float scale = is_first ? 0 : static_cast<float>(step.give / give_);
+  const auto rate = static_cast<float>(step.rate);
   float* const guess = soft_.guess();
   float* const residual = soft_.residual();
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -116,37 +115,35 @@ void SimdBending::begin_from_guess(float* u, const float* v, const BendingGroup&
       if (is_damped) rate_[i] = v[i] + rate * by;
     }
   });
-  filter_ = group.filter;
+  give_ = step.give;
 }
 
-void SimdBending::bend_softly(float* u, const float* v, const BendingGroup& group, Team& team) {
-  begin_from_guess(u, v, group, team);
-  pull(u, rate_.data(), group.damping, team);
-  error_ = std::max(error_, soft_.solve(group.law(), pace_.limits(), team));
+void SimdBending::bend_softly(float* u, const float* v, const BendingStep& step, Team& team) {
+  begin_from_guess(u, v, step, team);
+  pull(u, rate_.data(), step.damping, team);
+  error_ = std::max(error_, soft_.solve(step.law(), frame_.limits(), team));
+  if (soft_.steps() == 0) return;
   float* const guess = soft_.guess();
   const float* const change = soft_.change();
-  const auto move = static_cast<float>(group.move);
-  const bool has_changed = soft_.steps() > 0;
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      const float from = guess[i], to = has_changed ? from + change[i] : from;
-      guess[i] = to;
-      u[i] += move * to - from;
+      guess[i] += change[i];
+      u[i] += change[i];
     }
   });
 }
 
-void SimdBending::bend_stiffly(float* u, const float* v, const BendingGroup& group, Team& team) {
+void SimdBending::bend_stiffly(float* u, const float* v, const BendingStep& step, Team& team) {
   float* const pulls = soft_.residual();
   double* const residual = stiff_.residual();
   for_floats(team, [&](std::size_t first, std::size_t last) {
     std::fill(pulls + first, pulls + last, 0.f);
   });
-  pull(u, v, group.damping, team);
+  pull(u, v, step.damping, team);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) residual[i] = static_cast<double>(pulls[i]);
   });
-  error_ = std::max(error_, stiff_.solve(group.law(), pace_.limits(), team));
+  error_ = std::max(error_, stiff_.solve(step.law(), frame_.limits(), team));
   if (stiff_.steps() == 0) return;
   const double* const by = stiff_.change();
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -157,7 +154,7 @@ void SimdBending::bend_stiffly(float* u, const float* v, const BendingGroup& gro
 double SimdBending::energy(const float* u, double give, Team& team) {
   if (layout_.empty()) return 0;
   simd::Bending bending = arrays(u);
-  bending.resolved = to_finite_float(pace_.resolved(give));
+  bending.resolved = to_finite_float(frame_.resolved(give));
   for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
     table_.bending_energy(bending, energies_.data(), four, first, last);
   });

@@ -5,8 +5,8 @@
 
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/bending_frame.h"
 #include "engine/solvers/small_steps/bending_layout.h"
-#include "engine/solvers/small_steps/bending_pace.h"
 #include "engine/solvers/small_steps/bending_system.h"
 
 namespace weft {
@@ -34,17 +34,17 @@ class SimdBending {
   void for_floats(Team& team, Work&& work) const;
   simd::Bending arrays(const float* u) const;
   void pull(const float* u, const float* v, double damping, Team& team);
-  void begin_from_guess(float* u, const float* v, const BendingGroup& group, Team& team);
-  void bend_softly(float* u, const float* v, const BendingGroup& group, Team& team);
-  void bend_stiffly(float* u, const float* v, const BendingGroup& group, Team& team);
+  void begin_from_guess(float* u, const float* v, const BendingStep& step, Team& team);
+  void bend_softly(float* u, const float* v, const BendingStep& step, Team& team);
+  void bend_stiffly(float* u, const float* v, const BendingStep& step, Team& team);
 
   const Model& model_;
   const BendingLayout& layout_;
   const simd::Table& table_;
-  BendingPace pace_;
+  BendingFrame frame_;
   BendingSystem<float> soft_;
   BendingSystem<double> stiff_;
-  double filter_ = 0;  // s^2, of the last solution in the frame; 0: there was none
+  double give_ = 0;  // s^2, of the last solution in the frame; 0: there was none
   double error_ = 0;
   kernels::AlignedVector<simd::EdgeSpans> spans_;  // d of the base
   kernels::AlignedVector<float> rate_;  // of particles on their way to where they bend to

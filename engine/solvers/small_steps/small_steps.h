@@ -163,7 +163,7 @@ class SmallSteps {
   virtual void read_starts(kernels::VectorsView x, Team& team) const = 0;
   /// m; since the present substep began no particle has moved farther.
   virtual double largest_move(Team& team) = 0;
-  /// J, of the bending elements, where the particles are (BendingPace::resolved()).
+  /// J, of the bending elements, where the particles are (BendingFrame::resolved()).
   virtual double bending_energy(double give, Team& team) = 0;
   /// What the solutions of the frame have left of the law of bending (StepReport).
   virtual double bending_error() const = 0;

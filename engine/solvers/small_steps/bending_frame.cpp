@@ -1,0 +1,74 @@
+#include "engine/solvers/small_steps/bending_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/solvers/small_steps/bending_factor.h"
+#include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/tuning.h"
+
+namespace weft {
+namespace {
+
+double count_that_bend(const BendingRows& rows) {
+  double count = 0;
+  for (std::size_t slot = 0; slot < rows.slots(); ++slot) count += rows.bends(slot) ? 1 : 0;
+  return count;
+}
+
+/// 1/s^2, of K_ii / m_i over all that bend.
+double mean_stiffness(const BendingRows& rows) {
+  double sum = 0;
+  for (std::size_t slot = 0; slot < rows.slots(); ++slot) {
+    if (rows.bends(slot)) sum += rows.doubles.diagonal[slot] / rows.doubles.mass[slot];
+  }
+  return sum / std::max(1.0, count_that_bend(rows));
+}
+
+/// By anything that takes up what a solution leaves of a balance of forces.
+bool has_holds(const Model& model) { return !model.holds.empty() || model.has_attached(); }
+
+}  // namespace
+
+BendingFrame::BendingFrame(const Model& model, const Settings& settings)
+    : model_(model),
+      rows_(model.small_steps().bending.rows),
+      part_((has_holds(model) ? tuning::kBendingPart : tuning::kFreeBendingPart) *
+            std::min(settings.tolerance, tuning::kLoosestBending)),
+      particles_(count_that_bend(rows_)),
+      mean_(mean_stiffness(rows_)),
+      scheme_(settings.scheme) {}
+
+void BendingFrame::begin(const FramePlan& plan, double weight) {
+  if (rows_.empty()) return;
+  const SubstepFormula formula =
+      SubstepFormula::of(scheme_, 1).with_decay(model_.damping.motion, plan.h, plan.h);
+  give_ = formula.give(plan.h);
+  rate_ = 1 / (formula.part * plan.h);
+  omega_ = plan.omega;
+  damping_ = model_.damping.bending;
+  weight_ = 0;
+  is_factored_ = is_to_be_factored();
+  if (is_factored_) return;
+  damping_ = std::min(damping_, most_damping());
+  const BendingLaw law = usual().law();
+  weight_ = weight / (law.inertia + law.stiffness * mean_);
+}
+
+/// s, of what is not factored.
+double BendingFrame::most_damping() const {
+  return std::max(tuning::kLeastBendingDamping, tuning::kBendingDamping / (give_ * mean_)) / rate_;
+}
+
+/// Whether a factorisation takes less time than the steps along the diagonal, of cloth that is
+/// damped no more than these bear.
+bool BendingFrame::is_to_be_factored() const {
+  const double stiffness = 1 + std::min(damping_, most_damping()) * rate_;
+  const double steps = tuning::kBendingStepsPerRoot * std::sqrt(stiffness * give_ * mean_);
+  if (steps < tuning::kLeastFactored || particles_ > static_cast<double>(tuning::kMostFactored))
+    return false;
+  const auto values = static_cast<double>(model_.bending_fronts().fronts.values);
+  return tuning::kBendingStepTime * steps * particles_ > tuning::kFactorTime * values;
+}
+
+}  // namespace weft
