@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "engine/solvers/small_steps/bending_factor.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
@@ -25,6 +26,20 @@ double mean_stiffness(const BendingRows& rows) {
   return sum / std::max(1.0, count_that_bend(rows));
 }
 
+/// Of M^-1/2 K M^-1/2: the largest sum of a row, which bounds what is largest (Gershgorin).
+double largest_stiffness(const BendingRows& rows) {
+  double most = 0;
+  for (std::size_t slot = 0; slot < rows.slots(); ++slot) {
+    double sum = 0;
+    for (std::uint32_t e = rows.columns.begin[slot]; e < rows.columns.begin[slot + 1]; ++e) {
+      const double masses = rows.doubles.mass[slot] * rows.doubles.mass[rows.columns.items[e]];
+      sum += std::abs(rows.values[e]) / std::sqrt(masses);
+    }
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
 /// By anything that takes up what a solution leaves of a balance of forces.
 bool has_holds(const Model& model) { return !model.holds.empty() || model.has_attached(); }
 
@@ -37,7 +52,16 @@ BendingFrame::BendingFrame(const Model& model, const Settings& settings)
             std::min(settings.tolerance, tuning::kLoosestBending)),
       particles_(count_that_bend(rows_)),
       mean_(mean_stiffness(rows_)),
-      scheme_(settings.scheme) {}
+      stiffest_(largest_stiffness(rows_)),
+      scheme_(settings.scheme),
+      is_timed_(settings.motion_tolerance > 0) {}
+
+int BendingFrame::longest_group(const FramePlan& plan) const {
+  if (is_timed_) return 1;
+  const double most = std::sqrt(tuning::kBendingGroup / stiffest_) / plan.h;
+  const int longest = std::min(tuning::kLongestGroup, plan.substeps);
+  return std::max(1, static_cast<int>(std::min<double>(most, longest)));
+}
 
 void BendingFrame::begin(const FramePlan& plan, double weight) {
   if (rows_.empty()) return;
@@ -46,6 +70,10 @@ void BendingFrame::begin(const FramePlan& plan, double weight) {
   give_ = formula.give(plan.h);
   rate_ = 1 / (formula.part * plan.h);
   omega_ = plan.omega;
+  substeps_ = plan.substeps;
+  done_ = 0;
+  longest_ = longest_group(plan);
+  groups_ = (substeps_ - 1) / longest_ + 1;
   damping_ = model_.damping.bending;
   weight_ = 0;
   is_factored_ = is_to_be_factored();
@@ -55,15 +83,29 @@ void BendingFrame::begin(const FramePlan& plan, double weight) {
   weight_ = weight / (law.inertia + law.stiffness * mean_);
 }
 
+/// The impulse acts from the end of its substep on, which is in the middle of the group.
+std::optional<BendingStep> BendingFrame::next(double give) {
+  if (rows_.empty()) return {};
+  const auto begin_of = [&](std::int64_t group) {
+    return static_cast<int>(group * substeps_ / groups_);
+  };
+  const int k = done_++;
+  const std::int64_t group = ((k + 1) * std::int64_t{groups_} - 1) / substeps_;
+  const int first = begin_of(group), n = begin_of(group + 1) - first;
+  if (k != first + (n - 1) / 2) return {};
+  return step(give, n);
+}
+
 /// s, of what is not factored.
 double BendingFrame::most_damping() const {
-  return std::max(tuning::kLeastBendingDamping, tuning::kBendingDamping / (give_ * mean_)) / rate_;
+  return std::max(tuning::kLeastBendingDamping, tuning::kBendingDamping / (give_ * mean_)) /
+         usual().rate;
 }
 
 /// Whether a factorisation takes less time than the steps along the diagonal, of cloth that is
 /// damped no more than these bear.
 bool BendingFrame::is_to_be_factored() const {
-  const double stiffness = 1 + std::min(damping_, most_damping()) * rate_;
+  const double stiffness = 1 + std::min(damping_, most_damping()) * usual().rate;
   const double steps = tuning::kBendingStepsPerRoot * std::sqrt(stiffness * give_ * mean_);
   if (steps < tuning::kLeastFactored || particles_ > static_cast<double>(tuning::kMostFactored))
     return false;

@@ -1,9 +1,14 @@
-/// How the bending of a frame is solved (bending_system.h). In each substep the law
+/// When and how the bending of a frame is solved (bending_system.h).
 ///
-///     M d / f = - K (p + d) - tau K (v + d / (b h))
+/// Where all cloth is soft, one solution stands for a group of n substeps, with the impulse of all
+/// of them in its middle. Else n is 1. In a group the force is that of the law
 ///
-/// holds at its end. There p and v are predicted, d is how far bending moves the particles, and f
-/// is the square of b h, as decay leaves it.
+///     M d / f = - K (p + d) - tau K (v + n d / (b h)),
+///
+/// and the particles move by n d. There p and v are predicted, and f is the square of b h, as decay
+/// leaves it. With n = 1 the law holds at the end of the substep. An impulse every n substeps gains
+/// energy where a swing is about as fast: so n is bounded by the stiffest particle
+/// (tuning::kBendingGroup).
 ///
 /// So damping is a factor on K. It is smaller than asked for where it would make the matrix of soft
 /// cloth a stiff one (tuning::kBendingDamping): swings are damped, and creases of single particles
@@ -12,6 +17,8 @@
 
 #include <weft/weft.h>
 
+#include <optional>
+
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/bending_system.h"
 #include "engine/solvers/small_steps/small_steps.h"
@@ -19,9 +26,10 @@
 
 namespace weft {
 
-/// How a substep is solved.
+/// How a group of substeps is solved.
 struct BendingStep {
   double give = 0;     // s^2, f
+  double count = 1;    // n
   double rate = 0;     // 1/s, of d in damping
   double damping = 0;  // s, tau
   BendingLaw law() const { return {1 / give, 1 + damping * rate}; }
@@ -34,9 +42,10 @@ class BendingFrame {
   /// weight: of a frame, the sum of m a^2 over all that bend, of what accelerates them from
   /// outside.
   void begin(const FramePlan& plan, double weight);
-  /// Of a substep with this give, or with that of most.
-  BendingStep step(double give) const { return {give, rate_, damping_}; }
-  BendingStep usual() const { return step(give_); }
+  /// Of the next substep, with its give; nothing where its group is solved in another.
+  std::optional<BendingStep> next(double give);
+  /// Of a whole group of substeps as most are.
+  BendingStep usual() const { return step(give_, longest_); }
 
   bool is_factored() const { return is_factored_; }
   BendingLimits limits() const { return {part_, weight_, tuning::kMostBendingSteps}; }
@@ -46,6 +55,8 @@ class BendingFrame {
   double resolved(double give) const { return 1 / ((1 - 0.5 * omega_) * give); }
 
  private:
+  BendingStep step(double give, int n) const { return {give, double(n), n * rate_, damping_}; }
+  int longest_group(const FramePlan& plan) const;
   double most_damping() const;
   bool is_to_be_factored() const;
 
@@ -54,9 +65,12 @@ class BendingFrame {
   const double part_;
   const double particles_;  // that bend
   const double mean_;       // 1/s^2, of K_ii / m_i
+  const double stiffest_;   // 1/s^2, no swing has a larger square of its frequency
   const Scheme scheme_;
+  const bool is_timed_;  // the error of motion is measured
   bool is_factored_ = false;
   double weight_ = 0, damping_ = 0, rate_ = 0, give_ = 1, omega_ = 1;
+  int substeps_ = 0, done_ = 0, groups_ = 1, longest_ = 1;
 };
 
 }  // namespace weft

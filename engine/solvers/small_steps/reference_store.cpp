@@ -143,28 +143,26 @@ void ReferenceStore::decay(double to, Team&) {
 /// Of all elements at once. Particles go where the last force of bending takes them, and from there
 /// to where they bend to.
 void ReferenceStore::bend(Team& team) {
-  if (layout_.bending.empty()) return;
-  const BendingStep step = bending_frame_.step(now_.formula.give(now_.h));
+  const std::optional<BendingStep> step = bending_frame_.next(now_.formula.give(now_.h));
+  if (!step) return;
   double* const guess = bending_.guess();
-  const double scale = give_ > 0 ? step.give / give_ : 0;
-  give_ = step.give;
+  const double scale = give_ > 0 ? step->give / give_ : 0;
+  give_ = step->give;
   for (std::size_t i = 0; i < 4 * model_.slots(); ++i) guess[i] *= scale;
   const auto at = [&](std::size_t i) {
     return Vector{guess[4 * i], guess[4 * i + 1], guess[4 * i + 2]};
   };
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     x_.view().add(i, at(i));
-    rate_.set(i, v_[i] + step.rate * at(i));
+    rate_.set(i, v_[i] + step->rate * at(i));
   }
-  pull(step);
+  pull(*step);
   bending_error_ =
-      std::max(bending_error_, bending_.solve(step.law(), bending_frame_.limits(), team));
-  if (bending_.steps() > 0) {
-    const double* const change = bending_.change();
-    for (std::size_t i = 0; i < 4 * model_.slots(); ++i) guess[i] += change[i];
-    for (std::size_t i = 0; i < model_.slots(); ++i)
-      x_.view().add(i, {change[4 * i], change[4 * i + 1], change[4 * i + 2]});
-  }
+      std::max(bending_error_, bending_.solve(step->law(), bending_frame_.limits(), team));
+  for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, -1 * at(i));
+  for (std::size_t i = 0; bending_.steps() > 0 && i < 4 * model_.slots(); ++i)
+    guess[i] += bending_.change()[i];
+  for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, step->count * at(i));
   if (bending_frame_.is_factored()) give_ = 0;
 }
 

@@ -71,12 +71,12 @@ void SimdBending::measure_base(const float* base, Team& team) {
 }
 
 void SimdBending::bend(float* u, const float* v, double give, Team& team) {
-  if (layout_.empty()) return;
-  const BendingStep step = frame_.step(give);
+  const std::optional<BendingStep> step = frame_.next(give);
+  if (!step) return;
   if (frame_.is_factored())
-    bend_stiffly(u, v, step, team);
+    bend_stiffly(u, v, *step, team);
   else
-    bend_softly(u, v, step, team);
+    bend_softly(u, v, *step, team);
 }
 
 simd::Bending SimdBending::arrays(const float* u) const {
@@ -122,13 +122,16 @@ void SimdBending::bend_softly(float* u, const float* v, const BendingStep& step,
   begin_from_guess(u, v, step, team);
   pull(u, rate_.data(), step.damping, team);
   error_ = std::max(error_, soft_.solve(step.law(), frame_.limits(), team));
-  if (soft_.steps() == 0) return;
   float* const guess = soft_.guess();
   const float* const change = soft_.change();
+  const auto count = static_cast<float>(step.count);
+  const bool has_changed = soft_.steps() > 0;
+  if (!has_changed && count == 1) return;
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      guess[i] += change[i];
-      u[i] += change[i];
+      const float from = guess[i], to = has_changed ? from + change[i] : from;
+      guess[i] = to;
+      u[i] += count * to - from;
     }
   });
 }
