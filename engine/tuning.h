@@ -50,6 +50,9 @@ inline constexpr double kContactWideSpare = 0.5;
 /// In reaches of an interval: what wide boxes hold beyond the way of a particle. It is about time
 /// and the order of pairs alone (perf/tried.md has all of these ablations).
 inline constexpr double kContactWideReach = 3;
+/// In thicknesses, and what the cloth may go in half of a step: bodies that are farther from it
+/// do not take it along in this step.
+inline constexpr double kContactRegion = 4;
 /// m: places are floats from an origin, which is a multiple of this. A finer grid moves the origin
 /// more often, and candidates are looked for anew.
 inline constexpr double kContactGrid = 2;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/contact/look.h"
@@ -14,6 +15,7 @@ using kernels::Vector;
 void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
   points_.begin(clock);
   interval_ = late_depth_ = 0;
+  has_looked_ahead_ = false;
   failures_ = {};
   for (NearPairs& near : near_) near.clear();
   if (empty()) return;
@@ -22,8 +24,10 @@ void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced
   tangles_.begin(points_.cloth(), misplaced);
 }
 
-double SurfaceContacts::interval_for(const BodyClock& clock) const {
-  const double fastest = points_.fastest(clock);
+double SurfaceContacts::interval_for(const ContactParticles& particles, const BodyClock& clock) {
+  if (empty()) return tuning::kContactInterval;
+  if (!std::exchange(has_looked_ahead_, true)) points_.look_ahead(particles, clock);
+  const double fastest = points_.speeds().of_near;
   const double way = tuning::kMeshWay * points_.largest_thickness();
   return fastest > 0 ? std::min(tuning::kContactInterval, way / fastest) : tuning::kContactInterval;
 }

@@ -40,9 +40,9 @@ class SurfaceContacts {
   /// Of a frame. is_new: positions were given, or a body was: tangles are looked for. Else they are
   /// as the frame before left them.
   void begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced);
-  /// s. Bodies that are fast are looked at more often: on their way they turn, and take cloth
-  /// along.
-  double interval_for(const BodyClock& clock) const;
+  /// s, when a substep is predicted. Bodies that are fast beside the cloth are looked at more
+  /// often: on their way they turn, and take cloth along.
+  double interval_for(const ContactParticles& particles, const BodyClock& clock);
   /// A substep is predicted, and the clock is where it begins: an interval of the clock may begin
   /// with it.
   void predict(ContactParticles& particles, const BodyClock& clock, Team& team);
@@ -102,6 +102,7 @@ class SurfaceContacts {
   bool is_new_ = false;    // tangles are not known yet
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
+  bool has_looked_ahead_ = false;
   Tangles tangles_;
 };
 

@@ -21,7 +21,7 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
 
 void ReferenceBodies::advance(double part, ContactParticles& particles, Team& team) {
   if (empty()) return;
-  if (clock_.is_interval_over()) clock_.begin_interval(meshes_.interval_for(clock_));
+  if (clock_.is_interval_over()) clock_.begin_interval(meshes_.interval_for(particles, clock_));
   meshes_.predict(particles, clock_, team);
   clock_.advance();
   meshes_.advance(clock_);

@@ -72,7 +72,7 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
                          ContactParticles& particles, Team& team) {
   if (empty()) return;
   if (clock_.is_interval_over()) {
-    clock_.begin_interval(meshes_.interval_for(clock_));
+    clock_.begin_interval(meshes_.interval_for(particles, clock_));
     search(flight, base);
   }
   meshes_.predict(particles, clock_, team);
