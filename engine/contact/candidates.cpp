@@ -101,6 +101,7 @@ class OwnedFeatures {
         surfaces_(surfaces),
         a_(points.surfaces()[surfaces.a]),
         b_(points.surfaces()[surfaces.b]),
+        may_cross_(points.surfaces()[surfaces.b].may_cross),
         candidates_(candidates) {}
 
   /// The triangle of the first surface that others are beside from now on.
@@ -124,6 +125,7 @@ class OwnedFeatures {
       corner_b_[k] = reach_along(axes_, points_.tube(corners_b_[k]));
     const Reach whole_b = sum(corner_b_);
     if (!whole_a_.meets(whole_b)) return;
+    may_cross_[triangle_a_] = 1;
     for (std::size_t k = 0; k < 3; ++k) {
       if (!a_.triangles->owns_corner(triangle_a_, k) || !corner_a_[k].meets(whole_b)) continue;
       add_pair(
@@ -189,6 +191,7 @@ class OwnedFeatures {
   ContactPoints& points_;
   const SurfacePair surfaces_;
   const ContactSurface &a_, &b_;
+  std::vector<std::uint8_t>& may_cross_;
   Candidates& candidates_;
   std::uint32_t triangle_a_ = kNoIndex, triangle_b_ = kNoIndex, active_ = kNoIndex;
   TriangleSurface::Triangle corners_a_{}, corners_b_{};

@@ -12,15 +12,16 @@ namespace weft {
 
 using kernels::Vector;
 
-void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
-  points_.begin(clock);
+void SurfaceContacts::begin(const BodyClock& clock, ContactStart start,
+                            const Misplaced& misplaced) {
+  if (start != ContactStart::goes_on) points_.begin(clock);
   interval_ = late_depth_ = 0;
   has_looked_ahead_ = false;
   failures_ = {};
   for (NearPairs& near : near_) near.clear();
   if (empty()) return;
   impulses_.begin(clock.bodies());
-  is_new_ = is_new;
+  is_new_ = start != ContactStart::known;
   tangles_.begin(points_.cloth(), misplaced);
 }
 
@@ -57,6 +58,10 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   near_search_.find(points_, candidates_, tangles_, near_);
   tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);
+  for (const PairList& list : candidates_)
+    visits_ += tuning::kVisitsOfLook * static_cast<double>(list.size());
+  for (const NearPairs& near : near_)
+    visits_ += tuning::kVisitsOfTouch * static_cast<double>(near.list.size());
   interval_ = substeps * clock.h();
 }
 

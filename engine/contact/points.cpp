@@ -274,7 +274,8 @@ Tube ContactPoints::tube_around(std::uint32_t slot) const {
   const Vector x = start_[slot] - origin_, way = end_[slot] - start_[slot];
   const double reach = tuning::kContactReach * length(way - drift_) +
                        tuning::kContactWideReach * reach_[slot] +
-                       tuning::kContactWideSpare * largest_thickness_;
+                       (to_ > from_ ? tuning::kContactWideSpare : tuning::kContactStandingSpare) *
+                           largest_thickness_;
   const double intervals = to_ > from_ ? 1 / (to_ - from_) : 0;
   const Vector begins = x - (intervals * (from_ - laid_from_)) * way,
                ends = x + (intervals * (until_ - from_)) * way;
@@ -287,8 +288,10 @@ void ContactPoints::lay_tubes() {
   ++layings_;
   for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
   active_.clear();
-  for (ContactSurface& surface : of_bodies())
+  for (ContactSurface& surface : of_bodies()) {
     surface.is_near.assign(surface.triangles->triangles.size(), 0);
+    surface.may_cross.assign(cloth().triangles.size(), 0);
+  }
   has_tubes_ = true;
 }
 

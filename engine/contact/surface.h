@@ -34,9 +34,10 @@ struct ContactSurface {
   double longest = 0;                             // m, of their ways in a step
   Box extent = Box::none();                       // of them in its coordinates, all of the step
   SeenFromBody seen;                              // from when tubes were laid until the step ends
-  std::uint32_t placing = 0;          // another one where its vertices are to be placed anew
-  reference::Placement begins, ends;  // in the present interval
-  std::vector<std::uint8_t> is_near;  // per triangle, cloth: it has candidates
+  std::uint32_t placing = 0;            // another one where its vertices are to be placed anew
+  reference::Placement begins, ends;    // in the present interval
+  std::vector<std::uint8_t> is_near;    // per triangle: it has candidates
+  std::vector<std::uint8_t> may_cross;  // per triangle of the cloth: tubes of both meet
 
   /// A box of the world as the tree has it.
   Box as_in_tree(const Box& box) const { return is_rigid ? seen(box) : box; }
