@@ -47,9 +47,15 @@ inline constexpr double kContactBeyond = 0.2, kContactLean = 0.6, kContactPassin
 /// In thicknesses: what boxes that hold points until a step ends hold beyond. What flutters leaves
 /// them, and its candidates are renewed.
 inline constexpr double kContactWideSpare = 0.5;
-/// In reaches of an interval: what wide boxes hold beyond the way of a particle. It is about time
-/// and the order of pairs alone (perf/tried.md has all of these ablations).
-inline constexpr double kContactWideReach = 3;
+/// The same while bodies stand, and positions are put right.
+inline constexpr double kContactStandingSpare = 1.5;
+/// In reaches of an interval: what tubes hold beyond the way of a particle. It is about time and
+/// the order of pairs alone (perf/tried.md has all of these ablations): with 3 the tunic of a body
+/// that walks leaves its tubes so often that finding takes 1.4 times as long.
+inline constexpr double kContactWideReach = 5;
+/// In thicknesses, and what the cloth may go in half of a step: bodies that are farther from it
+/// do not take it along in this step.
+inline constexpr double kContactRegion = 4;
 /// m: places are floats from an origin, which is a multiple of this. A finer grid moves the origin
 /// more often, and candidates are looked for anew.
 inline constexpr double kContactGrid = 2;
@@ -192,6 +198,12 @@ inline constexpr double kLocalVisitOfTriangle = 20;
 /// Where at least as many substeps were given as automatic ones would be: the time beyond their
 /// sweeps, in sweeps for each. Less leaves more to later frames; more takes longer.
 inline constexpr double kPassesBeyond = 6;
+/// The same of contacts with meshes: to look at a pair in lanes, and in double (12 and 300 ns).
+/// They count by a share of that where a frame is put right: all of it would leave a garment in the
+/// air that is put on, none of it lets a hopeless one take 20 s.
+inline constexpr double kVisitsOfLook = 2;
+inline constexpr double kVisitsOfTouch = 50;
+inline constexpr double kContactShare = 0.25;
 /// The largest number of visits of local passes in a substep and in a round, in units of all
 /// constraints. Fewer leave more to later substeps; more are spent in vain on what is
 /// contradictory.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -24,20 +25,27 @@ struct TriangleAxes {
   }
 };
 
-/// What something reaches along x, y, z and an unused direction, and along the four axes.
+/// What something reaches along x, y, z and an unused direction, and along the four axes: when
+/// tubes begin, and when they end.
 struct Reach {
-  alignas(16) float low[8], high[8];
+  static constexpr std::size_t kAxes = 8;
+  alignas(16) float low[2 * kAxes], high[2 * kAxes];
 
   void add(const Reach& other) {
-    for (std::size_t k = 0; k < 8; ++k) {
+    for (std::size_t k = 0; k < 2 * kAxes; ++k) {
       low[k] = std::min(low[k], other.low[k]);
       high[k] = std::max(high[k], other.high[k]);
     }
   }
+  /// What is on one side of the other at both ends is there all of the way.
   bool meets(const Reach& other) const {
     int apart = 0;
-    for (std::size_t k = 0; k < 8; ++k)
-      apart |= static_cast<int>(low[k] > other.high[k]) | static_cast<int>(high[k] < other.low[k]);
+    for (std::size_t k = 0; k < kAxes; ++k) {
+      apart |= static_cast<int>(low[k] > other.high[k]) &
+               static_cast<int>(low[kAxes + k] > other.high[kAxes + k]);
+      apart |= static_cast<int>(high[k] < other.low[k]) &
+               static_cast<int>(high[kAxes + k] < other.low[kAxes + k]);
+    }
     return apart == 0;
   }
 };
@@ -50,26 +58,38 @@ Reach sum(const Reach& a, const Reach& b) {
 }
 Reach sum(const CornerReaches& reaches) { return sum(sum(reaches[0], reaches[1]), reaches[2]); }
 
-/// Of a box, and what rounding adds along the axes.
-Reach reach_along(const TriangleAxes& axes, const Box& box) {
-  Reach reach;
-  float middle[3], half[3];
+struct Range {
+  float low = 0, high = 0;
+};
+/// Of a box along one of the axes, and what rounding adds.
+Range range_along(const TriangleAxes& axes, std::size_t i, const Box& box) {
+  float middle = 0, wide = 0, size = 0;
+  const float axis[] = {axes.x[i], axes.y[i], axes.z[i]};
   for (std::size_t k = 0; k < 3; ++k) {
-    reach.low[k] = box.low[k];
-    reach.high[k] = box.high[k];
-    middle[k] = 0.5f * (box.low[k] + box.high[k]);
-    half[k] = box.high[k] - middle[k];
+    const float m = 0.5f * (box.low[k] + box.high[k]), half = box.high[k] - m;
+    middle += axis[k] * m;
+    wide += std::abs(axis[k]) * half;
+    size += std::abs(m) + half;
   }
-  reach.low[3] = reach.high[3] = 0;
-  const float size =
-      std::abs(middle[0]) + std::abs(middle[1]) + std::abs(middle[2]) + half[0] + half[1] + half[2];
+  wide += 0x1p-20f * size;
+  return {middle - wide, middle + wide};
+}
+void write_reach(const TriangleAxes& axes, const Box& box, float* low, float* high) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    low[k] = box.low[k];
+    high[k] = box.high[k];
+  }
+  low[3] = high[3] = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const float m = axes.x[i] * middle[0] + axes.y[i] * middle[1] + axes.z[i] * middle[2];
-    const float wide = std::abs(axes.x[i]) * half[0] + std::abs(axes.y[i]) * half[1] +
-                       std::abs(axes.z[i]) * half[2] + 0x1p-20f * size;
-    reach.low[4 + i] = m - wide;
-    reach.high[4 + i] = m + wide;
+    const Range range = range_along(axes, i, box);
+    low[4 + i] = range.low;
+    high[4 + i] = range.high;
   }
+}
+Reach reach_along(const TriangleAxes& axes, const Tube& tube) {
+  Reach reach;
+  write_reach(axes, tube.begins, reach.low, reach.high);
+  write_reach(axes, tube.ends, reach.low + Reach::kAxes, reach.high + Reach::kAxes);
   return reach;
 }
 
@@ -81,19 +101,17 @@ class OwnedFeatures {
         surfaces_(surfaces),
         a_(points.surfaces()[surfaces.a]),
         b_(points.surfaces()[surfaces.b]),
+        may_cross_(points.surfaces()[surfaces.b].may_cross),
         candidates_(candidates) {}
 
   /// The triangle of the first surface that others are beside from now on.
-  void begin(std::uint32_t a) {
-    const TriangleSurface::Triangle t = a_.points_of(a);
-    begin(a, {points_.wide_box(t[0]), points_.wide_box(t[1]), points_.wide_box(t[2])});
-  }
-  /// boxes: of its corners.
-  void begin(std::uint32_t a, const std::array<Box, 3>& boxes) {
+  void begin(std::uint32_t a) { begin(a, points_.tubes(a_.points_of(a))); }
+  /// tubes: of its corners.
+  void begin(std::uint32_t a, const std::array<Tube, 3>& tubes) {
     triangle_a_ = a;
     corners_a_ = a_.points_of(a);
     set_axes();
-    for (std::size_t k = 0; k < 3; ++k) corner_a_[k] = reach_along(axes_, boxes[k]);
+    for (std::size_t k = 0; k < 3; ++k) corner_a_[k] = reach_along(axes_, tubes[k]);
     for (std::size_t k = 0; k < 3; ++k) edge_a_[k] = sum(corner_a_[k], corner_a_[(k + 1) % 3]);
     whole_a_ = sum(corner_a_);
   }
@@ -102,10 +120,12 @@ class OwnedFeatures {
   void add(std::uint32_t b) {
     triangle_b_ = b;
     corners_b_ = b_.points_of(b);
+    if (is_beside()) return;
     for (std::size_t k = 0; k < 3; ++k)
-      corner_b_[k] = reach_along(axes_, points_.wide_box(corners_b_[k]));
+      corner_b_[k] = reach_along(axes_, points_.tube(corners_b_[k]));
     const Reach whole_b = sum(corner_b_);
     if (!whole_a_.meets(whole_b)) return;
+    may_cross_[triangle_a_] = 1;
     for (std::size_t k = 0; k < 3; ++k) {
       if (!a_.triangles->owns_corner(triangle_a_, k) || !corner_a_[k].meets(whole_b)) continue;
       add_pair(
@@ -125,6 +145,24 @@ class OwnedFeatures {
   }
 
  private:
+  /// Whether all of the second triangle is on one side of the first, along its normal: most are.
+  bool is_beside() const {
+    const Tube* tubes[] = {&points_.tube(corners_b_[0]), &points_.tube(corners_b_[1]),
+                           &points_.tube(corners_b_[2])};
+    const auto reach = [&](Box Tube::*when) {
+      float low = std::numeric_limits<float>::max(), high = -low;
+      for (const Tube* tube : tubes) {
+        const Range range = range_along(axes_, 0, tube->*when);
+        low = std::min(low, range.low);
+        high = std::max(high, range.high);
+      }
+      return Range{low, high};
+    };
+    constexpr std::size_t kNormal = 4, kEnd = Reach::kAxes + kNormal;
+    const Range begins = reach(&Tube::begins), ends = reach(&Tube::ends);
+    return (begins.low > whole_a_.high[kNormal] && ends.low > whole_a_.high[kEnd]) ||
+           (begins.high < whole_a_.low[kNormal] && ends.high < whole_a_.low[kEnd]);
+  }
   /// In the plane of the triangle, where the interval begins.
   void set_axes() {
     const kernels::Vector x[] = {points_.start(corners_a_[0]), points_.start(corners_a_[1]),
@@ -153,6 +191,7 @@ class OwnedFeatures {
   ContactPoints& points_;
   const SurfacePair surfaces_;
   const ContactSurface &a_, &b_;
+  std::vector<std::uint8_t>& may_cross_;
   Candidates& candidates_;
   std::uint32_t triangle_a_ = kNoIndex, triangle_b_ = kNoIndex, active_ = kNoIndex;
   TriangleSurface::Triangle corners_a_{}, corners_b_{};
@@ -172,21 +211,20 @@ void CandidateSearch::find_all(ContactPoints& points, SurfacePair pair, Candidat
     features.add(b);
   };
   if (!body.is_rigid) {
-    body.tree.refit([&](std::uint32_t t) { return points.wide_box(body.points_of(t)); });
+    body.tree.refit([&](std::uint32_t t) { return points.in_tree(body, body.points_of(t)); });
     BoxTree::meet(table_, cloth.tree, body.tree, add);
     return;
   }
   if (!body.seen(cloth.tree.box()).meets(body.tree.box())) return;
-  seen_cloth_.refit(
-      [&](std::uint32_t t) { return body.seen(points.wide_box(cloth.points_of(t))); });
+  seen_cloth_.refit([&](std::uint32_t t) { return points.in_tree(body, cloth.points_of(t)); });
   BoxTree::meet(table_, seen_cloth_, body.tree, add);
 }
 
 bool CandidateSearch::find(ContactPoints& points, Candidates& candidates) {
-  if (points.has_wide_boxes()) return renew(points, candidates);
-  points.widen_boxes();
+  if (points.has_tubes()) return renew(points, candidates);
+  points.lay_tubes();
   ContactSurface& cloth = points.surfaces()[kClothSurface];
-  cloth.tree.refit([&](std::uint32_t t) { return points.wide_box(cloth.points_of(t)); });
+  cloth.tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
   if (owner_of_edge_.empty()) find_owners(cloth);
   for (PairList& list : candidates) list.clear();
   for (const SurfacePair pair : points.surface_pairs()) find_all(points, pair, candidates);
@@ -214,11 +252,11 @@ std::uint32_t CandidateSearch::owner(const Pair& pair) const {
   return pair.is_turned() ? pair.second : owner_of_point_[pair.first];
 }
 
-/// Candidates of triangles with a corner that has left its wide box, and of these alone.
+/// Candidates of triangles with a corner that has left its tube, and of these alone.
 bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
   std::ranges::fill(has_moved_, std::uint8_t{0});
   bool any = false;
-  points.renew_wide_boxes([&](std::uint32_t slot) {
+  points.renew_tubes([&](std::uint32_t slot) {
     has_moved_[slot] = 1;
     any = true;
   });
@@ -228,7 +266,8 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
   for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
     const auto [a, b, c] = cloth.triangles[t];
     is_renewed_[t] = has_moved_[a] | has_moved_[b] | has_moved_[c];
-    if (is_renewed_[t] != 0) all.add(points.wide_box(cloth.triangles[t]));
+    if (is_renewed_[t] != 0)
+      all.add(points.in_tree(points.surfaces()[kClothSurface], cloth.triangles[t]));
   }
   bool have_moved = false;
   for (PairList& list : candidates) {
@@ -242,7 +281,7 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
     for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
       if (is_renewed_[t] == 0) continue;
       features.begin(t);
-      body.tree.find(table_, body.as_in_tree(points.wide_box(cloth.triangles[t])),
+      body.tree.find(table_, points.in_tree(body, cloth.triangles[t]),
                      [&](std::uint32_t other) { features.add(other); });
     }
   }
@@ -253,7 +292,8 @@ void CandidateSearch::find_beside(ContactPoints& points, std::uint32_t triangle,
                                   Candidates& candidates) const {
   for (const SurfacePair pair : points.surface_pairs()) {
     OwnedFeatures features(points, pair, candidates);
-    features.begin(triangle, {box, box, box});
+    const Tube tube{box, box};
+    features.begin(triangle, {tube, tube, tube});
     const ContactSurface& body = points.surfaces()[pair.b];
     body.tree.find(table_, body.as_in_tree(box), [&](std::uint32_t other) { features.add(other); });
   }

@@ -1,5 +1,5 @@
 /// Stage 2 of an interval: which pairs of features may meet at all. They are looked for once a
-/// step, by wide boxes, which hold all places that points are expected to come to until it ends.
+/// step, by tubes, which hold all places that points are expected to come to until it ends.
 /// When the next interval begins candidates are renewed of the triangles whose corners have left
 /// theirs, and of no others. Those of points that leave the boxes of an interval are looked for
 /// when it ends (verify.h). So candidates follow from the state in which a step begins.
@@ -35,8 +35,8 @@ class CandidateSearch {
   const simd::Table& table_;
   BoxTree seen_cloth_;                                         // in coordinates of a body; scratch
   std::vector<std::uint32_t> owner_of_edge_, owner_of_point_;  // triangles of the cloth
-  std::vector<std::uint8_t> has_moved_;   // per slot, out of its wide box; scratch
-  std::vector<std::uint8_t> is_renewed_;  // per triangle of the cloth; scratch
+  std::vector<std::uint8_t> has_moved_;                        // per slot, out of its tube; scratch
+  std::vector<std::uint8_t> is_renewed_;                       // per triangle of the cloth; scratch
 };
 
 }  // namespace weft

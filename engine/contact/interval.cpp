@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/contact/look.h"
@@ -11,19 +12,23 @@ namespace weft {
 
 using kernels::Vector;
 
-void SurfaceContacts::begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced) {
-  points_.begin(clock);
+void SurfaceContacts::begin(const BodyClock& clock, ContactStart start,
+                            const Misplaced& misplaced) {
+  if (start != ContactStart::goes_on) points_.begin(clock);
   interval_ = late_depth_ = 0;
+  has_looked_ahead_ = false;
   failures_ = {};
   for (NearPairs& near : near_) near.clear();
   if (empty()) return;
   impulses_.begin(clock.bodies());
-  is_new_ = is_new;
+  is_new_ = start != ContactStart::known;
   tangles_.begin(points_.cloth(), misplaced);
 }
 
-double SurfaceContacts::interval_for(const BodyClock& clock) const {
-  const double fastest = points_.fastest(clock);
+double SurfaceContacts::interval_for(const ContactParticles& particles, const BodyClock& clock) {
+  if (empty()) return tuning::kContactInterval;
+  if (!std::exchange(has_looked_ahead_, true)) points_.look_ahead(particles, clock);
+  const double fastest = points_.speeds().of_near;
   const double way = tuning::kMeshWay * points_.largest_thickness();
   return fastest > 0 ? std::min(tuning::kContactInterval, way / fastest) : tuning::kContactInterval;
 }
@@ -53,6 +58,10 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   near_search_.find(points_, candidates_, tangles_, near_);
   tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);
+  for (const PairList& list : candidates_)
+    visits_ += tuning::kVisitsOfLook * static_cast<double>(list.size());
+  for (const NearPairs& near : near_)
+    visits_ += tuning::kVisitsOfTouch * static_cast<double>(near.list.size());
   interval_ = substeps * clock.h();
 }
 

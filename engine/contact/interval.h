@@ -17,6 +17,8 @@
 /// are known as such until they are out, and triangles that cross a body until they do no longer.
 #pragma once
 
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "engine/contact/rescue.h"
@@ -24,6 +26,11 @@
 #include "engine/contact/touch.h"
 
 namespace weft {
+
+/// known: tangles are as the frame before left them. anew: positions were given, or a body was, and
+/// they are looked for. goes_on: likewise, where the last frame ended, and bodies still stand as
+/// they did in it.
+enum class ContactStart : std::uint8_t { known, anew, goes_on };
 
 class SurfaceContacts {
  public:
@@ -37,12 +44,11 @@ class SurfaceContacts {
         tangles_(table) {}
 
   bool empty() const { return points_.surface_pairs().empty(); }
-  /// Of a frame. is_new: positions were given, or a body was: tangles are looked for. Else they are
-  /// as the frame before left them.
-  void begin(const BodyClock& clock, bool is_new, const Misplaced& misplaced);
-  /// s. Bodies that are fast are looked at more often: on their way they turn, and take cloth
-  /// along.
-  double interval_for(const BodyClock& clock) const;
+  /// Of a frame.
+  void begin(const BodyClock& clock, ContactStart start, const Misplaced& misplaced);
+  /// s, when a substep is predicted. Bodies that are fast beside the cloth are looked at more
+  /// often: on their way they turn, and take cloth along.
+  double interval_for(const ContactParticles& particles, const BodyClock& clock);
   /// A substep is predicted, and the clock is where it begins: an interval of the clock may begin
   /// with it.
   void predict(ContactParticles& particles, const BodyClock& clock, Team& team);
@@ -77,6 +83,9 @@ class SurfaceContacts {
   void read_touching(const ContactParticles& particles, const BodyClock& clock,
                      std::vector<BodyTouch>& touches) const;
   const Misplaced& misplaced() const { return tangles_.misplaced(); }
+  /// Since this was last asked: what it took to find pairs and to push them apart, in visits of a
+  /// constraint. It is counted, not measured: what is left undone depends on it.
+  double take_visits() { return std::exchange(visits_, 0) + response_.take_visits(); }
   std::size_t bytes() const;
 
  private:
@@ -99,9 +108,11 @@ class SurfaceContacts {
   Near near_;
   ContactImpulses impulses_;
   RescueReport failures_;
+  double visits_ = 0;
   bool is_new_ = false;    // tangles are not known yet
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
+  bool has_looked_ahead_ = false;
   Tangles tangles_;
 };
 

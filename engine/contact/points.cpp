@@ -45,7 +45,8 @@ bool is_same(const reference::Placement& a, const reference::Placement& b) {
 void ContactPoints::begin(const BodyClock& clock) {
   slots_ = model_.slots();
   largest_thickness_ = 0;
-  has_wide_boxes_ = false;
+  has_tubes_ = false;
+  speeds_ = {};
   surface_pairs_.clear();
   std::size_t points = slots_, count = 1;
   for (std::size_t body = 0; body < clock.bodies().size(); ++body) {
@@ -65,9 +66,9 @@ void ContactPoints::begin(const BodyClock& clock) {
   for (auto* vectors : {&substep_from_, &substep_to_}) vectors->resize(points - slots_);
   for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->resize(4 * points);
   box_.resize(points);
-  wide_box_.resize(points);
-  widened_.assign(points - slots_, 0);
-  widenings_ = 0;
+  tube_.resize(points);
+  laid_.assign(points - slots_, 0);
+  layings_ = 0;
   placed_.resize(points - slots_);
   is_active_.assign(points - slots_, 0);
   active_.clear();
@@ -117,13 +118,13 @@ void ContactPoints::take_vertices(ContactSurface& surface, const TravellingBody&
   surface.to = body.to;
   if (is_rigid && surface.is_rigid) return;
   surface.is_rigid = is_rigid;
-  surface.farthest = surface.longest = 0;
+  surface.longest = 0;
+  surface.extent = Box::none();
   for (std::size_t i = 0; i < body.from.size(); ++i) {
     const Vector way = body.to[i] - body.from[i];
-    surface.farthest = std::max(surface.farthest, dot(body.from[i], body.from[i]));
     surface.longest = std::max(surface.longest, dot(way, way));
+    surface.extent.add(box_around(body.from[i], body.to[i], 0));
   }
-  surface.farthest = std::sqrt(surface.farthest);
   surface.longest = std::sqrt(surface.longest);
   if (!is_rigid) return;
   surface.tree.refit([&](std::uint32_t t) {
@@ -134,18 +135,31 @@ void ContactPoints::take_vertices(ContactSurface& surface, const TravellingBody&
   });
 }
 
+void ContactPoints::look_ahead(const ContactParticles& cloth, const BodyClock& clock) {
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
+    if (!model_.is_particle(slot)) continue;
+    start_[slot] = cloth.start(slot);
+    end_[slot] = cloth.position(slot) - start_[slot];
+  }
+  speeds_ = speeds_of_step(model_, std::span(start_).first(slots_), std::span(end_).first(slots_),
+                           of_bodies(), clock);
+}
+
 void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyClock& clock,
                                    int substeps) {
   const double before = std::exchange(from_, clock.share_after(0));
   to_ = clock.share_after(substeps);
   until_ = clock.share_after(clock.substeps_left());
-  intervals_left_ = static_cast<double>(clock.substeps_left()) / substeps;
+  const double time = clock.stands() ? 0 : clock.time();
+  drift_ = ((to_ - from_) * time) * speeds_.drift;
+  const Vector drifted = ((from_ - before) * time) * speeds_.drift;
   Vector sum{};
   double particles = 0, travelled = 0;
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
     if (!model_.is_particle(slot)) continue;
     const Vector x = cloth.position(slot);
-    const Vector start = clock.stands() ? x : cloth.start(slot), by = start - start_[slot];
+    const Vector start = clock.stands() ? x : cloth.start(slot),
+                 by = start - start_[slot] - drifted;
     travelled = std::max(travelled, dot(by, by));
     start_[slot] = start;
     end_[slot] = start_[slot] + substeps * (x - start_[slot]);
@@ -154,7 +168,7 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   }
   const Vector origin = rounded((1 / std::max(1.0, particles)) * sum);
   bool are_floats_same = origin == origin_;
-  has_wide_boxes_ = has_wide_boxes_ && are_floats_same;
+  has_tubes_ = has_tubes_ && are_floats_same;
   origin_ = origin;
   double farthest = 0;
   for (std::size_t slot = 0; slot < slots_; ++slot) {
@@ -165,9 +179,9 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   const float rounding = 0x1p-21f * next_power(std::sqrt(farthest));
   are_floats_same = are_floats_same && rounding == rounding_;
   rounding_ = rounding;
-  const double step_of_bodies = clock.stands() ? 0 : fastest(clock) * clock.time();
-  way_of_bodies_ = (to_ - from_) * step_of_bodies;
-  travelled_ = std::sqrt(travelled) + (from_ - before) * step_of_bodies;
+  way_of_bodies_ = (to_ - from_) * time * speeds_.of_bodies;
+  way_of_near_ = (to_ - from_) * time * speeds_.of_near;
+  travelled_ = std::sqrt(travelled) + (from_ - before) * time * speeds_.of_bodies;
   find_reach();
   for (std::size_t slot = 0; slot < slots_; ++slot) write_box(slot, reach_[slot]);
   for (ContactSurface& surface : of_bodies()) {
@@ -178,7 +192,7 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
     surface.normals.begin(*surface.triangles, &start_[surface.first_point], !has_moved);
     if (has_moved || surface.placing == 0 || !are_floats_same || !is_same(end_before, surface.ends))
       surface.placing = ++placings_;
-    if (!has_wide_boxes_) see_from(surface, travel);
+    if (!has_tubes_) see_from(surface, travel);
   }
   for (const std::uint32_t point : active_) place_vertex(point);
 }
@@ -188,7 +202,7 @@ void ContactPoints::see_from(ContactSurface& surface, const PoseTravel& travel) 
                   .ends = travel.at(until_),
                   .turn = (until_ - from_) * length(travel.turn()),
                   .way = (until_ - from_) * length(travel.way()),
-                  .beyond = surface.thickness + 2 * static_cast<double>(rounding_)};
+                  .beyond = surface.thickness + 3 * static_cast<double>(rounding_)};
   for (reference::Placement* at : {&surface.seen.begins, &surface.seen.ends})
     at->centre = at->centre - origin_;
 }
@@ -231,22 +245,12 @@ void ContactPoints::place_vertex(std::uint32_t point) {
   write_box(point, surface.thickness + static_cast<double>(rounding_));
 }
 
-double ContactPoints::fastest(const BodyClock& clock) const {
-  double fastest = 0;
-  for (const ContactSurface& surface : of_bodies()) {
-    const reference::BodyMotion& motion = clock.motions()[surface.body];
-    const double by_pose = length(motion.velocity) + length(motion.spin) * surface.farthest;
-    fastest = std::max(fastest, by_pose + surface.longest / clock.time());
-  }
-  return fastest;
-}
-
 void ContactPoints::find_reach() {
   ways_.resize(slots_);
   reach_.resize(slots_);
   largest_way_ = 0;
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    ways_[slot] = reach_[slot] = length(way(slot));
+    ways_[slot] = reach_[slot] = length(way(slot) - drift_);
     largest_way_ = std::max(largest_way_, ways_[slot]);
   }
   for (const auto& [a, b] : cloth().edges) {
@@ -255,7 +259,7 @@ void ContactPoints::find_reach() {
   }
   largest_reach_ = 0;
   for (double& reach : reach_) {
-    reach = tuning::kContactReach * std::max(reach, way_of_bodies_) +
+    reach = tuning::kContactReach * std::max(reach, way_of_near_) +
             tuning::kContactSpare * largest_thickness_;
     largest_reach_ = std::max(largest_reach_, reach);
   }
@@ -266,37 +270,45 @@ void ContactPoints::write_box(std::size_t point, double reach) {
 }
 
 /// It holds until the step ends if the point goes on as in this interval.
-Box ContactPoints::wide_box_around(std::uint32_t slot) const {
-  const Vector from = start_[slot] - origin_, way = end_[slot] - start_[slot];
-  const double reach = tuning::kContactReach * length(way) +
+Tube ContactPoints::tube_around(std::uint32_t slot) const {
+  const Vector x = start_[slot] - origin_, way = end_[slot] - start_[slot];
+  const double reach = tuning::kContactReach * length(way - drift_) +
                        tuning::kContactWideReach * reach_[slot] +
-                       tuning::kContactWideSpare * largest_thickness_;
-  return box_around(from, from + intervals_left_ * way, reach);
+                       (to_ > from_ ? tuning::kContactWideSpare : tuning::kContactStandingSpare) *
+                           largest_thickness_;
+  const double intervals = to_ > from_ ? 1 / (to_ - from_) : 0;
+  const Vector begins = x - (intervals * (from_ - laid_from_)) * way,
+               ends = x + (intervals * (until_ - from_)) * way;
+  return {box_around(begins, begins, reach), box_around(ends, ends, reach)};
 }
 
-void ContactPoints::widen_boxes() {
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) wide_box_[slot] = wide_box_around(slot);
-  ++widenings_;
-  widened_from_ = from_;
+void ContactPoints::lay_tubes() {
+  laid_from_ = from_;
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) tube_[slot] = tube_around(slot);
+  ++layings_;
   for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
   active_.clear();
-  for (ContactSurface& surface : of_bodies())
+  for (ContactSurface& surface : of_bodies()) {
     surface.is_near.assign(surface.triangles->triangles.size(), 0);
-  has_wide_boxes_ = true;
+    surface.may_cross.assign(cloth().triangles.size(), 0);
+  }
+  has_tubes_ = true;
 }
 
 /// A vertex stays within an eighth of the square of a turn, and what it does beside, of the line
 /// between its ends.
-void ContactPoints::widen_vertex(std::uint32_t point) {
+void ContactPoints::lay_vertex(std::uint32_t point) {
   const ContactSurface& surface = surface_of(point);
   const std::size_t i = point - surface.first_point;
   const Vector way = surface.to[i] - surface.from[i];
-  const Vector a = surface.from[i] + widened_from_ * way, b = surface.from[i] + until_ * way;
+  const Vector a = surface.from[i] + laid_from_ * way, b = surface.from[i] + until_ * way;
   const SeenFromBody& seen = surface.seen;
   const double far = std::max(length(a), length(b));
   const double beyond = (seen.turn * far + 2 * length(b - a)) * seen.turn / 8;
-  wide_box_[point] = box_around(seen.begins.placed(a), seen.ends.placed(b), seen.beyond + beyond);
-  widened_[point - slots_] = widenings_;
+  const Vector begins = seen.begins.placed(a), ends = seen.ends.placed(b);
+  tube_[point] = {box_around(begins, begins, seen.beyond + beyond),
+                  box_around(ends, ends, seen.beyond + beyond)};
+  laid_[point - slots_] = layings_;
 }
 
 void ContactPoints::place_vertices_asked(const BodyClock& clock) {
@@ -328,7 +340,7 @@ void ContactPoints::measure_moves(const ContactParticles& cloth) {
 float ContactPoints::largest_move() const {
   double largest = 0;
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    const Vector by = way(slot);
+    const Vector by = way(slot) - drift_;
     largest = std::max(largest, dot(by, by));
   }
   return static_cast<float>(std::sqrt(largest) + way_of_bodies_);
@@ -364,9 +376,9 @@ void ContactPoints::set_end(std::uint32_t point, Vector x) {
 std::size_t ContactPoints::bytes() const {
   std::size_t bytes = bytes_of(surfaces_) + bytes_of(surface_pairs_) + bytes_of(surface_of_) +
                       bytes_of(start_) + bytes_of(end_) + bytes_of(reach_) + bytes_of(ways_) +
-                      bytes_of(box_) + bytes_of(wide_box_) + bytes_of(start_quads_) +
+                      bytes_of(box_) + bytes_of(tube_) + bytes_of(start_quads_) +
                       bytes_of(way_quads_) + bytes_of(place_quads_) + bytes_of(asked_) +
-                      bytes_of(substep_from_) + bytes_of(substep_to_) + bytes_of(widened_) +
+                      bytes_of(substep_from_) + bytes_of(substep_to_) + bytes_of(laid_) +
                       bytes_of(placed_) + bytes_of(active_) + bytes_of(is_active_);
   for (const ContactSurface& surface : surfaces_)
     bytes += surface.tree.bytes() + surface.normals.bytes() + bytes_of(surface.is_near);

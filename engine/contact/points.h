@@ -12,6 +12,7 @@
 #include "engine/contact/features.h"
 #include "engine/contact/look.h"
 #include "engine/contact/particles.h"
+#include "engine/contact/speeds.h"
 #include "engine/contact/surface.h"
 #include "engine/model/model.h"
 #include "engine/triangles/box_tree.h"
@@ -45,6 +46,10 @@ class ContactPoints {
     return largest;
   }
 
+  /// Of a step, whose first substep is predicted: how fast all will be. While bodies stand nobody
+  /// asks.
+  void look_ahead(const ContactParticles& cloth, const BodyClock& clock);
+  const ContactSpeeds& speeds() const { return speeds_; }
   /// Of an interval, whose first substep is predicted. Of bodies those vertices are placed that are
   /// active: those that candidates have, and their neighbours.
   void begin_interval(const ContactParticles& cloth, const BodyClock& clock, int substeps);
@@ -56,8 +61,6 @@ class ContactPoints {
   double reach(std::uint32_t point) const { return point < slots_ ? reach_[point] : 0; }
   double largest_reach() const { return largest_reach_; }
   kernels::Vector way(std::uint32_t point) const { return end_[point] - start_[point]; }
-  /// m/s, of the vertices in this step, at most.
-  double fastest(const BodyClock& clock) const;
   /// m, that a point of the cloth and one of a body may be expected to move beside each other, at
   /// most: in the interval, and since the last one began.
   float largest_way() const { return static_cast<float>(largest_way_ + way_of_bodies_); }
@@ -72,23 +75,27 @@ class ContactPoints {
   const Box& box(std::uint32_t point) const { return box_[point]; }
   /// What holds those of all intervals until the step ends, as far as it was known when candidates
   /// were looked for. Those of vertices are made when they are first asked for.
-  const Box& wide_box(std::uint32_t point) {
-    if (point >= slots_ && widened_[point - slots_] != widenings_) widen_vertex(point);
-    return wide_box_[point];
+  const Tube& tube(std::uint32_t point) {
+    if (point >= slots_ && laid_[point - slots_] != layings_) lay_vertex(point);
+    return tube_[point];
   }
-  Box wide_box(const TriangleSurface::Triangle& points) {
-    Box box = wide_box(points[0]);
-    box.add(wide_box(points[1]));
-    box.add(wide_box(points[2]));
+  std::array<Tube, 3> tubes(const TriangleSurface::Triangle& points) {
+    return {tube(points[0]), tube(points[1]), tube(points[2])};
+  }
+  /// All of a triangle, in the coordinates of a body's tree.
+  Box in_tree(const ContactSurface& body, const TriangleSurface::Triangle& points) {
+    Box box = body.as_in_tree(tube(points[0]));
+    box.add(body.as_in_tree(tube(points[1])));
+    box.add(body.as_in_tree(tube(points[2])));
     return box;
   }
-  bool has_wide_boxes() const { return has_wide_boxes_; }
-  void widen_boxes();
+  bool has_tubes() const { return has_tubes_; }
+  void lay_tubes();
   /// Renews those of cloth that hold no longer; moved(slot), of each.
   template <class Moved>
-  void renew_wide_boxes(Moved&& moved);
+  void renew_tubes(Moved&& moved);
   /// It holds no longer.
-  void forget_wide_box(std::uint32_t slot) { wide_box_[slot] = Box::none(); }
+  void forget_tube(std::uint32_t slot) { tube_[slot] = {Box::none(), Box::none()}; }
   /// In quads, from the origin.
   const float* starts() const { return start_quads_.data(); }
   const float* ways() const { return way_quads_.data(); }
@@ -162,8 +169,8 @@ class ContactPoints {
   void activate_vertex(std::uint32_t point);
   void place_vertex(std::uint32_t point);
   void write_start_and_way(std::size_t point);
-  Box wide_box_around(std::uint32_t slot) const;
-  void widen_vertex(std::uint32_t point);
+  Tube tube_around(std::uint32_t slot) const;
+  void lay_vertex(std::uint32_t point);
   void find_reach();
   void write_box(std::size_t point, double reach);
 
@@ -174,17 +181,20 @@ class ContactPoints {
   std::vector<std::uint16_t> surface_of_;  // per vertex
   kernels::Vector origin_{};
   double largest_reach_ = 0, largest_thickness_ = 0;
-  double largest_way_ = 0, way_of_bodies_ = 0, travelled_ = 0;  // m
+  ContactSpeeds speeds_;
+  kernels::Vector drift_{};                                     // m, of all in the interval
+  double largest_way_ = 0, way_of_bodies_ = 0, travelled_ = 0;  // m, beside that
+  double way_of_near_ = 0;  // m, of bodies that the cloth may come to
   float rounding_ = 0;
   std::vector<kernels::Vector> start_, end_;
   std::vector<double> reach_, ways_;  // per slot
-  std::vector<Box> box_, wide_box_;
-  bool has_wide_boxes_ = false;
-  double intervals_left_ = 1;             // of the step, the present one included
+  std::vector<Box> box_;
+  std::vector<Tube> tube_;
+  bool has_tubes_ = false;
   double from_ = 0, to_ = 0, until_ = 0;  // shares of the step: of the interval, and to its end
-  double widened_from_ = 0;               // likewise: when boxes were widened
-  std::uint32_t widenings_ = 0;
-  std::vector<std::uint32_t> widened_;  // per vertex: in which its wide box was made
+  double laid_from_ = 0;                  // likewise: when tubes were laid
+  std::uint32_t layings_ = 0;
+  std::vector<std::uint32_t> laid_;  // per vertex: in which its tube was made
   std::uint32_t placings_ = 0;
   std::vector<std::uint32_t> placed_;    // per vertex: ContactSurface::placing when it was placed
   std::vector<std::uint32_t> active_;    // vertices
@@ -195,10 +205,13 @@ class ContactPoints {
 };
 
 template <class Moved>
-void ContactPoints::renew_wide_boxes(Moved&& moved) {
+void ContactPoints::renew_tubes(Moved&& moved) {
+  const double length = until_ - laid_from_;
+  const Tube::Part part(length > 0 ? (from_ - laid_from_) / length : 0,
+                        length > 0 ? (to_ - laid_from_) / length : 0);
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (wide_box_[slot].holds(box_[slot])) continue;
-    wide_box_[slot] = wide_box_around(slot);
+    if (part.of(tube_[slot]).hold(box_[slot])) continue;
+    tube_[slot] = tube_around(slot);
     moved(slot);
   }
 }

@@ -249,6 +249,7 @@ bool Response::hold(const ContactScene& scene, Near& near, std::uint32_t slot) {
   bool is_pushed = false;
   for (std::uint32_t link = slot < first_link_.size() ? first_link_[slot] : kNoIndex;
        link != kNoIndex; link = links_[link].next) {
+    visits_ += tuning::kVisitsOfTouch;
     is_pushed = resist(scene, near[links_[link].list], links_[link].pair) || is_pushed;
   }
   return is_pushed;

@@ -13,6 +13,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "engine/contact/near_pairs.h"
@@ -41,6 +42,8 @@ class Response {
   bool hold(const ContactScene& scene, Near& near, std::uint32_t slot);
   /// m, by which a pair is nearer than its thickness.
   double deepest(const ContactScene& scene, Near& near, Team& team);
+  /// Since this was last asked: what sweeps took, in visits of a constraint.
+  double take_visits() { return std::exchange(visits_, 0); }
   std::size_t bytes() const;
 
  private:
@@ -74,6 +77,7 @@ class Response {
   std::vector<std::uint32_t> first_link_;  // per slot
   std::vector<Link> links_;
   std::vector<std::uint32_t> linked_;  // slots
+  double visits_ = 0;
 };
 
 /// visit(i), of pairs of the block.
@@ -91,6 +95,8 @@ void Response::for_each_lane(std::size_t block, std::uint32_t bits, Visit&& visi
 template <class Moved>
 void Response::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved) {
   find_touching(scene, near, team);
+  for (const NearPairs& pairs : near)
+    visits_ += tuning::kVisitsOfLook * static_cast<double>(pairs.list.size());
   for (int round = 0; round < tuning::kMeshRounds; ++round) {
     for (const Turn turn : {Turn::points, Turn::edges, Turn::points_of_bodies})
       push_apart(scene, near, turn, moved);
@@ -109,6 +115,7 @@ void Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Move
     if (bits == 0) continue;
     table_.touch_pairs(touch, has_edges(list), block, block + 1);
     for_each_lane(block, bits & touching_now_[list][block], [&](std::size_t i) {
+      visits_ += tuning::kVisitsOfTouch;
       if (!resist(scene, pairs, i)) return;
       remember(scene, pairs, list, i);
       for (const std::uint32_t point : pairs.list.points(i)) {

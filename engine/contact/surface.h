@@ -11,6 +11,7 @@
 #include "engine/bodies/body_shape.h"
 #include "engine/contact/seen_from_body.h"
 #include "engine/contact/side_normals.h"
+#include "engine/contact/tube.h"
 #include "engine/triangles/box_tree.h"
 #include "engine/triangles/triangle_surface.h"
 
@@ -23,21 +24,24 @@ struct ContactSurface {
   double thickness = 0;           // m, that it keeps from surfaces before it
   double friction = 0;            // beside surfaces before it
   bool two_sided = true;
-  BoxTree tree;  // of its triangles, around wide boxes; of what is rigid
+  BoxTree tree;  // of its triangles, around tubes; of what is rigid
                  // around triangles, in coordinates of the body
   // Of a body:
   std::shared_ptr<const BodyShape> shape;  // keeps its triangles
   SideNormals normals;
   bool is_rigid = false;                          // its vertices are those of its shape
   std::span<const kernels::Vector> from{}, to{};  // vertices in its coordinates, in this step
-  double farthest = 0, longest = 0;   // m, of a vertex from its origin, and of their ways in a step
-  SeenFromBody seen;                  // from when boxes were widened until the step ends
-  std::uint32_t placing = 0;          // another one where its vertices are to be placed anew
-  reference::Placement begins, ends;  // in the present interval
-  std::vector<std::uint8_t> is_near;  // per triangle, cloth: it has candidates
+  double longest = 0;                             // m, of their ways in a step
+  Box extent = Box::none();                       // of them in its coordinates, all of the step
+  SeenFromBody seen;                              // from when tubes were laid until the step ends
+  std::uint32_t placing = 0;            // another one where its vertices are to be placed anew
+  reference::Placement begins, ends;    // in the present interval
+  std::vector<std::uint8_t> is_near;    // per triangle: it has candidates
+  std::vector<std::uint8_t> may_cross;  // per triangle of the cloth: tubes of both meet
 
   /// A box of the world as the tree has it.
   Box as_in_tree(const Box& box) const { return is_rigid ? seen(box) : box; }
+  Box as_in_tree(const Tube& tube) const { return is_rigid ? seen(tube) : tube.all(); }
   TriangleSurface::Triangle points_of(std::uint32_t triangle) const {
     const auto [a, b, c] = triangles->triangles[triangle];
     return {first_point + a, first_point + b, first_point + c};

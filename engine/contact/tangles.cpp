@@ -59,6 +59,18 @@ bool edges_lead_through(const Corners& edges, const Corners& triangle) {
   return false;
 }
 
+/// As the tree has it, when the interval begins.
+Vector in_tree(const ContactPoints& points, const ContactSurface& surface, std::uint32_t slot) {
+  const Vector x = points.start(slot);
+  return surface.is_rigid ? surface.begins.from_place(x) : x - points.origin();
+}
+bool may_be_inside(const ContactPoints& points, std::uint32_t slot, const ContactSurface& surface) {
+  const Vector x = in_tree(points, surface, slot);
+  const std::array<float, 3> at{static_cast<float>(x.x), static_cast<float>(x.y),
+                                static_cast<float>(x.z)};
+  return surface.tree.box().meets({at, at});
+}
+
 /// The triangle of a surface that is nearest to a particle when the interval begins.
 struct NearestTriangle {
   Pair pair{};
@@ -70,7 +82,7 @@ struct NearestTriangle {
 NearestTriangle find_nearest(const ContactPoints& points, std::uint32_t slot, SurfacePair pair) {
   const ContactSurface& surface = points.surfaces()[pair.b];
   const Vector x = points.start(slot);
-  const Vector from = surface.is_rigid ? surface.begins.from_place(x) : x - points.origin();
+  const Vector from = in_tree(points, surface, slot);
   double least = std::numeric_limits<double>::infinity();
   NearestTriangle found;
   surface.tree.near(
@@ -121,8 +133,7 @@ void Tangles::find(ContactPoints& points) {
     if (points.inverse_mass(slot) == 0) continue;
     const bool is_inside = std::ranges::any_of(points.surface_pairs(), [&](SurfacePair pair) {
       const ContactSurface& surface = points.surfaces()[pair.b];
-      return surface.tree.box().meets(surface.as_in_tree(points.box(slot))) &&
-             find_left_by(points, slot, pair).is_there;
+      return may_be_inside(points, slot, surface) && find_left_by(points, slot, pair).is_there;
     });
     if (is_inside) misplaced_.inside.push_back(slot);
   }
@@ -269,6 +280,7 @@ bool Tangles::crosses(const ContactPoints& points, std::uint32_t triangle, At&& 
   bool does = false;
   for (const SurfacePair pair : points.surface_pairs()) {
     const ContactSurface& surface = points.surfaces()[pair.b];
+    if (does || surface.may_cross[triangle] == 0) continue;
     surface.tree.find(table_, surface.as_in_tree(box), [&](std::uint32_t other) {
       if (does) return;
       const auto [p, q, r] = surface.points_of(other);

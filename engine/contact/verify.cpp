@@ -186,7 +186,7 @@ void Verification::look_beside_strayed(const ContactScene& scene, const Candidat
   for (std::uint32_t slot = 0; slot < points.slots(); ++slot) {
     if (!scene.model.is_particle(slot) || points.holds_end(slot)) continue;
     points.take_way_in(slot);
-    points.forget_wide_box(slot);
+    points.forget_tube(slot);
     has_strayed_[slot] = 1;
     any = true;
   }

@@ -29,9 +29,10 @@ class FramePasses {
   double share_of_substep(int substeps_left) const {
     return std::clamp(left_ / (substeps_left + 1), 0.0, most_of_substep());
   }
-  /// Local passes visit contacts too, which may be many more than the constraints.
+  /// Local passes visit contacts too, which may be many more than the constraints, and hold what
+  /// they move by meshes: this takes so much of the time of each visit as it did the last time.
   std::int64_t most_visits(double passes) const {
-    const double most = passes * visits_of_a_pass() / local_visit_;
+    const double most = passes * visits_of_a_pass() / (local_visit_ + held_);
     return static_cast<std::int64_t>(std::max(0.0, most));
   }
   bool are_many(std::int64_t out) const {
@@ -60,6 +61,15 @@ class FramePasses {
     left_ -= local_visit_ * passes;
     taken_ += tuning::kLocalVisit * passes;
   }
+  /// What contacts with meshes took beside a sweep.
+  void count_contacts(double visits) {
+    left_ -= tuning::kContactShare * visits / visits_of_a_pass();
+  }
+  /// And beside local passes.
+  void count_contacts(const LocalWork& work, double visits) {
+    count_contacts(visits);
+    held_ = tuning::kContactShare * visits / std::max(1.0, static_cast<double>(work.visits));
+  }
   void end() { report_.iterations += static_cast<std::int64_t>(std::ceil(local_passes_)); }
 
  private:
@@ -79,6 +89,7 @@ class FramePasses {
   StepReport& report_;
   const std::int64_t constraints_;  // triangles of fabric and seams are among them
   const double local_visit_;        // in visits of a sweep
+  double held_ = 0;                 // likewise, of what is held by meshes beside a local visit
   double left_ = 0;
   double local_passes_ = 0;  // done
   double taken_ = 0;

@@ -135,14 +135,16 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
   return plan;
 }
 
-FramePlan plan_of_projection(State& s, double softest, double h, const Budget& budget) {
+FramePlan plan_of_projection(State& s, double softest, double h, bool goes_on,
+                             const Budget& budget) {
   FramePlan plan{.h = h,
                  .passes = static_cast<double>(budget.positions),
                  .omega = tuning::kOmega,
                  .placed = true,
                  .softest = softest,
                  .anchors = s.anchors.standing(),
-                 .seams = s.seams.states()};
+                 .seams = s.seams.states(),
+                 .goes_on = goes_on};
   add_bodies(s, plan);
   return plan;
 }

@@ -17,8 +17,9 @@ bool refines_substeps(const State& s);
 /// writes over solved and, with free spheres, contacts.
 FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget& budget);
 /// From rest; springs up to the compliance `softest` have the time h to give way, and softer ones
-/// are left as they are.
-FramePlan plan_of_projection(State& s, double softest, double h, const Budget& budget);
+/// are left as they are. goes_on: from where the last projection of this step has ended.
+FramePlan plan_of_projection(State& s, double softest, double h, bool goes_on,
+                             const Budget& budget);
 /// A substep of h from rest, of all that acts but bodies.
 FramePlan plan_of_look_ahead(const State& s, double h);
 

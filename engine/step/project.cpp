@@ -162,13 +162,15 @@ class Projection {
     });
   }
   void by_small_steps(double softest, double h) {
-    project_by_small_steps(s_, softest, h, {.positions = left()}, report_, team_);
+    const bool goes_on = std::exchange(has_begun_, true);
+    project_by_small_steps(s_, softest, h, goes_on, {.positions = left()}, report_, team_);
   }
 
   State& s_;
   StepReport& report_;
   Team& team_;
   const std::int64_t most_;  // iterations
+  bool has_begun_ = false;   // small steps
 };
 
 }  // namespace

@@ -61,6 +61,7 @@ class Frame {
     solver_.advance(team_);
     const bool to_tolerance = s_.settings.iterations == 0;
     for (int i = 0; i < std::max(1, s_.settings.iterations); ++i) sweep();
+    solver_.take_contact_visits();  // as a sweep for each substep
     const double rest = passes_.left() - passes_.share_of_substep(places_.left());
     places_.end_substep();
     const bool mends = to_tolerance && mends_now();
@@ -178,13 +179,17 @@ class Frame {
   void put_right() {
     sweep_beyond(0);
     const double most = std::min(passes_.left(), passes_.most_of_substep());
-    passes_.count(solver_.repair_everywhere(s_.contacts, passes_.most_visits(most), team_));
+    count(solver_.repair_everywhere(s_.contacts, passes_.most_visits(most), team_));
     places_.read(team_);
   }
   /// rest: of the passes that are left, those that are not for this.
   void repair(double rest) {
     const std::int64_t most = passes_.most_visits(passes_.left() - rest);
-    passes_.count(solver_.repair(s_.contacts, most, team_));
+    count(solver_.repair(s_.contacts, most, team_));
+  }
+  void count(const LocalWork& work) {
+    passes_.count(work);
+    passes_.count_contacts(work, solver_.take_contact_visits());
   }
   /// After a sweep. rest: as above.
   void sweep_until_few_are_out(double to, double rest) {
@@ -197,6 +202,7 @@ class Frame {
   void sweep_beyond(double to) {
     plan_.projects() ? solver_.sweep(team_) : solver_.mend(to, team_);
     passes_.count_sweep_beyond();
+    passes_.count_contacts(solver_.take_contact_visits());
   }
   void sweep() {
     solver_.sweep(team_);
@@ -323,11 +329,11 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   return trial;
 }
 
-void project_by_small_steps(State& s, double softest, double h, const Budget& budget,
+void project_by_small_steps(State& s, double softest, double h, bool goes_on, const Budget& budget,
                             StepReport& report, Team& team) {
   timed_with_contacts(s, report, Stage::solve_positions, [&] {
     Frame frame(s, report, team);
-    frame.begin_at_rest(plan_of_projection(s, softest, h, budget));
+    frame.begin_at_rest(plan_of_projection(s, softest, h, goes_on, budget));
     if (softest > 0)
       frame.give_way();
     else

@@ -13,8 +13,9 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
                  StepReport& report, Team& team);
 
 /// Puts solved, which is equal to position, right in the same rounds. Springs up to the compliance
-/// `softest` have the time h from rest to give way; softer ones are left as they are.
-void project_by_small_steps(State& s, double softest, double h, const Budget& budget,
+/// `softest` have the time h from rest to give way; softer ones are left as they are. goes_on: from
+/// where the last one of this step has ended.
+void project_by_small_steps(State& s, double softest, double h, bool goes_on, const Budget& budget,
                             StepReport& report, Team& team);
 /// solved: where a substep of h from rest leads, by its sweep alone. What is remembered stays.
 void look_ahead_by_small_steps(State& s, double h, StepReport& report, Team& team);

@@ -36,6 +36,14 @@ struct Box {
       holds = holds && low[k] <= other.low[k] && high[k] >= other.high[k];
     return holds;
   }
+  /// Of it that alone which the other one has, too.
+  void leave(const Box& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::max(low[k], other.low[k]);
+      high[k] = std::min(high[k], other.high[k]);
+    }
+  }
+  bool is_none() const { return low[0] > high[0] || low[1] > high[1] || low[2] > high[2]; }
   bool meets(const Box& other) const {
     bool meets = true;
     for (std::size_t k = 0; k < 3; ++k)

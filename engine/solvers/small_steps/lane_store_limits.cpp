@@ -32,7 +32,7 @@ void LaneStore::begin_bodies(const FramePlan& plan) {
   bodies_.begin(
       plan.bodies, plan.h, plan.substeps, plan.projects(),
       now_.has_past && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
-      plan.placed || plan.bodies_are_new, past_.misplaced);
+      plan.contact_start(), past_.misplaced);
 }
 
 void LaneStore::advance_bodies(double part, Team& team) {

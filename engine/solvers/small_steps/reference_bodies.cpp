@@ -9,10 +9,10 @@ namespace weft {
 using kernels::Vector;
 
 void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps,
-                            bool stands, const Touching& before, bool is_new,
+                            bool stands, const Touching& before, ContactStart start,
                             const Misplaced& misplaced) {
   clock_.begin(bodies, h, substeps, stands);
-  meshes_.begin(clock_, is_new, misplaced);
+  meshes_.begin(clock_, start, misplaced);
   if (bodies.empty()) return;
   on_.assign(model_.slots(), false);
   if (before.size() == on_.size()) on_ = before;
@@ -21,7 +21,7 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
 
 void ReferenceBodies::advance(double part, ContactParticles& particles, Team& team) {
   if (empty()) return;
-  if (clock_.is_interval_over()) clock_.begin_interval(meshes_.interval_for(clock_));
+  if (clock_.is_interval_over()) clock_.begin_interval(meshes_.interval_for(particles, clock_));
   meshes_.predict(particles, clock_, team);
   clock_.advance();
   meshes_.advance(clock_);

@@ -21,12 +21,13 @@ class ReferenceBodies {
 
   bool empty() const { return clock_.bodies().empty(); }
   /// before: who touched a body when the frame before ended; empty: nothing is known of it.
-  /// misplaced: likewise, by meshes; is_new: it is to be found anew.
+  /// misplaced: likewise, by meshes; start: whether it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-             const Touching& before, bool is_new, const Misplaced& misplaced);
+             const Touching& before, ContactStart start, const Misplaced& misplaced);
   /// part: of h, by the scheme.
   void advance(double part, ContactParticles& particles, Team& team);
   bool has_meshes() const { return !meshes_.empty(); }
+  double take_visits() { return meshes_.take_visits(); }
   SurfaceContacts& meshes() { return meshes_; }
   const SurfaceContacts& meshes() const { return meshes_; }
   const BodyClock& clock() const { return clock_; }

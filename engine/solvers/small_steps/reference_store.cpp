@@ -376,7 +376,7 @@ void ReferenceStore::advance_anchors() {
 void ReferenceStore::begin_bodies(const FramePlan& plan) {
   bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects(),
                 now_.has_past && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
-                plan.placed || plan.bodies_are_new, past_.misplaced);
+                plan.contact_start(), past_.misplaced);
 }
 
 void ReferenceStore::advance_bodies(double part, Team& team) {

@@ -54,10 +54,10 @@ void SimdBodies::make_room() {
 }
 
 void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-                       std::span<const std::uint16_t> before, bool is_new,
+                       std::span<const std::uint16_t> before, ContactStart start,
                        const Misplaced& misplaced) {
   clock_.begin(bodies, h, substeps, stands);
-  meshes_.begin(clock_, is_new, misplaced);
+  meshes_.begin(clock_, start, misplaced);
   pairs_.clear();
   first_pair_.clear();
   if (bodies.empty()) return;
@@ -72,7 +72,7 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
                          ContactParticles& particles, Team& team) {
   if (empty()) return;
   if (clock_.is_interval_over()) {
-    clock_.begin_interval(meshes_.interval_for(clock_));
+    clock_.begin_interval(meshes_.interval_for(particles, clock_));
     search(flight, base);
   }
   meshes_.predict(particles, clock_, team);

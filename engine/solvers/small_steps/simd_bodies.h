@@ -38,10 +38,11 @@ class SimdBodies {
 
   bool empty() const { return clock_.bodies().empty(); }
   bool has_meshes() const { return !meshes_.empty(); }
+  double take_visits() { return meshes_.take_visits(); }
   /// before: of the frame before; empty: nothing is known of it. misplaced: likewise, of meshes;
-  /// is_new: it is to be found anew.
+  /// start: whether it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-             std::span<const std::uint16_t> before, bool is_new, const Misplaced& misplaced);
+             std::span<const std::uint16_t> before, ContactStart start, const Misplaced& misplaced);
   /// Of a substep, whose flights are predicted. part: of h, by the scheme.
   void advance(const simd::Flight& flight, const float* base, double part,
                ContactParticles& particles, Team& team);

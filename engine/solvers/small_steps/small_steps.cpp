@@ -165,6 +165,7 @@ class StoredSmallSteps final : public SmallSteps {
   void save_past(ArchiveWriter& archive) const override { store_.save_past(archive); }
   bool load_past(ArchiveReader& archive) override { return store_.load_past(archive); }
   void turn(const Turn& by) override { store_.turn(by); }
+  double take_contact_visits() override { return store_.bodies().take_visits(); }
   ContactMs take_contact_ms() override { return contact_times_.take(); }
   std::size_t bytes() const override {
     return now_.bytes() + seams_.bytes() + linkage_.bytes() + store_.bytes();

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/contact/interval.h"
 #include "engine/parallel/team.h"
 #include "engine/saving/archive.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
@@ -106,7 +107,13 @@ struct FramePlan {
   bool bodies_move = false;     // in this step, or in the last, or there are other ones
   bool bodies_are_new = false;  // there are other ones, or one was put elsewhere
 
+  bool goes_on = false;  // a projection from where the last one ended, in the same step
+
   bool projects() const { return softest.has_value(); }
+  ContactStart contact_start() const {
+    if (goes_on) return ContactStart::goes_on;
+    return placed || bodies_are_new ? ContactStart::anew : ContactStart::known;
+  }
 };
 
 /// Whether slots that were read are some of the model's, ascending.
@@ -192,6 +199,8 @@ class SmallSteps {
   /// The past happened in other directions. Positions are new ones.
   virtual void turn(const Turn& by) = 0;
   virtual std::size_t bytes() const = 0;
+  /// Of contacts with meshes, since this was last asked (SurfaceContacts).
+  virtual double take_contact_visits() = 0;
   /// Since this was last asked. Reports add it up.
   virtual ContactMs take_contact_ms() = 0;
 };

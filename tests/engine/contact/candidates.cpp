@@ -150,6 +150,7 @@ void check(std::uint32_t seed, bool moves, bool deforms) {
   for (int interval = 0; interval < 4; ++interval) {
     CAPTURE(interval);
     now.predict();
+    if (interval == 0) points.look_ahead(now.particles, now.clock);
     points.begin_interval(now.particles, now.clock, 4);
     const std::size_t before = candidates[0].size() + candidates[1].size();
     const bool have_moved = search.find(points, candidates);

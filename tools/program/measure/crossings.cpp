@@ -167,12 +167,39 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> near_pairs(const TriangleSe
   return Divider(a, b, reach).pairs();
 }
 
-std::size_t count_crossings(const TriangleSet& a, const TriangleSet& b) {
-  const auto pairs = near_pairs(a, b, 0);
-  return static_cast<std::size_t>(std::ranges::count_if(pairs, [&](const auto& pair) {
+namespace {
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings(const TriangleSet& a,
+                                                               const TriangleSet& b) {
+  auto pairs = near_pairs(a, b, 0);
+  std::erase_if(pairs, [&](const auto& pair) {
     const Corners one = corners_of(a, pair.first), other = corners_of(b, pair.second);
-    return an_edge_leads_through(one, other) || an_edge_leads_through(other, one);
-  }));
+    return !an_edge_leads_through(one, other) && !an_edge_leads_through(other, one);
+  });
+  return pairs;
+}
+
+}  // namespace
+
+std::size_t count_crossings(const TriangleSet& a, const TriangleSet& b) {
+  return crossings(a, b).size();
+}
+
+NamedCrossing name_crossing(const TriangleSet& cloth, std::span<const SceneBody> bodies,
+                            double time) {
+  NamedCrossing named;
+  for (std::size_t body = 0; body < bodies.size(); ++body) {
+    const auto pairs = crossings(cloth, meshes_at(bodies.subspan(body, 1), time));
+    if (pairs.empty()) continue;
+    if (named.count == 0) {
+      named.body = body;
+      named.triangle = std::ranges::min(pairs).first;
+      const auto [a, b, c] = corners_of(cloth, named.triangle);
+      named.place = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
+    }
+    named.count += pairs.size();
+  }
+  return named;
 }
 
 }  // namespace weft::tools

@@ -32,4 +32,14 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> near_pairs(const TriangleSe
 /// cross.
 std::size_t count_crossings(const TriangleSet& a, const TriangleSet& b);
 
+/// The first triangle of a cloth that crosses a body.
+struct NamedCrossing {
+  std::size_t count = 0;       ///< pairs of triangles, of all bodies
+  std::uint32_t triangle = 0;  ///< of the cloth
+  std::size_t body = 0;        ///< by its place among all bodies
+  Vec3 place{};                ///< the middle of the triangle
+};
+NamedCrossing name_crossing(const TriangleSet& cloth, std::span<const SceneBody> bodies,
+                            double time);
+
 }  // namespace weft::tools

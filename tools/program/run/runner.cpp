@@ -11,7 +11,6 @@
 #include <tbb/task_arena.h>
 
 #include "tools/program/measure/cpu_time.h"
-#include "tools/program/measure/crossings.h"
 #include "tools/program/run/step_total.h"
 #include "tools/program/run/warm_up.h"
 #include "tools/program/text/wording.h"
@@ -90,6 +89,17 @@ void look_for_crossings(RunSummary& summary, const Cloth& cloth, const RunPlan& 
       std::max(summary.intersections.value_or(0), count_crossings(surface, bodies));
 }
 
+/// Of the first frame in which the report says that something crosses, and that ends so.
+void name_what_crosses(RunSummary& summary, const StepReport& report, const Cloth& cloth,
+                       const RunPlan& plan, TriangleSet& surface) {
+  if (report.intersecting == 0 || !summary.first_miss || summary.first_miss->crossing.count > 0)
+    return;
+  Miss& miss = *summary.first_miss;
+  surface.places = particle_positions(cloth);
+  miss.crossing_frame = summary.last_frame();
+  miss.crossing = name_crossing(surface, plan.bodies, miss.crossing_frame * plan.dt);
+}
+
 void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
   const double frames = std::max(summary.frames, 1);
   summary.mean_max_strain = errors.strain_sum / frames;
@@ -144,6 +154,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     summary.step_seconds += elapsed.count();
     summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
     add_errors(summary, errors, cloth, plan);
+    name_what_crosses(summary, report.value(), cloth, plan, surface);
     if (plan.check_intersections) look_for_crossings(summary, cloth, plan, surface);
     summary.stopped = plan.stop && plan.stop();
     if (on_frame) on_frame(summary.last_frame(), cloth, report.value());
@@ -192,6 +203,15 @@ std::string text(const Miss& miss) {
       miss.max_penetration > 0
           ? fmt::format("; contacts are up to {:.3g} m deep", miss.max_penetration)
           : "";
+  if (const NamedCrossing& crossing = miss.crossing; crossing.count > 0) {
+    const Vec3 at = crossing.place;
+    return fmt::format(
+        "{}; triangle {} of the cloth crosses body {} at ({:.4g}, {:.4g}, {:.4g}) m in frame {}, "
+        "one "
+        "of {}{}",
+        end, crossing.triangle, crossing.body, at.x, at.y, at.z, miss.crossing_frame,
+        counted(crossing.count, "crossing"), contacts);
+  }
   if (miss.constraint == kNoIndex) return end + contacts;
   return fmt::format("{}; constraint {} has the largest strain, {}{}", end, miss.constraint,
                      measured_percent(miss.max_strain), contacts);

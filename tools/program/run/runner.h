@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/program/measure/crossings.h"
 #include "tools/program/measure/fabric_measure.h"
 #include "tools/program/run/run_state.h"
 #include "tools/scenes/pin_moves.h"
@@ -57,9 +58,12 @@ struct Miss {
   std::uint32_t constraint = kNoIndex;       ///< with max_strain
   std::uint32_t failed_particle = kNoIndex;  ///< where the numbers ended
   std::uint32_t passed_particle = kNoIndex;  ///< that went through a sphere
+  NamedCrossing crossing{};  ///< with a body that is a mesh, the first that was left
+  int crossing_frame = 0;    ///< when a frame ended: which one
 };
 
-/// "frame 3: iteration_limit; constraint 7 has the largest strain, 2.1 %".
+/// "frame 3: iteration_limit; constraint 7 has the largest strain, 2.1 %". Where triangles cross a
+/// body it names the first in place of the strain.
 std::string text(const Miss& miss);
 
 /// All figures of a run. Counts and seconds are sums over its frames; strains are fractions,

@@ -86,6 +86,24 @@ TEST_CASE("of many triangles none is missed, nor a pair that is near") {
   }
 }
 
+TEST_CASE("the first crossing is named by triangle, body and place") {
+  const TriangleSet cloth{{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {5, 0, 0}, {6, 0, 0}, {5, 0, 1}},
+                          {{0, 1, 2}, {3, 4, 5}}};
+  const auto beside = [](double x) {
+    TriangleMesh mesh;
+    mesh.vertices = {{x, -1, 0.2}, {x, 1, 0.2}, {x, 0, 9}};
+    mesh.triangles = {{0, 1, 2}};
+    return SceneBody{.shape = mesh};
+  };
+  const SceneBody bodies[] = {beside(3), beside(5.2)};
+  const NamedCrossing named = name_crossing(cloth, bodies, 0);
+  CHECK(named.count == 1);
+  CHECK(named.triangle == 1);
+  CHECK(named.body == 1);
+  CHECK(named.place.x == doctest::Approx(16. / 3));
+  CHECK(name_crossing(cloth, std::span(bodies).first(1), 0).count == 0);
+}
+
 TEST_CASE("meshes that are made are closed and turned outwards") {
   for (const TriangleMesh& mesh :
        {scenes::ball_mesh({{1, 2, 3}, 0.5}, 12),

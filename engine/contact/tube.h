@@ -1,0 +1,39 @@
+/// What holds a point on its way through some time: a box when that begins and one when it ends,
+/// and what lies between them on straight lines. Points that travel beside each other stay apart in
+/// their tubes, where boxes around all of their ways would meet.
+#pragma once
+
+#include "engine/triangles/box_tree.h"
+
+namespace weft {
+
+struct Tube {
+  Box begins, ends;
+
+  Box all() const {
+    Box box = begins;
+    box.add(ends);
+    return box;
+  }
+  bool hold(const Box& box) const { return begins.holds(box) && ends.holds(box); }
+
+  /// Of the time of a tube, in shares of it.
+  class Part {
+   public:
+    Part(double from, double to) : from_(static_cast<float>(from)), to_(static_cast<float>(to)) {}
+    Tube of(const Tube& tube) const { return {at(tube, from_), at(tube, to_)}; }
+
+   private:
+    static Box at(const Tube& tube, float share) {
+      Box box;
+      for (std::size_t k = 0; k < 3; ++k) {
+        box.low[k] = tube.begins.low[k] + share * (tube.ends.low[k] - tube.begins.low[k]);
+        box.high[k] = tube.begins.high[k] + share * (tube.ends.high[k] - tube.begins.high[k]);
+      }
+      return box;
+    }
+    float from_, to_;
+  };
+};
+
+}  // namespace weft
