@@ -96,10 +96,9 @@ std::optional<BendingStep> BendingFrame::next(double give) {
   return step(give, n);
 }
 
-/// s, of what is not factored.
+/// s, of what is not factored. By single substeps: groups change no damping.
 double BendingFrame::most_damping() const {
-  return std::max(tuning::kLeastBendingDamping, tuning::kBendingDamping / (give_ * mean_)) /
-         usual().rate;
+  return std::max(tuning::kLeastBendingDamping, tuning::kBendingDamping / (give_ * mean_)) / rate_;
 }
 
 /// Whether a factorisation takes less time than the steps along the diagonal, of cloth that is
