@@ -51,7 +51,7 @@ inline constexpr double kContactWideSpare = 0.5;
 inline constexpr double kContactStandingSpare = 1.5;
 /// In reaches of an interval: what tubes hold beyond the way of a particle. It is about time and
 /// the order of pairs alone (perf/tried.md has all of these ablations): with 3 the tunic of a body
-/// that walks leaves its tubes so often that finding takes 1.4 times as long.
+/// that walks leaves its tubes more often.
 inline constexpr double kContactWideReach = 5;
 /// In thicknesses, and what the cloth may go in half of a step: bodies that are farther from it
 /// do not take it along in this step.
@@ -150,7 +150,7 @@ inline constexpr double kPlacedSpeed = 0.005;
 /// numbers without signs, is at most kBendingGroup, and n at most kLongestGroup
 /// (engine/solvers/small_steps/bending_frame.h). Impulses of a swing by itself are stable to 4, and
 /// far beyond that, by bounds in the mean, cloth gained energy. Without groups a skirt takes 1.6
-/// times as long, with 0.1 `cape` of cotton 1.4 (perf/tried.md).
+/// times as long (perf/tried.md).
 inline constexpr double kBendingGroup = 1;
 inline constexpr int kLongestGroup = 8;
 /// Damping adds to the stiffness of bending in a substep at most kBendingDamping / ((b h)^2 K_ii /
