@@ -30,9 +30,8 @@ namespace weft {
 
 struct State;
 
-/// converged: every constraint is within its tolerance, and so is bending; nothing crosses a body
-/// or
-///   is inside one. The state is committed.
+/// converged: every constraint is within its tolerance, and so is bending; nothing crosses a
+///   body or is inside one. The state is committed.
 /// fixed_iterations: Settings::iterations were done; the report tells the error. The state is
 ///   committed.
 /// iteration_limit: a constraint is still out of tolerance after max_iterations (with small_steps:

@@ -128,10 +128,10 @@ struct Settings {
   ///
   /// A given number, with small_steps: the errors are looked at after the last substep. There is
   /// one sweep per substep. The corrections after that take at most the time of 6 further sweeps
-  /// per substep, or of automatic substeps if that is longer; max_iterations lowers this bound. Of
-  /// contacts with meshes a quarter of the time that they take beside those corrections is in it.
-  /// The search for them and their verification are not. With other solvers each substep is solved
-  /// to the tolerances.
+  /// per substep, or of automatic substeps if that is longer; max_iterations lowers this bound. A
+  /// quarter of the time that contacts with meshes take beside those corrections is in it. The
+  /// search for them and their verification are not. With other solvers each substep is solved to
+  /// the tolerances.
   ///
   /// A chosen number, with small_steps: in closed form, up to 1024. With other solvers: from the
   /// motion (rattle takes up to 2.5 times as many as paper) and, with yarn, from the load of heavy
