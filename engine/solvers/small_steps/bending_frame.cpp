@@ -11,21 +11,6 @@
 namespace weft {
 namespace {
 
-double count_that_bend(const BendingRows& rows) {
-  double count = 0;
-  for (std::size_t slot = 0; slot < rows.slots(); ++slot) count += rows.bends(slot) ? 1 : 0;
-  return count;
-}
-
-/// 1/s^2, of K_ii / m_i over all that bend.
-double mean_stiffness(const BendingRows& rows) {
-  double sum = 0;
-  for (std::size_t slot = 0; slot < rows.slots(); ++slot) {
-    if (rows.bends(slot)) sum += rows.doubles.diagonal[slot] / rows.doubles.mass[slot];
-  }
-  return sum / std::max(1.0, count_that_bend(rows));
-}
-
 /// Of M^-1/2 K M^-1/2: the largest sum of a row, which bounds what is largest (Gershgorin).
 double largest_stiffness(const BendingRows& rows) {
   double most = 0;

@@ -104,4 +104,18 @@ std::size_t BendingRows::bytes() const {
          of(doubles);
 }
 
+double count_that_bend(const BendingRows& rows) {
+  double count = 0;
+  for (std::size_t slot = 0; slot < rows.slots(); ++slot) count += rows.bends(slot) ? 1 : 0;
+  return count;
+}
+
+double mean_stiffness(const BendingRows& rows) {
+  double sum = 0;
+  for (std::size_t slot = 0; slot < rows.slots(); ++slot) {
+    if (rows.bends(slot)) sum += rows.doubles.diagonal[slot] / rows.doubles.mass[slot];
+  }
+  return sum / std::max(1.0, count_that_bend(rows));
+}
+
 }  // namespace weft

@@ -64,4 +64,9 @@ struct BendingRows {
 
 BendingRows make_bending_rows(const Model& model);
 
+/// How many particles bend.
+double count_that_bend(const BendingRows& rows);
+/// 1/s^2, the mean of K_ii / m_i over them.
+double mean_stiffness(const BendingRows& rows);
+
 }  // namespace weft
