@@ -153,11 +153,9 @@ inline constexpr double kPlacedSpeed = 0.005;
 /// times as long (perf/tried.md).
 inline constexpr double kBendingGroup = 1;
 inline constexpr int kLongestGroup = 8;
-/// Damping adds to the stiffness of bending in a substep at most kBendingDamping / ((b h)^2 K_ii /
-/// m_i) of it, or kLeastBendingDamping where that is more. More damps small folds as asked for;
-/// less takes fewer steps.
+/// Damping adds to the stiffness of bending in a substep at most this share of it, or where that is
+/// more this share of M / (b h)^2. More damps small folds as asked for; less takes fewer steps.
 inline constexpr double kBendingDamping = 0.5;
-inline constexpr double kLeastBendingDamping = 0.5;
 /// (b h)^2 K_ii / m_i in the mean, of the substeps that the weight asks for, from which on scheme
 /// automatic is implicit. By bdf2 a strip of irregular triangles of 2.5 mm, 0.8 kg/m^2 and 2 N m
 /// comes to thousands of m/s, and so does one of 1 cm and 700 N m; by the implicit one they rest.

@@ -83,7 +83,7 @@ std::optional<BendingStep> BendingFrame::next(double give) {
 
 /// s, of what is not factored. By single substeps: groups change no damping.
 double BendingFrame::most_damping() const {
-  return std::max(tuning::kLeastBendingDamping, tuning::kBendingDamping / (give_ * mean_)) / rate_;
+  return tuning::kBendingDamping * std::max(1.0, 1 / (give_ * mean_)) / rate_;
 }
 
 /// Whether a factorisation takes less time than the steps along the diagonal, of cloth that is
