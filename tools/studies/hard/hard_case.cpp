@@ -56,6 +56,13 @@ Outcome strain_outcome(const Trial& trial, double energy_allowed) {
   return strain_outcome(observe(trial), energy_allowed);
 }
 
+Outcome gain_outcome(const Trial& trial) {
+  const Observed observed = observe(trial);
+  Outcome result = strain_outcome(observed, kAnyEnergy);
+  result.figure = observed.energy_gain;
+  return result;
+}
+
 Outcome strain_outcome(const Observed& observed, double energy_allowed) {
   Outcome result = outcome(observed.max_strain, observed, energy_allowed);
   if (observed.missed > 0 && result.failure.empty()) {

@@ -55,6 +55,8 @@ Outcome outcome(double figure, const Observed& observed, double energy_allowed);
 /// The largest strain is the figure; it also fails where a step did not converge.
 Outcome strain_outcome(const Observed& observed, double energy_allowed);
 Outcome strain_outcome(const Trial& trial, double energy_allowed);
+/// The energy that appeared is the figure; it also fails where a step did not converge.
+Outcome gain_outcome(const Trial& trial);
 /// The number of steps whose report is not true is the figure: what did not converge must say so.
 Outcome honesty_outcome(const Observed& observed, double energy_allowed);
 Outcome honesty_outcome(const Trial& trial, double energy_allowed);
@@ -64,6 +66,8 @@ Outcome honesty_outcome(const Trial& trial, double energy_allowed);
 /// one step, as speed.
 double energy_of_the_catch(int size, double tolerance, double dt);
 
+/// J, the bound of gain_outcome.
+inline constexpr double kMostGained = 1e-3;
 inline constexpr double kAnyEnergy = std::numeric_limits<double>::infinity();
 
 }  // namespace weft::tools::hard
