@@ -18,7 +18,7 @@ namespace weft::test::engine_cpp_interface_batch {
 namespace {
 
 #ifdef WEFT_SANITIZE_THREAD
-constexpr std::uint32_t kCases = 20;
+constexpr std::uint32_t kCases = 7;
 #else
 constexpr std::uint32_t kCases = 60;
 #endif

@@ -2,7 +2,6 @@
 #include "engine/parallel/team.h"
 
 #include <doctest/doctest.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +12,7 @@
 
 #include "tests/support/rounding.h"
 #include "tests/support/system.h"
+#include "tests/support/tasks.h"
 #include "tests/support/teams.h"
 
 namespace weft::test::engine_parallel_team {
@@ -206,7 +206,7 @@ TEST_CASE("teams in the tasks of one arena: more of them than it has threads") {
     CAPTURE(slots);
     in_arena(slots, [] {
       std::atomic<int> failed{0};
-      tbb::parallel_for(0, 40, [&](int) {
+      in_tasks(40, [&failed](std::size_t) {
         in_team_of_arena(2, [&failed](Team& team) {
           for (int loop = 0; loop < 50; ++loop) {
             if (!each_once(done_by(team, 100))) ++failed;

@@ -13,7 +13,7 @@ namespace weft::test::engine_step_determinism {
 namespace {
 
 #ifdef WEFT_SANITIZE_THREAD
-constexpr int kMostSteps = 5;  // with dozens of iterations in the last; then they become hundreds
+constexpr int kMostSteps = 2;  // later ones have dozens of iterations, then hundreds
 #else
 constexpr int kMostSteps = 100;
 #endif

@@ -1,7 +1,6 @@
 /// A Model may be shared by any number of Cloths and threads; a step takes as many as it may.
 #include <doctest/doctest.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "engine/step/step_in_team.h"
 #include "tests/support/clothes.h"
+#include "tests/support/tasks.h"
 
 namespace weft::test::engine_step_threads {
 namespace {
@@ -45,7 +45,7 @@ TEST_CASE("cloths of one model, made and run by the tasks of one arena, agree bi
   std::array<std::uint64_t, kCloths> hashes{};
   tbb::task_arena arena(2);
   arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, kCloths, [&](std::size_t i) {
+    in_tasks(kCloths, [&](std::size_t i) {
       auto cloth = Cloth::create(model, {});
       if (!cloth) return;
       for (int k = 0; k < 10; ++k) (void)cloth.value().step(0.005);
