@@ -62,6 +62,11 @@ inline constexpr double kContactGrid = 2;
 /// m: features that are no farther apart are on no side of each other. At 1e-15 cloth that begins
 /// exactly on a mesh does not come to lie on it; 1e-7 changes nothing.
 inline constexpr double kTouching = 1e-9;
+/// In thicknesses: pairs that come nearer if all go on as expected stand in blocks of their own.
+inline constexpr double kLikely = 1.1;
+/// Likewise: pairs that are larger are pushed apart in double, for floats know them to 2^-24 of
+/// their size. Of 1 mm it is 16 m.
+inline constexpr double kLaneSize = 0x1p14;
 /// The sine by which a neighbour may stand out of a pair that pushes. At 0 cloth on a knife edge
 /// is 0.4 mm too deep, at 0.04 a sheet does not hang over a ball of triangles as over a ball, and
 /// without a limit a sheet does not glide over triangles as over a plane.

@@ -1,6 +1,8 @@
 /// Features of surfaces, and pairs of them that may touch.
 #pragma once
 
+#include <weft/scene.h>
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -53,6 +55,12 @@ struct PairList {
     put(at, pair, points);
     if (lane == 0) repeat(at);
     used.back() = static_cast<std::uint16_t>(used.back() | 1u << lane);
+  }
+  /// Leaves the next lane, which is not the first of its block, without a pair.
+  void leave_lane(std::uint32_t point) {
+    pairs.push_back({kNoIndex, kNoIndex});
+    for (auto& lanes : blocks.back().point) lanes[(pairs.size() - 1) % kernels::kLanes] = point;
+    ++left_out;
   }
   /// Leaves out those of which leaves_out(pair). Where most are gone the others move up: returns
   /// whether they did.

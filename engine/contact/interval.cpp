@@ -1,6 +1,7 @@
 #include "engine/contact/interval.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -140,8 +141,9 @@ void SurfaceContacts::expect_failures(const ContactScene& scene) {
 
 int SurfaceContacts::count_touching() const {
   int count = 0;
-  for (const NearPairs& near : near_)
-    count += static_cast<int>(std::ranges::count_if(near.states, &NearState::is_touching));
+  for (const NearPairs& near : near_) {
+    for (const std::uint16_t bits : near.touching) count += std::popcount(bits);
+  }
   return count;
 }
 
@@ -152,13 +154,12 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
   };
   for (const NearPairs& near : near_) {
     for (std::size_t i = 0; i < near.list.size(); ++i) {
-      if (!near.states[i].is_touching) continue;
+      if (!near.is_touching(i)) continue;
       const Pair& pair = near.list.pairs[i];
       const auto four = near.list.points(i);
       const reference::Nearest found =
           nearest(pair.kind, {at(four[0]), at(four[1]), at(four[2]), at(four[3])});
-      BodyTouch touch{.body = clock.bodies()[points_.later(pair).body].id,
-                      .push = near.states[i].push};
+      BodyTouch touch{.body = clock.bodies()[points_.later(pair).body].id, .push = near.push(i)};
       touch.normal = pair.outward() * near.normal(i);
       double most = -1;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -179,9 +180,7 @@ std::size_t SurfaceContacts::bytes() const {
   std::size_t bytes = points_.bytes() + search_.bytes() + near_search_.bytes() + response_.bytes() +
                       tangles_.bytes() + bytes_of(impulses_.of_body);
   for (const PairList& list : candidates_) bytes += list.bytes();
-  for (const NearPairs& near : near_)
-    bytes +=
-        near.list.bytes() + bytes_of(near.sides) + bytes_of(near.states) + bytes_of(near.turned);
+  for (const NearPairs& near : near_) bytes += near.bytes();
   return bytes;
 }
 

@@ -34,12 +34,13 @@ enum class ContactStart : std::uint8_t { known, anew, goes_on };
 
 class SurfaceContacts {
  public:
-  SurfaceContacts(const Model& model, const simd::Table& table)
+  /// in_lanes: touching pairs are pushed apart in lanes, else in double.
+  SurfaceContacts(const Model& model, const simd::Table& table, bool in_lanes)
       : model_(model),
         points_(model),
         search_(table),
         near_search_(table),
-        response_(table),
+        response_(table, in_lanes),
         verification_(table),
         tangles_(table) {}
 

@@ -25,16 +25,18 @@ bool may_meet(const ContactPoints& points, PairKind kind, const Four& four) {
   return first.meets(second);
 }
 
-/// m, by which two features come nearer to each other along n at most, if their points go on as
-/// expected, but for their reach.
+/// m, by which two features come nearer to each other along n, if their points go on as expected.
 double closing(const ContactPoints& points, PairKind kind, const Four& four, Vector n) {
   const auto by = [&](std::size_t k) { return dot(n, points.way(four[k])); };
   const bool edges = kind == PairKind::edges;
   const double first = edges ? std::min(by(0), by(1)) : by(0);
   const double second = edges ? std::max(by(2), by(3)) : std::max({by(1), by(2), by(3)});
+  return std::max(0.0, second - first);
+}
+double largest_reach(const ContactPoints& points, const Four& four) {
   double reach = 0;
   for (const std::uint32_t point : four) reach = std::max(reach, points.reach(point));
-  return std::max(0.0, second - first) + reach;
+  return reach;
 }
 
 /// Whether a pair is to be looked at, and how.
@@ -42,6 +44,7 @@ struct Seen {
   bool is_near = false;
   bool is_under = false;
   Vector normal{};
+  bool is_likely = false;  // it touches if points go on as expected
 };
 
 Seen see(ContactPoints& points, const Pair& pair, const Four& four, bool is_inside) {
@@ -49,7 +52,9 @@ Seen see(ContactPoints& points, const Pair& pair, const Four& four, bool is_insi
   const FourPoints x = points.starts_of(four);
   ContactSurface& later = points.later(pair);
   const Look seen = look(later, pair, x);
-  if (seen.distance - closing(points, pair.kind, four, seen.normal) > later.thickness) return {};
+  const double expected = seen.distance - closing(points, pair.kind, four, seen.normal);
+  if (expected > later.thickness + largest_reach(points, four)) return {};
+  const bool is_likely = expected < tuning::kLikely * later.thickness;
   const Vector passes = points.way(four[0]) - points.way(four[3]);
   const bool stays = length(passes) < tuning::kContactPassing * seen.distance;
   const auto is_ghost_by = [&](double lean) {
@@ -58,11 +63,11 @@ Seen see(ContactPoints& points, const Pair& pair, const Four& four, bool is_insi
   };
   const bool is_placed = stays && is_in_place(pair.kind, seen.nearest);
   if (!is_inside && is_placed && is_ghost_by(tuning::kContactLean)) return {};
-  const Seen in_front{.is_near = true, .normal = seen.normal};
+  const Seen in_front{.is_near = true, .normal = seen.normal, .is_likely = is_likely};
   if (later.two_sided || !is_behind(later, pair, seen.nearest)) return in_front;
   // Behind what is not the nearest of its surface the cloth may be beside it.
   if (!is_inside) return !is_placed || is_ghost_by(0) ? in_front : Seen{};
-  return {.is_near = true, .is_under = true, .normal = -1.0 * seen.normal};
+  return {.is_near = true, .is_under = true, .normal = -1.0 * seen.normal, .is_likely = true};
 }
 
 }  // namespace
@@ -153,7 +158,8 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
         if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) continue;
         const Seen seen = see(points, pair, four, is_inside);
         if (!seen.is_near) continue;
-        near[list].add(pair, four, seen.normal, points.later(pair).thickness, seen.is_under);
+        near[list].add(pair, four, seen.normal, points.later(pair).thickness, seen.is_under,
+                       seen.is_likely);
       }
     }
   }

@@ -1,6 +1,7 @@
 #include "engine/contact/points.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -64,7 +65,10 @@ void ContactPoints::begin(const BodyClock& clock) {
   if (count == 0) return;
   for (auto* vectors : {&start_, &end_}) vectors->resize(points);
   for (auto* vectors : {&substep_from_, &substep_to_}) vectors->resize(points - slots_);
-  for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->resize(4 * points);
+  for (auto* quads : {&start_quads_, &way_quads_}) quads->resize(4 * points);
+  place_quads_.assign(4 * (points + 1), 0);
+  for (std::size_t slot = 0; slot < slots_; ++slot)
+    place_quads_[4 * slot + 3] = static_cast<float>(model_.inverse_mass[slot]);
   box_.resize(points);
   tube_.resize(points);
   laid_.assign(points - slots_, 0);
@@ -176,7 +180,9 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
     farthest = std::max(farthest, dot(from, from));
     write_start_and_way(slot);
   }
-  const float rounding = 0x1p-21f * next_power(std::sqrt(farthest));
+  const float range = next_power(std::sqrt(farthest)), rounding = 0x1p-21f * range;
+  range_ = static_cast<double>(range);
+  unit_ = 0x1p-28 * range_;
   are_floats_same = are_floats_same && rounding == rounding_;
   rounding_ = rounding;
   way_of_bodies_ = (to_ - from_) * time * speeds_.of_bodies;
@@ -309,6 +315,16 @@ void ContactPoints::lay_vertex(std::uint32_t point) {
   tube_[point] = {box_around(begins, begins, seen.beyond + beyond),
                   box_around(ends, ends, seen.beyond + beyond)};
   laid_[point - slots_] = layings_;
+}
+
+void ContactPoints::set_place(std::uint32_t point, Vector x) {
+  const Vector from = x - origin_;
+  const double units[] = {from.x / unit_, from.y / unit_, from.z / unit_};
+  constexpr double kMost = 0x1p30;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto whole = static_cast<std::int32_t>(std::lrint(std::clamp(units[k], -kMost, kMost)));
+    place_quads_[4 * point + k] = std::bit_cast<float>(whole);
+  }
 }
 
 void ContactPoints::place_vertices_asked(const BodyClock& clock) {

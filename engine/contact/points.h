@@ -108,9 +108,16 @@ class ContactPoints {
   void place_vertices_asked(const BodyClock& clock);
   /// Where those of the cloth have come to.
   void read_cloth(const ContactParticles& cloth);
-  const float* places() const { return place_quads_.data(); }
-  void set_place(std::uint32_t point, kernels::Vector x) {
-    write(place_quads_, point, x - origin_);
+  /// Numbers of units, and inverse masses (kernels/simd/touch_data.h); after those of all points
+  /// that of one that nothing moves.
+  float* places() { return place_quads_.data(); }
+  float unit() const { return static_cast<float>(unit_); }
+  void set_place(std::uint32_t point, kernels::Vector x);
+  std::uint32_t unmoved_point() const { return static_cast<std::uint32_t>(start_.size()); }
+  /// Whether places hold it, and its way in an interval.
+  bool is_in_range(std::uint32_t point) const {
+    const kernels::Vector from = start_[point] - origin_;
+    return dot(from, from) < 4 * range_ * range_;
   }
   /// Of a vertex that was asked for, where the substep begins and ends.
   kernels::Vector from(std::uint32_t point) const { return substep_from_[point - slots_]; }
@@ -186,6 +193,7 @@ class ContactPoints {
   double largest_way_ = 0, way_of_bodies_ = 0, travelled_ = 0;  // m, beside that
   double way_of_near_ = 0;  // m, of bodies that the cloth may come to
   float rounding_ = 0;
+  double range_ = 0, unit_ = 0;  // m: of the cloth from the origin, and of places
   std::vector<kernels::Vector> start_, end_;
   std::vector<double> reach_, ways_;  // per slot
   std::vector<Box> box_;

@@ -86,43 +86,64 @@ double least_weight(const ContactPoints& points, const std::array<std::uint32_t,
   return tuning::kLeastTouchWeight * points.largest_inverse_mass(four);
 }
 
-void Response::begin(const ContactScene& scene, const Near& near) {
+void Response::begin(const ContactScene& scene, Near& near) {
+  for (std::size_t list = 0; list < kPairLists; ++list) {
+    NearPairs& pairs = near[list];
+    arrangement_.arrange(scene.points, pairs);
+    const std::size_t blocks = pairs.list.blocks.size();
+    for (auto* bits : {&touching_[list], &touching_now_[list], &pushed_[list], &by_lanes_[list]})
+      bits->assign(blocks, 0);
+    for (std::size_t i = 0; i < pairs.list.size(); ++i) {
+      if (!pairs.list.is_used(i)) continue;
+      write_beside(scene, pairs, i);
+      if (fits_lanes(scene, pairs, i)) continue;
+      std::uint16_t& bits = pairs.not_by_lanes[i / kLanes];
+      bits = static_cast<std::uint16_t>(bits | 1u << i % kLanes);
+    }
+  }
+  ask_for_points(scene, near);
+  swept_.begin(scene.points);
+  first_link_.resize(scene.model.slots(), kNoIndex);
+  are_linked_ = false;
+}
+
+/// Of near pairs, and in lanes of what is beside them.
+void Response::ask_for_points(const ContactScene& scene, const Near& near) {
   for (const std::uint32_t point : asked_) is_asked_[point] = false;
   asked_.clear();
-  for (std::size_t list = 0; list < kPairLists; ++list) {
-    for (auto* bits : {&touching_[list], &touching_now_[list]})
-      bits->assign(near[list].list.blocks.size(), 0);
-    for (std::size_t i = 0; i < near[list].list.size(); ++i) {
-      for (const std::uint32_t point : near[list].list.points(i)) {
-        if (point >= is_asked_.size()) is_asked_.resize(point + 1);
-        if (is_asked_[point]) continue;
-        is_asked_[point] = true;
-        asked_.push_back(point);
-      }
+  if (is_asked_.size() < scene.points.unmoved_point())
+    is_asked_.resize(scene.points.unmoved_point());
+  const auto ask = [&](std::uint32_t point) {
+    if (is_asked_[point]) return;
+    is_asked_[point] = true;
+    asked_.push_back(point);
+  };
+  for (const NearPairs& pairs : near) {
+    for (std::size_t i = 0; i < pairs.list.size(); ++i) {
+      if (!pairs.list.is_used(i)) continue;
+      for (const std::uint32_t point : pairs.list.points(i)) ask(point);
+      if (!in_lanes_) continue;
+      for (const auto& lanes : pairs.touches[i / kLanes].beside) ask(lanes[i % kLanes]);
     }
   }
   scene.points.ask_for(asked_);
-  first_link_.resize(scene.model.slots(), kNoIndex);
 }
 
 void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near) {
   points.place_vertices_asked(clock);
   for (NearPairs& pairs : near) {
-    for (NearState& state : pairs.states) {
-      state.is_touching = false;
-      state.push = 0;
-      state.grip = {};
+    for (std::size_t block = 0; block < pairs.touches.size(); ++block) {
+      if (pairs.touching[block] != 0) pairs.forget_grips(block);
     }
   }
-  for (const std::uint32_t slot : linked_) first_link_[slot] = kNoIndex;
-  linked_.clear();
-  links_.clear();
+  are_linked_ = false;
 }
 
 simd::PairTouch Response::touch_of(const ContactScene& scene, NearPairs& near,
                                    std::vector<std::uint16_t>& touching) const {
   return {.pairs = near.list.blocks.data(),
-          .points = scene.points.places(),
+          .places = scene.points.places(),
+          .unit = scene.points.unit(),
           .sides = near.sides.data(),
           .touching = touching.data()};
 }
@@ -134,6 +155,10 @@ void Response::find_touching(const ContactScene& scene, Near& near, Team& team) 
     const simd::PairTouch touch = touch_of(scene, pairs, touching_[list]);
     team.for_each_share(pairs.list.blocks.size(), [&](std::size_t first, std::size_t last) {
       table_.touch_pairs(touch, has_edges(list), first, last);
+      for (std::size_t block = first; block < last; ++block) {
+        touching_[list][block] =
+            static_cast<std::uint16_t>(touching_[list][block] | pairs.not_by_lanes[block]);
+      }
     });
   }
 }
@@ -164,7 +189,6 @@ Response::Encounter Response::meet(const ContactScene& scene, const NearPairs& n
 
 bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i) {
   const Pair& pair = near.list.pairs[i];
-  NearState& state = near.states[i];
   Encounter e = meet(scene, near, i);
   near.set_under(i, e.is_under);
   near.set_normal(i, e.normal);
@@ -180,12 +204,13 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   if (!(weight > 0)) return false;
   weight = std::max(weight, least_weight(scene.points, e.points));
   const ContactSurface& later = scene.points.later(pair);
+  reference::Grip grip = near.grip(i);
   const reference::Stop stop =
-      reference::stop({e.normal, e.gap, slip}, later.friction, scene.clock.h(), state.grip);
+      reference::stop({e.normal, e.gap, slip}, later.friction, scene.clock.h(), grip);
   if (!(stop.push > 0)) return false;
-  state.is_touching = true;
-  state.push += stop.push;
-  push(scene, e, pair, stop, weight, state.grip);
+  push(scene, e, pair, stop, weight, grip);
+  near.set_grip(i, grip);
+  near.set_touching(i);
   return true;
 }
 
@@ -229,23 +254,56 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
   }
 }
 
-void Response::remember(const ContactScene& scene, NearPairs& near, std::size_t list,
-                        std::size_t i) {
-  for (const std::uint32_t point : near.list.points(i)) {
-    if (!scene.points.is_of_cloth(point)) continue;
-    bool is_known = false;
-    for (std::uint32_t link = first_link_[point]; link != kNoIndex && !is_known;
-         link = links_[link].next)
-      is_known = links_[link].list == list && links_[link].pair == i;
-    if (is_known) continue;
-    if (first_link_[point] == kNoIndex) linked_.push_back(point);
-    links_.push_back(
-        {static_cast<std::uint32_t>(list), static_cast<std::uint32_t>(i), first_link_[point]});
-    first_link_[point] = static_cast<std::uint32_t>(links_.size() - 1);
+/// Most pairs that touched when the sweep began do so no longer once others were pushed: lanes tell
+/// which do, block by block, and these alone are looked at in double.
+bool Response::push_in_double(const ContactScene& scene, Near& near, Turn turn) {
+  const std::size_t list = list_in(turn);
+  NearPairs& pairs = near[list];
+  const simd::PairTouch touch = touch_of(scene, pairs, touching_now_[list]);
+  bool any = false;
+  for (std::size_t block = 0; block < touching_[list].size(); ++block) {
+    const std::uint32_t bits = touching_in(pairs, turn, list, block);
+    if (bits == 0) continue;
+    table_.touch_pairs(touch, has_edges(list), block, block + 1);
+    const std::uint32_t now = touching_now_[list][block] | pairs.not_by_lanes[block];
+    for_each_lane(block, bits & now, [&](std::size_t i) {
+      visits_ += tuning::kVisitsOfTouch;
+      if (!resist(scene, pairs, i)) return;
+      any = true;
+      std::uint16_t& pushed = pushed_[list][block];
+      pushed = static_cast<std::uint16_t>(pushed | 1u << i % kLanes);
+    });
+  }
+  return any;
+}
+
+std::uint32_t Response::touching_in(const NearPairs& near, Turn turn, std::size_t list,
+                                    std::size_t block) const {
+  const std::uint32_t turned = near.turned[block];
+  return touching_[list][block] & (turn == Turn::points_of_bodies ? turned : ~turned);
+}
+
+void Response::link(const ContactScene& scene, const Near& near) {
+  for (const std::uint32_t slot : linked_) first_link_[slot] = kNoIndex;
+  linked_.clear();
+  links_.clear();
+  are_linked_ = true;
+  for (std::uint32_t list = 0; list < kPairLists; ++list) {
+    for (std::size_t block = 0; block < near[list].touching.size(); ++block) {
+      for_each_lane(block, near[list].touching[block], [&](std::size_t i) {
+        for (const std::uint32_t point : near[list].list.points(i)) {
+          if (!scene.points.is_of_cloth(point)) continue;
+          if (first_link_[point] == kNoIndex) linked_.push_back(point);
+          links_.push_back({list, static_cast<std::uint32_t>(i), first_link_[point]});
+          first_link_[point] = static_cast<std::uint32_t>(links_.size() - 1);
+        }
+      });
+    }
   }
 }
 
 bool Response::hold(const ContactScene& scene, Near& near, std::uint32_t slot) {
+  if (!are_linked_) link(scene, near);
   bool is_pushed = false;
   for (std::uint32_t link = slot < first_link_.size() ? first_link_[slot] : kNoIndex;
        link != kNoIndex; link = links_[link].next) {
@@ -271,8 +329,10 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
 
 std::size_t Response::bytes() const {
   return bytes_of(touching_[0]) + bytes_of(touching_[1]) + bytes_of(touching_now_[0]) +
-         bytes_of(touching_now_[1]) + bytes_of(asked_) + is_asked_.capacity() / 8 +
-         bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
+         bytes_of(touching_now_[1]) + bytes_of(pushed_[0]) + bytes_of(pushed_[1]) +
+         bytes_of(by_lanes_[0]) + bytes_of(by_lanes_[1]) + arrangement_.bytes() + swept_.bytes() +
+         bytes_of(asked_) + is_asked_.capacity() / 8 + bytes_of(first_link_) + bytes_of(linked_) +
+         bytes_of(links_);
 }
 
 }  // namespace weft

@@ -20,67 +20,112 @@ struct PairCorners {
           at.get(quads, pairs.point[2] + lane), at.get(quads, pairs.point[3] + lane)};
 }
 
+/// What leads from a place to another one.
+[[gnu::always_inline]] inline FloatVector between_places(const FloatVector& from,
+                                                         const FloatVector& to, Floats unit) {
+  const auto way = [&](Floats a, Floats b) {
+    return unit * xsimd::to_float(same_bits<Ints>(b) - same_bits<Ints>(a));
+  };
+  return {way(from.x, to.x), way(from.y, to.y), way(from.z, to.z)};
+}
+/// By places (touch_data.h), seen from the first of the points.
+[[gnu::always_inline]] inline PairCorners corners_about_first(const float* places, float unit,
+                                                              const PairBlock& pairs,
+                                                              std::uint32_t lane) {
+  PairCorners at = corners_of(places, pairs, lane);
+  const Floats in_m(unit);
+  return {no_vector(), between_places(at.a, at.b, in_m), between_places(at.a, at.c, in_m),
+          between_places(at.a, at.d, in_m)};
+}
+
 [[gnu::always_inline]] inline Floats within(Floats x) {
   return xsimd::min(xsimd::max(x, Floats(0.f)), Floats(1.f));
 }
 
-/// From the nearest point of the segment that begins at p, seen from the origin, to the origin.
-[[gnu::always_inline]] inline FloatVector from_segment(const FloatVector& p, const FloatVector& u) {
+/// From the nearest point of the segment that begins at p, seen from the origin, to the origin; and
+/// its share of the segment.
+struct FromSegment {
+  FloatVector r;
+  Floats at;
+};
+[[gnu::always_inline]] inline FromSegment from_segment(const FloatVector& p, const FloatVector& u) {
   const Floats at = within((Floats(0.f) - dot(p, u)) / xsimd::max(dot(u, u), tiny()));
-  return {Floats(0.f) - fused(at, u.x, p.x), Floats(0.f) - fused(at, u.y, p.y),
-          Floats(0.f) - fused(at, u.z, p.z)};
+  return {{Floats(0.f) - fused(at, u.x, p.x), Floats(0.f) - fused(at, u.y, p.y),
+           Floats(0.f) - fused(at, u.z, p.z)},
+          at};
 }
+
+/// As reference::Nearest. Weights are without their signs.
+struct NearestLanes {
+  FloatVector r;
+  Floats a, b, c, d;
+};
 
 /// From the nearest point of a triangle to a point. It lies in the plane, or on a side.
 struct FromTriangle {
-  [[gnu::always_inline]] FloatVector operator()(const PairCorners& p) const {
+  [[gnu::always_inline]] NearestLanes operator()(const PairCorners& p) const {
     FloatVector b = p.b - p.a, u = p.c - p.b, v = p.d - p.b, w = p.d - p.c, c = p.c - p.a;
-    FloatVector r = from_segment(b, u);
-    Floats least = dot(r, r);
+    const Floats none(0.f), one(1.f);
+    FromSegment first = from_segment(b, u);
+    NearestLanes nearest{first.r, one, one - first.at, first.at, none};
+    Floats least = dot(nearest.r, nearest.r);
     for (int side = 0; side < 2; ++side) {
-      FloatVector other = side == 0 ? from_segment(b, v) : from_segment(c, w);
-      const Floats square = dot(other, other);
-      r = select(square < least, other, r);
+      FromSegment other = side == 0 ? from_segment(b, v) : from_segment(c, w);
+      const Floats square = dot(other.r, other.r), rest = one - other.at;
+      const FloatMask nearer = square < least;
+      nearest.r = select(nearer, other.r, nearest.r);
+      nearest.b = xsimd::select(nearer, side == 0 ? rest : none, nearest.b);
+      nearest.c = xsimd::select(nearer, side == 0 ? none : rest, nearest.c);
+      nearest.d = xsimd::select(nearer, other.at, nearest.d);
       least = xsimd::min(square, least);
     }
     const Floats uu = dot(u, u), uv = dot(u, v), vv = dot(v, v);
-    const Floats bu = Floats(0.f) - dot(b, u), bv = Floats(0.f) - dot(b, v);
+    const Floats bu = none - dot(b, u), bv = none - dot(b, v);
     const Floats area = fused_from(uv, uv, uu * vv);
     const Floats s = fused_from(uv, bv, vv * bu), t = fused_from(uv, bu, uu * bv);
-    const Floats none(0.f);
     const FloatMask has_area = area > Floats(1e-6f) * uu * vv;
-    const Floats per_area = Floats(1.f) / area;
-    FloatVector in_plane = fused(s * per_area, u, fused(t * per_area, v, b));
+    const Floats per_area = one / area, at_u = s * per_area, at_v = t * per_area;
+    FloatVector in_plane = fused(at_u, u, fused(at_v, v, b));
     const FloatMask is_inside =
         has_area && s > none && t > none && s + t < area && dot(in_plane, in_plane) < least;
-    return select(is_inside, no_vector() - in_plane, r);
+    return {select(is_inside, no_vector() - in_plane, nearest.r), one,
+            xsimd::select(is_inside, one - at_u - at_v, nearest.b),
+            xsimd::select(is_inside, at_u, nearest.c), xsimd::select(is_inside, at_v, nearest.d)};
   }
 };
 
 /// From the nearest point of the edge c d to that of the edge a b: within both, or at an end.
 struct FromEdge {
-  [[gnu::always_inline]] FloatVector operator()(const PairCorners& p) const {
+  [[gnu::always_inline]] NearestLanes operator()(const PairCorners& p) const {
     FloatVector u = p.b - p.a, v = p.d - p.c, w = p.a - p.c;
-    FloatVector r = from_segment(p.c - p.a, v);
-    Floats least = dot(r, r);
-    const auto consider = [&](const FloatVector& other, const FloatMask& counts) {
+    const Floats none(0.f), one(1.f);
+    FromSegment first = from_segment(p.c - p.a, v);
+    FloatVector r = first.r;
+    Floats least = dot(r, r), on_first = none, on_second = first.at;
+    const auto consider = [&](const FloatVector& other, Floats s, Floats t,
+                              const FloatMask& counts) {
       const Floats square = dot(other, other);
       const FloatMask nearer = counts && square < least;
       r = select(nearer, other, r);
+      on_first = xsimd::select(nearer, s, on_first);
+      on_second = xsimd::select(nearer, t, on_second);
       least = xsimd::select(nearer, square, least);
     };
-    const FloatMask always = Floats(0.f) == Floats(0.f);
-    consider(from_segment(p.c - p.b, v), always);
-    consider(no_vector() - from_segment(w, u), always);
-    consider(no_vector() - from_segment(p.a - p.d, u), always);
+    const FloatMask always = none == none;
+    FromSegment second = from_segment(p.c - p.b, v);
+    consider(second.r, one, second.at, always);
+    FromSegment third = from_segment(w, u);
+    consider(no_vector() - third.r, third.at, none, always);
+    FromSegment fourth = from_segment(p.a - p.d, u);
+    consider(no_vector() - fourth.r, fourth.at, one, always);
     const Floats uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
-    const Floats none(0.f), determinant = fused_from(uv, uv, uu * vv);
+    const Floats determinant = fused_from(uv, uv, uu * vv);
     const Floats s = fused_from(uw, vv, uv * vw), t = fused_from(uv, uw, uu * vw);
     const FloatMask is_within = determinant > Floats(1e-6f) * uu * vv && s > none &&
                                 s < determinant && t > none && t < determinant;
-    const Floats part = Floats(1.f) / determinant;
-    consider(fused_from(t * part, v, fused(s * part, u, w)), is_within);
-    return r;
+    const Floats part = one / determinant, at_u = s * part, at_v = t * part;
+    consider(fused_from(at_v, v, fused(at_u, u, w)), at_u, at_v, is_within);
+    return {r, one - on_first, on_first, one - on_second, on_second};
   }
 };
 
@@ -102,7 +147,7 @@ template <class From>
   const Floats none(0.f);
   std::uint32_t near = 0;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    FloatVector r = from(corners_of(m.points, m.pairs[i], lane));
+    FloatVector r = from(corners_of(m.points, m.pairs[i], lane)).r;
     const Floats distance = xsimd::sqrt(dot(r, r));
     FloatVector n = (Floats(1.f) / xsimd::max(distance, tiny())) * r;
     const PairCorners way = corners_of(m.ways, m.pairs[i], lane);
@@ -138,8 +183,8 @@ template <class From>
   std::uint32_t touching = 0;
   PairSide& side = t.sides[i];
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-    const PairCorners corners = corners_of(t.points, t.pairs[i], lane);
-    FloatVector r = from(corners);
+    const PairCorners corners = corners_about_first(t.places, t.unit, t.pairs[i], lane);
+    FloatVector r = from(corners).r;
     const Floats distance = xsimd::sqrt(dot(r, r));
     FloatVector before = load(side.normal, lane);
     const FloatMask stays = dot(r, before) > Floats(0.f);

@@ -20,6 +20,7 @@
 #include "kernels/simd/small_steps.h"
 #include "kernels/simd/spheres.h"
 #include "kernels/simd/split.h"
+#include "kernels/simd/touches.h"
 #include "kernels/simd/yarn_system.h"
 #include "kernels/simd/yarns.h"
 
@@ -126,6 +127,7 @@ constexpr Table make_table() {
           .deepest_in_bodies = deepest_in_bodies,
           .measure_pairs = measure_pairs,
           .touch_pairs = touch_pairs,
+          .push_pairs = push_pairs,
           .find_moved_pairs = find_moved_pairs,
           .find_met = find_met,
           .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),

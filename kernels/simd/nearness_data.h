@@ -35,7 +35,8 @@ struct alignas(64) PairSide {
 };
 struct PairTouch {
   const PairBlock* pairs = nullptr;
-  const float* points = nullptr;
+  const float* places = nullptr;  // of the points (touch_data.h)
+  float unit = 0;                 // m
   PairSide* sides = nullptr;
   std::uint16_t* touching = nullptr;  // written: nearer than the thickness, or not as last seen
 };

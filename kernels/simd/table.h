@@ -14,6 +14,7 @@
 #include "kernels/simd/nearness_data.h"
 #include "kernels/simd/small_step_data.h"
 #include "kernels/simd/sweep_data.h"
+#include "kernels/simd/touch_data.h"
 #include "kernels/simd/yarn_data.h"
 #include "kernels/vectors.h"
 
@@ -210,6 +211,8 @@ struct Table {
   /// Of blocks first ... last - 1. edges: pairs of edges, else of a point and a triangle.
   void (*measure_pairs)(const PairMeasure&, bool edges, std::size_t first, std::size_t last);
   void (*touch_pairs)(const PairTouch&, bool edges, std::size_t first, std::size_t last);
+  /// Of the pairs of a block that are active, a bit each.
+  PushedPairs (*push_pairs)(const PairPush&, bool edges, std::size_t block, std::uint32_t active);
   void (*find_moved_pairs)(const PairMoves&, bool edges, std::size_t first, std::size_t last);
   /// Which of the boxes the one from low to high meets, a bit each.
   std::uint32_t (*find_met)(const BoxCluster&, const float* low, const float* high);

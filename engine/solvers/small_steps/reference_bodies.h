@@ -15,7 +15,7 @@ namespace weft {
 class ReferenceBodies {
  public:
   ReferenceBodies(const Model& model, const simd::Table& table)
-      : model_(model), meshes_(model, table) {}
+      : model_(model), meshes_(model, table, false) {}
 
   using Touching = std::vector<bool>;  // per slot
 

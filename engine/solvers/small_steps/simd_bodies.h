@@ -27,7 +27,7 @@ class SimdBodies {
         far_(tuning::kLocalShare * settings.tolerance),
         contact_tolerance_(settings.contact_tolerance),
         table_(table),
-        meshes_(model, table) {}
+        meshes_(model, table, true) {}
 
   /// Who touched a body when the last substep of a frame ended, per block.
   using Touching = std::vector<std::uint16_t>;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -203,6 +204,28 @@ struct Touched {
   std::vector<std::uint16_t> touching;
 };
 
+/// Points as whole numbers of a unit.
+struct Places {
+  double unit;
+  kernels::AlignedVector<float> of;
+
+  explicit Places(const Pairs& p)
+      : unit(0x1p-28 * (8 * p.place.size + 2 * p.place.offset)), of(16 * Pairs::kCount) {
+    for (std::size_t i = 0; i < Pairs::kCount; ++i) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t to = 4 * p.blocks[i / kLanes].point[k][i % kLanes];
+        const Vector x = p.pairs[i].point[k];
+        of[to] = whole(x.x);
+        of[to + 1] = whole(x.y);
+        of[to + 2] = whole(x.z);
+      }
+    }
+  }
+  float whole(double x) const {
+    return std::bit_cast<float>(static_cast<std::int32_t>(std::lrint(x / unit)));
+  }
+};
+
 /// Half of the pairs were seen on this side. Some are to be looked at in any case.
 Touched sides_of(const Pairs& p, double thickness) {
   Random random(77);
@@ -225,8 +248,10 @@ Touched sides_of(const Pairs& p, double thickness) {
 
 Touched touch(const simd::Table& table, const Pairs& p, double thickness) {
   Touched t = sides_of(p, thickness);
+  const Places places(p);
   const simd::PairTouch call{.pairs = p.blocks.data(),
-                             .points = p.points.of.data(),
+                             .places = places.of.data(),
+                             .unit = static_cast<float>(places.unit),
                              .sides = t.sides.data(),
                              .touching = t.touching.data()};
   table.touch_pairs(call, p.edges, 0, Pairs::kBlocks);
