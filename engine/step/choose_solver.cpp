@@ -67,9 +67,9 @@ bool is_for_small_steps(const Model& model, const Settings& settings) {
 
 constexpr double kStandardGravity = 9.8;  // m/s^2
 
-/// Bending and stretch are solved one after the other, and what each does to the other comes back
-/// in the next substep. Where bending is stiff, BDF2 makes that grow. Substeps are taken to be
-/// those of its weight, also where there is no gravity yet: Cloth::set_gravity may bring it.
+/// Where bending is stiff and damped, BDF2 makes what bending and stretch do to each other grow
+/// (perf/tried.md). Substeps are taken to be those of its weight, also where there is no gravity
+/// yet: Cloth::set_gravity may bring it.
 bool is_plate(const Model& model, kernels::VectorsView x, const Settings& settings) {
   if (model.bending.size() == 0) return false;
   const SmallStepsLayout& layout = model.small_steps();
