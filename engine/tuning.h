@@ -156,10 +156,6 @@ inline constexpr int kLongestGroup = 8;
 /// Damping adds to the stiffness of bending in a substep at most this share of it, or where that is
 /// more this share of M / (b h)^2. More damps small folds as asked for; less takes fewer steps.
 inline constexpr double kBendingDamping = 0.5;
-/// (b h)^2 K_ii / m_i in the mean, of the substeps that the weight asks for, from which on scheme
-/// automatic is implicit. By bdf2 a strip of irregular triangles of 2.5 mm, 0.8 kg/m^2 and 2 N m
-/// comes to thousands of m/s, and so does one of 1 cm and 700 N m; by the implicit one they rest.
-inline constexpr double kStiffestBdf2 = 100;
 /// The share of a force that bending is solved to, over the tolerance, and the largest tolerance
 /// that it is taken from. A solution begins with the last one: so what is left acts the same way
 /// in many substeps, as a force from outside would. At a share of 1 a crumpled plate of 10 N m that

@@ -8,9 +8,6 @@
 #include "engine/model/model.h"
 #include "engine/solvers/direct/direct_bodies.h"
 #include "engine/solvers/small_steps/linkage_layout.h"
-#include "engine/solvers/small_steps/small_steps.h"
-#include "engine/solvers/small_steps/small_steps_layout.h"
-#include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/step/sphere_paths.h"
 #include "engine/tuning.h"
 
@@ -65,33 +62,15 @@ bool is_for_small_steps(const Model& model, const Settings& settings) {
          model.anchors.size() > 0 || model.seams.size() > 0 || is_of_small_steps(settings.scheme);
 }
 
-constexpr double kStandardGravity = 9.8;  // m/s^2
-
-/// Where bending is stiff and damped, BDF2 makes what bending and stretch do to each other grow
-/// (perf/tried.md). Substeps are taken to be those of its weight, also where there is no gravity
-/// yet: Cloth::set_gravity may bring it.
-bool is_plate(const Model& model, kernels::VectorsView x, const Settings& settings) {
-  if (model.bending.size() == 0) return false;
-  const SmallStepsLayout& layout = model.small_steps();
-  const double h =
-      std::min(tuning::kLongestSubstep,
-               substep_length(layout.load, x,
-                              {.acceleration = std::max(kStandardGravity, length(model.gravity))},
-                              settings.tolerance));
-  const double give = SubstepFormula::of(Scheme::bdf2, 1).give(h);
-  return give * mean_stiffness(layout.bending.rows) >= tuning::kStiffestBdf2;
-}
-
 }  // namespace
 
 bool is_of_small_steps(Scheme scheme) {
   return scheme == Scheme::implicit || scheme == Scheme::bdf2;
 }
 
-Scheme scheme_of(const Model& model, kernels::VectorsView x, const Settings& settings) {
+Scheme scheme_of(const Settings& settings) {
   if (settings.scheme != Scheme::automatic) return settings.scheme;
-  if (settings.solver != Solver::small_steps) return Scheme::paper;
-  return is_plate(model, x, settings) ? Scheme::implicit : Scheme::bdf2;
+  return settings.solver == Solver::small_steps ? Scheme::bdf2 : Scheme::paper;
 }
 
 /// The reference backend, and a count of iterations in place of a tolerance, are about the paper's

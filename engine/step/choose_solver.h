@@ -3,15 +3,13 @@
 
 #include <weft/weft.h>
 
-#include "kernels/vectors.h"
-
 namespace weft {
 
 /// Replaces Solver::automatic by a solver that suits the model, and chooses what goes with it.
 void choose_solver(const Model& model, Settings& settings);
 
-/// The scheme of settings whose solver is chosen, of a cloth that begins at x.
-Scheme scheme_of(const Model& model, kernels::VectorsView x, const Settings& settings);
+/// The scheme of settings whose solver is chosen.
+Scheme scheme_of(const Settings& settings);
 bool is_of_small_steps(Scheme scheme);
 
 }  // namespace weft

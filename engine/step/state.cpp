@@ -37,7 +37,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
       settings(chosen),
       kernels(&simd::table(to_kernel(chosen.isa))),
       measure(std::make_unique<Measure>(*model, chosen, *kernels)) {
-  settings.scheme = scheme_of(*model, position.view(), settings);
+  settings.scheme = scheme_of(settings);
   for (kernels::Vectors* v :
        {&solved, &next_velocity, &step_start.position, &step_start.velocity}) {
     v->resize(model->slots());

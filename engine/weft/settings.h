@@ -83,8 +83,7 @@ namespace weft {
 /// (engine/step/energy.h). So a step depends slightly on the steps before it, until positions are
 /// written. gauss_seidel is guarded in this way only where it is cut off.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, automatic };
-/// automatic: bdf2 with small_steps, or implicit there where bending is stiff, as of card and
-///   plates; else paper. Cloth::settings() tells which.
+/// automatic: bdf2 with small_steps, else paper. Cloth::settings() tells which.
 /// bdf2, implicit: schemes of small_steps alone. bdf2 is BDF2 with variable steps, of second order;
 ///   implicit is the implicit Euler method, of first order. A particle that a contact has moved
 ///   goes on from there at first order. If you write velocities, the stored previous velocities

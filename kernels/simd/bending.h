@@ -5,14 +5,16 @@
 /// since the weights sum to zero; span is the same sum over the base. An element pulls particle i
 /// by c_i f,
 ///
-///     f = - k (1 - rest / |d| + tau (d . d') / |d|^2) d,
+///     f = - k ((1 - rest / |d|) d + damping (d - turned(d, s))),
 ///
-/// where d' is the rate of d. What rounding does to d is a moment, and to a sum of pulls no more
-/// than to these: a stiff cloth is not pushed away by it.
+/// where s is the d of the start of the substep (kernels/reference/bending.h). What rounding does
+/// to d is a moment, and to a sum of pulls no more than to these: a stiff cloth is not pushed away
+/// by it.
 #pragma once
 
 #include <limits>
 
+#include "kernels/reference/bending.h"
 #include "kernels/simd/quads.h"
 
 namespace weft::simd {
@@ -27,6 +29,11 @@ struct BentQuads {
   [[gnu::always_inline]] BentQuads(const float* u, const BendingBlock& block, std::uint32_t lane) {
     for (std::size_t k = 0; k < (kFour ? 4 : 3); ++k)
       x[k] = QuadLanes{}.get(u, block.slot[k] + lane);
+  }
+  [[gnu::always_inline]] BentQuads since(const BentQuads& start) const {
+    BentQuads by = *this;
+    for (std::size_t k = 0; k < (kFour ? 4 : 3); ++k) by.x[k] = x[k] - start.x[k];
+    return by;
   }
   /// The sum of weight times particle.
   [[gnu::always_inline]] FloatVector sum(const BendingBlock& block, std::uint32_t lane) const {
@@ -55,26 +62,25 @@ template <bool kFour>
   return {load(span.x + lane), load(span.y + lane), load(span.z + lane)};
 }
 
-/// The factor of d in f, over - k. Where d all but vanishes it has no direction, and what the
-/// factor makes of it falls to 0 with it.
-template <bool kFour, bool kCurved, bool kDamped>
-[[gnu::always_inline]] inline Floats stretched(const Bending& b, const BendingBlock& block,
-                                               std::uint32_t lane, const FloatVector& d) {
-  const Floats one(1.f), least(std::numeric_limits<float>::min());
-  Floats factor = one;
-  if constexpr (kCurved || kDamped) {
-    const Floats square = dot(d, d);
-    if constexpr (kCurved) {
-      const Floats rest = load(block.rest + lane);
-      const Floats shortest = xsimd::max(Floats(0x1p-20f) * rest, least);
-      factor = one - rest / xsimd::max(xsimd::sqrt(square), shortest);
-    }
-    if constexpr (kDamped) {
-      const FloatVector rate = BentQuads<kFour>(b.v, block, lane).sum(block, lane);
-      factor = fused(Floats(b.damping), dot(d, rate) / xsimd::max(square, least), factor);
-    }
-  }
-  return factor;
+/// (1 - rest / |d|) d. Where d all but vanishes it has no direction, and this falls to 0 with it.
+[[gnu::always_inline]] inline FloatVector curved(const BendingBlock& block, std::uint32_t lane,
+                                                 const FloatVector& d) {
+  const Floats rest = load(block.rest + lane), least(std::numeric_limits<float>::min());
+  const Floats shortest = xsimd::max(Floats(0x1p-20f) * rest, least);
+  return (Floats(1.f) - rest / xsimd::max(xsimd::sqrt(dot(d, d)), shortest)) * d;
+}
+
+/// d - turned(d, s), by = d - s: of what has turned by as much as |d| has grown.
+[[gnu::always_inline]] inline FloatVector bent(const FloatVector& d, const FloatVector& by) {
+  const Floats one(1.f), none(0.f), least(std::numeric_limits<float>::min());
+  const FloatVector s = d - by;
+  const Floats now = xsimd::sqrt(dot(d, d)), before = xsimd::sqrt(dot(s, s));
+  const Floats cosine = xsimd::max(none, dot(d, s) / xsimd::max(now * before, least));
+  const Floats sine = one - cosine * cosine;
+  const Floats part =
+      xsimd::max(none, one - Floats(static_cast<float>(1 / reference::kMostTurn)) * sine);
+  const Floats grown = dot(by, d + s) / xsimd::max(now * (now + before), least);
+  return (one - part) * by + (part * grown) * d;
 }
 
 [[gnu::always_inline]] inline void pull_quad(float* to, const std::uint32_t* slot, Floats weight,
@@ -103,10 +109,15 @@ template <bool kFour, bool kCurved, bool kDamped>
   for (std::size_t i = first; i < last; ++i) {
     const BendingBlock& block = b.blocks[i];
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      FloatVector d =
-          load_span(b.spans[i], lane) + BentQuads<kFour>(b.u, block, lane).sum(block, lane);
-      const Floats factor = stretched<kFour, kCurved, kDamped>(b, block, lane, d);
-      pull_quads<kFour>(to, block, lane, (Floats(0.f) - factor * load(block.stiffness + lane)) * d);
+      const BentQuads<kFour> at(b.u, block, lane);
+      const FloatVector d = load_span(b.spans[i], lane) + at.sum(block, lane);
+      FloatVector f = d;
+      if constexpr (kCurved) f = curved(block, lane, d);
+      if constexpr (kDamped) {
+        const FloatVector by = at.since(BentQuads<kFour>(b.start, block, lane)).sum(block, lane);
+        f = fused(Floats(b.damping), bent(d, by), f);
+      }
+      pull_quads<kFour>(to, block, lane, (Floats(0.f) - load(block.stiffness + lane)) * f);
     }
   }
 }

@@ -99,11 +99,11 @@ struct alignas(64) BendingBlock {
 };
 struct Bending {
   const float* u = nullptr;
-  const float* v = nullptr;
+  const float* start = nullptr;  // u when the substep began, of the same base
   const BendingBlock* blocks = nullptr;
   const EdgeSpans* spans = nullptr;  // d of the base
   bool curved = false;               // a rest is not 0
-  float damping = 0;                 // tau, s
+  float damping = 0;                 // tau / h
   float resolved = 0;                // 1/s^2: what is stiffer has a softness of less than 1 / this
 };
 

@@ -53,13 +53,12 @@ void BendingFrame::begin(const FramePlan& plan, double weight) {
   const SubstepFormula formula =
       SubstepFormula::of(scheme_, 1).with_decay(model_.damping.motion, plan.h, plan.h);
   give_ = formula.give(plan.h);
-  rate_ = 1 / (formula.part * plan.h);
   omega_ = plan.omega;
   substeps_ = plan.substeps;
   done_ = 0;
   longest_ = longest_group(plan);
   groups_ = (substeps_ - 1) / longest_ + 1;
-  damping_ = model_.damping.bending;
+  damping_ = model_.damping.bending / plan.h;
   weight_ = 0;
   is_factored_ = is_to_be_factored();
   if (is_factored_) return;
@@ -81,15 +80,15 @@ std::optional<BendingStep> BendingFrame::next(double give) {
   return step(give, n);
 }
 
-/// s, of what is not factored. By single substeps: groups change no damping.
+/// Of what is not factored. By single substeps: groups change no damping.
 double BendingFrame::most_damping() const {
-  return tuning::kBendingDamping * std::max(1.0, 1 / (give_ * mean_)) / rate_;
+  return tuning::kBendingDamping * std::max(1.0, 1 / (give_ * mean_));
 }
 
 /// Whether a factorisation takes less time than the steps along the diagonal, of cloth that is
 /// damped no more than these bear.
 bool BendingFrame::is_to_be_factored() const {
-  const double stiffness = 1 + std::min(damping_, most_damping()) * usual().rate;
+  const double stiffness = 1 + longest_ * std::min(damping_, most_damping());
   const double steps = tuning::kBendingStepsPerRoot * std::sqrt(stiffness * give_ * mean_);
   if (steps < tuning::kLeastFactored || particles_ > static_cast<double>(tuning::kMostFactored))
     return false;

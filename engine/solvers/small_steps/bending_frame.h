@@ -3,10 +3,11 @@
 /// Where all cloth is soft, one solution stands for a group of n substeps, with the impulse of all
 /// of them in its middle. Else n is 1. In a group the force is that of the law
 ///
-///     M d / f = - K (p + d) - tau K (v + n d / (b h)),
+///     M d / f = - K (p + d) - tau / h K (p + n d - s),
 ///
-/// and the particles move by n d. There p and v are predicted, and f is the square of b h, as decay
-/// leaves it. With n = 1 the law holds at the end of the substep. An impulse every n substeps gains
+/// and the particles move by n d. There p is predicted, s is where the substep began (turned, as
+/// kernels/reference/bending.h has it), and f is the square of b h, as decay leaves it. With n = 1
+/// the law holds at the end of the substep. An impulse every n substeps gains
 /// energy where a swing is about as fast: so n is bounded by the stiffest particle
 /// (tuning::kBendingGroup).
 ///
@@ -30,9 +31,8 @@ namespace weft {
 struct BendingStep {
   double give = 0;     // s^2, f
   double count = 1;    // n
-  double rate = 0;     // 1/s, of d in damping
-  double damping = 0;  // s, tau
-  BendingLaw law() const { return {1 / give, 1 + damping * rate}; }
+  double damping = 0;  // tau / h
+  BendingLaw law() const { return {1 / give, 1 + count * damping}; }
 };
 
 class BendingFrame {
@@ -55,7 +55,7 @@ class BendingFrame {
   double resolved(double give) const { return 1 / ((1 - 0.5 * omega_) * give); }
 
  private:
-  BendingStep step(double give, int n) const { return {give, double(n), n * rate_, damping_}; }
+  BendingStep step(double give, int n) const { return {give, double(n), damping_}; }
   int longest_group(const FramePlan& plan) const;
   double most_damping() const;
   bool is_to_be_factored() const;
@@ -69,7 +69,7 @@ class BendingFrame {
   const Scheme scheme_;
   const bool is_timed_;  // the error of motion is measured
   bool is_factored_ = false;
-  double weight_ = 0, damping_ = 0, rate_ = 0, give_ = 1, omega_ = 1;
+  double weight_ = 0, damping_ = 0, give_ = 1, omega_ = 1;
   int substeps_ = 0, done_ = 0, groups_ = 1, longest_ = 1;
 };
 

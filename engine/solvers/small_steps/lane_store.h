@@ -65,7 +65,7 @@ class LaneStore {
   std::optional<double> settle(bool measures, Team& team);
   void decay(double to, Team& team);
   std::optional<double> predict(Team& team);
-  void bend(Team& team) { bending_.bend(u_.data(), v_.data(), give(), team); }
+  void bend(Team& team) { bending_.bend(u_.data(), u_before_.data(), give(), team); }
 
   // A sweep. after(): after each family of yarns.
   template <class After>

@@ -25,7 +25,7 @@ ReferenceStore::ReferenceStore(Substep& now, const simd::Table& table)
       shortest_(shortest_lengths(model_)),
       at_limit_(model_.anchors.size()),
       at_limit_before_(model_.anchors.size()) {
-  for (auto* vectors : {&x_, &before_, &predicted_, &v_, &v_before_, &acceleration_, &rate_,
+  for (auto* vectors : {&x_, &before_, &predicted_, &v_, &v_before_, &acceleration_, &from_,
                         &past_.v, &past_.v_before, &past_.moved}) {
     vectors->resize(model_.slots());
   }
@@ -154,7 +154,7 @@ void ReferenceStore::bend(Team& team) {
   };
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     x_.view().add(i, at(i));
-    rate_.set(i, v_[i] + step->rate * at(i));
+    from_.set(i, before_[i] - (step->count - 1) * at(i));
   }
   pull(*step);
   bending_error_ =
@@ -171,7 +171,7 @@ void ReferenceStore::pull(const BendingStep& step) {
   std::fill_n(residual, 4 * model_.slots(), 0.0);
   for (std::uint32_t i = 0; i < model_.bending.size(); ++i) {
     const reference::BendingElement e = element(i);
-    const Vector f = reference::pull(e, step.damping, x_.view(), rate_.view());
+    const Vector f = reference::pull(e, step.damping, x_.view(), from_.view());
     for (std::size_t k = 0; k < 4; ++k) {
       if (!now_.is_free(e.slots[k])) continue;
       double* const of = residual + 4 * std::size_t{e.slots[k]};

@@ -137,7 +137,7 @@ class ReferenceStore {
   Past past_;
   reference::ChainSystem system_;
   double last_ = 0;  // b h of the last substep; 0: velocities are settled
-  kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_, rate_;
+  kernels::Vectors x_, before_, predicted_, v_, v_before_, acceleration_, from_;
   std::vector<std::uint32_t> out_;      // items (local_passes.h) that were found out of tolerance
   const std::vector<double> shortest_;  // m, per slot: of its constraints
   std::vector<bool> at_limit_, at_limit_before_;  // per anchor, in this substep and in the last

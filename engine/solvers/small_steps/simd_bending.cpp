@@ -29,7 +29,7 @@ SimdBending::SimdBending(const Model& model, const Settings& settings, const sim
       spans_(layout_.blocks.size()),
       energies_(layout_.blocks.size()) {
   if (!layout_.empty()) soft_.allocate();
-  if (!layout_.empty() && model.damping.bending > 0) rate_.resize(4 * layout_.rows.slots());
+  if (!layout_.empty() && model.damping.bending > 0) from_.resize(4 * layout_.rows.slots());
 }
 
 template <class Work>
@@ -70,13 +70,13 @@ void SimdBending::measure_base(const float* base, Team& team) {
   });
 }
 
-void SimdBending::bend(float* u, const float* v, double give, Team& team) {
+void SimdBending::bend(float* u, const float* start, double give, Team& team) {
   const std::optional<BendingStep> step = frame_.next(give);
   if (!step) return;
   if (frame_.is_factored())
-    bend_stiffly(u, v, *step, team);
+    bend_stiffly(u, start, *step, team);
   else
-    bend_softly(u, v, *step, team);
+    bend_softly(u, start, *step, team);
 }
 
 simd::Bending SimdBending::arrays(const float* u) const {
@@ -85,9 +85,9 @@ simd::Bending SimdBending::arrays(const float* u) const {
 }
 
 /// Into the residual of soft_.
-void SimdBending::pull(const float* u, const float* v, double damping, Team& team) {
+void SimdBending::pull(const float* u, const float* start, double damping, Team& team) {
   simd::Bending bending = arrays(u);
-  bending.v = v;
+  bending.start = start;
   bending.damping = static_cast<float>(damping);
   for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
     table_.pull_bending(bending, soft_.residual(), four, first, last);
@@ -95,32 +95,33 @@ void SimdBending::pull(const float* u, const float* v, double damping, Team& tea
 }
 
 /// Particles go where the last force of bending takes them: what is new since then is little.
-void SimdBending::begin_from_guess(float* u, const float* v, const BendingStep& step, Team& team) {
+void SimdBending::begin_from_guess(float* u, const float* start, const BendingStep& step,
+                                   Team& team) {
   const bool is_first = give_ == 0, is_damped = step.damping > 0;
   const float scale = is_first ? 0 : static_cast<float>(step.give / give_);
-  const auto rate = static_cast<float>(step.rate);
+  const auto beyond = static_cast<float>(step.count - 1);
   float* const guess = soft_.guess();
   float* const residual = soft_.residual();
   for_floats(team, [&](std::size_t first, std::size_t last) {
     std::fill(residual + first, residual + last, 0.f);
     if (is_first) {
       std::fill(guess + first, guess + last, 0.f);
-      if (is_damped) std::copy(v + first, v + last, rate_.data() + first);
+      if (is_damped) std::copy(start + first, start + last, from_.data() + first);
       return;
     }
     for (std::size_t i = first; i < last; ++i) {
       const float by = scale * guess[i];
       guess[i] = by;
       u[i] += by;
-      if (is_damped) rate_[i] = v[i] + rate * by;
+      if (is_damped) from_[i] = start[i] - beyond * by;
     }
   });
   give_ = step.give;
 }
 
-void SimdBending::bend_softly(float* u, const float* v, const BendingStep& step, Team& team) {
-  begin_from_guess(u, v, step, team);
-  pull(u, rate_.data(), step.damping, team);
+void SimdBending::bend_softly(float* u, const float* start, const BendingStep& step, Team& team) {
+  begin_from_guess(u, start, step, team);
+  pull(u, step.damping > 0 ? from_.data() : start, step.damping, team);
   error_ = std::max(error_, soft_.solve(step.law(), frame_.limits(), team));
   float* const guess = soft_.guess();
   const float* const change = soft_.change();
@@ -136,13 +137,13 @@ void SimdBending::bend_softly(float* u, const float* v, const BendingStep& step,
   });
 }
 
-void SimdBending::bend_stiffly(float* u, const float* v, const BendingStep& step, Team& team) {
+void SimdBending::bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team) {
   float* const pulls = soft_.residual();
   double* const residual = stiff_.residual();
   for_floats(team, [&](std::size_t first, std::size_t last) {
     std::fill(pulls + first, pulls + last, 0.f);
   });
-  pull(u, v, step.damping, team);
+  pull(u, start, step.damping, team);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) residual[i] = static_cast<double>(pulls[i]);
   });
@@ -165,7 +166,7 @@ double SimdBending::energy(const float* u, double give, Team& team) {
 }
 
 std::size_t SimdBending::bytes() const {
-  return bytes_of(spans_) + bytes_of(energies_) + bytes_of(rate_) + soft_.bytes() + stiff_.bytes();
+  return bytes_of(spans_) + bytes_of(energies_) + bytes_of(from_) + soft_.bytes() + stiff_.bytes();
 }
 
 }  // namespace weft

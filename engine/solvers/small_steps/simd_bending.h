@@ -19,8 +19,8 @@ class SimdBending {
   void begin(const FramePlan& plan, const float* acceleration);
   /// Of a new base.
   void measure_base(const float* base, Team& team);
-  /// After the prediction of a substep whose positions move by give w f; v: as predicted.
-  void bend(float* u, const float* v, double give, Team& team);
+  /// After the prediction of a substep whose positions move by give w f. start: where it began.
+  void bend(float* u, const float* start, double give, Team& team);
   /// J, with positions at base + u, of substeps of `give`.
   double energy(const float* u, double give, Team& team);
   /// The largest share of a force of bending that a solution of the frame has left.
@@ -33,10 +33,10 @@ class SimdBending {
   template <class Work>
   void for_floats(Team& team, Work&& work) const;
   simd::Bending arrays(const float* u) const;
-  void pull(const float* u, const float* v, double damping, Team& team);
-  void begin_from_guess(float* u, const float* v, const BendingStep& step, Team& team);
-  void bend_softly(float* u, const float* v, const BendingStep& step, Team& team);
-  void bend_stiffly(float* u, const float* v, const BendingStep& step, Team& team);
+  void pull(const float* u, const float* start, double damping, Team& team);
+  void begin_from_guess(float* u, const float* start, const BendingStep& step, Team& team);
+  void bend_softly(float* u, const float* start, const BendingStep& step, Team& team);
+  void bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team);
 
   const Model& model_;
   const BendingLayout& layout_;
@@ -47,8 +47,8 @@ class SimdBending {
   double give_ = 0;  // s^2, of the last solution in the frame; 0: there was none
   double error_ = 0;
   kernels::AlignedVector<simd::EdgeSpans> spans_;  // d of the base
-  kernels::AlignedVector<float> rate_;  // of particles on their way to where they bend to
-  std::vector<double> energies_;        // J, per block
+  kernels::AlignedVector<float> from_;             // the start that damping measures from
+  std::vector<double> energies_;                   // J, per block
 };
 
 }  // namespace weft
