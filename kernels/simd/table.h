@@ -213,6 +213,10 @@ struct Table {
   void (*find_moved_pairs)(const PairMoves&, bool edges, std::size_t first, std::size_t last);
   /// Which of the boxes the one from low to high meets, a bit each.
   std::uint32_t (*find_met)(const BoxCluster&, const float* low, const float* high);
+  /// tubes: of its corners.
+  void (*reaches_of_triangle)(const ReachAxes&, const PointTube* const* tubes, TriangleReaches&);
+  /// Of `count` other triangles.
+  void (*meet_triangles)(const TriangleMeeting&, std::size_t count);
   /// Scratch as above.
   void (*relax_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
                       const YarnRelaxation&);
