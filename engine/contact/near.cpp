@@ -72,52 +72,103 @@ simd::PairMeasure NearSearch::measure_of(const ContactPoints& points, const Pair
   return {.pairs = pairs.blocks.data(),
           .points = points.starts(),
           .ways = points.ways(),
-          .reach = static_cast<float>(points.largest_thickness() + points.largest_reach()),
+          .reach = static_cast<float>(points.largest_thickness()) + 4 * points.rounding(),
           .beyond = static_cast<float>(tuning::kContactBeyond),
-          .distance = reinterpret_cast<float(*)[kLanes]>(distances.distance.data()),
+          .distance = distances.lanes(),
           .near = distances.near.data()};
 }
 
-void NearSearch::measure_block(const simd::PairMeasure& measure, std::size_t list,
-                               const PairList& pairs, std::size_t block) {
+/// Pairs of several blocks that are awake, side by side.
+class NearSearch::Gathered {
+ public:
+  Gathered(const simd::Table& table, const simd::PairMeasure& measure, bool edges, float travelled)
+      : table_(table), measure_(measure), edges_(edges), travelled_(travelled) {
+    measure_.pairs = &block_;
+    measure_.distance = &distance_;
+    measure_.near = &near_;
+  }
+  void add(std::size_t pair, const simd::PairBlock& block, Distances& to) {
+    for (std::size_t k = 0; k < 4; ++k) block_.point[k][count_] = block.point[k][pair % kLanes];
+    at_[count_++] = pair;
+    if (count_ == kLanes) finish(to);
+  }
+  void finish(Distances& to) {
+    if (count_ == 0) return;
+    for (std::size_t lane = count_; lane < kLanes; ++lane) {
+      for (auto& points : block_.point) points[lane] = points[0];
+    }
+    table_.measure_pairs(measure_, edges_, 0, 1);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::size_t block = at_[i] / kLanes, lane = at_[i] % kLanes;
+      to.distance[block][lane] = distance_[i] + travelled_;
+      to.near[block] = static_cast<std::uint16_t>(to.near[block] | (near_ >> i & 1u) << lane);
+    }
+    count_ = 0;
+  }
+
+ private:
+  const simd::Table& table_;
+  simd::PairMeasure measure_;
+  const bool edges_;
+  const float travelled_;
+  simd::PairBlock block_{};
+  float distance_[kLanes]{};
+  std::uint16_t near_ = 0;
+  std::array<std::size_t, kLanes> at_{};
+  std::size_t count_ = 0;
+};
+
+void NearSearch::measure_blocks(const simd::PairMeasure& measure, std::size_t list,
+                                const PairList& pairs, std::size_t first, std::size_t last) {
   Distances& d = distances_[list];
-  table_.measure_pairs(measure, has_edges(list), block, block + 1);
-  d.near[block] = static_cast<std::uint16_t>(d.near[block] & pairs.used[block]);
-  float least = d.distance[block][0];
-  for (const float distance : d.distance[block]) least = std::min(least, distance);
-  d.least[block] = simd::kSurelyApart * least + travelled_;
-  d.sleeps[block] = 0;
+  table_.measure_pairs(measure, has_edges(list), first, last);
+  for (std::size_t block = first; block < last; ++block) {
+    d.awake[block] = pairs.used[block];
+    d.near[block] = static_cast<std::uint16_t>(d.near[block] & pairs.used[block]);
+    for (float& distance : d.distance[block]) distance += travelled_ / simd::kSurelyApart;
+  }
+}
+
+/// Of blocks that are known.
+void NearSearch::measure_awake(const simd::PairMeasure& measure, std::size_t list,
+                               const PairList& pairs, std::size_t first, std::size_t last) {
+  Distances& d = distances_[list];
+  Gathered gathered(table_, measure, has_edges(list), travelled_ / simd::kSurelyApart);
+  for (std::size_t block = first; block < last; ++block) {
+    std::uint32_t bits = d.awake[block] =
+        static_cast<std::uint16_t>(d.awake[block] & pairs.used[block]);
+    if (std::popcount(bits) >= tuning::kAwakeAtOnce) {
+      measure_blocks(measure, list, pairs, block, block + 1);
+      continue;
+    }
+    d.near[block] = 0;
+    for (; bits != 0; bits &= bits - 1) {
+      gathered.add(block * kLanes + static_cast<std::size_t>(std::countr_zero(bits)),
+                   pairs.blocks[block], d);
+    }
+  }
+  gathered.finish(d);
 }
 
 void NearSearch::measure(const ContactPoints& points, const Candidates& candidates, bool have_moved,
                          Team& team) {
   travelled_ = have_moved ? 0 : travelled_ + (1 + 0x1p-20f) * points.travelled();
+  const auto reach = static_cast<float>(points.largest_thickness() + points.largest_reach());
+  const float near = travelled_ + reach + points.largest_way() + 8 * points.rounding();
   for (std::size_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
     Distances& d = distances_[list];
     d.resize(pairs.blocks.size());
     const simd::PairMeasure measure = measure_of(points, pairs, d);
-    const float near = travelled_ + measure.reach + points.largest_way() + 4 * points.rounding();
     const std::size_t known = have_moved ? 0 : d.count / kLanes;
     team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
-      for (std::size_t block = first; block < last; ++block) {
-        if (block < known && d.least[block] > near) {
-          d.near[block] = 0;
-          d.sleeps[block] = 1;
-        } else {
-          measure_block(measure, list, pairs, block);
-        }
-      }
+      const std::size_t until = std::clamp(known, first, last);
+      table_.find_small(d.lanes(), near / simd::kSurelyApart, d.awake.data(), first, until);
+      measure_awake(measure, list, pairs, first, until);
+      measure_blocks(measure, list, pairs, until, last);
     });
     d.count = pairs.size();
   }
-}
-
-void NearSearch::wake(const ContactPoints& points, const Candidates& candidates, std::size_t list,
-                      std::size_t block) {
-  if (distances_[list].sleeps[block] == 0) return;
-  measure_block(measure_of(points, candidates[list], distances_[list]), list, candidates[list],
-                block);
 }
 
 void NearSearch::measure_new(const ContactPoints& points, const Candidates& candidates,
@@ -130,8 +181,7 @@ void NearSearch::measure_new(const ContactPoints& points, const Candidates& cand
     const simd::PairMeasure measure = measure_of(points, pairs, d);
     const std::size_t known = d.count / kLanes;
     team.for_each_share(pairs.blocks.size() - known, [&](std::size_t first, std::size_t last) {
-      for (std::size_t block = known + first; block < known + last; ++block)
-        measure_block(measure, list, pairs, block);
+      measure_blocks(measure, list, pairs, known + first, known + last);
     });
     d.count = pairs.size();
   }
@@ -162,7 +212,7 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
 std::size_t NearSearch::bytes() const {
   std::size_t bytes = 0;
   for (const Distances& d : distances_)
-    bytes += bytes_of(d.distance) + bytes_of(d.near) + bytes_of(d.least) + bytes_of(d.sleeps);
+    bytes += bytes_of(d.distance) + bytes_of(d.near) + bytes_of(d.awake);
   return bytes;
 }
 

@@ -184,7 +184,10 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   way_of_near_ = (to_ - from_) * time * speeds_.of_near;
   travelled_ = std::sqrt(travelled) + (from_ - before) * time * speeds_.of_bodies;
   find_reach();
-  for (std::size_t slot = 0; slot < slots_; ++slot) write_box(slot, reach_[slot]);
+  for (std::size_t slot = 0; slot < slots_; ++slot) {
+    write_box(slot, reach_[slot]);
+    way_quads_[4 * slot + 3] = static_cast<float>(reach_[slot]);
+  }
   for (ContactSurface& surface : of_bodies()) {
     const PoseTravel& travel = clock.bodies()[surface.body].travel;
     const auto before = std::exchange(surface.begins, travel.at(from_));
@@ -243,6 +246,7 @@ void ContactPoints::place_vertex(std::uint32_t point) {
   start_[point] = surface.begins.placed(from + from_ * way);
   end_[point] = surface.ends.placed(from + to_ * way);
   write_start_and_way(point);
+  way_quads_[4 * std::size_t{point} + 3] = 0;
   write_box(point, surface.thickness + static_cast<double>(rounding_));
 }
 

@@ -95,7 +95,7 @@ class ContactPoints {
   void renew_tubes(Moved&& moved);
   /// It holds no longer.
   void forget_tube(std::uint32_t slot) { set_tube(slot, {Box::none(), Box::none()}); }
-  /// In quads, from the origin.
+  /// In quads, from the origin. The fourth of a way is the point's reach.
   const float* starts() const { return start_quads_.data(); }
   const float* ways() const { return way_quads_.data(); }
 

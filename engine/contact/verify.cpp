@@ -83,27 +83,21 @@ std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, do
 /// visit(list, i, points), of each pair of candidates that may have come nearer than `near` and is
 /// not left alone.
 template <class Visit>
-void Verification::for_each_moved(const ContactScene& scene, NearSearch& near_search,
+void Verification::for_each_moved(const ContactScene& scene, const NearSearch& near_search,
                                   const Candidates& candidates, double near, Team& team,
                                   Visit&& visit) {
   for (std::uint32_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
     moved_.resize(pairs.blocks.size());
-    const float within = static_cast<float>(near);
-    const float most = within + scene.points.largest_move() + 4 * scene.points.rounding();
+    const float spare = static_cast<float>(near) + near_search.travelled();
     const simd::PairMoves moves{.pairs = pairs.blocks.data(),
                                 .moves = scene.points.moves(),
-                                .distance = reinterpret_cast<const float(*)[kLanes]>(
-                                    near_search.distances()[list].distance.data()),
-                                .rounding = scene.points.rounding() + within,
+                                .distance = near_search.distances()[list].lanes(),
+                                .rounding = scene.points.rounding() + spare,
+                                .most = scene.points.largest_move() + 4 * scene.points.rounding(),
                                 .moved = moved_.data()};
     team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
-      for (std::size_t block = first; block < last; ++block) {
-        moved_[block] = 0;
-        if (near_search.least(list, block) > most) continue;
-        near_search.wake(scene.points, candidates, list, block);
-        table_.find_moved_pairs(moves, has_edges(list), block, block + 1);
-      }
+      table_.find_moved_pairs(moves, has_edges(list), first, last);
     });
     for (std::size_t block = 0; block < moved_.size(); ++block) {
       for (std::uint32_t bits = moved_[block] & pairs.used[block]; bits != 0; bits &= bits - 1) {
@@ -138,7 +132,7 @@ void Verification::find(const ContactScene& scene, const CandidateSearch& search
   leave_each_once(candidates);
 }
 
-void Verification::find_late(const ContactScene& scene, NearSearch& near_search,
+void Verification::find_late(const ContactScene& scene, const NearSearch& near_search,
                              const Candidates& candidates, Team& team) {
   failures_.clear();
   const ContactPoints& points = scene.points;

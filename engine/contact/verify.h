@@ -31,12 +31,12 @@ class Verification {
   const std::vector<Failure>& failures() const { return failures_; }
   /// Instead, pairs that have met no other, but have come nearer than their thickness where nothing
   /// was expected: time is 1.
-  void find_late(const ContactScene& scene, NearSearch& near_search, const Candidates& candidates,
-                 Team& team);
+  void find_late(const ContactScene& scene, const NearSearch& near_search,
+                 const Candidates& candidates, Team& team);
 
  private:
   template <class Visit>
-  void for_each_moved(const ContactScene& scene, NearSearch& near_search,
+  void for_each_moved(const ContactScene& scene, const NearSearch& near_search,
                       const Candidates& candidates, double near, Team& team, Visit&& visit);
   void leave_each_once(const Candidates& candidates);
   void look_beside_strayed(const ContactScene& scene, const CandidateSearch& search,

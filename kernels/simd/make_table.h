@@ -128,6 +128,7 @@ constexpr Table make_table() {
           .measure_pairs = measure_pairs,
           .touch_pairs = touch_pairs,
           .find_moved_pairs = find_moved_pairs,
+          .find_small = find_small,
           .find_met = find_met,
           .reaches_of_triangle = reaches_of_triangle,
           .meet_triangles = meet_triangles,

@@ -21,8 +21,9 @@ inline constexpr float kSurelyApart = 0.95f;
 struct PairMeasure {
   const PairBlock* pairs = nullptr;
   const float* points = nullptr;  // in quads
-  const float* ways = nullptr;    // likewise: that the points are expected to take
-  float reach = 0;                // m: who may come nearer than this is near
+  const float* ways = nullptr;    // likewise: that the points are expected to take; the fourth is
+                                  // what a point may come off it
+  float reach = 0;                // m: who may come nearer than this, but for that, is near
   float beyond = 0;               // of an edge: so far past its ends it may face another one
   float (*distance)[kernels::kLanes] = nullptr;  // written, per block
   std::uint16_t* near = nullptr;                 // written, per block, a bit per lane
@@ -45,6 +46,7 @@ struct PairMoves {
   const float* moves = nullptr;                        // of the points, in quads
   const float (*distance)[kernels::kLanes] = nullptr;  // in the first state
   float rounding = 0;                                  // m, of the distances
+  float most = 0;                                      // m: no corner moves more beside another one
   std::uint16_t* moved = nullptr;                      // written: by more than their distance
 };
 /// kLanes boxes; of those that are not used `low` is above `high`.
