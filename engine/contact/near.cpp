@@ -37,32 +37,62 @@ double closing(const ContactPoints& points, PairKind kind, const Four& four, Vec
   return std::max(0.0, second - first) + reach;
 }
 
-/// Whether a pair is to be looked at, and how.
-struct Seen {
-  bool is_near = false;
-  bool is_under = false;
-  Vector normal{};
-};
+/// Whether a neighbour is nearer where the interval begins.
+bool is_ghost_by(const ContactPoints& points, const Pair& pair, const FourPoints& x,
+                 const reference::Nearest& nearest, Vector normal, double lean) {
+  return is_ghost(points.surfaces(), pair, x, nearest, normal, lean,
+                  [&](std::uint32_t point) { return points.start(point); });
+}
 
-Seen see(ContactPoints& points, const Pair& pair, const Four& four, bool is_inside) {
+/// A pair that looks like this where the interval begins.
+SeenPair see(const ContactPoints& points, const Pair& pair, const Four& four, const FourPoints& x,
+             const Look& look, bool is_inside) {
+  const ContactSurface& later = points.later(pair);
+  if (look.distance - closing(points, pair.kind, four, look.normal) > later.thickness) return {};
+  const Vector passes = points.way(four[0]) - points.way(four[3]);
+  const bool stays = length(passes) < tuning::kContactPassing * look.distance;
+  const bool is_placed = stays && is_in_place(pair.kind, look.nearest);
+  if (!is_inside && is_placed &&
+      is_ghost_by(points, pair, x, look.nearest, look.normal, tuning::kContactLean))
+    return {};
+  return {.sight = later.two_sided ? Sight::in_front : Sight::asks_side,
+          .is_inside = is_inside,
+          .is_placed = is_placed,
+          .look = look};
+}
+
+/// Threads may do so at a time: the normals of a surface, which are computed when they are asked
+/// for, are left to `settle`.
+SeenPair see(const ContactPoints& points, const Tangles& tangles, const Pair& pair,
+             const Four& four) {
+  const bool is_inside = tangles.is_inside(four);
+  // Faces and edges between particles that are inside follow these.
+  const bool is_of_particle = pair.kind == PairKind::point_triangle && !pair.is_turned();
+  if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) return {};
   if (!(points.largest_inverse_mass(four) > 0) || !may_meet(points, pair.kind, four)) return {};
   const FourPoints x = points.starts_of(four);
+  const Look look = look_apart(pair, x);
+  if (!look.is_apart()) return {.sight = Sight::touches, .is_inside = is_inside, .look = look};
+  return see(points, pair, four, x, look, is_inside);
+}
+
+/// What may be in front of a surface or behind it is one of both, or far.
+SeenPair settle(ContactPoints& points, const Pair& pair, const Four& four, SeenPair seen) {
+  const FourPoints x = points.starts_of(four);
   ContactSurface& later = points.later(pair);
-  const Look seen = look(later, pair, x);
-  if (seen.distance - closing(points, pair.kind, four, seen.normal) > later.thickness) return {};
-  const Vector passes = points.way(four[0]) - points.way(four[3]);
-  const bool stays = length(passes) < tuning::kContactPassing * seen.distance;
-  const auto is_ghost_by = [&](double lean) {
-    return is_ghost(points.surfaces(), pair, x, seen.nearest, seen.normal, lean,
-                    [&](std::uint32_t point) { return points.start(point); });
-  };
-  const bool is_placed = stays && is_in_place(pair.kind, seen.nearest);
-  if (!is_inside && is_placed && is_ghost_by(tuning::kContactLean)) return {};
-  const Seen in_front{.is_near = true, .normal = seen.normal};
-  if (later.two_sided || !is_behind(later, pair, seen.nearest)) return in_front;
-  // Behind what is not the nearest of its surface the cloth may be beside it.
-  if (!is_inside) return !is_placed || is_ghost_by(0) ? in_front : Seen{};
-  return {.is_near = true, .is_under = true, .normal = -1.0 * seen.normal};
+  if (seen.sight == Sight::touches)
+    seen = see(points, pair, four, x, look(later, pair, x), seen.is_inside);
+  if (seen.sight != Sight::asks_side) return seen;
+  seen.sight = Sight::in_front;
+  if (!is_behind(later, pair, seen.look.nearest)) return seen;
+  if (seen.is_inside) {
+    seen.sight = Sight::behind;
+  } else if (seen.is_placed &&
+             !is_ghost_by(points, pair, x, seen.look.nearest, seen.look.normal, 0)) {
+    // Behind what is not the nearest of its surface the cloth may be beside it.
+    seen.sight = Sight::far;
+  }
+  return seen;
 }
 
 }  // namespace
@@ -188,29 +218,35 @@ void NearSearch::measure_new(const ContactPoints& points, const Candidates& cand
 }
 
 void NearSearch::find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles,
-                      Near& near) const {
+                      Near& near, Team& team) {
   for (std::size_t list = 0; list < kPairLists; ++list) {
     near[list].clear();
     const PairList& pairs = candidates[list];
+    looked_at_.clear();
     for (std::size_t block = 0; block < distances_[list].near.size(); ++block) {
-      for (std::uint32_t bits = distances_[list].near[block]; bits != 0; bits &= bits - 1) {
-        const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
-        const Pair& pair = pairs.pairs[i];
-        const Four four = pairs.points(i);
-        const bool is_inside = tangles.is_inside(four);
-        // Faces and edges between particles that are inside follow these.
-        const bool is_of_particle = pair.kind == PairKind::point_triangle && !pair.is_turned();
-        if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) continue;
-        const Seen seen = see(points, pair, four, is_inside);
-        if (!seen.is_near) continue;
-        near[list].add(pair, four, seen.normal, points.later(pair).thickness, seen.is_under);
-      }
+      for (std::uint32_t bits = distances_[list].near[block]; bits != 0; bits &= bits - 1)
+        looked_at_.push_back(block * kLanes + static_cast<std::size_t>(std::countr_zero(bits)));
+    }
+    if (seen_.size() < looked_at_.size()) seen_.resize(looked_at_.size());
+    team.for_each(looked_at_.size(), [&](std::size_t k) {
+      const std::size_t i = looked_at_[k];
+      seen_[k] = see(points, tangles, pairs.pairs[i], pairs.points(i));
+    });
+    for (std::size_t k = 0; k < looked_at_.size(); ++k) {
+      if (seen_[k].sight == Sight::far) continue;
+      const std::size_t i = looked_at_[k];
+      const Pair& pair = pairs.pairs[i];
+      const SeenPair seen = settle(points, pair, pairs.points(i), seen_[k]);
+      if (seen.sight == Sight::far) continue;
+      const bool is_under = seen.sight == Sight::behind;
+      near[list].add(pair, pairs.points(i), (is_under ? -1.0 : 1.0) * seen.look.normal,
+                     points.later(pair).thickness, is_under);
     }
   }
 }
 
 std::size_t NearSearch::bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = bytes_of(looked_at_) + bytes_of(seen_);
   for (const Distances& d : distances_)
     bytes += bytes_of(d.distance) + bytes_of(d.near) + bytes_of(d.awake);
   return bytes;

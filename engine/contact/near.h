@@ -36,6 +36,17 @@ struct Distances {
   }
 };
 
+/// far: it is not near. asks_side: it is in front of the later surface or behind it, or far.
+/// touches: it may be any of these.
+enum class Sight : std::uint8_t { far, in_front, behind, asks_side, touches };
+
+/// How a pair looks that may be near.
+struct SeenPair {
+  Sight sight = Sight::far;
+  bool is_inside = false, is_placed = false;  // placed: no neighbour may take its place
+  Look look{};
+};
+
 class NearSearch {
  public:
   explicit NearSearch(const simd::Table& table) : table_(table) {}
@@ -54,8 +65,8 @@ class NearSearch {
   float travelled() const { return travelled_; }
   /// Pairs with a surface that the cloth is behind are left out, but for particles that are known
   /// to be inside: the cloth lies beside another surface there.
-  void find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles,
-            Near& near) const;
+  void find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles, Near& near,
+            Team& team);
   const std::array<Distances, kPairLists>& distances() const { return distances_; }
   std::size_t bytes() const;
 
@@ -71,6 +82,8 @@ class NearSearch {
   const simd::Table& table_;
   float travelled_ = 0;
   std::array<Distances, kPairLists> distances_;
+  std::vector<std::size_t> looked_at_;  // pairs; scratch
+  std::vector<SeenPair> seen_;          // likewise
 };
 
 }  // namespace weft
