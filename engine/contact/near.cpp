@@ -77,22 +77,22 @@ SeenPair see(const ContactPoints& points, const Tangles& tangles, const Pair& pa
 }
 
 /// What may be in front of a surface or behind it is one of both, or far.
-SeenPair settle(ContactPoints& points, const Pair& pair, const Four& four, SeenPair seen) {
-  const FourPoints x = points.starts_of(four);
+void settle(ContactPoints& points, const Pair& pair, const Four& four, SeenPair& seen) {
   ContactSurface& later = points.later(pair);
-  if (seen.sight == Sight::touches)
+  if (seen.sight == Sight::touches) {
+    const FourPoints x = points.starts_of(four);
     seen = see(points, pair, four, x, look(later, pair, x), seen.is_inside);
-  if (seen.sight != Sight::asks_side) return seen;
+  }
+  if (seen.sight != Sight::asks_side) return;
   seen.sight = Sight::in_front;
-  if (!is_behind(later, pair, seen.look.nearest)) return seen;
+  if (!is_behind(later, pair, seen.look.nearest)) return;
   if (seen.is_inside) {
     seen.sight = Sight::behind;
-  } else if (seen.is_placed &&
-             !is_ghost_by(points, pair, x, seen.look.nearest, seen.look.normal, 0)) {
+  } else if (seen.is_placed && !is_ghost_by(points, pair, points.starts_of(four), seen.look.nearest,
+                                            seen.look.normal, 0)) {
     // Behind what is not the nearest of its surface the cloth may be beside it.
     seen.sight = Sight::far;
   }
-  return seen;
 }
 
 }  // namespace
@@ -233,13 +233,15 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
       seen_[k] = see(points, tangles, pairs.pairs[i], pairs.points(i));
     });
     for (std::size_t k = 0; k < looked_at_.size(); ++k) {
-      if (seen_[k].sight == Sight::far) continue;
+      SeenPair& seen = seen_[k];
+      if (seen.sight == Sight::far) continue;
       const std::size_t i = looked_at_[k];
       const Pair& pair = pairs.pairs[i];
-      const SeenPair seen = settle(points, pair, pairs.points(i), seen_[k]);
+      const Four four = pairs.points(i);
+      settle(points, pair, four, seen);
       if (seen.sight == Sight::far) continue;
       const bool is_under = seen.sight == Sight::behind;
-      near[list].add(pair, pairs.points(i), (is_under ? -1.0 : 1.0) * seen.look.normal,
+      near[list].add(pair, four, (is_under ? -1.0 : 1.0) * seen.look.normal,
                      points.later(pair).thickness, is_under);
     }
   }
