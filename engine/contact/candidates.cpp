@@ -1,6 +1,7 @@
 #include "engine/contact/candidates.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -48,6 +49,7 @@ class OwnedFeatures {
       points_.tube(corners[k]);
       corners_b_[waiting_][k] = corners[k];
     }
+    wanted_[waiting_] = owned_with(b);
     triangles_b_[waiting_++] = b;
   }
   /// Adds the features of all that were told.
@@ -57,6 +59,7 @@ class OwnedFeatures {
                            .reaches = &reaches_,
                            .tubes = points_.lane_tubes(),
                            .corners = corners_b_.data(),
+                           .wanted = wanted_.data(),
                            .met = met_.data()},
                           waiting_);
     for (std::size_t i = 0; i < waiting_; ++i) {
@@ -66,32 +69,38 @@ class OwnedFeatures {
   }
 
  private:
-  /// Bits of simd::TriangleMeeting.
+  /// Bits of simd::TriangleMeeting: the features that both triangles own.
+  std::uint16_t owned_with(std::uint32_t b) const {
+    const std::uint32_t of_a = a_.triangles->owns[triangle_a_], of_b = b_.triangles->owns[b];
+    std::uint32_t owned = (of_a & 7) << 1;
+    if (a_.triangles->is_point(triangle_a_)) return static_cast<std::uint16_t>(owned);
+    owned |= (of_b & 7) << 4;
+    for (std::uint32_t j = 0; j < 3; ++j) {
+      if (b_.triangles->owns_edge(b, j)) owned |= (of_a >> 3 & 7) << (7 + 3 * j);
+    }
+    return static_cast<std::uint16_t>(owned);
+  }
   void add_features(std::size_t i, std::uint32_t met) {
-    const std::uint32_t b = triangles_b_[i];
-    const auto& corners_b = corners_b_[i];
     may_cross_[triangle_a_] = 1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if ((met >> (1 + k) & 1) == 0 || !a_.triangles->owns_corner(triangle_a_, k)) continue;
+    for (std::uint32_t left = met & ~1u; left != 0; left &= left - 1)
+      add_feature(triangles_b_[i], corners_b_[i], static_cast<std::size_t>(std::countr_zero(left)));
+  }
+  /// Of the triangle b, which has these corners.
+  void add_feature(std::uint32_t b, const std::uint32_t (&corners)[3], std::size_t bit) {
+    if (bit < 4) {
+      const std::uint32_t point = corners_a_[bit - 1];
+      add_pair({point - a_.first_point, b, surfaces_.a, surfaces_.b, PairKind::point_triangle},
+               {point, corners[0], corners[1], corners[2]}, b);
+    } else if (bit < 7) {
+      const std::uint32_t point = corners[bit - 4];
       add_pair(
-          {corners_a_[k] - a_.first_point, b, surfaces_.a, surfaces_.b, PairKind::point_triangle},
-          {corners_a_[k], corners_b[0], corners_b[1], corners_b[2]}, b);
-    }
-    if (a_.triangles->is_point(triangle_a_)) return;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if ((met >> (4 + k) & 1) == 0 || !b_.triangles->owns_corner(b, k)) continue;
-      add_pair({corners_b[k] - b_.first_point, triangle_a_, surfaces_.b, surfaces_.a,
-                PairKind::point_triangle},
-               {corners_b[k], corners_a_[0], corners_a_[1], corners_a_[2]}, b);
-    }
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (!b_.triangles->owns_edge(b, j)) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        if ((met >> (7 + 3 * j + k) & 1) == 0 || !a_.triangles->owns_edge(triangle_a_, k)) continue;
-        add_pair({a_.triangles->edges_of[triangle_a_][k], b_.triangles->edges_of[b][j], surfaces_.a,
-                  surfaces_.b, PairKind::edges},
-                 {corners_a_[k], corners_a_[(k + 1) % 3], corners_b[j], corners_b[(j + 1) % 3]}, b);
-      }
+          {point - b_.first_point, triangle_a_, surfaces_.b, surfaces_.a, PairKind::point_triangle},
+          {point, corners_a_[0], corners_a_[1], corners_a_[2]}, b);
+    } else {
+      const std::size_t j = (bit - 7) / 3, k = (bit - 7) % 3;
+      add_pair({a_.triangles->edges_of[triangle_a_][k], b_.triangles->edges_of[b][j], surfaces_.a,
+                surfaces_.b, PairKind::edges},
+               {corners_a_[k], corners_a_[(k + 1) % 3], corners[j], corners[(j + 1) % 3]}, b);
     }
   }
   /// Where the interval begins. Lengths do not matter.
@@ -128,7 +137,7 @@ class OwnedFeatures {
   std::size_t waiting_ = 0;
   std::array<std::uint32_t, kernels::kLanes> triangles_b_{};
   std::array<std::uint32_t[3], kernels::kLanes> corners_b_{};
-  std::array<std::uint16_t, kernels::kLanes> met_{};
+  std::array<std::uint16_t, kernels::kLanes> wanted_{}, met_{};
 };
 
 }  // namespace

@@ -84,6 +84,7 @@ struct TriangleMeeting {
   const TriangleReaches* reaches = nullptr;     // of the triangle along these
   const PointTube* tubes = nullptr;             // of all points
   const std::uint32_t (*corners)[3] = nullptr;  // of each other triangle
+  const std::uint16_t* wanted = nullptr;        // likewise: the features to look at
   std::uint16_t* met = nullptr;                 // written, likewise
 };
 

@@ -2,6 +2,8 @@
 /// keeps their tubes apart where these begin and where they end. Lanes are directions.
 #pragma once
 
+#include <bit>
+
 #include "kernels/simd/lanes.h"
 #include "kernels/simd/nearness_data.h"
 
@@ -84,6 +86,18 @@ void reaches_of_triangle(const ReachAxes& axes, const PointTube* const* tubes,
   for (std::uint32_t k = 0; k < 3; ++k) join(to.corner[k], to.corner[(k + 1) % 3], to.edge[k]);
 }
 
+/// Of two triangles that meet: a bit of TriangleMeeting. corner: of the other one, and `whole`.
+[[gnu::always_inline]] inline bool meet_at(std::uint32_t bit, const TriangleReaches& its,
+                                           const FeatureReach (&corner)[3],
+                                           const FeatureReach& whole) {
+  if (bit < 4) return meet(its.corner[bit - 1], whole);
+  if (bit < 7) return meet(corner[bit - 4], its.whole);
+  const std::uint32_t j = (bit - 7) / 3;
+  FeatureReach edge;
+  join(corner[j], corner[(j + 1) % 3], edge);
+  return meet(its.edge[bit - 7 - 3 * j], edge);
+}
+
 void meet_triangles(const TriangleMeeting& meeting, std::size_t count) {
   const TriangleReaches& its = *meeting.reaches;
   for (std::size_t i = 0; i < count; ++i) {
@@ -92,19 +106,10 @@ void meet_triangles(const TriangleMeeting& meeting, std::size_t count) {
       return meeting.tubes[meeting.corners[i][k]];
     };
     write_reaches(*meeting.axes, tube(0), tube(1), tube(2), corner, whole);
-    std::uint32_t met = 0;
-    const auto note = [&](std::uint32_t bit, bool meets) { met |= (meets ? 1u : 0u) << bit; };
-    if (meet(its.whole, whole)) {
-      met = 1;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        note(1 + k, meet(its.corner[k], whole));
-        note(4 + k, meet(corner[k], its.whole));
-      }
-      for (std::uint32_t j = 0; j < 3; ++j) {
-        FeatureReach edge;
-        join(corner[j], corner[(j + 1) % 3], edge);
-        for (std::uint32_t k = 0; k < 3; ++k) note(7 + 3 * j + k, meet(its.edge[k], edge));
-      }
+    std::uint32_t met = meet(its.whole, whole) ? 1 : 0;
+    for (std::uint32_t left = met != 0 ? meeting.wanted[i] & ~1u : 0; left != 0; left &= left - 1) {
+      const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
+      met |= (meet_at(bit, its, corner, whole) ? 1u : 0u) << bit;
     }
     meeting.met[i] = static_cast<std::uint16_t>(met);
   }

@@ -67,16 +67,20 @@ struct Triangles {
       }
     }
   }
-  std::array<std::uint16_t, kOthers> meet(const simd::Table& table) const {
+  std::array<std::uint16_t, kOthers> meet(const simd::Table& table,
+                                          std::uint16_t wanted = 0xffff) const {
     simd::TriangleReaches reaches;
     const simd::PointTube* const first[] = {&lanes[0], &lanes[1], &lanes[2]};
     table.reaches_of_triangle(axes, first, reaches);
     std::array<std::uint16_t, kOthers> met;
     met.fill(0xffff);
+    std::array<std::uint16_t, kOthers> wanted_of_each;
+    wanted_of_each.fill(wanted);
     table.meet_triangles({.axes = &axes,
                           .reaches = &reaches,
                           .tubes = lanes.data(),
                           .corners = corners.data(),
+                          .wanted = wanted_of_each.data(),
                           .met = met.data()},
                          kOthers);
     return met;
@@ -132,7 +136,10 @@ TEST_CASE("features meet unless a direction keeps their tubes apart, on each ins
     const Triangles triangles(seed);
     const auto found = triangles.meet(simd::table(supported_isas().front()));
     for (const simd::Isa isa : supported_isas()) CHECK(triangles.meet(simd::table(isa)) == found);
+    const auto wanted = static_cast<std::uint16_t>(seed * 40503);
+    const auto some = triangles.meet(simd::table(supported_isas().front()), wanted);
     for (std::size_t t = 0; t < Triangles::kOthers; ++t) {
+      CHECK(some[t] == (found[t] & (wanted | 1)));
       const bool is_whole = (found[t] & 1) != 0;
       if (!is_whole) CHECK(found[t] == 0);
       for (std::uint32_t bit = 0; bit < 16; ++bit) {
