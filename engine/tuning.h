@@ -59,6 +59,9 @@ inline constexpr double kContactRegion = 4;
 /// m: places are floats from an origin, which is a multiple of this. A finer grid moves the origin
 /// more often, and candidates are looked for anew.
 inline constexpr double kContactGrid = 2;
+/// Of the pairs of a block beside meshes that has 16: where so many are awake all are measured,
+/// which is as fast as to gather these. It is about time alone.
+inline constexpr int kAwakeAtOnce = 8;
 /// m: features that are no farther apart are on no side of each other. At 1e-15 cloth that begins
 /// exactly on a mesh does not come to lie on it; 1e-7 changes nothing.
 inline constexpr double kTouching = 1e-9;

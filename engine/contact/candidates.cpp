@@ -1,8 +1,7 @@
 #include "engine/contact/candidates.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <bit>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -10,94 +9,16 @@
 namespace weft {
 namespace {
 
-/// Directions along which the boxes of triangles are to meet besides x, y and z: the normal of a
-/// triangle of the cloth, and in its plane the three across its edges. By x, y and z alone big
-/// boxes of slanted triangles and edges meet those of dozens that lie beside them. Lengths do not
-/// matter.
-struct TriangleAxes {
-  alignas(16) float x[4]{}, y[4]{}, z[4]{};
-
-  void set(std::size_t i, kernels::Vector v) {
-    const double l = length(v), scale = l > 0 ? 1 / l : 0;
-    x[i] = static_cast<float>(scale * v.x);
-    y[i] = static_cast<float>(scale * v.y);
-    z[i] = static_cast<float>(scale * v.z);
-  }
-};
-
-/// What something reaches along x, y, z and an unused direction, and along the four axes: when
-/// tubes begin, and when they end.
-struct Reach {
-  static constexpr std::size_t kAxes = 8;
-  alignas(16) float low[2 * kAxes], high[2 * kAxes];
-
-  void add(const Reach& other) {
-    for (std::size_t k = 0; k < 2 * kAxes; ++k) {
-      low[k] = std::min(low[k], other.low[k]);
-      high[k] = std::max(high[k], other.high[k]);
-    }
-  }
-  /// What is on one side of the other at both ends is there all of the way.
-  bool meets(const Reach& other) const {
-    int apart = 0;
-    for (std::size_t k = 0; k < kAxes; ++k) {
-      apart |= static_cast<int>(low[k] > other.high[k]) &
-               static_cast<int>(low[kAxes + k] > other.high[kAxes + k]);
-      apart |= static_cast<int>(high[k] < other.low[k]) &
-               static_cast<int>(high[kAxes + k] < other.low[kAxes + k]);
-    }
-    return apart == 0;
-  }
-};
-using CornerReaches = std::array<Reach, 3>;
-
-Reach sum(const Reach& a, const Reach& b) {
-  Reach all = a;
-  all.add(b);
-  return all;
-}
-Reach sum(const CornerReaches& reaches) { return sum(sum(reaches[0], reaches[1]), reaches[2]); }
-
-struct Range {
-  float low = 0, high = 0;
-};
-/// Of a box along one of the axes, and what rounding adds.
-Range range_along(const TriangleAxes& axes, std::size_t i, const Box& box) {
-  float middle = 0, wide = 0, size = 0;
-  const float axis[] = {axes.x[i], axes.y[i], axes.z[i]};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float m = 0.5f * (box.low[k] + box.high[k]), half = box.high[k] - m;
-    middle += axis[k] * m;
-    wide += std::abs(axis[k]) * half;
-    size += std::abs(m) + half;
-  }
-  wide += 0x1p-20f * size;
-  return {middle - wide, middle + wide};
-}
-void write_reach(const TriangleAxes& axes, const Box& box, float* low, float* high) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    low[k] = box.low[k];
-    high[k] = box.high[k];
-  }
-  low[3] = high[3] = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Range range = range_along(axes, i, box);
-    low[4 + i] = range.low;
-    high[4 + i] = range.high;
-  }
-}
-Reach reach_along(const TriangleAxes& axes, const Tube& tube) {
-  Reach reach;
-  write_reach(axes, tube.begins, reach.low, reach.high);
-  write_reach(axes, tube.ends, reach.low + Reach::kAxes, reach.high + Reach::kAxes);
-  return reach;
-}
-
-/// Adds the pairs of features that a triangle of one surface and one of another own.
+/// Adds the pairs of features that a triangle of one surface and those of another one own. By x, y
+/// and z alone big boxes of slanted triangles and edges meet those of dozens that lie beside them:
+/// tubes are to meet along the normal of the first triangle, and in its plane across its edges,
+/// too.
 class OwnedFeatures {
  public:
-  OwnedFeatures(ContactPoints& points, SurfacePair surfaces, Candidates& candidates)
-      : points_(points),
+  OwnedFeatures(const simd::Table& table, ContactPoints& points, SurfacePair surfaces,
+                Candidates& candidates)
+      : table_(table),
+        points_(points),
         surfaces_(surfaces),
         a_(points.surfaces()[surfaces.a]),
         b_(points.surfaces()[surfaces.b]),
@@ -105,107 +26,137 @@ class OwnedFeatures {
         candidates_(candidates) {}
 
   /// The triangle of the first surface that others are beside from now on.
-  void begin(std::uint32_t a) { begin(a, points_.tubes(a_.points_of(a))); }
+  void begin(std::uint32_t a) {
+    const TriangleSurface::Triangle points = a_.points_of(a);
+    for (const std::uint32_t point : points) points_.tube(point);
+    const simd::PointTube* tubes = points_.lane_tubes();
+    begin(a, {tubes + points[0], tubes + points[1], tubes + points[2]});
+  }
   /// tubes: of its corners.
-  void begin(std::uint32_t a, const std::array<Tube, 3>& tubes) {
+  void begin(std::uint32_t a, const std::array<const simd::PointTube*, 3>& tubes) {
+    finish();
     triangle_a_ = a;
     corners_a_ = a_.points_of(a);
     set_axes();
-    for (std::size_t k = 0; k < 3; ++k) corner_a_[k] = reach_along(axes_, tubes[k]);
-    for (std::size_t k = 0; k < 3; ++k) edge_a_[k] = sum(corner_a_[k], corner_a_[(k + 1) % 3]);
-    whole_a_ = sum(corner_a_);
+    table_.reaches_of_triangle(axes_, tubes.data(), reaches_);
   }
   std::uint32_t triangle() const { return triangle_a_; }
-
+  /// It is beside that of the second surface.
   void add(std::uint32_t b) {
-    triangle_b_ = b;
-    corners_b_ = b_.points_of(b);
-    if (is_beside()) return;
-    for (std::size_t k = 0; k < 3; ++k)
-      corner_b_[k] = reach_along(axes_, points_.tube(corners_b_[k]));
-    const Reach whole_b = sum(corner_b_);
-    if (!whole_a_.meets(whole_b)) return;
-    may_cross_[triangle_a_] = 1;
+    if (waiting_ == kernels::kLanes) finish();
+    const TriangleSurface::Triangle corners = b_.points_of(b);
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!a_.triangles->owns_corner(triangle_a_, k) || !corner_a_[k].meets(whole_b)) continue;
-      add_pair(
-          {corners_a_[k] - a_.first_point, b, surfaces_.a, surfaces_.b, PairKind::point_triangle},
-          {corners_a_[k], corners_b_[0], corners_b_[1], corners_b_[2]});
+      points_.tube(corners[k]);
+      corners_b_[waiting_][k] = corners[k];
     }
-    if (a_.triangles->is_point(triangle_a_)) return;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!b_.triangles->owns_corner(b, k) || !corner_b_[k].meets(whole_a_)) continue;
-      add_pair({corners_b_[k] - b_.first_point, triangle_a_, surfaces_.b, surfaces_.a,
-                PairKind::point_triangle},
-               {corners_b_[k], corners_a_[0], corners_a_[1], corners_a_[2]});
+    wanted_[waiting_] = owned_with(b);
+    triangles_b_[waiting_++] = b;
+  }
+  /// Adds the features of all that were told.
+  void finish() {
+    if (waiting_ == 0) return;
+    table_.meet_triangles({.axes = &axes_,
+                           .reaches = &reaches_,
+                           .tubes = points_.lane_tubes(),
+                           .corners = corners_b_.data(),
+                           .wanted = wanted_.data(),
+                           .met = met_.data()},
+                          waiting_);
+    for (std::size_t i = 0; i < waiting_; ++i) {
+      if (met_[i] != 0) add_features(i, met_[i]);
     }
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (b_.triangles->owns_edge(b, j)) add_edges(j);
-    }
+    waiting_ = 0;
   }
 
  private:
-  /// Whether all of the second triangle is on one side of the first, along its normal: most are.
-  bool is_beside() const {
-    const Tube* tubes[] = {&points_.tube(corners_b_[0]), &points_.tube(corners_b_[1]),
-                           &points_.tube(corners_b_[2])};
-    const auto reach = [&](Box Tube::*when) {
-      float low = std::numeric_limits<float>::max(), high = -low;
-      for (const Tube* tube : tubes) {
-        const Range range = range_along(axes_, 0, tube->*when);
-        low = std::min(low, range.low);
-        high = std::max(high, range.high);
-      }
-      return Range{low, high};
-    };
-    constexpr std::size_t kNormal = 4, kEnd = Reach::kAxes + kNormal;
-    const Range begins = reach(&Tube::begins), ends = reach(&Tube::ends);
-    return (begins.low > whole_a_.high[kNormal] && ends.low > whole_a_.high[kEnd]) ||
-           (begins.high < whole_a_.low[kNormal] && ends.high < whole_a_.low[kEnd]);
+  /// Bits of simd::TriangleMeeting: the features that both triangles own.
+  std::uint16_t owned_with(std::uint32_t b) const {
+    const std::uint32_t of_a = a_.triangles->owns[triangle_a_], of_b = b_.triangles->owns[b];
+    std::uint32_t owned = (of_a & 7) << 1;
+    if (a_.triangles->is_point(triangle_a_)) return static_cast<std::uint16_t>(owned);
+    owned |= (of_b & 7) << 4;
+    for (std::uint32_t j = 0; j < 3; ++j) {
+      if (b_.triangles->owns_edge(b, j)) owned |= (of_a >> 3 & 7) << (7 + 3 * j);
+    }
+    return static_cast<std::uint16_t>(owned);
   }
-  /// In the plane of the triangle, where the interval begins.
+  void add_features(std::size_t i, std::uint32_t met) {
+    may_cross_[triangle_a_] = 1;
+    for (std::uint32_t left = met & ~1u; left != 0; left &= left - 1)
+      add_feature(triangles_b_[i], corners_b_[i], static_cast<std::size_t>(std::countr_zero(left)));
+  }
+  /// Of the triangle b, which has these corners.
+  void add_feature(std::uint32_t b, const std::uint32_t (&corners)[3], std::size_t bit) {
+    if (bit < 4) {
+      const std::uint32_t point = corners_a_[bit - 1];
+      add_pair({point - a_.first_point, b, surfaces_.a, surfaces_.b, PairKind::point_triangle},
+               {point, corners[0], corners[1], corners[2]}, b);
+    } else if (bit < 7) {
+      const std::uint32_t point = corners[bit - 4];
+      add_pair(
+          {point - b_.first_point, triangle_a_, surfaces_.b, surfaces_.a, PairKind::point_triangle},
+          {point, corners_a_[0], corners_a_[1], corners_a_[2]}, b);
+    } else {
+      const std::size_t j = (bit - 7) / 3, k = (bit - 7) % 3;
+      add_pair({a_.triangles->edges_of[triangle_a_][k], b_.triangles->edges_of[b][j], surfaces_.a,
+                surfaces_.b, PairKind::edges},
+               {corners_a_[k], corners_a_[(k + 1) % 3], corners[j], corners[(j + 1) % 3]}, b);
+    }
+  }
+  /// Where the interval begins. Lengths do not matter.
   void set_axes() {
     const kernels::Vector x[] = {points_.start(corners_a_[0]), points_.start(corners_a_[1]),
                                  points_.start(corners_a_[2])};
     const kernels::Vector n = cross(x[1] - x[0], x[2] - x[0]);
-    axes_.set(0, n);
-    for (std::size_t k = 0; k < 3; ++k) axes_.set(1 + k, cross(n, x[(k + 1) % 3] - x[k]));
+    set_axis(0, n);
+    for (std::size_t k = 0; k < 3; ++k) set_axis(1 + k, cross(n, x[(k + 1) % 3] - x[k]));
   }
-  /// Of the first triangle with the edge j of the second.
-  void add_edges(std::size_t j) {
-    const std::size_t next = (j + 1) % 3;
-    const Reach edge_b = sum(corner_b_[j], corner_b_[next]);
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (!a_.triangles->owns_edge(triangle_a_, i) || !edge_a_[i].meets(edge_b)) continue;
-      add_pair({a_.triangles->edges_of[triangle_a_][i], b_.triangles->edges_of[triangle_b_][j],
-                surfaces_.a, surfaces_.b, PairKind::edges},
-               {corners_a_[i], corners_a_[(i + 1) % 3], corners_b_[j], corners_b_[next]});
+  void set_axis(std::size_t i, kernels::Vector v) {
+    const double l = length(v), scale = l > 0 ? 1 / l : 0;
+    for (const std::size_t lane : {4 + i, 12 + i}) {
+      axes_.x[lane] = static_cast<float>(scale * v.x);
+      axes_.y[lane] = static_cast<float>(scale * v.y);
+      axes_.z[lane] = static_cast<float>(scale * v.z);
     }
   }
-  void add_pair(const Pair& pair, const std::array<std::uint32_t, 4>& points) {
+  void add_pair(const Pair& pair, const std::array<std::uint32_t, 4>& points, std::uint32_t b) {
     candidates_[list_of(pair.kind)].add(pair, points);
-    if (std::exchange(active_, triangle_b_) != triangle_b_)
-      points_.activate(surfaces_.b, triangle_b_);
+    if (std::exchange(active_, b) != b) points_.activate(surfaces_.b, b);
   }
 
+  const simd::Table& table_;
   ContactPoints& points_;
   const SurfacePair surfaces_;
   const ContactSurface &a_, &b_;
   std::vector<std::uint8_t>& may_cross_;
   Candidates& candidates_;
-  std::uint32_t triangle_a_ = kNoIndex, triangle_b_ = kNoIndex, active_ = kNoIndex;
-  TriangleSurface::Triangle corners_a_{}, corners_b_{};
-  TriangleAxes axes_;
-  CornerReaches corner_a_{}, edge_a_{}, corner_b_{};
-  Reach whole_a_{};
+  std::uint32_t triangle_a_ = kNoIndex, active_ = kNoIndex;
+  TriangleSurface::Triangle corners_a_{};
+  simd::ReachAxes axes_;
+  simd::TriangleReaches reaches_{};
+  std::size_t waiting_ = 0;
+  std::array<std::uint32_t, kernels::kLanes> triangles_b_{};
+  std::array<std::uint32_t[3], kernels::kLanes> corners_b_{};
+  std::array<std::uint16_t, kernels::kLanes> wanted_{}, met_{};
 };
 
 }  // namespace
 
+Box SeenTubes::box(ContactPoints& points, const ContactSurface& body,
+                   const TriangleSurface::Triangle& corners) {
+  Box all = Box::none();
+  for (const std::uint32_t corner : corners) {
+    if (std::exchange(seen_for_[corner], bodies_) != bodies_)
+      boxes_[corner] = body.as_in_tree(points.tube(corner));
+    all.add(boxes_[corner]);
+  }
+  return all;
+}
+
 void CandidateSearch::find_all(ContactPoints& points, SurfacePair pair, Candidates& candidates) {
   ContactSurface& body = points.surfaces()[pair.b];
   const ContactSurface& cloth = points.surfaces()[pair.a];
-  OwnedFeatures features(points, pair, candidates);
+  OwnedFeatures features(table_, points, pair, candidates);
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
     if (features.triangle() != a) features.begin(a);
     features.add(b);
@@ -213,11 +164,14 @@ void CandidateSearch::find_all(ContactPoints& points, SurfacePair pair, Candidat
   if (!body.is_rigid) {
     body.tree.refit([&](std::uint32_t t) { return points.in_tree(body, body.points_of(t)); });
     BoxTree::meet(table_, cloth.tree, body.tree, add);
+    features.finish();
     return;
   }
   if (!body.seen(cloth.tree.box()).meets(body.tree.box())) return;
-  seen_cloth_.refit([&](std::uint32_t t) { return points.in_tree(body, cloth.points_of(t)); });
+  seen_.begin();
+  seen_cloth_.refit([&](std::uint32_t t) { return seen_.box(points, body, cloth.points_of(t)); });
   BoxTree::meet(table_, seen_cloth_, body.tree, add);
+  features.finish();
 }
 
 bool CandidateSearch::find(ContactPoints& points, Candidates& candidates) {
@@ -234,6 +188,7 @@ bool CandidateSearch::find(ContactPoints& points, Candidates& candidates) {
 void CandidateSearch::find_owners(const ContactSurface& cloth) {
   const TriangleSurface& s = *cloth.triangles;
   seen_cloth_ = cloth.tree;
+  seen_.resize(s.triangles_at.size());
   owner_of_edge_.resize(s.edges.size());
   owner_of_point_.resize(s.triangles_at.size());
   has_moved_.resize(s.triangles_at.size());
@@ -277,13 +232,16 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
   for (const SurfacePair pair : points.surface_pairs()) {
     const ContactSurface& body = points.surfaces()[pair.b];
     if (!body.as_in_tree(all).meets(body.tree.box())) continue;
-    OwnedFeatures features(points, pair, candidates);
+    OwnedFeatures features(table_, points, pair, candidates);
+    seen_.begin();
     for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
       if (is_renewed_[t] == 0) continue;
-      features.begin(t);
-      body.tree.find(table_, points.in_tree(body, cloth.triangles[t]),
-                     [&](std::uint32_t other) { features.add(other); });
+      body.tree.find(table_, seen_.box(points, body, cloth.triangles[t]), [&](std::uint32_t other) {
+        if (features.triangle() != t) features.begin(t);
+        features.add(other);
+      });
     }
+    features.finish();
   }
   return have_moved;
 }
@@ -291,16 +249,17 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
 void CandidateSearch::find_beside(ContactPoints& points, std::uint32_t triangle, const Box& box,
                                   Candidates& candidates) const {
   for (const SurfacePair pair : points.surface_pairs()) {
-    OwnedFeatures features(points, pair, candidates);
-    const Tube tube{box, box};
-    features.begin(triangle, {tube, tube, tube});
+    OwnedFeatures features(table_, points, pair, candidates);
+    const simd::PointTube tube = Tube{box, box}.in_lanes();
+    features.begin(triangle, {&tube, &tube, &tube});
     const ContactSurface& body = points.surfaces()[pair.b];
     body.tree.find(table_, body.as_in_tree(box), [&](std::uint32_t other) { features.add(other); });
+    features.finish();
   }
 }
 
 std::size_t CandidateSearch::bytes() const {
-  return seen_cloth_.bytes() + bytes_of(has_moved_) + bytes_of(is_renewed_) +
+  return seen_cloth_.bytes() + seen_.bytes() + bytes_of(has_moved_) + bytes_of(is_renewed_) +
          bytes_of(owner_of_edge_) + bytes_of(owner_of_point_);
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 
+#include "engine/bytes_of.h"
 #include "engine/contact/features.h"
 #include "engine/contact/points.h"
 
@@ -14,6 +15,26 @@ namespace weft {
 
 /// Candidates, by lists of pairs.
 using Candidates = std::array<PairList, kPairLists>;
+
+/// Tubes of the cloth as the tree of a body has them. Six triangles share a corner.
+class SeenTubes {
+ public:
+  void resize(std::size_t points) {
+    boxes_.resize(points);
+    seen_for_.resize(points);
+  }
+  /// Of a body that comes next.
+  void begin() { ++bodies_; }
+  /// All of a triangle.
+  Box box(ContactPoints& points, const ContactSurface& body,
+          const TriangleSurface::Triangle& corners);
+  std::size_t bytes() const { return bytes_of(boxes_) + bytes_of(seen_for_); }
+
+ private:
+  std::vector<Box> boxes_;
+  std::vector<std::uint64_t> seen_for_;
+  std::uint64_t bodies_ = 0;
+};
 
 class CandidateSearch {
  public:
@@ -34,6 +55,7 @@ class CandidateSearch {
 
   const simd::Table& table_;
   BoxTree seen_cloth_;                                         // in coordinates of a body; scratch
+  SeenTubes seen_;                                             // scratch
   std::vector<std::uint32_t> owner_of_edge_, owner_of_point_;  // triangles of the cloth
   std::vector<std::uint8_t> has_moved_;                        // per slot, out of its tube; scratch
   std::vector<std::uint8_t> is_renewed_;                       // per triangle of the cloth; scratch

@@ -55,7 +55,7 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   near_search_.measure(points_, candidates_, have_moved, team);
   if (is_new_) tangles_.find(points_);
   is_new_ = false;
-  near_search_.find(points_, candidates_, tangles_, near_);
+  near_search_.find(points_, candidates_, tangles_, near_, team);
   tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);
   for (const PairList& list : candidates_)

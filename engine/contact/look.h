@@ -81,6 +81,8 @@ struct Look {
   reference::Nearest nearest{};
   double distance = 0;       // m
   kernels::Vector normal{};  // a unit vector from the second feature to the first
+
+  bool is_apart() const { return distance > kTouching; }
 };
 
 /// The normal of the later surface where they touch: of what has none there, of a triangle.
@@ -99,11 +101,17 @@ inline kernels::Vector normal_where_touching(ContactSurface& later, const Pair& 
   return pair.outward() * kernels::direction(n, length(n));
 }
 
-inline Look look(ContactSurface& later, const Pair& pair, const FourPoints& x) {
+/// It has a normal only where both are apart.
+inline Look look_apart(const Pair& pair, const FourPoints& x) {
   Look seen{.nearest = nearest(pair.kind, x)};
   seen.distance = length(seen.nearest.r);
-  seen.normal = seen.distance > kTouching ? (1 / seen.distance) * seen.nearest.r
-                                          : normal_where_touching(later, pair, seen.nearest);
+  if (seen.is_apart()) seen.normal = (1 / seen.distance) * seen.nearest.r;
+  return seen;
+}
+
+inline Look look(ContactSurface& later, const Pair& pair, const FourPoints& x) {
+  Look seen = look_apart(pair, x);
+  if (!seen.is_apart()) seen.normal = normal_where_touching(later, pair, seen.nearest);
   return seen;
 }
 

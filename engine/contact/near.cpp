@@ -37,32 +37,62 @@ double closing(const ContactPoints& points, PairKind kind, const Four& four, Vec
   return std::max(0.0, second - first) + reach;
 }
 
-/// Whether a pair is to be looked at, and how.
-struct Seen {
-  bool is_near = false;
-  bool is_under = false;
-  Vector normal{};
-};
+/// Whether a neighbour is nearer where the interval begins.
+bool is_ghost_by(const ContactPoints& points, const Pair& pair, const FourPoints& x,
+                 const reference::Nearest& nearest, Vector normal, double lean) {
+  return is_ghost(points.surfaces(), pair, x, nearest, normal, lean,
+                  [&](std::uint32_t point) { return points.start(point); });
+}
 
-Seen see(ContactPoints& points, const Pair& pair, const Four& four, bool is_inside) {
+/// A pair that looks like this where the interval begins.
+SeenPair see(const ContactPoints& points, const Pair& pair, const Four& four, const FourPoints& x,
+             const Look& look, bool is_inside) {
+  const ContactSurface& later = points.later(pair);
+  if (look.distance - closing(points, pair.kind, four, look.normal) > later.thickness) return {};
+  const Vector passes = points.way(four[0]) - points.way(four[3]);
+  const bool stays = length(passes) < tuning::kContactPassing * look.distance;
+  const bool is_placed = stays && is_in_place(pair.kind, look.nearest);
+  if (!is_inside && is_placed &&
+      is_ghost_by(points, pair, x, look.nearest, look.normal, tuning::kContactLean))
+    return {};
+  return {.sight = later.two_sided ? Sight::in_front : Sight::asks_side,
+          .is_inside = is_inside,
+          .is_placed = is_placed,
+          .look = look};
+}
+
+/// Threads may do so at a time: the normals of a surface, which are computed when they are asked
+/// for, are left to `settle`.
+SeenPair see(const ContactPoints& points, const Tangles& tangles, const Pair& pair,
+             const Four& four) {
+  const bool is_inside = tangles.is_inside(four);
+  // Faces and edges between particles that are inside follow these.
+  const bool is_of_particle = pair.kind == PairKind::point_triangle && !pair.is_turned();
+  if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) return {};
   if (!(points.largest_inverse_mass(four) > 0) || !may_meet(points, pair.kind, four)) return {};
   const FourPoints x = points.starts_of(four);
+  const Look look = look_apart(pair, x);
+  if (!look.is_apart()) return {.sight = Sight::touches, .is_inside = is_inside, .look = look};
+  return see(points, pair, four, x, look, is_inside);
+}
+
+/// What may be in front of a surface or behind it is one of both, or far.
+void settle(ContactPoints& points, const Pair& pair, const Four& four, SeenPair& seen) {
   ContactSurface& later = points.later(pair);
-  const Look seen = look(later, pair, x);
-  if (seen.distance - closing(points, pair.kind, four, seen.normal) > later.thickness) return {};
-  const Vector passes = points.way(four[0]) - points.way(four[3]);
-  const bool stays = length(passes) < tuning::kContactPassing * seen.distance;
-  const auto is_ghost_by = [&](double lean) {
-    return is_ghost(points.surfaces(), pair, x, seen.nearest, seen.normal, lean,
-                    [&](std::uint32_t point) { return points.start(point); });
-  };
-  const bool is_placed = stays && is_in_place(pair.kind, seen.nearest);
-  if (!is_inside && is_placed && is_ghost_by(tuning::kContactLean)) return {};
-  const Seen in_front{.is_near = true, .normal = seen.normal};
-  if (later.two_sided || !is_behind(later, pair, seen.nearest)) return in_front;
-  // Behind what is not the nearest of its surface the cloth may be beside it.
-  if (!is_inside) return !is_placed || is_ghost_by(0) ? in_front : Seen{};
-  return {.is_near = true, .is_under = true, .normal = -1.0 * seen.normal};
+  if (seen.sight == Sight::touches) {
+    const FourPoints x = points.starts_of(four);
+    seen = see(points, pair, four, x, look(later, pair, x), seen.is_inside);
+  }
+  if (seen.sight != Sight::asks_side) return;
+  seen.sight = Sight::in_front;
+  if (!is_behind(later, pair, seen.look.nearest)) return;
+  if (seen.is_inside) {
+    seen.sight = Sight::behind;
+  } else if (seen.is_placed && !is_ghost_by(points, pair, points.starts_of(four), seen.look.nearest,
+                                            seen.look.normal, 0)) {
+    // Behind what is not the nearest of its surface the cloth may be beside it.
+    seen.sight = Sight::far;
+  }
 }
 
 }  // namespace
@@ -72,52 +102,103 @@ simd::PairMeasure NearSearch::measure_of(const ContactPoints& points, const Pair
   return {.pairs = pairs.blocks.data(),
           .points = points.starts(),
           .ways = points.ways(),
-          .reach = static_cast<float>(points.largest_thickness() + points.largest_reach()),
+          .reach = static_cast<float>(points.largest_thickness()) + 4 * points.rounding(),
           .beyond = static_cast<float>(tuning::kContactBeyond),
-          .distance = reinterpret_cast<float(*)[kLanes]>(distances.distance.data()),
+          .distance = distances.lanes(),
           .near = distances.near.data()};
 }
 
-void NearSearch::measure_block(const simd::PairMeasure& measure, std::size_t list,
-                               const PairList& pairs, std::size_t block) {
+/// Pairs of several blocks that are awake, side by side.
+class NearSearch::Gathered {
+ public:
+  Gathered(const simd::Table& table, const simd::PairMeasure& measure, bool edges, float travelled)
+      : table_(table), measure_(measure), edges_(edges), travelled_(travelled) {
+    measure_.pairs = &block_;
+    measure_.distance = &distance_;
+    measure_.near = &near_;
+  }
+  void add(std::size_t pair, const simd::PairBlock& block, Distances& to) {
+    for (std::size_t k = 0; k < 4; ++k) block_.point[k][count_] = block.point[k][pair % kLanes];
+    at_[count_++] = pair;
+    if (count_ == kLanes) finish(to);
+  }
+  void finish(Distances& to) {
+    if (count_ == 0) return;
+    for (std::size_t lane = count_; lane < kLanes; ++lane) {
+      for (auto& points : block_.point) points[lane] = points[0];
+    }
+    table_.measure_pairs(measure_, edges_, 0, 1);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::size_t block = at_[i] / kLanes, lane = at_[i] % kLanes;
+      to.distance[block][lane] = distance_[i] + travelled_;
+      to.near[block] = static_cast<std::uint16_t>(to.near[block] | (near_ >> i & 1u) << lane);
+    }
+    count_ = 0;
+  }
+
+ private:
+  const simd::Table& table_;
+  simd::PairMeasure measure_;
+  const bool edges_;
+  const float travelled_;
+  simd::PairBlock block_{};
+  float distance_[kLanes]{};
+  std::uint16_t near_ = 0;
+  std::array<std::size_t, kLanes> at_{};
+  std::size_t count_ = 0;
+};
+
+void NearSearch::measure_blocks(const simd::PairMeasure& measure, std::size_t list,
+                                const PairList& pairs, std::size_t first, std::size_t last) {
   Distances& d = distances_[list];
-  table_.measure_pairs(measure, has_edges(list), block, block + 1);
-  d.near[block] = static_cast<std::uint16_t>(d.near[block] & pairs.used[block]);
-  float least = d.distance[block][0];
-  for (const float distance : d.distance[block]) least = std::min(least, distance);
-  d.least[block] = simd::kSurelyApart * least + travelled_;
-  d.sleeps[block] = 0;
+  table_.measure_pairs(measure, has_edges(list), first, last);
+  for (std::size_t block = first; block < last; ++block) {
+    d.awake[block] = pairs.used[block];
+    d.near[block] = static_cast<std::uint16_t>(d.near[block] & pairs.used[block]);
+    for (float& distance : d.distance[block]) distance += travelled_ / simd::kSurelyApart;
+  }
+}
+
+/// Of blocks that are known.
+void NearSearch::measure_awake(const simd::PairMeasure& measure, std::size_t list,
+                               const PairList& pairs, std::size_t first, std::size_t last) {
+  Distances& d = distances_[list];
+  Gathered gathered(table_, measure, has_edges(list), travelled_ / simd::kSurelyApart);
+  for (std::size_t block = first; block < last; ++block) {
+    std::uint32_t bits = d.awake[block] =
+        static_cast<std::uint16_t>(d.awake[block] & pairs.used[block]);
+    if (std::popcount(bits) >= tuning::kAwakeAtOnce) {
+      measure_blocks(measure, list, pairs, block, block + 1);
+      continue;
+    }
+    d.near[block] = 0;
+    for (; bits != 0; bits &= bits - 1) {
+      gathered.add(block * kLanes + static_cast<std::size_t>(std::countr_zero(bits)),
+                   pairs.blocks[block], d);
+    }
+  }
+  gathered.finish(d);
 }
 
 void NearSearch::measure(const ContactPoints& points, const Candidates& candidates, bool have_moved,
                          Team& team) {
   travelled_ = have_moved ? 0 : travelled_ + (1 + 0x1p-20f) * points.travelled();
+  const auto reach = static_cast<float>(points.largest_thickness() + points.largest_reach());
+  const float near = travelled_ + reach + points.largest_way() + 8 * points.rounding();
   for (std::size_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
     Distances& d = distances_[list];
     d.resize(pairs.blocks.size());
     const simd::PairMeasure measure = measure_of(points, pairs, d);
-    const float near = travelled_ + measure.reach + points.largest_way() + 4 * points.rounding();
     const std::size_t known = have_moved ? 0 : d.count / kLanes;
     team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
-      for (std::size_t block = first; block < last; ++block) {
-        if (block < known && d.least[block] > near) {
-          d.near[block] = 0;
-          d.sleeps[block] = 1;
-        } else {
-          measure_block(measure, list, pairs, block);
-        }
-      }
+      const std::size_t until = std::clamp(known, first, last);
+      table_.find_small(d.lanes(), near / simd::kSurelyApart, d.awake.data(), first, until);
+      measure_awake(measure, list, pairs, first, until);
+      measure_blocks(measure, list, pairs, until, last);
     });
     d.count = pairs.size();
   }
-}
-
-void NearSearch::wake(const ContactPoints& points, const Candidates& candidates, std::size_t list,
-                      std::size_t block) {
-  if (distances_[list].sleeps[block] == 0) return;
-  measure_block(measure_of(points, candidates[list], distances_[list]), list, candidates[list],
-                block);
 }
 
 void NearSearch::measure_new(const ContactPoints& points, const Candidates& candidates,
@@ -130,39 +211,46 @@ void NearSearch::measure_new(const ContactPoints& points, const Candidates& cand
     const simd::PairMeasure measure = measure_of(points, pairs, d);
     const std::size_t known = d.count / kLanes;
     team.for_each_share(pairs.blocks.size() - known, [&](std::size_t first, std::size_t last) {
-      for (std::size_t block = known + first; block < known + last; ++block)
-        measure_block(measure, list, pairs, block);
+      measure_blocks(measure, list, pairs, known + first, known + last);
     });
     d.count = pairs.size();
   }
 }
 
 void NearSearch::find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles,
-                      Near& near) const {
+                      Near& near, Team& team) {
   for (std::size_t list = 0; list < kPairLists; ++list) {
     near[list].clear();
     const PairList& pairs = candidates[list];
+    looked_at_.clear();
     for (std::size_t block = 0; block < distances_[list].near.size(); ++block) {
-      for (std::uint32_t bits = distances_[list].near[block]; bits != 0; bits &= bits - 1) {
-        const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
-        const Pair& pair = pairs.pairs[i];
-        const Four four = pairs.points(i);
-        const bool is_inside = tangles.is_inside(four);
-        // Faces and edges between particles that are inside follow these.
-        const bool is_of_particle = pair.kind == PairKind::point_triangle && !pair.is_turned();
-        if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) continue;
-        const Seen seen = see(points, pair, four, is_inside);
-        if (!seen.is_near) continue;
-        near[list].add(pair, four, seen.normal, points.later(pair).thickness, seen.is_under);
-      }
+      for (std::uint32_t bits = distances_[list].near[block]; bits != 0; bits &= bits - 1)
+        looked_at_.push_back(block * kLanes + static_cast<std::size_t>(std::countr_zero(bits)));
+    }
+    if (seen_.size() < looked_at_.size()) seen_.resize(looked_at_.size());
+    team.for_each(looked_at_.size(), [&](std::size_t k) {
+      const std::size_t i = looked_at_[k];
+      seen_[k] = see(points, tangles, pairs.pairs[i], pairs.points(i));
+    });
+    for (std::size_t k = 0; k < looked_at_.size(); ++k) {
+      SeenPair& seen = seen_[k];
+      if (seen.sight == Sight::far) continue;
+      const std::size_t i = looked_at_[k];
+      const Pair& pair = pairs.pairs[i];
+      const Four four = pairs.points(i);
+      settle(points, pair, four, seen);
+      if (seen.sight == Sight::far) continue;
+      const bool is_under = seen.sight == Sight::behind;
+      near[list].add(pair, four, (is_under ? -1.0 : 1.0) * seen.look.normal,
+                     points.later(pair).thickness, is_under);
     }
   }
 }
 
 std::size_t NearSearch::bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = bytes_of(looked_at_) + bytes_of(seen_);
   for (const Distances& d : distances_)
-    bytes += bytes_of(d.distance) + bytes_of(d.near) + bytes_of(d.least) + bytes_of(d.sleeps);
+    bytes += bytes_of(d.distance) + bytes_of(d.near) + bytes_of(d.awake);
   return bytes;
 }
 

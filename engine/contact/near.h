@@ -1,7 +1,7 @@
 /// Stage 3 of an interval: which candidates may touch within it. Their distance is measured in
 /// lanes; near are those that come nearer than the thickness if points go on as expected, but for
-/// the reach. Blocks of pairs that are too far apart to become near sleep until the points of both
-/// surfaces may have come that far.
+/// the reach. Pairs that are too far apart to become near sleep until the points of both surfaces
+/// may have come that far.
 #pragma once
 
 #include <array>
@@ -17,19 +17,34 @@ namespace weft {
 
 /// What is known of a list of candidates.
 struct Distances {
-  std::vector<std::array<float, kernels::kLanes>> distance;  // m, when it was measured
-  std::vector<std::uint16_t> near;                           // per block, a bit per lane
-  std::vector<float> least;          // m, per block: a distance that none is below, and what points
-                                     // had travelled by then
-  std::vector<std::uint8_t> sleeps;  // per block: the distance is of another interval
-  std::size_t count = 0;             // of the pairs that are known
+  using Lanes = std::array<float, kernels::kLanes>;
+  std::vector<Lanes> distance;  // m: kSurelyApart of it, less what points have travelled, is the
+                                // least that a pair may be apart
+  std::vector<std::uint16_t> near, awake;  // per block, a bit per lane
+  std::size_t count = 0;                   // of the pairs that are known
 
   void resize(std::size_t blocks) {
     distance.resize(blocks);
     near.resize(blocks);
-    least.resize(blocks);
-    sleeps.resize(blocks);
+    awake.resize(blocks);
   }
+  float (*lanes())[kernels::kLanes] {
+    return reinterpret_cast<float(*)[kernels::kLanes]>(distance.data());
+  }
+  const float (*lanes() const)[kernels::kLanes] {
+    return reinterpret_cast<const float(*)[kernels::kLanes]>(distance.data());
+  }
+};
+
+/// far: it is not near. asks_side: it is in front of the later surface or behind it, or far.
+/// touches: it may be any of these.
+enum class Sight : std::uint8_t { far, in_front, behind, asks_side, touches };
+
+/// How a pair looks that may be near.
+struct SeenPair {
+  Sight sight = Sight::far;
+  bool is_inside = false, is_placed = false;  // placed: no neighbour may take its place
+  Look look{};
 };
 
 class NearSearch {
@@ -41,29 +56,34 @@ class NearSearch {
                Team& team);
   /// Those that were added since.
   void measure_new(const ContactPoints& points, const Candidates& candidates, Team& team);
-  /// m: pairs of a block are no nearer than this when the interval begins, or overlap.
-  float least(std::size_t list, std::size_t block) const {
-    return distances_[list].least[block] - travelled_;
+  /// m: a pair is no nearer than this when the interval begins, or overlaps.
+  float least(std::size_t list, std::size_t pair) const {
+    const Distances::Lanes& lanes = distances_[list].distance[pair / kernels::kLanes];
+    return simd::kSurelyApart * lanes[pair % kernels::kLanes] - travelled_;
   }
-  /// Measures a block that sleeps as the interval began.
-  void wake(const ContactPoints& points, const Candidates& candidates, std::size_t list,
-            std::size_t block);
+  /// m: since candidates were found, by two points beside each other, at most.
+  float travelled() const { return travelled_; }
   /// Pairs with a surface that the cloth is behind are left out, but for particles that are known
   /// to be inside: the cloth lies beside another surface there.
-  void find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles,
-            Near& near) const;
+  void find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles, Near& near,
+            Team& team);
   const std::array<Distances, kPairLists>& distances() const { return distances_; }
   std::size_t bytes() const;
 
  private:
   simd::PairMeasure measure_of(const ContactPoints& points, const PairList& pairs,
                                Distances& distances) const;
-  void measure_block(const simd::PairMeasure& measure, std::size_t list, const PairList& pairs,
-                     std::size_t block);
+  void measure_blocks(const simd::PairMeasure& measure, std::size_t list, const PairList& pairs,
+                      std::size_t first, std::size_t last);
+  void measure_awake(const simd::PairMeasure& measure, std::size_t list, const PairList& pairs,
+                     std::size_t first, std::size_t last);
+  class Gathered;
 
   const simd::Table& table_;
-  float travelled_ = 0;  // m: since candidates were found, by two points beside each other, at most
+  float travelled_ = 0;
   std::array<Distances, kPairLists> distances_;
+  std::vector<std::size_t> looked_at_;  // pairs; scratch
+  std::vector<SeenPair> seen_;          // likewise
 };
 
 }  // namespace weft

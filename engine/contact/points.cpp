@@ -67,6 +67,7 @@ void ContactPoints::begin(const BodyClock& clock) {
   for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->resize(4 * points);
   box_.resize(points);
   tube_.resize(points);
+  lane_tubes_.resize(points);
   laid_.assign(points - slots_, 0);
   layings_ = 0;
   placed_.resize(points - slots_);
@@ -183,7 +184,10 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   way_of_near_ = (to_ - from_) * time * speeds_.of_near;
   travelled_ = std::sqrt(travelled) + (from_ - before) * time * speeds_.of_bodies;
   find_reach();
-  for (std::size_t slot = 0; slot < slots_; ++slot) write_box(slot, reach_[slot]);
+  for (std::size_t slot = 0; slot < slots_; ++slot) {
+    write_box(slot, reach_[slot]);
+    way_quads_[4 * slot + 3] = static_cast<float>(reach_[slot]);
+  }
   for (ContactSurface& surface : of_bodies()) {
     const PoseTravel& travel = clock.bodies()[surface.body].travel;
     const auto before = std::exchange(surface.begins, travel.at(from_));
@@ -242,6 +246,7 @@ void ContactPoints::place_vertex(std::uint32_t point) {
   start_[point] = surface.begins.placed(from + from_ * way);
   end_[point] = surface.ends.placed(from + to_ * way);
   write_start_and_way(point);
+  way_quads_[4 * std::size_t{point} + 3] = 0;
   write_box(point, surface.thickness + static_cast<double>(rounding_));
 }
 
@@ -284,7 +289,7 @@ Tube ContactPoints::tube_around(std::uint32_t slot) const {
 
 void ContactPoints::lay_tubes() {
   laid_from_ = from_;
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) tube_[slot] = tube_around(slot);
+  for (std::uint32_t slot = 0; slot < slots_; ++slot) set_tube(slot, tube_around(slot));
   ++layings_;
   for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
   active_.clear();
@@ -306,8 +311,8 @@ void ContactPoints::lay_vertex(std::uint32_t point) {
   const double far = std::max(length(a), length(b));
   const double beyond = (seen.turn * far + 2 * length(b - a)) * seen.turn / 8;
   const Vector begins = seen.begins.placed(a), ends = seen.ends.placed(b);
-  tube_[point] = {box_around(begins, begins, seen.beyond + beyond),
-                  box_around(ends, ends, seen.beyond + beyond)};
+  set_tube(point, {box_around(begins, begins, seen.beyond + beyond),
+                   box_around(ends, ends, seen.beyond + beyond)});
   laid_[point - slots_] = layings_;
 }
 
@@ -374,12 +379,12 @@ void ContactPoints::set_end(std::uint32_t point, Vector x) {
 }
 
 std::size_t ContactPoints::bytes() const {
-  std::size_t bytes = bytes_of(surfaces_) + bytes_of(surface_pairs_) + bytes_of(surface_of_) +
-                      bytes_of(start_) + bytes_of(end_) + bytes_of(reach_) + bytes_of(ways_) +
-                      bytes_of(box_) + bytes_of(tube_) + bytes_of(start_quads_) +
-                      bytes_of(way_quads_) + bytes_of(place_quads_) + bytes_of(asked_) +
-                      bytes_of(substep_from_) + bytes_of(substep_to_) + bytes_of(laid_) +
-                      bytes_of(placed_) + bytes_of(active_) + bytes_of(is_active_);
+  std::size_t bytes =
+      bytes_of(surfaces_) + bytes_of(surface_pairs_) + bytes_of(surface_of_) + bytes_of(start_) +
+      bytes_of(end_) + bytes_of(reach_) + bytes_of(ways_) + bytes_of(box_) + bytes_of(tube_) +
+      bytes_of(lane_tubes_) + bytes_of(start_quads_) + bytes_of(way_quads_) +
+      bytes_of(place_quads_) + bytes_of(asked_) + bytes_of(substep_from_) + bytes_of(substep_to_) +
+      bytes_of(laid_) + bytes_of(placed_) + bytes_of(active_) + bytes_of(is_active_);
   for (const ContactSurface& surface : surfaces_)
     bytes += surface.tree.bytes() + surface.normals.bytes() + bytes_of(surface.is_near);
   return bytes;

@@ -79,9 +79,8 @@ class ContactPoints {
     if (point >= slots_ && laid_[point - slots_] != layings_) lay_vertex(point);
     return tube_[point];
   }
-  std::array<Tube, 3> tubes(const TriangleSurface::Triangle& points) {
-    return {tube(points[0]), tube(points[1]), tube(points[2])};
-  }
+  /// The same as kernels read it: of all points, those of vertices once they are made.
+  const simd::PointTube* lane_tubes() const { return lane_tubes_.data(); }
   /// All of a triangle, in the coordinates of a body's tree.
   Box in_tree(const ContactSurface& body, const TriangleSurface::Triangle& points) {
     Box box = body.as_in_tree(tube(points[0]));
@@ -95,8 +94,8 @@ class ContactPoints {
   template <class Moved>
   void renew_tubes(Moved&& moved);
   /// It holds no longer.
-  void forget_tube(std::uint32_t slot) { tube_[slot] = {Box::none(), Box::none()}; }
-  /// In quads, from the origin.
+  void forget_tube(std::uint32_t slot) { set_tube(slot, {Box::none(), Box::none()}); }
+  /// In quads, from the origin. The fourth of a way is the point's reach.
   const float* starts() const { return start_quads_.data(); }
   const float* ways() const { return way_quads_.data(); }
 
@@ -170,6 +169,10 @@ class ContactPoints {
   void place_vertex(std::uint32_t point);
   void write_start_and_way(std::size_t point);
   Tube tube_around(std::uint32_t slot) const;
+  void set_tube(std::uint32_t point, const Tube& tube) {
+    tube_[point] = tube;
+    lane_tubes_[point] = tube.in_lanes();
+  }
   void lay_vertex(std::uint32_t point);
   void find_reach();
   void write_box(std::size_t point, double reach);
@@ -190,6 +193,7 @@ class ContactPoints {
   std::vector<double> reach_, ways_;  // per slot
   std::vector<Box> box_;
   std::vector<Tube> tube_;
+  kernels::AlignedVector<simd::PointTube> lane_tubes_;
   bool has_tubes_ = false;
   double from_ = 0, to_ = 0, until_ = 0;  // shares of the step: of the interval, and to its end
   double laid_from_ = 0;                  // likewise: when tubes were laid
@@ -211,7 +215,7 @@ void ContactPoints::renew_tubes(Moved&& moved) {
                         length > 0 ? (to_ - laid_from_) / length : 0);
   for (std::uint32_t slot = 0; slot < slots_; ++slot) {
     if (part.of(tube_[slot]).hold(box_[slot])) continue;
-    tube_[slot] = tube_around(slot);
+    set_tube(slot, tube_around(slot));
     moved(slot);
   }
 }

@@ -3,6 +3,8 @@
 /// their tubes, where boxes around all of their ways would meet.
 #pragma once
 
+#include <cmath>
+
 #include "engine/triangles/box_tree.h"
 
 namespace weft {
@@ -16,6 +18,21 @@ struct Tube {
     return box;
   }
   bool hold(const Box& box) const { return begins.holds(box) && ends.holds(box); }
+  simd::PointTube in_lanes() const {
+    simd::PointTube tube{};
+    for (std::size_t end = 0; end < 2; ++end) {
+      const Box& box = end == 0 ? begins : ends;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float middle = 0.5f * (box.low[k] + box.high[k]), half = box.high[k] - middle;
+        tube.low[end][k] = box.low[k];
+        tube.high[end][k] = box.high[k];
+        tube.middle[end][k] = middle;
+        tube.half[end][k] = half;
+        tube.middle[end][3] += std::abs(middle) + half;
+      }
+    }
+    return tube;
+  }
 
   /// Of the time of a tube, in shares of it.
   class Part {

@@ -80,37 +80,43 @@ std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, do
 
 }  // namespace
 
-/// visit(list, i, points), of each pair of candidates that may have come nearer than `near` and is
-/// not left alone.
-template <class Visit>
-void Verification::for_each_moved(const ContactScene& scene, NearSearch& near_search,
-                                  const Candidates& candidates, double near, Team& team,
-                                  Visit&& visit) {
+/// Fails what judge(pair, points, is_alone) says of each pair of candidates that may have come
+/// nearer than `near` and is not left alone. Threads judge, and once more, alone, one of them what
+/// asks.
+template <class Judge>
+void Verification::judge_moved(const ContactScene& scene, const NearSearch& near_search,
+                               const Candidates& candidates, double near, Team& team,
+                               Judge&& judge) {
   for (std::uint32_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
     moved_.resize(pairs.blocks.size());
-    const float within = static_cast<float>(near);
-    const float most = within + scene.points.largest_move() + 4 * scene.points.rounding();
+    const float spare = static_cast<float>(near) + near_search.travelled();
     const simd::PairMoves moves{.pairs = pairs.blocks.data(),
                                 .moves = scene.points.moves(),
-                                .distance = reinterpret_cast<const float(*)[kLanes]>(
-                                    near_search.distances()[list].distance.data()),
-                                .rounding = scene.points.rounding() + within,
+                                .distance = near_search.distances()[list].lanes(),
+                                .rounding = scene.points.rounding() + spare,
+                                .most = scene.points.largest_move() + 4 * scene.points.rounding(),
                                 .moved = moved_.data()};
     team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
-      for (std::size_t block = first; block < last; ++block) {
-        moved_[block] = 0;
-        if (near_search.least(list, block) > most) continue;
-        near_search.wake(scene.points, candidates, list, block);
-        table_.find_moved_pairs(moves, has_edges(list), block, block + 1);
-      }
+      table_.find_moved_pairs(moves, has_edges(list), first, last);
     });
+    looked_at_.clear();
     for (std::size_t block = 0; block < moved_.size(); ++block) {
       for (std::uint32_t bits = moved_[block] & pairs.used[block]; bits != 0; bits &= bits - 1) {
         const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
         if (!scene.tangles.leaves_out(pairs.pairs[i]))
-          visit(list, static_cast<std::uint32_t>(i), pairs.points(i));
+          looked_at_.push_back(static_cast<std::uint32_t>(i));
       }
+    }
+    if (verdicts_.size() < looked_at_.size()) verdicts_.resize(looked_at_.size());
+    const auto judged = [&](std::size_t k, bool is_alone) {
+      const std::uint32_t i = looked_at_[k];
+      return judge(pairs.pairs[i], pairs.points(i), is_alone);
+    };
+    team.for_each(looked_at_.size(), [&](std::size_t k) { verdicts_[k] = judged(k, false); });
+    for (std::size_t k = 0; k < looked_at_.size(); ++k) {
+      const Verdict verdict = verdicts_[k].asks ? judged(k, true) : verdicts_[k];
+      if (verdict.fails) failures_.push_back({list, looked_at_[k], verdict.time, verdict.depth});
     }
   }
 }
@@ -120,43 +126,44 @@ void Verification::find(const ContactScene& scene, const CandidateSearch& search
   failures_.clear();
   look_beside_strayed(scene, search, near_search, candidates, team);
   ContactPoints& points = scene.points;
-  for_each_moved(
+  judge_moved(
       scene, near_search, candidates, 0, team,
-      [&](std::uint32_t list, std::uint32_t i, const std::array<std::uint32_t, 4>& four) {
-        const Pair& pair = candidates[list].pairs[i];
+      [&](const Pair& pair, const std::array<std::uint32_t, 4>& four, bool is_alone) -> Verdict {
         const PairMotion way{points.starts_of(four), points.ends_of(four)};
         ContactSurface& later = points.later(pair);
-        const Look seen = look(later, pair, way.from);
+        Look seen = look_apart(pair, way.from);
+        if (!seen.is_apart()) {
+          if (!is_alone) return {.asks = true};
+          seen = look(later, pair, way.from);
+        }
         const double distance = std::max(seen.distance, kTouching);
         const Vector r = distance > kTouching ? seen.nearest.r : seen.normal;
         const auto time = meeting(pair.kind, way, r, distance, later.thickness);
-        if (!time) return;
-        // It comes out, which is what it should.
-        if (!later.two_sided && scene.tangles.is_inside(four)) return;
-        failures_.push_back({list, i, *time, 0});
+        // What comes out does what it should.
+        if (!time || (!later.two_sided && scene.tangles.is_inside(four))) return {};
+        return {.fails = true, .time = *time};
       });
   leave_each_once(candidates);
 }
 
-void Verification::find_late(const ContactScene& scene, NearSearch& near_search,
+void Verification::find_late(const ContactScene& scene, const NearSearch& near_search,
                              const Candidates& candidates, Team& team) {
   failures_.clear();
   const ContactPoints& points = scene.points;
   const auto at = [&](std::uint32_t point) { return points.end(point); };
-  for_each_moved(
+  judge_moved(
       scene, near_search, candidates, points.largest_thickness(), team,
-      [&](std::uint32_t list, std::uint32_t i, const std::array<std::uint32_t, 4>& four) {
-        const Pair& pair = candidates[list].pairs[i];
+      [&](const Pair& pair, const std::array<std::uint32_t, 4>& four, bool) -> Verdict {
         const ContactSurface& later = points.later(pair);
         const FourPoints x = points.ends_of(four);
         const reference::Nearest found = nearest(pair.kind, x);
         const double l = length(found.r);
         if (!(l < tuning::kLate * later.thickness) || l == 0 || !is_in_place(pair.kind, found))
-          return;
+          return {};
         if (is_ghost(points.surfaces(), pair, x, found, (1 / l) * found.r, tuning::kTouchLean, at))
-          return;
-        if (!later.two_sided && scene.tangles.is_inside(four)) return;
-        failures_.push_back({list, i, 1, later.thickness - l});
+          return {};
+        if (!later.two_sided && scene.tangles.is_inside(four)) return {};
+        return {.fails = true, .time = 1, .depth = later.thickness - l};
       });
   leave_each_once(candidates);
 }

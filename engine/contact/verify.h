@@ -31,13 +31,18 @@ class Verification {
   const std::vector<Failure>& failures() const { return failures_; }
   /// Instead, pairs that have met no other, but have come nearer than their thickness where nothing
   /// was expected: time is 1.
-  void find_late(const ContactScene& scene, NearSearch& near_search, const Candidates& candidates,
-                 Team& team);
+  void find_late(const ContactScene& scene, const NearSearch& near_search,
+                 const Candidates& candidates, Team& team);
 
  private:
-  template <class Visit>
-  void for_each_moved(const ContactScene& scene, NearSearch& near_search,
-                      const Candidates& candidates, double near, Team& team, Visit&& visit);
+  /// What is found of a pair. asks: one thread is to look at it, since it asks for normals.
+  struct Verdict {
+    bool fails = false, asks = false;
+    double time = 0, depth = 0;
+  };
+  template <class Judge>
+  void judge_moved(const ContactScene& scene, const NearSearch& near_search,
+                   const Candidates& candidates, double near, Team& team, Judge&& judge);
   void leave_each_once(const Candidates& candidates);
   void look_beside_strayed(const ContactScene& scene, const CandidateSearch& search,
                            NearSearch& near_search, Candidates& candidates, Team& team);
@@ -45,6 +50,8 @@ class Verification {
   const simd::Table& table_;
   std::vector<Failure> failures_;
   std::vector<std::uint16_t> moved_;
+  std::vector<std::uint32_t> looked_at_;   // pairs; scratch
+  std::vector<Verdict> verdicts_;          // likewise
   std::vector<std::uint8_t> has_strayed_;  // per slot; scratch
 };
 

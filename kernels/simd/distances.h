@@ -96,6 +96,17 @@ struct FromEdge {
   return is_parallel || (s > least && s < most && t > least && t < most);
 }
 
+/// What a point of the pairs may come off its way, at most.
+[[gnu::always_inline]] inline Floats largest_fourth(const float* quads, const PairBlock& pairs,
+                                                    std::uint32_t lane) {
+  const QuadLanes at;
+  const Floats a = at.fourth(quads, pairs.point[0] + lane),
+               b = at.fourth(quads, pairs.point[1] + lane),
+               c = at.fourth(quads, pairs.point[2] + lane),
+               d = at.fourth(quads, pairs.point[3] + lane);
+  return xsimd::max(xsimd::max(a, b), xsimd::max(c, d));
+}
+
 template <class From>
 [[gnu::always_inline]] inline void measure_block(const PairMeasure& m, std::size_t i, From from,
                                                  bool edges) {
@@ -111,7 +122,8 @@ template <class From>
     const Floats second = edges ? xsimd::max(c, d) : xsimd::max(b, xsimd::max(c, d));
     const Floats closing = xsimd::max(none, second - first);
     distance.store_unaligned(m.distance[i] + lane);
-    FloatMask is_near = distance - closing < Floats(m.reach);
+    FloatMask is_near =
+        distance - closing < Floats(m.reach) + largest_fourth(m.ways, m.pairs[i], lane);
     if (edges) is_near = is_near && may_face(corners_of(m.points, m.pairs[i], lane), m.beyond);
     near |= bits(is_near) << lane;
   }
@@ -178,12 +190,24 @@ void find_moved_pairs(const PairMoves& moves, bool edges, std::size_t first, std
   for (std::size_t i = first; i < last; ++i) {
     std::uint32_t moved = 0;
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      const PairCorners by = corners_of(m.moves, m.pairs[i], lane);
       const Floats least = load(m.distance[i] + lane) * Floats(kSurelyApart) - Floats(m.rounding);
+      if (bits(least <= Floats(m.most)) == 0) continue;
+      const PairCorners by = corners_of(m.moves, m.pairs[i], lane);
       const Floats most = largest_move_of(by, edges);
       moved |= bits(least <= Floats(0.f) || most >= least * least) << lane;
     }
     m.moved[i] = static_cast<std::uint16_t>(moved);
+  }
+}
+
+/// Per block, a bit per lane: which of `of` are at most `limit`.
+void find_small(const float (*of)[kernels::kLanes], float limit, std::uint16_t* small,
+                std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    std::uint32_t found = 0;
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats)
+      found |= bits(load(of[i] + lane) <= Floats(limit)) << lane;
+    small[i] = static_cast<std::uint16_t>(found);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "kernels/simd/masks.h"
 #include "kernels/simd/measure.h"
 #include "kernels/simd/membrane.h"
+#include "kernels/simd/reaches.h"
 #include "kernels/simd/relax.h"
 #include "kernels/simd/relax_springs.h"
 #include "kernels/simd/small_step_springs.h"
@@ -127,7 +128,10 @@ constexpr Table make_table() {
           .measure_pairs = measure_pairs,
           .touch_pairs = touch_pairs,
           .find_moved_pairs = find_moved_pairs,
+          .find_small = find_small,
           .find_met = find_met,
+          .reaches_of_triangle = reaches_of_triangle,
+          .meet_triangles = meet_triangles,
           .relax_yarns = as_wide_as_block<relax_yarns, &Table::relax_yarns>(),
           .relax_spring_yarns = as_wide_as_block<relax_spring_yarns, &Table::relax_spring_yarns>(),
           .judge_spring_yarns = as_wide_as_block<judge_spring_yarns, &Table::judge_spring_yarns>(),

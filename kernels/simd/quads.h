@@ -58,6 +58,14 @@ struct QuadLanes {
     return transposed(load_quads(u, QuadSlots{slot}), load_quads(u, QuadSlots{slot + 1}),
                       load_quads(u, QuadSlots{slot + 2}), load_quads(u, QuadSlots{slot + 3}));
   }
+  /// Their spare floats.
+  [[gnu::always_inline]] Floats fourth(const float* u, const std::uint32_t* slot) const {
+    const Floats zw01 =
+        unpack_high(load_quads(u, QuadSlots{slot}), load_quads(u, QuadSlots{slot + 1}));
+    const Floats zw23 =
+        unpack_high(load_quads(u, QuadSlots{slot + 2}), load_quads(u, QuadSlots{slot + 3}));
+    return high_pairs(zw01, zw23);
+  }
   [[gnu::always_inline]] void put(const Displacements& u, const std::uint32_t* slot,
                                   const FloatVector& v) const {
     put(u.x, slot, v);

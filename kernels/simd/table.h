@@ -211,8 +211,15 @@ struct Table {
   void (*measure_pairs)(const PairMeasure&, bool edges, std::size_t first, std::size_t last);
   void (*touch_pairs)(const PairTouch&, bool edges, std::size_t first, std::size_t last);
   void (*find_moved_pairs)(const PairMoves&, bool edges, std::size_t first, std::size_t last);
+  /// Of blocks first ... last - 1, a bit per lane: which of `of` are at most `limit`.
+  void (*find_small)(const float (*of)[kernels::kLanes], float limit, std::uint16_t* small,
+                     std::size_t first, std::size_t last);
   /// Which of the boxes the one from low to high meets, a bit each.
   std::uint32_t (*find_met)(const BoxCluster&, const float* low, const float* high);
+  /// tubes: of its corners.
+  void (*reaches_of_triangle)(const ReachAxes&, const PointTube* const* tubes, TriangleReaches&);
+  /// Of `count` other triangles.
+  void (*meet_triangles)(const TriangleMeeting&, std::size_t count);
   /// Scratch as above.
   void (*relax_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
                       const YarnRelaxation&);

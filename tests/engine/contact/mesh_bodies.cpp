@@ -1,11 +1,13 @@
 /// What callers do with bodies of triangles between steps: what is refused, what copies carry on,
 /// what comes and goes while it is touched.
 #include <doctest/doctest.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -352,6 +354,30 @@ TEST_CASE("cloth that a corner or an edge of a mesh leads through comes off it")
     for (int i = 0; i < 60; ++i) step(cloth, 1.0 / 60);
     CHECK(crossings() == 0);
   }
+}
+
+/// Of a sheet that is worth two threads and lies down on a ball, which then goes on.
+std::uint64_t hash_beside_ball(const std::shared_ptr<const Model>& model, int threads) {
+  tbb::task_arena arena(threads);
+  return arena.execute([&] {
+    auto made = Cloth::create(model, {.substeps = 12, .solver = Solver::small_steps});
+    REQUIRE(made);
+    Cloth& cloth = made.value();
+    const auto ball = add(cloth, {.shape = shape_of(icosphere(0.1, 3)), .thickness = 2e-3});
+    int contacts = 0;
+    for (int frame = 0; frame < 6; ++frame) {
+      REQUIRE(cloth.move_body(ball, {.position = {0.002 * frame, 0, 0}}));
+      contacts = std::max(contacts, step(cloth, 1. / 60).body_contacts);
+    }
+    CHECK(contacts > 20);
+    return cloth.state_hash();
+  });
+}
+
+TEST_CASE("the number of threads changes no bit of a cloth beside a mesh") {
+  const auto model = model_of(sheet_over_origin(48, 0.1025));
+  const std::uint64_t alone = hash_beside_ball(model, 1);
+  for (const int threads : {2, 3}) CHECK(hash_beside_ball(model, threads) == alone);
 }
 
 }  // namespace

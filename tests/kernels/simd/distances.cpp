@@ -48,6 +48,7 @@ struct Pairs {
   Place place;
   std::vector<FeaturePair> pairs;
   std::vector<std::array<Vector, 4>> ways;
+  std::vector<double> reaches;  // m, that a point of the pair may come off its way
   kernels::AlignedVector<simd::PairBlock> blocks{kBlocks};
   Quads points{4 * kCount}, moves{4 * kCount};
 
@@ -68,6 +69,13 @@ struct Pairs {
       }
       pairs.push_back(pair);
       ways.push_back(way);
+      reaches.push_back(0);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double reach = place.size * random.between(0, 0.2);
+        moves.of[4 * std::size_t{blocks[i / kLanes].point[k][i % kLanes]} + 3] =
+            static_cast<float>(reach);
+        reaches.back() = std::max(reaches.back(), reach);
+      }
     }
   }
   reference::Nearest nearest(std::size_t i) const {
@@ -157,7 +165,7 @@ TEST_CASE("whatever comes within reach on its way is near") {
         ++(is_near ? near : far);
         if (is_near) continue;
         for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
-          CHECK(p.distance_at(i, share) > reach - left);
+          CHECK(p.distance_at(i, share) > reach + p.reaches[i] - left);
       }
     });
     CHECK(near > 1000);
@@ -304,6 +312,7 @@ std::vector<std::uint16_t> moved(const simd::Table& table, const Pairs& p,
                              .moves = p.moves.of.data(),
                              .distance = reinterpret_cast<const float(*)[kLanes]>(distance.data()),
                              .rounding = static_cast<float>(p.rounding()),
+                             .most = static_cast<float>(2 * 4 * p.place.size),
                              .moved = moved.data()};
   table.find_moved_pairs(call, p.edges, 0, Pairs::kBlocks);
   return moved;
@@ -335,6 +344,25 @@ TEST_CASE("pairs that are said not to have moved did not meet; those that move f
       }
     });
     CHECK(stayed > 1000);
+  }
+}
+
+TEST_CASE("values are small up to the limit, in the blocks that were asked for") {
+  for (const simd::Isa isa : supported_isas()) {
+    CAPTURE(text(isa));
+    Random random(5);
+    std::vector<std::array<float, kLanes>> of(Pairs::kBlocks);
+    for (auto& lanes : of) {
+      for (float& x : lanes) x = static_cast<float>(random.below(5));
+    }
+    std::vector<std::uint16_t> small(Pairs::kBlocks, 0xabcd);
+    simd::table(isa).find_small(reinterpret_cast<const float(*)[kLanes]>(of.data()), 2,
+                                small.data(), 1, 5);
+    for (std::size_t i = 0; i < Pairs::kBlocks; ++i) {
+      std::uint32_t expected = 0;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) expected |= (of[i][lane] <= 2) << lane;
+      CHECK(small[i] == (i >= 1 && i < 5 ? expected : 0xabcd));
+    }
   }
 }
 
