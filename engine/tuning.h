@@ -92,6 +92,11 @@ inline constexpr int kMeetingSteps = 200;
 /// `mesh_appears_in_cloth` gains 0.1 J; with four rounds it does not. No test needs zones.
 inline constexpr int kBlowRounds = 8;
 inline constexpr int kZoneRounds = 12;
+/// The same of cloth that touches itself: after kZoneRounds zones grow by their neighbours, too.
+inline constexpr int kClothZoneRounds = 60;
+/// Of what features of a cloth that are nearer than its thickness at rest have there: so much they
+/// keep. At 1 each fold of a fine mesh, and what shears, would be a contact.
+inline constexpr double kRestDistance = 0.7;
 /// s, of a substep in which bodies stand: what is under a surface comes out wherever it is.
 inline constexpr double kAtOnce = 1e6;
 /// Compliance of a yarn's constraints in a sweep, relative to the diagonal of its matrix. That of a

@@ -43,7 +43,7 @@ class SurfaceContacts {
         verification_(table),
         tangles_(table) {}
 
-  bool empty() const { return points_.surface_pairs().empty(); }
+  bool empty() const { return points_.empty(); }
   /// Of a frame.
   void begin(const BodyClock& clock, ContactStart start, const Misplaced& misplaced);
   /// s, when a substep is predicted. Bodies that are fast beside the cloth are looked at more
@@ -97,6 +97,8 @@ class SurfaceContacts {
   bool still_holds(const ContactParticles& particles, const BodyClock& clock) const;
   bool push_late_apart(const ContactScene& scene, Team& team);
   void expect_failures(const ContactScene& scene);
+  void remember_touching();
+  void recognise_touching();
 
   const Model& model_;
   ContactPoints points_;
@@ -113,6 +115,7 @@ class SurfaceContacts {
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
   bool has_looked_ahead_ = false;
+  std::vector<Pair> touched_;  // within the cloth, when the last interval ended
   Tangles tangles_;
 };
 

@@ -32,9 +32,13 @@ double closing(const ContactPoints& points, PairKind kind, const Four& four, Vec
   const bool edges = kind == PairKind::edges;
   const double first = edges ? std::min(by(0), by(1)) : by(0);
   const double second = edges ? std::max(by(2), by(3)) : std::max({by(1), by(2), by(3)});
-  double reach = 0;
-  for (const std::uint32_t point : four) reach = std::max(reach, points.reach(point));
-  return std::max(0.0, second - first) + reach;
+  const auto reach = [&](std::size_t from, std::size_t to) {
+    double most = 0;
+    for (std::size_t k = from; k < to; ++k) most = std::max(most, points.reach(four[k]));
+    return most;
+  };
+  const std::size_t firsts = edges ? 2 : 1;
+  return std::max(0.0, second - first) + (reach(0, firsts) + reach(firsts, 4));
 }
 
 /// Whether a pair is to be looked at, and how.
@@ -49,7 +53,8 @@ Seen see(ContactPoints& points, const Pair& pair, const Four& four, bool is_insi
   const FourPoints x = points.starts_of(four);
   ContactSurface& later = points.later(pair);
   const Look seen = look(later, pair, x);
-  if (seen.distance - closing(points, pair.kind, four, seen.normal) > later.thickness) return {};
+  if (seen.distance - closing(points, pair.kind, four, seen.normal) > points.thickness_of(pair))
+    return {};
   const Vector passes = points.way(four[0]) - points.way(four[3]);
   const bool stays = length(passes) < tuning::kContactPassing * seen.distance;
   const auto is_ghost_by = [&](double lean) {
@@ -72,7 +77,7 @@ simd::PairMeasure NearSearch::measure_of(const ContactPoints& points, const Pair
   return {.pairs = pairs.blocks.data(),
           .points = points.starts(),
           .ways = points.ways(),
-          .reach = static_cast<float>(points.largest_thickness() + points.largest_reach()),
+          .reach = static_cast<float>(points.largest_thickness() + points.largest_reach_of_pair()),
           .beyond = static_cast<float>(tuning::kContactBeyond),
           .distance = reinterpret_cast<float(*)[kLanes]>(distances.distance.data()),
           .near = distances.near.data()};
@@ -147,13 +152,13 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
         const std::size_t i = block * kLanes + static_cast<std::size_t>(std::countr_zero(bits));
         const Pair& pair = pairs.pairs[i];
         const Four four = pairs.points(i);
-        const bool is_inside = tangles.is_inside(four);
+        const bool is_inside = !pair.is_within_cloth() && tangles.is_inside(four);
         // Faces and edges between particles that are inside follow these.
         const bool is_of_particle = pair.kind == PairKind::point_triangle && !pair.is_turned();
         if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) continue;
         const Seen seen = see(points, pair, four, is_inside);
         if (!seen.is_near) continue;
-        near[list].add(pair, four, seen.normal, points.later(pair).thickness, seen.is_under);
+        near[list].add(pair, four, seen.normal, points.thickness_of(pair), seen.is_under);
       }
     }
   }

@@ -13,8 +13,10 @@ namespace weft {
 
 /// A near pair, and what its touch has done in the present substep.
 struct NearState {
-  bool is_touching = false;  // in this substep
-  double push = 0;           // m, along the normal, in this substep
+  double thickness = 0;       // m
+  bool is_touching = false;   // in this substep
+  bool was_touching = false;  // in the last one, as far as it is known
+  double push = 0;            // m, along the normal, in this substep
   reference::Grip grip{};
 };
 

@@ -109,7 +109,7 @@ void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near
   points.place_vertices_asked(clock);
   for (NearPairs& pairs : near) {
     for (NearState& state : pairs.states) {
-      state.is_touching = false;
+      state.was_touching = std::exchange(state.is_touching, false);
       state.push = 0;
       state.grip = {};
     }
@@ -144,7 +144,7 @@ Response::Encounter Response::meet(const ContactScene& scene, const NearPairs& n
   const Pair& pair = near.list.pairs[i];
   Encounter e{.points = near.list.points(i)};
   for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.place(e.points[k]);
-  const double thickness = scene.points.later(pair).thickness;
+  const double thickness = near.states[i].thickness;
   e.nearest = nearest(pair.kind, e.x);
   const Vector side = near.normal(i);
   const double l = length(e.nearest.r);
@@ -185,26 +185,27 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   if (!(stop.push > 0)) return false;
   state.is_touching = true;
   state.push += stop.push;
-  push(scene, e, pair, stop, weight, state.grip);
+  push(scene, e, pair, stop, weight, state);
   return true;
 }
 
 /// Moves what can move, and loads the body.
 void Response::push(const ContactScene& scene, const Encounter& e, const Pair& pair,
-                    const reference::Stop& stop, double weight, reference::Grip& grip) {
+                    const reference::Stop& stop, double weight, NearState& state) {
   const ContactSurface& later = scene.points.later(pair);
   TouchedSurface surface{.body = later.body};
   Vector relative{}, on_body{};
   std::array<ContactParticle, 4> at;
   for (std::size_t k = 0; k < 4; ++k) {
     const double w = e.nearest.weight[k], outward = pair.outward() * w;
-    at[k] = scene.read(e.points[k]);
+    at[k] = pair.is_within_cloth() ? scene.read_moving(e.points[k]) : scene.read(e.points[k]);
     relative = relative + w * at[k].v;
     if (scene.points.is_of_cloth(e.points[k])) continue;
     surface.velocity = surface.velocity - outward * at[k].v;
     on_body = on_body - outward * e.x[k];
   }
-  const reference::Slowed slow = reference::slow(e.normal, relative, later.friction, grip);
+  const reference::Slowed slow = reference::slow(e.normal, relative, later.friction, state.grip);
+  const bool is_within_cloth = pair.is_within_cloth();
   Vector impulse{};
   for (std::size_t k = 0; k < 4; ++k) {
     const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k];
@@ -216,10 +217,15 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
     p.v = p.v + part * slow.change;
     scene.particles.write(e.points[k], p);
     scene.points.set_place(e.points[k], p.x);
+    if (is_within_cloth) {
+      if (!state.was_touching) scene.particles.jolt(e.points[k], part * slow.change);
+      continue;
+    }
     scene.particles.touch(e.points[k], surface);
     const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
     impulse = impulse + (momentum * part) * slow.change;
   }
+  if (is_within_cloth) return;
   scene.impulses.add(later.body, scene.clock.motions()[later.body].to.centre, on_body, impulse,
                      surface.velocity);
   const double l_change = length(slow.change);

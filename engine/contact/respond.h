@@ -61,7 +61,7 @@ class Response {
   /// Returns whether it was pushed apart.
   static bool resist(const ContactScene& scene, NearPairs& near, std::size_t i);
   static void push(const ContactScene& scene, const Encounter& e, const Pair& pair,
-                   const reference::Stop& stop, double weight, reference::Grip& grip);
+                   const reference::Stop& stop, double weight, NearState& state);
   void find_touching(const ContactScene& scene, Near& near, Team& team);
   void remember(const ContactScene& scene, NearPairs& near, std::size_t list, std::size_t i);
 

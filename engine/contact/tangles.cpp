@@ -150,7 +150,7 @@ void Tangles::come_out(ContactPoints& points, Near& near) {
       is_out = false;
       const Vector r = left_by.nearest.r, n = kernels::direction(r, length(r));
       near[list_of(left_by.pair.kind)].add(left_by.pair, left_by.points, -1.0 * n,
-                                           points.later(left_by.pair).thickness, true);
+                                           points.thickness_of(left_by.pair), true);
     }
     return is_out;
   });
@@ -230,7 +230,7 @@ void Tangles::add_under(const ContactPoints& points, const Pair& pair,
                         const std::array<std::uint32_t, 4>& four, Vector normal, Near& near) {
   NearPairs& pairs = near[list_of(pair.kind)];
   if (pairs.find(pair) == pairs.list.size())
-    pairs.add(pair, four, normal, points.later(pair).thickness, true);
+    pairs.add(pair, four, normal, points.thickness_of(pair), true);
 }
 
 /// The particle is inside from now on.

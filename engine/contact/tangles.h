@@ -40,6 +40,7 @@ class Tangles {
   }
   /// Whether the pair is left alone.
   bool leaves_out(const Pair& pair) const {
+    if (pair.is_within_cloth()) return false;
     if (triangles_.empty()) return false;
     if (pair.kind == PairKind::edges) return has_edge_[pair.first];
     return pair.b == kClothSurface && has_triangle_[pair.second];

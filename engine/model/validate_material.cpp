@@ -108,6 +108,12 @@ Result<void> validate_wind(Vec3 wind) {
   return refuse("air.wind", "must be finite", text(wind));
 }
 
+Result<void> validate_self_contact(const SelfContact& contact) {
+  if (auto r = validate_not_negative("self_contact.friction", contact.friction); !r) return r;
+  if (contact.on) return validate_positive("self_contact.thickness", contact.thickness);
+  return validate_not_negative("self_contact.thickness", contact.thickness);
+}
+
 Result<void> validate_damping(const Damping& damping) {
   if (auto r = validate_not_negative("damping.stretch", damping.stretch); !r) return r;
   if (auto r = validate_not_negative("damping.bending", damping.bending); !r) return r;
@@ -142,6 +148,7 @@ Result<void> validate_material(const SceneDescription& d) {
   }
   if (auto r = validate_damping(d.damping); !r) return r;
   if (auto r = validate_not_negative("friction", d.friction); !r) return r;
+  if (auto r = validate_self_contact(d.self_contact); !r) return r;
   return validate_air(d.air, d.positions.size());
 }
 

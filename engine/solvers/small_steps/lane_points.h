@@ -33,6 +33,7 @@ struct LanePoints {
   SimdMembrane& membrane;
   SimdBodies* bodies;  // or null: they are left
   std::vector<Arrival>& arrived;
+  std::vector<Jolt>& jolts;
   float* led_to;  // simd::Flight
 
   double axis(const float* from, std::size_t a, std::size_t b) const {

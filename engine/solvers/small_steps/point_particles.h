@@ -28,6 +28,7 @@ class PointParticles final : public ContactParticles {
   void stop(std::uint32_t slot, const TouchedSurface& surface) override {
     points_.arrived.push_back({slot, surface});
   }
+  void jolt(std::uint32_t slot, kernels::Vector by) override { points_.jolts.push_back({slot, by}); }
   double momentum_share() const override { return points_.bodies->momentum_share(); }
 
  private:

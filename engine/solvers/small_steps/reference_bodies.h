@@ -19,7 +19,7 @@ class ReferenceBodies {
 
   using Touching = std::vector<bool>;  // per slot
 
-  bool empty() const { return clock_.bodies().empty(); }
+  bool empty() const { return clock_.bodies().empty() && meshes_.empty(); }
   /// before: who touched a body when the frame before ended; empty: nothing is known of it.
   /// misplaced: likewise, by meshes; start: whether it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,

@@ -60,7 +60,7 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
   meshes_.begin(clock_, start, misplaced);
   pairs_.clear();
   first_pair_.clear();
-  if (bodies.empty()) return;
+  if (empty()) return;
   make_room();
   h_ = h;
   std::ranges::fill(on_, std::uint16_t{0});

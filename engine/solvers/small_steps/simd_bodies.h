@@ -36,7 +36,7 @@ class SimdBodies {
     kernels::Vector start{}, x{}, v{};
   };
 
-  bool empty() const { return clock_.bodies().empty(); }
+  bool empty() const { return clock_.bodies().empty() && meshes_.empty(); }
   bool has_meshes() const { return !meshes_.empty(); }
   double take_visits() { return meshes_.take_visits(); }
   /// before: of the frame before; empty: nothing is known of it. misplaced: likewise, of meshes;
