@@ -39,6 +39,8 @@ class ContactParticles {
   /// Its velocity was changed by `by` in a moment: its past is changed alike, and what two particles
   /// do to each other keeps their momentum.
   virtual void jolt(std::uint32_t slot, kernels::Vector by) = 0;
+  /// Out of bodies of a closed form, into which other cloth may have pushed it.
+  virtual void hold(std::uint32_t slot) = 0;
   /// A change of velocity in this substep counts as so many times its momentum: 1 / b, since forces
   /// act in the part b of a substep alone (kernels/simd/small_steps.h).
   virtual double momentum_share() const = 0;

@@ -306,6 +306,8 @@ void ContactPoints::lay_tubes() {
   ++layings_;
   for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
   active_.clear();
+  if (touches_itself_)
+    surfaces_[kClothSurface].may_cross.assign(cloth().triangles.size(), 0);
   for (ContactSurface& surface : of_bodies()) {
     surface.is_near.assign(surface.triangles->triangles.size(), 0);
     surface.may_cross.assign(cloth().triangles.size(), 0);

@@ -216,7 +216,9 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
     p.x = p.x + part * stop.by;
     p.v = p.v + part * slow.change;
     scene.particles.write(e.points[k], p);
-    scene.points.set_place(e.points[k], p.x);
+    if (is_within_cloth) scene.particles.hold(e.points[k]);
+    scene.points.set_place(e.points[k],
+                           is_within_cloth ? scene.particles.position(e.points[k]) : p.x);
     if (is_within_cloth) {
       if (!state.was_touching) scene.particles.jolt(e.points[k], part * slow.change);
       continue;
@@ -267,6 +269,7 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
   for (std::size_t list = 0; list < kPairLists; ++list) {
     for (std::size_t block = 0; block < touching_[list].size(); ++block) {
       for_each_lane(block, touching_[list][block], [&](std::size_t i) {
+        if (near[list].list.pairs[i].is_within_cloth()) return;
         const Encounter e = meet(scene, near[list], i);
         if (e.pushes) deepest = std::max(deepest, -e.gap);
       });

@@ -121,6 +121,7 @@ struct LanePoints {
     if (held.is_at_limit) put(slot, held.x, held.v);
   }
   void grip(std::uint32_t slot) const;
+  void grip_by_bodies(std::uint32_t slot) const;
   void push(std::uint32_t slot, kernels::Vector by) const {
     move(slot, by);
     touched.push_back(slot);
@@ -130,7 +131,7 @@ struct LanePoints {
 /// The same as contacts with meshes see them.
 using LaneParticles = PointParticles<LanePoints>;
 
-inline void LanePoints::grip(std::uint32_t slot) const {
+inline void LanePoints::grip_by_bodies(std::uint32_t slot) const {
   SimdBodies::Particle particle{position_at_start(slot), position(slot), settled(slot)};
   const TouchedSurface surface = bodies->hold(slot, particle);
   if (surface.is_there()) {
@@ -138,6 +139,10 @@ inline void LanePoints::grip(std::uint32_t slot) const {
     put_start(slot, particle.start);
     if (bodies->begins_to_touch(slot)) arrived.push_back({slot, surface});
   }
+}
+
+inline void LanePoints::grip(std::uint32_t slot) const {
+  grip_by_bodies(slot);
   if (!bodies->has_meshes()) return;
   LaneParticles particles(*this);
   bodies->hold_by_meshes(slot, particles);

@@ -29,6 +29,7 @@ class PointParticles final : public ContactParticles {
     points_.arrived.push_back({slot, surface});
   }
   void jolt(std::uint32_t slot, kernels::Vector by) override { points_.jolts.push_back({slot, by}); }
+  void hold(std::uint32_t slot) override { points_.grip_by_bodies(slot); }
   double momentum_share() const override { return points_.bodies->momentum_share(); }
 
  private:
