@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -12,12 +11,6 @@
 namespace weft {
 
 using kernels::Vector;
-
-namespace {
-
-auto order_of(const Pair& pair) { return std::tuple(pair.kind, pair.first, pair.second); }
-
-}  // namespace
 
 void SurfaceContacts::begin(const BodyClock& clock, ContactStart start,
                             const Misplaced& misplaced) {
@@ -62,9 +55,7 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   near_search_.measure(points_, candidates_, have_moved, team);
   if (is_new_) tangles_.find(points_);
   is_new_ = false;
-  if (points_.touches_itself()) remember_touching();
   near_search_.find(points_, candidates_, tangles_, near_);
-  if (points_.touches_itself()) recognise_touching();
   tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);
   for (const PairList& list : candidates_)
@@ -72,31 +63,6 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   for (const NearPairs& near : near_)
     visits_ += tuning::kVisitsOfTouch * static_cast<double>(near.list.size());
   interval_ = substeps * clock.h();
-}
-
-/// Pairs within the cloth that touch.
-void SurfaceContacts::remember_touching() {
-  touched_.clear();
-  for (const NearPairs& near : near_) {
-    for (std::size_t i = 0; i < near.list.size(); ++i) {
-      if (near.states[i].is_touching && near.list.pairs[i].is_within_cloth())
-        touched_.push_back(near.list.pairs[i]);
-    }
-  }
-  std::ranges::sort(touched_, {}, order_of);
-}
-
-/// They touched in the substep before.
-void SurfaceContacts::recognise_touching() {
-  if (touched_.empty()) return;
-  for (NearPairs& near : near_) {
-    for (std::size_t i = 0; i < near.list.size(); ++i) {
-      const Pair& pair = near.list.pairs[i];
-      if (!pair.is_within_cloth()) continue;
-      near.states[i].is_touching =
-          std::ranges::binary_search(touched_, order_of(pair), {}, order_of);
-    }
-  }
 }
 
 void SurfaceContacts::advance(const BodyClock& clock) {
@@ -211,7 +177,7 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
 
 std::size_t SurfaceContacts::bytes() const {
   std::size_t bytes = points_.bytes() + search_.bytes() + near_search_.bytes() + response_.bytes() +
-                      tangles_.bytes() + bytes_of(impulses_.of_body) + bytes_of(touched_);
+                      tangles_.bytes() + bytes_of(impulses_.of_body);
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
     bytes +=

@@ -97,8 +97,6 @@ class SurfaceContacts {
   bool still_holds(const ContactParticles& particles, const BodyClock& clock) const;
   bool push_late_apart(const ContactScene& scene, Team& team);
   void expect_failures(const ContactScene& scene);
-  void remember_touching();
-  void recognise_touching();
 
   const Model& model_;
   ContactPoints points_;
@@ -115,7 +113,6 @@ class SurfaceContacts {
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
   bool has_looked_ahead_ = false;
-  std::vector<Pair> touched_;  // within the cloth, when the last interval ended
   Tangles tangles_;
 };
 

@@ -4,32 +4,13 @@
 #include <cmath>
 
 #include "engine/bytes_of.h"
+#include "engine/contact/layers.h"
 #include "engine/contact/look.h"
 
 namespace weft {
 
 using kernels::kLanes;
 using kernels::Vector;
-
-/// Its points where the substep began and where they are, and how it stands to its thickness.
-struct Response::Encounter {
-  std::array<std::uint32_t, 4> points{};
-  FourPoints start{}, x{};  // start: once it is read
-  reference::Nearest nearest{};
-  Vector normal{};        // from the second feature to the first, where both were on their sides
-  double gap = 0;         // m
-  bool is_under = false;  // one is on the wrong side of the other
-  bool pushes = false;
-
-  void read_start(const ContactScene& scene) {
-    for (std::size_t k = 0; k < 4; ++k) start[k] = scene.start(points[k]);
-  }
-  FourPoints at_share(double share) const {
-    FourPoints there;
-    for (std::size_t k = 0; k < 4; ++k) there[k] = start[k] + share * (x[k] - start[k]);
-    return there;
-  }
-};
 
 namespace {
 
@@ -109,7 +90,7 @@ void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near
   points.place_vertices_asked(clock);
   for (NearPairs& pairs : near) {
     for (NearState& state : pairs.states) {
-      state.was_touching = std::exchange(state.is_touching, false);
+      state.is_touching = false;
       state.push = 0;
       state.grip = {};
     }
@@ -139,8 +120,7 @@ void Response::find_touching(const ContactScene& scene, Near& near, Team& team) 
 }
 
 /// Where neighbours are nearer, or the features are not beside each other, it does not push.
-Response::Encounter Response::meet(const ContactScene& scene, const NearPairs& near,
-                                   std::size_t i) {
+Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::size_t i) {
   const Pair& pair = near.list.pairs[i];
   Encounter e{.points = near.list.points(i)};
   for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.place(e.points[k]);
@@ -170,6 +150,7 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   near.set_normal(i, e.normal);
   if (!e.pushes) return false;
   e.read_start(scene);
+  if (pair.is_within_cloth()) return layers::resist(scene, e, state);
   Vector slip{};
   double weight = 0;  // sum of W w^2
   for (std::size_t k = 0; k < 4; ++k) {
@@ -185,27 +166,26 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   if (!(stop.push > 0)) return false;
   state.is_touching = true;
   state.push += stop.push;
-  push(scene, e, pair, stop, weight, state);
+  push(scene, e, pair, stop, weight, state.grip);
   return true;
 }
 
 /// Moves what can move, and loads the body.
 void Response::push(const ContactScene& scene, const Encounter& e, const Pair& pair,
-                    const reference::Stop& stop, double weight, NearState& state) {
+                    const reference::Stop& stop, double weight, reference::Grip& grip) {
   const ContactSurface& later = scene.points.later(pair);
   TouchedSurface surface{.body = later.body};
   Vector relative{}, on_body{};
   std::array<ContactParticle, 4> at;
   for (std::size_t k = 0; k < 4; ++k) {
     const double w = e.nearest.weight[k], outward = pair.outward() * w;
-    at[k] = pair.is_within_cloth() ? scene.read_moving(e.points[k]) : scene.read(e.points[k]);
+    at[k] = scene.read(e.points[k]);
     relative = relative + w * at[k].v;
     if (scene.points.is_of_cloth(e.points[k])) continue;
     surface.velocity = surface.velocity - outward * at[k].v;
     on_body = on_body - outward * e.x[k];
   }
-  const reference::Slowed slow = reference::slow(e.normal, relative, later.friction, state.grip);
-  const bool is_within_cloth = pair.is_within_cloth();
+  const reference::Slowed slow = reference::slow(e.normal, relative, later.friction, grip);
   Vector impulse{};
   for (std::size_t k = 0; k < 4; ++k) {
     const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k];
@@ -216,18 +196,11 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
     p.x = p.x + part * stop.by;
     p.v = p.v + part * slow.change;
     scene.particles.write(e.points[k], p);
-    if (is_within_cloth) scene.particles.hold(e.points[k]);
-    scene.points.set_place(e.points[k],
-                           is_within_cloth ? scene.particles.position(e.points[k]) : p.x);
-    if (is_within_cloth) {
-      if (!state.was_touching) scene.particles.jolt(e.points[k], part * slow.change);
-      continue;
-    }
+    scene.points.set_place(e.points[k], p.x);
     scene.particles.touch(e.points[k], surface);
     const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
     impulse = impulse + (momentum * part) * slow.change;
   }
-  if (is_within_cloth) return;
   scene.impulses.add(later.body, scene.clock.motions()[later.body].to.centre, on_body, impulse,
                      surface.velocity);
   const double l_change = length(slow.change);

@@ -116,6 +116,19 @@ struct LanePoints {
       at += places.stride;
     }
   }
+  /// Where it began, without speed, and where it is.
+  void shift(std::uint32_t slot, kernels::Vector start_by, kernels::Vector by) const {
+    std::size_t at = places.of(slot);
+    for (const auto& [of_start, change] :
+         {std::pair{start_by.x, by.x}, std::pair{start_by.y, by.y}, std::pair{start_by.z, by.z}}) {
+      const auto start_change = static_cast<float>(of_start);
+      u_start[at] += start_change;
+      predicted[at] += start_change;
+      if (led_to != u) led_to[at] += start_change;
+      u[at] += static_cast<float>(change);
+      at += places.stride;
+    }
+  }
   void hold(std::uint32_t slot, std::uint32_t anchor) const {
     const reference::Held held = anchors.hold(anchor, place(u, slot), settled(slot));
     if (held.is_at_limit) put(slot, held.x, held.v);

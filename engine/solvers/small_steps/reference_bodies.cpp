@@ -58,6 +58,14 @@ TouchedSurface ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& 
   return surface;
 }
 
+Vector ReferenceBodies::kept_out(std::uint32_t slot, Vector start, Vector by) const {
+  for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
+    if (clock_.bodies()[i].shape->mesh() == nullptr)
+      by = reference::kept_out(clock_.motions()[i], start, by, radius(slot));
+  }
+  return by;
+}
+
 void ReferenceBodies::arrive(const TouchedSurface& surface, Vector x, Vector v, Vector impulse) {
   add_arrival(impulses_, clock_, surface, x, v, impulse);
 }

@@ -48,6 +48,8 @@ class ReferenceBodies {
   /// that it touches, the last of several, if there is one.
   TouchedSurface hold(std::uint32_t slot, kernels::Vector& start, kernels::Vector& x,
                       kernels::Vector& v);
+  /// A particle that began there is moved by `by`, without speed: no deeper into bodies.
+  kernels::Vector kept_out(std::uint32_t slot, kernels::Vector start, kernels::Vector by) const;
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
   /// impulse: as add_arrival (body_touches.h) has it.

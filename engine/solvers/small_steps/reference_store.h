@@ -181,6 +181,13 @@ struct ReferenceStore::Points {
     }
     start.set(slot, position);
   }
+  /// Where it began, without speed, and where it is.
+  void shift(std::uint32_t slot, kernels::Vector start_by, kernels::Vector by) const {
+    start.add(slot, start_by);
+    predicted.add(slot, start_by);
+    if (is_mended()) led_to.add(slot, start_by);
+    x.add(slot, by);
+  }
   kernels::Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
   void move(std::uint32_t slot, kernels::Vector by) const {
     x.add(slot, by);

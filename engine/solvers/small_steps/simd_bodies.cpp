@@ -304,6 +304,16 @@ TouchedSurface SimdBodies::hold(std::uint32_t slot, Particle& particle) {
   return surface;
 }
 
+Vector SimdBodies::kept_out(std::uint32_t slot, Vector start, Vector by) const {
+  const std::uint32_t place = layout_.place_of[slot];
+  if (place == kNoIndex || pairs_.empty()) return by;
+  const std::size_t block = place / kLanes;
+  const auto radius = static_cast<double>(layout_.blocks[block].radius[place % kLanes]);
+  for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i)
+    by = reference::kept_out(clock_.motions()[pairs_[i].body], start, by, radius);
+  return by;
+}
+
 TouchedSurface SimdBodies::touched_by(std::uint32_t slot, Vector x) const {
   const std::uint32_t place = layout_.place_of[slot];
   const std::size_t block = place / kLanes, lane = place % kLanes;
