@@ -21,18 +21,38 @@ double target_of(double began, double thickness, double h) {
   return std::min(-slack, began + h * speed);
 }
 
+/// m, of the first feature beside the second since the substep began.
+struct Slip {
+  double approach = 0;
+  Vector along{};
+};
+
+Slip slip_of(const Encounter& e) {
+  Vector slip{};
+  for (std::size_t k = 0; k < 4; ++k) slip = slip + e.nearest.weight[k] * (e.x[k] - e.start[k]);
+  const double approach = -dot(e.normal, slip);
+  return {approach, slip + approach * e.normal};
+}
+
+void begin(const ContactScene& scene, NearState& state, double began) {
+  state.is_touching = true;
+  state.target = target_of(began, state.thickness, scene.clock.h());
+  state.is_blow = began > kLayerMeeting * state.thickness;
+}
+
 /// How much of a push each point takes.
 struct Shares {
   std::array<double, 4> of{};
+  double weight = 0;  // 1/kg: sum of W w^2
 };
 
 Shares shares_of(const ContactScene& scene, const Encounter& e, const std::array<bool, 4>& counts) {
-  double weight = 0;  // sum of W w^2
+  Shares shares;
+  double& weight = shares.weight;
   for (std::size_t k = 0; k < 4; ++k) {
     const double w = e.nearest.weight[k];
     if (counts[k]) weight += scene.points.inverse_mass(e.points[k]) * w * w;
   }
-  Shares shares;
   if (!(weight > 0)) return shares;
   weight = std::max(weight, least_weight(scene.points, e.points));
   for (std::size_t k = 0; k < 4; ++k)
@@ -59,10 +79,10 @@ void slow(const ContactScene& scene, const Encounter& e, const Shares& shares, d
   }
 }
 
-/// Moves the points by their shares of both, and tells which of them a body did not let go.
+/// Moves the points by their shares of both, and tells which of them no body has held.
 std::array<bool, 4> push(const ContactScene& scene, Encounter& e, const Shares& shares, Vector by,
                          Vector comes_out, bool is_blow) {
-  std::array<bool, 4> is_free{};
+  std::array<bool, 4> is_free{true, true, true, true};
   for (std::size_t k = 0; k < 4; ++k) {
     const double share = shares.of[k];
     if (share == 0) continue;
@@ -80,7 +100,7 @@ std::array<bool, 4> push(const ContactScene& scene, Encounter& e, const Shares& 
     e.start[k] = scene.particles.start(point);
     scene.points.set_place(point, x);
     e.gap += e.nearest.weight[k] * dot(e.normal, moved);
-    is_free[k] = dot(moved, e.normal) / share > 0.5 * dot(by + comes_out, e.normal);
+    is_free[k] = dot(moved, e.normal) / (share * dot(by + comes_out, e.normal)) > 0.5;
   }
   return is_free;
 }
@@ -88,39 +108,33 @@ std::array<bool, 4> push(const ContactScene& scene, Encounter& e, const Shares& 
 }  // namespace
 
 bool resist(const ContactScene& scene, Encounter& e, NearState& state) {
-  const double friction = scene.points.surfaces()[kClothSurface].friction;
-  bool is_pushed = false;
+  const Slip slip = slip_of(e);
+  if (!state.is_touching) begin(scene, state, e.gap + slip.approach);
+  const double push_by = state.target - e.gap;
+  if (!(push_by > 0)) return false;
+  const double stays_out =
+      state.is_blow ? push_by : std::min(push_by, std::max(0.0, slip.approach));
+  state.push += push_by;
+  const double friction = scene.points.surfaces()[kClothSurface].friction, end = e.gap + push_by;
   std::array<bool, 4> counts{true, true, true, true};
+  double whole = 0;
   for (int visit = 0; visit < 2; ++visit) {
     const Shares shares = shares_of(scene, e, counts);
-    if (shares.of == std::array<double, 4>{}) break;
-    Vector slip{};
-    for (std::size_t k = 0; k < 4; ++k) slip = slip + e.nearest.weight[k] * (e.x[k] - e.start[k]);
-    const double approach = -dot(e.normal, slip), began = e.gap + approach;
-    if (!state.is_touching) {
-      state.target = target_of(began, state.thickness, scene.clock.h());
-      state.is_blow = began > kLayerMeeting * state.thickness;
+    const double left = (end - e.gap) / push_by;
+    if (!(shares.weight > 0) || !(left > 0)) break;
+    if (visit == 0) whole = shares.weight;
+    state.grip.pushed += whole / shares.weight * left * stays_out;
+    double held = 0;
+    if (visit == 0) {
+      held =
+          reference::held_share(length(slip.along), friction * state.grip.pushed, state.grip.held);
     }
-    const double push_by = state.target - e.gap;
-    if (!(push_by > 0)) break;
-    is_pushed = state.is_touching = true;
-    const double stays_out = state.is_blow ? push_by : std::min(push_by, std::max(0.0, approach));
-    state.push += push_by;
-    state.grip.pushed += stays_out;
-    const Vector along = slip + approach * e.normal;
-    const double held =
-        reference::held_share(length(along), friction * state.grip.pushed, state.grip.held);
     if (state.is_blow) slow(scene, e, shares, friction, state.grip);
-    const auto is_free = push(scene, e, shares, stays_out * e.normal - held * along,
-                              (push_by - stays_out) * e.normal, state.is_blow);
-    bool is_held = false;
-    for (std::size_t k = 0; k < 4; ++k) {
-      is_held = is_held || (shares.of[k] != 0 && !is_free[k]);
-      counts[k] = is_free[k];
-    }
-    if (!is_held) break;
+    counts = push(scene, e, shares, left * stays_out * e.normal - held * slip.along,
+                  left * (push_by - stays_out) * e.normal, state.is_blow);
+    if (counts == std::array{true, true, true, true}) break;
   }
-  return is_pushed;
+  return true;
 }
 
 }  // namespace weft::layers
