@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/bytes_of.h"
+
 namespace weft {
 
 using kernels::Vector;
@@ -61,7 +63,17 @@ struct ImpactZones::Rigid {
   }
 };
 
-ImpactZones::ImpactZones(const ContactScene& scene) : scene_(scene) {}
+void ImpactZones::begin() {
+  for (const std::uint32_t point : points_) {
+    parent_[point] = point;
+    is_in_[point] = false;
+  }
+  points_.clear();
+}
+
+std::size_t ImpactZones::bytes() const {
+  return bytes_of(parent_) + is_in_.capacity() / 8 + bytes_of(points_);
+}
 
 void ImpactZones::add(std::uint32_t point) {
   if (parent_.size() <= point) {
@@ -92,12 +104,12 @@ void ImpactZones::join(const std::array<std::uint32_t, 4>& points) {
   for (std::size_t k = 1; k < 4; ++k) unite(points[0], points[k]);
 }
 
-void ImpactZones::grow() {
+void ImpactZones::grow(const ContactScene& scene) {
   const std::size_t count = points_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t point = points_[i];
-    if (!scene_.points.is_of_cloth(point)) continue;
-    for (const std::uint32_t other : scene_.points.cloth().neighbours[point]) {
+    if (!scene.points.is_of_cloth(point)) continue;
+    for (const std::uint32_t other : scene.points.cloth().neighbours[point]) {
       add(other);
       unite(point, other);
     }
@@ -105,8 +117,8 @@ void ImpactZones::grow() {
 }
 
 /// Where one is: a body that keeps its shape, or else the mean way of what is fixed.
-bool ImpactZones::follows(std::size_t first, std::size_t last, Rigid& motion, double time) const {
-  const ContactPoints& points = scene_.points;
+bool ImpactZones::follows(const ContactPoints& points, std::size_t first, std::size_t last,
+                          Rigid& motion, double time) const {
   Vector sum{};
   double count = 0;
   for (std::size_t i = first; i < last; ++i) {
@@ -128,54 +140,55 @@ bool ImpactZones::follows(std::size_t first, std::size_t last, Rigid& motion, do
   return true;
 }
 
-ImpactZones::Rigid ImpactZones::motion_of(std::size_t first, std::size_t last, double time) const {
+ImpactZones::Rigid ImpactZones::motion_of(const ContactScene& scene, std::size_t first,
+                                          std::size_t last, double time) const {
   Rigid motion;
-  if (follows(first, last, motion, time)) return motion;
-  const ContactPoints& points = scene_.points;
+  if (follows(scene.points, first, last, motion, time)) return motion;
+  const ContactPoints& points = scene.points;
   double mass = 0;
   for (std::size_t i = first; i < last; ++i) {
-    const double m = scene_.model.mass[points_[i]];
+    const double m = scene.model.mass[points_[i]];
     mass += m;
     motion.centre = motion.centre + m * points.start(points_[i]);
     motion.way = motion.way + m * (points.end(points_[i]) - points.start(points_[i]));
-    motion.velocity = motion.velocity + m * scene_.particles.read(points_[i]).v;
+    motion.velocity = motion.velocity + m * scene.particles.read(points_[i]).v;
   }
   for (Vector* v : {&motion.centre, &motion.way, &motion.velocity}) *v = (1 / mass) * *v;
   Inertia inertia;
   Vector turns{}, spins{};
   for (std::size_t i = first; i < last; ++i) {
-    const double m = scene_.model.mass[points_[i]];
+    const double m = scene.model.mass[points_[i]];
     const Vector r = points.start(points_[i]) - motion.centre;
     inertia.add(m, r);
     turns = turns + m * cross(r, points.end(points_[i]) - points.start(points_[i]));
-    spins = spins + m * cross(r, scene_.particles.read(points_[i]).v);
+    spins = spins + m * cross(r, scene.particles.read(points_[i]).v);
   }
   motion.angle = inertia.solve(turns);
   motion.spin = inertia.solve(spins);
   return motion;
 }
 
-void ImpactZones::move(double time) {
+void ImpactZones::move(const ContactScene& scene, double time) {
   for (const std::uint32_t point : points_) parent_[point] = root_of(point);
   std::ranges::sort(points_, {}, [&](std::uint32_t point) {
     return std::uint64_t{parent_[point]} << 32 | point;
   });
   for (std::size_t first = 0, last = 0; first < points_.size(); first = last) {
     while (last < points_.size() && parent_[points_[last]] == parent_[points_[first]]) ++last;
-    const Rigid motion = motion_of(first, last, time);
+    const Rigid motion = motion_of(scene, first, last, time);
     for (std::size_t i = first; i < last; ++i) {
       const std::uint32_t point = points_[i];
-      if (!(scene_.points.inverse_mass(point) > 0)) continue;
-      const Vector start = scene_.points.start(point);
-      ContactParticle particle = scene_.particles.read(point);
+      if (!(scene.points.inverse_mass(point) > 0)) continue;
+      const Vector start = scene.points.start(point);
+      ContactParticle particle = scene.particles.read(point);
       const Vector before = particle.v;
       particle.x = motion.place(start);
       particle.v = motion.body != kNoIndex
                        ? (1 / time) * (particle.x - start)
                        : motion.velocity + cross(motion.spin, start - motion.centre);
-      scene_.particles.write(point, particle);
-      scene_.points.set_end(point, particle.x);
-      scene_.particles.jolt(point, particle.v - before);
+      scene.particles.write(point, particle);
+      scene.points.set_end(point, particle.x);
+      scene.particles.jolt(point, particle.v - before);
     }
   }
 }

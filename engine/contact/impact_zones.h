@@ -14,24 +14,26 @@ namespace weft {
 
 class ImpactZones {
  public:
-  explicit ImpactZones(const ContactScene& scene);
-
+  /// Of an interval.
+  void begin();
   /// The points of a pair are in one zone from now on.
   void join(const std::array<std::uint32_t, 4>& points);
+  std::size_t bytes() const;
   /// All neighbours of zones join them.
-  void grow();
+  void grow(const ContactScene& scene);
   /// Moves all particles of zones. time: s, of the interval.
-  void move(double time);
+  void move(const ContactScene& scene, double time);
 
  private:
   struct Rigid;
   std::uint32_t root_of(std::uint32_t point);
   void unite(std::uint32_t a, std::uint32_t b);
   void add(std::uint32_t point);
-  Rigid motion_of(std::size_t first, std::size_t last, double time) const;
-  bool follows(std::size_t first, std::size_t last, Rigid& motion, double time) const;
+  Rigid motion_of(const ContactScene& scene, std::size_t first, std::size_t last,
+                  double time) const;
+  bool follows(const ContactPoints& points, std::size_t first, std::size_t last, Rigid& motion,
+               double time) const;
 
-  const ContactScene& scene_;
   std::vector<std::uint32_t> parent_;  // per point: another one of its zone, or itself
   std::vector<bool> is_in_;            // per point
   std::vector<std::uint32_t> points_;  // in zones

@@ -81,8 +81,8 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
   has_moved = has_moved || has_failed;
   if (has_moved) {
     expect_failures(scene);
-    stop_failures(scene, search_, near_search_, verification_, candidates_, interval_, failures_,
-                  team);
+    stop_failures(scene, search_, near_search_, verification_, candidates_, interval_, zones_,
+                  failures_, team);
     for (const Failure& failure : verification_.failures())
       tangles_.take_in(points_, candidates_[failure.list].pairs[failure.pair]);
   }
@@ -177,7 +177,7 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
 
 std::size_t SurfaceContacts::bytes() const {
   std::size_t bytes = points_.bytes() + search_.bytes() + near_search_.bytes() + response_.bytes() +
-                      tangles_.bytes() + bytes_of(impulses_.of_body);
+                      tangles_.bytes() + bytes_of(impulses_.of_body) + zones_.bytes();
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
     bytes +=

@@ -107,6 +107,7 @@ class SurfaceContacts {
   Candidates candidates_;
   Near near_;
   ContactImpulses impulses_;
+  ImpactZones zones_;
   RescueReport failures_;
   double visits_ = 0;
   bool is_new_ = false;    // tangles are not known yet

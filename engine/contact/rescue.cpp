@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/contact/impact_zones.h"
 #include "engine/contact/look.h"
 #include "engine/contact/respond.h"
 
@@ -119,9 +118,9 @@ namespace {
 
 /// Cloth that touches itself: a zone grows with each round by what it meets, until nothing does.
 void stop_cloth(const ContactScene& scene, const CandidateSearch& search, NearSearch& near_search,
-                Verification& verification, Candidates& candidates, double time,
+                Verification& verification, Candidates& candidates, double time, ImpactZones& zones,
                 RescueReport& report, Team& team) {
-  ImpactZones zones(scene);
+  zones.begin();
   for (int round = 0; round < tuning::kBlowRounds + tuning::kClothZoneRounds; ++round) {
     if (verification.failures().empty()) break;
     if (round < tuning::kBlowRounds) {
@@ -130,8 +129,8 @@ void stop_cloth(const ContactScene& scene, const CandidateSearch& search, NearSe
     } else {
       for (const Failure& failure : verification.failures())
         zones.join(candidates[failure.list].points(failure.pair));
-      if (round >= tuning::kBlowRounds + tuning::kZoneRounds) zones.grow();
-      zones.move(time);
+      if (round >= tuning::kBlowRounds + tuning::kZoneRounds) zones.grow(scene);
+      zones.move(scene, time);
     }
     if (round == tuning::kBlowRounds)
       report.zones += static_cast<int>(verification.failures().size());
@@ -143,11 +142,11 @@ void stop_cloth(const ContactScene& scene, const CandidateSearch& search, NearSe
 
 void stop_failures(const ContactScene& scene, const CandidateSearch& search,
                    NearSearch& near_search, Verification& verification, Candidates& candidates,
-                   double time, RescueReport& report, Team& team) {
+                   double time, ImpactZones& zones, RescueReport& report, Team& team) {
   using tuning::kBlowRounds, tuning::kZoneRounds;
   report.failures += static_cast<int>(verification.failures().size());
   if (scene.points.touches_itself()) {
-    stop_cloth(scene, search, near_search, verification, candidates, time, report, team);
+    stop_cloth(scene, search, near_search, verification, candidates, time, zones, report, team);
     return;
   }
   for (int round = 0; round < kBlowRounds + kZoneRounds && !verification.failures().empty();

@@ -26,7 +26,9 @@ struct Jolt {
 /// Visits each particle with the sum of its jolts, and empties the list.
 template <class Visit>
 void take_jolts(std::vector<Jolt>& jolts, Visit&& visit) {
-  std::ranges::stable_sort(jolts, {}, &Jolt::slot);
+  std::ranges::sort(jolts, {}, [](const Jolt& jolt) {  // so that sums depend on no other order
+    return std::tuple(jolt.slot, jolt.by.x, jolt.by.y, jolt.by.z);
+  });
   for (std::size_t i = 0; i < jolts.size();) {
     Jolt sum = jolts[i];
     for (++i; i < jolts.size() && jolts[i].slot == sum.slot; ++i) sum.by = sum.by + jolts[i].by;
