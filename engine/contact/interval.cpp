@@ -91,6 +91,8 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
     points_.activate_all();
     tangles_.find_crossing_at_end(points_);
   }
+  if (tangles_.count_within() > 0 || !verification_.failures().empty())
+    if (points_.touches_itself()) tangles_.find_crossing_within_at_end(points_);
   if (!has_moved) return false;
   verification_.find_late(scene, near_search_, candidates_, team);
   for (const Failure& late : verification_.failures())
@@ -138,10 +140,14 @@ void SurfaceContacts::expect_failures(const ContactScene& scene) {
   points_.place_vertices_asked(scene.clock);
 }
 
-int SurfaceContacts::count_touching() const {
-  int count = 0;
-  for (const NearPairs& near : near_)
-    count += static_cast<int>(std::ranges::count_if(near.states, &NearState::is_touching));
+SurfaceContacts::Touching SurfaceContacts::count_touching() const {
+  Touching count;
+  for (const NearPairs& near : near_) {
+    for (std::size_t i = 0; i < near.list.size(); ++i) {
+      if (near.states[i].is_touching)
+        ++(near.list.pairs[i].is_within_cloth() ? count.within_cloth : count.bodies);
+    }
+  }
   return count;
 }
 

@@ -77,9 +77,13 @@ class SurfaceContacts {
   RescueReport failures() const {
     RescueReport report = failures_;
     report.left = tangles_.count();
+    report.tangled = tangles_.count_within();
     return report;
   }
-  int count_touching() const;
+  struct Touching {
+    int bodies = 0, within_cloth = 0;
+  };
+  Touching count_touching() const;
   void read_touching(const ContactParticles& particles, const BodyClock& clock,
                      std::vector<BodyTouch>& touches) const;
   const Misplaced& misplaced() const { return tangles_.misplaced(); }

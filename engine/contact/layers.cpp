@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/contact/respond.h"
+#include "engine/tuning.h"
 
 namespace weft::layers {
 
@@ -10,14 +11,11 @@ using kernels::Vector;
 
 namespace {
 
-constexpr double kLayerSlack = 0.05, kLayerMeeting = 0.02;
-constexpr double kLayerTime = 3e-3;
-
 /// m, beyond the thickness, that a pair is to have in this substep.
 double target_of(double began, double thickness, double h) {
-  const double slack = kLayerSlack * thickness;
+  const double slack = tuning::kLayerSlack * thickness;
   if (began >= -slack) return std::min(began, 0.0);
-  const double speed = std::min(reference::kFastestRecovery, (-slack - began) / kLayerTime);
+  const double speed = std::min(reference::kFastestRecovery, (-slack - began) / tuning::kLayerTime);
   return std::min(-slack, began + h * speed);
 }
 
@@ -37,7 +35,7 @@ Slip slip_of(const Encounter& e) {
 void begin(const ContactScene& scene, NearState& state, double began) {
   state.is_touching = true;
   state.target = target_of(began, state.thickness, scene.clock.h());
-  state.is_blow = began > kLayerMeeting * state.thickness;
+  state.is_blow = began > tuning::kLayerMeeting * state.thickness;
 }
 
 /// How much of a push each point takes.
@@ -79,6 +77,33 @@ void slow(const ContactScene& scene, const Encounter& e, const Shares& shares, d
   }
 }
 
+/// m/s, at which the features come nearer to each other.
+double closing(const ContactScene& scene, const Encounter& e) {
+  double speed = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    speed -= e.nearest.weight[k] * dot(e.normal, scene.read_moving(e.points[k]).v);
+  return speed;
+}
+
+/// m, of a push that takes that speed.
+double way_of(const ContactScene& scene, double speed) {
+  return speed * scene.clock.h() / scene.particles.momentum_share();
+}
+
+/// Takes the speed at which layers that lie on each other would go on to come nearer, where ways
+/// make nothing faster.
+void settle(const ContactScene& scene, const Encounter& e, const std::array<bool, 4>& is_free) {
+  const double speed = closing(scene, e);
+  const Shares shares = shares_of(scene, e, is_free);
+  if (!(speed > 0) || !(shares.weight > 0)) return;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (shares.of[k] == 0 || !is_free[k]) continue;
+    ContactParticle p = scene.particles.read(e.points[k]);
+    p.v = p.v + (shares.of[k] * speed) * e.normal;
+    scene.particles.write(e.points[k], p);
+  }
+}
+
 /// Moves the points by their shares of both, and tells which of them no body has held.
 std::array<bool, 4> push(const ContactScene& scene, Encounter& e, const Shares& shares, Vector by,
                          Vector comes_out, bool is_blow) {
@@ -112,8 +137,10 @@ bool resist(const ContactScene& scene, Encounter& e, NearState& state) {
   if (!state.is_touching) begin(scene, state, e.gap + slip.approach);
   const double push_by = state.target - e.gap;
   if (!(push_by > 0)) return false;
-  const double stays_out =
-      state.is_blow ? push_by : std::min(push_by, std::max(0.0, slip.approach));
+  const bool is_mended = scene.particles.is_mended();
+  double stays_out = state.is_blow ? push_by : std::min(push_by, std::max(0.0, slip.approach));
+  if (stays_out < push_by && !is_mended)
+    stays_out = std::clamp(way_of(scene, closing(scene, e)), stays_out, push_by);
   state.push += push_by;
   const double friction = scene.points.surfaces()[kClothSurface].friction, end = e.gap + push_by;
   std::array<bool, 4> counts{true, true, true, true};
@@ -134,6 +161,7 @@ bool resist(const ContactScene& scene, Encounter& e, NearState& state) {
                   left * (push_by - stays_out) * e.normal, state.is_blow);
     if (counts == std::array{true, true, true, true}) break;
   }
+  if (is_mended && !state.is_blow) settle(scene, e, counts);
   return true;
 }
 

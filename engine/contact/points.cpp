@@ -197,10 +197,8 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   travelled_ += touches_itself_ ? std::max(travelled_, of_other) : of_other;
   find_reach();
   const double beside_itself = this->beside_itself();
-  for (std::size_t slot = 0; slot < slots_; ++slot)
-    write_box(slot, reach_[slot] + beside_itself);
-  if (touches_itself_)
-    surfaces_[kClothSurface].normals.begin(this->cloth(), start_.data(), false);
+  for (std::size_t slot = 0; slot < slots_; ++slot) write_box(slot, reach_[slot] + beside_itself);
+  if (touches_itself_) surfaces_[kClothSurface].normals.begin(this->cloth(), start_.data(), false);
   for (ContactSurface& surface : of_bodies()) {
     const PoseTravel& travel = clock.bodies()[surface.body].travel;
     const auto before = std::exchange(surface.begins, travel.at(from_));
@@ -306,8 +304,7 @@ void ContactPoints::lay_tubes() {
   ++layings_;
   for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
   active_.clear();
-  if (touches_itself_)
-    surfaces_[kClothSurface].may_cross.assign(cloth().triangles.size(), 0);
+  if (touches_itself_) surfaces_[kClothSurface].may_cross.assign(cloth().triangles.size(), 0);
   for (ContactSurface& surface : of_bodies()) {
     surface.is_near.assign(surface.triangles->triangles.size(), 0);
     surface.may_cross.assign(cloth().triangles.size(), 0);
@@ -364,8 +361,8 @@ float ContactPoints::largest_move() const {
     largest = std::max(largest, dot(by, by));
   }
   const double of_cloth = std::sqrt(largest);
-  return static_cast<float>(of_cloth +
-                            (touches_itself_ ? std::max(of_cloth, way_of_bodies_) : way_of_bodies_));
+  return static_cast<float>(
+      of_cloth + (touches_itself_ ? std::max(of_cloth, way_of_bodies_) : way_of_bodies_));
 }
 
 bool ContactPoints::holds_end(std::uint32_t point) const { return holds(point, end_[point]); }

@@ -22,14 +22,16 @@ std::vector<double> lengths_at_rest(const Model& model, const TriangleSurface& s
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
   };
   const ConstraintStore& c = model.constraints;
-  for (std::size_t i = 0; i < c.size(); ++i) known.push_back({key(c.a[i], c.b[i]), c.rest_length[i]});
-  model.membrane.for_each_side(
-      [&](std::uint32_t a, std::uint32_t b, double l) { known.push_back({key(a, b), l}); });
+  for (std::size_t i = 0; i < c.size(); ++i)
+    known.push_back({key(c.a[i], c.b[i]), c.rest_length[i]});
+  model.membrane.for_each_side([&](std::uint32_t a, std::uint32_t b, double l) {
+    known.push_back({key(a, b), l});
+  });
   std::ranges::sort(known);
   std::vector<double> lengths;
   for (const auto& [a, b] : s.edges) {
-    const auto found = std::ranges::lower_bound(known, key(a, b), {},
-                                                &std::pair<std::uint64_t, double>::first);
+    const auto found =
+        std::ranges::lower_bound(known, key(a, b), {}, &std::pair<std::uint64_t, double>::first);
     lengths.push_back(found != known.end() && found->first == key(a, b)
                           ? found->second
                           : length(model.initial_position[a] - model.initial_position[b]));
@@ -52,7 +54,8 @@ class FlatPatch {
     laid_.clear();
     const auto [ab, bc, ca] = surface_.edges_of[triangle];
     const double l = lengths_[ab];
-    laid_.push_back({triangle, {Vector{}, Vector{l, 0, 0}, corner(l, lengths_[ca], lengths_[bc], 1)}});
+    laid_.push_back(
+        {triangle, {Vector{}, Vector{l, 0, 0}, corner(l, lengths_[ca], lengths_[bc], 1)}});
     seen_in_[triangle] = triangle;
     for (std::size_t i = 0; i < laid_.size(); ++i) {
       for (std::size_t k = 0; k < 3; ++k) lay_beside(i, k, triangle, within);
@@ -109,11 +112,11 @@ class FlatPatch {
     const Corners& source = laid_.front().corners;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto distance = [](const reference::Nearest& nearest) { return length(nearest.r); };
-      least = std::min({least,
-                        distance(reference::nearest_in_triangle(corners[i], source[0], source[1],
-                                                                source[2])),
-                        distance(reference::nearest_in_triangle(source[i], corners[0], corners[1],
-                                                                corners[2]))});
+      least = std::min(
+          {least,
+           distance(reference::nearest_in_triangle(corners[i], source[0], source[1], source[2])),
+           distance(
+               reference::nearest_in_triangle(source[i], corners[0], corners[1], corners[2]))});
     }
     return least < within;
   }

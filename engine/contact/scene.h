@@ -25,7 +25,8 @@ struct ContactScene {
   /// A particle that the caller moves is as fast as that.
   ContactParticle read_moving(std::uint32_t slot) const {
     ContactParticle particle = particles.read(slot);
-    if (points.inverse_mass(slot) == 0) particle.v = (1 / clock.h()) * (particle.x - particle.start);
+    if (points.inverse_mass(slot) == 0)
+      particle.v = (1 / clock.h()) * (particle.x - particle.start);
     return particle;
   }
   /// Where that is.

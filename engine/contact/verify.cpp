@@ -200,8 +200,7 @@ void Verification::look_beside_strayed(const ContactScene& scene, const Candidat
     box.add(points.box(c));
     search.find_beside(points, t, box, candidates);
   }
-  if (points.touches_itself())
-    search.find_within_cloth_beside(points, has_strayed_, candidates);
+  if (points.touches_itself()) search.find_within_cloth_beside(points, has_strayed_, candidates);
   near_search.measure_new(points, candidates, team);
 }
 

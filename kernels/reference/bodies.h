@@ -177,7 +177,8 @@ inline Vector slip_of(const BodyMotion& body, Vector start, Vector x) {
   return x - body.to.placed(body.from.from_place(start));
 }
 
-/// What is left of a way by which the start of a substep is moved: it leads no deeper into the body.
+/// What is left of a way by which the start of a substep is moved: it leads no deeper into the
+/// body.
 inline Vector kept_out(const BodyMotion& body, Vector start, Vector by, double radius) {
   const double thickness = body.thickness + radius;
   const Gap from = gap_of(body.solid, thickness, body.from.from_place(start)),

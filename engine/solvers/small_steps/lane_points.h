@@ -36,6 +36,7 @@ struct LanePoints {
   std::vector<Jolt>& jolts;
   float* led_to;  // simd::Flight
 
+  bool is_mended() const { return led_to != u; }
   double axis(const float* from, std::size_t a, std::size_t b) const {
     return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
            (static_cast<double>(from[a]) - static_cast<double>(from[b]));
@@ -112,7 +113,7 @@ struct LanePoints {
     for (const double to : {position.x, position.y, position.z}) {
       const float before =
           std::exchange(u_start[at], static_cast<float>(to - static_cast<double>(base[at])));
-      if (led_to != u) predicted[at] = led_to[at] += u_start[at] - before;
+      if (is_mended()) predicted[at] = led_to[at] += u_start[at] - before;
       at += places.stride;
     }
   }
@@ -124,7 +125,7 @@ struct LanePoints {
       const auto start_change = static_cast<float>(of_start);
       u_start[at] += start_change;
       predicted[at] += start_change;
-      if (led_to != u) led_to[at] += start_change;
+      if (is_mended()) led_to[at] += start_change;
       u[at] += static_cast<float>(change);
       at += places.stride;
     }

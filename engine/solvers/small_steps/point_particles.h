@@ -36,6 +36,7 @@ class PointParticles final : public ContactParticles {
     points_.shift(slot, kept, by + kept);
     points_.grip_by_bodies(slot);
   }
+  bool is_mended() const override { return points_.is_mended(); }
   double momentum_share() const override { return points_.bodies->momentum_share(); }
 
  private:

@@ -48,7 +48,9 @@ struct Substep {
   double decaying_share() const {
     return SubstepFormula{}.with_decay(model.damping.motion, h, h).share;
   }
-  std::size_t bytes() const { return passes.bytes() + bytes_of(touched) + bytes_of(arrived) + bytes_of(jolts); }
+  std::size_t bytes() const {
+    return passes.bytes() + bytes_of(touched) + bytes_of(arrived) + bytes_of(jolts);
+  }
 };
 
 /// How far a sweep goes with rigid constraints.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "tests/support/body_meshes.h"
@@ -249,6 +250,93 @@ TEST_CASE("a step that fails leaves cloth that touches itself as it was") {
   const std::vector<std::byte> before = cloth.save_state();
   REQUIRE_FALSE(committed(step(cloth, kFrame).status));
   CHECK(cloth.save_state() == before);
+}
+
+/// A sheet that is held, and another one that leads through it and flies off.
+SceneDescription crossing_sheets() {
+  constexpr std::uint32_t kCells = 8;
+  std::vector<std::uint32_t> pins;
+  for (std::uint32_t i = 0; i < (kCells + 1) * (kCells + 1); ++i) pins.push_back(i);
+  SceneDescription scene =
+      scene_of({{kCells, kCells,
+                 [](double u, double v) {
+                   return Vec3{0.3 * (u - 0.5), 0, 0.3 * (v - 0.5)};
+                 }},
+                {kCells, kCells,
+                 [](double u, double v) {
+                   return Vec3{0.2 * (u - 0.51), 0.12 * (v - 0.43), 0.01 + 0.05 * (v - 0.5)};
+                 }}},
+               0.3, pins);
+  scene.gravity = {};
+  scene.velocities.assign(scene.positions.size(), Vec3{0, 0.5, 0});
+  for (const std::uint32_t pin : scene.fixed) scene.velocities[pin] = {};
+  return scene;
+}
+
+TEST_CASE("triangles that cross in the beginning come apart, and no others cross meanwhile") {
+  const SceneDescription scene = crossing_sheets();
+  Cloth cloth = cloth_of(scene, small_steps());
+  std::size_t before = count_self_crossings(positions(cloth), scene.surface);
+  REQUIRE(before > 10);
+  std::vector<std::byte> state;
+  std::uint64_t hash = 0;
+  for (int frame = 0; frame < 24; ++frame) {
+    CAPTURE(frame);
+    const StepReport report = step(cloth, kFrame);
+    const std::size_t now = count_self_crossings(positions(cloth), scene.surface);
+    CHECK((report.tangled > 0) == (now > 0));
+    CHECK(now <= before + 2);
+    before = std::min(now, before);
+    if (frame == 2) {
+      CHECK(report.tangled > 0);
+      state = cloth.save_state();
+    }
+    if (frame == 9) hash = cloth.state_hash();
+  }
+  CHECK(before == 0);
+  Cloth loaded = cloth_of(scene, small_steps());
+  REQUIRE(loaded.load_state(state));
+  run(loaded, kFrame, 7);
+  CHECK(loaded.state_hash() == hash);
+}
+
+TEST_CASE("a report counts pairs that touch each other") {
+  const SceneDescription scene = scene_of(stack(2, 8, 0.006), 0.3);
+  Cloth cloth = cloth_of(scene, small_steps());
+  add_floor(cloth);
+  CHECK(step(cloth, kFrame).self_contacts == 0);
+  run(cloth, kFrame, 10);
+  const StepReport report = step(cloth, kFrame);
+  CHECK(report.self_contacts > 81);
+  CHECK(report.body_contacts <= 81);
+  CHECK(report.tangled == 0);
+}
+
+TEST_CASE("self-contact that cannot be is refused with one line") {
+  const SceneDescription good = scene_of(stack(2, 4, 0.006), 0.3);
+  const auto refused = [&](auto&& change) {
+    SceneDescription scene = good;
+    change(scene);
+    const auto built = build_model(scene);
+    REQUIRE_FALSE(built);
+    return built.error();
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const double thickness : {0.0, -1.0, kNan}) {
+    CHECK(refused([&](SceneDescription& s) {
+            s.self_contact.thickness = thickness;
+          }).starts_with("self_contact.thickness: must be"));
+  }
+  for (const double friction : {-0.1, kNan}) {
+    CHECK(refused([&](SceneDescription& s) {
+            s.self_contact.friction = friction;
+          }).starts_with("self_contact.friction: must be"));
+  }
+  CHECK(refused([](SceneDescription& s) { s.surface.clear(); }) ==
+        "self_contact: needs the triangles of `surface` (none)");
+  const auto cloth = Cloth::create(build_model(good).value(), {.solver = Solver::yarn});
+  REQUIRE_FALSE(cloth);
+  CHECK(cloth.error().find("by small_steps only") != std::string::npos);
 }
 
 TEST_CASE("where it is off, layers fall through each other") {
