@@ -172,7 +172,6 @@ Result<MeshCloth> cloth_from_mesh(const MeshDescription& mesh) {
   scene.fixed = mesh::pinned(mesh, welded);
   scene.seams = mesh::seams_of(mesh, welded);
   scene.surface = mesh::triangles_of(found.faces);
-  if (mesh.material) scene.self_contact.thickness = mesh.material->thickness;
   if (!mesh.material) {
     mesh::add_rigid_edges(mesh, welded, scene);
   } else if (auto r = mesh::add_material(mesh, welded, found.faces, edges, cloth); !r) {
