@@ -95,6 +95,17 @@ inline constexpr int kMeetingSteps = 200;
 /// `mesh_appears_in_cloth` gains 0.1 J; with four rounds it does not. No test needs zones.
 inline constexpr int kBlowRounds = 8;
 inline constexpr int kZoneRounds = 12;
+/// The same of cloth that touches itself: after kZoneRounds zones grow by their neighbours, too.
+inline constexpr int kClothZoneRounds = 60;
+/// Of what features of a cloth that are nearer than its thickness at rest have there: so much they
+/// keep. At 1 each fold of a fine mesh, and what shears, would be a contact.
+inline constexpr double kRestDistance = 0.7;
+/// In thicknesses, of layers that lie on each other: within the first they keep the distance that
+/// they have, so that what rests is not pushed to and fro (at 0 a fold moves on at 0.08 m/s); what
+/// was farther than the second beyond the thickness when a substep began meets, which is a blow.
+/// s, in which what is deeper comes out.
+inline constexpr double kLayerSlack = 0.05, kLayerMeeting = 0.02;
+inline constexpr double kLayerTime = 3e-3;
 /// s, of a substep in which bodies stand: what is under a surface comes out wherever it is.
 inline constexpr double kAtOnce = 1e6;
 /// Compliance of a yarn's constraints in a sweep, relative to the diagonal of its matrix. That of a

@@ -119,8 +119,15 @@ class OwnedFeatures {
       axes_.z[lane] = static_cast<float>(scale * v.z);
     }
   }
+  static bool share_a_point(PairKind kind, const std::array<std::uint32_t, 4>& points) {
+    const auto [a, b, c, d] = points;
+    const bool first = a == c || a == d;
+    return first || (kind == PairKind::edges ? b == c || b == d : a == b);
+  }
   void add_pair(const Pair& pair, const std::array<std::uint32_t, 4>& points, std::uint32_t b) {
+    if (pair.is_within_cloth() && share_a_point(pair.kind, points)) return;
     candidates_[list_of(pair.kind)].add(pair, points);
+    if (pair.is_within_cloth()) return;
     if (std::exchange(active_, b) != b) points_.activate(surfaces_.b, b);
   }
 
@@ -182,7 +189,62 @@ bool CandidateSearch::find(ContactPoints& points, Candidates& candidates) {
   if (owner_of_edge_.empty()) find_owners(cloth);
   for (PairList& list : candidates) list.clear();
   for (const SurfacePair pair : points.surface_pairs()) find_all(points, pair, candidates);
+  if (points.touches_itself()) find_within_cloth(points, candidates);
   return true;
+}
+
+namespace {
+
+constexpr SurfacePair kWithinCloth{kClothSurface, kClothSurface};
+
+}  // namespace
+
+/// Each pair of triangles once.
+void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candidates) const {
+  const ContactSurface& cloth = points.surfaces()[kClothSurface];
+  OwnedFeatures features(table_, points, kWithinCloth, candidates);
+  BoxTree::meet(table_, cloth.tree, cloth.tree, [&](std::uint32_t a, std::uint32_t b) {
+    if (b <= a) return;
+    if (features.triangle() != a) features.begin(a);
+    features.add(b);
+  });
+  features.finish();
+}
+
+/// The tree holds what has not been renewed where it was when tubes were laid; the rest is put
+/// there now.
+void CandidateSearch::renew_within_cloth(ContactPoints& points, Candidates& candidates) const {
+  ContactSurface& cloth = points.surfaces()[kClothSurface];
+  cloth.tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
+  OwnedFeatures features(table_, points, kWithinCloth, candidates);
+  for (std::uint32_t t = 0; t < cloth.triangles->triangles.size(); ++t) {
+    if (is_renewed_[t] == 0) continue;
+    features.begin(t);
+    cloth.tree.find(table_, points.in_tree(cloth, cloth.points_of(t)), [&](std::uint32_t other) {
+      if (other != t && (is_renewed_[other] == 0 || other > t)) features.add(other);
+    });
+  }
+  features.finish();
+}
+
+void CandidateSearch::find_within_cloth_beside(ContactPoints& points,
+                                               std::span<const std::uint8_t> has_strayed,
+                                               Candidates& candidates) const {
+  ContactSurface& cloth = points.surfaces()[kClothSurface];
+  cloth.tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
+  const auto strays = [&](std::uint32_t t) {
+    const auto [a, b, c] = cloth.triangles->triangles[t];
+    return (has_strayed[a] | has_strayed[b] | has_strayed[c]) != 0;
+  };
+  OwnedFeatures features(table_, points, kWithinCloth, candidates);
+  for (std::uint32_t t = 0; t < cloth.triangles->triangles.size(); ++t) {
+    if (!strays(t)) continue;
+    features.begin(t);
+    cloth.tree.find(table_, points.in_tree(cloth, cloth.points_of(t)), [&](std::uint32_t other) {
+      if (other != t && (other > t || !strays(other))) features.add(other);
+    });
+  }
+  features.finish();
 }
 
 void CandidateSearch::find_owners(const ContactSurface& cloth) {
@@ -206,6 +268,10 @@ std::uint32_t CandidateSearch::owner(const Pair& pair) const {
   if (pair.kind == PairKind::edges) return owner_of_edge_[pair.first];
   return pair.is_turned() ? pair.second : owner_of_point_[pair.first];
 }
+/// Of a pair within the cloth.
+std::uint32_t CandidateSearch::owner_of_second(const Pair& pair) const {
+  return pair.kind == PairKind::edges ? owner_of_edge_[pair.second] : pair.second;
+}
 
 /// Candidates of triangles with a corner that has left its tube, and of these alone.
 bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
@@ -226,8 +292,10 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
   }
   bool have_moved = false;
   for (PairList& list : candidates) {
-    have_moved = list.leave_out([&](const Pair& pair) { return is_renewed_[owner(pair)] != 0; }) ||
-                 have_moved;
+    have_moved = list.leave_out([&](const Pair& pair) {
+      return is_renewed_[owner(pair)] != 0 ||
+             (pair.is_within_cloth() && is_renewed_[owner_of_second(pair)] != 0);
+    }) || have_moved;
   }
   for (const SurfacePair pair : points.surface_pairs()) {
     const ContactSurface& body = points.surfaces()[pair.b];
@@ -243,6 +311,7 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
     }
     features.finish();
   }
+  if (points.touches_itself()) renew_within_cloth(points, candidates);
   return have_moved;
 }
 

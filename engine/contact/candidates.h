@@ -6,6 +6,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "engine/bytes_of.h"
 #include "engine/contact/features.h"
@@ -45,12 +48,19 @@ class CandidateSearch {
   /// Adds candidates of a triangle of the cloth within a box of its own.
   void find_beside(ContactPoints& points, std::uint32_t triangle, const Box& box,
                    Candidates& candidates) const;
+  /// The same beside other cloth, of all triangles that have such a corner, by the tubes of their
+  /// corners: those are widened to the way that it took.
+  void find_within_cloth_beside(ContactPoints& points, std::span<const std::uint8_t> has_strayed,
+                                Candidates& candidates) const;
   std::size_t bytes() const;
 
  private:
   void find_all(ContactPoints& points, SurfacePair pair, Candidates& candidates);
+  void find_within_cloth(ContactPoints& points, Candidates& candidates) const;
+  void renew_within_cloth(ContactPoints& points, Candidates& candidates) const;
   void find_owners(const ContactSurface& cloth);
   std::uint32_t owner(const Pair& pair) const;
+  std::uint32_t owner_of_second(const Pair& pair) const;
   bool renew(ContactPoints& points, Candidates& candidates);
 
   const simd::Table& table_;

@@ -21,6 +21,8 @@ struct Pair {
   PairKind kind = PairKind::edges;
 
   bool operator==(const Pair&) const = default;
+  /// Both features are of the cloth.
+  bool is_within_cloth() const { return a == b; }
   /// The point is of the surface that comes later, the triangle of the one before.
   bool is_turned() const { return a > b; }
   /// 1 where a vector from the second feature to the first leads away from the later surface, else

@@ -81,8 +81,8 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
   has_moved = has_moved || has_failed;
   if (has_moved) {
     expect_failures(scene);
-    stop_failures(scene, search_, near_search_, verification_, candidates_, interval_, failures_,
-                  team);
+    stop_failures(scene, search_, near_search_, verification_, candidates_, interval_, zones_,
+                  failures_, team);
     for (const Failure& failure : verification_.failures())
       tangles_.take_in(points_, candidates_[failure.list].pairs[failure.pair]);
   }
@@ -91,6 +91,8 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
     points_.activate_all();
     tangles_.find_crossing_at_end(points_);
   }
+  if (tangles_.count_within() > 0 || !verification_.failures().empty())
+    if (points_.touches_itself()) tangles_.find_crossing_within_at_end(points_);
   if (!has_moved) return false;
   verification_.find_late(scene, near_search_, candidates_, team);
   for (const Failure& late : verification_.failures())
@@ -129,7 +131,7 @@ void SurfaceContacts::expect_failures(const ContactScene& scene) {
       near.set_normal(known, normal);
       near.set_under(known, false);
     } else {
-      near.add(pair, four, normal, later.thickness, false);
+      near.add(pair, four, normal, points_.thickness_of(pair), false);
       any = true;
     }
   }
@@ -138,10 +140,14 @@ void SurfaceContacts::expect_failures(const ContactScene& scene) {
   points_.place_vertices_asked(scene.clock);
 }
 
-int SurfaceContacts::count_touching() const {
-  int count = 0;
-  for (const NearPairs& near : near_)
-    count += static_cast<int>(std::ranges::count_if(near.states, &NearState::is_touching));
+SurfaceContacts::Touching SurfaceContacts::count_touching() const {
+  Touching count;
+  for (const NearPairs& near : near_) {
+    for (std::size_t i = 0; i < near.list.size(); ++i) {
+      if (near.states[i].is_touching)
+        ++(near.list.pairs[i].is_within_cloth() ? count.within_cloth : count.bodies);
+    }
+  }
   return count;
 }
 
@@ -152,8 +158,8 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
   };
   for (const NearPairs& near : near_) {
     for (std::size_t i = 0; i < near.list.size(); ++i) {
-      if (!near.states[i].is_touching) continue;
       const Pair& pair = near.list.pairs[i];
+      if (!near.states[i].is_touching || pair.is_within_cloth()) continue;
       const auto four = near.list.points(i);
       const reference::Nearest found =
           nearest(pair.kind, {at(four[0]), at(four[1]), at(four[2]), at(four[3])});
@@ -177,7 +183,7 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
 
 std::size_t SurfaceContacts::bytes() const {
   std::size_t bytes = points_.bytes() + search_.bytes() + near_search_.bytes() + response_.bytes() +
-                      tangles_.bytes() + bytes_of(impulses_.of_body);
+                      tangles_.bytes() + bytes_of(impulses_.of_body) + zones_.bytes();
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
     bytes +=

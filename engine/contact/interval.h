@@ -43,7 +43,7 @@ class SurfaceContacts {
         verification_(table),
         tangles_(table) {}
 
-  bool empty() const { return points_.surface_pairs().empty(); }
+  bool empty() const { return points_.empty(); }
   /// Of a frame.
   void begin(const BodyClock& clock, ContactStart start, const Misplaced& misplaced);
   /// s, when a substep is predicted. Bodies that are fast beside the cloth are looked at more
@@ -77,9 +77,13 @@ class SurfaceContacts {
   RescueReport failures() const {
     RescueReport report = failures_;
     report.left = tangles_.count();
+    report.tangled = tangles_.count_within();
     return report;
   }
-  int count_touching() const;
+  struct Touching {
+    int bodies = 0, within_cloth = 0;
+  };
+  Touching count_touching() const;
   void read_touching(const ContactParticles& particles, const BodyClock& clock,
                      std::vector<BodyTouch>& touches) const;
   const Misplaced& misplaced() const { return tangles_.misplaced(); }
@@ -107,6 +111,7 @@ class SurfaceContacts {
   Candidates candidates_;
   Near near_;
   ContactImpulses impulses_;
+  ImpactZones zones_;
   RescueReport failures_;
   double visits_ = 0;
   bool is_new_ = false;    // tangles are not known yet

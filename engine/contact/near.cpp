@@ -32,9 +32,13 @@ double closing(const ContactPoints& points, PairKind kind, const Four& four, Vec
   const bool edges = kind == PairKind::edges;
   const double first = edges ? std::min(by(0), by(1)) : by(0);
   const double second = edges ? std::max(by(2), by(3)) : std::max({by(1), by(2), by(3)});
-  double reach = 0;
-  for (const std::uint32_t point : four) reach = std::max(reach, points.reach(point));
-  return std::max(0.0, second - first) + reach;
+  const auto reach = [&](std::size_t from, std::size_t to) {
+    double most = 0;
+    for (std::size_t k = from; k < to; ++k) most = std::max(most, points.reach(four[k]));
+    return most;
+  };
+  const std::size_t firsts = edges ? 2 : 1;
+  return std::max(0.0, second - first) + (reach(0, firsts) + reach(firsts, 4));
 }
 
 /// Whether a neighbour is nearer where the interval begins.
@@ -48,7 +52,8 @@ bool is_ghost_by(const ContactPoints& points, const Pair& pair, const FourPoints
 SeenPair see(const ContactPoints& points, const Pair& pair, const Four& four, const FourPoints& x,
              const Look& look, bool is_inside) {
   const ContactSurface& later = points.later(pair);
-  if (look.distance - closing(points, pair.kind, four, look.normal) > later.thickness) return {};
+  if (look.distance - closing(points, pair.kind, four, look.normal) > points.thickness_of(pair))
+    return {};
   const Vector passes = points.way(four[0]) - points.way(four[3]);
   const bool stays = length(passes) < tuning::kContactPassing * look.distance;
   const bool is_placed = stays && is_in_place(pair.kind, look.nearest);
@@ -65,7 +70,7 @@ SeenPair see(const ContactPoints& points, const Pair& pair, const Four& four, co
 /// for, are left to `settle`.
 SeenPair see(const ContactPoints& points, const Tangles& tangles, const Pair& pair,
              const Four& four) {
-  const bool is_inside = tangles.is_inside(four);
+  const bool is_inside = !pair.is_within_cloth() && tangles.is_inside(four);
   // Faces and edges between particles that are inside follow these.
   const bool is_of_particle = pair.kind == PairKind::point_triangle && !pair.is_turned();
   if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) return {};
@@ -183,7 +188,8 @@ void NearSearch::measure_awake(const simd::PairMeasure& measure, std::size_t lis
 void NearSearch::measure(const ContactPoints& points, const Candidates& candidates, bool have_moved,
                          Team& team) {
   travelled_ = have_moved ? 0 : travelled_ + (1 + 0x1p-20f) * points.travelled();
-  const auto reach = static_cast<float>(points.largest_thickness() + points.largest_reach());
+  const auto reach =
+      static_cast<float>(points.largest_thickness() + points.largest_reach_of_pair());
   const float near = travelled_ + reach + points.largest_way() + 8 * points.rounding();
   for (std::size_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
@@ -242,7 +248,7 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
       if (seen.sight == Sight::far) continue;
       const bool is_under = seen.sight == Sight::behind;
       near[list].add(pair, four, (is_under ? -1.0 : 1.0) * seen.look.normal,
-                     points.later(pair).thickness, is_under);
+                     points.thickness_of(pair), is_under);
     }
   }
 }

@@ -16,7 +16,7 @@ void NearPairs::add(const Pair& pair, const std::array<std::uint32_t, 4>& points
   sides.back().used |= 1u << lane;
   sides.back().thickness[lane] = static_cast<float>(thickness);
   if (pair.is_turned()) turned.back() = static_cast<std::uint16_t>(turned.back() | 1u << lane);
-  states.push_back({});
+  states.push_back({.thickness = thickness});
   set_under(list.size() - 1, is_under);
   set_normal(list.size() - 1, normal);
 }

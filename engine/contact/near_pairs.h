@@ -13,8 +13,11 @@ namespace weft {
 
 /// A near pair, and what its touch has done in the present substep.
 struct NearState {
+  double thickness = 0;      // m
   bool is_touching = false;  // in this substep
+  bool is_blow = false;      // of layers, while they touch: they met in this substep
   double push = 0;           // m, along the normal, in this substep
+  double target = 0;         // m, of layers, while they touch: beyond the thickness
   reference::Grip grip{};
 };
 

@@ -36,6 +36,14 @@ class ContactParticles {
   virtual void touch(std::uint32_t slot, const TouchedSurface& surface) = 0;
   /// It was put elsewhere when the substep was over: from there it goes on at first order.
   virtual void stop(std::uint32_t slot, const TouchedSurface& surface) = 0;
+  /// Its velocity was changed by `by` in a moment: its past is changed alike, and what two
+  /// particles do to each other keeps their momentum.
+  virtual void jolt(std::uint32_t slot, kernels::Vector by) = 0;
+  /// By other particles of the cloth: `by` is a motion, `comes_out` is none. What begins under a
+  /// body of a closed form is pushed no deeper into it, and nothing else ends in one.
+  virtual void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) = 0;
+  /// What moves a particle from now on, until the substep ends, makes it no faster.
+  virtual bool is_mended() const = 0;
   /// A change of velocity in this substep counts as so many times its momentum: 1 / b, since forces
   /// act in the part b of a substep alone (kernels/simd/small_steps.h).
   virtual double momentum_share() const = 0;

@@ -59,7 +59,9 @@ void ContactPoints::begin(const BodyClock& clock) {
     surface_pairs_.push_back({kClothSurface, static_cast<std::uint16_t>(count)});
     ++count;
   }
-  if (surface_pairs_.empty()) count = 0;
+  touches_itself_ = model_.self_contact.on;
+  if (touches_itself_) prepare_for_itself();
+  if (empty()) count = 0;
   surfaces_.resize(count);
   if (count == 0) return;
   for (auto* vectors : {&start_, &end_}) vectors->resize(points);
@@ -86,6 +88,15 @@ void ContactPoints::add_cloth() {
   ContactSurface& cloth = surfaces_.emplace_back();
   cloth.triangles = &model_.touched_surface();
   cloth.tree = BoxTree(cloth.triangles->in_order);
+}
+
+void ContactPoints::prepare_for_itself() {
+  add_cloth();
+  ContactSurface& cloth = surfaces_[kClothSurface];
+  cloth.thickness = model_.self_contact.thickness;
+  cloth.friction = model_.self_contact.friction;
+  largest_thickness_ = std::max(largest_thickness_, cloth.thickness);
+  if (rest_.empty()) rest_ = RestDistances(model_, cloth.thickness);
 }
 
 /// The surface of a body, which is the one that was there in the last frame if that had its shape.
@@ -182,12 +193,16 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   rounding_ = rounding;
   way_of_bodies_ = (to_ - from_) * time * speeds_.of_bodies;
   way_of_near_ = (to_ - from_) * time * speeds_.of_near;
-  travelled_ = std::sqrt(travelled) + (from_ - before) * time * speeds_.of_bodies;
+  const double of_other = (from_ - before) * time * speeds_.of_bodies;
+  travelled_ = std::sqrt(travelled);
+  travelled_ += touches_itself_ ? std::max(travelled_, of_other) : of_other;
   find_reach();
+  const double beside_itself = this->beside_itself();
   for (std::size_t slot = 0; slot < slots_; ++slot) {
-    write_box(slot, reach_[slot]);
+    write_box(slot, reach_[slot] + beside_itself);
     way_quads_[4 * slot + 3] = static_cast<float>(reach_[slot]);
   }
+  if (touches_itself_) surfaces_[kClothSurface].normals.begin(this->cloth(), start_.data(), false);
   for (ContactSurface& surface : of_bodies()) {
     const PoseTravel& travel = clock.bodies()[surface.body].travel;
     const auto before = std::exchange(surface.begins, travel.at(from_));
@@ -280,7 +295,8 @@ Tube ContactPoints::tube_around(std::uint32_t slot) const {
   const double reach = tuning::kContactReach * length(way - drift_) +
                        tuning::kContactWideReach * reach_[slot] +
                        (to_ > from_ ? tuning::kContactWideSpare : tuning::kContactStandingSpare) *
-                           largest_thickness_;
+                           largest_thickness_ +
+                       beside_itself();
   const double intervals = to_ > from_ ? 1 / (to_ - from_) : 0;
   const Vector begins = x - (intervals * (from_ - laid_from_)) * way,
                ends = x + (intervals * (until_ - from_)) * way;
@@ -293,6 +309,7 @@ void ContactPoints::lay_tubes() {
   ++layings_;
   for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
   active_.clear();
+  if (touches_itself_) surfaces_[kClothSurface].may_cross.assign(cloth().triangles.size(), 0);
   for (ContactSurface& surface : of_bodies()) {
     surface.is_near.assign(surface.triangles->triangles.size(), 0);
     surface.may_cross.assign(cloth().triangles.size(), 0);
@@ -348,7 +365,9 @@ float ContactPoints::largest_move() const {
     const Vector by = way(slot) - drift_;
     largest = std::max(largest, dot(by, by));
   }
-  return static_cast<float>(std::sqrt(largest) + way_of_bodies_);
+  const double of_cloth = std::sqrt(largest);
+  return static_cast<float>(
+      of_cloth + (touches_itself_ ? std::max(of_cloth, way_of_bodies_) : way_of_bodies_));
 }
 
 bool ContactPoints::holds_end(std::uint32_t point) const { return holds(point, end_[point]); }

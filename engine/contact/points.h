@@ -12,6 +12,7 @@
 #include "engine/contact/features.h"
 #include "engine/contact/look.h"
 #include "engine/contact/particles.h"
+#include "engine/contact/rest_distances.h"
 #include "engine/contact/speeds.h"
 #include "engine/contact/surface.h"
 #include "engine/model/model.h"
@@ -30,12 +31,22 @@ class ContactPoints {
   const std::vector<ContactSurface>& surfaces() const { return surfaces_; }
   std::vector<ContactSurface>& surfaces() { return surfaces_; }
   const TriangleSurface& cloth() const { return *surfaces_[kClothSurface].triangles; }
-  /// Which of them may touch.
+  /// Which of them may touch: the cloth and each body. Besides, the cloth itself may.
   const std::vector<SurfacePair>& surface_pairs() const { return surface_pairs_; }
+  bool touches_itself() const { return touches_itself_; }
+  bool empty() const { return surface_pairs_.empty() && !touches_itself_; }
+  /// m, that the features of a pair keep from each other.
+  double thickness_of(const Pair& pair) const {
+    return pair.is_within_cloth() ? rest_.of(pair) : later(pair).thickness;
+  }
   const ContactSurface& later(const Pair& pair) const { return later_surface(surfaces_, pair); }
   ContactSurface& later(const Pair& pair) { return later_surface(surfaces_, pair); }
   std::size_t slots() const { return slots_; }
   bool is_of_cloth(std::uint32_t point) const { return point < slots_; }
+  /// Of a vertex of a body.
+  const ContactSurface& surface_of(std::uint32_t point) const {
+    return surfaces_[surface_of_[point - slots_]];
+  }
   /// 1/kg; 0 of the vertices of bodies.
   double inverse_mass(std::uint32_t point) const {
     return is_of_cloth(point) ? model_.inverse_mass[point] : 0;
@@ -63,8 +74,13 @@ class ContactPoints {
   kernels::Vector way(std::uint32_t point) const { return end_[point] - start_[point]; }
   /// m, that a point of the cloth and one of a body may be expected to move beside each other, at
   /// most: in the interval, and since the last one began.
-  float largest_way() const { return static_cast<float>(largest_way_ + way_of_bodies_); }
+  float largest_way() const {
+    const double of_both = touches_itself_ ? 2 * largest_way_ : 0;
+    return static_cast<float>(std::max(largest_way_ + way_of_bodies_, of_both));
+  }
   float travelled() const { return static_cast<float>(travelled_); }
+  /// m, that two points of a pair may come off their ways, together.
+  double largest_reach_of_pair() const { return (touches_itself_ ? 2 : 1) * largest_reach_; }
   /// m, that they have moved in the interval, once moves are measured.
   float largest_move() const;
   double largest_thickness() const { return largest_thickness_; }
@@ -95,6 +111,8 @@ class ContactPoints {
   void renew_tubes(Moved&& moved);
   /// It holds no longer.
   void forget_tube(std::uint32_t slot) { set_tube(slot, {Box::none(), Box::none()}); }
+  /// Of a point that came to a place that was not expected: all of its way.
+  void widen_tube_to_way(std::uint32_t slot) { set_tube(slot, {box_[slot], box_[slot]}); }
   /// In quads, from the origin. The fourth of a way is the point's reach.
   const float* starts() const { return start_quads_.data(); }
   const float* ways() const { return way_quads_.data(); }
@@ -150,17 +168,18 @@ class ContactPoints {
     quads[4 * point + 1] = static_cast<float>(v.y);
     quads[4 * point + 2] = static_cast<float>(v.z);
   }
-  /// Of a vertex of a body.
-  const ContactSurface& surface_of(std::uint32_t point) const {
-    return surfaces_[surface_of_[point - slots_]];
-  }
   std::span<ContactSurface> of_bodies() {
     return std::span(surfaces_).subspan(std::min<std::size_t>(1, surfaces_.size()));
   }
   std::span<const ContactSurface> of_bodies() const {
     return std::span(surfaces_).subspan(std::min<std::size_t>(1, surfaces_.size()));
   }
+  /// m, that a box of the cloth holds beyond all places for other cloth.
+  double beside_itself() const {
+    return touches_itself_ ? 0.5 * surfaces_[kClothSurface].thickness : 0;
+  }
   void add_cloth();
+  void prepare_for_itself();
   ContactSurface& surface_for(const BodyClock& clock, std::size_t body, std::size_t place);
   bool holds(std::uint32_t point, kernels::Vector place) const;
   static void take_vertices(ContactSurface& surface, const TravellingBody& body);
@@ -179,6 +198,8 @@ class ContactPoints {
 
   const Model& model_;
   std::size_t slots_ = 0;
+  bool touches_itself_ = false;
+  RestDistances rest_;
   std::vector<ContactSurface> surfaces_;
   std::vector<SurfacePair> surface_pairs_;
   std::vector<std::uint16_t> surface_of_;  // per vertex

@@ -14,6 +14,7 @@ namespace {
 /// Moves particles in the end of the interval, and loads the body that they were stopped by.
 class Mover {
  public:
+  /// body: kNoIndex where cloth stops cloth.
   Mover(const ContactScene& scene, std::uint32_t body) : scene_(scene), body_(body) {}
 
   void move(std::uint32_t slot, Vector by, Vector faster, Vector of_surface) {
@@ -21,8 +22,9 @@ class Mover {
     particle.x = particle.x + by;
     particle.v = particle.v + faster;
     scene_.particles.write(slot, particle);
-    scene_.particles.stop(slot, {body_, of_surface});
     scene_.points.set_end(slot, particle.x);
+    if (body_ == kNoIndex) return scene_.particles.jolt(slot, faster);
+    scene_.particles.stop(slot, {body_, of_surface});
     const double momentum = scene_.model.mass[slot] * scene_.particles.momentum_share();
     scene_.impulses.add(body_, scene_.clock.motions()[body_].to.centre, particle.x,
                         momentum * faster, of_surface);
@@ -32,6 +34,13 @@ class Mover {
   const ContactScene& scene_;
   const std::uint32_t body_;
 };
+
+/// Of a particle; one that the caller moves is as fast as in the interval.
+Vector velocity_in(const ContactScene& scene, std::uint32_t slot, double time) {
+  const ContactPoints& points = scene.points;
+  if (points.inverse_mass(slot) > 0) return scene.particles.read(slot).v;
+  return (1 / time) * (points.end(slot) - points.start(slot));
+}
 
 }  // namespace
 
@@ -48,14 +57,17 @@ void blow(const ContactScene& scene, const PairList& pairs, const Failure& failu
   const Look met = look(later, pair, there);
   const Vector n = met.normal;
   const double l = length(nearest(pair.kind, points.starts_of(four)).r);
-  const double least = l > kTouching ? std::min(l, later.thickness) : later.thickness;
+  const double thickness = points.thickness_of(pair);
+  const double least = l > kTouching ? std::min(l, thickness) : thickness;
   double height = 0, weight = 0;
   Vector approach{}, surface{};
   for (std::size_t k = 0; k < 4; ++k) {
     const double w = met.nearest.weight[k];
     height += w * dot(n, points.end(four[k]));
     weight += w * w * points.inverse_mass(four[k]);
-    if (points.is_of_cloth(four[k])) {
+    if (pair.is_within_cloth()) {
+      approach = approach + w * velocity_in(scene, four[k], time);
+    } else if (points.is_of_cloth(four[k])) {
       approach = approach + w * scene.particles.read(four[k]).v;
     } else {
       const Vector v = (w / time) * (points.end(four[k]) - points.start(four[k]));
@@ -102,11 +114,41 @@ void take_along(const ContactScene& scene, const PairList& pairs, const Failure&
 
 namespace weft {
 
+namespace {
+
+/// Cloth that touches itself: a zone grows with each round by what it meets, until nothing does.
+void stop_cloth(const ContactScene& scene, const CandidateSearch& search, NearSearch& near_search,
+                Verification& verification, Candidates& candidates, double time, ImpactZones& zones,
+                RescueReport& report, Team& team) {
+  zones.begin();
+  for (int round = 0; round < tuning::kBlowRounds + tuning::kClothZoneRounds; ++round) {
+    if (verification.failures().empty()) break;
+    if (round < tuning::kBlowRounds) {
+      for (const Failure& failure : verification.failures())
+        rescue::blow(scene, candidates[failure.list], failure, time);
+    } else {
+      for (const Failure& failure : verification.failures())
+        zones.join(candidates[failure.list].points(failure.pair));
+      if (round >= tuning::kBlowRounds + tuning::kZoneRounds) zones.grow(scene);
+      zones.move(scene, time);
+    }
+    if (round == tuning::kBlowRounds)
+      report.zones += static_cast<int>(verification.failures().size());
+    verification.find(scene, search, near_search, candidates, team);
+  }
+}
+
+}  // namespace
+
 void stop_failures(const ContactScene& scene, const CandidateSearch& search,
                    NearSearch& near_search, Verification& verification, Candidates& candidates,
-                   double time, RescueReport& report, Team& team) {
+                   double time, ImpactZones& zones, RescueReport& report, Team& team) {
   using tuning::kBlowRounds, tuning::kZoneRounds;
   report.failures += static_cast<int>(verification.failures().size());
+  if (scene.points.touches_itself()) {
+    stop_cloth(scene, search, near_search, verification, candidates, time, zones, report, team);
+    return;
+  }
   for (int round = 0; round < kBlowRounds + kZoneRounds && !verification.failures().empty();
        ++round) {
     for (const Failure& failure : verification.failures()) {

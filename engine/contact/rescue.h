@@ -4,6 +4,7 @@
 /// to it: a rigid impact zone (Bridson, Fedkiw and Anderson, 2002) whose motion is the body's.
 #pragma once
 
+#include "engine/contact/impact_zones.h"
 #include "engine/contact/rescue_report.h"
 #include "engine/contact/verify.h"
 
@@ -12,7 +13,7 @@ namespace weft {
 /// Until all is verified, or its rounds are over: then failures are left.
 void stop_failures(const ContactScene& scene, const CandidateSearch& search,
                    NearSearch& near_search, Verification& verification, Candidates& candidates,
-                   double time, RescueReport& report, Team& team);
+                   double time, ImpactZones& zones, RescueReport& report, Team& team);
 
 namespace rescue {
 

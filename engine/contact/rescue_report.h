@@ -7,6 +7,7 @@ struct RescueReport {
   int failures = 0;  // pairs that were caught
   int zones = 0;     // pairs that were taken along
   int left = 0;      // triangles of the cloth that cross in the end, and particles inside
+  int tangled = 0;   // pairs of triangles of the cloth that cross each other
 };
 
 }  // namespace weft

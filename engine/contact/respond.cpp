@@ -4,32 +4,13 @@
 #include <cmath>
 
 #include "engine/bytes_of.h"
+#include "engine/contact/layers.h"
 #include "engine/contact/look.h"
 
 namespace weft {
 
 using kernels::kLanes;
 using kernels::Vector;
-
-/// Its points where the substep began and where they are, and how it stands to its thickness.
-struct Response::Encounter {
-  std::array<std::uint32_t, 4> points{};
-  FourPoints start{}, x{};  // start: once it is read
-  reference::Nearest nearest{};
-  Vector normal{};        // from the second feature to the first, where both were on their sides
-  double gap = 0;         // m
-  bool is_under = false;  // one is on the wrong side of the other
-  bool pushes = false;
-
-  void read_start(const ContactScene& scene) {
-    for (std::size_t k = 0; k < 4; ++k) start[k] = scene.start(points[k]);
-  }
-  FourPoints at_share(double share) const {
-    FourPoints there;
-    for (std::size_t k = 0; k < 4; ++k) there[k] = start[k] + share * (x[k] - start[k]);
-    return there;
-  }
-};
 
 namespace {
 
@@ -139,12 +120,11 @@ void Response::find_touching(const ContactScene& scene, Near& near, Team& team) 
 }
 
 /// Where neighbours are nearer, or the features are not beside each other, it does not push.
-Response::Encounter Response::meet(const ContactScene& scene, const NearPairs& near,
-                                   std::size_t i) {
+Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::size_t i) {
   const Pair& pair = near.list.pairs[i];
   Encounter e{.points = near.list.points(i)};
   for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.place(e.points[k]);
-  const double thickness = scene.points.later(pair).thickness;
+  const double thickness = near.states[i].thickness;
   e.nearest = nearest(pair.kind, e.x);
   const Vector side = near.normal(i);
   const double l = length(e.nearest.r);
@@ -170,6 +150,7 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   near.set_normal(i, e.normal);
   if (!e.pushes) return false;
   e.read_start(scene);
+  if (pair.is_within_cloth()) return layers::resist(scene, e, state);
   Vector slip{};
   double weight = 0;  // sum of W w^2
   for (std::size_t k = 0; k < 4; ++k) {
@@ -261,6 +242,7 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
   for (std::size_t list = 0; list < kPairLists; ++list) {
     for (std::size_t block = 0; block < touching_[list].size(); ++block) {
       for_each_lane(block, touching_[list][block], [&](std::size_t i) {
+        if (near[list].list.pairs[i].is_within_cloth()) return;
         const Encounter e = meet(scene, near[list], i);
         if (e.pushes) deepest = std::max(deepest, -e.gap);
       });

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/contact/encounter.h"
 #include "engine/contact/near_pairs.h"
 #include "engine/contact/scene.h"
 #include "engine/parallel/team.h"
@@ -49,8 +50,6 @@ class Response {
  private:
   /// A sweep goes through all pairs of one turn, then through those of the next.
   enum class Turn : std::uint8_t { points, edges, points_of_bodies };
-  /// A pair in the present substep.
-  struct Encounter;
   static Encounter meet(const ContactScene& scene, const NearPairs& near, std::size_t i);
   template <class Visit>
   static void for_each_lane(std::size_t block, std::uint32_t bits, Visit&& visit);

@@ -22,6 +22,13 @@ struct ContactScene {
     const kernels::Vector from = points.from(point), to = points.to(point);
     return {from, to, (1 / clock.h()) * (to - from)};
   }
+  /// A particle that the caller moves is as fast as that.
+  ContactParticle read_moving(std::uint32_t slot) const {
+    ContactParticle particle = particles.read(slot);
+    if (points.inverse_mass(slot) == 0)
+      particle.v = (1 / clock.h()) * (particle.x - particle.start);
+    return particle;
+  }
   /// Where that is.
   kernels::Vector place(std::uint32_t point) const {
     return points.is_of_cloth(point) ? particles.position(point) : points.to(point);

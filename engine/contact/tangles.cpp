@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/contact/leads_through.h"
 #include "engine/contact/look.h"
 #include "kernels/reference/distances.h"
 
@@ -14,22 +15,6 @@ namespace weft {
 using kernels::Vector;
 
 namespace {
-
-using Corners = std::array<Vector, 3>;
-
-/// Six times the volume of the tetrahedron; its sign tells on which side of a b c d is.
-double volume(Vector a, Vector b, Vector c, Vector d) { return dot(cross(a - d, b - d), c - d); }
-
-/// What only touches the triangle does not lead through it.
-bool leads_through(Vector from, Vector to, const Corners& t) {
-  const double side = volume(t[0], t[1], t[2], from), other = volume(t[0], t[1], t[2], to);
-  const double touches = kTouching * length(cross(t[1] - t[0], t[2] - t[0]));
-  if (std::min(side, other) >= -touches || std::max(side, other) <= touches) return false;
-  const double turns[] = {volume(from, to, t[0], t[1]), volume(from, to, t[1], t[2]),
-                          volume(from, to, t[2], t[0])};
-  const auto [least, most] = std::ranges::minmax(turns);
-  return least >= 0 || most <= 0;
-}
 
 Box box_of(const ContactPoints& points, const Corners& corners) {
   Box box = Box::none();
@@ -40,16 +25,6 @@ Box box_of(const ContactPoints& points, const Corners& corners) {
     box.add({place, place});
   }
   return box;
-}
-
-/// All corners of one triangle are on one side of the other, farther than what only touches it.
-bool are_beside(const Corners& one, const Corners& other) {
-  const Vector n = cross(other[1] - other[0], other[2] - other[0]);
-  const double touches = kTouching * length(n);
-  const double at[] = {dot(n, one[0] - other[0]), dot(n, one[1] - other[0]),
-                       dot(n, one[2] - other[0])};
-  const auto [least, most] = std::ranges::minmax(at);
-  return least > touches || most < -touches;
 }
 
 bool edges_lead_through(const Corners& edges, const Corners& triangle) {
@@ -119,6 +94,7 @@ void Tangles::begin(const TriangleSurface& cloth, const Misplaced& misplaced) {
   forget_crossing();
   cloth_ = &cloth;
   misplaced_ = misplaced;
+  within_.begin(cloth, misplaced.tangled);
   const std::vector<std::uint32_t>& slots = misplaced_.crossing;
   if (slots.empty()) return;
   const auto is_one = [&](std::uint32_t slot) { return std::ranges::binary_search(slots, slot); };
@@ -138,6 +114,14 @@ void Tangles::find(ContactPoints& points) {
     if (is_inside) misplaced_.inside.push_back(slot);
   }
   find_crossing(points, [&](std::uint32_t point) { return points.start(point); });
+  if (!points.touches_itself()) return;
+  within_.find_at_start(points);
+  misplaced_.tangled = within_.pairs();
+}
+
+void Tangles::find_crossing_within_at_end(const ContactPoints& points) {
+  within_.find_at_end(points);
+  misplaced_.tangled = within_.pairs();
 }
 
 /// They are near to the surface that they leave by, however deep they are.
@@ -150,7 +134,7 @@ void Tangles::come_out(ContactPoints& points, Near& near) {
       is_out = false;
       const Vector r = left_by.nearest.r, n = kernels::direction(r, length(r));
       near[list_of(left_by.pair.kind)].add(left_by.pair, left_by.points, -1.0 * n,
-                                           points.later(left_by.pair).thickness, true);
+                                           points.thickness_of(left_by.pair), true);
     }
     return is_out;
   });
@@ -230,7 +214,7 @@ void Tangles::add_under(const ContactPoints& points, const Pair& pair,
                         const std::array<std::uint32_t, 4>& four, Vector normal, Near& near) {
   NearPairs& pairs = near[list_of(pair.kind)];
   if (pairs.find(pair) == pairs.list.size())
-    pairs.add(pair, four, normal, points.later(pair).thickness, true);
+    pairs.add(pair, four, normal, points.thickness_of(pair), true);
 }
 
 /// The particle is inside from now on.
@@ -306,7 +290,7 @@ void Tangles::find_crossing_at_end(const ContactPoints& points) {
 }
 
 std::size_t Tangles::bytes() const {
-  return misplaced_.bytes() + bytes_of(triangles_) +
+  return misplaced_.bytes() + within_.bytes() + bytes_of(triangles_) +
          (has_triangle_.capacity() + has_edge_.capacity()) / 8;
 }
 

@@ -14,12 +14,13 @@
 #include "engine/contact/misplaced.h"
 #include "engine/contact/near_pairs.h"
 #include "engine/contact/points.h"
+#include "engine/contact/self_tangles.h"
 
 namespace weft {
 
 class Tangles {
  public:
-  explicit Tangles(const simd::Table& table) : table_(table) {}
+  explicit Tangles(const simd::Table& table) : table_(table), within_(table) {}
 
   /// Of a frame: what the frame before left.
   void begin(const TriangleSurface& cloth, const Misplaced& misplaced);
@@ -30,8 +31,9 @@ class Tangles {
   void come_out(ContactPoints& points, Near& near);
   /// The pair could not be kept apart.
   void take_in(const ContactPoints& points, const Pair& pair);
-  /// Finds what crosses where an interval ends.
+  /// Finds what crosses where an interval ends: bodies, and the cloth itself.
   void find_crossing_at_end(const ContactPoints& points);
+  void find_crossing_within_at_end(const ContactPoints& points);
 
   bool any() const { return !triangles_.empty() || !misplaced_.inside.empty(); }
   bool is_inside(std::uint32_t slot) const { return misplaced_.is_inside(slot); }
@@ -40,6 +42,7 @@ class Tangles {
   }
   /// Whether the pair is left alone.
   bool leaves_out(const Pair& pair) const {
+    if (pair.is_within_cloth()) return within_.leaves_out(pair);
     if (triangles_.empty()) return false;
     if (pair.kind == PairKind::edges) return has_edge_[pair.first];
     return pair.b == kClothSurface && has_triangle_[pair.second];
@@ -48,6 +51,8 @@ class Tangles {
   int count() const {
     return static_cast<int>(triangles_.size()) + static_cast<int>(misplaced_.inside.size());
   }
+  /// Pairs of triangles of the cloth that cross each other.
+  int count_within() const { return static_cast<int>(within_.pairs().size()); }
   const Misplaced& misplaced() const { return misplaced_; }
   std::size_t bytes() const;
 
@@ -72,6 +77,7 @@ class Tangles {
   const simd::Table& table_;
   const TriangleSurface* cloth_ = nullptr;
   Misplaced misplaced_;
+  SelfTangles within_;
   std::vector<std::uint32_t> triangles_;       // that cross
   std::vector<bool> has_triangle_, has_edge_;  // empty until the first one crosses
 };

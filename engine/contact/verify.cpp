@@ -138,7 +138,7 @@ void Verification::find(const ContactScene& scene, const CandidateSearch& search
         }
         const double distance = std::max(seen.distance, kTouching);
         const Vector r = distance > kTouching ? seen.nearest.r : seen.normal;
-        const auto time = meeting(pair.kind, way, r, distance, later.thickness);
+        const auto time = meeting(pair.kind, way, r, distance, points.thickness_of(pair));
         // What comes out does what it should.
         if (!time || (!later.two_sided && scene.tangles.is_inside(four))) return {};
         return {.fails = true, .time = *time};
@@ -154,6 +154,7 @@ void Verification::find_late(const ContactScene& scene, const NearSearch& near_s
   judge_moved(
       scene, near_search, candidates, points.largest_thickness(), team,
       [&](const Pair& pair, const std::array<std::uint32_t, 4>& four, bool) -> Verdict {
+        if (pair.is_within_cloth()) return {};  // layers press each other, and come apart by and by
         const ContactSurface& later = points.later(pair);
         const FourPoints x = points.ends_of(four);
         const reference::Nearest found = nearest(pair.kind, x);
@@ -193,7 +194,7 @@ void Verification::look_beside_strayed(const ContactScene& scene, const Candidat
   for (std::uint32_t slot = 0; slot < points.slots(); ++slot) {
     if (!scene.model.is_particle(slot) || points.holds_end(slot)) continue;
     points.take_way_in(slot);
-    points.forget_tube(slot);
+    points.touches_itself() ? points.widen_tube_to_way(slot) : points.forget_tube(slot);
     has_strayed_[slot] = 1;
     any = true;
   }
@@ -206,6 +207,7 @@ void Verification::look_beside_strayed(const ContactScene& scene, const Candidat
     box.add(points.box(c));
     search.find_beside(points, t, box, candidates);
   }
+  if (points.touches_itself()) search.find_within_cloth_beside(points, has_strayed_, candidates);
   near_search.measure_new(points, candidates, team);
 }
 

@@ -26,6 +26,7 @@ class Describer {
     describe_seams();
     description_.damping = model_.damping;
     description_.friction = model_.friction;
+    description_.self_contact = model_.self_contact;
     description_.gravity = to_public(model_.gravity);
     return std::move(description_);
   }

@@ -64,6 +64,7 @@ Model::Model(const SceneDescription& description, const Model* like)
   store_air(description);
   damping = description.damping;
   friction = description.friction;
+  self_contact = description.self_contact;
   find_holds();
   for (const std::uint32_t s : spheres) {
     if (inverse_mass[s] > 0) heaviest_sphere = std::max(heaviest_sphere, 1 / inverse_mass[s]);

@@ -171,6 +171,7 @@ class Model {
 
   kernels::Vector gravity{};
   double friction = 0;  // of the cloth beside bodies
+  SelfContact self_contact;
   ConstraintStore constraints;
   MembraneStore membrane;
   BendingStore bending;

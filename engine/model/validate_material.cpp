@@ -108,6 +108,14 @@ Result<void> validate_wind(Vec3 wind) {
   return refuse("air.wind", "must be finite", text(wind));
 }
 
+Result<void> validate_self_contact(const SelfContact& contact, bool has_surface) {
+  if (auto r = validate_not_negative("self_contact.friction", contact.friction); !r) return r;
+  if (contact.on && !has_surface)
+    return refuse("self_contact", "needs the triangles of `surface`", "none");
+  if (contact.on) return validate_positive("self_contact.thickness", contact.thickness);
+  return validate_not_negative("self_contact.thickness", contact.thickness);
+}
+
 Result<void> validate_damping(const Damping& damping) {
   if (auto r = validate_not_negative("damping.stretch", damping.stretch); !r) return r;
   if (auto r = validate_not_negative("damping.bending", damping.bending); !r) return r;
@@ -142,6 +150,7 @@ Result<void> validate_material(const SceneDescription& d) {
   }
   if (auto r = validate_damping(d.damping); !r) return r;
   if (auto r = validate_not_negative("friction", d.friction); !r) return r;
+  if (auto r = validate_self_contact(d.self_contact, !d.surface.empty()); !r) return r;
   return validate_air(d.air, d.positions.size());
 }
 

@@ -50,11 +50,16 @@ void visit_fields(Is<Air> auto& air, auto& archive) {
   archive(triangles, density, drag, lift, wind);
 }
 
+void visit_fields(Is<SelfContact> auto& contact, auto& archive) {
+  auto& [on, thickness, friction] = contact;
+  archive(on, thickness, friction);
+}
+
 void visit_fields(Is<SceneDescription> auto& scene, auto& archive) {
   auto& [positions, velocities, masses, fixed, constraints, membrane, bending, anchors, seams,
-         surface, damping, air, friction, gravity, spheres, radii] = scene;
+         surface, damping, air, friction, self_contact, gravity, spheres, radii] = scene;
   archive(positions, velocities, masses, fixed, constraints, membrane, bending, anchors, seams,
-          surface, damping, air, friction, gravity, spheres, radii);
+          surface, damping, air, friction, self_contact, gravity, spheres, radii);
 }
 
 // body.h

@@ -13,7 +13,7 @@ namespace weft {
 namespace {
 
 /// The version changes with whatever is written here, and in the functions visit_fields.
-constexpr Kind kState{{'w', 'e', 'f', 't', 's', 't', 'a', 't'}, "state", 3};
+constexpr Kind kState{{'w', 'e', 'f', 't', 's', 't', 'a', 't'}, "state", 4};
 
 void visit_settings(auto& settings, auto& archive) {
   std::apply([&](auto&... each) { archive(each...); }, memory_settings(settings));

@@ -249,6 +249,8 @@ void fall_asleep(State& s, StepReport& report) {
               .max_penetration = report.max_penetration,
               .body_contacts = report.body_contacts,
               .intersecting = report.intersecting,
+              .self_contacts = report.self_contacts,
+              .tangled = report.tangled,
               .max_anchor_error = report.max_anchor_error};
 }
 
@@ -268,6 +270,8 @@ void advance(State& s, double dt, StepReport& report, Team& team) {
       report.contact_failures = s.body_report.failures.failures;
       report.zones = s.body_report.failures.zones;
       report.intersecting = s.body_report.failures.left;
+      report.self_contacts = s.body_report.within_cloth;
+      report.tangled = s.body_report.failures.tangled;
       s.way = {};
     }
   }

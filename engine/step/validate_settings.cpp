@@ -149,6 +149,8 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
     if (count > 0)
       return refuse(what, "is solved by small_steps only", std::string(name(s.solver)));
   }
+  if (model.self_contact.on)
+    return refuse("self_contact", "is for small_steps only", std::string(name(s.solver)));
   return {};
 }
 

@@ -135,6 +135,11 @@ struct StepReport {
   /// from both sides. The edges and faces of these triangles touch nothing until they have come
   /// apart; their particles are kept out.
   int intersecting = 0;
+  int self_contacts = 0;  ///< pairs of features of the cloth that touch each other (SelfContact)
+  /// Pairs of triangles of the cloth that cross each other when the step ends. It is 0 with
+  /// SelfContact, unless the step began so, or more came together than could be kept apart. They
+  /// touch nothing of each other until they have come apart.
+  int tangled = 0;
   double max_anchor_error = 0;  ///< m, by which the limits of an anchor are exceeded
   int open_seams = 0;           ///< seams whose particles have not come together yet (Seam)
   double max_seam_gap = 0;  ///< m, between particles of closed seams: bounded by contact_tolerance

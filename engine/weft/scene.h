@@ -149,6 +149,22 @@ struct Seam {
   double max_force = std::numeric_limits<double>::infinity();  ///< N, > 0, while it is open
 };
 
+/// Cloth that touches itself: all cloths and pieces of a scene, by the triangles of `surface`.
+/// Layers keep the thickness from each other, with friction. Features that are nearer than that in
+/// the shape at rest keep nearly the distance that they have there.
+///
+/// A cloth that does not cross itself when a step begins does not when it ends, however fast it
+/// is: that is verified, and features that would go through each other are stopped. Layers that lie
+/// on each other may be nearer than the thickness by a twentieth, and under a blow by more for a
+/// while; StepReport::max_penetration does not count that. Triangles that cross at the start touch
+/// nothing of each other until they have come apart (StepReport::tangled). Solver small_steps only;
+/// `automatic` becomes small_steps.
+struct SelfContact {
+  bool on = false;
+  double thickness = 0;   ///< m, from middle to middle of two layers; > 0 where it is on
+  double friction = 0.3;  ///< Coulomb's coefficient between layers; at least 0
+};
+
 /// A scene. Lengths in m, masses in kg, times in s. Vectors hold one entry per particle, or per
 /// constraint, element, anchor, seam or triangle; particles are numbered from 0.
 ///
@@ -171,7 +187,8 @@ struct SceneDescription {
   std::vector<std::array<std::uint32_t, 3>> surface;
   Damping damping;
   Air air;
-  double friction = 0.3;    ///< Coulomb's coefficient of the cloth on bodies (body.h); at least 0
+  double friction = 0.3;  ///< Coulomb's coefficient of the cloth on bodies (body.h); at least 0
+  SelfContact self_contact;
   Vec3 gravity{0, -10, 0};  ///< m/s^2
 
   /// Spheres of the paper: particles that collide with other particles. A sphere collides with

@@ -240,7 +240,7 @@ typedef struct weft_report { /* StepReport */
   double max_strain, rms_strain, max_shear, max_error, max_bending_error;
   uint32_t worst_constraint, worst_element;
   double max_penetration;
-  int body_contacts, contact_failures, zones, intersecting;
+  int body_contacts, contact_failures, zones, intersecting, self_contacts, tangled;
   double max_anchor_error;
   int open_seams;
   double max_seam_gap, seam_work, motion_error, energy_lost, pin_work, body_work, friction_work;

@@ -177,6 +177,15 @@ inline Vector slip_of(const BodyMotion& body, Vector start, Vector x) {
   return x - body.to.placed(body.from.from_place(start));
 }
 
+/// What is left of a way by which the start of a substep is moved: it leads no deeper into the
+/// body.
+inline Vector kept_out(const BodyMotion& body, Vector start, Vector by, double radius) {
+  const double thickness = body.thickness + radius;
+  const Gap from = gap_of(body.solid, thickness, body.from.from_place(start)),
+            to = gap_of(body.solid, thickness, body.from.from_place(start + by));
+  return by + std::max(0.0, std::min(0.0, from.gap) - to.gap) * body.from.turned(to.normal);
+}
+
 /// What contacts of a particle and a body have done in a substep.
 struct Grip {
   double pushed = 0, held = 0;     // m: along the normal, without what came out, and by friction

@@ -96,15 +96,16 @@ struct FromEdge {
   return is_parallel || (s > least && s < most && t > least && t < most);
 }
 
-/// What a point of the pairs may come off its way, at most.
-[[gnu::always_inline]] inline Floats largest_fourth(const float* quads, const PairBlock& pairs,
-                                                    std::uint32_t lane) {
+/// What points of the two features may come off their ways, at most and together.
+[[gnu::always_inline]] inline Floats largest_fourths(const float* quads, const PairBlock& pairs,
+                                                     bool edges, std::uint32_t lane) {
   const QuadLanes at;
   const Floats a = at.fourth(quads, pairs.point[0] + lane),
                b = at.fourth(quads, pairs.point[1] + lane),
                c = at.fourth(quads, pairs.point[2] + lane),
                d = at.fourth(quads, pairs.point[3] + lane);
-  return xsimd::max(xsimd::max(a, b), xsimd::max(c, d));
+  const Floats last = xsimd::max(c, d);
+  return edges ? xsimd::max(a, b) + last : a + xsimd::max(b, last);
 }
 
 template <class From>
@@ -123,7 +124,7 @@ template <class From>
     const Floats closing = xsimd::max(none, second - first);
     distance.store_unaligned(m.distance[i] + lane);
     FloatMask is_near =
-        distance - closing < Floats(m.reach) + largest_fourth(m.ways, m.pairs[i], lane);
+        distance - closing < Floats(m.reach) + largest_fourths(m.ways, m.pairs[i], edges, lane);
     if (edges) is_near = is_near && may_face(corners_of(m.points, m.pairs[i], lane), m.beyond);
     near |= bits(is_near) << lane;
   }

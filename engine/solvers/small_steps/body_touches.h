@@ -47,7 +47,9 @@ inline void add(const ContactImpulses& impulses, const BodyClock& clock, BodyRep
 inline void add_report(const SurfaceContacts& meshes, const BodyClock& clock, BodyReport& report) {
   if (meshes.empty()) return;
   add(meshes.impulses(), clock, report);
-  report.contacts += meshes.count_touching();
+  const SurfaceContacts::Touching touching = meshes.count_touching();
+  report.contacts += touching.bodies;
+  report.within_cloth = touching.within_cloth;
   report.failures = meshes.failures();
 }
 

@@ -33,8 +33,10 @@ struct LanePoints {
   SimdMembrane& membrane;
   SimdBodies* bodies;  // or null: they are left
   std::vector<Arrival>& arrived;
+  std::vector<Jolt>& jolts;
   float* led_to;  // simd::Flight
 
+  bool is_mended() const { return led_to != u; }
   double axis(const float* from, std::size_t a, std::size_t b) const {
     return static_cast<double>(base[a]) - static_cast<double>(base[b]) +
            (static_cast<double>(from[a]) - static_cast<double>(from[b]));
@@ -111,7 +113,20 @@ struct LanePoints {
     for (const double to : {position.x, position.y, position.z}) {
       const float before =
           std::exchange(u_start[at], static_cast<float>(to - static_cast<double>(base[at])));
-      if (led_to != u) predicted[at] = led_to[at] += u_start[at] - before;
+      if (is_mended()) predicted[at] = led_to[at] += u_start[at] - before;
+      at += places.stride;
+    }
+  }
+  /// Where it began, without speed, and where it is.
+  void shift(std::uint32_t slot, kernels::Vector start_by, kernels::Vector by) const {
+    std::size_t at = places.of(slot);
+    for (const auto& [of_start, change] :
+         {std::pair{start_by.x, by.x}, std::pair{start_by.y, by.y}, std::pair{start_by.z, by.z}}) {
+      const auto start_change = static_cast<float>(of_start);
+      u_start[at] += start_change;
+      predicted[at] += start_change;
+      if (is_mended()) led_to[at] += start_change;
+      u[at] += static_cast<float>(change);
       at += places.stride;
     }
   }
@@ -120,6 +135,7 @@ struct LanePoints {
     if (held.is_at_limit) put(slot, held.x, held.v);
   }
   void grip(std::uint32_t slot) const;
+  void grip_by_bodies(std::uint32_t slot) const;
   void push(std::uint32_t slot, kernels::Vector by) const {
     move(slot, by);
     touched.push_back(slot);
@@ -129,7 +145,7 @@ struct LanePoints {
 /// The same as contacts with meshes see them.
 using LaneParticles = PointParticles<LanePoints>;
 
-inline void LanePoints::grip(std::uint32_t slot) const {
+inline void LanePoints::grip_by_bodies(std::uint32_t slot) const {
   SimdBodies::Particle particle{position_at_start(slot), position(slot), settled(slot)};
   const TouchedSurface surface = bodies->hold(slot, particle);
   if (surface.is_there()) {
@@ -137,6 +153,10 @@ inline void LanePoints::grip(std::uint32_t slot) const {
     put_start(slot, particle.start);
     if (bodies->begins_to_touch(slot)) arrived.push_back({slot, surface});
   }
+}
+
+inline void LanePoints::grip(std::uint32_t slot) const {
+  grip_by_bodies(slot);
   if (!bodies->has_meshes()) return;
   LaneParticles particles(*this);
   bodies->hold_by_meshes(slot, particles);

@@ -51,6 +51,7 @@ LanePoints LaneStore::points(bool with_limits) {
           .membrane = membrane_,
           .bodies = with_limits && !bodies_.empty() ? &bodies_ : nullptr,
           .arrived = now_.arrived,
+          .jolts = now_.jolts,
           .led_to = now_.is_aside ? aside_.data() : u_.data()};
 }
 

@@ -100,6 +100,9 @@ class LaneStore {
   void stop_at_contact(std::uint32_t slot);
   /// The velocity is that at the end of this substep, and the past a free flight that leads to it.
   void begin_at_limit(std::uint32_t slot);
+  /// The velocity before becomes faster by as much as the present one did in a moment, and the last
+  /// way is that of a flight between the two.
+  void jolt(std::uint32_t slot, kernels::Vector by);
   void set_aside() { std::ranges::copy(u_, aside_.begin()); }
   void take_past_along(Team& team);
 

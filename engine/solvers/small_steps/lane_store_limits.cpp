@@ -75,4 +75,16 @@ void LaneStore::begin_at_limit(std::uint32_t slot) {
   }
 }
 
+void LaneStore::jolt(std::uint32_t slot, kernels::Vector by) {
+  const auto h = static_cast<float>(now_.h);
+  std::size_t at = layout_.places().of(slot);
+  for (const double faster : {by.x, by.y, by.z}) {
+    v_[at] += weights_.last.rate * (u_[at] - predicted_[at]);
+    predicted_[at] = u_[at];
+    v_before_[at] += static_cast<float>(faster);
+    u_before_[at] = u_[at] - 0.5f * h * (v_[at] + v_before_[at]);
+    at += layout_.places().stride;
+  }
+}
+
 }  // namespace weft

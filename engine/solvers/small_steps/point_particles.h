@@ -28,6 +28,15 @@ class PointParticles final : public ContactParticles {
   void stop(std::uint32_t slot, const TouchedSurface& surface) override {
     points_.arrived.push_back({slot, surface});
   }
+  void jolt(std::uint32_t slot, kernels::Vector by) override {
+    points_.jolts.push_back({slot, by});
+  }
+  void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) override {
+    const kernels::Vector kept = points_.bodies->kept_out(slot, start(slot), comes_out);
+    points_.shift(slot, kept, by + kept);
+    points_.grip_by_bodies(slot);
+  }
+  bool is_mended() const override { return points_.is_mended(); }
   double momentum_share() const override { return points_.bodies->momentum_share(); }
 
  private:

@@ -13,7 +13,7 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
                             const Misplaced& misplaced) {
   clock_.begin(bodies, h, substeps, stands);
   meshes_.begin(clock_, start, misplaced);
-  if (bodies.empty()) return;
+  if (empty()) return;
   on_.assign(model_.slots(), false);
   if (before.size() == on_.size()) on_ = before;
   impulses_.begin(bodies);
@@ -56,6 +56,14 @@ TouchedSurface ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& 
     v = gripped.v;
   }
   return surface;
+}
+
+Vector ReferenceBodies::kept_out(std::uint32_t slot, Vector start, Vector by) const {
+  for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
+    if (clock_.bodies()[i].shape->mesh() == nullptr)
+      by = reference::kept_out(clock_.motions()[i], start, by, radius(slot));
+  }
+  return by;
 }
 
 void ReferenceBodies::arrive(const TouchedSurface& surface, Vector x, Vector v, Vector impulse) {

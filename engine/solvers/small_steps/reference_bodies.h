@@ -19,7 +19,7 @@ class ReferenceBodies {
 
   using Touching = std::vector<bool>;  // per slot
 
-  bool empty() const { return clock_.bodies().empty(); }
+  bool empty() const { return clock_.bodies().empty() && meshes_.empty(); }
   /// before: who touched a body when the frame before ended; empty: nothing is known of it.
   /// misplaced: likewise, by meshes; start: whether it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
@@ -48,6 +48,8 @@ class ReferenceBodies {
   /// that it touches, the last of several, if there is one.
   TouchedSurface hold(std::uint32_t slot, kernels::Vector& start, kernels::Vector& x,
                       kernels::Vector& v);
+  /// A particle that began there is moved by `by`, without speed: no deeper into bodies.
+  kernels::Vector kept_out(std::uint32_t slot, kernels::Vector start, kernels::Vector by) const;
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
   /// impulse: as add_arrival (body_touches.h) has it.

@@ -49,6 +49,7 @@ ReferenceStore::Points ReferenceStore::points(bool with_limits) {
           .of_membrane = membrane_multiplier_,
           .bodies = with_limits && !bodies_.empty() ? &bodies_ : nullptr,
           .arrived = now_.arrived,
+          .jolts = now_.jolts,
           .led_to = now_.is_aside ? aside_.view() : x_.view()};
 }
 
@@ -428,6 +429,15 @@ void ReferenceStore::begin_at_limit(std::uint32_t i) {
   v_.set(i, v);
   v_before_.set(i, v_before);
   before_.set(i, x_[i] - now_.h * v + (0.5 * now_.h * now_.h) * a);
+}
+
+void ReferenceStore::jolt(std::uint32_t i, Vector by) {
+  const double rate = last_ > 0 ? 1 / last_ : 0;
+  const Vector v = v_[i] + rate * (x_[i] - predicted_[i]), v_before = v_before_[i] + by;
+  predicted_.set(i, x_[i]);
+  v_.set(i, v);
+  v_before_.set(i, v_before);
+  before_.set(i, x_[i] - (0.5 * now_.h) * (v + v_before));
 }
 
 void ReferenceStore::go_on_from(const ReferenceStore& other, kernels::VectorsView v,

@@ -86,6 +86,7 @@ class ReferenceStore {
   double deepest_in_body(Team& team);
   void stop_at_contact(std::uint32_t slot);
   void begin_at_limit(std::uint32_t slot);
+  void jolt(std::uint32_t slot, kernels::Vector by);
 
   void set_aside() { aside_ = x_; }
   void take_past_along(Team& team);
@@ -158,6 +159,7 @@ struct ReferenceStore::Points {
   std::vector<reference::MembraneMultipliers>& of_membrane;
   ReferenceBodies* bodies;  // or null: they are left
   std::vector<Arrival>& arrived;
+  std::vector<Jolt>& jolts;
   kernels::VectorsView led_to;  // as simd::Flight has it
 
   bool is_mended() const { return led_to.x != x.x; }
@@ -178,6 +180,13 @@ struct ReferenceStore::Points {
       predicted.set(slot, led_to[slot]);
     }
     start.set(slot, position);
+  }
+  /// Where it began, without speed, and where it is.
+  void shift(std::uint32_t slot, kernels::Vector start_by, kernels::Vector by) const {
+    start.add(slot, start_by);
+    predicted.add(slot, start_by);
+    if (is_mended()) led_to.add(slot, start_by);
+    x.add(slot, by);
   }
   kernels::Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
   void move(std::uint32_t slot, kernels::Vector by) const {

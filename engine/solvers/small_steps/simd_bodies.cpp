@@ -60,7 +60,7 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
   meshes_.begin(clock_, start, misplaced);
   pairs_.clear();
   first_pair_.clear();
-  if (bodies.empty()) return;
+  if (empty()) return;
   make_room();
   h_ = h;
   std::ranges::fill(on_, std::uint16_t{0});
@@ -302,6 +302,16 @@ TouchedSurface SimdBodies::hold(std::uint32_t slot, Particle& particle) {
     surface = {pairs_[i].body, body.velocity_at(gripped.x)};
   }
   return surface;
+}
+
+Vector SimdBodies::kept_out(std::uint32_t slot, Vector start, Vector by) const {
+  const std::uint32_t place = layout_.place_of[slot];
+  if (place == kNoIndex || pairs_.empty()) return by;
+  const std::size_t block = place / kLanes;
+  const auto radius = static_cast<double>(layout_.blocks[block].radius[place % kLanes]);
+  for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i)
+    by = reference::kept_out(clock_.motions()[pairs_[i].body], start, by, radius);
+  return by;
 }
 
 TouchedSurface SimdBodies::touched_by(std::uint32_t slot, Vector x) const {

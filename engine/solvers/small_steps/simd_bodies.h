@@ -36,7 +36,7 @@ class SimdBodies {
     kernels::Vector start{}, x{}, v{};
   };
 
-  bool empty() const { return clock_.bodies().empty(); }
+  bool empty() const { return clock_.bodies().empty() && meshes_.empty(); }
   bool has_meshes() const { return !meshes_.empty(); }
   double take_visits() { return meshes_.take_visits(); }
   /// before: of the frame before; empty: nothing is known of it. misplaced: likewise, of meshes;
@@ -66,6 +66,8 @@ class SimdBodies {
   const SurfaceContacts& meshes() const { return meshes_; }
   /// Of one particle. Returns the surface that it touches, the last of several, if there is one.
   TouchedSurface hold(std::uint32_t slot, Particle& particle);
+  /// A particle that began there is moved by `by`, without speed: no deeper into bodies.
+  kernels::Vector kept_out(std::uint32_t slot, kernels::Vector start, kernels::Vector by) const;
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
   /// The surface, of several bodies the first one's, that a particle at x touches.

@@ -37,6 +37,7 @@ class StoredSmallSteps final : public SmallSteps {
     now_.passes.forget();
     now_.touched.clear();
     now_.arrived.clear();
+    now_.jolts.clear();
     now_.has_past = !plan.placed && plan.h <= SubstepFormula::kLargestRatio * store_.past_h();
     seams_.begin(plan.seams, plan.projects() ? 0 : plan.h);
     departures_.begin();
@@ -251,6 +252,9 @@ class StoredSmallSteps final : public SmallSteps {
       linkage_.for_each_arrival(store_.points(false),
                                 [&](std::uint32_t slot) { now_.arrived.push_back({slot}); });
     }
+    take_jolts(now_.jolts, [&](const Jolt& jolt) {
+      if (now_.is_free(jolt.slot)) store_.jolt(jolt.slot, jolt.by);
+    });
     take_arrivals(now_.arrived, [&](const Arrival& arrival) { begin_at_limit(arrival); });
   }
   /// The velocity is that at the end of this substep, and the past a free flight that leads to it.

@@ -29,6 +29,7 @@ struct Substep {
   bool is_aside = false;                     // positions before mending were set aside
   std::vector<std::uint32_t> touched{};      // slots that contacts have pushed
   std::vector<Arrival> arrived{};
+  std::vector<Jolt> jolts{};
 
   bool is_free(std::size_t slot) const { return model.inverse_mass[slot] > 0; }
   bool measures_departures() const { return settings.motion_tolerance > 0; }
@@ -47,7 +48,9 @@ struct Substep {
   double decaying_share() const {
     return SubstepFormula{}.with_decay(model.damping.motion, h, h).share;
   }
-  std::size_t bytes() const { return passes.bytes() + bytes_of(touched) + bytes_of(arrived); }
+  std::size_t bytes() const {
+    return passes.bytes() + bytes_of(touched) + bytes_of(arrived) + bytes_of(jolts);
+  }
 };
 
 /// How far a sweep goes with rigid constraints.

@@ -72,9 +72,11 @@ void check_equal(const weft_report& c, const StepReport& r) {
   CHECK(c.status == static_cast<int>(r.status));
   CHECK(bool(c.asleep) == r.asleep);
   CHECK(std::array{c.substeps, c.halvings, c.scheme_fallbacks, c.contacts, c.body_contacts,
-                   c.contact_failures, c.zones, c.intersecting, c.open_seams} ==
-        std::array{r.substeps, r.halvings, r.scheme_fallbacks, r.contacts, r.body_contacts,
-                   r.contact_failures, r.zones, r.intersecting, r.open_seams});
+                   c.contact_failures, c.zones, c.intersecting, c.self_contacts, c.tangled,
+                   c.open_seams} == std::array{r.substeps, r.halvings, r.scheme_fallbacks,
+                                               r.contacts, r.body_contacts, r.contact_failures,
+                                               r.zones, r.intersecting, r.self_contacts, r.tangled,
+                                               r.open_seams});
   CHECK(std::array{c.iterations, c.direction_updates, c.velocity_iterations, c.visits,
                    c.corrections} == std::array{r.iterations, r.direction_updates,
                                                 r.velocity_iterations, r.visits, r.corrections});

@@ -37,6 +37,9 @@ class Particles final : public ContactParticles {
   void write(std::uint32_t, const ContactParticle&) override {}
   void touch(std::uint32_t, const TouchedSurface&) override {}
   void stop(std::uint32_t, const TouchedSurface&) override {}
+  void jolt(std::uint32_t, Vector) override {}
+  void push(std::uint32_t, Vector, Vector) override {}
+  bool is_mended() const override { return false; }
   double momentum_share() const override { return 1; }
 };
 

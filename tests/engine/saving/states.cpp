@@ -463,12 +463,12 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(state)), model.size(),
                 static_cast<unsigned long long>(checksum(model)));
   }
-  CHECK(state[8] == std::byte{3});
-  CHECK(model[8] == std::byte{1});
-  CHECK(state.size() == 11067);
-  CHECK(checksum(state) == 0x0415237666ec9e1c);
-  CHECK(model.size() == 690);
-  CHECK(checksum(model) == 0xc856bfa46954d81d);
+  CHECK(state[8] == std::byte{4});
+  CHECK(model[8] == std::byte{2});
+  CHECK(state.size() == 11083);
+  CHECK(checksum(state) == 0x7b56a2ccc96ac406);
+  CHECK(model.size() == 707);
+  CHECK(checksum(model) == 0x934b66cda290f598);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ struct Pairs {
   Place place;
   std::vector<FeaturePair> pairs;
   std::vector<std::array<Vector, 4>> ways;
-  std::vector<double> reaches;  // m, that a point of the pair may come off its way
+  std::vector<double> reaches;  // m, that points of the pair may come off their ways, together
   kernels::AlignedVector<simd::PairBlock> blocks{kBlocks};
   Quads points{4 * kCount}, moves{4 * kCount};
 
@@ -69,13 +69,15 @@ struct Pairs {
       }
       pairs.push_back(pair);
       ways.push_back(way);
-      reaches.push_back(0);
+      std::array<double, 2> reach_of{};
       for (std::size_t k = 0; k < 4; ++k) {
         const double reach = place.size * random.between(0, 0.2);
         moves.of[4 * std::size_t{blocks[i / kLanes].point[k][i % kLanes]} + 3] =
             static_cast<float>(reach);
-        reaches.back() = std::max(reaches.back(), reach);
+        double& most = reach_of[k < (edges ? 2 : 1) ? 0 : 1];
+        most = std::max(most, reach);
       }
+      reaches.push_back(reach_of[0] + reach_of[1]);
     }
   }
   reference::Nearest nearest(std::size_t i) const {

@@ -1,0 +1,204 @@
+#include "engine/contact/rest_distances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/contact/look.h"
+#include "engine/tuning.h"
+
+namespace weft {
+namespace {
+
+using kernels::Vector;
+using Corners = std::array<Vector, 3>;
+
+/// m, per edge of the surface: what a constraint or a triangle of fabric says, or else what it has
+/// where the cloth begins.
+std::vector<double> lengths_at_rest(const Model& model, const TriangleSurface& s) {
+  std::vector<std::pair<std::uint64_t, double>> known;
+  const auto key = [](std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+  };
+  const ConstraintStore& c = model.constraints;
+  for (std::size_t i = 0; i < c.size(); ++i)
+    known.push_back({key(c.a[i], c.b[i]), c.rest_length[i]});
+  model.membrane.for_each_side([&](std::uint32_t a, std::uint32_t b, double l) {
+    known.push_back({key(a, b), l});
+  });
+  std::ranges::sort(known);
+  std::vector<double> lengths;
+  for (const auto& [a, b] : s.edges) {
+    const auto found =
+        std::ranges::lower_bound(known, key(a, b), {}, &std::pair<std::uint64_t, double>::first);
+    lengths.push_back(found != known.end() && found->first == key(a, b)
+                          ? found->second
+                          : length(model.initial_position[a] - model.initial_position[b]));
+  }
+  return lengths;
+}
+
+/// Around one triangle, all in its plane.
+class FlatPatch {
+ public:
+  FlatPatch(const TriangleSurface& surface, const std::vector<double>& lengths)
+      : surface_(surface), lengths_(lengths), seen_in_(surface.triangles.size(), kNoIndex) {}
+
+  struct Laid {
+    std::uint32_t triangle = 0;
+    Corners corners{};
+  };
+  /// All that come nearer to the triangle than that.
+  const std::vector<Laid>& lay_around(std::uint32_t triangle, double within) {
+    laid_.clear();
+    const auto [ab, bc, ca] = surface_.edges_of[triangle];
+    const double l = lengths_[ab];
+    laid_.push_back(
+        {triangle, {Vector{}, Vector{l, 0, 0}, corner(l, lengths_[ca], lengths_[bc], 1)}});
+    seen_in_[triangle] = triangle;
+    for (std::size_t i = 0; i < laid_.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) lay_beside(i, k, triangle, within);
+    }
+    return laid_;
+  }
+
+ private:
+  /// Over the way from 0 to l along x, so far from both ends.
+  static Vector corner(double l, double from_start, double from_end, double side) {
+    if (!(l > 0)) return {from_start, 0, 0};
+    const double x = (from_start * from_start - from_end * from_end + l * l) / (2 * l);
+    return {x, side * std::sqrt(std::max(0.0, from_start * from_start - x * x)), 0};
+  }
+  void lay_beside(std::size_t at, std::size_t k, std::uint32_t source, double within) {
+    const std::uint32_t from = laid_[at].triangle;
+    const TriangleSurface::Triangle& corners = surface_.triangles[from];
+    const std::uint32_t p = corners[k], q = corners[(k + 1) % 3];
+    const Vector a = laid_[at].corners[k], b = laid_[at].corners[(k + 1) % 3],
+                 c = laid_[at].corners[(k + 2) % 3];
+    for (const std::uint32_t next : surface_.triangles_at[p]) {
+      const TriangleSurface::Triangle& its = surface_.triangles[next];
+      if (seen_in_[next] == source || std::ranges::find(its, q) == its.end()) continue;
+      const Laid laid{next, lay(next, p, q, a, b, c)};
+      if (!is_within(laid.corners, within)) continue;
+      seen_in_[next] = source;
+      laid_.push_back(laid);
+    }
+  }
+  /// On the side of the edge from p to q, which are at a and b, that c is not on.
+  Corners lay(std::uint32_t triangle, std::uint32_t p, std::uint32_t q, Vector a, Vector b,
+              Vector c) const {
+    const TriangleSurface::Triangle& t = surface_.triangles[triangle];
+    Corners corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (t[k] == p || t[k] == q) {
+        corners[k] = t[k] == p ? a : b;
+        continue;
+      }
+      const double to_next = lengths_[surface_.edges_of[triangle][k]],
+                   to_last = lengths_[surface_.edges_of[triangle][(k + 2) % 3]];
+      const bool next_is_p = t[(k + 1) % 3] == p;
+      const Vector u = b - a, v = c - a;
+      const double l = length(u);
+      const Vector along = l > 0 ? (1 / l) * u : Vector{1, 0, 0}, across{-along.y, along.x, 0};
+      const Vector at = corner(l, next_is_p ? to_next : to_last, next_is_p ? to_last : to_next,
+                               dot(across, v) > 0 ? -1 : 1);
+      corners[k] = a + at.x * along + at.y * across;
+    }
+    return corners;
+  }
+  bool is_within(const Corners& corners, double within) const {
+    double least = std::numeric_limits<double>::infinity();
+    const Corners& source = laid_.front().corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto distance = [](const reference::Nearest& nearest) { return length(nearest.r); };
+      least = std::min(
+          {least,
+           distance(reference::nearest_in_triangle(corners[i], source[0], source[1], source[2])),
+           distance(
+               reference::nearest_in_triangle(source[i], corners[0], corners[1], corners[2]))});
+    }
+    return least < within;
+  }
+
+  const TriangleSurface& surface_;
+  const std::vector<double>& lengths_;
+  std::vector<Laid> laid_;
+  std::vector<std::uint32_t> seen_in_;  // per triangle: around which it was laid last
+};
+
+bool are_far(double within, const Vector* a, std::size_t as, const Vector* b, std::size_t bs) {
+  const auto beyond = [&](double Vector::*axis) {
+    double low_a = a[0].*axis, high_a = low_a, low_b = b[0].*axis, high_b = low_b;
+    for (std::size_t i = 1; i < as; ++i) {
+      low_a = std::min(low_a, a[i].*axis);
+      high_a = std::max(high_a, a[i].*axis);
+    }
+    for (std::size_t i = 1; i < bs; ++i) {
+      low_b = std::min(low_b, b[i].*axis);
+      high_b = std::max(high_b, b[i].*axis);
+    }
+    return low_a - high_b > within || low_b - high_a > within;
+  };
+  return beyond(&Vector::x) || beyond(&Vector::y);
+}
+
+}  // namespace
+
+std::uint64_t RestDistances::key_of(PairKind kind, std::uint32_t first, std::uint32_t second) {
+  const bool edges = kind == PairKind::edges;
+  if (edges && second < first) std::swap(first, second);
+  return std::uint64_t{first} << 33 | std::uint64_t{second} << 1 | (edges ? 1u : 0u);
+}
+
+RestDistances::RestDistances(const Model& model, double thickness) : thickness_(thickness) {
+  const TriangleSurface& s = model.touched_surface();
+  const std::vector<double> lengths = lengths_at_rest(model, s);
+  FlatPatch patch(s, lengths);
+  const auto take = [&](PairKind kind, std::uint32_t first, std::uint32_t second, double distance) {
+    if (distance < thickness)
+      nearer_.push_back({key_of(kind, first, second), tuning::kRestDistance * distance});
+  };
+  for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
+    if (s.is_point(t)) continue;
+    const TriangleSurface::Triangle& corners = s.triangles[t];
+    const auto& laid = patch.lay_around(t, thickness);
+    const Corners here = laid.front().corners;
+    for (const auto& [other, there] : laid) {
+      const TriangleSurface::Triangle& its = s.triangles[other];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (std::ranges::find(corners, its[k]) != corners.end()) continue;
+        if (are_far(thickness, &there[k], 1, here.data(), 3)) continue;
+        take(PairKind::point_triangle, its[k], t,
+             length(reference::nearest_in_triangle(there[k], here[0], here[1], here[2]).r));
+      }
+      if (other <= t) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          const std::array mine{here[i], here[(i + 1) % 3]}, theirs{there[j], there[(j + 1) % 3]};
+          const auto [a, b] = s.edges[s.edges_of[t][i]];
+          const auto [c, d] = s.edges[s.edges_of[other][j]];
+          if (a == c || a == d || b == c || b == d) continue;
+          if (are_far(thickness, mine.data(), 2, theirs.data(), 2)) continue;
+          take(PairKind::edges, s.edges_of[t][i], s.edges_of[other][j],
+               length(reference::nearest_of_edges(mine[0], mine[1], theirs[0], theirs[1]).r));
+        }
+      }
+    }
+  }
+  std::ranges::sort(nearer_, [](const Nearer& a, const Nearer& b) {
+    return std::pair(a.key, a.distance) < std::pair(b.key, b.distance);
+  });
+  const auto rest = std::ranges::unique(nearer_, {}, &Nearer::key);
+  nearer_.erase(rest.begin(), rest.end());
+  nearer_.shrink_to_fit();
+}
+
+double RestDistances::of(const Pair& pair) const {
+  if (nearer_.empty()) return thickness_;
+  const std::uint64_t key = key_of(pair.kind, pair.first, pair.second);
+  const auto found = std::ranges::lower_bound(nearer_, key, {}, &Nearer::key);
+  return found != nearer_.end() && found->key == key ? found->distance : thickness_;
+}
+
+}  // namespace weft

@@ -1,0 +1,40 @@
+/// The distances that features of a cloth keep from each other: its thickness, and of those that
+/// are nearer in the shape at rest most of what they have there. A mesh finer than the thickness
+/// would push itself apart otherwise.
+///
+/// The shape at rest is what lengths at rest tell: around each triangle its neighbours are laid
+/// into its plane, one beside the other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/contact/features.h"
+#include "engine/model/model.h"
+
+namespace weft {
+
+class RestDistances {
+ public:
+  RestDistances() = default;
+  RestDistances(const Model& model, double thickness);
+
+  bool empty() const { return thickness_ == 0; }
+  /// m
+  double of(const Pair& pair) const;
+  /// Of pairs that are nearer than the thickness at rest.
+  std::size_t count() const { return nearer_.size(); }
+  std::size_t bytes() const { return nearer_.capacity() * sizeof(Nearer); }
+
+ private:
+  struct Nearer {
+    std::uint64_t key = 0;  // of both features; the kind is its lowest bit
+    double distance = 0;    // m
+  };
+  static std::uint64_t key_of(PairKind kind, std::uint32_t first, std::uint32_t second);
+
+  double thickness_ = 0;
+  std::vector<Nearer> nearer_;  // by their keys
+};
+
+}  // namespace weft

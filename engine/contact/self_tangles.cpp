@@ -1,0 +1,110 @@
+#include "engine/contact/self_tangles.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/bytes_of.h"
+#include "engine/contact/leads_through.h"
+
+namespace weft {
+
+using kernels::Vector;
+
+namespace {
+
+std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
+
+std::size_t count_shared(const TriangleSurface::Triangle& a, const TriangleSurface::Triangle& b) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      a, [&](std::uint32_t p) { return std::ranges::find(b, p) != b.end(); }));
+}
+
+/// An edge of one that has no corner of the other leads through that.
+template <class At>
+bool edge_leads_through(const TriangleSurface::Triangle& a, const TriangleSurface::Triangle& b,
+                        At&& at) {
+  const Corners corners{at(b[0]), at(b[1]), at(b[2])};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t p = a[k], q = a[(k + 1) % 3];
+    if (std::ranges::find(b, p) != b.end() || std::ranges::find(b, q) != b.end()) continue;
+    if (leads_through(at(p), at(q), corners)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void SelfTangles::begin(const TriangleSurface& cloth, const std::vector<std::uint64_t>& pairs) {
+  cloth_ = &cloth;
+  pairs_ = pairs;
+  const std::size_t triangles = cloth.triangles.size();
+  std::erase_if(pairs_, [&](std::uint64_t pair) { return (pair & 0xffffffffu) >= triangles; });
+  mark();
+}
+
+void SelfTangles::mark() {
+  is_one_.assign(pairs_.empty() ? 0 : cloth_->triangles.size(), 0);
+  for (const std::uint64_t pair : pairs_) {
+    is_one_[static_cast<std::size_t>(pair >> 32)] = 1;
+    is_one_[static_cast<std::size_t>(pair & 0xffffffffu)] = 1;
+  }
+}
+
+template <class At>
+void SelfTangles::find(const ContactPoints& points, At&& at) {
+  pairs_.clear();
+  const ContactSurface& cloth = points.surfaces()[kClothSurface];
+  BoxTree::meet(table_, cloth.tree, cloth.tree, [&](std::uint32_t a, std::uint32_t b) {
+    if (b <= a || cloth_->is_point(a) || cloth_->is_point(b)) return;
+    const TriangleSurface::Triangle &one = cloth_->triangles[a], &other = cloth_->triangles[b];
+    const std::size_t shared = count_shared(one, other);
+    if (shared > 1) return;
+    const Corners its{at(one[0]), at(one[1]), at(one[2])},
+        others{at(other[0]), at(other[1]), at(other[2])};
+    if (shared == 0 && (are_beside(its, others) || are_beside(others, its))) return;
+    if (edge_leads_through(one, other, at) || edge_leads_through(other, one, at))
+      pairs_.push_back(pair_of(a, b));
+  });
+  std::ranges::sort(pairs_);
+  mark();
+}
+
+void SelfTangles::find_at_start(const ContactPoints& points) {
+  find(points, [&](std::uint32_t point) { return points.start(point); });
+}
+
+void SelfTangles::find_at_end(const ContactPoints& points) {
+  find(points, [&](std::uint32_t point) { return points.end(point); });
+}
+
+bool SelfTangles::has(std::uint32_t a, std::uint32_t b) const {
+  return is_one_[a] != 0 && is_one_[b] != 0 && std::ranges::binary_search(pairs_, pair_of(a, b));
+}
+
+bool SelfTangles::has_one_at_edge(std::uint32_t edge, std::uint32_t triangle) const {
+  const auto [p, q] = cloth_->edges[edge];
+  return std::ranges::any_of(cloth_->triangles_at[p], [&](std::uint32_t at_edge) {
+    const TriangleSurface::Triangle& t = cloth_->triangles[at_edge];
+    return std::ranges::find(t, q) != t.end() && has(at_edge, triangle);
+  });
+}
+
+bool SelfTangles::has_features_of(const Pair& pair) const {
+  if (pair.kind == PairKind::point_triangle) {
+    return is_one_[pair.second] != 0 &&
+           std::ranges::any_of(cloth_->triangles_at[pair.first],
+                               [&](std::uint32_t t) { return has(t, pair.second); });
+  }
+  const auto [p, q] = cloth_->edges[pair.second];
+  return std::ranges::any_of(cloth_->triangles_at[p], [&](std::uint32_t at_edge) {
+    const TriangleSurface::Triangle& t = cloth_->triangles[at_edge];
+    return is_one_[at_edge] != 0 && std::ranges::find(t, q) != t.end() &&
+           has_one_at_edge(pair.first, at_edge);
+  });
+}
+
+std::size_t SelfTangles::bytes() const { return bytes_of(pairs_) + bytes_of(is_one_); }
+
+}  // namespace weft

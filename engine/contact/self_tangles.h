@@ -1,0 +1,43 @@
+/// Pairs of triangles of a cloth that cross each other: the cloth was made or put so, or more came
+/// together than could be kept apart. They may come apart: until then their features do not touch,
+/// and are not verified. Where triangles cross they may go on to cross their neighbours; all others
+/// are kept apart.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/contact/points.h"
+
+namespace weft {
+
+class SelfTangles {
+ public:
+  explicit SelfTangles(const simd::Table& table) : table_(table) {}
+
+  /// Of a frame: what the frame before left. A pair is its first triangle and, in the lower half,
+  /// its second one, which is the later; pairs ascend.
+  void begin(const TriangleSurface& cloth, const std::vector<std::uint64_t>& pairs);
+  /// Finds anew what crosses when an interval begins, or when it ends.
+  void find_at_start(const ContactPoints& points);
+  void find_at_end(const ContactPoints& points);
+  bool leaves_out(const Pair& pair) const { return !pairs_.empty() && has_features_of(pair); }
+  const std::vector<std::uint64_t>& pairs() const { return pairs_; }
+  std::size_t bytes() const;
+
+ private:
+  template <class At>
+  void find(const ContactPoints& points, At&& at);
+  bool has_features_of(const Pair& pair) const;
+  bool has(std::uint32_t a, std::uint32_t b) const;
+  bool has_one_at_edge(std::uint32_t edge, std::uint32_t triangle) const;
+  void mark();
+
+  const simd::Table& table_;
+  const TriangleSurface* cloth_ = nullptr;
+  std::vector<std::uint64_t> pairs_;
+  std::vector<std::uint8_t> is_one_;  // per triangle: it is of a pair
+};
+
+}  // namespace weft
