@@ -109,6 +109,7 @@ void read_world(const weft_scene& s, Arrays& in, SceneDescription& out) {
   out.air.lift = s.air_lift;
   out.air.wind = vector_of(s.wind);
   out.friction = s.friction;
+  out.self_contact = {s.self_contact != 0, s.self_contact_thickness, s.self_contact_friction};
   out.gravity = vector_of(s.gravity);
 }
 
@@ -121,6 +122,9 @@ void write_world(const SceneDescription& scene, weft_scene& out) {
   out.air_lift = scene.air.lift;
   write_vector(scene.air.wind, out.wind);
   out.friction = scene.friction;
+  out.self_contact = scene.self_contact.on ? 1 : 0;
+  out.self_contact_thickness = scene.self_contact.thickness;
+  out.self_contact_friction = scene.self_contact.friction;
   write_vector(scene.gravity, out.gravity);
 }
 

@@ -143,6 +143,7 @@ Result<void> add_material(const MeshDescription& mesh, const Welded& welded,
   scene.bending = bending_of(faces, scene.positions.size(), mesh);
   scene.damping = {material.damping_stretch, material.damping_bending, material.damping_motion};
   scene.air = air_of(scene, material);
+  if (material.thickness > 0) scene.self_contact.thickness = material.thickness;
   return {};
 }
 

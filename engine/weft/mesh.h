@@ -30,7 +30,7 @@ namespace weft {
 /// b that is stretched by the fraction e pulls with the force warp b e.
 struct Material {
   double density = 0;    ///< kg/m^2; > 0
-  double thickness = 0;  ///< m; at least 0. cloth_from_mesh does not use it.
+  double thickness = 0;  ///< m; at least 0. Above 0 it is SelfContact::thickness.
   double warp = 0;       ///< N/m, of the yarns along the cloth; > 0
   double weft = 0;       ///< N/m, of the yarns across the cloth; > 0
   double shear = 0;      ///< N/m, per radian of shear; at least 0

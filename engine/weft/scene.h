@@ -161,8 +161,10 @@ struct Seam {
 /// `automatic` becomes small_steps.
 struct SelfContact {
   bool on = false;
-  double thickness = 0;   ///< m, from middle to middle of two layers; > 0 where it is on
-  double friction = 0.3;  ///< Coulomb's coefficient between layers; at least 0
+  double thickness = 1e-3;  ///< m, from middle to middle of two layers; > 0 where it is on
+  double friction = 0.3;    ///< Coulomb's coefficient between layers; at least 0
+
+  bool operator==(const SelfContact&) const = default;
 };
 
 /// A scene. Lengths in m, masses in kg, times in s. Vectors hold one entry per particle, or per

@@ -151,6 +151,9 @@ typedef struct weft_scene { /* SceneDescription */
   size_t sphere_count;
   const uint32_t* spheres;
   const double* radii; /* particle_count of them, or NULL: there are no spheres */
+
+  int self_contact; /* yes or no: whether layers of the cloth keep off each other */
+  double self_contact_thickness, self_contact_friction;
 } weft_scene;
 
 typedef struct weft_model_info { /* ModelInfo */

@@ -50,6 +50,11 @@ void add_parts(py::module_& m) {
       .field("drag", &Air::drag, "of the area that a triangle shows")
       .field("lift", &Air::lift, "across the wind")
       .field("wind", &Air::wind, "m/s");
+
+  Fields<SelfContact> self_contact(m, "SelfContact", "Layers of the cloth keep off each other.");
+  self_contact.field("on", &SelfContact::on, "whether they do")
+      .field("thickness", &SelfContact::thickness, "m, from the middle of one to that of the next")
+      .field("friction", &SelfContact::friction, "Coulomb's, between layers");
 }
 
 void add_particles(Fields<Scene>& scene) {
@@ -155,6 +160,7 @@ void add_scene(py::module_& m) {
   scene.field("damping", &Scene::damping, "a Damping")
       .field("air", &Scene::air, "an Air")
       .field("friction", &Scene::friction, "Coulomb's, of the cloth beside bodies")
+      .field("self_contact", &Scene::self_contact, "a SelfContact")
       .field("gravity", &Scene::gravity, "m/s^2");
   add_model(m);
 }

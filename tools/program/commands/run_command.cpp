@@ -116,6 +116,7 @@ Result<Prepared> prepare(const RunOptions& options) {
   plan.value().moves = source.value().moves;
   plan.value().bodies = source.value().bodies;
   plan.value().surface = source.value().description.surface;
+  plan.value().touches_itself = source.value().description.self_contact.on;
   plan.value().up = source.value().up;
   plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
   Prepared prepared{std::move(source.value()), model.value(), settings.value(),
@@ -220,8 +221,10 @@ void add_run_command(CommandLine& line) {
   verb.option("--repeat", options->plan.repeat,
               "report the fastest of this many runs, after one to warm up (default 1: a "
               "single run)");
-  verb.flag("--check-intersections", options->plan.check_intersections,
-            "count after every frame how many triangles of the cloth cross triangles of bodies");
+  verb.flag(
+      "--check-intersections", options->plan.check_intersections,
+      "count after every frame how many triangles of the cloth cross triangles of bodies, and "
+      "with --self-contact of the cloth");
   add_solver_options(verb, options->solver);
   verb.repeated("--out", options->out,
                 "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "

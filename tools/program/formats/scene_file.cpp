@@ -120,6 +120,8 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.radii = read_array(json, key, read_number);
   } else if (key == "friction") {
     scene.friction = read_number(json, key);
+  } else if (key == "self_contact") {
+    scene.self_contact = read_self_contact(json, key);
   } else if (key != "total_mass" && key != "moves" && key != "faces" && key != "bodies") {
     throw Refused{fmt::format("unknown key {}", in_quotes(key))};
   }
@@ -232,6 +234,8 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   add_numbers(text, "radii", scene.radii);
   if (scene.friction != SceneDescription{}.friction)
     text += fmt::format(",\n\"friction\": {}", Json(scene.friction).dump());
+  if (scene.self_contact != SelfContact{})
+    text += fmt::format(",\n\"self_contact\": {}", self_contact_text(scene.self_contact));
   add_rows(text, "bodies", bodies, body_row);
   add_rows(text, "moves", moves, move_row);
   add_rows(text, "faces", faces, [](const auto& face) { return Json(face).dump(); });

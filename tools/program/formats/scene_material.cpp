@@ -123,6 +123,18 @@ Air read_air(const Json& json, const std::string& place) {
   return air;
 }
 
+SelfContact read_self_contact(const Json& json, const std::string& place) {
+  check_keys(json, place, {"on", "thickness", "friction"});
+  SelfContact contact{.on = true};
+  if (json.contains("on")) {
+    if (!json["on"].is_boolean()) refuse(within(place, "on"), "true or false", json["on"]);
+    contact.on = json["on"];
+  }
+  read_if_given(json, place, "thickness", contact.thickness);
+  read_if_given(json, place, "friction", contact.friction);
+  return contact;
+}
+
 Anchor read_anchor(const Json& json, const std::string& place) {
   check_keys(
       json, place,
@@ -209,6 +221,11 @@ std::string air_text(const Air& air) {
               {"drag", air.drag},
               {"lift", air.lift},
               {"wind", Json{air.wind.x, air.wind.y, air.wind.z}}}
+      .dump();
+}
+
+std::string self_contact_text(const SelfContact& contact) {
+  return Json{{"on", contact.on}, {"thickness", contact.thickness}, {"friction", contact.friction}}
       .dump();
 }
 

@@ -16,6 +16,8 @@ MembraneElement read_membrane(const Json& json, const std::string& place);
 BendingElement read_bending(const Json& json, const std::string& place);
 Damping read_damping(const Json& json, const std::string& place);
 Air read_air(const Json& json, const std::string& place);
+/// A cloth that says so touches itself, unless "on" is false.
+SelfContact read_self_contact(const Json& json, const std::string& place);
 Anchor read_anchor(const Json& json, const std::string& place);
 Seam read_seam(const Json& json, const std::string& place);
 
@@ -28,5 +30,6 @@ bool has_damping(const Damping& damping);
 bool has_air(const Air& air);
 std::string damping_text(const Damping& damping);
 std::string air_text(const Air& air);
+std::string self_contact_text(const SelfContact& contact);
 
 }  // namespace weft::tools

@@ -169,12 +169,16 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> near_pairs(const TriangleSe
 
 namespace {
 
+/// Edges that end in a corner of a triangle are on no side of it: neighbours do not cross there.
+bool cross(const Corners& one, const Corners& other) {
+  return an_edge_leads_through(one, other) || an_edge_leads_through(other, one);
+}
+
 std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings(const TriangleSet& a,
                                                                const TriangleSet& b) {
   auto pairs = near_pairs(a, b, 0);
   std::erase_if(pairs, [&](const auto& pair) {
-    const Corners one = corners_of(a, pair.first), other = corners_of(b, pair.second);
-    return !an_edge_leads_through(one, other) && !an_edge_leads_through(other, one);
+    return !cross(corners_of(a, pair.first), corners_of(b, pair.second));
   });
   return pairs;
 }
@@ -183,6 +187,14 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings(const TriangleSet
 
 std::size_t count_crossings(const TriangleSet& a, const TriangleSet& b) {
   return crossings(a, b).size();
+}
+
+std::size_t count_crossings(const TriangleSet& surface) {
+  const auto crosses = [&](const auto& pair) {
+    return pair.first < pair.second &&
+           cross(corners_of(surface, pair.first), corners_of(surface, pair.second));
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(near_pairs(surface, surface, 0), crosses));
 }
 
 NamedCrossing name_crossing(const TriangleSet& cloth, std::span<const SceneBody> bodies,

@@ -1,5 +1,5 @@
-/// How many triangles of two surfaces cross: by exact geometry but for rounding, and by nothing
-/// that the engine finds contacts with.
+/// How many triangles of two surfaces, or of one, cross: by exact geometry but for rounding, and by
+/// nothing that the engine finds contacts with.
 #pragma once
 
 #include <weft/weft.h>
@@ -31,6 +31,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> near_pairs(const TriangleSe
 /// Pairs of triangles of which an edge of one leads through the other. What only touches does not
 /// cross.
 std::size_t count_crossings(const TriangleSet& a, const TriangleSet& b);
+/// Of a surface with itself, each pair once.
+std::size_t count_crossings(const TriangleSet& surface);
 
 /// The first triangle of a cloth that crosses a body.
 struct NamedCrossing {

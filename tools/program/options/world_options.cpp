@@ -77,6 +77,15 @@ Result<void> set_surfaces(const WorldOptions& options, SceneDescription& scene,
   return {};
 }
 
+Result<void> set_self_contact(const WorldOptions& options, SceneDescription& scene) {
+  if (!options.self_contact) return {};
+  const std::string& given = *options.self_contact;
+  if (given != "on" && given != "off")
+    return Error{fmt::format("--self-contact: '{}' is not on or off", given)};
+  scene.self_contact.on = given == "on";
+  return {};
+}
+
 }  // namespace
 
 void add_world_options(Verb verb, WorldOptions& options) {
@@ -95,6 +104,9 @@ void add_world_options(Verb verb, WorldOptions& options) {
               "Coulomb's, between the cloth and all bodies (default 0.3, or what they have)");
   verb.option("--thickness", options.thickness,
               "m, at which all bodies keep the cloth (default 0.001, or what they have)");
+  verb.option("--self-contact", options.self_contact,
+              "on or off: whether layers of the cloth keep the thickness of its material from each "
+              "other, 0.001 without (default: off, or what a .json scene has)");
   verb.option("--damping-motion", options.damping_motion,
               "1/s: velocities fall by exp(-this t) (default: what the material or the .json scene "
               "has)");
@@ -122,6 +134,7 @@ Result<std::vector<std::string>> surround(const WorldOptions& options, SceneDesc
     if (auto added = add_plane(plane, bodies); !added) return Error{added.error()};
   }
   if (auto set = set_surfaces(options, scene, bodies); !set) return Error{set.error()};
+  if (auto set = set_self_contact(options, scene); !set) return Error{set.error()};
   return notes;
 }
 

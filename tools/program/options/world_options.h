@@ -1,4 +1,5 @@
-/// What surrounds a cloth: gravity, spheres, bodies, friction and the decay of its motion.
+/// The world of a cloth: gravity, spheres, bodies, friction, the decay of its motion, and whether
+/// it touches itself.
 #pragma once
 
 #include <weft/weft.h>
@@ -20,7 +21,8 @@ struct WorldOptions {
   std::vector<std::string> bodies = {};       ///< as BodyFiles::names
   std::optional<std::string> body_dt = {};    ///< s
   std::optional<double> friction = {};
-  std::optional<double> thickness = {};  ///< m
+  std::optional<double> thickness = {};          ///< m
+  std::optional<std::string> self_contact = {};  ///< on, off
 };
 
 void add_world_options(Verb verb, WorldOptions& options);

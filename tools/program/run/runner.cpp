@@ -85,8 +85,9 @@ void look_for_crossings(RunSummary& summary, const Cloth& cloth, const RunPlan& 
                         TriangleSet& surface) {
   surface.places = particle_positions(cloth);
   const TriangleSet bodies = meshes_at(plan.bodies, summary.frames * plan.dt);
-  summary.intersections =
-      std::max(summary.intersections.value_or(0), count_crossings(surface, bodies));
+  std::size_t count = count_crossings(surface, bodies);
+  if (plan.touches_itself) count += count_crossings(surface);
+  summary.intersections = std::max(summary.intersections.value_or(0), count);
 }
 
 /// Of the first frame in which the report says that something crosses, and that ends so.

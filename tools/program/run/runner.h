@@ -37,8 +37,10 @@ struct RunPlan {
   /// are at its end.
   std::vector<PinMove> moves = {};
   std::vector<SceneBody> bodies = {};
-  /// After every frame, of `surface` (SceneDescription::surface) and bodies that are meshes.
+  /// After every frame, of `surface` (SceneDescription::surface) and bodies that are meshes, and of
+  /// the surface with itself where that is asked for.
   bool check_intersections = false;
+  bool touches_itself = false;
   std::vector<std::array<std::uint32_t, 3>> surface = {};
   double Vec3::*up = &Vec3::y;  ///< what RunSummary::lowest is measured along
   FabricMeasure fabric = {};    ///< what RunSummary::fabric is measured by
