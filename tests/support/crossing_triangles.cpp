@@ -4,6 +4,7 @@
 #include <CGAL/intersections.h>
 
 #include <algorithm>
+#include <iterator>
 #include <variant>
 
 namespace weft::test {
@@ -53,6 +54,45 @@ int count_crossings(const TriangleView& a, const TriangleView& b) {
       if (other.box.xmin() > one.box.xmax()) break;
       if (CGAL::do_overlap(one.box, other.box) && do_cross(one.feature, other.feature)) ++count;
     }
+  }
+  return count;
+}
+
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Corners of a that b has not.
+std::vector<std::uint32_t> own_corners(const Triangle& a, const Triangle& b) {
+  std::vector<std::uint32_t> own;
+  std::ranges::copy_if(a, std::back_inserter(own),
+                       [&](std::uint32_t corner) { return std::ranges::count(b, corner) == 0; });
+  return own;
+}
+
+bool crosses_beyond_corners(const TriangleView& s, const Triangle& a, const Triangle& b) {
+  const auto point = [&](std::uint32_t i) {
+    return Point(s.points[i].x, s.points[i].y, s.points[i].z);
+  };
+  const auto whole = [&](const Triangle& t) {
+    return feature_of(point(t[0]), point(t[1]), point(t[2]));
+  };
+  const auto of_a = own_corners(a, b), of_b = own_corners(b, a);
+  if (of_a.size() == 3) return do_cross(whole(a), whole(b));
+  if (of_a.size() < 2) return false;
+  const auto side = [&](const std::vector<std::uint32_t>& ends) {
+    return Feature(Kernel::Segment_3(point(ends[0]), point(ends[1])));
+  };
+  return do_cross(side(of_a), whole(b)) || do_cross(side(of_b), whole(a));
+}
+
+}  // namespace
+
+int count_self_crossings(const TriangleView& surface) {
+  int count = 0;
+  for (auto a = surface.triangles.begin(); a != surface.triangles.end(); ++a) {
+    for (auto b = a + 1; b != surface.triangles.end(); ++b)
+      count += crosses_beyond_corners(surface, *a, *b) ? 1 : 0;
   }
   return count;
 }

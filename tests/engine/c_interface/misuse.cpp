@@ -46,6 +46,7 @@ TEST_CASE("the defaults are those of C++") {
   const SceneDescription usual, read = c_interface::read_scene(&empty).value();
   CHECK(read.gravity.y == usual.gravity.y);
   CHECK(read.friction == usual.friction);
+  CHECK(read.self_contact == usual.self_contact);
   CHECK(read.air.density == usual.air.density);
   const auto settings = initial(weft_init_settings);
   const Settings s;

@@ -181,6 +181,7 @@ struct CottonSheet {
   Both cloths() const {
     auto scene = initial(weft_init_scene);
     REQUIRE(weft_scene_of(made_in_c.get(), &scene) == WEFT_OK);
+    CHECK(scene.self_contact_thickness == c_material.thickness);
     const auto model =
         made<weft_model>([&](weft_model** out) { return weft_build_model(&scene, out); });
     return {cloth_of(made_in_cpp.scene, {}), made<weft_cloth>([&](weft_cloth** out) {

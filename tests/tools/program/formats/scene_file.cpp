@@ -185,6 +185,22 @@ TEST_CASE("bodies survive writing and reading, and move as they are told") {
   CHECK(pose_at(present_bodies(read.value().bodies, 1)[1], 0).position.x == 3);
 }
 
+TEST_CASE("self-contact survives writing and reading, and is refused by key and value") {
+  SceneDescription scene;
+  scene.positions = {{0, 1, 0}};
+  scene.masses = {1};
+  CHECK(scene_text(scene).find("self_contact") == std::string::npos);
+  scene.self_contact = {.on = true, .thickness = 1. / 3000, .friction = 0.1};
+  CHECK(parse_scene(scene_text(scene)).value().description.self_contact == scene.self_contact);
+  scene.self_contact.on = false;
+  CHECK(parse_scene(scene_text(scene)).value().description.self_contact == scene.self_contact);
+  const std::string start = R"({"positions": [[0,0,0]], "masses": [1], "self_contact": )";
+  CHECK(parse_scene(start + "{}}").value().description.self_contact == SelfContact{.on = true});
+  CHECK(error_with(R"("self_contact": {"on": 1})") ==
+        "self_contact.on: expected true or false, not 1");
+  CHECK(error_with(R"("self_contact": {"gap": 1})").starts_with("self_contact: unknown key"));
+}
+
 /// One triangle whose third corner rises by a metre in two seconds.
 SceneBody rising_triangle() {
   const std::vector<Vec3> low{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, high{low[0], low[1], {1, 1, 0}};

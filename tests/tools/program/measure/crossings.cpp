@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "tests/support/crossing_triangles.h"
 #include "tools/scenes/body_meshes.h"
 #include "tools/studies/hard/mesh_oracle.h"
 
@@ -84,6 +85,49 @@ TEST_CASE("of many triangles none is missed, nor a pair that is near") {
     CHECK(count_crossings(a, b) == crossings);
     CHECK(hard::distance(a, b, 0.1) == least);
   }
+}
+
+/// A sheet of n x n vertices, each of which is anywhere near its place.
+TriangleSet crumpled_sheet(std::mt19937& random, std::uint32_t n, double by) {
+  std::uniform_real_distribution<double> number(-by, by);
+  TriangleSet sheet;
+  for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t i = 0; i < n; ++i)
+      sheet.places.push_back({i + number(random), number(random), j + number(random)});
+  }
+  for (std::uint32_t j = 0; j + 1 < n; ++j) {
+    for (std::uint32_t i = 0; i + 1 < n; ++i) {
+      const std::uint32_t a = n * j + i, b = a + n;
+      sheet.triangles.push_back({a, b, a + 1});
+      sheet.triangles.push_back({b, b + 1, a + 1});
+    }
+  }
+  return sheet;
+}
+
+TEST_CASE("a crumpled sheet crosses itself where exact predicates say so") {
+  std::mt19937 random(23);
+  std::size_t crossed = 0;
+  for (int mesh = 0; mesh < 300; ++mesh) {
+    CAPTURE(mesh);
+    const double by = std::uniform_real_distribution<double>(0.2, 1.5)(random);
+    const TriangleSet sheet = crumpled_sheet(random, 6, by);
+    const std::size_t count = count_crossings(sheet);
+    CHECK(count == test::count_self_crossings({sheet.places, sheet.triangles}));
+    crossed += count > 0 ? 1 : 0;
+  }
+  CHECK(crossed > 50);
+  CHECK(crossed < 300);
+}
+
+TEST_CASE("a sheet folded flat onto itself crosses nothing, and through itself it does") {
+  TriangleSet sheet{{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 0}, {2, 0, 1}},
+                    {{0, 2, 1}, {2, 3, 1}, {1, 3, 4}, {3, 5, 4}}};
+  CHECK(count_crossings(sheet) == 0);
+  sheet.places[4] = {0.1, 0, 0.1}, sheet.places[5] = {0.1, 0, 0.9};
+  CHECK(count_crossings(sheet) == 0);
+  sheet.places[4].y = 0.3, sheet.places[5].y = -0.3;
+  CHECK(count_crossings(sheet) > 0);
 }
 
 TEST_CASE("the first crossing is named by triangle, body and place") {

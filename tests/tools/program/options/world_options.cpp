@@ -63,6 +63,17 @@ TEST_CASE("planes are the last bodies, and friction and thickness are those of a
   }
 }
 
+TEST_CASE("self-contact is on or off, or what the scene has") {
+  SceneDescription scene = two_particles();
+  std::vector<SceneBody> bodies;
+  REQUIRE(surround({.self_contact = "on"}, scene, bodies));
+  CHECK(scene.self_contact.on);
+  REQUIRE(surround({}, scene, bodies));
+  CHECK(scene.self_contact.on);
+  REQUIRE(surround({.self_contact = "off"}, scene, bodies));
+  CHECK_FALSE(scene.self_contact.on);
+}
+
 TEST_CASE("what is wrong with the surroundings is refused by option and value") {
   const auto error_of = [](const WorldOptions& options) {
     SceneDescription scene = two_particles();
@@ -77,6 +88,7 @@ TEST_CASE("what is wrong with the surroundings is refused by option and value") 
         "--plane: '0,0,0,1': normal: has no direction (0, 0, 0)");
   CHECK(error_of({.friction = 1}) == "--friction: only scenes with bodies have it");
   CHECK(error_of({.planes = {"0,1,0,0"}, .thickness = -1}) == "--thickness: -1 is below 0");
+  CHECK(error_of({.self_contact = "1"}) == "--self-contact: '1' is not on or off");
   CHECK(error_of({.damping_motion = -1}) == "--damping-motion: -1 is below 0");
   CHECK(error_of({.spheres = {"1,2,3"}}) ==
         "--sphere: '1,2,3' is not x,y,z,radius or x,y,z,radius,mass");
