@@ -45,6 +45,13 @@ class Air:
     def wind(self, value: ArrayLike) -> None: ...
 
 
+class SelfContact:
+    def __init__(self, **fields: Any) -> None: ...
+    on: bool
+    thickness: float
+    friction: float
+
+
 class SceneDescription:
     def __init__(self, **fields: Any) -> None: ...
     @property
@@ -98,6 +105,7 @@ class SceneDescription:
     damping: Damping
     air: Air
     friction: float
+    self_contact: SelfContact
     @property
     def gravity(self) -> NDArray[Any]: ...
     @gravity.setter

@@ -222,7 +222,7 @@ TEST_CASE("both backends lay a sheet on another alike") {
     add_floor(*cloth);
     run(*cloth, kFrame, 10);
   }
-  CHECK(largest_distance(positions(a), positions(b)) < 0.2 * kLayerThickness);
+  CHECK(largest_distance(positions(a), positions(b)) < 0.3 * kLayerThickness);
 }
 
 TEST_CASE("a saved state goes on bit for bit, and so does a copy") {
