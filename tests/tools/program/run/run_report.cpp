@@ -43,6 +43,8 @@ RunReport report() {
   summary.total.contact_failures = 41;
   summary.total.zones = 43;
   summary.total.intersecting = 47;
+  summary.total.self_contacts = 53;
+  summary.total.tangled = 59;
   summary.total.max_error = 0.25;
   summary.max_strain = 0.125;
   summary.mean_max_strain = 0.03125;
@@ -87,6 +89,7 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
     "max_penetration": 0.75, "max_bending_error": 0.375, "max_anchor_error": 0.5, "max_contacts": 19,
     "bodies": 1, "body_triangles": 2, "body_contacts": 31, "body_work": 0.125,
     "friction_work": 0.0625, "contact_failures": 41, "zones": 43, "intersecting": 47,
+    "self_contacts": 53, "tangled": 59,
     "iterations_per_step": 5, "velocity_iterations_per_step": 3, "direction_updates_per_step": 9,
     "visits": 101, "corrections": 103, "ns_per_constraint_iteration": 3125000,
     "energy_start": -1.5, "energy_end": -2.5, "pin_work": 0.875, "energy_gain": 0.25,
