@@ -14,7 +14,10 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Feature = std::variant<Kernel::Triangle_3, Kernel::Segment_3, Point>;
 
+using Triangle = std::array<std::uint32_t, 3>;
+
 struct Placed {
+  Triangle corners;
   Feature feature;
   CGAL::Bbox_3 box;
 };
@@ -34,7 +37,7 @@ std::vector<Placed> place(const TriangleView& view) {
       return Point(v.x, v.y, v.z);
     };
     const Point a = point(0), b = point(1), c = point(2);
-    all.push_back({feature_of(a, b, c), a.bbox() + b.bbox() + c.bbox()});
+    all.push_back({t, feature_of(a, b, c), a.bbox() + b.bbox() + c.bbox()});
   }
   std::ranges::sort(all, {}, [](const Placed& p) { return p.box.xmin(); });
   return all;
@@ -60,8 +63,6 @@ int count_crossings(const TriangleView& a, const TriangleView& b) {
 
 namespace {
 
-using Triangle = std::array<std::uint32_t, 3>;
-
 /// Corners of a that b has not.
 std::vector<std::uint32_t> own_corners(const Triangle& a, const Triangle& b) {
   std::vector<std::uint32_t> own;
@@ -70,29 +71,26 @@ std::vector<std::uint32_t> own_corners(const Triangle& a, const Triangle& b) {
   return own;
 }
 
-bool crosses_beyond_corners(const TriangleView& s, const Triangle& a, const Triangle& b) {
-  const auto point = [&](std::uint32_t i) {
-    return Point(s.points[i].x, s.points[i].y, s.points[i].z);
-  };
-  const auto whole = [&](const Triangle& t) {
-    return feature_of(point(t[0]), point(t[1]), point(t[2]));
-  };
-  const auto of_a = own_corners(a, b), of_b = own_corners(b, a);
-  if (of_a.size() == 3) return do_cross(whole(a), whole(b));
+bool cross_beyond_corners(const TriangleView& s, const Placed& a, const Placed& b) {
+  const auto of_a = own_corners(a.corners, b.corners), of_b = own_corners(b.corners, a.corners);
+  if (of_a.size() == 3) return do_cross(a.feature, b.feature);
   if (of_a.size() < 2) return false;
   const auto side = [&](const std::vector<std::uint32_t>& ends) {
-    return Feature(Kernel::Segment_3(point(ends[0]), point(ends[1])));
+    const Vec3 p = s.points[ends[0]], q = s.points[ends[1]];
+    return Feature(Kernel::Segment_3(Point(p.x, p.y, p.z), Point(q.x, q.y, q.z)));
   };
-  return do_cross(side(of_a), whole(b)) || do_cross(side(of_b), whole(a));
+  return do_cross(side(of_a), b.feature) || do_cross(side(of_b), a.feature);
 }
 
 }  // namespace
 
 int count_self_crossings(const TriangleView& surface) {
+  const std::vector<Placed> all = place(surface);
   int count = 0;
-  for (auto a = surface.triangles.begin(); a != surface.triangles.end(); ++a) {
-    for (auto b = a + 1; b != surface.triangles.end(); ++b)
-      count += crosses_beyond_corners(surface, *a, *b) ? 1 : 0;
+  for (auto a = all.begin(); a != all.end(); ++a) {
+    for (auto b = a + 1; b != all.end() && b->box.xmin() <= a->box.xmax(); ++b) {
+      if (CGAL::do_overlap(a->box, b->box) && cross_beyond_corners(surface, *a, *b)) ++count;
+    }
   }
   return count;
 }

@@ -1,13 +1,10 @@
 #include "tests/support/layers.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "tests/support/vectors.h"
 
 namespace weft::test {
-
-using Triangle = std::array<std::uint32_t, 3>;
 
 SceneDescription scene_of(const std::vector<Sheet>& sheets, double friction,
                           const std::vector<std::uint32_t>& pins) {
@@ -53,41 +50,6 @@ std::vector<Sheet> stack(std::uint32_t layers, std::uint32_t cells, double apart
                       }});
   }
   return sheets;
-}
-
-namespace {
-
-double volume(Vec3 a, Vec3 b, Vec3 c, Vec3 d) { return dot(cross(a - d, b - d), c - d); }
-
-bool leads_through(Vec3 from, Vec3 to, const std::array<Vec3, 3>& t) {
-  if ((volume(t[0], t[1], t[2], from) > 0) == (volume(t[0], t[1], t[2], to) > 0)) return false;
-  const double turns[] = {volume(from, to, t[0], t[1]), volume(from, to, t[1], t[2]),
-                          volume(from, to, t[2], t[0])};
-  return std::ranges::all_of(turns, [](double turn) { return turn > 0; }) ||
-         std::ranges::all_of(turns, [](double turn) { return turn < 0; });
-}
-
-}  // namespace
-
-std::size_t count_self_crossings(const std::vector<Vec3>& x,
-                                 const std::vector<Triangle>& triangles) {
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  for (const Triangle& t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k)
-      edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
-  }
-  std::ranges::sort(edges);
-  const auto rest = std::ranges::unique(edges);
-  edges.erase(rest.begin(), rest.end());
-  std::size_t count = 0;
-  for (const Triangle& t : triangles) {
-    const std::array corners{x[t[0]], x[t[1]], x[t[2]]};
-    for (const auto& [a, b] : edges) {
-      if (std::ranges::find(t, a) != t.end() || std::ranges::find(t, b) != t.end()) continue;
-      if (leads_through(x[a], x[b], corners)) ++count;
-    }
-  }
-  return count;
 }
 
 }  // namespace weft::test

@@ -1,11 +1,9 @@
-/// Cloth that touches itself: sheets over each other, and which of their triangles cross.
+/// Cloth that touches itself: sheets over each other.
 #pragma once
 
 #include <weft/mesh.h>
 #include <weft/weft.h>
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -26,10 +24,5 @@ SceneDescription scene_of(const std::vector<Sheet>& sheets, double friction,
 double chance(double u, double v);
 /// Squares of 0.4 m at rest, each turned a little against the one under it, `apart` from it.
 std::vector<Sheet> stack(std::uint32_t layers, std::uint32_t cells, double apart);
-
-/// Pairs of an edge and a triangle without a common corner that go through each other. Every pair
-/// is looked at.
-std::size_t count_self_crossings(const std::vector<Vec3>& x,
-                                 const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
 }  // namespace weft::test

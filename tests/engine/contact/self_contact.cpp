@@ -11,6 +11,7 @@
 
 #include "tests/support/body_meshes.h"
 #include "tests/support/clothes.h"
+#include "tests/support/crossing_triangles.h"
 #include "tests/support/isas.h"
 #include "tests/support/layers.h"
 #include "tests/support/vectors.h"
@@ -44,6 +45,12 @@ SceneDescription standing(std::uint32_t cells) {
       0.3);
 }
 
+/// Pairs of triangles.
+int crossings_of(const Cloth& cloth, const SceneDescription& scene) {
+  const std::vector<Vec3> x = positions(cloth);
+  return count_self_crossings({x, scene.surface});
+}
+
 /// Energy falls but for what the tolerance explains, no frame ends with a crossing, and all
 /// converge.
 void fall(Cloth& cloth, const SceneDescription& scene, int frames) {
@@ -54,7 +61,7 @@ void fall(Cloth& cloth, const SceneDescription& scene, int frames) {
     const StepReport report = step(cloth, kFrame);
     CHECK(report.status == Status::converged);
     CHECK(report.max_penetration <= 1e-4);
-    CHECK(count_self_crossings(positions(cloth), scene.surface) == 0);
+    CHECK(crossings_of(cloth, scene) == 0);
     const double now = cloth.energy().total();
     CHECK(now < energy + unit);
     energy = std::min(energy, now);
@@ -115,7 +122,7 @@ TEST_CASE("a ribbon whose ends turn does not go through itself") {
           pin, {nearer * from.x, -std::sin(angle) * from.z, std::cos(angle) * from.z}));
     }
     const StepReport report = step(cloth, kFrame);
-    REQUIRE(count_self_crossings(positions(cloth), scene.surface) == 0);
+    REQUIRE(crossings_of(cloth, scene) == 0);
     has_touched = has_touched || report.contact_ms.sweep > 0;
   }
   CHECK(has_touched);
@@ -188,7 +195,7 @@ TEST_CASE("sheets that hit each other keep their momentum, and lose energy") {
     const double energy = cloth.energy().kinetic;
     for (int frame = 0; frame < 12; ++frame) {
       step(cloth, kFrame);
-      REQUIRE(count_self_crossings(positions(cloth), scene.surface) == 0);
+      REQUIRE(crossings_of(cloth, scene) == 0);
     }
     CHECK(length(momentum() - before) < 0.01 * length(before));
     CHECK(cloth.energy().kinetic < 0.8 * energy);
@@ -276,15 +283,15 @@ SceneDescription crossing_sheets() {
 TEST_CASE("triangles that cross in the beginning come apart, and no others cross meanwhile") {
   const SceneDescription scene = crossing_sheets();
   Cloth cloth = cloth_of(scene, small_steps());
-  std::size_t before = count_self_crossings(positions(cloth), scene.surface);
+  int before = crossings_of(cloth, scene);
   REQUIRE(before > 10);
   std::vector<std::byte> state;
   std::uint64_t hash = 0;
   for (int frame = 0; frame < 24; ++frame) {
     CAPTURE(frame);
     const StepReport report = step(cloth, kFrame);
-    const std::size_t now = count_self_crossings(positions(cloth), scene.surface);
-    CHECK((report.tangled > 0) == (now > 0));
+    const int now = crossings_of(cloth, scene);
+    CHECK(report.tangled == now);
     CHECK(now <= before + 2);
     before = std::min(now, before);
     if (frame == 2) {
