@@ -222,14 +222,16 @@ TEST_CASE("bits do not depend on threads, nor on AVX2 or AVX-512") {
   CHECK(hash_of(settings) == avx2);
 }
 
+// As long as rounding is what they differ by: later it decides which corners hop (0.5 mm after nine
+// frames).
 TEST_CASE("both backends lay a sheet on another alike") {
   const SceneDescription scene = scene_of(stack(2, 8, kLayerThickness), 0.3);
   Cloth a = cloth_of(scene, small_steps(Backend::reference)), b = cloth_of(scene, small_steps());
   for (Cloth* cloth : {&a, &b}) {
     add_floor(*cloth);
-    run(*cloth, kFrame, 10);
+    run(*cloth, kFrame, 5);
   }
-  CHECK(largest_distance(positions(a), positions(b)) < 0.3 * kLayerThickness);
+  CHECK(largest_distance(positions(a), positions(b)) < 0.05 * kLayerThickness);
 }
 
 TEST_CASE("a saved state goes on bit for bit, and so does a copy") {
