@@ -63,7 +63,7 @@ TEST_CASE("stages add up to the time of a step") {
     for (const char* scene : {"hang", "hang_sphere"}) {
       CAPTURE(scene);
       Cloth cloth =
-          cloth_of(scene_of(scene, 30), {.solver = solver, .backend = backend, .threads = 1});
+          cloth_of(scene_of(scene, 60), {.solver = solver, .backend = backend, .threads = 1});
       check_that_stages_add_up(run_timed(cloth, 5));
     }
   }
