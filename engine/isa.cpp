@@ -38,12 +38,15 @@ Result<Isa> resolve(Isa wanted) {
     wanted = named.value();
     source = "WEFT_ISA";
   }
-  if (wanted == Isa::automatic) return public_isa(simd::best_isa());
+  if (wanted == Isa::automatic) {
+    if (simd::supported(simd::best_isa())) return public_isa(simd::best_isa());
+    return Error{"isa: this machine has none of those that this library is built for"};
+  }
   if (wanted > Isa::neon) {
     return Error{"isa: unknown choice (" + std::to_string(static_cast<int>(wanted)) + ")"};
   }
   if (!simd::supported(to_kernel(wanted))) {
-    return Error{source + ": this machine lacks it (" + std::string(name(wanted)) + ")"};
+    return Error{source + ": this machine or this library lacks it (" + std::string(name(wanted)) + ")"};
   }
   return wanted;
 }

@@ -8,7 +8,7 @@
 namespace weft {
 
 /// automatic: what WEFT_ISA in the environment names, else the best of the machine. An instruction
-/// set that the machine lacks, or a name that is none, is an error.
+/// set that the machine or the library (WEFT_ISAS) lacks, or a name that is none, is an error.
 Result<Isa> resolve(Isa wanted);
 
 /// A resolved one.

@@ -9,7 +9,8 @@ namespace weft::simd {
 /// avx2, avx512 and neon give the same bits; sse2 rounds twice where they fuse.
 enum class Isa : std::uint8_t { sse2, avx2, avx512, neon };
 
-/// By the processor and, of x86-64, by what the operating system saves of it (XGETBV).
+/// Whether this library has kernels for it, and the processor and, on x86-64, the operating system
+/// (XGETBV) support it.
 bool supported(Isa isa);
 Isa best_isa();
 

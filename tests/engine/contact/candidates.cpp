@@ -141,8 +141,7 @@ Vector vertex_at(const Beside& now, const ContactSurface& body, std::uint32_t ve
 
 void check(std::uint32_t seed, bool moves, bool deforms) {
   Beside now(seed, moves, deforms);
-  const simd::Table& table =
-      simd::table(simd::supported(simd::Isa::avx2) ? simd::Isa::avx2 : simd::Isa::sse2);
+  const simd::Table& table = simd::table(simd::best_isa());
   ContactPoints points(*now.model);
   points.begin(now.clock);
   CandidateSearch search(table);

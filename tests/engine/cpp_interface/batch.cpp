@@ -19,10 +19,11 @@ namespace {
 
 #ifdef WEFT_SANITIZE_THREAD
 constexpr std::uint32_t kCases = 7;
+constexpr int kFrames = 2;
 #else
 constexpr std::uint32_t kCases = 60;
-#endif
 constexpr int kFrames = 3;
+#endif
 
 struct Clothes {
   std::vector<Cloth> cloths;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <thread>
 
+#include "engine/isa.h"
 #include "engine/step/step_in_team.h"
 #include "tests/support/clothes.h"
 #include "tests/support/tasks.h"
@@ -67,7 +68,7 @@ TEST_CASE("a step asks for as many threads as the settings say") {
     CAPTURE(threads);
     State state(
         model,
-        {.substeps = 1, .solver = Solver::gauss_seidel, .isa = Isa::sse2, .threads = threads});
+        {.substeps = 1, .solver = Solver::gauss_seidel, .isa = resolve(Isa::automatic).value(), .threads = threads});
     arena.execute([&] { step_in_team(state, 0.001, {}); });
     const int expected = threads == 0 ? kSlots : std::min(threads, kSlots);
     const int asked =
