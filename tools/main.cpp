@@ -1,6 +1,7 @@
 /// The `weft` program. Its exit codes: exit_code.h.
 #include "tools/program/commands/run_command.h"
 #include "tools/program/commands/scene_command.h"
+#include "tools/program/commands/view_command.h"
 #include "tools/program/files/text_file.h"
 #include "tools/program/terminal/command_line.h"
 #include "tools/program/terminal/interrupt.h"
@@ -17,6 +18,7 @@ int main(int argc, char** argv) {
                    "weft " WEFT_VERSION);
   add_run_command(line);
   add_scene_command(line);
+  add_view_command(line);
   add_paper_command(line);
   add_hard_command(line);
   add_precision_command(line);

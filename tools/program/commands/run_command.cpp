@@ -49,7 +49,8 @@ Result<RunState> state_of(const RunOptions& options, const RunPlan& plan) {
     return refused(
         fmt::format("is of frame {}, and --steps {} asks for none after it", frame, plan.steps));
   for (const std::string& name : options.out) {
-    if (file_ending(name) == ".pc2")
+    if (const auto ending = file_ending(name);
+        ending == ".pc2" || ending == ".html" || ending == ".motion")
       return Error{fmt::format("--out: '{}' needs all frames, and --resume leaves out the first {}",
                                name, frame)};
   }
@@ -142,7 +143,7 @@ Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
     const bool is_done = committed(report.status);
     const int done = is_done ? frame : frame - 1;
-    if (is_done) outputs.add_frame(cloth, frame, plan.dt * frame);
+    if (is_done) outputs.add_frame(cloth, report, frame, plan.dt * frame);
     if (is_done && prepared.state) prepared.state->add_frame(cloth, frame);
     if (frame == plan.steps || !is_done || stopped) {
       outputs.add_last(cloth, plan.dt * done);
@@ -180,7 +181,7 @@ Result<int> run_verb(const RunOptions& options) {
   auto& [source, model, settings, plan, json, state] = prepared.value();
   for (const std::string& note : source.notes) print_message(fmt::format("weft: {}\n", note));
   const OrderlyInterrupt interrupt;
-  auto outputs = Outputs::open(options.out, source);
+  auto outputs = Outputs::open(options.out, source, model, settings, plan.dt);
   if (!outputs) return Error{outputs.error()};
   auto summary = run_and_record(prepared.value(), outputs.value());
   if (!summary) return Error{summary.error()};
@@ -228,7 +229,9 @@ void add_run_command(CommandLine& line) {
   add_solver_options(verb, options->solver);
   verb.repeated("--out", options->out,
                 "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
-                "frames, .json the last state as a scene; frame_%04d.obj or .json a file for the "
+                "frames, .html a page that shows the run in a browser, .motion what such a page "
+                "shows, for `weft view`, .json the last state as a scene; frame_%04d.obj or .json "
+                "a file for the "
                 "start and each frame");
   verb.option("--save", options->save,
               "file that has the state of the run, to go on from: written anew about once a second "

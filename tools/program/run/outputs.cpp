@@ -5,17 +5,21 @@
 #include "tools/program/formats/obj_mesh.h"
 #include "tools/program/formats/scene_file.h"
 #include "tools/program/text/file_ending.h"
+#include "tools/program/viewer/page.h"
 #include "tools/scenes/body_moves.h"
 
 namespace weft::tools {
 
-Result<Outputs> Outputs::open(const std::vector<std::string>& paths, const SceneSource& source) {
+Result<Outputs> Outputs::open(const std::vector<std::string>& paths, const SceneSource& source,
+                              const std::shared_ptr<const Model>& model, const Settings& settings,
+                              double dt) {
   Outputs outputs(source);
   for (const std::string& path : paths) {
     if (auto added = outputs.add(path); !added) {
       return Error{fmt::format("--out: {}", added.error())};
     }
   }
+  if (!outputs.shown_.empty()) outputs.recorder_.emplace(source, model, settings, dt);
   return outputs;
 }
 
@@ -28,14 +32,22 @@ Result<void> Outputs::add(const std::string& path) {
     motions_.push_back(std::move(motion.value()));
     return {};
   }
+  if (ending == ".html" || ending == ".motion") return add_shown(path, ending == ".html");
   if (ending != ".obj" && ending != ".json") {
-    return Error{fmt::format("'{}' does not end in .obj, .pc2 or .json", path)};
+    return Error{fmt::format("'{}' does not end in .obj, .pc2, .html, .motion or .json", path)};
   }
   const Format format = ending == ".obj" ? Format::mesh : Format::scene;
   if (const auto name = NumberedName::of(path)) return add_series(*name, format);
   auto file = PendingFile::open(path);
   if (!file) return Error{file.error()};
   lasts_.push_back({std::move(file.value()), format});
+  return {};
+}
+
+Result<void> Outputs::add_shown(const std::string& path, bool is_page) {
+  auto file = PendingFile::open(path);
+  if (!file) return Error{file.error()};
+  shown_.push_back({std::move(file.value()), is_page});
   return {};
 }
 
@@ -55,7 +67,8 @@ std::string Outputs::text(Format format, const Cloth& cloth, double elapsed) con
                     particle_faces(source_->mesh), present_bodies(source_->bodies, elapsed));
 }
 
-void Outputs::add_frame(const Cloth& cloth, int frame, double elapsed) {
+void Outputs::add_frame(const Cloth& cloth, const StepReport& report, int frame, double elapsed) {
+  if (recorder_) recorder_->add_frame(cloth, report, elapsed);
   for (const Series& series : series_) {
     if (!written_) break;
     written_ = write_file(series.name.with(frame), text(series.format, cloth, elapsed));
@@ -69,11 +82,22 @@ void Outputs::add_last(const Cloth& cloth, double elapsed) {
   for (const Last& last : lasts_) last.file.write(text(last.format, cloth, elapsed));
 }
 
+Result<void> Outputs::finish_shown() {
+  if (!recorder_) return {};
+  const std::string motion = recorder_->bytes();
+  for (Shown& shown : shown_) {
+    shown.file.write(shown.is_page ? page_of({&motion, 1}) : motion);
+    if (auto committed = shown.file.commit(); !committed) return committed;
+  }
+  return {};
+}
+
 Result<void> Outputs::finish() {
   if (!written_) return written_;
   for (Pc2Writer& motion : motions_) {
     if (auto finished = motion.finish(); !finished) return finished;
   }
+  if (auto finished = finish_shown(); !finished) return finished;
   for (Last& last : lasts_) {
     if (auto committed = last.file.commit(); !committed) return committed;
   }

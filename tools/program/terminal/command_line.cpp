@@ -103,6 +103,11 @@ void Verb::repeated(const std::string& name, std::vector<std::string>& values,
   checked<std::string>(verb_.add_option(name, values, help))->allow_extra_args(false);
 }
 
+void Verb::several(const std::string& name, std::vector<std::string>& values,
+                   const std::string& help) {
+  checked<std::string>(verb_.add_option(name, values, help))->required();
+}
+
 void Verb::option_or_flag(const std::string& name, std::optional<std::string>& value,
                           const std::string& alone, const std::string& help) {
   const auto take = [&value, alone](const CLI::results_t& given) {

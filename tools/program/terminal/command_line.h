@@ -27,6 +27,8 @@ class Verb {
               const std::string& help);
   /// May be given several times.
   void repeated(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  /// One or more without a name, all of them needed.
+  void several(const std::string& name, std::vector<std::string>& values, const std::string& help);
   /// May be given alone, and then has the value `alone`.
   void option_or_flag(const std::string& name, std::optional<std::string>& value,
                       const std::string& alone, const std::string& help);
