@@ -17,7 +17,8 @@ weft_material material_of(const Material& m) {
           .damping_bending = m.damping_bending,
           .damping_motion = m.damping_motion,
           .drag = m.drag,
-          .lift = m.lift};
+          .lift = m.lift,
+          .friction = m.friction};
 }
 
 }  // namespace
@@ -28,6 +29,7 @@ Result<Material> read_material(const weft_material* material) {
   const weft_material& m = read.value();
   return Material{.density = m.density,
                   .thickness = m.thickness,
+                  .friction = m.friction,
                   .warp = m.warp,
                   .weft = m.weft,
                   .shear = m.shear,

@@ -1,5 +1,6 @@
-/// Contacts of surfaces of triangles: of a cloth with bodies that are meshes. An interval of some
-/// substeps (tuning::kContactInterval), which the clock of the bodies counts, has these stages:
+/// Contacts of surfaces of triangles: of a cloth with bodies that are meshes, and with itself where
+/// it has self-contact. An interval of some substeps (tuning::kContactInterval), which the clock of
+/// the bodies counts whether there are bodies or not, has these stages:
 ///
 ///   1  points: where all points are, and the boxes that they are expected to stay in
 ///   2  candidates: which pairs of features may meet at all
@@ -11,10 +12,11 @@
 ///      when the interval is over:
 ///   7  verify: what came near unexpectedly, and what went through each other
 ///   8  rescue: that is stopped
-///   9  tangles: what could not be stopped, or crossed a body from the beginning
+///   9  tangles: what could not be stopped, or crossed from the beginning
 ///
 /// Particles that are inside of a one-sided body when it appears, or when positions are written,
-/// are known as such until they are out, and triangles that cross a body until they do no longer.
+/// are known as such until they are out. Triangles that cross a body are known until they do no
+/// longer, and so are pairs of triangles of the cloth that cross each other.
 #pragma once
 
 #include <cstdint>

@@ -144,6 +144,7 @@ Result<void> add_material(const MeshDescription& mesh, const Welded& welded,
   scene.damping = {material.damping_stretch, material.damping_bending, material.damping_motion};
   scene.air = air_of(scene, material);
   if (material.thickness > 0) scene.self_contact.thickness = material.thickness;
+  scene.self_contact.friction = material.friction;
   return {};
 }
 

@@ -56,6 +56,7 @@ Result<void> check_material(const Material& m) {
   }
   const std::pair<std::string_view, double> from_zero[] = {
       {"material.thickness", m.thickness},
+      {"material.friction", m.friction},
       {"material.shear", m.shear},
       {"material.bending", m.bending},
       {"material.damping_stretch", m.damping_stretch},

@@ -126,10 +126,12 @@ struct StepReport {
   std::uint32_t worst_element = kNoIndex;     ///< triangle of the largest strain or shear
   double max_penetration = 0;                 ///< m, into spheres and bodies, beyond the thickness
   int body_contacts = 0;                      ///< pairs of a particle and a body that touch
-  /// Pairs of a feature of the cloth and one of a triangle mesh that would have met within the step
-  /// and were stopped by its verification.
+  /// Pairs of features that would have gone through each other within the step and were stopped by
+  /// its verification: of the cloth and a triangle mesh, and of the cloth and itself (SelfContact).
   int contact_failures = 0;
-  int zones = 0;  ///< how many of these pairs had to be moved with the body, as if glued
+  /// How many of these pairs had to be moved as one, as if glued: with the body, or layers with
+  /// each other.
+  int zones = 0;
   /// Triangles of the cloth that cross a triangle mesh when the step ends, and particles inside
   /// one. It is 0, unless the step began so, a body was put there, or bodies close on the cloth
   /// from both sides. The edges and faces of these triangles touch nothing until they have come

@@ -29,11 +29,12 @@ namespace weft {
 /// Properties of a fabric, whatever mesh it has. Stiffnesses are forces per width: a strip of width
 /// b that is stretched by the fraction e pulls with the force warp b e.
 struct Material {
-  double density = 0;    ///< kg/m^2; > 0
-  double thickness = 0;  ///< m; at least 0. Above 0 it is SelfContact::thickness.
-  double warp = 0;       ///< N/m, of the yarns along the cloth; > 0
-  double weft = 0;       ///< N/m, of the yarns across the cloth; > 0
-  double shear = 0;      ///< N/m, per radian of shear; at least 0
+  double density = 0;     ///< kg/m^2; > 0
+  double thickness = 0;   ///< m; at least 0. Above 0 it is SelfContact::thickness.
+  double friction = 0.3;  ///< at least 0. It is SelfContact::friction.
+  double warp = 0;        ///< N/m, of the yarns along the cloth; > 0
+  double weft = 0;        ///< N/m, of the yarns across the cloth; > 0
+  double shear = 0;       ///< N/m, per radian of shear; at least 0
   /// N m: a cylinder of curvature c, whatever its direction, stores bending c^2 / 2 per area.
   double bending = 0;          ///< at least 0
   double damping_stretch = 0;  ///< s, as Damping::stretch

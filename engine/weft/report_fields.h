@@ -73,7 +73,7 @@ inline constexpr std::tuple kReportFields{
     ReportField{"contact_failures", &StepReport::contact_failures, OverSteps::sum,
                 "pairs that verification stopped"},
     ReportField{"zones", &StepReport::zones, OverSteps::sum,
-                "pairs that were moved with a body, as if glued"},
+                "pairs that were moved as one, as if glued"},
     ReportField{"intersecting", &StepReport::intersecting, OverSteps::largest,
                 "triangles that cross a mesh when the step ends"},
     ReportField{"self_contacts", &StepReport::self_contacts, OverSteps::largest,

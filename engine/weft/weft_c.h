@@ -457,6 +457,7 @@ typedef struct weft_material { /* Material */
   size_t size;
   double density, thickness, warp, weft, shear, bending;
   double damping_stretch, damping_bending, damping_motion, drag, lift;
+  double friction;
 } weft_material;
 
 WEFT_API weft_result weft_init_material(weft_material* material, size_t size);

@@ -90,6 +90,30 @@ TriangleMesh ball_mesh(const weft::Ball& ball, int around) {
   return capsule_mesh({ball.centre, ball.centre, ball.radius, ball.radius}, around);
 }
 
+TriangleMesh ring_mesh(double radius, double tube_radius, int along, int around) {
+  TriangleMesh mesh;
+  for (int i = 0; i < along; ++i) {
+    const double turn = 2 * std::numbers::pi * i / along;
+    for (int j = 0; j < around; ++j) {
+      const double angle = 2 * std::numbers::pi * j / around;
+      const double out = radius + tube_radius * std::cos(angle);
+      mesh.vertices.push_back(
+          {out * std::cos(turn), tube_radius * std::sin(angle), out * std::sin(turn)});
+    }
+  }
+  const auto number = [&](int i, int j) {
+    return static_cast<std::uint32_t>((i % along) * around + j % around);
+  };
+  for (int i = 0; i < along; ++i) {
+    for (int j = 0; j < around; ++j) {
+      const std::uint32_t a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1),
+                          d = number(i, j + 1);
+      mesh.triangles.insert(mesh.triangles.end(), {{a, c, b}, {a, d, c}});
+    }
+  }
+  return mesh;
+}
+
 TriangleMesh plate_mesh(double length, double width, int along, int across) {
   TriangleMesh mesh;
   for (int i = 0; i <= along; ++i) {

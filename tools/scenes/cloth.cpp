@@ -141,6 +141,22 @@ Result<Scene> of_material(const Layout& layout, const Options& options) {
   return scene;
 }
 
+/// Vertices that are sewn together move as the first of them.
+std::vector<tools::PinMove> moves_of(const Layout& layout,
+                                     const std::vector<std::uint32_t>& particle_of_vertex) {
+  std::vector<tools::PinMove> moves = layout.moves;
+  std::set<std::uint32_t> moved;
+  for (tools::PinMove& move : moves) {
+    std::vector<std::uint32_t> particles;
+    for (const std::uint32_t vertex : move.particles) {
+      const std::uint32_t particle = particle_of_vertex[vertex];
+      if (moved.insert(particle).second) particles.push_back(particle);
+    }
+    move.particles = std::move(particles);
+  }
+  return moves;
+}
+
 /// The cloth's own particles have radius 0.
 void add_sphere(const Ball& ball, SceneDescription& description) {
   const auto number = static_cast<std::uint32_t>(description.positions.size());
@@ -161,6 +177,8 @@ Result<Scene> cloth_of(const Layout& layout, const Options& options) {
   scene.mesh.vertices = layout.start;
   scene.mesh.faces = layout.faces;
   scene.bodies = layout.bodies;
+  scene.moves = moves_of(layout, scene.mesh.particle_of_vertex);
+  scene.description.self_contact.on = layout.touches_itself;
   if (layout.sphere) add_sphere(*layout.sphere, scene.description);
   return made;
 }

@@ -134,33 +134,46 @@ std::vector<Vec3> laid_around(const CutPattern& cut) {
 
 // -------------------------------------------------------------------------------------- skirt
 
-/// Each panel is a sector of a ring, a quarter of whose circle is missing: the cone that both make
-/// is `kConeTurn` times as wide in angle as they are when they lie flat.
-constexpr double kWaist = 0.216, kLength = 0.45;  // m, from the centre; and down the skirt
-constexpr double kSector = 100 * std::numbers::pi / 180;
-constexpr double kConeTurn = std::numbers::pi / kSector;
+/// Each panel is a sector of a ring: the cone that both make is `turn()` times as wide in angle as
+/// they are when they lie flat.
+struct SkirtShape {
+  double waist = 0, length = 0;  ///< m, from the centre; and down the skirt
+  double sector = 0;             ///< rad
+  double height = 0;             ///< m, of the waist
+  constexpr double turn() const { return std::numbers::pi / sector; }
+};
+constexpr SkirtShape kSkirt{0.216, 0.45, 100 * std::numbers::pi / 180, 0.95};
+/// Wide enough at its waist for the tunic, and steeper.
+constexpr SkirtShape kOuterSkirt{0.6, 0.4, std::numbers::pi / 3, 0.92};
 
 enum SkirtEdge : std::size_t { kSkirtHem, kSkirtRight, kSkirtWaist, kSkirtLeft };
 
-Panel skirt_panel() {
+Panel skirt_panel(const SkirtShape& shape) {
   constexpr double kDown = -std::numbers::pi / 2;
-  const double left = kDown - kSector / 2, right = kDown + kSector / 2;
+  const double left = kDown - shape.sector / 2, right = kDown + shape.sector / 2;
   const auto at = [](double radius, double angle) {
     return Point{radius * std::cos(angle), radius * std::sin(angle)};
   };
-  const double outer = kWaist + kLength;
-  return {arc({}, outer, left, right), line(at(outer, right), at(kWaist, right)),
-          arc({}, kWaist, right, left), line(at(kWaist, left), at(outer, left))};
+  const double outer = shape.waist + shape.length;
+  return {arc({}, outer, left, right), line(at(outer, right), at(shape.waist, right)),
+          arc({}, shape.waist, right, left), line(at(shape.waist, left), at(outer, left))};
 }
 
 /// On the cone that both panels make together; no edge is longer or shorter for it.
-Vec3 on_cone(Point p, std::size_t panel) {
-  constexpr double kWaistHeight = 0.95;  // m
-  const double radius = std::hypot(p.x, p.y);
-  const double turn = kConeTurn * std::atan2(p.x, -p.y) + (panel == kBack ? std::numbers::pi : 0);
-  const double out = radius / kConeTurn;
-  const double down = std::sqrt(1 - 1 / (kConeTurn * kConeTurn)) * (radius - kWaist);
-  return {out * std::sin(turn), kWaistHeight - down, out * std::cos(turn)};
+Vec3 on_cone(const SkirtShape& shape, Point p, std::size_t panel) {
+  const double wider = shape.turn(), radius = std::hypot(p.x, p.y);
+  const double turn = wider * std::atan2(p.x, -p.y) + (panel == kBack ? std::numbers::pi : 0);
+  const double out = radius / wider;
+  const double down = std::sqrt(1 - 1 / (wider * wider)) * (radius - shape.waist);
+  return {out * std::sin(turn), shape.height - down, out * std::cos(turn)};
+}
+
+Pattern pattern_of(const SkirtShape& shape) {
+  Pattern pattern;
+  pattern.panels = {skirt_panel(shape), skirt_panel(shape)};
+  pattern.seams = {{{kFront, kSkirtRight}, {kBack, kSkirtLeft}, true},
+                   {{kBack, kSkirtRight}, {kFront, kSkirtLeft}, true}};
+  return pattern;
 }
 
 // --------------------------------------------------------------------------------------- both
@@ -201,6 +214,18 @@ void pin_edge(const CutPattern& cut, PanelEdge edge, Layout& layout) {
   layout.pins.insert(layout.pins.end(), vertices.begin(), vertices.end());
 }
 
+Result<Layout> skirt_layout(const SkirtShape& shape, const Options& options) {
+  auto made = cut_for(pattern_of(shape), options);
+  if (!made) return Error{"skirt: " + made.error()};
+  const CutPattern& cut = made.value();
+  std::vector<Vec3> start;
+  for (std::size_t v = 0; v < cut.flat.size(); ++v)
+    start.push_back(on_cone(shape, cut.flat[v], cut.panel[v]));
+  Layout layout = layout_of(cut, std::move(start));
+  for (const std::size_t panel : {kFront, kBack}) pin_edge(cut, {panel, kSkirtWaist}, layout);
+  return layout;
+}
+
 }  // namespace
 
 Pattern tunic_pattern() {
@@ -210,13 +235,7 @@ Pattern tunic_pattern() {
   return pattern;
 }
 
-Pattern skirt_pattern() {
-  Pattern pattern;
-  pattern.panels = {skirt_panel(), skirt_panel()};
-  pattern.seams = {{{kFront, kSkirtRight}, {kBack, kSkirtLeft}, true},
-                   {{kBack, kSkirtRight}, {kFront, kSkirtLeft}, true}};
-  return pattern;
-}
+Pattern skirt_pattern() { return pattern_of(kSkirt); }
 
 Result<Layout> worn_tunic(const Options& options) {
   auto made = cut_for(tunic_pattern(), options);
@@ -231,19 +250,12 @@ Result<Layout> tunic(const Options& options) {
   Layout layout = tunic_layout(cut, laid_flat(cut));
   pin_edge(cut, {kFront, kRightPeg}, layout);
   pin_edge(cut, {kFront, kLeftPeg}, layout);
+  layout.touches_itself = true;
   return layout;
 }
 
-Result<Layout> skirt(const Options& options) {
-  auto made = cut_for(skirt_pattern(), options);
-  if (!made) return Error{"skirt: " + made.error()};
-  const CutPattern& cut = made.value();
-  std::vector<Vec3> start;
-  for (std::size_t v = 0; v < cut.flat.size(); ++v)
-    start.push_back(on_cone(cut.flat[v], cut.panel[v]));
-  Layout layout = layout_of(cut, std::move(start));
-  for (const std::size_t panel : {kFront, kBack}) pin_edge(cut, {panel, kSkirtWaist}, layout);
-  return layout;
-}
+Result<Layout> skirt(const Options& options) { return skirt_layout(kSkirt, options); }
+
+Result<Layout> outer_skirt(const Options& options) { return skirt_layout(kOuterSkirt, options); }
 
 }  // namespace weft::scenes

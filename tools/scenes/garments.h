@@ -15,6 +15,8 @@ Pattern skirt_pattern();
 /// The error says what is too coarse.
 Result<Layout> tunic(const Options& options);
 Result<Layout> skirt(const Options& options);
+/// One that is worn over the tunic; its waist is fixed.
+Result<Layout> outer_skirt(const Options& options);
 /// The tunic as on a wearer: front and back apart, and without pins.
 Result<Layout> worn_tunic(const Options& options);
 

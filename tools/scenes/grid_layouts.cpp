@@ -6,24 +6,17 @@
 #include <numbers>
 #include <numeric>
 
+#include "tools/scenes/sheet.h"
+
 namespace weft::scenes {
 namespace {
 
 /// place(i, j) is where the vertex (i, j) begins.
 template <class Place>
 Layout sheet(int size, Place place) {
-  const Grid grid{size};
   Layout layout;
-  layout.grid = grid;
-  for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j) layout.start.push_back(place(i, j));
-  }
-  for (int i = 0; i + 1 < size; ++i) {
-    for (int j = 0; j + 1 < size; ++j) {
-      layout.faces.push_back({grid.number(i, j), grid.number(i, j + 1), grid.number(i + 1, j + 1),
-                              grid.number(i + 1, j)});
-    }
-  }
+  layout.grid = Grid{size};
+  add_sheet(size, size, place, layout);
   return layout;
 }
 

@@ -39,6 +39,8 @@ struct Layout {
   std::optional<Ball> sphere;  ///< a particle after those of the cloth
   Vec3 wind;                   ///< m/s; only cloth of a material feels it
   std::vector<tools::SceneBody> bodies;
+  std::vector<tools::PinMove> moves;  ///< of vertices in place of particles
+  bool touches_itself = false;        ///< it has self-contact
 };
 
 }  // namespace weft::scenes

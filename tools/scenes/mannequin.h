@@ -11,5 +11,6 @@ namespace weft::scenes {
 /// The error says what is too coarse.
 Result<Layout> mannequin(const Options& options);
 Result<Layout> mannequin_mesh(const Options& options);
+Result<Layout> outfit(const Options& options);
 
 }  // namespace weft::scenes

@@ -14,6 +14,7 @@
 #include "tools/scenes/garments.h"
 #include "tools/scenes/grid_layouts.h"
 #include "tools/scenes/irregular_mesh.h"
+#include "tools/scenes/layered_layouts.h"
 #include "tools/scenes/mannequin.h"
 
 namespace weft::scenes {
@@ -119,7 +120,7 @@ struct Entry {
   Result<Scene> (*make)(const Options&);
 };
 
-constexpr std::array<Entry, 16> kEntries{{
+constexpr std::array<Entry, 23> kEntries{{
     {{"hang", "a sheet with one fixed side swings down"}, 2, anything, cloth<hang>},
     {{"hang_sphere", "the same, swinging into a fixed sphere"}, 2, anything, cloth<hang_sphere>},
     {{"sphere_drop", "a heavy sphere drops into a sagging sheet"},
@@ -154,6 +155,28 @@ constexpr std::array<Entry, 16> kEntries{{
      20,
      anything,
      garment<mannequin_mesh>},
+    {{"stack", "five sheets of cotton fall on a floor, one on another", true},
+     3,
+     anything,
+     cloth<stack>},
+    {{"fold", "a sheet of cotton in four layers falls on a floor", true},
+     20,
+     anything,
+     cloth<fold>},
+    {{"curtain", "a sheet of cotton slides off a table onto the floor", true},
+     3,
+     anything,
+     cloth<curtain>},
+    {{"twist", "the ends of a sheet of cotton turn against each other", true},
+     5,
+     anything,
+     cloth<twist>},
+    {{"ribbon", "a ribbon of cotton is lowered on a floor", true}, 20, anything, cloth<ribbon>},
+    {{"funnel", "a sheet of cotton is drawn through a ring", true}, 20, anything, cloth<funnel>},
+    {{"outfit", "a skirt over a tunic, of cotton, on a body that walks", true},
+     20,
+     anything,
+     garment<outfit>},
 }};
 
 constexpr auto kList = [] {

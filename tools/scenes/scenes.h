@@ -1,5 +1,5 @@
-/// The built-in scenes: the paper's three, three hard ones, two that are like a game's, two of a
-/// material, and two that are sewn. Exact definitions, SI units.
+/// The built-in scenes: the paper's three, three hard ones, two that are like a game's, some of a
+/// material, some that are sewn, and some that touch themselves. Exact definitions, SI units.
 ///
 /// Cloth scenes are N x N particles over 1 m x 1 m, particle (i, j) has the number i * N + j,
 /// spacing L = 1/(N-1), total mass 1 kg, gravity (0, -10, 0); constraints join grid neighbours
@@ -34,7 +34,7 @@
 /// tunic        A front and a back of irregular triangles, body and sleeves of one piece, sewn
 ///              along shoulders, sleeves and sides (garments.cpp has the pattern, 0.9 m wide and
 ///              0.7 long). Vertices are about 1/(N-1) m apart. It hangs from 8 cm of each shoulder;
-///              of cotton if no material is given.
+///              of cotton if no material is given. It has self-contact.
 /// table        (i, j) at (i L, 0.001, j L), of cotton if no material is given: a sheet that
 ///              lies on the top of a box of which it covers 0.4 m, and slides off its edge;
 ///              friction 0.2.
@@ -43,6 +43,22 @@
 /// mannequin    The tunic, worn by a body of capsules that begins to walk after a second, 1 m/s.
 /// mannequin_mesh  The same on triangle meshes of these capsules, 24 triangles around each.
 /// skirt        Likewise: a front and a back that make up a cone, 0.45 m long; its waist is fixed.
+///
+/// Those that follow have self-contact, and are of cotton if no material is given.
+///
+/// stack        Five level sheets 1 cm above each other and a floor, each turned by 0.1 rad against
+///              the one under it.
+/// fold         A sheet in four layers, like a letter: three half circles of a radius of 2 cm join
+///              them. It falls from 5 cm on a floor.
+/// curtain      The table, 0.6 m above a floor; its friction is 0.03, so that the whole sheet slides off.
+/// twist        N rows along x, of as many vertices as make it 0.3 m wide. In six seconds its ends
+///              turn by three turns against each other, and come nearer by 0.5 m.
+/// ribbon       2 m long and 0.125 m wide, upright, with waves of 5 mm. Its upper end is lowered in
+///              five seconds, from 2.02 m above the floor to 0.12 m.
+/// funnel       What is within 10 cm of the middle of a level sheet is drawn down by a metre in
+///              six seconds, through a ring of triangles that is 0.28 m wide inside; friction 0.1.
+/// outfit       The tunic of the mannequin, and over it a wide skirt of 0.4 m whose waist goes with
+///              the body.
 #pragma once
 
 #include <weft/mesh.h>
@@ -77,13 +93,15 @@ struct BuiltIn {
 };
 
 /// hang, hang_sphere, sphere_drop, corners, banner, four_pins, cape, chain, flag, drape, table,
-/// cushion, tunic, skirt, mannequin, mannequin_mesh.
+/// cushion, tunic, skirt, mannequin, mannequin_mesh, stack, fold, curtain, twist, ribbon, funnel,
+/// outfit.
 std::span<const BuiltIn> list();
 
 struct Scene {
   SceneDescription description;
   tools::Mesh mesh;  ///< what pictures show: vertices and faces, or the lines of a chain
   std::vector<tools::SceneBody> bodies = {};
+  std::vector<tools::PinMove> moves = {};
 };
 
 /// An unknown name or an option out of range is an error.

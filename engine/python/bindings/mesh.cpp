@@ -15,6 +15,7 @@ void add_materials(py::module_& m) {
   Fields<Material> material(m, "Material", "A cloth's own properties, whatever its mesh.");
   material.field("density", &Material::density, "kg/m^2")
       .field("thickness", &Material::thickness, "m")
+      .field("friction", &Material::friction, "Coulomb's, between layers")
       .field("warp", &Material::warp, "N/m")
       .field("weft", &Material::weft, "N/m")
       .field("shear", &Material::shear, "N/m per radian")

@@ -212,6 +212,7 @@ class Material:
     def __init__(self, **fields: Any) -> None: ...
     density: float
     thickness: float
+    friction: float
     warp: float
     weft: float
     shear: float

@@ -64,6 +64,7 @@ TEST_CASE("the defaults are those of C++") {
   CHECK(mesh.mass == MeshDescription{}.mass);
   CHECK(mesh.thread_density == MeshDescription{}.thread_density);
   CHECK(mesh.seam_force == MeshDescription{}.seam_force);
+  CHECK(initial(weft_init_material).friction == Material{}.friction);
   CHECK(initial(weft_init_report).worst_constraint == WEFT_NO_INDEX);
 }
 

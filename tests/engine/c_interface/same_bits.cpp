@@ -171,7 +171,9 @@ struct CottonSheet {
 
   CottonSheet() {
     mesh.material = find_material("cotton").value();
+    mesh.material->friction = 0.45;
     REQUIRE(weft_find_material("cotton", &c_material) == WEFT_OK);
+    c_material.friction = 0.45;
     c_mesh.material = &c_material;
     made_in_cpp = cloth_from_mesh(mesh).value();
     made_in_c = made<weft_mesh_cloth>(
@@ -182,6 +184,7 @@ struct CottonSheet {
     auto scene = initial(weft_init_scene);
     REQUIRE(weft_scene_of(made_in_c.get(), &scene) == WEFT_OK);
     CHECK(scene.self_contact_thickness == c_material.thickness);
+    CHECK(scene.self_contact_friction == 0.45);
     const auto model =
         made<weft_model>([&](weft_model** out) { return weft_build_model(&scene, out); });
     return {cloth_of(made_in_cpp.scene, {}), made<weft_cloth>([&](weft_cloth** out) {

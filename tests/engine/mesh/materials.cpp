@@ -61,6 +61,8 @@ TEST_CASE("a material's errors name the field and the value") {
   CHECK(error_with(&Material::weft, -1) == "material.weft: must be finite and greater than 0 (-1)");
   CHECK(error_with(&Material::thickness, -1) ==
         "material.thickness: must be finite and at least 0 (-1)");
+  CHECK(error_with(&Material::friction, nan) ==
+        "material.friction: must be finite and at least 0 (nan)");
   CHECK(error_with(&Material::shear, -1) == "material.shear: must be finite and at least 0 (-1)");
   CHECK(error_with(&Material::bending, nan) ==
         "material.bending: must be finite and at least 0 (nan)");
@@ -69,6 +71,19 @@ TEST_CASE("a material's errors name the field and the value") {
   CHECK(error_with(&Material::damping_motion, -1).starts_with("material.damping_motion: "));
   CHECK(error_with(&Material::drag, -1).starts_with("material.drag: "));
   CHECK(error_with(&Material::lift, -1).starts_with("material.lift: "));
+}
+
+TEST_CASE("thickness and friction of layers are the material's") {
+  MeshDescription mesh = quads(3);
+  mesh.material = plain_material();
+  const SelfContact plain;
+  CHECK(Material{}.friction == plain.friction);
+  mesh.material->thickness = 0;
+  CHECK(made(mesh).scene.self_contact == plain);
+  mesh.material->thickness = 0.7e-3;
+  mesh.material->friction = 0.45;
+  const SelfContact of_material{.thickness = 0.7e-3, .friction = 0.45};
+  CHECK(made(mesh).scene.self_contact == of_material);
 }
 
 TEST_CASE("damping and air are the material's") {

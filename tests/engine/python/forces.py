@@ -89,9 +89,11 @@ class Materials(unittest.TestCase):
         mesh = sheet(9, material=None, pins=[])
         mesh.material = weft.Material(density=0.4, warp=800, weft=300, shear=20, bending=1e-5,
                                       damping_stretch=0.01, damping_bending=0.02, damping_motion=0.5,
-                                      drag=1.5, lift=0.7)
+                                      drag=1.5, lift=0.7, thickness=0.002, friction=0.4)
         scene = weft.cloth_from_mesh(mesh).scene
         self.assertAlmostEqual(scene.masses.sum(), 0.4, delta=1e-12)  # of 1 m^2
+        layers = scene.self_contact
+        self.assertEqual((layers.on, layers.thickness, layers.friction), (False, 0.002, 0.4))
         damping, air = scene.damping, scene.air
         self.assertEqual((damping.stretch, damping.bending, damping.motion), (0.01, 0.02, 0.5))
         self.assertEqual((air.drag, air.lift, len(air.triangles)), (1.5, 0.7, 2 * 64))

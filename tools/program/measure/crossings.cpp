@@ -4,6 +4,7 @@
 #include <numeric>
 #include <variant>
 
+#include "tools/program/measure/side_of_plane.h"
 #include "tools/scenes/body_moves.h"
 
 namespace weft::tools {
@@ -116,22 +117,13 @@ Corners corners_of(const TriangleSet& set, std::uint32_t triangle) {
   return {set.places[a], set.places[b], set.places[c]};
 }
 
-Vec3 minus(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-
-/// Six times the volume of the tetrahedron; its sign is the side of d.
-double volume(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  const Vec3 u = minus(a, d), v = minus(b, d), w = minus(c, d);
-  return u.x * (v.y * w.z - v.z * w.y) + u.y * (v.z * w.x - v.x * w.z) +
-         u.z * (v.x * w.y - v.y * w.x);
-}
-
 /// Also where it leads through an edge or a corner of the triangle.
 bool leads_through(Vec3 from, Vec3 to, const Corners& t) {
-  const double side = volume(t[0], t[1], t[2], from), other = volume(t[0], t[1], t[2], to);
-  if (!((side < 0 && other > 0) || (side > 0 && other < 0))) return false;
-  double least = 0, most = 0;
+  if (side_of_plane(t[0], t[1], t[2], from) * side_of_plane(t[0], t[1], t[2], to) >= 0)
+    return false;
+  int least = 0, most = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double turn = volume(from, to, t[k], t[(k + 1) % 3]);
+    const int turn = side_of_plane(from, to, t[k], t[(k + 1) % 3]);
     least = std::min(least, turn);
     most = std::max(most, turn);
   }

@@ -1,4 +1,4 @@
-/// How many triangles of two surfaces, or of one, cross: by exact geometry but for rounding, and by
+/// How many triangles of two surfaces, or of one, cross: by exact geometry, and by
 /// nothing that the engine finds contacts with.
 #pragma once
 

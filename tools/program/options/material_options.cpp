@@ -21,6 +21,7 @@ struct Field {
 };
 constexpr Field kFields[] = {{"density", &Material::density},
                              {"thickness", &Material::thickness},
+                             {"friction", &Material::friction},
                              {"warp", &Material::warp},
                              {"weft", &Material::weft},
                              {"shear", &Material::shear},

@@ -32,7 +32,8 @@ Result<std::optional<Material>> material_of(const MaterialOptions& options);
 /// None where none is given.
 Result<std::optional<Vec3>> wind_of(const MaterialOptions& options);
 
-/// The text of a material file: an object of fields of Material, those that are left out being 0.
+/// The text of a material file: an object of fields of Material, those that are left out having
+/// their defaults.
 Result<Material> parse_material(std::string_view text);
 
 }  // namespace weft::tools

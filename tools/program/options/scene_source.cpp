@@ -132,10 +132,11 @@ Result<SceneSource> load_built_in(const SceneOptions& options) {
   values.material = cloth.value().material;
   auto made = scenes::make_scene(options.scene, values);
   if (!made) return Error{made.error()};
-  auto& [description, mesh, bodies] = made.value();
+  auto& [description, mesh, bodies, moves] = made.value();
   if (auto blown = blow(cloth.value().wind, description); !blown) return Error{blown.error()};
   SceneSource source{options.scene, std::move(description), std::move(mesh)};
   source.bodies = std::move(bodies);
+  source.moves = std::move(moves);
   return source;
 }
 

@@ -114,7 +114,7 @@ std::string material_text(const ModelInfo& model) {
 
 std::string_view verb_of(std::int64_t count) { return count == 1 ? "was" : "were"; }
 
-/// Of the cloth and bodies that are meshes; empty where there is nothing to say.
+/// Of the cloth with itself and with bodies that are meshes; empty where there is nothing to say.
 std::string crossings_text(const RunSummary& summary) {
   const StepReport& total = summary.total;
   std::string text;
@@ -123,7 +123,7 @@ std::string crossings_text(const RunSummary& summary) {
                        verb_of(total.contact_failures));
   }
   if (total.zones > 0) {
-    text += fmt::format("{}{} taken along by bodies", text.empty() ? "" : ", ", total.zones);
+    text += fmt::format("{}{} moved as if glued", text.empty() ? "" : ", ", total.zones);
   }
   if (total.intersecting > 0) {
     text += fmt::format("{}at most {} could not be stopped in a frame", text.empty() ? "" : ", ",
@@ -199,6 +199,18 @@ ContactMs contact_ms(const RunSummary& summary) {
 Json contact_ms_json(const RunSummary& summary) {
   const ContactMs ms = contact_ms(summary);
   return {{"find", ms.find}, {"sweep", ms.sweep}, {"verify", ms.verify}};
+}
+
+std::string times_text(const RunSummary& summary) {
+  const ContactMs ms = contact_ms(summary);
+  return fmt::format("{:.3g} ms per frame to find contacts, {:.3g} in sweeps, {:.3g} to verify",
+                     ms.find, ms.sweep, ms.verify);
+}
+
+/// Of the cloth with itself.
+std::string layers_text(const StepReport& total) {
+  return fmt::format("{} at most, {} tangled in the last frame",
+                     counted(total.self_contacts, "contact"), counted(total.tangled, "pair"));
 }
 
 }  // namespace
@@ -330,10 +342,9 @@ std::string to_table(const RunReport& report) {
                                   : fmt::format("{} bodies", report.plan.bodies.size()),
                               counted(total.body_contacts, "contact"), total.max_penetration,
                               total.friction_work, total.body_work));
-    const ContactMs ms = contact_ms(summary);
-    row("", fmt::format("{:.3g} ms per frame to find contacts, {:.3g} in sweeps, {:.3g} to verify",
-                        ms.find, ms.sweep, ms.verify));
   }
+  if (report.plan.touches_itself) row("layers", layers_text(total));
+  if (report.plan.touches_itself || !report.plan.bodies.empty()) row("", times_text(summary));
   if (const auto crossed = crossings_text(summary); !crossed.empty()) row("crossings", crossed);
   if (summary.model.anchors > 0) {
     row("anchors", fmt::format("{}, {:.3g} m beyond their limits at most", summary.model.anchors,

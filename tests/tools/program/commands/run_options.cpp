@@ -248,7 +248,8 @@ TEST_CASE("what is asked of a built-in scene is what is made") {
     const std::string file = folder.file("scene.json");
     const std::string arguments = "scene " + asked.name + ' ' + asked.arguments + " --out " + file;
     CHECK(run_program(folder, arguments).exit_code == 0);
-    const auto [description, mesh, bodies] = scenes::make_scene(asked.name, asked.options).value();
+    const auto [description, mesh, bodies, moves] =
+        scenes::make_scene(asked.name, asked.options).value();
     CHECK(folder.read("scene.json") == scene_text(description, {}, particle_faces(mesh), bodies));
   }
 }

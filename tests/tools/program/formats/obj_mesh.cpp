@@ -393,7 +393,7 @@ TEST_CASE("a mesh is written with the numbering and the faces of its file") {
 }
 
 TEST_CASE("spheres are written as objects of their own") {
-  const auto [scene, mesh, bodies] = scenes::make_scene("hang_sphere", {.size = 3}).value();
+  const auto [scene, mesh, bodies, moves] = scenes::make_scene("hang_sphere", {.size = 3}).value();
   auto model = build_model(scene);
   REQUIRE(model);
   const auto cloth = Cloth::create(model.value(), {});
@@ -409,7 +409,7 @@ TEST_CASE("spheres are written as objects of their own") {
 }
 
 TEST_CASE("faces of a second sphere are its own") {
-  auto [scene, mesh, bodies] = scenes::make_scene("hang_sphere", {.size = 3}).value();
+  auto [scene, mesh, bodies, moves] = scenes::make_scene("hang_sphere", {.size = 3}).value();
   scene.spheres.push_back(4);
   scene.radii[4] = 0.01;
   const auto model = build_model(scene);

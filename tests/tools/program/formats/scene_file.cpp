@@ -147,7 +147,7 @@ TEST_CASE("triangles of fabric survive writing and reading to the last bit") {
 }
 
 TEST_CASE("faces survive writing and reading, and those that cannot be are refused") {
-  const auto [scene, mesh, bodies] = scenes::make_scene("hang", {.size = 4}).value();
+  const auto [scene, mesh, bodies, moves] = scenes::make_scene("hang", {.size = 4}).value();
   const auto again = parse_scene(scene_text(scene, {}, particle_faces(mesh)));
   REQUIRE(again);
   CHECK(again.value().faces == mesh.faces);

@@ -128,13 +128,24 @@ TEST_CASE("the table has every figure too") {
         "bodies    1 body, 31 contacts at most, 0.75 m deepest penetration, 0.0625 J by friction, "
         "0.125 J by moved ones\n"
         "          0.5 ms per frame to find contacts, 1.5 in sweeps, 0.25 to verify\n"
-        "crossings 41 crossings were stopped, 43 taken along by bodies, at most 47 could not be "
+        "crossings 41 crossings were stopped, 43 moved as if glued, at most 47 could not be "
         "stopped in a frame\n"
         "anchors   31, 0.5 m beyond their limits at most\n"
         "work      5 iterations and 9 direction updates per step, 101 visits, 103 corrections\n"
         "energy    -1.5 J to -2.5 J, 0.875 J by moved pins, largest gain 0.25 J, "
         "0.438 J lost\n"
         "state     0123456789abcdef, lowest y -0.375 m\n");
+}
+
+TEST_CASE("contacts of the cloth with itself are in the table where it has self-contact") {
+  RunReport of_layers = report();
+  CHECK(to_table(of_layers).find("layers") == std::string::npos);
+  of_layers.plan.touches_itself = true;
+  of_layers.plan.bodies.clear();
+  CHECK(to_table(of_layers).find(
+            "layers    53 contacts at most, 59 pairs tangled in the last frame\n"
+            "          0.5 ms per frame to find contacts, 1.5 in sweeps, 0.25 to verify\n"
+            "crossings ") != std::string::npos);
 }
 
 TEST_CASE("crossings are in the report where they were counted or stopped") {
