@@ -7,6 +7,10 @@ import {
 import { ConvexGeometry } from 'three/addons/geometries/ConvexGeometry.js';
 import { blend, dynamic, smoothNormals } from './cloth.js';
 
+// How much smaller than they are round bodies are drawn, and how far behind their place, in edges of the cloth.
+const SMALLER_EDGES = 0.125;
+const PUSHED_EDGES = 0.25;
+
 const UP = new Vector3(0, 1, 0);
 
 /** The surface of all balls between two, turned about the axis from a to b. */
@@ -61,11 +65,18 @@ function planeGeometry(body, sphere) {
   return disc.translate(...centre.toArray());
 }
 
-function meshGeometry(body) {
+/** Moves the vertices along their normals, inwards. */
+function shrink(triangles, places, normals, by) {
+  smoothNormals(triangles, places, normals);
+  for (let i = 0; i < places.length; ++i) places[i] -= by * normals[i];
+}
+
+function meshGeometry(body, smaller) {
   const geometry = new BufferGeometry();
-  const normals = new Float32Array(body.vertices.length);
-  smoothNormals(body.triangles, body.vertices, normals);
-  geometry.setAttribute('position', dynamic(new Float32Array(body.vertices), 3));
+  const places = new Float32Array(body.vertices);
+  const normals = new Float32Array(places.length);
+  shrink(body.triangles, places, normals, body.two_sided ? 0 : smaller);
+  geometry.setAttribute('position', dynamic(places, 3));
   geometry.setAttribute('normal', dynamic(normals, 3));
   geometry.setIndex(new BufferAttribute(new Uint32Array(body.triangles), 1));
   return geometry;
@@ -85,26 +96,46 @@ function hullGeometry(points) {
   return new BoxGeometry(size.x, size.y, size.z).translate(...least.add(most).multiplyScalar(0.5).toArray());
 }
 
-function geometryOf(body, sphere) {
+/** smaller: m, so that the straight edges of cloth around what is round do not cut into it. */
+function geometryOf(body, sphere, smaller) {
   const point = (p) => new Vector3(...p);
+  const less = (radius) => Math.max(radius - smaller, 0.8 * radius);
   switch (body.shape) {
     case 'plane':
       return planeGeometry(body, sphere);
     case 'ball':
-      return new SphereGeometry(body.radius, 64, 40).translate(...body.centre);
+      return new SphereGeometry(less(body.radius), 64, 40).translate(...body.centre);
     case 'capsule':
-      return capsuleGeometry(point(body.a), point(body.b), body.radius_a, body.radius_b);
+      return capsuleGeometry(point(body.a), point(body.b), less(body.radius_a), less(body.radius_b));
     case 'hull':
       return hullGeometry(body.points.map(point));
     default:
-      return meshGeometry(body);
+      return meshGeometry(body, smaller);
   }
 }
 
+/**
+ * Farther from the eye, along the line of sight: outlines stay, and cloth that lies on a body hides it,
+ * though its straight edges cut into it.
+ */
+function pushBack(material, distance) {
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.pushedBy = { value: distance };
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', 'uniform float pushedBy;\n#include <common>')
+      .replace('#include <project_vertex>', `#include <project_vertex>
+        vec4 pushed = mvPosition;
+        pushed.xyz *= 1.0 + pushedBy / length(mvPosition.xyz);
+        gl_Position = projectionMatrix * pushed;`);
+  };
+  return material;
+}
+
 class BodyView {
-  constructor(body, material, sphere) {
+  constructor(body, material, sphere, smaller) {
     this.body = body;
-    this.mesh = new Mesh(geometryOf(body, sphere), material);
+    this.smaller = body.two_sided ? 0 : smaller;
+    this.mesh = new Mesh(geometryOf(body, sphere, smaller), material);
     this.mesh.castShadow = body.shape !== 'plane';
     this.mesh.receiveShadow = true;
     this.mesh.frustumCulled = false;
@@ -127,18 +158,21 @@ class BodyView {
     if (!samples) return;
     const { position, normal } = this.mesh.geometry.attributes;
     blend(samples, sample, share, position.array);
-    smoothNormals(triangles, position.array, normal.array);
+    shrink(triangles, position.array, normal.array, this.smaller);
     position.needsUpdate = normal.needsUpdate = true;
   }
 }
 
 export class BodyViews {
-  /** sphere: around all that the cloth does. */
-  constructor(bodies, sphere) {
-    this.material = new MeshStandardMaterial({ roughness: 0.6, metalness: 0, side: FrontSide });
-    this.twoSided = new MeshStandardMaterial({ roughness: 0.6, metalness: 0, side: DoubleSide });
+  /** sphere: around all that the cloth does. edge: m, the mean length of one of the cloth. */
+  constructor(bodies, sphere, edge) {
+    const pushedBy = PUSHED_EDGES * edge;
+    const material = (side) => pushBack(new MeshStandardMaterial({ roughness: 0.6, metalness: 0, side }), pushedBy);
+    this.material = material(FrontSide);
+    this.twoSided = material(DoubleSide);
     this.views = bodies.map(
-      (body) => new BodyView(body, body.two_sided || body.shape === 'plane' ? this.twoSided : this.material, sphere));
+      (body) => new BodyView(body, body.two_sided || body.shape === 'plane' ? this.twoSided : this.material, sphere,
+        SMALLER_EDGES * edge));
     this.group = new Group();
     for (const view of this.views) this.group.add(view.mesh);
   }

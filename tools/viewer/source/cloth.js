@@ -34,6 +34,8 @@ export function smoothNormals(triangles, places, normals) {
   }
 }
 
+const SHEEN = 0.25;
+
 function heatTexture() {
   const bytes = heatBytes();
   const texture = new DataTexture(bytes, bytes.length / 4, 1);
@@ -52,7 +54,7 @@ function fabricMaterial(fabric) {
     heatShare: { value: 0 },
   };
   const material = new MeshPhysicalMaterial({
-    color: fabric.front, side: DoubleSide, roughness: 0.82, sheen: 0.35, sheenRoughness: 0.5,
+    color: fabric.front, side: DoubleSide, roughness: 0.82, sheen: SHEEN, sheenRoughness: 0.5,
     sheenColor: new Color(fabric.front).lerp(new Color(0xffffff), 0.5),
     polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
   });
@@ -144,12 +146,13 @@ export class ClothView {
     }
   }
 
-  set heatRange(range) {
-    this.material.userData.uniforms.heatRange.value = range;
-  }
-  set heatIsShown(on) {
-    this.material.userData.uniforms.heatShare.value = on ? 1 : 0;
-    this.material.sheen = on ? 0 : 0.35;
+  /** By its stretch, or in the colour of no stretch where coloured threads lie on it. */
+  colourBy({ heat, heatRange, threads }) {
+    const isPlain = heat || threads === 'yarns' || threads === 'colours';
+    const { uniforms } = this.material.userData;
+    uniforms.heatShare.value = isPlain ? 1 : 0;
+    uniforms.heatRange.value = heat ? heatRange : 1e9;
+    this.material.sheen = isPlain ? 0 : SHEEN;
   }
 }
 

@@ -5,15 +5,15 @@ export const THEMES = {
     wire: 0x1c2126, exposure: 1.0, ambient: 1.0,
   },
   dark: {
-    sky: 0x232a31, floor: 0x2a3138, haze: 0x14181c, body: 0x8a929b, pin: 0xf4f6f8, contact: 0xffc233,
+    sky: 0x232a31, floor: 0x3b454f, haze: 0x14181c, body: 0x8a929b, pin: 0xf4f6f8, contact: 0xffc233,
     wire: 0x0c0f12, exposure: 0.95, ambient: 0.62,
   },
 };
 
 /** Front and back of the cloth of each result. */
 export const FABRICS = [
-  { front: 0xa8452f, back: 0xdcc7a4 },
-  { front: 0x2f5d8c, back: 0xd3cbb8 },
+  { front: 0x9c4a38, back: 0xd9c8ab },
+  { front: 0x3a628c, back: 0xd3cbb8 },
 ];
 
 /** Names of colours for lists of any length: neighbours in the list are far apart. */

@@ -32,7 +32,7 @@ export function heatGradient() {
   return `linear-gradient(to right, ${stops.join(', ')})`;
 }
 
-/** A range that all but a thousandth of the samples of all motions keep to, rounded up to 1, 2 or 5. */
+/** A range that all but a hundredth of the samples of all motions keep to, rounded up to 1, 2 or 5. */
 export function niceRange(motions) {
   const sizes = [];
   for (const motion of motions) {
@@ -43,7 +43,7 @@ export function niceRange(motions) {
     }
   }
   sizes.sort((a, b) => a - b);
-  return roundUp(sizes[Math.floor(0.999 * (sizes.length - 1))] || 1e-4);
+  return roundUp(sizes[Math.floor(0.99 * (sizes.length - 1))] || 1e-4);
 }
 
 function roundUp(x) {

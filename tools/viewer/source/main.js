@@ -93,6 +93,7 @@ class Page {
     const names = this.motions.map((m) => m.scene);
     byId('title').textContent = names.length > 1 && names[0] === names[1] ? names[0] : names.join(' | ');
     document.title = `${names.join(' | ')} – weft`;
+    document.body.dataset.results = names.length;
     this.labels = this.motions.length < 2 ? [] : this.motions.map((motion, index) => {
       const { solver, tolerance } = motion.settings;
       const text = `${'AB'[index]}  ${motion.scene}, ${solver.replaceAll('_', ' ')}, ${100 * tolerance} %`;
@@ -272,7 +273,7 @@ class Page {
     this.figures.show(samples);
     this.chart.draw(time, samples);
     byId('clock').textContent = `${time.toFixed(2)} s`;
-    byId('frame').textContent = `frame ${samples[0]} / ${this.motions[0].samples - 1}`;
+    byId('frame').textContent = innerWidth > 430 ? `frame ${samples[0]} / ${this.motions[0].samples - 1}` : `frame ${samples[0]}`;
     const slider = byId('chart');
     slider.setAttribute('aria-valuenow', Math.round(time / step));
     slider.setAttribute('aria-valuetext', `${time.toFixed(2)} seconds`);

@@ -33,14 +33,16 @@ function isNearer(shader) {
     '#include <color_fragment>\n  if (length(gl_PointCoord - 0.5) > 0.5) discard;');
 }
 
+const DOT = 5; // pixels
+
 /** A dot at each particle that touches a body. */
 export class Contacts {
-  constructor(motion, radius) {
+  constructor(motion) {
     this.contacts = motion.contacts;
     const most = motion.contacts.reduce((count, list) => Math.max(count, list.length), 1);
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', dynamic(new Float32Array(3 * most), 3));
-    const material = new PointsMaterial({ size: 2 * radius });
+    const material = new PointsMaterial({ size: DOT, sizeAttenuation: false });
     material.onBeforeCompile = isNearer;
     this.object = new Points(geometry, material);
     this.object.frustumCulled = false;

@@ -50,7 +50,7 @@ export class Picture {
     const front = new Vector3().crossVectors(new Vector3(1, 0, 0), up);
     const towards = new Vector3(0.62, 0, 0).addScaledVector(up, 0.38).addScaledVector(front, 1).normalize();
     const distance = radius / Math.sin((FIELD / 2) * (Math.PI / 180));
-    this.camera.position.copy(center).addScaledVector(towards, 0.92 * distance);
+    this.camera.position.copy(center).addScaledVector(towards, (this.stages.length > 1 ? 0.88 : 0.8) * distance);
     this.controls.target.copy(center);
     this.controls.update();
   }
@@ -87,9 +87,11 @@ export class Picture {
       const half = Math.tan((FIELD / 2) * (Math.PI / 180)) / Math.min(1, aspect);
       this.camera.fov = (360 / Math.PI) * Math.atan(half);
       this.camera.updateProjectionMatrix();
+      const { scene, lamp } = this.stages[index];
+      lamp.position.copy(this.camera.position);
       this.renderer.setViewport(x, y, width, height);
       this.renderer.setScissor(x, y, width, height);
-      this.renderer.render(this.stages[index].scene, this.camera);
+      this.renderer.render(scene, this.camera);
     });
   }
 }

@@ -20,6 +20,17 @@ export function boxOf(motion) {
   return box;
 }
 
+/** The mean length of an edge as the cloth starts. */
+function edgeOf({ triangles, places: [places] }) {
+  let sum = 0;
+  for (let i = 0; i + 2 < triangles.length; i += 3) {
+    const a = 3 * triangles[i];
+    const b = 3 * triangles[i + 1];
+    sum += Math.hypot(places[a] - places[b], places[a + 1] - places[b + 1], places[a + 2] - places[b + 2]);
+  }
+  return triangles.length > 0 ? (3 * sum) / triangles.length : 0;
+}
+
 export class Stage {
   constructor(motion, index, box) {
     this.motion = motion;
@@ -28,9 +39,9 @@ export class Stage {
     const { radius } = this.sphere;
     this.scene = new Scene();
     this.cloth = new ClothView(motion, FABRICS[index % FABRICS.length]);
-    this.bodies = new BodyViews(motion.bodies, this.sphere);
+    this.bodies = new BodyViews(motion.bodies, this.sphere, edgeOf(motion));
     this.pins = new Pins(motion, 0.008 * radius);
-    this.contacts = new Contacts(motion, 0.006 * radius);
+    this.contacts = new Contacts(motion);
     this.structures = {};
     this.scene.add(...this.cloth.objects, this.bodies.group, this.pins.object, this.contacts.object);
     this.addLight();
@@ -61,7 +72,9 @@ export class Stage {
     this.rim.target.position.copy(center);
     this.sky = new HemisphereLight(0xffffff, 0x8d8378, 0.55);
     this.sky.position.copy(this.up);
-    this.scene.add(this.sun, this.sun.target, this.rim, this.rim.target, this.sky);
+    this.lamp = new DirectionalLight(0xffffff, 0.55); // beside the eye
+    this.lamp.target.position.copy(center);
+    this.scene.add(this.lamp, this.lamp.target, this.sun, this.sun.target, this.rim, this.rim.target, this.sky);
   }
 
   /** Below all that moves, unless a plane of the scene is there. It fades into the background. */
@@ -101,9 +114,9 @@ export class Stage {
     this.cloth.wire.material.color.set(theme.wire);
     if (this.ground) this.ground.material.color.set(theme.floor);
     this.scene.background = null;
-    this.scene.environmentIntensity = 0.42 * theme.ambient;
+    this.scene.environmentIntensity = 0.34 * theme.ambient;
     this.sky.intensity = 0.55 * theme.ambient;
-    this.sun.intensity = 2.6 * theme.exposure;
+    this.sun.intensity = 2.9 * theme.exposure;
     this.sky.groundColor = new Color(name === 'dark' ? 0x3a3632 : 0x9a9088);
   }
 
@@ -120,8 +133,7 @@ export class Stage {
   /** options: heat, heatRange, threads (none, mesh, yarns, colours), bodies, pins, contacts. */
   apply(options) {
     this.options = options;
-    this.cloth.heatIsShown = options.heat;
-    this.cloth.heatRange = options.heatRange;
+    this.cloth.colourBy(options);
     this.cloth.wire.visible = options.threads === 'mesh';
     this.bodies.group.visible = options.bodies;
     this.pins.object.visible = options.pins;
