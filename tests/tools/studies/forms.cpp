@@ -28,6 +28,10 @@ void check(const std::vector<Form>& forms) {
 
 TEST_CASE("what stretches and shears") { check(membrane_forms()); }
 TEST_CASE("what bends") { check(bending_forms()); }
+TEST_CASE("what a force or a moment bends by its end") { check(end_forms()); }
+TEST_CASE("a slit annular plate") { check(annulus_forms()); }
+TEST_CASE("strips of named fabrics") { check(fabric_forms()); }
+TEST_CASE("soap films") { check(film_forms()); }
 TEST_CASE("what falls and decays") { check(motion_forms()); }
 TEST_CASE("what lies on bodies and slides") { check(body_forms()); }
 
@@ -36,6 +40,12 @@ TEST_CASE("a heavy strip that is short sags by load / 8, a long one hangs down b
   CHECK(heavy_elastica(0.01).x == doctest::Approx(1).epsilon(1e-5));
   CHECK(heavy_elastica(1000).y < -0.9);
   CHECK(heavy_elastica(1000).y > -1);
+}
+
+TEST_CASE("a force at the end of a strip: load / 3 where it is small, 0.670 and 0.329 at 4") {
+  CHECK(end_loaded_elastica(0.01).y == doctest::Approx(-0.01 / 3).epsilon(1e-4));
+  CHECK(end_loaded_elastica(4).y == doctest::Approx(-0.670).epsilon(1e-3));
+  CHECK(1 - end_loaded_elastica(4).x == doctest::Approx(0.329).epsilon(2e-3));
 }
 
 TEST_CASE("a strip that is hardly buckled is half a sine wave: height 2 / pi sqrt(nearer)") {

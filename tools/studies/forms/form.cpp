@@ -45,7 +45,8 @@ FormResult measure(const Form& form, int refinements) {
 std::vector<Form> all_forms() {
   std::vector<Form> all;
   for (std::vector<Form>& forms :
-       std::array{membrane_forms(), bending_forms(), motion_forms(), body_forms()})
+       std::array{membrane_forms(), film_forms(), bending_forms(), end_forms(), annulus_forms(),
+                  fabric_forms(), motion_forms(), body_forms()})
     std::ranges::move(forms, std::back_inserter(all));
   return all;
 }
@@ -66,6 +67,11 @@ double Run::mean_y(std::span<const std::uint32_t> particles) const {
   double sum = 0;
   for (const std::uint32_t i : particles) sum += at(i).y;
   return sum / static_cast<double>(particles.size());
+}
+
+void Run::pull(std::span<const Vec3> forces) {
+  if (const auto written = cloth_.write_forces(forces); !written)
+    throw std::runtime_error(written.error());
 }
 
 void Run::move_pins(const SceneDescription& scene, const std::function<Vec3(Vec3)>& to) {

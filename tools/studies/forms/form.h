@@ -61,6 +61,10 @@ std::vector<Form> all_forms();
 // One file each.
 std::vector<Form> membrane_forms();
 std::vector<Form> bending_forms();
+std::vector<Form> end_forms();
+std::vector<Form> annulus_forms();
+std::vector<Form> fabric_forms();
+std::vector<Form> film_forms();
 std::vector<Form> motion_forms();
 std::vector<Form> body_forms();
 
@@ -76,6 +80,8 @@ class Run {
   Cloth& cloth() { return cloth_; }
   Vec3 at(std::uint32_t particle) const { return cloth_.position(particle); }
   double mean_y(std::span<const std::uint32_t> particles) const;
+  /// N, one for each particle, until others are written.
+  void pull(std::span<const Vec3> forces);
   /// Fixed particles go to where they are taken.
   void move_pins(const SceneDescription& scene, const std::function<Vec3(Vec3)>& to);
   Reading reading(std::string size, double expected, double measured) const;
