@@ -49,8 +49,9 @@ Result<RunState> state_of(const RunOptions& options, const RunPlan& plan) {
     return refused(
         fmt::format("is of frame {}, and --steps {} asks for none after it", frame, plan.steps));
   for (const std::string& name : options.out) {
-    if (const auto ending = file_ending(name);
-        ending == ".pc2" || ending == ".html" || ending == ".motion")
+    if (const auto ending = file_ending(name); ending == ".pc2" || ending == ".glb" ||
+                                               ending == ".pvd" || ending == ".html" ||
+                                               ending == ".motion")
       return Error{fmt::format("--out: '{}' needs all frames, and --resume leaves out the first {}",
                                name, frame)};
   }
@@ -229,7 +230,8 @@ void add_run_command(CommandLine& line) {
   add_solver_options(verb, options->solver);
   verb.repeated("--out", options->out,
                 "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
-                "frames, .html a page that shows the run in a browser, .motion what such a page "
+                "frames, .glb the same as glTF, .pvd the same for ParaView, .html a page that "
+                "shows the run in a browser, .motion what such a page "
                 "shows, for `weft view`, .json the last state as a scene; frame_%04d.obj or .json "
                 "a file for the "
                 "start and each frame");

@@ -32,15 +32,33 @@ Result<void> Outputs::add(const std::string& path) {
     motions_.push_back(std::move(motion.value()));
     return {};
   }
+  if (ending == ".glb") return add_animated(path);
+  if (ending == ".pvd") return add_vtk(path);
   if (ending == ".html" || ending == ".motion") return add_shown(path, ending == ".html");
   if (ending != ".obj" && ending != ".json") {
-    return Error{fmt::format("'{}' does not end in .obj, .pc2, .html, .motion or .json", path)};
+    return Error{
+        fmt::format("'{}' does not end in .obj, .pc2, .glb, .pvd, .html, .motion or .json", path)};
   }
   const Format format = ending == ".obj" ? Format::mesh : Format::scene;
   if (const auto name = NumberedName::of(path)) return add_series(*name, format);
   auto file = PendingFile::open(path);
   if (!file) return Error{file.error()};
   lasts_.push_back({std::move(file.value()), format});
+  return {};
+}
+
+Result<void> Outputs::add_animated(const std::string& path) {
+  auto file = PendingFile::open(path);
+  if (!file) return Error{file.error()};
+  animated_.push_back({std::move(file.value()), {source_->mesh, source_->up == &Vec3::z}});
+  animated_.back().motion.add_sample(source_->mesh.vertices, 0);
+  return {};
+}
+
+Result<void> Outputs::add_vtk(const std::string& path) {
+  auto series = VtkSeries::open(path, *source_);
+  if (!series) return Error{series.error()};
+  vtk_.push_back(std::move(series.value()));
   return {};
 }
 
@@ -73,9 +91,11 @@ void Outputs::add_frame(const Cloth& cloth, const StepReport& report, int frame,
     if (!written_) break;
     written_ = write_file(series.name.with(frame), text(series.format, cloth, elapsed));
   }
-  if (motions_.empty()) return;
+  for (VtkSeries& series : vtk_) series.add_frame(cloth, elapsed);
+  if (motions_.empty() && animated_.empty()) return;
   const std::vector<Vec3> points = vertex_positions(source_->mesh, particle_positions(cloth));
   for (Pc2Writer& motion : motions_) motion.add_sample(points);
+  for (Animated& animated : animated_) animated.motion.add_sample(points, elapsed);
 }
 
 void Outputs::add_last(const Cloth& cloth, double elapsed) {
@@ -98,6 +118,15 @@ Result<void> Outputs::finish() {
     if (auto finished = motion.finish(); !finished) return finished;
   }
   if (auto finished = finish_shown(); !finished) return finished;
+  for (Animated& animated : animated_) {
+    const auto bytes = animated.motion.bytes();
+    if (!bytes) return Error{bytes.error()};
+    animated.file.write(bytes.value());
+    if (auto committed = animated.file.commit(); !committed) return committed;
+  }
+  for (VtkSeries& series : vtk_) {
+    if (auto finished = series.finish(); !finished) return finished;
+  }
   for (Last& last : lasts_) {
     if (auto committed = last.file.commit(); !committed) return committed;
   }

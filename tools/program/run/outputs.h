@@ -1,6 +1,8 @@
 /// The files of --out. What is written follows from the ending, in any case of letters:
 ///   .obj   the last frame as a mesh (obj_mesh.h)
 ///   .pc2   the motion: the start and all frames (pc2_writer.h)
+///   .glb   the same for glTF (gltf.h)
+///   .pvd   the same for ParaView, a .vtu file for each frame beside it (vtk_series.h)
 ///   .html  a page that shows the motion in a browser (viewer/page.h)
 ///   .motion  what such a page shows, to make pages of (viewer/motion.h)
 ///   .json  the last state, as a scene to go on from (scene_file.h)
@@ -16,8 +18,10 @@
 #include <vector>
 
 #include "tools/program/files/pending_file.h"
+#include "tools/program/formats/gltf.h"
 #include "tools/program/formats/pc2_writer.h"
 #include "tools/program/options/scene_source.h"
+#include "tools/program/run/vtk_series.h"
 #include "tools/program/text/numbered_name.h"
 #include "tools/program/viewer/motion.h"
 
@@ -53,6 +57,8 @@ class Outputs {
   };
   explicit Outputs(const SceneSource& source) : source_(&source) {}
   Result<void> add(const std::string& path);
+  Result<void> add_animated(const std::string& path);
+  Result<void> add_vtk(const std::string& path);
   Result<void> add_shown(const std::string& path, bool is_page);
   Result<void> add_series(const NumberedName& name, Format format);
   Result<void> finish_shown();
@@ -60,6 +66,12 @@ class Outputs {
 
   const SceneSource* source_;
   std::vector<Pc2Writer> motions_;
+  struct Animated {
+    PendingFile file;
+    GltfMotion motion;
+  };
+  std::vector<Animated> animated_;
+  std::vector<VtkSeries> vtk_;
   std::vector<Shown> shown_;
   std::optional<MotionRecorder> recorder_;  ///< where something is shown
   std::vector<Last> lasts_;

@@ -4,7 +4,7 @@
 /// A file is sealed (engine/saving/sealed.h): a mark, a version, the number of bytes and a
 /// checksum, 28 bytes in all. The content is the number of bytes of a text (4 bytes,
 /// little-endian), the text, and the sections that it lists. The text is JSON;
-/// tools/program/viewer/README.md says what is in it.
+/// tools/viewer/README.md says what is in it.
 #pragma once
 
 #include <weft/weft.h>

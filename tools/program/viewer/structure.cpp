@@ -11,12 +11,12 @@ namespace weft::tools {
 namespace {
 
 using Numbers = std::vector<std::int32_t>;
-constexpr std::int32_t kNone = -1;
+constexpr std::int32_t kNoNumber = -1;
 
 std::int32_t number(std::size_t value) { return static_cast<std::int32_t>(value); }
 
 Numbers link_colours(const SceneDescription& scene, const ConstraintStore& store) {
-  Numbers colours(scene.constraints.size(), kNone);
+  Numbers colours(scene.constraints.size(), kNoNumber);
   for (std::size_t i = 0; i < store.size(); ++i) {
     if (store.colour[i] != kNoIndex) colours[store.described[i]] = number(store.colour[i]);
   }
@@ -37,8 +37,8 @@ YarnNumbers link_yarns(const SceneDescription& scene,
     links.push_back({scene.constraints[i].a, scene.constraints[i].b});
     constraint.push_back(i);
   }
-  YarnNumbers numbers{Numbers(scene.constraints.size(), kNone),
-                      Numbers(scene.constraints.size(), kNone)};
+  YarnNumbers numbers{Numbers(scene.constraints.size(), kNoNumber),
+                      Numbers(scene.constraints.size(), kNoNumber)};
   const WovenYarns woven = find_yarns(scene.positions, links);
   for (std::size_t y = 0; y < woven.yarns.size(); ++y) {
     for (const std::uint32_t link : woven.links_of(woven.yarns[y])) {
@@ -50,7 +50,7 @@ YarnNumbers link_yarns(const SceneDescription& scene,
 }
 
 Numbers fabric_colours(const SceneDescription& scene, const Model& model) {
-  Numbers colours(scene.membrane.size(), kNone);
+  Numbers colours(scene.membrane.size(), kNoNumber);
   if (model.membrane.size() == 0) return colours;
   const MembraneLayout& layout = model.small_steps().membrane;
   for (std::size_t batch = 0; batch < layout.batches.size(); ++batch) {
