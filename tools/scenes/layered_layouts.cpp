@@ -102,7 +102,7 @@ Layout curtain(const Options& options) {
 }
 
 Layout twist(const Options& options) {
-  constexpr double kWidth = 0.3, kNearer = 0.5;  // m
+  constexpr double kWidth = 0.2, kNearer = 0.2;  // m
   constexpr double kTurns = 3, kEnd = 6;         // of one end against the other; s
   constexpr int kKeys = 60;
   const Grid grid{options.size};

@@ -45,7 +45,7 @@ FormResult measure(const Form& form, int refinements) {
 std::vector<Form> all_forms() {
   std::vector<Form> all;
   for (std::vector<Form>& forms :
-       std::array{membrane_forms(), bending_forms(), motion_forms(), body_forms()})
+       std::array{membrane_forms(), bending_forms(), motion_forms(), body_forms(), layer_forms()})
     std::ranges::move(forms, std::back_inserter(all));
   return all;
 }
