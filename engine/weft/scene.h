@@ -151,7 +151,9 @@ struct Seam {
 
 /// Cloth that touches itself: all cloths and pieces of a scene, by the triangles of `surface`.
 /// Layers keep the thickness from each other, with friction. Features that are nearer than that in
-/// the shape at rest keep nearly the distance that they have there.
+/// the shape at rest keep nearly the distance that they have there. So a thickness may be larger
+/// than an edge; but then all neighbours are pairs, folds are stiffer, and a step takes long. Half
+/// an edge is a good bound (tests/README.md has figures).
 ///
 /// A cloth that does not cross itself when a step begins does not when it ends, however fast it
 /// is: that is verified, and features that would go through each other are stopped. Layers that lie

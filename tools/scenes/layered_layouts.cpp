@@ -32,7 +32,9 @@ std::vector<Vec3> chords(int count, double chord, const std::function<Vec3(doubl
   std::vector<Vec3> points{curve(0)};
   while (points.size() < static_cast<std::size_t>(count)) {
     const Vec3 last = points.back();
-    double near = at, far = at + 1.6 * chord;  // of a half circle that ends there
+    double far = at + chord;
+    while (apart(last, curve(far)) < chord) far += chord / 32;
+    double near = std::max(at, far - chord / 32);
     for (int i = 0; i < 60; ++i) {
       const double middle = (near + far) / 2;
       (apart(last, curve(middle)) < chord ? near : far) = middle;
@@ -102,7 +104,7 @@ Layout curtain(const Options& options) {
 }
 
 Layout twist(const Options& options) {
-  constexpr double kWidth = 0.3, kNearer = 0.5;  // m
+  constexpr double kWidth = 0.2, kNearer = 0.2;  // m
   constexpr double kTurns = 3, kEnd = 6;         // of one end against the other; s
   constexpr int kKeys = 60;
   const Grid grid{options.size};

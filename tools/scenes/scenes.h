@@ -50,9 +50,10 @@
 ///              the one under it.
 /// fold         A sheet in four layers, like a letter: three half circles of a radius of 2 cm join
 ///              them. It falls from 5 cm on a floor.
-/// curtain      The table, 0.6 m above a floor; its friction is 0.03, so that the whole sheet slides off.
-/// twist        N rows along x, of as many vertices as make it 0.3 m wide. In six seconds its ends
-///              turn by three turns against each other, and come nearer by 0.5 m.
+/// curtain      The table, 0.6 m above a floor; its friction is 0.03, so that the whole sheet
+/// slides off. twist        N rows along x, of as many vertices as make it 0.2 m wide. In six
+/// seconds its ends
+///              turn by three turns against each other, and come nearer by 0.2 m.
 /// ribbon       2 m long and 0.125 m wide, upright, with waves of 5 mm. Its upper end is lowered in
 ///              five seconds, from 2.02 m above the floor to 0.12 m.
 /// funnel       What is within 10 cm of the middle of a level sheet is drawn down by a metre in

@@ -445,6 +445,7 @@ void ReferenceStore::go_on_from(const ReferenceStore& other, kernels::VectorsVie
   past_.h = other.past_.h;
   past_.at_limit = other.past_.at_limit;
   past_.misplaced.clear();
+  past_.misplaced.tangled = other.past_.misplaced.tangled;  // triangles keep their numbers
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     const Past& its = other.past_;
     ParticlePast past{its.v[its_slot], its.v_before[its_slot], its.moved[its_slot]};

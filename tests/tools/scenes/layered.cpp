@@ -62,8 +62,8 @@ Vec3 end_of(const Scene& scene, std::size_t move, std::size_t pin) {
 TEST_CASE("the ends of the twisted sheet turn, and come nearer") {
   const Scene twist = layered("twist");
   REQUIRE(twist.moves.size() == 2);
-  CHECK(end_of(twist, 0, 0).x == doctest::Approx(-0.25));
-  CHECK(end_of(twist, 1, 0).x == doctest::Approx(0.25));
+  CHECK(end_of(twist, 0, 0).x == doctest::Approx(-0.4));
+  CHECK(end_of(twist, 1, 0).x == doctest::Approx(0.4));
   for (const std::size_t side : {0, 1}) {  // one and a half turns each
     const Vec3 from = twist.description.positions[twist.moves[side].particles[0]];
     CHECK(end_of(twist, side, 0).z == doctest::Approx(-from.z));

@@ -34,6 +34,7 @@ TEST_CASE("strips of named fabrics") { check(fabric_forms()); }
 TEST_CASE("soap films") { check(film_forms()); }
 TEST_CASE("what falls and decays") { check(motion_forms()); }
 TEST_CASE("what lies on bodies and slides") { check(body_forms()); }
+TEST_CASE("what lies on other layers, slides and stands") { check(layer_forms()); }
 
 TEST_CASE("a heavy strip that is short sags by load / 8, a long one hangs down by its length") {
   CHECK(heavy_elastica(0.01).y == doctest::Approx(-0.01 / 8).epsilon(1e-4));

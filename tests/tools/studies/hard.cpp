@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <sys/wait.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -121,6 +122,24 @@ TEST_CASE("strain, penetration and success that are not true are false claims") 
   const Observed soft = observe_instead(trial_of(on_sphere()), on_sphere(), settings);
   CHECK(soft.false_claims == 5);
   CHECK(soft.max_penetration > 1e-3);
+}
+
+TEST_CASE("layers that cross are seen, and to converge so is a false claim") {
+  SceneDescription scene;  // one triangle is held, and another one stands on it and falls
+  scene.positions = {{-1, 0, -1}, {-1, 0, 2}, {2, 0, -1}, {0, 0.1, 0}, {0.1, 0.1, 0}, {0, 0.3, 0}};
+  scene.masses.assign(6, 1);
+  scene.fixed = {0, 1, 2};
+  scene.constraints = {{3, 4, 0.1}, {3, 5, 0.2}, {4, 5, std::sqrt(0.05)}};
+  scene.surface = {{0, 1, 2}, {3, 4, 5}};
+  scene.self_contact.on = true;
+  SceneDescription blind = scene;
+  blind.self_contact.on = false;
+  Trial trial = trial_of(scene);
+  trial.steps = 20;
+  const Observed kept_off = observe(trial), fallen = observe_instead(trial, blind, {});
+  CHECK(kept_off.crossings == 0);
+  CHECK(fallen.crossings == 1);
+  CHECK(fallen.false_claims > 0);
 }
 
 TEST_CASE("to miss a tolerance and say so is honest, but fails where strain is judged") {

@@ -26,6 +26,8 @@ std::vector<Case> rest_cases();
 std::vector<Case> bending_cases();
 std::vector<Case> body_cases();
 std::vector<Case> mesh_cases();
+std::vector<Case> layer_cases();
+std::vector<Case> knot_cases();
 
 std::vector<Case> all_cases();
 

@@ -67,10 +67,12 @@ std::string move_bodies(const Trial& trial, Cloth& cloth, int step, double from,
   return {};
 }
 
-/// m, into those that are there. Notes what went through one, or crosses it.
+/// m, into those that are there. Notes what went through one, or crosses it, or itself.
 double look_at_bodies(Observed& o, const Trial& trial, const Snapshot& before, const Moved& moved) {
   double deepest = 0;
   o.end_crossings = 0;
+  if (trial.scene.self_contact.on)
+    o.end_crossings += count_crossings({o.end.positions, trial.scene.surface});
   for (std::size_t i = 0; i < moved.ids.size(); ++i) {
     if (moved.ids[i] == kNoIndex) continue;
     const TrialBody& body = trial.bodies[i];
@@ -95,7 +97,7 @@ void add(Observed& o, const Trial& trial, const StepReport& report, double in_bo
   o.worst = std::max(o.worst, report.status);
   o.missed += report.status != Status::converged;
   o.crossings = std::max(o.crossings, o.end_crossings);
-  o.intersecting = std::max(o.intersecting, report.intersecting);
+  o.intersecting = std::max(o.intersecting, report.intersecting + report.tangled);
   o.contact_failures += report.contact_failures;
   o.zones += report.zones;
   // Nobody measures how deep what crosses is.

@@ -38,7 +38,7 @@ struct Observed {
   double max_strain = 0, end_strain = 0;
   double max_penetration = 0, end_penetration = 0;  ///< m, into spheres and bodies
   bool went_through = false;  ///< a body, by the straight way of a step that does not turn
-  std::size_t crossings = 0;  ///< of triangles with those of bodies, most after a step
+  std::size_t crossings = 0;  ///< of triangles with those of bodies, and of layers; most of a step
   std::size_t end_crossings = 0;
   int intersecting = 0;  ///< most in a step, as the reports say
   int contact_failures = 0, zones = 0;
