@@ -66,9 +66,10 @@ TEST_CASE("a step asks for as many threads as the settings say") {
   tbb::task_arena arena(kSlots);
   for (const int threads : {0, 1, 2, 3, 5}) {
     CAPTURE(threads);
-    State state(
-        model,
-        {.substeps = 1, .solver = Solver::gauss_seidel, .isa = resolve(Isa::automatic).value(), .threads = threads});
+    State state(model, {.substeps = 1,
+                        .solver = Solver::gauss_seidel,
+                        .isa = resolve(Isa::automatic).value(),
+                        .threads = threads});
     arena.execute([&] { step_in_team(state, 0.001, {}); });
     const int expected = threads == 0 ? kSlots : std::min(threads, kSlots);
     const int asked =
