@@ -56,9 +56,9 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
     std::string arguments;
     std::string named;
   } kRefused[] = {
-      {"", "a verb is missing: run, scene, paper, hard, precision or forms"},
-      {"''", "a verb is missing: run, scene, paper, hard, precision or forms"},
-      {"weave", "'weave' is not a verb: run, scene, paper, hard, precision or forms"},
+      {"", "a verb is missing: run, scene, view, paper, hard, precision or forms"},
+      {"''", "a verb is missing: run, scene, view, paper, hard, precision or forms"},
+      {"weave", "'weave' is not a verb: run, scene, view, paper, hard, precision or forms"},
       {"weave --size 3", "'weave' is not a verb"},
       {"--colour red", "--colour"},
       {"run", "SCENE"},
