@@ -46,7 +46,8 @@ Result<Isa> resolve(Isa wanted) {
     return Error{"isa: unknown choice (" + std::to_string(static_cast<int>(wanted)) + ")"};
   }
   if (!simd::supported(to_kernel(wanted))) {
-    return Error{source + ": this machine or this library lacks it (" + std::string(name(wanted)) + ")"};
+    return Error{source + ": this machine or this library lacks it (" + std::string(name(wanted)) +
+                 ")"};
   }
   return wanted;
 }

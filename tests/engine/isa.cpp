@@ -95,7 +95,8 @@ TEST_CASE("what the machine lacks, and what does not exist, is refused") {
     if (simd::supported(to_kernel(isa))) continue;
     const auto cloth = try_cloth(isa);
     REQUIRE_FALSE(cloth);
-    CHECK(cloth.error() == "isa: this machine or this library lacks it (" + std::string(name(isa)) + ")");
+    CHECK(cloth.error() ==
+          "isa: this machine or this library lacks it (" + std::string(name(isa)) + ")");
     const Environment environment(std::string(name(isa)).c_str());
     const auto by_environment = try_cloth(Isa::automatic);
     REQUIRE_FALSE(by_environment);

@@ -77,7 +77,8 @@ Vec3 to_public(kernels::Vector v) { return {v.x, v.y, v.z}; }
 
 /// N, of each particle besides gravity, in the time h to come.
 std::vector<Vec3> forces_of(const SceneDescription& scene, double h) {
-  State state(model_of(scene), {.solver = Solver::gauss_seidel, .isa = resolve(Isa::automatic).value()});
+  State state(model_of(scene),
+              {.solver = Solver::gauss_seidel, .isa = resolve(Isa::automatic).value()});
   Team team;
   find_resistance(state, state.model->damping.motion, h, team);
   std::vector<Vec3> forces;
