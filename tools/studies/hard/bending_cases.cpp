@@ -106,6 +106,7 @@ std::vector<Case> bending_cases() {
       {"folded_at_a_right_angle", bending_cloth(plate_mesh({}, 1e-3, true))},
       {"cells_of_a_third_of_a_millimetre", bending_cloth(plate_mesh({.cell = 3e-4}, 64e-6))},
       {"a_rod_spins", spinning_rod()},
+      {"bends_by_nothing", bending_cloth(plate_mesh({}, 0))},
   };
   std::vector<Case> cases;
   for (const auto& [name, scene] : scenes) {
