@@ -11,13 +11,11 @@
 #include <vector>
 
 #include "engine/bytes_of.h"
+#include "engine/contact/adjacent_features.h"
 #include "engine/contact/features.h"
 #include "engine/contact/points.h"
 
 namespace weft {
-
-/// Candidates, by lists of pairs.
-using Candidates = std::array<PairList, kPairLists>;
 
 /// Tubes of the cloth as the tree of a body has them. Six triangles share a corner.
 class SeenTubes {
@@ -41,31 +39,32 @@ class SeenTubes {
 
 class CandidateSearch {
  public:
-  explicit CandidateSearch(const simd::Table& table) : table_(table) {}
+  explicit CandidateSearch(const simd::Table& table) : table_(table), adjacent_(table) {}
 
   /// Of an interval. Returns whether candidates have other places than before.
-  bool find(ContactPoints& points, Candidates& candidates);
+  bool find(ContactPoints& points, Candidates& candidates, Team& team);
   /// Adds candidates of a triangle of the cloth within a box of its own.
   void find_beside(ContactPoints& points, std::uint32_t triangle, const Box& box,
                    Candidates& candidates) const;
   /// The same beside other cloth, of all triangles that have such a corner, by the tubes of their
   /// corners: those are widened to the way that it took.
   void find_within_cloth_beside(ContactPoints& points, std::span<const std::uint8_t> has_strayed,
-                                Candidates& candidates) const;
+                                Candidates& candidates, Team& team);
   std::size_t bytes() const;
 
  private:
   void find_all(ContactPoints& points, SurfacePair pair, Candidates& candidates);
-  void find_within_cloth(ContactPoints& points, Candidates& candidates) const;
-  void renew_within_cloth(ContactPoints& points, Candidates& candidates) const;
+  void find_within_cloth(ContactPoints& points, Candidates& candidates, Team& team);
+  void find_within_cloth_of(ContactPoints& points, Candidates& candidates, Team& team);
   void find_owners(const ContactSurface& cloth);
   std::uint32_t owner(const Pair& pair) const;
   std::uint32_t owner_of_second(const Pair& pair) const;
-  bool renew(ContactPoints& points, Candidates& candidates);
+  bool renew(ContactPoints& points, Candidates& candidates, Team& team);
 
   const simd::Table& table_;
   BoxTree seen_cloth_;                                         // in coordinates of a body; scratch
   SeenTubes seen_;                                             // scratch
+  AdjacentFeatures adjacent_;                                  // of the cloth
   std::vector<std::uint32_t> owner_of_edge_, owner_of_point_;  // triangles of the cloth
   std::vector<std::uint8_t> has_moved_;                        // per slot, out of its tube; scratch
   std::vector<std::uint8_t> is_renewed_;                       // per triangle of the cloth; scratch

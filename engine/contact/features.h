@@ -116,4 +116,7 @@ inline constexpr std::size_t kPairLists = 2;
 inline constexpr bool has_edges(std::size_t list) { return list == 1; }
 inline constexpr std::size_t list_of(PairKind kind) { return kind == PairKind::edges ? 1 : 0; }
 
+/// Candidates, by lists of pairs.
+using Candidates = std::array<PairList, kPairLists>;
+
 }  // namespace weft

@@ -50,7 +50,7 @@ bool SurfaceContacts::still_holds(const ContactParticles& particles, const BodyC
 void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyClock& clock,
                                      int substeps, Team& team) {
   points_.begin_interval(particles, clock, substeps);
-  const bool have_moved = search_.find(points_, candidates_);
+  const bool have_moved = search_.find(points_, candidates_, team);
   if (is_new_ || tangles_.any()) points_.activate_all();
   near_search_.measure(points_, candidates_, have_moved, team);
   if (is_new_) tangles_.find(points_);

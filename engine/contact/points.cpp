@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -96,7 +97,14 @@ void ContactPoints::prepare_for_itself() {
   cloth.thickness = model_.self_contact.thickness;
   cloth.friction = model_.self_contact.friction;
   largest_thickness_ = std::max(largest_thickness_, cloth.thickness);
-  if (rest_.empty()) rest_ = RestDistances(model_, cloth.thickness);
+  if (!rest_.empty()) return;
+  rest_ = RestDistances(model_, cloth.thickness);
+  shortest_.assign(slots_, std::numeric_limits<double>::infinity());
+  for (const auto& [a, b] : cloth.triangles->edges) {
+    const double l = length(model_.initial_position[a] - model_.initial_position[b]);
+    shortest_[a] = std::min(shortest_[a], l);
+    shortest_[b] = std::min(shortest_[b], l);
+  }
 }
 
 /// The surface of a body, which is the one that was there in the last frame if that had its shape.
@@ -163,6 +171,7 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   to_ = clock.share_after(substeps);
   until_ = clock.share_after(clock.substeps_left());
   const double time = clock.stands() ? 0 : clock.time();
+  time_left_ = (until_ - from_) * time;
   drift_ = ((to_ - from_) * time) * speeds_.drift;
   const Vector drifted = ((from_ - before) * time) * speeds_.drift;
   Vector sum{};
@@ -289,15 +298,23 @@ void ContactPoints::write_box(std::size_t point, double reach) {
   box_[point] = box_around(start_[point] - origin_, end_[point] - origin_, reach);
 }
 
+/// m, for the sake of what it does not go on to do as in this interval.
+double ContactPoints::beyond_for_itself(std::uint32_t slot, double length_of_way) const {
+  if (!touches_itself_) return 0;
+  const double of_speeding = tuning::kTubeAcceleration / 2 * time_left_ * time_left_;
+  return std::min(
+      {tuning::kTubeOfEdge * shortest_[slot], tuning::kTubeOfWay * length_of_way, of_speeding});
+}
+
 /// It holds until the step ends if the point goes on as in this interval.
 Tube ContactPoints::tube_around(std::uint32_t slot) const {
   const Vector x = start_[slot] - origin_, way = end_[slot] - start_[slot];
-  const double reach = tuning::kContactReach * length(way - drift_) +
-                       tuning::kContactWideReach * reach_[slot] +
-                       (to_ > from_ ? tuning::kContactWideSpare : tuning::kContactStandingSpare) *
-                           largest_thickness_ +
-                       beside_itself();
   const double intervals = to_ > from_ ? 1 / (to_ - from_) : 0;
+  const double reach =
+      tuning::kContactReach * length(way - drift_) + tuning::kContactWideReach * reach_[slot] +
+      (to_ > from_ ? tuning::kContactWideSpare : tuning::kContactStandingSpare) *
+          largest_thickness_ +
+      beside_itself() + beyond_for_itself(slot, intervals * (until_ - from_) * length(way));
   const Vector begins = x - (intervals * (from_ - laid_from_)) * way,
                ends = x + (intervals * (until_ - from_)) * way;
   return {box_around(begins, begins, reach), box_around(ends, ends, reach)};
@@ -398,12 +415,13 @@ void ContactPoints::set_end(std::uint32_t point, Vector x) {
 }
 
 std::size_t ContactPoints::bytes() const {
-  std::size_t bytes =
-      bytes_of(surfaces_) + bytes_of(surface_pairs_) + bytes_of(surface_of_) + bytes_of(start_) +
-      bytes_of(end_) + bytes_of(reach_) + bytes_of(ways_) + bytes_of(box_) + bytes_of(tube_) +
-      bytes_of(lane_tubes_) + bytes_of(start_quads_) + bytes_of(way_quads_) +
-      bytes_of(place_quads_) + bytes_of(asked_) + bytes_of(substep_from_) + bytes_of(substep_to_) +
-      bytes_of(laid_) + bytes_of(placed_) + bytes_of(active_) + bytes_of(is_active_);
+  std::size_t bytes = bytes_of(surfaces_) + bytes_of(surface_pairs_) + bytes_of(surface_of_) +
+                      bytes_of(start_) + bytes_of(end_) + bytes_of(reach_) + bytes_of(ways_) +
+                      bytes_of(box_) + bytes_of(tube_) + bytes_of(lane_tubes_) +
+                      bytes_of(start_quads_) + bytes_of(way_quads_) + bytes_of(place_quads_) +
+                      bytes_of(asked_) + bytes_of(substep_from_) + bytes_of(substep_to_) +
+                      bytes_of(laid_) + bytes_of(shortest_) + bytes_of(placed_) +
+                      bytes_of(active_) + bytes_of(is_active_);
   for (const ContactSurface& surface : surfaces_)
     bytes += surface.tree.bytes() + surface.normals.bytes() + bytes_of(surface.is_near);
   return bytes;

@@ -192,6 +192,7 @@ class ContactPoints {
     tube_[point] = tube;
     lane_tubes_[point] = tube.in_lanes();
   }
+  double beyond_for_itself(std::uint32_t slot, double length_of_way) const;
   void lay_vertex(std::uint32_t point);
   void find_reach();
   void write_box(std::size_t point, double reach);
@@ -218,6 +219,8 @@ class ContactPoints {
   bool has_tubes_ = false;
   double from_ = 0, to_ = 0, until_ = 0;  // shares of the step: of the interval, and to its end
   double laid_from_ = 0;                  // likewise: when tubes were laid
+  double time_left_ = 0;                  // s, until the step ends
+  std::vector<double> shortest_;          // m, per slot: of its edges, of cloth that touches itself
   std::uint32_t layings_ = 0;
   std::vector<std::uint32_t> laid_;  // per vertex: in which its tube was made
   std::uint32_t placings_ = 0;

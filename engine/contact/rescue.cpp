@@ -117,7 +117,7 @@ namespace weft {
 namespace {
 
 /// Cloth that touches itself: a zone grows with each round by what it meets, until nothing does.
-void stop_cloth(const ContactScene& scene, const CandidateSearch& search, NearSearch& near_search,
+void stop_cloth(const ContactScene& scene, CandidateSearch& search, NearSearch& near_search,
                 Verification& verification, Candidates& candidates, double time, ImpactZones& zones,
                 RescueReport& report, Team& team) {
   zones.begin();
@@ -140,9 +140,9 @@ void stop_cloth(const ContactScene& scene, const CandidateSearch& search, NearSe
 
 }  // namespace
 
-void stop_failures(const ContactScene& scene, const CandidateSearch& search,
-                   NearSearch& near_search, Verification& verification, Candidates& candidates,
-                   double time, ImpactZones& zones, RescueReport& report, Team& team) {
+void stop_failures(const ContactScene& scene, CandidateSearch& search, NearSearch& near_search,
+                   Verification& verification, Candidates& candidates, double time,
+                   ImpactZones& zones, RescueReport& report, Team& team) {
   using tuning::kBlowRounds, tuning::kZoneRounds;
   report.failures += static_cast<int>(verification.failures().size());
   if (scene.points.touches_itself()) {

@@ -11,9 +11,9 @@
 namespace weft {
 
 /// Until all is verified, or its rounds are over: then failures are left.
-void stop_failures(const ContactScene& scene, const CandidateSearch& search,
-                   NearSearch& near_search, Verification& verification, Candidates& candidates,
-                   double time, ImpactZones& zones, RescueReport& report, Team& team);
+void stop_failures(const ContactScene& scene, CandidateSearch& search, NearSearch& near_search,
+                   Verification& verification, Candidates& candidates, double time,
+                   ImpactZones& zones, RescueReport& report, Team& team);
 
 namespace rescue {
 

@@ -87,6 +87,8 @@ template <class Judge>
 void Verification::judge_moved(const ContactScene& scene, const NearSearch& near_search,
                                const Candidates& candidates, double near, Team& team,
                                Judge&& judge) {
+  if (candidates[0].size() + candidates[1].size() == 0) return;
+  const float most = scene.points.largest_move() + 4 * scene.points.rounding();
   for (std::uint32_t list = 0; list < kPairLists; ++list) {
     const PairList& pairs = candidates[list];
     moved_.resize(pairs.blocks.size());
@@ -95,7 +97,7 @@ void Verification::judge_moved(const ContactScene& scene, const NearSearch& near
                                 .moves = scene.points.moves(),
                                 .distance = near_search.distances()[list].lanes(),
                                 .rounding = scene.points.rounding() + spare,
-                                .most = scene.points.largest_move() + 4 * scene.points.rounding(),
+                                .most = most,
                                 .moved = moved_.data()};
     team.for_each_share(pairs.blocks.size(), [&](std::size_t first, std::size_t last) {
       table_.find_moved_pairs(moves, has_edges(list), first, last);
@@ -121,8 +123,8 @@ void Verification::judge_moved(const ContactScene& scene, const NearSearch& near
   }
 }
 
-void Verification::find(const ContactScene& scene, const CandidateSearch& search,
-                        NearSearch& near_search, Candidates& candidates, Team& team) {
+void Verification::find(const ContactScene& scene, CandidateSearch& search, NearSearch& near_search,
+                        Candidates& candidates, Team& team) {
   failures_.clear();
   look_beside_strayed(scene, search, near_search, candidates, team);
   ContactPoints& points = scene.points;
@@ -150,11 +152,12 @@ void Verification::find_late(const ContactScene& scene, const NearSearch& near_s
                              const Candidates& candidates, Team& team) {
   failures_.clear();
   const ContactPoints& points = scene.points;
+  if (points.surface_pairs().empty()) return;  // layers press each other, and come apart by and by
   const auto at = [&](std::uint32_t point) { return points.end(point); };
   judge_moved(
       scene, near_search, candidates, points.largest_thickness(), team,
       [&](const Pair& pair, const std::array<std::uint32_t, 4>& four, bool) -> Verdict {
-        if (pair.is_within_cloth()) return {};  // layers press each other, and come apart by and by
+        if (pair.is_within_cloth()) return {};
         const ContactSurface& later = points.later(pair);
         const FourPoints x = points.ends_of(four);
         const reference::Nearest found = nearest(pair.kind, x);
@@ -185,7 +188,7 @@ void Verification::leave_each_once(const Candidates& candidates) {
 
 /// Boxes hold what points were expected to do. Of those that did something else candidates are
 /// found anew, by boxes around the ways of their triangles.
-void Verification::look_beside_strayed(const ContactScene& scene, const CandidateSearch& search,
+void Verification::look_beside_strayed(const ContactScene& scene, CandidateSearch& search,
                                        NearSearch& near_search, Candidates& candidates,
                                        Team& team) {
   ContactPoints& points = scene.points;
@@ -207,7 +210,8 @@ void Verification::look_beside_strayed(const ContactScene& scene, const Candidat
     box.add(points.box(c));
     search.find_beside(points, t, box, candidates);
   }
-  if (points.touches_itself()) search.find_within_cloth_beside(points, has_strayed_, candidates);
+  if (points.touches_itself())
+    search.find_within_cloth_beside(points, has_strayed_, candidates, team);
   near_search.measure_new(points, candidates, team);
 }
 

@@ -26,7 +26,7 @@ class Verification {
   explicit Verification(const simd::Table& table) : table_(table) {}
 
   /// Moves are measured. Points that left their boxes have new candidates.
-  void find(const ContactScene& scene, const CandidateSearch& search, NearSearch& near_search,
+  void find(const ContactScene& scene, CandidateSearch& search, NearSearch& near_search,
             Candidates& candidates, Team& team);
   const std::vector<Failure>& failures() const { return failures_; }
   /// Instead, pairs that have met no other, but have come nearer than their thickness where nothing
@@ -44,7 +44,7 @@ class Verification {
   void judge_moved(const ContactScene& scene, const NearSearch& near_search,
                    const Candidates& candidates, double near, Team& team, Judge&& judge);
   void leave_each_once(const Candidates& candidates);
-  void look_beside_strayed(const ContactScene& scene, const CandidateSearch& search,
+  void look_beside_strayed(const ContactScene& scene, CandidateSearch& search,
                            NearSearch& near_search, Candidates& candidates, Team& team);
 
   const simd::Table& table_;

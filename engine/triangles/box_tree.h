@@ -64,6 +64,9 @@ class BoxTree {
   /// visit(a, b), of all primitives of two trees whose boxes meet.
   template <class Visit>
   static void meet(const simd::Table& table, const BoxTree& a, const BoxTree& b, Visit&& visit);
+  /// The same of pairs of one tree, each once and none with itself.
+  template <class Visit>
+  static void meet_itself(const simd::Table& table, const BoxTree& tree, Visit&& visit);
   /// visit(primitive), of those whose boxes meet this one.
   template <class Visit>
   void find(const simd::Table& table, const Box& box, Visit&& visit) const;
@@ -164,6 +167,36 @@ void BoxTree::meet(const simd::Table& table, const BoxTree& a, const BoxTree& b,
       for (std::uint32_t met = b.met_in(table, its, a.box_in(mine, at)); met != 0; met &= met - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(met));
         visit(a.items_[mine * kernels::kLanes + at], b.items_[its * kernels::kLanes + lane]);
+      }
+    }
+  }
+}
+
+template <class Visit>
+void BoxTree::meet_itself(const simd::Table& table, const BoxTree& tree, Visit&& visit) {
+  if (tree.clusters_.empty()) return;
+  std::array<std::pair<std::size_t, std::size_t>, 192> waiting;
+  std::size_t count = 0;
+  waiting[count++] = {1, 1};
+  while (count > 0) {
+    const auto [i, j] = waiting[--count];  // of one level
+    if (!tree.nodes_[i].meets(tree.nodes_[j])) continue;
+    if (!tree.is_leaf(i)) {
+      waiting[count++] = {2 * i + 1, 2 * j + 1};
+      if (i != j) waiting[count++] = {2 * i + 1, 2 * j};
+      waiting[count++] = {2 * i, 2 * j + 1};
+      waiting[count++] = {2 * i, 2 * j};
+      continue;
+    }
+    const std::size_t mine = i - tree.leaves_, its = j - tree.leaves_;
+    for (std::uint32_t left = tree.met_in(table, mine, tree.nodes_[j]); left != 0;
+         left &= left - 1) {
+      const auto at = static_cast<std::size_t>(std::countr_zero(left));
+      const std::uint32_t after = i == j ? ~std::uint32_t{0} << at << 1 : ~std::uint32_t{0};
+      for (std::uint32_t met = tree.met_in(table, its, tree.box_in(mine, at)) & after; met != 0;
+           met &= met - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(met));
+        visit(tree.items_[mine * kernels::kLanes + at], tree.items_[its * kernels::kLanes + lane]);
       }
     }
   }

@@ -156,7 +156,7 @@ void check(std::uint32_t seed, bool moves, bool deforms) {
     if (interval == 0) points.look_ahead(now.particles, now.clock);
     points.begin_interval(now.particles, now.clock, 4);
     const std::size_t before = candidates[0].size() + candidates[1].size();
-    const bool have_moved = search.find(points, candidates);
+    const bool have_moved = search.find(points, candidates, team);
     renewed +=
         interval > 0 && (have_moved || candidates[0].size() + candidates[1].size() != before);
     near.measure(points, candidates, have_moved, team);
@@ -222,6 +222,130 @@ TEST_CASE("pairs that may come near in an interval are among the candidates; oth
   SUBCASE("of a body that is still") { check(1, false, false); }
   SUBCASE("of one that moves") { check(1, true, false); }
   SUBCASE("of one that moves and deforms") { check(1, true, true); }
+}
+
+/// A sheet in pleats, whose walls are as far apart as cloth is thick. Some of it speeds up.
+struct Pleats {
+  Random random{3};
+  std::shared_ptr<const Model> model;
+  BodyClock clock;
+  Particles particles;
+  std::vector<Vector> v;
+
+  Pleats() {
+    MeshDescription mesh = irregular_triangles(8, 0.2, random);
+    for (Vec3& x : mesh.positions)
+      x = {0.002 * x.x, 0.05 * std::abs(std::fmod(x.x, 2.) - 1), 0.05 * x.y};
+    mesh.material = find_material("cotton").value();
+    SceneDescription scene = made(mesh).scene;
+    scene.self_contact = {.on = true, .thickness = kThickness};
+    model = model_of(scene);
+    clock.begin({}, kH, kSubsteps, false);
+    for (std::uint32_t slot = 0; slot < model->slots(); ++slot) {
+      particles.to.push_back(model->initial_position[slot]);
+      v.push_back(draw(0.2));
+    }
+    particles.from = particles.to;
+  }
+  Vector draw(double size) {
+    return {random.between(-size, size), random.between(-size, size), random.between(-size, size)};
+  }
+  void predict() {
+    clock.begin_interval(4 * kH);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      particles.from[i] = particles.to[i];
+      particles.to[i] = particles.from[i] + kH * v[i];
+    }
+  }
+  void finish(int interval) {
+    for (int substep = 0; substep < 4; ++substep) {
+      clock.advance();
+      if (substep == 0) continue;
+      for (std::size_t i = 0; i < v.size(); ++i) particles.to[i] = particles.to[i] + kH * v[i];
+    }
+    for (Vector& its : v)
+      if (random.below(10) == 0) its = draw(interval == 1 ? 3 : 0.2);
+  }
+};
+
+/// visit(name, distance, whether triangles of both share a point), of all that share none.
+template <class Visit>
+void for_all_within(const TriangleSurface& s, const std::vector<Vector>& x, Visit&& visit) {
+  const auto are_joined = [&](std::uint32_t p, std::uint32_t q) {
+    return std::ranges::find(s.neighbours[p], q) != s.neighbours[p].end();
+  };
+  for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
+    const auto [p, q, r] = s.triangles[t];
+    for (std::uint32_t i = 0; i < x.size(); ++i) {
+      if (s.triangles_at[i].empty() || i == p || i == q || i == r) continue;
+      visit(Name{PairKind::point_triangle, false, i, t},
+            length(reference::nearest_in_triangle(x[i], x[p], x[q], x[r]).r),
+            are_joined(i, p) || are_joined(i, q) || are_joined(i, r));
+    }
+  }
+  for (std::uint32_t i = 0; i < s.edges.size(); ++i) {
+    for (std::uint32_t j = i + 1; j < s.edges.size(); ++j) {
+      const auto [a, b] = s.edges[i];
+      const auto [c, d] = s.edges[j];
+      if (a == c || a == d || b == c || b == d) continue;
+      visit(Name{PairKind::edges, false, i, j},
+            length(reference::nearest_of_edges(x[a], x[b], x[c], x[d]).r),
+            are_joined(a, c) || are_joined(a, d) || are_joined(b, c) || are_joined(b, d));
+    }
+  }
+}
+
+std::set<Name> names_within(const Candidates& candidates) {
+  std::set<Name> names;
+  for (const auto& [kind, turned, first, second] : names_of(candidates)) {
+    const bool swap = kind == PairKind::edges && second < first;
+    CHECK(names.insert(Name{kind, turned, swap ? second : first, swap ? first : second}).second);
+  }
+  return names;
+}
+
+TEST_CASE("pairs within a cloth that may come near in an interval are among the candidates") {
+  Pleats now;
+  const simd::Table& table =
+      simd::table(simd::supported(simd::Isa::avx2) ? simd::Isa::avx2 : simd::Isa::sse2);
+  ContactPoints points(*now.model);
+  points.begin(now.clock);
+  CandidateSearch search(table);
+  Candidates candidates;
+  Team team;
+  int far = 0, adjacent = 0, left_out = 0;
+  for (int interval = 0; interval < 4; ++interval) {
+    CAPTURE(interval);
+    now.predict();
+    if (interval == 0) points.look_ahead(now.particles, now.clock);
+    points.begin_interval(now.particles, now.clock, 4);
+    search.find(points, candidates, team);
+    const std::set<Name> names = names_within(candidates);
+    // Boxes hold half of the thickness beyond all places.
+    std::vector<Vector> place(now.model->slots());
+    for (int draw = 0; draw < 3; ++draw) {
+      for (std::uint32_t slot = 0; slot < place.size(); ++slot) {
+        const Box& box = points.box(slot);
+        const auto in = [&](std::size_t k) {
+          return now.random.between(static_cast<double>(box.low[k]) + 0.5 * kThickness,
+                                    static_cast<double>(box.high[k]) - 0.5 * kThickness);
+        };
+        place[slot] = points.origin() + Vector{in(0), in(1), in(2)};
+      }
+      for_all_within(points.cloth(), place, [&](const Name& name, double distance, bool joined) {
+        if (distance < 0.99 * kThickness) {
+          ++(joined ? adjacent : far);
+          CHECK(names.contains(name));
+        } else if (joined) {
+          left_out += !names.contains(name);
+        }
+      });
+    }
+    now.finish(interval);
+  }
+  CHECK(far > 300);
+  CHECK(adjacent > 100);
+  CHECK(left_out > 1000);
 }
 
 }  // namespace
