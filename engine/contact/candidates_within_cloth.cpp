@@ -20,6 +20,7 @@ void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candi
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
   const auto& triangles = cloth.triangles->triangles;
   if (adjacent_.empty()) adjacent_.make(*cloth.triangles);
+  adjacent_.find(points, candidates, team);
   OwnedFeatures features(table_, points, kWithinCloth, candidates);
   BoxTree::meet_itself(table_, cloth.tree, [&](std::uint32_t a, std::uint32_t b) {
     if (share_a_corner(triangles[a], triangles[b])) return;
@@ -27,7 +28,6 @@ void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candi
     features.add(b);
   });
   features.finish();
-  adjacent_.find(points, candidates, team);
 }
 
 /// Of triangles that are renewed. The tree holds the others where they were when tubes were laid;
