@@ -29,9 +29,6 @@ inline constexpr double kMended = 0.8;
 /// lies between two of them makes for more pairs. Beside meshes, where it is verified as often that
 /// nothing went through another, twice as much takes 0.6 times as long and misses contacts.
 inline constexpr double kContactInterval = 2e-3;
-/// s. The same of cloth that touches itself, and no mesh: no body takes it along within an
-/// interval. A drape of 20 x 20 takes 1.1 times as many instructions with half of it.
-inline constexpr double kLayerInterval = 4e-3;
 /// In thicknesses: no vertex of a body takes a longer way in such an interval.
 inline constexpr double kMeshWay = 5;
 /// So often a sweep pushes apart all pairs of cloth and meshes that touch, one after the other:

@@ -28,7 +28,6 @@ void SurfaceContacts::begin(const BodyClock& clock, ContactStart start,
 double SurfaceContacts::interval_for(const ContactParticles& particles, const BodyClock& clock) {
   if (empty()) return tuning::kContactInterval;
   if (!std::exchange(has_looked_ahead_, true)) points_.look_ahead(particles, clock);
-  if (points_.surface_pairs().empty()) return tuning::kLayerInterval;
   const double fastest = points_.speeds().of_near;
   const double way = tuning::kMeshWay * points_.largest_thickness();
   return fastest > 0 ? std::min(tuning::kContactInterval, way / fastest) : tuning::kContactInterval;
