@@ -81,9 +81,15 @@ Result<void> validate_air(const ChangedAir& air, const Model& model) {
   if (auto r = validate_not_negative("air.density", air.density); !r) return r;
   if (auto r = validate_not_negative("air.drag", air.drag); !r) return r;
   if (auto r = validate_not_negative("air.lift", air.lift); !r) return r;
-  if (model.air.triangles.empty() && (air.drag > 0 || air.lift > 0)) {
-    return refuse("air.drag", "given without air.triangles, nothing would feel it",
-                  number(air.drag));
+  if (auto r = validate_not_negative("air.ram", air.ram); !r) return r;
+  if (model.air.triangles.empty() && (air.drag > 0 || air.lift > 0 || air.ram > 0)) {
+    return refuse(air.drag > 0   ? "air.drag"
+                  : air.lift > 0 ? "air.lift"
+                                 : "air.ram",
+                  "given without air.triangles, nothing would feel it",
+                  number(air.drag > 0   ? air.drag
+                         : air.lift > 0 ? air.lift
+                                        : air.ram));
   }
   return {};
 }

@@ -3,7 +3,9 @@
 #include <span>
 #include <utility>
 
+#include "engine/model/pressures.h"
 #include "engine/model/validate.h"
+#include "engine/public_vectors.h"
 #include "engine/validation.h"
 #include "kernels/reference/membrane.h"
 
@@ -94,9 +96,15 @@ Result<void> validate_air(const Air& air, std::size_t particles) {
   if (auto r = validate_not_negative("air.density", air.density); !r) return r;
   if (auto r = validate_not_negative("air.drag", air.drag); !r) return r;
   if (auto r = validate_not_negative("air.lift", air.lift); !r) return r;
-  if (air.triangles.empty() && (air.drag > 0 || air.lift > 0)) {
-    return refuse("air.drag", "given without air.triangles, nothing would feel it",
-                  number(air.drag));
+  if (auto r = validate_not_negative("air.ram", air.ram); !r) return r;
+  if (air.triangles.empty() && (air.drag > 0 || air.lift > 0 || air.ram > 0)) {
+    return refuse(air.drag > 0   ? "air.drag"
+                  : air.lift > 0 ? "air.lift"
+                                 : "air.ram",
+                  "given without air.triangles, nothing would feel it",
+                  number(air.drag > 0   ? air.drag
+                         : air.lift > 0 ? air.lift
+                                        : air.ram));
   }
   return validate_wind(air.wind);
 }
@@ -150,6 +158,8 @@ Result<void> validate_material(const SceneDescription& d) {
   }
   if (auto r = validate_damping(d.damping); !r) return r;
   if (auto r = validate_not_negative("friction", d.friction); !r) return r;
+  const auto place = [&](std::uint32_t i) { return to_internal(d.positions[i]); };
+  if (auto r = validate_pressures(d.pressures, d.surface, place); !r) return r;
   if (auto r = validate_self_contact(d.self_contact, !d.surface.empty()); !r) return r;
   return validate_air(d.air, d.positions.size());
 }

@@ -60,9 +60,11 @@ bool do_pins_move(const State& s) {
 
 }  // namespace
 
+/// Pressures pull by their sum: those of a closed surface hold each other.
 double mean_acceleration(const State& s) {
   if (s.forces().size() == 0) return length(s.gravity);
-  double sum = 0, mass = 0;
+  const bool is_pressed = presses(s);
+  double sum = is_pressed ? length(sum_of_pressure(s, s.position.view())) : 0, mass = 0;
   for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
     if (!is_free_cloth(*s.model, slot)) continue;
     mass += s.model->mass[slot];

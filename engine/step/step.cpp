@@ -10,6 +10,7 @@
 #include "engine/step/exact_substep.h"
 #include "engine/step/frame_plan.h"
 #include "engine/step/plan.h"
+#include "engine/step/pressure.h"
 #include "engine/step/project.h"
 #include "engine/step/reporting.h"
 #include "engine/step/small_step.h"
@@ -145,7 +146,7 @@ class OneStep {
     const Budget budget{positions_.left(attempt, report_.iterations),
                         velocities_.left(attempt, report_.velocity_iterations)};
     bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
-    if (is_resisted(*s_.model)) {
+    if (s_.total_force.size() > 0) {
       timed(report_, Stage::predict, [&] { resist(attempt, h); });
       is_predicted = false;
     }
@@ -168,12 +169,20 @@ class OneStep {
       const AirPace air = find_air_pace(s_);
       s_.air_parts = parts_for_air(air, h);
       s_.air_turning = air.turning;
-      return find_resistance(s_, 0, h / s_.air_parts, team_);
+      find_resistance(s_, 0, h / s_.air_parts, team_);
+      return press_at_start();
     }
     find_resistance(s_, decays ? s_.model->damping.motion : 0, h, team_);
+    press_at_start();
     if (!decays) return;
     s_.velocity_before_decay = s_.velocity;
     decay(s_, h);
+  }
+
+  void press_at_start() {
+    if (!presses(s_)) return;
+    s_.pressed.beside = s_.total_force;
+    press(s_, s_.position.view());
   }
 
   void reject(const Attempt& attempt) {
