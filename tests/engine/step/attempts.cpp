@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/isa.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/yarn/yarn_solver.h"
 #include "engine/step/plan.h"
@@ -37,9 +38,14 @@ std::string list_of(State& s) {
   return list;
 }
 
+State state_of(const SceneDescription& scene, Settings settings) {
+  settings.isa = resolve(Isa::automatic).value();
+  return State(model_of(scene), settings);
+}
+
 std::string list_of(const SceneDescription& scene, const Settings& settings,
                     double refinement = 0) {
-  State s(model_of(scene), settings);
+  State s = state_of(scene, settings);
   s.refinement = refinement;
   return list_of(s);
 }
@@ -113,7 +119,7 @@ class Scripted final : public ConstraintSolver {
 constexpr double kDt = 1.0 / 64;  // whose parts are exact
 
 State hanging(Settings settings = {.substeps = 1, .solver = Solver::yarn}) {
-  return State(model_of(scene_of("hang", 5)), settings);
+  return state_of(scene_of("hang", 5), settings);
 }
 
 /// In sixteenths of the step.
@@ -217,7 +223,7 @@ SceneDescription pulled_too_far() {
 }
 
 TEST_CASE("nothing is tried after the last attempt: its result counts, with its error") {
-  State s(model_of(pulled_too_far()), {.substeps = 1, .solver = Solver::yarn});
+  State s = state_of(pulled_too_far(), {.substeps = 1, .solver = Solver::yarn});
   s.placed = false;
   const StepReport report = step(s, kDt);
   CHECK(committed(report.status));

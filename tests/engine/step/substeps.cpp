@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/isa.h"
 #include "engine/parallel/team.h"
 #include "engine/step/plan.h"
 #include "tests/support/clothes.h"
@@ -56,7 +57,9 @@ TEST_CASE("automatic substeps end at 1024 a step") {
 TEST_CASE("automatic substeps by yarns leave each at least eight of the step's iterations") {
   Team team;
   for (const int most : {1, 40, 400}) {
-    State s(model_of(scene_of("hang", 5)), {.max_iterations = most, .solver = Solver::yarn});
+    State s(
+        model_of(scene_of("hang", 5)),
+        {.max_iterations = most, .solver = Solver::yarn, .isa = resolve(Isa::automatic).value()});
     StepReport report;
     CHECK(plan_for(s, 100, report, team).substeps == std::max(1, most / 8));
   }
