@@ -43,16 +43,40 @@ class Particles final : public ContactParticles {
   double momentum_share() const override { return 1; }
 };
 
-/// A sheet beside a body that turns, goes on and, if `deforms`, breathes.
-struct Beside {
+/// A sheet whose particles go straight on, each with its own velocity.
+struct Moving {
   Random random;
   std::shared_ptr<const Model> model;
-  Bodies bodies;
   BodyClock clock;
   Particles particles;
   std::vector<Vector> v;
 
-  Beside(std::uint32_t seed, bool moves, bool deforms) : random(seed) {
+  explicit Moving(std::uint32_t seed) : random(seed) {}
+  void start(double speed) {
+    for (std::uint32_t slot = 0; slot < model->slots(); ++slot) {
+      particles.to.push_back(model->initial_position[slot]);
+      v.push_back(draw(speed));
+    }
+    particles.from = particles.to;
+  }
+  Vector draw(double size) {
+    return {random.between(-size, size), random.between(-size, size), random.between(-size, size)};
+  }
+  /// The first substep of an interval is predicted.
+  void predict() {
+    clock.begin_interval(4 * kH);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      particles.from[i] = particles.to[i];
+      particles.to[i] = particles.from[i] + kH * v[i];
+    }
+  }
+};
+
+/// A sheet beside a body that turns, goes on and, if `deforms`, breathes.
+struct Beside : Moving {
+  Bodies bodies;
+
+  Beside(std::uint32_t seed, bool moves, bool deforms) : Moving(seed) {
     MeshDescription mesh = irregular_triangles(8, 0.2, random);
     for (Vec3& x : mesh.positions) x = {0.05 * x.x - 0.17, 0.003 * x.x, 0.05 * x.y - 0.18};
     mesh.material = find_material("cotton").value();
@@ -70,22 +94,7 @@ struct Beside {
       bodies.move_vertices(id, to);
     }
     clock.begin(bodies.travelling(0.3), kH, kSubsteps, false);
-    for (std::uint32_t slot = 0; slot < model->slots(); ++slot) {
-      particles.to.push_back(model->initial_position[slot]);
-      v.push_back(draw(0.4));
-    }
-    particles.from = particles.to;
-  }
-  Vector draw(double size) {
-    return {random.between(-size, size), random.between(-size, size), random.between(-size, size)};
-  }
-  /// The first substep of an interval is predicted.
-  void predict() {
-    clock.begin_interval(4 * kH);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      particles.from[i] = particles.to[i];
-      particles.to[i] = particles.from[i] + kH * v[i];
-    }
+    start(0.4);
   }
 };
 
@@ -224,14 +233,8 @@ TEST_CASE("pairs that may come near in an interval are among the candidates; oth
 }
 
 /// A sheet in pleats, whose walls are as far apart as cloth is thick. Some of it speeds up.
-struct Pleats {
-  Random random{3};
-  std::shared_ptr<const Model> model;
-  BodyClock clock;
-  Particles particles;
-  std::vector<Vector> v;
-
-  Pleats() {
+struct Pleats : Moving {
+  Pleats() : Moving(3) {
     MeshDescription mesh = irregular_triangles(8, 0.2, random);
     for (Vec3& x : mesh.positions)
       x = {0.002 * x.x, 0.05 * std::abs(std::fmod(x.x, 2.) - 1), 0.05 * x.y};
@@ -240,21 +243,7 @@ struct Pleats {
     scene.self_contact = {.on = true, .thickness = kThickness};
     model = model_of(scene);
     clock.begin({}, kH, kSubsteps, false);
-    for (std::uint32_t slot = 0; slot < model->slots(); ++slot) {
-      particles.to.push_back(model->initial_position[slot]);
-      v.push_back(draw(0.2));
-    }
-    particles.from = particles.to;
-  }
-  Vector draw(double size) {
-    return {random.between(-size, size), random.between(-size, size), random.between(-size, size)};
-  }
-  void predict() {
-    clock.begin_interval(4 * kH);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      particles.from[i] = particles.to[i];
-      particles.to[i] = particles.from[i] + kH * v[i];
-    }
+    start(0.2);
   }
   void finish(int interval) {
     for (int substep = 0; substep < 4; ++substep) {
