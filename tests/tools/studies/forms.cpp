@@ -29,12 +29,14 @@ void check(const std::vector<Form>& forms) {
 TEST_CASE("what stretches and shears") { check(membrane_forms()); }
 TEST_CASE("what bends") { check(bending_forms()); }
 TEST_CASE("what a force or a moment bends by its end") { check(end_forms()); }
-TEST_CASE("a slit annular plate") { check(annulus_forms()); }
+TEST_CASE("a slit annular plate" * doctest::test_suite("slow")) { check(annulus_forms()); }
 TEST_CASE("strips of named fabrics") { check(fabric_forms()); }
-TEST_CASE("soap films") { check(film_forms()); }
+TEST_CASE("soap films" * doctest::test_suite("slow")) { check(film_forms()); }
 TEST_CASE("what falls and decays") { check(motion_forms()); }
 TEST_CASE("what lies on bodies and slides") { check(body_forms()); }
-TEST_CASE("what lies on other layers, slides and stands") { check(layer_forms()); }
+TEST_CASE("what lies on other layers, slides and stands" * doctest::test_suite("slow")) {
+  check(layer_forms());
+}
 
 TEST_CASE("a heavy strip that is short sags by load / 8, a long one hangs down by its length") {
   CHECK(heavy_elastica(0.01).y == doctest::Approx(-0.01 / 8).epsilon(1e-4));
