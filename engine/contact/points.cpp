@@ -45,6 +45,9 @@ bool is_same(const reference::Placement& a, const reference::Placement& b) {
 
 void ContactPoints::begin(const BodyClock& clock) {
   slots_ = model_.slots();
+  particles_.clear();
+  for (std::uint32_t slot = 0; slot < slots_; ++slot)
+    if (model_.is_particle(slot)) particles_.push_back(slot);
   largest_thickness_ = 0;
   has_tubes_ = false;
   speeds_ = {};
@@ -156,8 +159,7 @@ void ContactPoints::take_vertices(ContactSurface& surface, const TravellingBody&
 }
 
 void ContactPoints::look_ahead(const ContactParticles& cloth, const BodyClock& clock) {
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (!model_.is_particle(slot)) continue;
+  for (const std::uint32_t slot : particles_) {
     start_[slot] = cloth.start(slot);
     end_[slot] = cloth.position(slot) - start_[slot];
   }
@@ -175,9 +177,8 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   drift_ = ((to_ - from_) * time) * speeds_.drift;
   const Vector drifted = ((from_ - before) * time) * speeds_.drift;
   Vector sum{};
-  double particles = 0, travelled = 0;
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (!model_.is_particle(slot)) continue;
+  double travelled = 0;
+  for (const std::uint32_t slot : particles_) {
     const Vector x = cloth.position(slot);
     const Vector start = clock.stands() ? x : cloth.start(slot),
                  by = start - start_[slot] - drifted;
@@ -185,14 +186,13 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
     start_[slot] = start;
     end_[slot] = start_[slot] + substeps * (x - start_[slot]);
     sum = sum + start_[slot];
-    ++particles;
   }
-  const Vector origin = rounded((1 / std::max(1.0, particles)) * sum);
+  const Vector origin = rounded((1 / std::max(1.0, static_cast<double>(particles_.size()))) * sum);
   bool are_floats_same = origin == origin_;
   has_tubes_ = has_tubes_ && are_floats_same;
   origin_ = origin;
   double farthest = 0;
-  for (std::size_t slot = 0; slot < slots_; ++slot) {
+  for (const std::uint32_t slot : particles_) {
     const Vector from = start_[slot] - origin_;
     farthest = std::max(farthest, dot(from, from));
     write_start_and_way(slot);
@@ -207,7 +207,7 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   travelled_ += touches_itself_ ? std::max(travelled_, of_other) : of_other;
   find_reach();
   const double beside_itself = this->beside_itself();
-  for (std::size_t slot = 0; slot < slots_; ++slot) {
+  for (const std::uint32_t slot : particles_) {
     write_box(slot, reach_[slot] + beside_itself);
     way_quads_[4 * slot + 3] = static_cast<float>(reach_[slot]);
   }
@@ -278,7 +278,7 @@ void ContactPoints::find_reach() {
   ways_.resize(slots_);
   reach_.resize(slots_);
   largest_way_ = 0;
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
+  for (const std::uint32_t slot : particles_) {
     ways_[slot] = reach_[slot] = length(way(slot) - drift_);
     largest_way_ = std::max(largest_way_, ways_[slot]);
   }
@@ -322,7 +322,7 @@ Tube ContactPoints::tube_around(std::uint32_t slot) const {
 
 void ContactPoints::lay_tubes() {
   laid_from_ = from_;
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) set_tube(slot, tube_around(slot));
+  for (const std::uint32_t slot : particles_) set_tube(slot, tube_around(slot));
   ++layings_;
   for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
   active_.clear();
@@ -371,14 +371,14 @@ void ContactPoints::read_cloth(const ContactParticles& cloth) {
 }
 
 void ContactPoints::measure_moves(const ContactParticles& cloth) {
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (model_.is_particle(slot)) set_end(slot, cloth.position(slot));
+  for (const std::uint32_t slot : particles_) {
+    set_end(slot, cloth.position(slot));
   }
 }
 
 float ContactPoints::largest_move() const {
   double largest = 0;
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
+  for (const std::uint32_t slot : particles_) {
     const Vector by = way(slot) - drift_;
     largest = std::max(largest, dot(by, by));
   }
@@ -390,8 +390,8 @@ float ContactPoints::largest_move() const {
 bool ContactPoints::holds_end(std::uint32_t point) const { return holds(point, end_[point]); }
 
 bool ContactPoints::hold(const ContactParticles& cloth) const {
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
-    if (model_.is_particle(slot) && !holds(slot, cloth.position(slot))) return false;
+  for (const std::uint32_t slot : particles_) {
+    if (!holds(slot, cloth.position(slot))) return false;
   }
   return true;
 }
@@ -415,9 +415,9 @@ void ContactPoints::set_end(std::uint32_t point, Vector x) {
 }
 
 std::size_t ContactPoints::bytes() const {
-  std::size_t bytes = bytes_of(surfaces_) + bytes_of(surface_pairs_) + bytes_of(surface_of_) +
-                      bytes_of(start_) + bytes_of(end_) + bytes_of(reach_) + bytes_of(ways_) +
-                      bytes_of(box_) + bytes_of(tube_) + bytes_of(lane_tubes_) +
+  std::size_t bytes = bytes_of(surfaces_) + bytes_of(surface_pairs_) + bytes_of(particles_) +
+                      bytes_of(surface_of_) + bytes_of(start_) + bytes_of(end_) + bytes_of(reach_) +
+                      bytes_of(ways_) + bytes_of(box_) + bytes_of(tube_) + bytes_of(lane_tubes_) +
                       bytes_of(start_quads_) + bytes_of(way_quads_) + bytes_of(place_quads_) +
                       bytes_of(asked_) + bytes_of(substep_from_) + bytes_of(substep_to_) +
                       bytes_of(laid_) + bytes_of(shortest_) + bytes_of(placed_) +

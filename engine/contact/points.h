@@ -199,6 +199,7 @@ class ContactPoints {
 
   const Model& model_;
   std::size_t slots_ = 0;
+  std::vector<std::uint32_t> particles_;  // slots; the others are padding
   bool touches_itself_ = false;
   RestDistances rest_;
   std::vector<ContactSurface> surfaces_;
@@ -237,7 +238,7 @@ void ContactPoints::renew_tubes(Moved&& moved) {
   const double length = until_ - laid_from_;
   const Tube::Part part(length > 0 ? (from_ - laid_from_) / length : 0,
                         length > 0 ? (to_ - laid_from_) / length : 0);
-  for (std::uint32_t slot = 0; slot < slots_; ++slot) {
+  for (const std::uint32_t slot : particles_) {
     if (part.of(tube_[slot]).hold(box_[slot])) continue;
     set_tube(slot, tube_around(slot));
     moved(slot);

@@ -76,13 +76,15 @@ struct Moving {
 struct Beside : Moving {
   Bodies bodies;
 
-  Beside(std::uint32_t seed, bool moves, bool deforms) : Moving(seed) {
+  /// origin: of both.
+  Beside(std::uint32_t seed, bool moves, bool deforms, Vec3 origin = {}) : Moving(seed) {
     MeshDescription mesh = irregular_triangles(8, 0.2, random);
-    for (Vec3& x : mesh.positions) x = {0.05 * x.x - 0.17, 0.003 * x.x, 0.05 * x.y - 0.18};
+    for (Vec3& x : mesh.positions)
+      x = origin + Vec3{0.05 * x.x - 0.17, 0.003 * x.x, 0.05 * x.y - 0.18};
     mesh.material = find_material("cotton").value();
     model = model_of(made(mesh).scene);
     const TriangleMesh ball = icosphere(0.15, 3);
-    const Vec3 place{0.01, -0.137, 0.02};
+    const Vec3 place = origin + Vec3{0.01, -0.137, 0.02};
     const auto id =
         bodies.add({.shape = shape_of(ball), .pose = {.position = place}, .thickness = kThickness});
     if (moves)
@@ -230,6 +232,27 @@ TEST_CASE("pairs that may come near in an interval are among the candidates; oth
   SUBCASE("of a body that is still") { check(1, false, false); }
   SUBCASE("of one that moves") { check(1, true, false); }
   SUBCASE("of one that moves and deforms") { check(1, true, true); }
+}
+
+std::size_t candidates_of(const Beside& now) {
+  CHECK(now.model->slots() > now.model->particles);  // with padding, which has no place
+  ContactPoints points(*now.model);
+  points.begin(now.clock);
+  points.look_ahead(now.particles, now.clock);
+  points.begin_interval(now.particles, now.clock, 4);
+  CandidateSearch search(simd::table(simd::best_isa()));
+  Candidates candidates;
+  Team team;
+  search.find(points, candidates, team);
+  return names_of(candidates).size();
+}
+
+TEST_CASE("130 km from the origin as many pairs are candidates as beside it") {
+  Beside here(1, false, false), there(1, false, false, {131072, 0, -131072});
+  for (Beside* now : {&here, &there}) now->predict();
+  const std::size_t expected = candidates_of(here);
+  CHECK(expected > 300);
+  CHECK(candidates_of(there) == doctest::Approx(static_cast<double>(expected)).epsilon(0.01));
 }
 
 /// A sheet in pleats, whose walls are as far apart as cloth is thick. Some of it speeds up.
