@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/bytes_of.h"
+#include "engine/contact/mover.h"
 
 namespace weft {
 
@@ -54,11 +55,12 @@ Vector turned(Vector r, Vector angle) {
 struct ImpactZones::Rigid {
   Vector centre{}, way{}, angle{};  // m, m, rad
   Vector velocity{}, spin{};
-  std::uint32_t body = kNoIndex;  // whose place it follows
+  std::uint32_t body = kNoIndex;  // with which it goes
+  bool has_place = false;         // and whose place it keeps
   reference::Placement begins{}, ends{};
 
   Vector place(Vector start) const {
-    if (body != kNoIndex) return ends.placed(begins.from_place(start));
+    if (has_place) return ends.placed(begins.from_place(start));
     return centre + way + turned(start - centre, angle);
   }
 };
@@ -131,8 +133,8 @@ bool ImpactZones::follows(const ContactPoints& points, std::size_t first, std::s
     motion.body = surface.body;
     motion.begins = surface.begins;
     motion.ends = surface.ends;
-    if (surface.is_rigid) return true;
-    motion.body = kNoIndex;
+    motion.has_place = surface.is_rigid;
+    if (motion.has_place) return true;
   }
   if (count == 0) return false;
   motion.way = (1 / count) * sum;
@@ -176,19 +178,16 @@ void ImpactZones::move(const ContactScene& scene, double time) {
   for (std::size_t first = 0, last = 0; first < points_.size(); first = last) {
     while (last < points_.size() && parent_[points_[last]] == parent_[points_[first]]) ++last;
     const Rigid motion = motion_of(scene, first, last, time);
+    const Mover mover(scene, motion.body);
     for (std::size_t i = first; i < last; ++i) {
       const std::uint32_t point = points_[i];
       if (!(scene.points.inverse_mass(point) > 0)) continue;
-      const Vector start = scene.points.start(point);
-      ContactParticle particle = scene.particles.read(point);
-      const Vector before = particle.v;
-      particle.x = motion.place(start);
-      particle.v = motion.body != kNoIndex
-                       ? (1 / time) * (particle.x - start)
-                       : motion.velocity + cross(motion.spin, start - motion.centre);
-      scene.particles.write(point, particle);
-      scene.points.set_end(point, particle.x);
-      scene.particles.jolt(point, particle.v - before);
+      const Vector start = scene.points.start(point), end = motion.place(start);
+      const Vector velocity = motion.has_place
+                                  ? (1 / time) * (end - start)
+                                  : motion.velocity + cross(motion.spin, start - motion.centre);
+      const ContactParticle particle = scene.particles.read(point);
+      mover.move(point, end - particle.x, velocity - particle.v, velocity);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/contact/look.h"
+#include "engine/contact/mover.h"
 #include "engine/contact/respond.h"
 
 namespace weft::rescue {
@@ -10,30 +11,6 @@ namespace weft::rescue {
 using kernels::Vector;
 
 namespace {
-
-/// Moves particles in the end of the interval, and loads the body that they were stopped by.
-class Mover {
- public:
-  /// body: kNoIndex where cloth stops cloth.
-  Mover(const ContactScene& scene, std::uint32_t body) : scene_(scene), body_(body) {}
-
-  void move(std::uint32_t slot, Vector by, Vector faster, Vector of_surface) {
-    ContactParticle particle = scene_.particles.read(slot);
-    particle.x = particle.x + by;
-    particle.v = particle.v + faster;
-    scene_.particles.write(slot, particle);
-    scene_.points.set_end(slot, particle.x);
-    if (body_ == kNoIndex) return scene_.particles.jolt(slot, faster);
-    scene_.particles.stop(slot, {body_, of_surface});
-    const double momentum = scene_.model.mass[slot] * scene_.particles.momentum_share();
-    scene_.impulses.add(body_, scene_.clock.motions()[body_].to.centre, particle.x,
-                        momentum * faster, of_surface);
-  }
-
- private:
-  const ContactScene& scene_;
-  const std::uint32_t body_;
-};
 
 /// Of a particle; one that the caller moves is as fast as in the interval.
 Vector velocity_in(const ContactScene& scene, std::uint32_t slot, double time) {
@@ -87,77 +64,30 @@ void blow(const ContactScene& scene, const PairList& pairs, const Failure& failu
   }
 }
 
-void take_along(const ContactScene& scene, const PairList& pairs, const Failure& failure,
-                double time) {
-  const ContactPoints& points = scene.points;
-  const Pair& pair = pairs.pairs[failure.pair];
-  const auto four = pairs.points(failure.pair);
-  const reference::Nearest met = nearest(pair.kind, points.starts_of(four));
-  Vector way{};
-  double sum = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    if (points.is_of_cloth(four[k])) continue;
-    way = way + met.weight[k] * (points.end(four[k]) - points.start(four[k]));
-    sum += met.weight[k];
-  }
-  way = (1 / sum) * way;
-  const Vector v = (1 / time) * way;
-  Mover mover(scene, points.later(pair).body);
-  for (std::size_t k = 0; k < 4; ++k) {
-    if (points.inverse_mass(four[k]) == 0) continue;
-    const ContactParticle particle = scene.particles.read(four[k]);
-    mover.move(four[k], points.start(four[k]) + way - particle.x, v - particle.v, v);
-  }
-}
-
 }  // namespace weft::rescue
 
 namespace weft {
 
-namespace {
-
-/// Cloth that touches itself: a zone grows with each round by what it meets, until nothing does.
-void stop_cloth(const ContactScene& scene, CandidateSearch& search, NearSearch& near_search,
-                Verification& verification, Candidates& candidates, double time, ImpactZones& zones,
-                RescueReport& report, Team& team) {
-  zones.begin();
-  for (int round = 0; round < tuning::kBlowRounds + tuning::kClothZoneRounds; ++round) {
-    if (verification.failures().empty()) break;
-    if (round < tuning::kBlowRounds) {
-      for (const Failure& failure : verification.failures())
-        rescue::blow(scene, candidates[failure.list], failure, time);
-    } else {
-      for (const Failure& failure : verification.failures())
-        zones.join(candidates[failure.list].points(failure.pair));
-      if (round >= tuning::kBlowRounds + tuning::kZoneRounds) zones.grow(scene);
-      zones.move(scene, time);
-    }
-    if (round == tuning::kBlowRounds)
-      report.zones += static_cast<int>(verification.failures().size());
-    verification.find(scene, search, near_search, candidates, team);
-  }
-}
-
-}  // namespace
-
 void stop_failures(const ContactScene& scene, CandidateSearch& search, NearSearch& near_search,
                    Verification& verification, Candidates& candidates, double time,
                    ImpactZones& zones, RescueReport& report, Team& team) {
-  using tuning::kBlowRounds, tuning::kZoneRounds;
+  using tuning::kBlowRounds, tuning::kZoneRounds, tuning::kClothZoneRounds;
+  const int zone_rounds = scene.points.touches_itself() ? kClothZoneRounds : kZoneRounds;
   report.failures += static_cast<int>(verification.failures().size());
-  if (scene.points.touches_itself()) {
-    stop_cloth(scene, search, near_search, verification, candidates, time, zones, report, team);
-    return;
-  }
-  for (int round = 0; round < kBlowRounds + kZoneRounds && !verification.failures().empty();
-       ++round) {
-    for (const Failure& failure : verification.failures()) {
-      if (round < kBlowRounds)
+  zones.begin();
+  for (int round = 0; round < kBlowRounds + zone_rounds; ++round) {
+    const std::vector<Failure>& failures = verification.failures();
+    if (failures.empty()) break;
+    if (round == kBlowRounds) report.zones += static_cast<int>(failures.size());
+    if (round < kBlowRounds) {
+      for (const Failure& failure : failures)
         rescue::blow(scene, candidates[failure.list], failure, time);
-      else
-        rescue::take_along(scene, candidates[failure.list], failure, time);
+    } else {
+      for (const Failure& failure : failures)
+        zones.join(candidates[failure.list].points(failure.pair));
+      if (round >= kBlowRounds + kZoneRounds) zones.grow(scene);
+      zones.move(scene, time);
     }
-    if (round >= kBlowRounds) report.zones += static_cast<int>(verification.failures().size());
     verification.find(scene, search, near_search, candidates, team);
   }
 }

@@ -1,7 +1,7 @@
 /// Stage 8 of an interval: what to do about pairs that went through each other. First they
 /// are stopped where they would have met, as by inelastic blows; that may send others through each
-/// other, so it is done in rounds. Then what still fails is taken along by the body as if it stuck
-/// to it: a rigid impact zone (Bridson, Fedkiw and Anderson, 2002) whose motion is the body's.
+/// other, so it is done in rounds. Then what still fails moves in rigid zones, which grow by what they
+/// meet (impact_zones.h).
 #pragma once
 
 #include "engine/contact/impact_zones.h"
@@ -19,8 +19,6 @@ namespace rescue {
 
 /// time: s, of the interval.
 void blow(const ContactScene& scene, const PairList& pairs, const Failure& failure, double time);
-void take_along(const ContactScene& scene, const PairList& pairs, const Failure& failure,
-                double time);
 
 }  // namespace rescue
 
