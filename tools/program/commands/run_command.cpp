@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "tools/program/commands/run_progress.h"
 #include "tools/program/files/json_output.h"
 #include "tools/program/files/text_file.h"
 #include "tools/program/options/scene_source.h"
@@ -18,10 +19,8 @@
 #include "tools/program/run/runner.h"
 #include "tools/program/terminal/exit_code.h"
 #include "tools/program/terminal/interrupt.h"
-#include "tools/program/terminal/progress.h"
 #include "tools/program/text/file_ending.h"
 #include "tools/program/text/parse.h"
-#include "tools/program/text/wording.h"
 
 namespace weft::tools {
 namespace {
@@ -137,10 +136,13 @@ Result<Prepared> prepare(const RunOptions& options) {
 }
 
 Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
-  ProgressLine progress;
   RunPlan plan = prepared.plan;
+  RunProgress progress(plan);
   bool stopped = false;
-  plan.stop = [&stopped] { return stopped = OrderlyInterrupt::signal() != 0; };
+  plan.stop = [&] {
+    progress.add_frame();
+    return stopped = OrderlyInterrupt::signal() != 0;
+  };
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
     const bool is_done = committed(report.status);
     const int done = is_done ? frame : frame - 1;
@@ -150,11 +152,7 @@ Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
       outputs.add_last(cloth, plan.dt * done);
       if (prepared.state) prepared.state->add_last(cloth, done);
     }
-    if (!progress.redraws()) return;
-    const std::string filled =
-        bar(static_cast<std::size_t>(frame), static_cast<std::size_t>(plan.steps), 30);
-    progress.show(fmt::format("{} frame {}/{}, strain {}", filled, frame, plan.steps,
-                              measured_percent(report.max_strain)));
+    progress.show(report.max_strain);
   };
   return run(prepared.model, prepared.settings, plan, on_frame);
 }
@@ -218,6 +216,7 @@ void add_run_command(CommandLine& line) {
     return result ? result.value() : refuse(result.error());
   });
   add_scene_options(verb, options->scene);
+  verb.group("The run");
   verb.option("--dt", options->dt, "s, one frame: 0.01 (default), or as 1/60");
   verb.option("--steps", options->plan.steps, "frames to run (default 200)");
   verb.option("--repeat", options->plan.repeat,
@@ -227,7 +226,9 @@ void add_run_command(CommandLine& line) {
       "--check-intersections", options->plan.check_intersections,
       "count after every frame how many triangles of the cloth cross triangles of bodies, and "
       "with --self-contact of the cloth");
+  verb.group("How it is solved");
   add_solver_options(verb, options->solver);
+  verb.group("Files");
   verb.repeated("--out", options->out,
                 "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
                 "frames, .glb the same as glTF, .pvd the same for ParaView, .html a page that "
