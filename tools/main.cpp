@@ -1,5 +1,6 @@
 /// The `weft` program. Its exit codes: exit_code.h.
 #include "tools/program/commands/completion_command.h"
+#include "tools/program/commands/replay_command.h"
 #include "tools/program/commands/run_command.h"
 #include "tools/program/commands/scene_command.h"
 #include "tools/program/commands/scenes_command.h"
@@ -22,6 +23,8 @@ constexpr weft::tools::Example kExamples[] = {
     {"weft run flag --out flag.html", "a page that shows the run"},
     {"weft run mesh.obj --pin top --material denim", "a mesh of your own"},
     {"weft scene hang --out hang.json", "a scene to edit, and to run"},
+    {"weft run hang --record run.weft", "all that it did, in a file"},
+    {"weft replay run.weft", "whether it does so again"},
     {"weft scenes", "all that is built in"},
 };
 
@@ -34,6 +37,7 @@ int main(int argc, char** argv) {
   CommandLine line("weft: a cloth kernel that reports its error beside its time",
                    "weft " WEFT_VERSION, kExamples);
   add_run_command(line);
+  add_replay_command(line);
   add_scenes_command(line);
   add_scene_command(line);
   add_view_command(line);

@@ -32,7 +32,7 @@ struct RunOptions {
   std::optional<std::string> dt;
   std::vector<std::string> out;
   std::optional<std::string> json;
-  std::optional<std::string> save, resume;
+  std::optional<std::string> save, resume, record;
 };
 
 Result<RunState> state_of(const RunOptions& options, const RunPlan& plan) {
@@ -88,10 +88,11 @@ Result<void> check_destinations(const RunOptions& options) {
   std::ranges::for_each(options.out, add);
   if (options.json && *options.json != "-") add(*options.json);
   if (options.save) add(*options.save);
+  if (options.record) add(*options.record);
   std::ranges::stable_sort(all, {}, &Destination::place);
   const auto twice = std::ranges::adjacent_find(all, {}, &Destination::place);
   if (twice == all.end() || twice->place.empty()) return {};
-  return Error{fmt::format("--out, --json, --save: '{}' is named twice", twice->name)};
+  return Error{fmt::format("--out, --json, --save, --record: '{}' is named twice", twice->name)};
 }
 
 /// What is known to be possible before anything runs.
@@ -102,6 +103,7 @@ struct Prepared {
   RunPlan plan;
   std::optional<JsonOutput> json;
   std::optional<StateFile> state;
+  std::optional<RecordingFile> recording;
 };
 
 Result<Prepared> prepare(const RunOptions& options) {
@@ -118,10 +120,16 @@ Result<Prepared> prepare(const RunOptions& options) {
   plan.value().bodies = source.value().bodies;
   plan.value().surface = source.value().description.surface;
   plan.value().touches_itself = source.value().description.self_contact.on;
+  plan.value().scene = source.value().name;
   plan.value().up = source.value().up;
   plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
-  Prepared prepared{std::move(source.value()), model.value(), settings.value(),
-                    std::move(plan.value()),   std::nullopt,  std::nullopt};
+  Prepared prepared{std::move(source.value()),
+                    model.value(),
+                    settings.value(),
+                    std::move(plan.value()),
+                    std::nullopt,
+                    std::nullopt,
+                    std::nullopt};
   if (options.json) {
     auto json = JsonOutput::open(*options.json);
     if (!json) return Error{fmt::format("--json: {}", json.error())};
@@ -132,11 +140,17 @@ Result<Prepared> prepare(const RunOptions& options) {
     if (!state) return Error{fmt::format("--save: {}", state.error())};
     prepared.state = std::move(state.value());
   }
+  if (options.record) {
+    auto recording = RecordingFile::open(*options.record);
+    if (!recording) return Error{fmt::format("--record: {}", recording.error())};
+    prepared.recording = std::move(recording.value());
+  }
   return prepared;
 }
 
 Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
   RunPlan plan = prepared.plan;
+  if (prepared.recording) plan.recording = &*prepared.recording;
   RunProgress progress(plan);
   bool stopped = false;
   plan.stop = [&] {
@@ -177,7 +191,7 @@ int interrupted(const RunSummary& summary, const RunPlan& plan) {
 Result<int> run_verb(const RunOptions& options) {
   auto prepared = prepare(options);
   if (!prepared) return Error{prepared.error()};
-  auto& [source, model, settings, plan, json, state] = prepared.value();
+  auto& [source, model, settings, plan, json, state, recording] = prepared.value();
   for (const std::string& note : source.notes) print_message(fmt::format("weft: {}\n", note));
   const OrderlyInterrupt interrupt;
   auto outputs = Outputs::open(options.out, source, model, settings, plan.dt);
@@ -192,6 +206,10 @@ Result<int> run_verb(const RunOptions& options) {
   if (state) {
     if (auto saved = state->finish(); !saved)
       return Error{fmt::format("--save: {}", saved.error())};
+  }
+  if (recording) {
+    if (auto recorded = recording->finish(); !recorded)
+      return Error{fmt::format("--record: {}", recorded.error())};
   }
   if (json) {
     auto written = json->write(to_json(report));
@@ -242,6 +260,9 @@ void add_run_command(CommandLine& line) {
   verb.option("--resume", options->resume,
               "file of --save to go on from, to the same bits if all other options are as they "
               "were; --steps counts its frames too");
+  verb.option("--record", options->record,
+              "file that has all that the run did, for a report of a bug: `weft replay FILE` runs "
+              "it again, and names the first frame that comes to other bits");
   verb.option("--json", options->json, "write the report to a file, or - for stdout");
 }
 

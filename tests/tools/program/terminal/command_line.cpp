@@ -151,13 +151,13 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
     std::string named;
   } kRefused[] = {
       {"",
-       "a verb is missing: run, scenes, scene, view, paper, hard, precision, forms or "
+       "a verb is missing: run, replay, scenes, scene, view, paper, hard, precision, forms or "
        "completion"},
       {"''",
-       "a verb is missing: run, scenes, scene, view, paper, hard, precision, forms or "
+       "a verb is missing: run, replay, scenes, scene, view, paper, hard, precision, forms or "
        "completion"},
       {"weave",
-       "'weave' is not a verb: run, scenes, scene, view, paper, hard, precision, forms or "
+       "'weave' is not a verb: run, replay, scenes, scene, view, paper, hard, precision, forms or "
        "completion"},
       {"weave --size 3", "'weave' is not a verb"},
       {"--colour red --shade 1", "weft: not expected: --colour red --shade 1"},

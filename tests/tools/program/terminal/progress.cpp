@@ -88,7 +88,7 @@ TEST_CASE("a run on a terminal shows frames and time left in lines of 80 columns
 TEST_CASE("a study on a terminal says which case is at work, elsewhere a line for each") {
   const TemporaryFolder folder;
   Terminal terminal;
-  const std::string study = "forms --quick --form hanging";
+  const std::string study = "forms --quick --form decays";
   const std::string command = std::string(WEFT_PROGRAM) + " " + study + " >" +
                               folder.file("stdout") + " 2>" + terminal.name();
   CHECK(std::system(command.c_str()) == 0);

@@ -39,7 +39,7 @@ TEST_CASE("figures stay with their units where a comma comes late enough") {
 
 TEST_CASE("a name that reaches the second column has a line of its own") {
   CHECK(in_columns("  ab", "what it is", 8) == "  ab    what it is\n");
-  CHECK(in_columns("  abcd", "what it is", 8) == "  abcd\n        what it is\n");
+  CHECK(in_columns("  abcde", "what it is", 8) == "  abcde\n        what it is\n");
 }
 
 }  // namespace
