@@ -104,7 +104,6 @@ def text_of(report, counts, lines, levels):
     for name, share, ms, nanoseconds, noun, copy in kernel_rows(counts, report, levels):
         out.append(row(name, percent(share), figure(ms), figure(nanoseconds), noun, copying(copy)))
     if lines:
-        out += ["", row("line", "share", "")]
-        out += [f"{place}{percent(share):>{max(38 - len(place), 1 + len(percent(share)))}}"
-                for place, share in lines]
+        out += ["", f"{'line':<60}{'share':>8}"]
+        out += [f"{place:<60}{percent(share):>8}" for place, share in lines]
     return "\n".join(out) + "\n"
