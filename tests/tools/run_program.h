@@ -18,8 +18,10 @@ struct Outcome {
   std::string err;
 };
 
-inline Outcome run_program(const TemporaryFolder& folder, const std::string& arguments) {
-  const std::string command = std::string(WEFT_PROGRAM) + " " + arguments + " >" +
+/// `where`: the folder that it runs in.
+inline Outcome run_program(const TemporaryFolder& folder, const std::string& arguments,
+                           const std::string& where = ".") {
+  const std::string command = "cd " + where + " && " + WEFT_PROGRAM + " " + arguments + " >" +
                               folder.file("stdout") + " 2>" + folder.file("stderr");
   const int status = std::system(command.c_str());
   REQUIRE(WIFEXITED(status));

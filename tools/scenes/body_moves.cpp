@@ -123,17 +123,29 @@ Result<MovedBodies> MovedBodies::add(std::span<const SceneBody> bodies, Cloth& c
 }
 
 Result<void> MovedBodies::send(Cloth& cloth, double time) const {
-  for (std::size_t i = 0; i < ids_.size(); ++i) {
-    const SceneBody& body = bodies_[i];
-    if (body.move) {
-      if (auto sent = cloth.move_body(ids_[i], pose_at(body, time)); !sent) return sent;
-    }
-    if (body.vertex_move) {
-      if (auto sent = cloth.move_body_vertices(ids_[i], vertices_at(body, time)); !sent)
-        return sent;
-    }
+  for (const auto& [id, pose] : poses_at(time)) {
+    if (auto sent = cloth.move_body(id, pose); !sent) return sent;
+  }
+  for (const auto& [id, vertices] : deformed_at(time)) {
+    if (auto sent = cloth.move_body_vertices(id, vertices); !sent) return sent;
   }
   return {};
+}
+
+std::vector<PosedBody> MovedBodies::poses_at(double time) const {
+  std::vector<PosedBody> poses;
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    if (bodies_[i].move) poses.push_back({ids_[i], pose_at(bodies_[i], time)});
+  }
+  return poses;
+}
+
+std::vector<DeformedBody> MovedBodies::deformed_at(double time) const {
+  std::vector<DeformedBody> deformed;
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    if (bodies_[i].vertex_move) deformed.push_back({ids_[i], vertices_at(bodies_[i], time)});
+  }
+  return deformed;
 }
 
 }  // namespace weft::tools

@@ -24,6 +24,17 @@ std::size_t count_triangles(std::span<const SceneBody> bodies);
 /// The bodies of a scene that goes on from where this one is after `elapsed` seconds.
 std::vector<SceneBody> present_bodies(std::span<const SceneBody> bodies, double elapsed);
 
+/// A call of Cloth::move_body.
+struct PosedBody {
+  std::uint32_t id = 0;
+  Pose pose{};
+};
+/// A call of Cloth::move_body_vertices.
+struct DeformedBody {
+  std::uint32_t id = 0;
+  std::vector<Vec3> vertices = {};
+};
+
 /// Bodies of one cloth.
 class MovedBodies {
  public:
@@ -31,6 +42,8 @@ class MovedBodies {
   static Result<MovedBodies> add(std::span<const SceneBody> bodies, Cloth& cloth);
   /// Sends those that move to where they are at `time`.
   Result<void> send(Cloth& cloth, double time) const;
+  std::vector<PosedBody> poses_at(double time) const;
+  std::vector<DeformedBody> deformed_at(double time) const;
 
  private:
   std::span<const SceneBody> bodies_;

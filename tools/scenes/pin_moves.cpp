@@ -78,23 +78,31 @@ MovedPins::MovedPins(std::span<const PinMove> moves, const Cloth& cloth) : moves
   }
 }
 
-Result<void> MovedPins::place(Cloth& cloth) const { return put(cloth, 0, &Cloth::place_fixed); }
-
-Result<void> MovedPins::send(Cloth& cloth, double time) const {
-  return put(cloth, time, &Cloth::move_fixed);
+Result<void> MovedPins::place(Cloth& cloth) const {
+  for (const auto& [particle, position] : places_at(cloth, 0)) {
+    if (auto done = cloth.place_fixed(particle, position); !done) return done;
+  }
+  return {};
 }
 
-Result<void> MovedPins::put(Cloth& cloth, double time, Put how) const {
+Result<void> MovedPins::send(Cloth& cloth, double time) const {
+  for (const auto& [particle, position] : places_at(cloth, time)) {
+    if (auto done = cloth.move_fixed(particle, position); !done) return done;
+  }
+  return {};
+}
+
+std::vector<PlacedPin> MovedPins::places_at(const Cloth& cloth, double time) const {
+  std::vector<PlacedPin> placed;
   for (std::size_t m = 0; m < moves_.size(); ++m) {
     const PinMove& move = moves_[m];
     const MovePose now = pose_at(move, time);
     for (std::size_t k = 0; k < move.particles.size(); ++k) {
       const Vec3 to = tools::place(move, now, from_[m][k]);
-      if (to == cloth.position(move.particles[k])) continue;
-      if (auto done = (cloth.*how)(move.particles[k], to); !done) return done;
+      if (!(to == cloth.position(move.particles[k]))) placed.push_back({move.particles[k], to});
     }
   }
-  return {};
+  return placed;
 }
 
 std::vector<PinMove> present_moves(std::span<const PinMove> moves, const SceneDescription& scene,

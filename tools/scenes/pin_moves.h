@@ -33,6 +33,12 @@ Vec3 place_at(const PinMove& move, double time, Vec3 without);
 /// The rotation vector of the motion at a time.
 Vec3 rotation_at(const PinMove& move, double time);
 
+/// A call of Cloth::move_fixed or Cloth::place_fixed.
+struct PlacedPin {
+  std::uint32_t particle = 0;
+  Vec3 position{};
+};
+
 /// Moves of the pins of one cloth, which must stand where its scene has them.
 class MovedPins {
  public:
@@ -42,11 +48,10 @@ class MovedPins {
   /// Sends those whose place changes to where they are at `time`, with Cloth::move_fixed. Its error
   /// is that of the first that is refused.
   Result<void> send(Cloth& cloth, double time) const;
+  /// Those that stand elsewhere, and where they are at `time`.
+  std::vector<PlacedPin> places_at(const Cloth& cloth, double time) const;
 
  private:
-  using Put = Result<void> (Cloth::*)(std::uint32_t particle, Vec3 position);
-  Result<void> put(Cloth& cloth, double time, Put how) const;
-
   std::span<const PinMove> moves_;
   std::vector<std::vector<Vec3>> from_;  // of each move, of each particle
 };

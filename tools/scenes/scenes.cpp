@@ -138,7 +138,7 @@ constexpr std::array<Entry, 23> kEntries{{
     {{"flag", "a sheet of cotton flies from a pole", true}, 2, anything, cloth<flag>},
     {{"drape", "a sheet of cotton falls over a fixed sphere", true}, 2, anything, cloth<drape>},
     {{"table", "a sheet of cotton slides off a table", true}, 3, anything, cloth<table>},
-    {{"cushion", "a ball is pressed into a taut sheet of cotton, rolls and slides", true},
+    {{"cushion", "a ball is pressed into a taut sheet, rolls and slides", true},
      3,
      anything,
      cloth<cushion>},

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "tools/program/commands/run_progress.h"
 #include "tools/program/files/json_output.h"
 #include "tools/program/files/text_file.h"
 #include "tools/program/options/scene_source.h"
@@ -18,10 +19,8 @@
 #include "tools/program/run/runner.h"
 #include "tools/program/terminal/exit_code.h"
 #include "tools/program/terminal/interrupt.h"
-#include "tools/program/terminal/progress.h"
 #include "tools/program/text/file_ending.h"
 #include "tools/program/text/parse.h"
-#include "tools/program/text/wording.h"
 
 namespace weft::tools {
 namespace {
@@ -33,7 +32,7 @@ struct RunOptions {
   std::optional<std::string> dt;
   std::vector<std::string> out;
   std::optional<std::string> json;
-  std::optional<std::string> save, resume;
+  std::optional<std::string> save, resume, record;
 };
 
 Result<RunState> state_of(const RunOptions& options, const RunPlan& plan) {
@@ -89,10 +88,11 @@ Result<void> check_destinations(const RunOptions& options) {
   std::ranges::for_each(options.out, add);
   if (options.json && *options.json != "-") add(*options.json);
   if (options.save) add(*options.save);
+  if (options.record) add(*options.record);
   std::ranges::stable_sort(all, {}, &Destination::place);
   const auto twice = std::ranges::adjacent_find(all, {}, &Destination::place);
   if (twice == all.end() || twice->place.empty()) return {};
-  return Error{fmt::format("--out, --json, --save: '{}' is named twice", twice->name)};
+  return Error{fmt::format("--out, --json, --save, --record: '{}' is named twice", twice->name)};
 }
 
 /// What is known to be possible before anything runs.
@@ -103,6 +103,7 @@ struct Prepared {
   RunPlan plan;
   std::optional<JsonOutput> json;
   std::optional<StateFile> state;
+  std::optional<RecordingFile> recording;
 };
 
 Result<Prepared> prepare(const RunOptions& options) {
@@ -119,10 +120,16 @@ Result<Prepared> prepare(const RunOptions& options) {
   plan.value().bodies = source.value().bodies;
   plan.value().surface = source.value().description.surface;
   plan.value().touches_itself = source.value().description.self_contact.on;
+  plan.value().scene = source.value().name;
   plan.value().up = source.value().up;
   plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
-  Prepared prepared{std::move(source.value()), model.value(), settings.value(),
-                    std::move(plan.value()),   std::nullopt,  std::nullopt};
+  Prepared prepared{std::move(source.value()),
+                    model.value(),
+                    settings.value(),
+                    std::move(plan.value()),
+                    std::nullopt,
+                    std::nullopt,
+                    std::nullopt};
   if (options.json) {
     auto json = JsonOutput::open(*options.json);
     if (!json) return Error{fmt::format("--json: {}", json.error())};
@@ -133,14 +140,23 @@ Result<Prepared> prepare(const RunOptions& options) {
     if (!state) return Error{fmt::format("--save: {}", state.error())};
     prepared.state = std::move(state.value());
   }
+  if (options.record) {
+    auto recording = RecordingFile::open(*options.record);
+    if (!recording) return Error{fmt::format("--record: {}", recording.error())};
+    prepared.recording = std::move(recording.value());
+  }
   return prepared;
 }
 
 Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
-  ProgressLine progress;
   RunPlan plan = prepared.plan;
+  if (prepared.recording) plan.recording = &*prepared.recording;
+  RunProgress progress(plan);
   bool stopped = false;
-  plan.stop = [&stopped] { return stopped = OrderlyInterrupt::signal() != 0; };
+  plan.stop = [&] {
+    progress.add_frame();
+    return stopped = OrderlyInterrupt::signal() != 0;
+  };
   const auto on_frame = [&](int frame, const Cloth& cloth, const StepReport& report) {
     const bool is_done = committed(report.status);
     const int done = is_done ? frame : frame - 1;
@@ -150,11 +166,7 @@ Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
       outputs.add_last(cloth, plan.dt * done);
       if (prepared.state) prepared.state->add_last(cloth, done);
     }
-    if (!progress.redraws()) return;
-    const std::string filled =
-        bar(static_cast<std::size_t>(frame), static_cast<std::size_t>(plan.steps), 30);
-    progress.show(fmt::format("{} frame {}/{}, strain {}", filled, frame, plan.steps,
-                              measured_percent(report.max_strain)));
+    progress.show(report.max_strain);
   };
   return run(prepared.model, prepared.settings, plan, on_frame);
 }
@@ -179,7 +191,7 @@ int interrupted(const RunSummary& summary, const RunPlan& plan) {
 Result<int> run_verb(const RunOptions& options) {
   auto prepared = prepare(options);
   if (!prepared) return Error{prepared.error()};
-  auto& [source, model, settings, plan, json, state] = prepared.value();
+  auto& [source, model, settings, plan, json, state, recording] = prepared.value();
   for (const std::string& note : source.notes) print_message(fmt::format("weft: {}\n", note));
   const OrderlyInterrupt interrupt;
   auto outputs = Outputs::open(options.out, source, model, settings, plan.dt);
@@ -194,6 +206,10 @@ Result<int> run_verb(const RunOptions& options) {
   if (state) {
     if (auto saved = state->finish(); !saved)
       return Error{fmt::format("--save: {}", saved.error())};
+  }
+  if (recording) {
+    if (auto recorded = recording->finish(); !recorded)
+      return Error{fmt::format("--record: {}", recorded.error())};
   }
   if (json) {
     auto written = json->write(to_json(report));
@@ -218,6 +234,7 @@ void add_run_command(CommandLine& line) {
     return result ? result.value() : refuse(result.error());
   });
   add_scene_options(verb, options->scene);
+  verb.group("The run");
   verb.option("--dt", options->dt, "s, one frame: 0.01 (default), or as 1/60");
   verb.option("--steps", options->plan.steps, "frames to run (default 200)");
   verb.option("--repeat", options->plan.repeat,
@@ -227,7 +244,9 @@ void add_run_command(CommandLine& line) {
       "--check-intersections", options->plan.check_intersections,
       "count after every frame how many triangles of the cloth cross triangles of bodies, and "
       "with --self-contact of the cloth");
+  verb.group("How it is solved");
   add_solver_options(verb, options->solver);
+  verb.group("Files");
   verb.repeated("--out", options->out,
                 "file to write, may be repeated: .obj the last frame, .pc2 the motion of all "
                 "frames, .glb the same as glTF, .pvd the same for ParaView, .html a page that "
@@ -241,6 +260,9 @@ void add_run_command(CommandLine& line) {
   verb.option("--resume", options->resume,
               "file of --save to go on from, to the same bits if all other options are as they "
               "were; --steps counts its frames too");
+  verb.option("--record", options->record,
+              "file that has all that the run did, for a report of a bug: `weft replay FILE` runs "
+              "it again, and names the first frame that comes to other bits");
   verb.option("--json", options->json, "write the report to a file, or - for stdout");
 }
 

@@ -41,6 +41,7 @@ void add_scene_command(CommandLine& line) {
     return written ? kDone : refuse(written.error());
   });
   add_scene_options(verb, options->scene);
+  verb.group("Files");
   verb.required("--out", options->out, "the .json file to write");
 }
 

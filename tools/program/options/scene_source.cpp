@@ -274,12 +274,15 @@ Result<SceneSource> load_as_it_is(const SceneOptions& options) {
 
 void add_scene_options(Verb verb, SceneOptions& options) {
   verb.required("SCENE", options.scene,
-                fmt::format("{}, a .json scene or an .obj mesh", built_in_names()));
+                "the name of a built-in scene (`weft scenes` lists them), a .json scene or an "
+                ".obj mesh");
+  verb.group("Built-in scenes");
   verb.option("--size", options.size,
               "particles along a side of a built-in scene (default 20; corners: 21)");
   verb.option("--slack", options.slack, "sphere_drop: slack of the sheet (default 0.05)");
   verb.option("--sphere-mass", options.sphere_mass, "sphere_drop: kg (default 1)");
   verb.option("--end-mass", options.end_mass, "chain: kg of the last particle (default 1)");
+  verb.group("Meshes");
   verb.option("--pin", options.pin,
               ".obj: fixed vertices; none (default), top, a comparison of the file's "
               "coordinates like 'y>0.9' or 'x<=-1', or vertex numbers from 0 like 0,5,7-9; "
@@ -307,13 +310,15 @@ void add_scene_options(Verb verb, SceneOptions& options) {
               "of the texture coordinates (default: along edges of cells, else y)");
   verb.option("--thread-density", options.thread_density,
               ".obj with a material: kg/m of its lines, which are threads (default 0.001)");
+  verb.group("Cloth of meshes and built-in scenes");
   verb.option_or_flag("--ropes", options.ropes, "",
                       "what only pulls, all or diagonals (of four-sided faces; without a "
                       "material only ropes join them); alone: built-in scenes all, .obj diagonals");
-  add_material_options(verb, options.material);
-  add_world_options(verb, options.world);
   verb.flag("--diagonals", options.diagonals,
             "built-in scenes but chain: the same as --ropes diagonals");
+  add_material_options(verb, options.material);
+  verb.group("The world around the cloth");
+  add_world_options(verb, options.world);
 }
 
 Result<SceneSource> load_scene(const SceneOptions& options) {

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/program/text/wording.h"
+#include "tools/program/text/wrapping.h"
 #include "tools/scenes/body_moves.h"
 
 namespace weft::tools {
@@ -290,7 +291,8 @@ std::string to_table(const RunReport& report) {
   const Settings& settings = report.settings;
   std::string text;
   const auto row = [&text](std::string_view label, const std::string& value) {
-    text += fmt::format("{:<10}{}\n", label, value);
+    constexpr std::size_t kColumn = 10;
+    text += fmt::format("{:<{}}{}\n", label, kColumn, wrapped(value, kColumn, Break::at_commas));
   };
   row("scene",
       fmt::format("{}: {}, {}, {}", report.scene, counted(summary.model.particles, "particle"),

@@ -80,6 +80,20 @@ void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth, const R
   summary.energy_gain = summary.frames == 1 ? gain : std::max(summary.energy_gain, gain);
 }
 
+RecordedStart start_of(const Cloth& cloth, const Settings& settings, const RunPlan& plan,
+                       int frames_before) {
+  return {.version = version_text(),
+          .scene = plan.scene,
+          .isa = cloth.settings().isa,
+          .settings = settings,
+          .frames_before = frames_before,
+          .frames = plan.steps,
+          .dt = plan.dt,
+          .model = save_model(*cloth.model()),
+          .state = cloth.save_state(),
+          .hash = cloth.state_hash()};
+}
+
 /// The surface is that of the cloth.
 void look_for_crossings(RunSummary& summary, const Cloth& cloth, const RunPlan& plan,
                         TriangleSet& surface) {
@@ -134,17 +148,17 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     }
     summary.resumed_at = plan.resume->frame;
   }
+  if (plan.recording)
+    plan.recording->add_part(bytes_of(start_of(cloth, settings, plan, summary.resumed_at)));
   TriangleSet surface{{}, plan.surface};
   summary.energy_start = cloth.energy().total();
   summary.lowest = std::numeric_limits<double>::infinity();
   while (summary.last_frame() < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
          committed(summary.total.status) && !summary.stopped) {
-    if (auto sent = pins.send(cloth, (summary.last_frame() + 1) * plan.dt); !sent) {
-      return Error{sent.error()};
-    }
-    if (auto sent = bodies.value().send(cloth, (summary.last_frame() + 1) * plan.dt); !sent) {
-      return Error{sent.error()};
-    }
+    const double end_of_frame = (summary.last_frame() + 1) * plan.dt;
+    const FrameCalls calls = calls_at(pins, bodies.value(), cloth, end_of_frame);
+    if (plan.recording) plan.recording->add_part(bytes_of(calls));
+    if (auto done = apply(calls, cloth); !done) return Error{done.error()};
     const double cpu_start = cpu_seconds();
     const auto start = Clock::now();
     const auto report = cloth.step(plan.dt);
@@ -154,6 +168,8 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     add_frame(summary, report.value());
     summary.step_seconds += elapsed.count();
     summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
+    if (plan.recording)
+      plan.recording->add_part(bytes_of(RecordedResult{report.value().status, cloth.state_hash()}));
     add_errors(summary, errors, cloth, plan);
     name_what_crosses(summary, report.value(), cloth, plan, surface);
     if (plan.check_intersections) look_for_crossings(summary, cloth, plan, surface);
@@ -170,8 +186,10 @@ Result<RunSummary> run_repeatedly(const std::shared_ptr<const Model>& model,
                                   const FrameCallback& on_frame) {
   auto best = run_once(model, settings, plan, on_frame);
   if (!best || plan.repeat <= 1 || best.value().stopped) return best;
+  RunPlan again = plan;
+  again.recording = nullptr;
   for (int finished = 1; finished <= plan.repeat; ++finished) {
-    auto next = run_once(model, settings, plan, {});
+    auto next = run_once(model, settings, again, {});
     if (!next) return next;
     if (next.value().stopped) {  // a whole run is worth more than a part of one
       best.value().stopped = true;

@@ -6,11 +6,13 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "tools/program/terminal/exit_code.h"
 #include "tools/program/text/parse.h"
+#include "tools/program/text/wrapping.h"
 
 namespace weft::tools {
 namespace {
@@ -76,7 +78,41 @@ CLI::Option* checked(CLI::Option* option) {
   return option->transform(CLI::Validator(check, ""));
 }
 
+/// Help that is no wider than a terminal.
+class Help : public CLI::Formatter {
+ public:
+  explicit Help(std::span<const Example> examples) {
+    for (const Example& example : examples)
+      examples_ +=
+          in_columns(fmt::format("  {}", example.command), example.meaning, kExampleColumn);
+  }
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    if (app->get_parent() != nullptr)
+      return CLI::detail::find_and_replace(Formatter::make_help(app, name, mode), "\n\n\n", "\n\n");
+    return fmt::format(
+        "{}\n\nFor example:\n{}\nVerbs (each explains its options: weft VERB --help):\n{}{}",
+        app->get_description(), examples_, verbs_of(*app), make_groups(app, mode));
+  }
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    return in_columns("  " + make_option_name(option, is_positional) + make_option_opts(option),
+                      make_option_desc(option), kColumn);
+  }
+
+ private:
+  static constexpr std::size_t kExampleColumn = 50, kColumn = 28;
+  static std::string verbs_of(const CLI::App& app) {
+    std::string text;
+    for (const CLI::App* verb : app.get_subcommands({}))
+      text += in_columns("  " + verb->get_name(), verb->get_description(), 14);
+    return text;
+  }
+  std::string examples_;
+};
+
 }  // namespace
+
+void Verb::group(const std::string& heading) { verb_.option_defaults()->group(heading); }
 
 template <class Value>
 void Verb::option(const std::string& name, Value& value, const std::string& help) {
@@ -121,8 +157,10 @@ void Verb::flag(const std::string& name, bool& value, const std::string& help) {
   verb_.add_flag(name, value, help);
 }
 
-CommandLine::CommandLine(const std::string& about, const std::string& version)
+CommandLine::CommandLine(const std::string& about, const std::string& version,
+                         std::span<const Example> examples)
     : app_(std::make_unique<CLI::App>(about)), exit_code_(kDone) {
+  app_->formatter(std::make_shared<Help>(examples));
   app_->require_subcommand(0, 1);  // none is refused below
   app_->set_version_flag("--version", version, "Print the version and exit");
 }
@@ -143,6 +181,9 @@ int CommandLine::run(int argc, char** argv) {
   } catch (const CLI::ExtrasError&) {
     const bool is_verb = argc > 1 && argv[1][0] != '-' && app_->get_subcommands().empty();
     return refuse(is_verb ? missing_verb(*app_, argc, argv) : unexpected(app_->remaining(true)));
+  } catch (const CLI::RequiredError& error) {  // it may be there, and misspelt
+    const std::vector<std::string> others = app_->remaining(true);
+    return refuse(others.empty() ? error.what() : unexpected(others));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return refuse(error.what());
     app_->exit(error);  // help, or the version
@@ -153,6 +194,17 @@ int CommandLine::run(int argc, char** argv) {
     return refuse(error.what());
   }
   return exit_code_;
+}
+
+std::vector<VerbNames> CommandLine::verbs() const {
+  std::vector<VerbNames> all;
+  for (const CLI::App* verb : std::as_const(*app_).get_subcommands({})) {
+    VerbNames& names = all.emplace_back(verb->get_name());
+    for (const CLI::Option* option : verb->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.options.push_back("--" + name);
+    }
+  }
+  return all;
 }
 
 }  // namespace weft::tools

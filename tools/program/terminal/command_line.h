@@ -5,7 +5,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {
@@ -19,6 +21,8 @@ class Verb {
  public:
   explicit Verb(CLI::App& verb) : verb_(verb) {}
 
+  /// The heading, in the help, of the options that are added after it.
+  void group(const std::string& heading);
   /// Value: std::string, int, double, or an optional one of them.
   template <class Value>
   void option(const std::string& name, Value& value, const std::string& help);
@@ -38,9 +42,22 @@ class Verb {
   CLI::App& verb_;
 };
 
+struct Example {
+  std::string_view command;
+  std::string_view meaning;
+};
+
+/// A verb and its options, "--size" and so on.
+struct VerbNames {
+  std::string verb;
+  std::vector<std::string> options;
+};
+
 class CommandLine {
  public:
-  CommandLine(const std::string& about, const std::string& version);
+  /// The examples begin its help.
+  CommandLine(const std::string& about, const std::string& version,
+              std::span<const Example> examples);
   ~CommandLine();
 
   /// run: returns the exit code.
@@ -48,6 +65,7 @@ class CommandLine {
   /// Runs the verb that is named. Returns the exit code: kRefused if there is none, if something
   /// given makes no sense, or if the verb threw.
   int run(int argc, char** argv);
+  std::vector<VerbNames> verbs() const;
 
  private:
   std::unique_ptr<CLI::App> app_;

@@ -117,23 +117,24 @@ TEST_CASE("the table has every figure too") {
         "material  21 springs, 37 triangles, 23 bending elements, 29 air triangles\n"
         "solver    auto (yarn), scheme rattle, backend simd, tolerance 6.25 %\n"
         "scheme    8 of 22 substeps left to scheme paper\n"
-        "frames    4 of 0.5 s in 5.5 substeps each, 37 out of tolerance, "
-        "status infeasible\n"
-        "time      250 ms per frame, 500 the longest, 2 times real time, at max error of the law "
-        "25 %\n"
-        "stages    predict 31.2, find_contacts 93.8, solve_positions 156, commit 219, "
-        "correct_velocities 281, report 344 ms at max error of the law 25 %\n"
+        "frames    4 of 0.5 s in 5.5 substeps each, 37 out of tolerance,\n"
+        "          status infeasible\n"
+        "time      250 ms per frame, 500 the longest, 2 times real time,\n"
+        "          at max error of the law 25 %\n"
+        "stages    predict 31.2, find_contacts 93.8, solve_positions 156, commit 219,\n"
+        "          correct_velocities 281, report 344 ms at max error of the law 25 %\n"
         "strain    max 12.5 %, mean of the frames' max 3.12 %, rms 1.56 %\n"
         "contacts  0.75 m deepest penetration\n"
-        "bodies    1 body, 31 contacts at most, 0.75 m deepest penetration, 0.0625 J by friction, "
-        "0.125 J by moved ones\n"
+        "bodies    1 body, 31 contacts at most, 0.75 m deepest penetration,\n"
+        "          0.0625 J by friction, 0.125 J by moved ones\n"
         "          0.5 ms per frame to find contacts, 1.5 in sweeps, 0.25 to verify\n"
-        "crossings 41 crossings were stopped, 43 moved as if glued, at most 47 could not be "
-        "stopped in a frame\n"
+        "crossings 41 crossings were stopped, 43 moved as if glued,\n"
+        "          at most 47 could not be stopped in a frame\n"
         "anchors   31, 0.5 m beyond their limits at most\n"
-        "work      5 iterations and 9 direction updates per step, 101 visits, 103 corrections\n"
-        "energy    -1.5 J to -2.5 J, 0.875 J by moved pins, largest gain 0.25 J, "
-        "0.438 J lost\n"
+        "work      5 iterations and 9 direction updates per step, 101 visits,\n"
+        "          103 corrections\n"
+        "energy    -1.5 J to -2.5 J, 0.875 J by moved pins, largest gain 0.25 J,\n"
+        "          0.438 J lost\n"
         "state     0123456789abcdef, lowest y -0.375 m\n");
 }
 
@@ -172,11 +173,10 @@ TEST_CASE("the report of a mesh says what it turned out to be") {
                             .non_manifold_edges = 1,
                             .pieces = 5,
                             .loose_pieces = 4};
-  CHECK(
-      to_table(of_mesh).find(
-          "mesh      5 pieces, 4 on no pin, 3 vertices welded, 1 vertex in no face and no line, 2 "
-          "faces without area, 7 faces twice, used once, 1 edge of more than two faces\n") !=
-      std::string::npos);
+  CHECK(to_table(of_mesh).find(
+            "mesh      5 pieces, 4 on no pin, 3 vertices welded,\n"
+            "          1 vertex in no face and no line, 2 faces without area, 7 faces twice,\n"
+            "          used once, 1 edge of more than two faces\n") != std::string::npos);
   const Json json = to_json(of_mesh);
   CHECK(json["pieces"] == 5);
   CHECK(json["loose_pieces"] == 4);

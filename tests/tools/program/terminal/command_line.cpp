@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <vector>
 
 #include "tests/tools/run_program.h"
 #include "tests/tools/temporary_folder.h"
+#include "tools/scenes/scenes.h"
 
 namespace weft::tools {
 namespace {
@@ -38,15 +40,107 @@ TEST_CASE("with --json - stdout is JSON alone, with every key of the contract") 
   CHECK(json["stages"].contains("solve_positions"));
 }
 
-TEST_CASE("the table tells no time without its strain") {
-  const TemporaryFolder folder;
-  const Outcome outcome = run_program(folder, "run hang --size 5 --steps 4");
-  CHECK(outcome.exit_code == 0);
-  CHECK(outcome.err.empty());
-  std::istringstream lines(outcome.out);
+/// Those that are no continuation of the one before.
+std::vector<std::string> rows_of(const std::string& table) {
+  std::vector<std::string> rows;
+  std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) {
-    if (line.find(" ms ") != std::string::npos) CHECK(line.find("strain") != std::string::npos);
+    if (line.starts_with("          ")) {
+      REQUIRE_FALSE(rows.empty());
+      rows.back() += line;
+    } else {
+      rows.push_back(line);
+    }
   }
+  return rows;
+}
+
+bool fits_a_terminal(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    CAPTURE(line);
+    CHECK(line.size() <= 80);
+    if (line.size() > 80) return false;
+  }
+  return true;
+}
+
+TEST_CASE("the table tells no time without its strain, in 80 columns") {
+  const TemporaryFolder folder;
+  for (const char* scene : {"hang --size 5", "mannequin --size 20"}) {
+    const Outcome outcome = run_program(folder, std::string("run ") + scene + " --steps 4");
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.err.empty());
+    CHECK(fits_a_terminal(outcome.out));
+    int times = 0;
+    for (const std::string& row : rows_of(outcome.out)) {
+      const bool is_of_parts = row.find("to find contacts") != std::string::npos;  // of a stage
+      if (row.find(" ms ") == std::string::npos || is_of_parts) continue;
+      ++times;
+      CHECK((row.find("strain") != std::string::npos ||
+             row.find("error of the law") != std::string::npos));
+    }
+    CHECK(times == 2);
+  }
+}
+
+TEST_CASE("help begins with examples, all of which run, and is no wider than a terminal") {
+  const TemporaryFolder folder;
+  const Outcome help = run_program(folder, "--help");
+  CHECK(help.exit_code == 0);
+  CHECK(fits_a_terminal(help.out));
+  folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  std::istringstream lines(help.out);
+  int examples = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  weft ")) continue;
+    ++examples;
+    CAPTURE(line);
+    const std::string command = line.substr(7, line.find("  ", 7) - 7);
+    const bool runs = command.starts_with("run ");
+    const Outcome example =
+        run_program(folder, command + (runs ? " --steps 1" : ""), folder.file(""));
+    CHECK(example.exit_code == 0);
+  }
+  CHECK(examples >= 6);
+  for (const char* verb : {"run", "scene", "view", "precision", "hard", "forms", "paper"}) {
+    const Outcome of_verb = run_program(folder, std::string(verb) + " --help");
+    CHECK(of_verb.exit_code == 0);
+    CHECK(fits_a_terminal(of_verb.out));
+  }
+}
+
+TEST_CASE("every built-in scene has a line in the list of scenes") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, "scenes");
+  CHECK(outcome.exit_code == 0);
+  CHECK(fits_a_terminal(outcome.out));
+  for (const scenes::BuiltIn& scene : scenes::list()) {
+    CAPTURE(scene.name);
+    const std::string name = "\n  " + std::string(scene.name) + " ";
+    CHECK(outcome.out.find(name) != std::string::npos);
+    CHECK(outcome.out.find(scene.summary) != std::string::npos);
+  }
+}
+
+/// As bash, if the words are typed and the tabulator after them.
+std::string completed(const TemporaryFolder& folder, const std::string& words) {
+  const std::string script =
+      "source <(" WEFT_PROGRAM " completion); COMP_WORDS=(" + words +
+      "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _weft; echo \"${COMPREPLY[*]}\"";
+  const std::string command = "bash -c '" + script + "' >" + folder.file("completed");
+  REQUIRE(std::system(command.c_str()) == 0);
+  return folder.read("completed");
+}
+
+TEST_CASE("bash completes verbs, scenes, options and their values") {
+  const TemporaryFolder folder;
+  CHECK(completed(folder, "weft sc") == "scenes scene\n");
+  CHECK(completed(folder, "weft run ta") == "table\n");
+  CHECK(completed(folder, "weft run hang --tol") == "--tolerance\n");
+  CHECK(completed(folder, "weft run hang --material si") == "silk\n");
+  CHECK(completed(folder, "weft run hang --out x") == "\n");
+  CHECK(completed(folder, "weft view x") == "\n");
 }
 
 TEST_CASE("what is refused exits with 2 and one line that names it") {
@@ -56,11 +150,17 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
     std::string arguments;
     std::string named;
   } kRefused[] = {
-      {"", "a verb is missing: run, scene, view, paper, hard, precision or forms"},
-      {"''", "a verb is missing: run, scene, view, paper, hard, precision or forms"},
-      {"weave", "'weave' is not a verb: run, scene, view, paper, hard, precision or forms"},
+      {"",
+       "a verb is missing: run, replay, scenes, scene, view, paper, hard, precision, forms or "
+       "completion"},
+      {"''",
+       "a verb is missing: run, replay, scenes, scene, view, paper, hard, precision, forms or "
+       "completion"},
+      {"weave",
+       "'weave' is not a verb: run, replay, scenes, scene, view, paper, hard, precision, forms or "
+       "completion"},
       {"weave --size 3", "'weave' is not a verb"},
-      {"--colour red", "--colour"},
+      {"--colour red --shade 1", "weft: not expected: --colour red --shade 1"},
       {"run", "SCENE"},
       {"run curtains", "'curtains'"},
       {"run none.obj", "'none.obj'"},
@@ -99,6 +199,8 @@ TEST_CASE("what is refused exits with 2 and one line that names it") {
       {"run hang --out a.json --json ./a.json", "'a.json'"},
       {"run hang --out a.json --json $PWD/a.json", "'a.json'"},
       {"run hang --colour red --shade 1 blue", "weft: not expected: --colour red --shade 1 blue"},
+      {"scene hang --oud a.json --sise 3", "weft: not expected: --oud a.json --sise 3"},
+      {"scene hang", "weft: --out is required"},
       {"run " + folder.file("zero.json"), "it is a device, not a file"},
       {"scene hang --out a.obj", "'a.obj'"},
       {"precision --scene curtains", "'curtains'"},
