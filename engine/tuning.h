@@ -184,6 +184,10 @@ inline constexpr double kBendingPart = 0.1;
 inline constexpr double kFreeBendingPart = 0.02;
 inline constexpr double kLoosestBending = 0.05;
 inline constexpr int kMostBendingSteps = 200;
+/// Solutions of damped bending with a factorisation. Elements turn in the first as predicted, in
+/// the next as the last one has it. With one, strips of denim at cells of 0.5 mm crumple: the turns
+/// that are predicted are mostly noise, which stretches the cloth (perf/tried.md).
+inline constexpr int kTurnsOfBending = 2;
 /// Steps along the diagonal, over the root of n (b h)^2 K_ii / m_i in the mean (4 to 5 were
 /// measured of grids and irregular triangles). A factorisation is made where that is at least
 /// kLeastFactored, of at most kMostFactored particles, and where it is estimated to take less time

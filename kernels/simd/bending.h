@@ -5,11 +5,11 @@
 /// since the weights sum to zero; span is the same sum over the base. An element pulls particle i
 /// by c_i f,
 ///
-///     f = - k ((1 - rest / |d|) d + damping (d - turned(d, s))),
+///     f = - k ((1 - rest / |d|) d + damping bent),
 ///
-/// where s is the d of the start of the substep (kernels/reference/bending.h). What rounding does
-/// to d is a moment, and to a sum of pulls no more than to these: a stiff cloth is not pushed away
-/// by it.
+/// where bent is how d has changed since the start of the substep for one who turns with the
+/// element, as its arms tell (kernels/reference/bending.h). What rounding does to d is a moment,
+/// and to a sum of pulls no more than to these: a stiff cloth is not pushed away by it.
 #pragma once
 
 #include <limits>
@@ -21,18 +21,18 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-/// Of a block's lanes from `lane` on.
-template <bool kFour>
+/// Of a block's lanes from `lane` on; with arms, the particles beside three as well.
+template <bool kFour, bool kArms = false>
 struct BentQuads {
-  FloatVector x[kFour ? 4 : 3];
+  static constexpr std::size_t kCount = kFour || kArms ? 4 : 3;
+  FloatVector x[kCount];
 
   [[gnu::always_inline]] BentQuads(const float* u, const BendingBlock& block, std::uint32_t lane) {
-    for (std::size_t k = 0; k < (kFour ? 4 : 3); ++k)
-      x[k] = QuadLanes{}.get(u, block.slot[k] + lane);
+    for (std::size_t k = 0; k < kCount; ++k) x[k] = QuadLanes{}.get(u, block.slot[k] + lane);
   }
   [[gnu::always_inline]] BentQuads since(const BentQuads& start) const {
     BentQuads by = *this;
-    for (std::size_t k = 0; k < (kFour ? 4 : 3); ++k) by.x[k] = x[k] - start.x[k];
+    for (std::size_t k = 0; k < kCount; ++k) by.x[k] = x[k] - start.x[k];
     return by;
   }
   /// The sum of weight times particle.
@@ -42,24 +42,36 @@ struct BentQuads {
     if constexpr (kFour) d = fused(load(block.weight[2] + lane), x[3] - x[2], d);
     return d;
   }
+  [[gnu::always_inline]] FloatVector along() const { return x[0] - x[kFour ? 1 : 2]; }
+  [[gnu::always_inline]] FloatVector across() const requires kArms {
+    return x[3] - x[kFour ? 2 : 1];
+  }
 };
 
-template <bool kFour>
-[[gnu::always_inline]] inline void measure_elements(const BendingBlock* blocks, EdgeSpans* spans,
-                                                    const float* base, std::size_t first,
-                                                    std::size_t last) {
-  for (std::size_t i = first; i < last; ++i) {
-    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      FloatVector d = BentQuads<kFour>(base, blocks[i], lane).sum(blocks[i], lane);
-      d.x.store_unaligned(spans[i].x + lane);
-      d.y.store_unaligned(spans[i].y + lane);
-      d.z.store_unaligned(spans[i].z + lane);
-    }
-  }
+[[gnu::always_inline]] inline void store_span(EdgeSpans& span, std::uint32_t lane,
+                                              const FloatVector& v) {
+  v.x.store_unaligned(span.x + lane);
+  v.y.store_unaligned(span.y + lane);
+  v.z.store_unaligned(span.z + lane);
 }
-
 [[gnu::always_inline]] inline FloatVector load_span(const EdgeSpans& span, std::uint32_t lane) {
   return {load(span.x + lane), load(span.y + lane), load(span.z + lane)};
+}
+
+template <bool kFour, bool kArms>
+[[gnu::always_inline]] inline void measure_elements(const BendingBlock* blocks,
+                                                    const BendingSpans& spans, const float* base,
+                                                    std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+      const BentQuads<kFour, kArms> at(base, blocks[i], lane);
+      store_span(spans.d[i], lane, at.sum(blocks[i], lane));
+      if constexpr (kArms) {
+        store_span(spans.along[i], lane, at.along());
+        store_span(spans.across[i], lane, at.across());
+      }
+    }
+  }
 }
 
 /// (1 - rest / |d|) d. Where d all but vanishes it has no direction, and this falls to 0 with it.
@@ -70,17 +82,48 @@ template <bool kFour>
   return (Floats(1.f) - rest / xsimd::max(xsimd::sqrt(dot(d, d)), shortest)) * d;
 }
 
-/// d - turned(d, s), by = d - s: of what has turned by as much as |d| has grown.
-[[gnu::always_inline]] inline FloatVector bent(const FloatVector& d, const FloatVector& by) {
-  const Floats one(1.f), none(0.f), least(std::numeric_limits<float>::min());
-  const FloatVector s = d - by;
-  const Floats now = xsimd::sqrt(dot(d, d)), before = xsimd::sqrt(dot(s, s));
-  const Floats cosine = xsimd::max(none, dot(d, s) / xsimd::max(now * before, least));
-  const Floats sine = one - cosine * cosine;
-  const Floats part =
-      xsimd::max(none, one - Floats(static_cast<float>(1 / reference::kMostTurn)) * sine);
-  const Floats grown = dot(by, d + s) / xsimd::max(now * (now + before), least);
-  return (one - part) * by + (part * grown) * d;
+/// How v moves where it swings as `from` does, which moves by `by`.
+[[gnu::always_inline]] inline FloatVector swing(const FloatVector& v, const FloatVector& from,
+                                                const FloatVector& by) {
+  const Floats none(0.f), one(1.f), least(std::numeric_limits<float>::min());
+  FloatVector to = from + by;
+  const Floats was = xsimd::sqrt(dot(from, from)), now = xsimd::sqrt(dot(to, to));
+  const Floats vanished(static_cast<float>(reference::kVanished));
+  const Floats size = one / xsimd::max(was * xsimd::max(now, vanished * was), least);
+  const Floats cosine = xsimd::max(none, size * dot(from, to));
+  FloatVector w = size * cross(from, by);
+  FloatVector wv = cross(w, v);
+  const Floats part = xsimd::min(one, cosine + cosine);
+  return part * fused(one / (one + cosine), cross(w, wv), wv);
+}
+
+/// How d has changed, by `by` in space, for one who turns with the element. at: by how much
+/// particles have moved since the base, moved: since the start of the substep.
+template <bool kFour>
+[[gnu::always_inline]] inline FloatVector bent(const Bending& b, std::size_t block,
+                                               std::uint32_t lane, const BentQuads<kFour, true>& at,
+                                               const BentQuads<kFour, true>& moved,
+                                               const FloatVector& d, const FloatVector& by) {
+  const Floats least(std::numeric_limits<float>::min());
+  FloatVector s = d - by;
+  FloatVector along = load_span(b.spans.along[block], lane) + at.along();
+  FloatVector along_by = moved.along();
+  FloatVector along_was = along - along_by;
+  FloatVector across_by = moved.across();
+  FloatVector across_was = load_span(b.spans.across[block], lane) + at.across() - across_by;
+  if constexpr (!kFour) {
+    const Floats alone = load(b.blocks[block].weight[2] + lane);
+    across_was = fused(alone, s, across_was);
+    across_by = fused(alone, by, across_by);
+  }
+  FloatVector swung = swing(s, along_was, along_by);
+  FloatVector aside = swing(across_was, along_was, along_by);
+  FloatVector across = across_was + aside;
+  across_by = across_by - aside;
+  const Floats share = Floats(1.f) / xsimd::max(dot(along, along), least);
+  FloatVector from = fused_from(share * dot(across, along), along, across);
+  FloatVector beside = fused_from(share * dot(across_by, along), along, across_by);
+  return by - swung - swing(s + swung, from, beside);
 }
 
 [[gnu::always_inline]] inline void pull_quad(float* to, const std::uint32_t* slot, Floats weight,
@@ -109,13 +152,14 @@ template <bool kFour, bool kCurved, bool kDamped>
   for (std::size_t i = first; i < last; ++i) {
     const BendingBlock& block = b.blocks[i];
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      const BentQuads<kFour> at(b.u, block, lane);
-      const FloatVector d = load_span(b.spans[i], lane) + at.sum(block, lane);
+      const BentQuads<kFour, kDamped> at(b.u, block, lane);
+      const FloatVector d = load_span(b.spans.d[i], lane) + at.sum(block, lane);
       FloatVector f = d;
       if constexpr (kCurved) f = curved(block, lane, d);
       if constexpr (kDamped) {
-        const FloatVector by = at.since(BentQuads<kFour>(b.start, block, lane)).sum(block, lane);
-        f = fused(Floats(b.damping), bent(d, by), f);
+        const BentQuads<kFour, true> moved = at.since({b.start, block, lane});
+        const FloatVector by = moved.sum(block, lane);
+        f = fused(Floats(b.damping), bent(b, i, lane, at, moved, d, by), f);
       }
       pull_quads<kFour>(to, block, lane, (Floats(0.f) - load(block.stiffness + lane)) * f);
     }
@@ -132,7 +176,7 @@ template <bool kFour>
     alignas(64) float of_lane[kernels::kLanes];
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
       FloatVector d =
-          load_span(b.spans[i], lane) + BentQuads<kFour>(b.u, block, lane).sum(block, lane);
+          load_span(b.spans.d[i], lane) + BentQuads<kFour>(b.u, block, lane).sum(block, lane);
       const Floats bent = xsimd::sqrt(dot(d, d)) - load(block.rest + lane);
       const Floats part = xsimd::min(Floats(1.f), Floats(b.resolved) * load(block.softness + lane));
       (Floats(0.5f) * part * load(block.stiffness + lane) * bent * bent)
@@ -156,8 +200,17 @@ template <bool kFour>
   pull_elements<kFour, false>(b, to, first, last);
 }
 
-void measure_bending(const BendingBlock* blocks, EdgeSpans* spans, const float* base, bool four,
-                     std::size_t first, std::size_t last) {
+template <bool kFour>
+[[gnu::always_inline]] inline void measure_elements(const BendingBlock* blocks,
+                                                    const BendingSpans& spans, const float* base,
+                                                    std::size_t first, std::size_t last) {
+  if (spans.along != nullptr)
+    return measure_elements<kFour, true>(blocks, spans, base, first, last);
+  measure_elements<kFour, false>(blocks, spans, base, first, last);
+}
+
+void measure_bending(const BendingBlock* blocks, const BendingSpans& spans, const float* base,
+                     bool four, std::size_t first, std::size_t last) {
   if (four) return measure_elements<true>(blocks, spans, base, first, last);
   measure_elements<false>(blocks, spans, base, first, last);
 }

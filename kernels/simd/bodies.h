@@ -14,10 +14,6 @@ namespace {
 [[gnu::always_inline]] inline FloatVector splat(const float* v) {
   return {Floats(v[0]), Floats(v[1]), Floats(v[2])};
 }
-[[gnu::always_inline]] inline FloatVector cross_of(const FloatVector& a, const FloatVector& b) {
-  return {fused_from(a.z, b.y, a.y * b.z), fused_from(a.x, b.z, a.z * b.x),
-          fused_from(a.y, b.x, a.x * b.y)};
-}
 
 /// kFloats particles of a block beside a body.
 struct GripLanes {
@@ -176,7 +172,7 @@ template <class At>
     FloatVector v = fused(Floats(h.rate), led_to - predicted, v_before);
 
     FloatVector r = (p.x + by) - splat(f.centre_to);
-    FloatVector surface = splat(f.velocity) + cross_of(splat(f.spin), r);
+    FloatVector surface = splat(f.velocity) + cross(splat(f.spin), r);
     FloatVector relative = v - surface;
     const Floats out = dot(p.normal, relative);
     const Floats into = xsimd::max(none, none - out);
@@ -197,7 +193,7 @@ template <class At>
         xsimd::select(on, load(block.mass + lane) * Floats(h.momentum_share), none);
     FloatVector impulse = momentum * change;
     add(grips.linear, lane, impulse);
-    add(grips.angular, lane, cross_of(r, impulse));
+    add(grips.angular, lane, cross(r, impulse));
     const Floats slid = (Floats(1.f) - share) * xsimd::sqrt(dot(along, along));
     const Floats lost = momentum * taken * xsimd::sqrt(square) * slid * Floats(2.f / h.h);
     (load(grips.friction + lane) + lost).store_unaligned(grips.friction + lane);

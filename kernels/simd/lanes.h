@@ -123,6 +123,10 @@ template <class Batch>
 [[gnu::always_inline]] inline Batch dot(const VectorOf<Batch>& a, const VectorOf<Batch>& b) {
   return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
 }
+[[gnu::always_inline]] inline FloatVector cross(const FloatVector& a, const FloatVector& b) {
+  return {fused_from(a.z, b.y, a.y * b.z), fused_from(a.x, b.z, a.z * b.x),
+          fused_from(a.y, b.x, a.x * b.y)};
+}
 [[gnu::always_inline]] inline FloatVector no_vector() {
   return {Floats(0.f), Floats(0.f), Floats(0.f)};
 }

@@ -88,8 +88,10 @@ struct SpringRelaxation {
   float* multiplier = nullptr;  // per block and lane
   SpringLaws laws;
 };
-/// Bending elements of small steps (bending.h), in blocks of kLanes, of three particles or of four;
-/// particles in quads. Padding: spare slots, with weights and a stiffness of 0.
+/// Bending elements of small steps (bending.h), in blocks of kLanes, of three particles or of four,
+/// which stand as their arms have them; particles in quads. The fourth of three is the particle
+/// beside, or the middle and a third weight of 1. Padding: spare slots, with weights and a
+/// stiffness of 0.
 struct alignas(64) BendingBlock {
   std::uint32_t slot[4][kernels::kLanes];
   float weight[3][kernels::kLanes];  // of particles 0, 1 and 3: c_i. That of 2 makes their sum 0
@@ -97,14 +99,20 @@ struct alignas(64) BendingBlock {
   float stiffness[kernels::kLanes];  // k = 1 / compliance, N/m
   float softness[kernels::kLanes];   // compliance / W, W = sum of w_i c_i^2, s^2
 };
+/// Per block, what is measured of the base. Arms serve damping: without it they are null.
+struct BendingSpans {
+  EdgeSpans* d = nullptr;
+  EdgeSpans* along = nullptr;
+  EdgeSpans* across = nullptr;
+};
 struct Bending {
   const float* u = nullptr;
   const float* start = nullptr;  // u when the substep began, of the same base
   const BendingBlock* blocks = nullptr;
-  const EdgeSpans* spans = nullptr;  // d of the base
-  bool curved = false;               // a rest is not 0
-  float damping = 0;                 // tau / h
-  float resolved = 0;                // 1/s^2: what is stiffer has a softness of less than 1 / this
+  BendingSpans spans;
+  bool curved = false;  // a rest is not 0
+  float damping = 0;    // tau / h
+  float resolved = 0;   // 1/s^2: what is stiffer has a softness of less than 1 / this
 };
 
 /// Triangles of fabric (membrane.h), in blocks of kLanes, of one kind each; particles in quads.

@@ -187,7 +187,7 @@ struct Table {
   void (*relax_springs)(const SpringRelaxation&, bool rope, std::size_t first, std::size_t last);
   /// Sets `out` to the constraints that break their laws by more than the tolerance.
   void (*judge_springs)(const SpringRelaxation&, bool rope, std::size_t first, std::size_t last);
-  void (*measure_bending)(const BendingBlock*, EdgeSpans*, const float* base, bool four,
+  void (*measure_bending)(const BendingBlock*, const BendingSpans&, const float* base, bool four,
                           std::size_t first, std::size_t last);
   /// Adds the pulls of elements that share no particle to quads.
   void (*pull_bending)(const Bending&, float* to, bool four, std::size_t first, std::size_t last);

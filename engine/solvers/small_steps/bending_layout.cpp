@@ -7,7 +7,9 @@
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
+#include "engine/solvers/small_steps/bending_arms.h"
 #include "engine/solvers/small_steps/element_batches.h"
+#include "kernels/reference/bending.h"
 
 namespace weft {
 namespace {
@@ -64,9 +66,14 @@ class BendingLayoutBuilder {
     }
   }
   void fill(simd::BendingBlock& block, std::uint32_t lane, std::uint32_t i) {
-    for (std::size_t k = 0; k < particles(i); ++k) block.slot[k][lane] = store_.slots[i][k];
-    for (std::size_t k = 0; k < 3; ++k)
-      block.weight[k][lane] = static_cast<float>(store_.weights[i][kInBlock[k]]);
+    const auto order = reference::order_of_arms({store_.slots[i], store_.weights[i], 0, 0});
+    for (std::size_t k = 0; k < particles(i); ++k) block.slot[k][lane] = store_.slots[i][order[k]];
+    for (std::size_t k = 0; k < particles(i) - 1; ++k)
+      block.weight[k][lane] = static_cast<float>(store_.weights[i][order[kInBlock[k]]]);
+    if (!has_four(i)) {
+      block.slot[3][lane] = layout_.beside[i].value_or(block.slot[1][lane]);
+      block.weight[2][lane] = layout_.beside[i] ? 0 : 1;
+    }
     block.rest[lane] = static_cast<float>(store_.rest[i]);
     block.stiffness[lane] = to_positive_float(1 / store_.compliance[i]);
     block.softness[lane] = to_positive_float(store_.compliance[i] / inverse_mass(i));
@@ -83,6 +90,7 @@ class BendingLayoutBuilder {
 BendingLayout make_bending_layout(const Model& model) {
   BendingLayout layout;
   if (model.bending.size() == 0) return layout;
+  layout.beside = particles_beside(model);
   BendingLayoutBuilder builder(model, layout);
   for (const bool four : {false, true}) builder.add_batches(four);
   layout.rows = make_bending_rows(model);
@@ -90,7 +98,7 @@ BendingLayout make_bending_layout(const Model& model) {
 }
 
 std::size_t BendingLayout::bytes() const {
-  return bytes_of(blocks) + bytes_of(element) + bytes_of(batches) + rows.bytes();
+  return bytes_of(blocks) + bytes_of(element) + bytes_of(batches) + bytes_of(beside) + rows.bytes();
 }
 
 }  // namespace weft

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/solvers/small_steps/bending_rows.h"
@@ -22,6 +23,7 @@ struct BendingLayout {
   std::vector<simd::BendingBlock> blocks;
   std::vector<std::uint32_t> element;  // per block and lane: in Model::bending, or kNoIndex
   std::vector<BendingBatch> batches;
+  std::vector<std::optional<std::uint32_t>> beside;  // per element in Model::bending: a slot
   BendingRows rows;
   bool curved = false;  // a rest is not 0
 

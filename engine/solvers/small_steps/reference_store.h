@@ -116,7 +116,7 @@ class ReferenceStore {
   void pull(const BendingStep& step);
   reference::BendingElement element(std::uint32_t i) const {
     const BendingStore& s = model_.bending;
-    return {s.slots[i], s.weights[i], s.rest[i], s.compliance[i]};
+    return {s.slots[i], s.weights[i], s.rest[i], s.compliance[i], layout_.bending.beside[i]};
   }
   /// Of l^2 / rest^2 - 1.
   void relax_chain(std::span<const std::uint32_t> slots, std::span<const std::uint32_t> links,

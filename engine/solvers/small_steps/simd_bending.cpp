@@ -29,7 +29,10 @@ SimdBending::SimdBending(const Model& model, const Settings& settings, const sim
       spans_(layout_.blocks.size()),
       energies_(layout_.blocks.size()) {
   if (!layout_.empty()) soft_.allocate();
-  if (!layout_.empty() && model.damping.bending > 0) from_.resize(4 * layout_.rows.slots());
+  if (layout_.empty() || model.damping.bending == 0) return;
+  from_.resize(4 * layout_.rows.slots());
+  along_.resize(layout_.blocks.size());
+  across_.resize(layout_.blocks.size());
 }
 
 template <class Work>
@@ -66,7 +69,7 @@ void SimdBending::begin(const FramePlan& plan, const float* acceleration) {
 
 void SimdBending::measure_base(const float* base, Team& team) {
   for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
-    table_.measure_bending(layout_.blocks.data(), spans_.data(), base, four, first, last);
+    table_.measure_bending(layout_.blocks.data(), spans(), base, four, first, last);
   });
 }
 
@@ -79,9 +82,8 @@ void SimdBending::bend(float* u, const float* start, double give, Team& team) {
     bend_softly(u, start, *step, team);
 }
 
-simd::Bending SimdBending::arrays(const float* u) const {
-  return {
-      .u = u, .blocks = layout_.blocks.data(), .spans = spans_.data(), .curved = layout_.curved};
+simd::Bending SimdBending::arrays(const float* u) {
+  return {.u = u, .blocks = layout_.blocks.data(), .spans = spans(), .curved = layout_.curved};
 }
 
 /// Into the residual of soft_.
@@ -137,7 +139,27 @@ void SimdBending::bend_softly(float* u, const float* start, const BendingStep& s
   });
 }
 
+/// What is damped is solved twice: how its elements turn is read from where bending takes them.
+/// What stiff cloth is predicted to do is mostly noise (tuning::kTurnsOfBending).
 void SimdBending::bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team) {
+  double* const guess = stiff_.guess();
+  stiff_.forget_guess();
+  for (int pass = 0; pass < frame_.passes(step); ++pass) {
+    const double left = solve_stiffly(u, start, step, team);
+    if (pass + 1 == frame_.passes(step)) error_ = std::max(error_, left);
+    if (stiff_.steps() == 0) continue;
+    const double* const by = stiff_.change();
+    for_floats(team, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        guess[i] += by[i];
+        u[i] += static_cast<float>(by[i]);
+      }
+    });
+  }
+}
+
+double SimdBending::solve_stiffly(const float* u, const float* start, const BendingStep& step,
+                                  Team& team) {
   float* const pulls = soft_.residual();
   double* const residual = stiff_.residual();
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -147,12 +169,7 @@ void SimdBending::bend_stiffly(float* u, const float* start, const BendingStep& 
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) residual[i] = static_cast<double>(pulls[i]);
   });
-  error_ = std::max(error_, stiff_.solve(step.law(), frame_.limits(), team));
-  if (stiff_.steps() == 0) return;
-  const double* const by = stiff_.change();
-  for_floats(team, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) u[i] += static_cast<float>(by[i]);
-  });
+  return stiff_.solve(step.law(), frame_.limits(), team);
 }
 
 double SimdBending::energy(const float* u, double give, Team& team) {
@@ -166,7 +183,8 @@ double SimdBending::energy(const float* u, double give, Team& team) {
 }
 
 std::size_t SimdBending::bytes() const {
-  return bytes_of(spans_) + bytes_of(energies_) + bytes_of(from_) + soft_.bytes() + stiff_.bytes();
+  return bytes_of(spans_) + bytes_of(along_) + bytes_of(across_) + bytes_of(energies_) +
+         bytes_of(from_) + soft_.bytes() + stiff_.bytes();
 }
 
 }  // namespace weft

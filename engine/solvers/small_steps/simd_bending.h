@@ -32,11 +32,14 @@ class SimdBending {
   void for_blocks(Team& team, Work&& work) const;
   template <class Work>
   void for_floats(Team& team, Work&& work) const;
-  simd::Bending arrays(const float* u) const;
+  simd::BendingSpans spans() { return {spans_.data(), along_.data(), across_.data()}; }
+  simd::Bending arrays(const float* u);
   void pull(const float* u, const float* start, double damping, Team& team);
   void begin_from_guess(float* u, const float* start, const BendingStep& step, Team& team);
   void bend_softly(float* u, const float* start, const BendingStep& step, Team& team);
   void bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team);
+  /// Returns the share of the force that is left.
+  double solve_stiffly(const float* u, const float* start, const BendingStep& step, Team& team);
 
   const Model& model_;
   const BendingLayout& layout_;
@@ -46,9 +49,10 @@ class SimdBending {
   BendingSystem<double> stiff_;
   double give_ = 0;  // s^2, of the last solution in the frame; 0: there was none
   double error_ = 0;
-  kernels::AlignedVector<simd::EdgeSpans> spans_;  // d of the base
-  kernels::AlignedVector<float> from_;             // the start that damping measures from
-  std::vector<double> energies_;                   // J, per block
+  kernels::AlignedVector<simd::EdgeSpans> spans_;           // d of the base
+  kernels::AlignedVector<simd::EdgeSpans> along_, across_;  // arms of the base, for damping
+  kernels::AlignedVector<float> from_;                      // the start that damping measures from
+  std::vector<double> energies_;                            // J, per block
 };
 
 }  // namespace weft

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -27,7 +28,7 @@ struct Elements {
   kernels::AlignedVector<float> base, u, before;
   std::vector<reference::BendingElement> elements;
   simd::BendingBlock block{};
-  simd::EdgeSpans spans{};
+  simd::EdgeSpans spans[3] = {};  // d, and the arms
 
   Elements(bool four, bool curved) : four(four) {
     for (auto* array : {&base, &u, &before}) array->resize(4 * kParticles);
@@ -54,10 +55,16 @@ struct Elements {
     e.weights[2] = -e.weights[0] - e.weights[1] - e.weights[3];
     e.rest = curved ? random.between(0, 0.02) : 0;
     e.compliance = std::exp2(random.between(-10, 4));
-    for (std::size_t k = 0; k < 4; ++k) block.slot[k][lane] = e.slots[k];
-    block.weight[0][lane] = static_cast<float>(e.weights[0]);
-    block.weight[1][lane] = static_cast<float>(e.weights[1]);
-    block.weight[2][lane] = static_cast<float>(e.weights[3]);
+    const auto order = reference::order_of_arms(e);
+    for (std::size_t k = 0; k < 4; ++k) block.slot[k][lane] = e.slots[order[k]];
+    block.weight[0][lane] = static_cast<float>(e.weights[order[0]]);
+    block.weight[1][lane] = static_cast<float>(e.weights[order[1]]);
+    block.weight[2][lane] = four ? static_cast<float>(e.weights[order[3]]) : 0;
+    if (!four) {
+      if (lane % 2 == 0) e.beside = first + 3;
+      block.slot[3][lane] = e.beside.value_or(block.slot[1][lane]);
+      block.weight[2][lane] = e.beside ? 0 : 1;
+    }
     block.rest[lane] = static_cast<float>(e.rest);
     block.stiffness[lane] = static_cast<float>(1 / e.compliance);
     block.softness[lane] =
@@ -90,11 +97,12 @@ struct Elements {
     return e.positions();
   }
   simd::Bending bending(const simd::Table& table, bool curved, double damping) {
-    table.measure_bending(&block, &spans, base.data(), four, 0, 1);
+    const simd::BendingSpans all{&spans[0], &spans[1], &spans[2]};
+    table.measure_bending(&block, all, base.data(), four, 0, 1);
     return {.u = u.data(),
             .start = before.data(),
             .blocks = &block,
-            .spans = &spans,
+            .spans = all,
             .curved = curved,
             .damping = static_cast<float>(damping),
             .resolved = 1e12f};
@@ -142,6 +150,67 @@ TEST_CASE("an element pulls its particles as in double, and in sum not at all") 
       }
     }
   });
+}
+
+/// x, turned about the origin by the angle, and moved.
+kernels::Vectors turned(kernels::VectorsView x, Vector axis, double angle) {
+  const Vector n = (1 / length(axis)) * axis;
+  kernels::Vectors to(kParticles);
+  for (std::size_t i = 0; i < kParticles; ++i) {
+    const Vector along = dot(n, x[i]) * n, across = x[i] - along;
+    to.set(i, Vector{0.1, -0.2, 0.3} + along + std::cos(angle) * across +
+                  std::sin(angle) * cross(n, across));
+  }
+  return to;
+}
+
+TEST_CASE("nothing is damped of what turns as a whole, in whatever order its particles are") {
+  const double damping = 20;
+  for (const bool four : {false, true}) {
+    for (const double angle : {1e-3, 0.1, 1.}) {
+      Elements start(four, true);
+      kernels::Vectors x = start.positions();
+      Random random(5);
+      const Vector axis{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+      kernels::Vectors before = turned(x.view(), axis, angle);
+      for (reference::BendingElement e : start.elements) {
+        std::array<std::size_t, 4> order{0, 1, 2, 3};
+        do {
+          if (!four && order[3] != 3) continue;
+          reference::BendingElement other = e;
+          for (std::size_t k = 0; k < 4; ++k) {
+            other.slots[k] = e.slots[order[k]];
+            other.weights[k] = e.weights[order[k]];
+          }
+          if (!four) other.slots[3] = other.slots[2];
+          const Vector free = reference::pull(other, 0, x.view(), before.view());
+          const Vector damped = reference::pull(other, damping, x.view(), before.view());
+          const double scale =
+              damping * length(reference::weighted_sum(e, x.view())) / e.compliance;
+          CHECK(length(damped - free) < 1e-9 * scale);
+        } while (std::next_permutation(order.begin(), order.end()));
+      }
+    }
+  }
+}
+
+TEST_CASE("lanes damp nothing of what turns as a whole") {
+  for (const bool four : {false, true}) {
+    for (const simd::Isa isa : supported_isas()) {
+      Elements e(four, false);
+      kernels::Vectors x = e.positions();
+      kernels::Vectors before = turned(x.view(), {1, -2, 0.5}, 1e-2);
+      for (std::size_t i = 0; i < kParticles; ++i) {
+        const double at[] = {before[i].x, before[i].y, before[i].z};
+        for (std::size_t k = 0; k < 3; ++k)
+          e.before[4 * i + k] = static_cast<float>(at[k] - static_cast<double>(e.base[4 * i + k]));
+      }
+      const auto free = e.pulled(simd::table(isa), false, 0);
+      const auto damped = e.pulled(simd::table(isa), false, 1);
+      for (std::size_t i = 0; i < free.size(); ++i)
+        CHECK(std::abs(damped[i] - free[i]) < 1e-3f * (1 + std::abs(free[i])));
+    }
+  }
 }
 
 TEST_CASE("AVX2 and AVX-512 pull by the same bits, and tell the same energy") {
