@@ -1,0 +1,56 @@
+/// Pressures (weft.h) and the triangles that they are on.
+#pragma once
+
+#include <weft/scene.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "kernels/vectors.h"
+
+namespace weft {
+
+using Corners = std::array<std::uint32_t, 3>;
+/// m, of a corner.
+using Place = std::function<kernels::Vector(std::uint32_t)>;
+
+/// work(corners) for each triangle of the part.
+template <class Work>
+void for_each_triangle(const Pressure& part, std::span<const Corners> surface, Work&& work) {
+  if (part.triangles.empty()) {
+    for (const Corners& corners : surface) work(corners);
+  } else {
+    for (const std::uint32_t i : part.triangles) work(surface[i]);
+  }
+}
+std::vector<Corners> triangles_of(const Pressure& part, std::span<const Corners> surface);
+
+/// A side that is not of two triangles, once in each direction; null: the triangles close.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> find_border(
+    std::span<const Corners> triangles);
+
+/// m^3, that triangles which close enclose: more than 0 where their normals point outwards.
+double enclosed_volume(std::span<const Corners> triangles, const Place& place);
+
+/// Of triangles that share corners.
+struct Pieces {
+  std::vector<std::uint32_t> of;  // of each triangle: its piece
+  std::vector<bool> is_open;      // of each piece
+};
+Pieces find_pieces(std::span<const Corners> triangles);
+
+/// With the volume of each gas, where it is that of these places.
+std::vector<Pressure> with_volumes(std::span<const Pressure> pressures,
+                                   std::span<const Corners> surface, const Place& place);
+
+/// known: valid ones. Triangles that one of the same number has are not looked at again.
+Result<void> validate_pressures(std::span<const Pressure> pressures,
+                                std::span<const Pressure> known, std::span<const Corners> surface,
+                                const Place& place);
+
+}  // namespace weft
