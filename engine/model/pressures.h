@@ -30,7 +30,8 @@ void for_each_triangle(const Pressure& part, std::span<const Corners> surface, W
 }
 std::vector<Corners> triangles_of(const Pressure& part, std::span<const Corners> surface);
 
-/// A side that is not of two triangles, once in each direction; null: the triangles close.
+/// A side that is not of as many triangles in one direction as in the other; null: the triangles
+/// close.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> find_border(
     std::span<const Corners> triangles);
 

@@ -116,8 +116,8 @@ struct Damping {
 ///
 /// S is the sum of the triangles' areas times normals, which is that of the mouth of a canopy, and
 /// v the mean velocity of the piece relative to the wind, by area. It presses from the side that
-/// the flow meets, whichever way the triangles face. A flat plate feels 1/2 density A ram u^2, a
-/// closed surface nothing. With small_steps it follows the normals in every substep.
+/// the flow meets, whichever way the triangles face. A flat plate feels 1/2 density A ram u^2
+/// besides its drag, a closed surface nothing. By small_steps it follows normals in every substep.
 struct Air {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double density = 1.2;  ///< kg/m^3
@@ -127,7 +127,7 @@ struct Air {
   double ram = 0;        ///< C_p, of the flow that a piece catches; 1.2 for a canopy
 };
 
-/// A pressure on triangles of `surface`: on both ends of a triangle's normal, from behind. It
+/// A pressure on triangles of `surface`. It is more on one side of them than on the other, so it
 /// pushes along the normals, out of the side from which the corners are seen counter-clockwise; a
 /// negative one against them. It follows the normals in every substep, and does the work of the
 /// volume that the triangles sweep: none where it stands still. Several on a triangle add up.
@@ -137,9 +137,9 @@ struct Air {
 ///
 ///     (ambient + pressure now) (volume now) = (ambient + pressure) volume
 ///
-/// Its triangles enclose it: each of their sides is one of two triangles, and the normals point
-/// outwards. If the gas is pressed to less than a thousandth of its volume its pressure grows no
-/// more.
+/// Its triangles enclose it: as many of them have a side in one direction as in the other, and the
+/// normals point outwards. A given pressure above k / 2 R inflates a ball without end: threads of k
+/// N/m hold no more.
 struct Pressure {
   double pressure = 0;                        ///< Pa, more than the air around has
   std::vector<std::uint32_t> triangles = {};  ///< by their numbers in `surface`; empty: all

@@ -247,6 +247,21 @@ SceneDescription flap() {
   return scene;
 }
 
+TEST_CASE("two sheets that share a border enclose a volume, though a side in a corner is of four") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}, {0.5, 0.2, 0.5}, {0.5, -0.1, 0.5}};
+  scene.masses.assign(6, 1);
+  for (const std::uint32_t top : {4u, 5u}) {
+    for (auto t : Triangles{{0, 2, 1}, {1, 2, top}, {2, 3, top}, {3, 1, top}}) {
+      if (top == 5) std::swap(t[1], t[2]);
+      scene.surface.push_back(t);
+    }
+  }
+  scene.pressures = {{.pressure = 1, .gas = true}};
+  Cloth cloth = cloth_of(scene, {});
+  CHECK(cloth.pressures()[0].volume == doctest::Approx(0.3 * 0.5 / 3));
+}
+
 TEST_CASE("a flap swings as the pressure that follows it says, with its work and no more") {
   constexpr double kPressure = 60, kForce = kPressure * 0.5 / 3;
   for (const Settings& settings : kSmallSteps) {
