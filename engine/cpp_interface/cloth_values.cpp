@@ -149,7 +149,7 @@ Result<void> Cloth::set_pressure(double pressure) {
 
 Result<void> Cloth::set_pressure(std::span<const Pressure> pressures) {
   const auto place = [&](std::uint32_t slot) { return impl_->state.position[slot]; };
-  const std::vector<Corners>& surface = impl_->state.model->surface;
+  const std::vector<SurfaceTriangle>& surface = impl_->state.model->surface;
   if (auto r = validate_pressures(pressures, impl_->state.pressures, surface, place); !r) return r;
   std::vector<Pressure> known = with_volumes(pressures, surface, place);
   if (known == impl_->state.pressures) return {};

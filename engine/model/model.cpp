@@ -246,7 +246,7 @@ void Model::store_air(const SceneDescription& d) {
 
 void Model::list_air_triangles() {
   if (has_ram() && air.piece.empty()) {
-    Pieces pieces = find_pieces(air.triangles);
+    AirPieces pieces = find_air_pieces(air.triangles);
     air.piece = std::move(pieces.of);
     air.is_open = std::move(pieces.is_open);
   }

@@ -12,15 +12,15 @@ namespace weft {
 namespace {
 
 using kernels::Vector;
-using Side = std::pair<std::uint32_t, std::uint32_t>;
+using DirectedSide = std::pair<std::uint32_t, std::uint32_t>;
 
-std::vector<Side> sorted_sides(std::span<const Corners> triangles, bool turned) {
-  std::vector<Side> sides;
+std::vector<DirectedSide> sorted_sides(std::span<const SurfaceTriangle> triangles, bool turned) {
+  std::vector<DirectedSide> sides;
   sides.reserve(3 * triangles.size());
-  for (const Corners& t : triangles) {
+  for (const SurfaceTriangle& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t from = t[k], to = t[(k + 1) % 3];
-      sides.push_back(turned ? Side{to, from} : Side{from, to});
+      sides.push_back(turned ? DirectedSide{to, from} : DirectedSide{from, to});
     }
   }
   std::ranges::sort(sides);
@@ -47,7 +47,7 @@ Result<void> validate_listed(const std::string& field, const Pressure& part, std
   return refuse(field + ".triangles", "lists a triangle twice", std::to_string(*twice));
 }
 
-Result<void> validate_closed(const std::string& field, std::span<const Corners> triangles) {
+Result<void> validate_closed(const std::string& field, std::span<const SurfaceTriangle> triangles) {
   const auto border = find_border(triangles);
   if (!border) return {};
   return refuse(
@@ -57,13 +57,13 @@ Result<void> validate_closed(const std::string& field, std::span<const Corners> 
 
 /// has_closed: these triangles are known to.
 Result<void> validate_gas(const std::string& field, const Pressure& part, bool has_closed,
-                          std::span<const Corners> surface, const Place& place) {
+                          std::span<const SurfaceTriangle> surface, const SlotPlace& place) {
   if (auto r = validate_positive(field + ".ambient", part.ambient); !r) return r;
   if (!(part.ambient + part.pressure > 0))
     return refuse(field + ".pressure", "a gas has more than none: must be above -ambient",
                   number(part.pressure));
   if (auto r = validate_not_negative(field + ".volume", part.volume); !r) return r;
-  const std::vector<Corners> triangles = triangles_of(part, surface);
+  const std::vector<SurfaceTriangle> triangles = triangles_of(part, surface);
   if (!has_closed) {
     if (auto r = validate_closed(field, triangles); !r) return r;
   }
@@ -75,21 +75,22 @@ Result<void> validate_gas(const std::string& field, const Pressure& part, bool h
 
 }  // namespace
 
-std::vector<Corners> triangles_of(const Pressure& part, std::span<const Corners> surface) {
-  std::vector<Corners> triangles;
-  for_each_triangle(part, surface, [&](const Corners& t) { triangles.push_back(t); });
+std::vector<SurfaceTriangle> triangles_of(const Pressure& part,
+                                          std::span<const SurfaceTriangle> surface) {
+  std::vector<SurfaceTriangle> triangles;
+  for_each_triangle(part, surface, [&](const SurfaceTriangle& t) { triangles.push_back(t); });
   return triangles;
 }
 
-std::optional<Side> find_border(std::span<const Corners> triangles) {
-  const std::vector<Side> there = sorted_sides(triangles, false),
-                          back = sorted_sides(triangles, true);
+std::optional<DirectedSide> find_border(std::span<const SurfaceTriangle> triangles) {
+  const std::vector<DirectedSide> there = sorted_sides(triangles, false),
+                                  back = sorted_sides(triangles, true);
   const auto [one, other] = std::ranges::mismatch(there, back);
   if (one == there.end()) return std::nullopt;
-  return *one < *other ? *one : Side{other->second, other->first};
+  return *one < *other ? *one : DirectedSide{other->second, other->first};
 }
 
-double enclosed_volume(std::span<const Corners> triangles, const Place& place) {
+double enclosed_volume(std::span<const SurfaceTriangle> triangles, const SlotPlace& place) {
   if (triangles.empty()) return 0;
   const Vector origin = place(triangles.front()[0]);
   double volume = 0;
@@ -98,19 +99,20 @@ double enclosed_volume(std::span<const Corners> triangles, const Place& place) {
   return volume;
 }
 
-Pieces find_pieces(std::span<const Corners> triangles) {
+AirPieces find_air_pieces(std::span<const SurfaceTriangle> triangles) {
   std::uint32_t corners = 0;
-  for (const Corners& t : triangles) corners = std::max({corners, t[0] + 1, t[1] + 1, t[2] + 1});
+  for (const SurfaceTriangle& t : triangles)
+    corners = std::max({corners, t[0] + 1, t[1] + 1, t[2] + 1});
   std::vector<std::uint32_t> parent(corners);
   std::iota(parent.begin(), parent.end(), 0);
-  for (const Corners& t : triangles) {
+  for (const SurfaceTriangle& t : triangles) {
     for (const std::uint32_t other : {t[1], t[2]})
       parent[root_of(parent, other)] = root_of(parent, t[0]);
   }
-  Pieces pieces;
+  AirPieces pieces;
   std::map<std::uint32_t, std::uint32_t> piece_of_root;
-  std::vector<std::vector<Corners>> of_piece;
-  for (const Corners& t : triangles) {
+  std::vector<std::vector<SurfaceTriangle>> of_piece;
+  for (const SurfaceTriangle& t : triangles) {
     const auto next = static_cast<std::uint32_t>(piece_of_root.size());
     const std::uint32_t piece =
         piece_of_root.try_emplace(root_of(parent, t[0]), next).first->second;
@@ -123,7 +125,8 @@ Pieces find_pieces(std::span<const Corners> triangles) {
 }
 
 std::vector<Pressure> with_volumes(std::span<const Pressure> pressures,
-                                   std::span<const Corners> surface, const Place& place) {
+                                   std::span<const SurfaceTriangle> surface,
+                                   const SlotPlace& place) {
   std::vector<Pressure> known(pressures.begin(), pressures.end());
   for (Pressure& part : known) {
     if (part.gas && part.volume == 0)
@@ -133,8 +136,8 @@ std::vector<Pressure> with_volumes(std::span<const Pressure> pressures,
 }
 
 Result<void> validate_pressures(std::span<const Pressure> pressures,
-                                std::span<const Pressure> known, std::span<const Corners> surface,
-                                const Place& place) {
+                                std::span<const Pressure> known,
+                                std::span<const SurfaceTriangle> surface, const SlotPlace& place) {
   for (std::size_t i = 0; i < pressures.size(); ++i) {
     const Pressure& part = pressures[i];
     const std::string field = element("pressures", i);

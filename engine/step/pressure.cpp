@@ -22,7 +22,7 @@ using kernels::VectorsView;
 
 /// m^2, twice its area times its normal.
 template <class Places>
-Vector twice_area(const Places& x, const Corners& t) {
+Vector twice_area(const Places& x, const SurfaceTriangle& t) {
   const Vector from = x[t[0]];
   return cross(x[t[1]] - from, x[t[2]] - from);
 }
@@ -34,7 +34,7 @@ void for_each_given(const State& s, bool is_of_gas, Work&& work) {
     if (s.pressures[i].gas != is_of_gas) continue;
     const double pressure = s.pressed.given[i];
     for_each_triangle(s.pressures[i], s.model->surface,
-                      [&](const Corners& t) { work(pressure, t); });
+                      [&](const SurfaceTriangle& t) { work(pressure, t); });
   }
 }
 template <class Work>
@@ -49,7 +49,7 @@ double volume_of(const Model& model, const Pressure& part, VectorsView x) {
   double volume = 0;
   Vector origin{0, 0, 0};
   bool is_first = true;
-  for_each_triangle(part, model.surface, [&](const Corners& t) {
+  for_each_triangle(part, model.surface, [&](const SurfaceTriangle& t) {
     if (std::exchange(is_first, false)) origin = x[t[0]];
     const Vector a = x[t[0]] - origin, b = x[t[1]] - origin, c = x[t[2]] - origin;
     volume += dot(a, cross(b, c)) / 6;
@@ -76,10 +76,10 @@ double work_of_gas(const Pressure& part, double from, double to) {
 
 /// The areas of the triangles of a gas, per particle.
 void find_areas(State& s, const Pressure& part, VectorsView x) {
-  for_each_triangle(part, s.model->surface, [&](const Corners& t) {
+  for_each_triangle(part, s.model->surface, [&](const SurfaceTriangle& t) {
     for (const std::uint32_t slot : t) s.pressed.area.set(slot, {0, 0, 0});
   });
-  for_each_triangle(part, s.model->surface, [&](const Corners& t) {
+  for_each_triangle(part, s.model->surface, [&](const SurfaceTriangle& t) {
     const Vector share = (1. / 6) * twice_area(x, t);
     for (const std::uint32_t slot : t) s.pressed.area.view().add(slot, share);
   });
@@ -88,7 +88,7 @@ void find_areas(State& s, const Pressure& part, VectorsView x) {
 /// sum a . a / m, each particle once: a corner has its share of the sum over its triangles.
 double mobility(const State& s, const Pressure& part, VectorsView x) {
   double sum = 0;
-  for_each_triangle(part, s.model->surface, [&](const Corners& t) {
+  for_each_triangle(part, s.model->surface, [&](const SurfaceTriangle& t) {
     const Vector share = (1. / 6) * twice_area(x, t);
     for (const std::uint32_t slot : t)
       sum += s.model->inverse_mass[slot] * dot(s.pressed.area[slot], share);
@@ -112,7 +112,7 @@ void give_way(State& s, std::size_t i, VectorsView x) {
   s.pressed.given[i] =
       implicit_pressure(part, before, volume_of(*s.model, part, x), give * mobility(s, part, x));
   const double more = s.pressed.given[i] - before;
-  for_each_triangle(part, s.model->surface, [&](const Corners& t) {
+  for_each_triangle(part, s.model->surface, [&](const SurfaceTriangle& t) {
     for (const std::uint32_t slot : t) {
       const Vector force = more * s.pressed.area[slot];
       s.pressed.area.set(slot, {0, 0, 0});  // once for each particle
@@ -147,7 +147,7 @@ void catch_wind(State& s, VectorsView x, VectorsView v) {
   const AirStore& air = s.model->air;
   std::ranges::fill(s.pressed.caught, Caught{});
   for (std::size_t i = 0; i < air.piece.size(); ++i) {
-    const Corners& t = air.triangles[i];
+    const SurfaceTriangle& t = air.triangles[i];
     Caught& piece = s.pressed.caught[air.piece[i]];
     const Vector area = 0.5 * twice_area(x, t);
     const double size = length(area);
@@ -224,13 +224,14 @@ std::vector<double> gas_going_on(const State& s, std::span<const Pressure> next)
 
 double length_for_pressure(const State& s) {
   double load = 0, area = 0, mass = 0;  // N, m^2, kg
-  const auto add = [&](double pressure, const Corners& t) {
+  const auto add = [&](double pressure, const SurfaceTriangle& t) {
     const double size = 0.5 * length(twice_area(s.position, t));
     load += std::abs(pressure) * size;
     area += size;
   };
   for (const Pressure& part : s.pressures) {
-    for_each_triangle(part, s.model->surface, [&](const Corners& t) { add(part.pressure, t); });
+    for_each_triangle(part, s.model->surface,
+                      [&](const SurfaceTriangle& t) { add(part.pressure, t); });
   }
   for_each_in_ram(s, add);
   const double cell = s.model->small_steps().load.mean_length;
@@ -255,7 +256,7 @@ void press(State& s, VectorsView x) {
       s.pressed.given[i] = part.pressure;
   }
   const auto add_to = [x](VectorsView sum) {
-    return [x, sum](double pressure, const Corners& t) {
+    return [x, sum](double pressure, const SurfaceTriangle& t) {
       const Vector share = (pressure / 6) * twice_area(x, t);
       for (const std::uint32_t slot : t) sum.add(slot, share);
     };
@@ -291,7 +292,7 @@ double work_of_pressure(const State& s) {
 
 Vector sum_of_pressure(const State& s) {
   Vector sum{0, 0, 0};
-  const auto add = [&](double pressure, const Corners& t) {
+  const auto add = [&](double pressure, const SurfaceTriangle& t) {
     sum = sum + (0.5 * pressure) * twice_area(s.position, t);
   };
   for_each_given(s, false, add);
