@@ -244,6 +244,10 @@ inline constexpr double kAirShare = 0.3;
 /// ones damp what flutters: a flag of silk in 20 m/s, 60 Hz, has 0.88 of its speed at 0.25, 0.83 at
 /// 0.3 and 0.73 without.
 inline constexpr double kAirTurn = 0.22;
+
+/// Of the volume at which a gas has its given pressure: where it is pressed to less, its pressure
+/// grows no more. A bag that lies flat would else begin with an infinite one.
+inline constexpr double kLeastOfGas = 1e-3;
 /// s, and a share of the mean length of constraints. Cloth rests of which no particle comes farther
 /// than that in that time: 1e-4 m/s with constraints of 5 cm. Of sheets that rest rounding moves
 /// particles by a tenth of it. A longer time lets fewer slow swings fall asleep at a turning point.

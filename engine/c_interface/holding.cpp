@@ -71,7 +71,7 @@ Result<Changes> read_changes(const weft_changes* changes) {
   if (c.change_damping != 0) {
     out.damping = Damping{c.damping_stretch, c.damping_bending, c.damping_motion};
   }
-  if (c.change_air != 0) out.air = ChangedAir{c.air_density, c.air_drag, c.air_lift};
+  if (c.change_air != 0) out.air = ChangedAir{c.air_density, c.air_drag, c.air_lift, c.air_ram};
   return out;
 }
 

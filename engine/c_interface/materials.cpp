@@ -18,7 +18,8 @@ weft_material material_of(const Material& m) {
           .damping_motion = m.damping_motion,
           .drag = m.drag,
           .lift = m.lift,
-          .friction = m.friction};
+          .friction = m.friction,
+          .ram = m.ram};
 }
 
 }  // namespace
@@ -38,7 +39,8 @@ Result<Material> read_material(const weft_material* material) {
                   .damping_bending = m.damping_bending,
                   .damping_motion = m.damping_motion,
                   .drag = m.drag,
-                  .lift = m.lift};
+                  .lift = m.lift,
+                  .ram = m.ram};
 }
 
 }  // namespace weft::c_interface

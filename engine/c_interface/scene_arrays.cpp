@@ -1,6 +1,7 @@
 #include "engine/c_interface/scene_arrays.h"
 
 #include "engine/c_interface/arrays.h"
+#include "engine/c_interface/pressures.h"
 #include "engine/c_interface/structs.h"
 
 namespace weft::c_interface {
@@ -107,6 +108,7 @@ void read_world(const weft_scene& s, Arrays& in, SceneDescription& out) {
   out.air.density = s.air_density;
   out.air.drag = s.air_drag;
   out.air.lift = s.air_lift;
+  out.air.ram = s.air_ram;
   out.air.wind = vector_of(s.wind);
   out.friction = s.friction;
   out.self_contact = {s.self_contact != 0, s.self_contact_thickness, s.self_contact_friction};
@@ -120,6 +122,7 @@ void write_world(const SceneDescription& scene, weft_scene& out) {
   out.air_density = scene.air.density;
   out.air_drag = scene.air.drag;
   out.air_lift = scene.air.lift;
+  out.air_ram = scene.air.ram;
   write_vector(scene.air.wind, out.wind);
   out.friction = scene.friction;
   out.self_contact = scene.self_contact.on ? 1 : 0;
@@ -185,6 +188,9 @@ Result<SceneDescription> read_scene(const weft_scene* scene) {
   read_seams(s.value(), in, out);
   read_world(s.value(), in, out);
   if (!in.are_good()) return in.error();
+  auto pressures = read_pressures(s.value().pressure_count, s.value().pressures);
+  if (!pressures) return Error{pressures.error()};
+  out.pressures = std::move(pressures).value();
   return out;
 }
 
@@ -216,6 +222,7 @@ SceneArrays arrays_of(const SceneDescription& scene) {
     a.backstop_distances.push_back(anchor.backstop_distance);
     a.backstop_radii.push_back(anchor.backstop_radius);
   }
+  for (const Pressure& part : scene.pressures) a.pressures.push_back(pressure_of(part));
   for (const Seam& seam : scene.seams) {
     a.seam_particles.push_back({seam.a, seam.b});
     a.seam_times.push_back(seam.time);
@@ -236,6 +243,8 @@ weft_scene scene_of(const SceneDescription& scene, const SceneArrays& arrays) {
   write_anchors_and_seams(arrays, out);
   out.surface_count = scene.surface.size();
   out.surface_triangles = as_numbers<std::uint32_t>(scene.surface);
+  out.pressure_count = arrays.pressures.size();
+  out.pressures = arrays.pressures.data();
   out.air_triangle_count = scene.air.triangles.size();
   out.air_triangles = as_numbers<std::uint32_t>(scene.air.triangles);
   write_world(scene, out);

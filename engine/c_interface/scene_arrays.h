@@ -40,6 +40,8 @@ struct SceneArrays {
   std::vector<std::array<std::uint32_t, 2>> seam_particles;
   std::vector<double> seam_times;
   std::vector<double> seam_max_forces;
+
+  std::vector<weft_pressure> pressures;
 };
 SceneArrays arrays_of(const SceneDescription& scene);
 /// Both must outlive it.

@@ -49,10 +49,10 @@ Result<std::unique_ptr<Cloth::Impl>> Cloth::Impl::going_on(
   return next;
 }
 
-Result<std::unique_ptr<Cloth::Impl>> Cloth::Impl::for_bodies() const {
+Result<std::unique_ptr<Cloth::Impl>> Cloth::Impl::by_small_steps(std::string_view what) const {
   if (state.settings.solver == Solver::small_steps) return of(state.model);
   if (asked.solver != Solver::automatic)
-    return refuse("body", "needs solver small_steps", std::string(name(state.settings.solver)));
+    return refuse(what, "needs solver small_steps", std::string(name(state.settings.solver)));
   Settings wanted = asked;
   wanted.solver = Solver::small_steps;
   auto resolved = resolve(wanted, *state.model);
@@ -99,8 +99,10 @@ Result<void> Cloth::copy_state(const Cloth& from) {
     return Error{"from: is a cloth of another model (" + std::to_string(from.particle_count()) +
                  " particles)"};
   }
-  if (from.impl_->state.bodies.any()) {
-    if (auto prepared = prepare_for_bodies(); !prepared) return prepared;
+  const State& other = from.impl_->state;
+  if (other.bodies.any() || !other.pressures.empty()) {
+    const char* what = other.bodies.any() ? "body" : "pressures";
+    if (auto prepared = prepare_for(what); !prepared) return prepared;
   }
   if (from.impl_->state.model == impl_->state.model) {
     impl_->state.copy(from.impl_->state);
@@ -118,8 +120,11 @@ std::vector<std::byte> Cloth::save_state() const { return weft::save_state(impl_
 Result<void> Cloth::load_state(std::span<const std::byte> bytes) {
   auto saved = weft::read_state(bytes, *impl_->state.model);
   if (!saved) return Error{saved.error()};
-  const bool had_bodies = saved.value().lasting.bodies.were_any();
-  auto next = had_bodies ? impl_->for_bodies() : impl_->of(impl_->state.model);
+  const LastingState& lasting = saved.value().lasting;
+  const bool had_bodies = lasting.bodies.were_any();
+  auto next = had_bodies || !lasting.pressures.empty()
+                  ? impl_->by_small_steps(had_bodies ? "body" : "pressures")
+                  : impl_->of(impl_->state.model);
   if (!next) return Error{next.error()};
   if (auto r = restore(next.value()->state, std::move(saved).value()); !r) return r;
   impl_ = std::move(next).value();
@@ -143,9 +148,9 @@ Result<StepReport> Cloth::step(double dt, const JobSystem& jobs) {
 
 State* Cloth::state() { return impl_ ? &impl_->state : nullptr; }
 
-Result<void> Cloth::prepare_for_bodies() {
+Result<void> Cloth::prepare_for(std::string_view what) {
   if (impl_->state.settings.solver == Solver::small_steps) return {};
-  auto changed = impl_->for_bodies();
+  auto changed = impl_->by_small_steps(what);
   if (!changed) return Error{changed.error()};
   changed.value()->state.go_on_from(impl_->state);
   impl_ = std::move(changed).value();

@@ -35,7 +35,7 @@ Result<void> validate_vertices(const Bodies& bodies, std::uint32_t id,
 
 Result<std::uint32_t> Cloth::add_body(const Body& body) {
   if (auto valid = validate(body); !valid) return Error{valid.error()};
-  if (auto prepared = prepare_for_bodies(); !prepared) return Error{prepared.error()};
+  if (auto prepared = prepare_for("body"); !prepared) return Error{prepared.error()};
   impl_->state.rest.wake();
   return impl_->state.bodies.add(body);
 }

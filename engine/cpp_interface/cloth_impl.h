@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "engine/model/model.h"
 #include "engine/step/state.h"
@@ -22,8 +23,8 @@ struct Cloth::Impl {
   Result<std::unique_ptr<Impl>> of(const std::shared_ptr<const Model>& other) const;
   /// That goes on from this one.
   Result<std::unique_ptr<Impl>> going_on(const std::shared_ptr<const Model>& other) const;
-  /// A new state that may have bodies: by small steps, which an automatic solver becomes.
-  Result<std::unique_ptr<Impl>> for_bodies() const;
+  /// A new state that may have what small steps alone know: an automatic solver becomes that one.
+  Result<std::unique_ptr<Impl>> by_small_steps(std::string_view what) const;
 
   std::uint32_t slot(std::uint32_t particle) const {
     return state.model->ordering.slot_of[particle];

@@ -4,9 +4,11 @@
 
 #include "engine/cpp_interface/cloth_impl.h"
 #include "engine/measure/state_measure.h"
+#include "engine/model/pressures.h"
 #include "engine/model/validate.h"
 #include "engine/public_vectors.h"
 #include "engine/spheres/sphere_contacts.h"
+#include "engine/step/pressure.h"
 #include "engine/validation.h"
 
 namespace weft {
@@ -137,6 +139,36 @@ Result<void> Cloth::set_wind(Vec3 wind) {
   if (auto r = validate_wind(wind); !r) return r;
   impl_->set(impl_->state.wind, wind);
   return {};
+}
+
+Result<void> Cloth::set_pressure(double pressure) {
+  if (pressure == 0) return set_pressure(std::span<const Pressure>{});
+  const Pressure everywhere{.pressure = pressure};
+  return set_pressure({&everywhere, 1});
+}
+
+Result<void> Cloth::set_pressure(std::span<const Pressure> pressures) {
+  const auto place = [&](std::uint32_t slot) { return impl_->state.position[slot]; };
+  const std::vector<SurfaceTriangle>& surface = impl_->state.model->surface;
+  if (auto r = validate_pressures(pressures, impl_->state.pressures, surface, place); !r) return r;
+  std::vector<Pressure> known = with_volumes(pressures, surface, place);
+  if (known == impl_->state.pressures) return {};
+  if (!known.empty()) {
+    if (auto prepared = prepare_for("pressures"); !prepared) return prepared;
+  }
+  impl_->state.rest.wake();
+  impl_->state.gas = gas_going_on(impl_->state, known);
+  impl_->state.pressures = std::move(known);
+  make_room_for_pressure(impl_->state);
+  return {};
+}
+
+std::vector<PressureNow> Cloth::pressures() const {
+  std::vector<PressureNow> now;
+  State& state = impl_->state;
+  for (const Pressure& part : state.pressures)
+    now.push_back(pressure_now(*state.model, part, state.position.view()));
+  return now;
 }
 
 Strain Cloth::strain() const {

@@ -106,9 +106,10 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<Face>& 
 
 Air air_of(const SceneDescription& scene, const Material& material) {
   Air air;
-  if (!(material.drag > 0 || material.lift > 0)) return air;
+  if (!(material.drag > 0 || material.lift > 0 || material.ram > 0)) return air;
   air.drag = material.drag;
   air.lift = material.lift;
+  air.ram = material.ram;
   air.triangles = scene.surface;
   return air;
 }

@@ -63,7 +63,8 @@ Result<void> check_material(const Material& m) {
       {"material.damping_bending", m.damping_bending},
       {"material.damping_motion", m.damping_motion},
       {"material.drag", m.drag},
-      {"material.lift", m.lift}};
+      {"material.lift", m.lift},
+      {"material.ram", m.ram}};
   for (const auto& [field, value] : from_zero) {
     if (auto r = validate_not_negative(field, value); !r) return r;
   }

@@ -22,6 +22,7 @@ class Describer {
     for (const auto& [a, b, c] : model_.surface)
       description_.surface.push_back({particle(a), particle(b), particle(c)});
     describe_air();
+    description_.pressures = model_.pressures;
     description_.anchors = model_.anchors.described;
     describe_seams();
     description_.damping = model_.damping;
@@ -119,6 +120,7 @@ class Describer {
     to.density = air.density;
     to.drag = air.drag;
     to.lift = air.lift;
+    to.ram = air.ram;
     to.wind = to_public(air.wind);
   }
 
@@ -142,6 +144,7 @@ void apply(const Changes& changes, SceneDescription& d) {
     d.air.density = changes.air->density;
     d.air.drag = changes.air->drag;
     d.air.lift = changes.air->lift;
+    d.air.ram = changes.air->ram;
   }
   std::vector<std::uint8_t> released(d.positions.size());
   for (const std::uint32_t i : changes.release) released[i] = 1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/bytes_of.h"
+#include "engine/model/pressures.h"
 #include "engine/model/validate.h"
 #include "kernels/reference/relax.h"
 
@@ -62,6 +63,8 @@ Model::Model(const SceneDescription& description, const Model* like)
   store_seams(description);
   store_surface(description);
   store_air(description);
+  const auto place = [&](std::uint32_t slot) { return initial_position[slot]; };
+  pressures = with_volumes(description.pressures, surface, place);
   damping = description.damping;
   friction = description.friction;
   self_contact = description.self_contact;
@@ -233,6 +236,7 @@ void Model::store_air(const SceneDescription& d) {
   air.density = d.air.density;
   air.drag = d.air.drag;
   air.lift = d.air.lift;
+  air.ram = d.air.ram;
   air.wind = {d.air.wind.x, d.air.wind.y, d.air.wind.z};
   for (const auto& [a, b, c] : d.air.triangles) {
     air.triangles.push_back({ordering.slot_of[a], ordering.slot_of[b], ordering.slot_of[c]});
@@ -241,6 +245,11 @@ void Model::store_air(const SceneDescription& d) {
 }
 
 void Model::list_air_triangles() {
+  if (has_ram() && air.piece.empty()) {
+    AirPieces pieces = find_air_pieces(air.triangles);
+    air.piece = std::move(pieces.of);
+    air.is_open = std::move(pieces.is_open);
+  }
   if (!has_air() || air.at.size() > 0) return;
   air.at = make_lists(slots(), [&](auto&& add) {
     for (std::uint32_t i = 0; i < air.triangles.size(); ++i) {
@@ -253,6 +262,7 @@ void Model::set_air(const ChangedAir& to) {
   air.density = to.density;
   air.drag = to.drag;
   air.lift = to.lift;
+  air.ram = to.ram;
   list_air_triangles();
 }
 

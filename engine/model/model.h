@@ -99,8 +99,10 @@ struct MembraneStore {
 /// Triangles that feel the air, between slots, and its coefficients (weft.h).
 struct AirStore {
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  Lists at;  // per slot: its triangles
-  double density = 0, drag = 0, lift = 0;
+  Lists at;                          // per slot: its triangles
+  std::vector<std::uint32_t> piece;  // of each triangle; with ram only
+  std::vector<bool> is_open;         // of each piece: it has a border
+  double density = 0, drag = 0, lift = 0, ram = 0;
   kernels::Vector wind{};
 };
 
@@ -179,6 +181,7 @@ class Model {
   SeamStore seams;
   std::vector<std::array<std::uint32_t, 3>> surface;  // triangles, between slots
   AirStore air;
+  std::vector<Pressure> pressures;  // of triangles of `surface`; volumes of gas are known
   Damping damping;
   Unevenness uneven;
   double heaviest_sphere = 0;  // kg, of the free ones
@@ -205,8 +208,11 @@ class Model {
     return anchors.at.empty() ? kNoIndex : anchors.at[ordering.slot_of[particle]];
   }
   bool has_air() const {
-    return !air.triangles.empty() && air.density > 0 && (air.drag > 0 || air.lift > 0);
+    return !air.triangles.empty() && air.density > 0 &&
+           (air.drag > 0 || air.lift > 0 || air.ram > 0);
   }
+  /// Whether the air presses on pieces of the cloth.
+  bool has_ram() const { return has_air() && air.ram > 0; }
   /// Whether a constraint or a triangle of fabric joins the two; slots.
   bool joined_to_sphere(std::uint32_t sphere, std::uint32_t slot) const;
   /// To anything.

@@ -22,6 +22,7 @@ Result<void> validate_anchor_limit(const Model& model, std::uint32_t anchor,
                                    const AnchorLimit& limit);
 Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_wind(Vec3 wind);
+Result<void> validate_air(const ChangedAir& air, bool has_triangles);
 Result<void> validate_motion(const RigidMotion& motion, double share);
 Result<void> validate_time_step(double dt);
 /// One finite vector per particle.

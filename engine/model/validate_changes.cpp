@@ -77,17 +77,6 @@ Result<void> validate_membrane(const std::vector<ChangedMembrane>& list, const M
   return {};
 }
 
-Result<void> validate_air(const ChangedAir& air, const Model& model) {
-  if (auto r = validate_not_negative("air.density", air.density); !r) return r;
-  if (auto r = validate_not_negative("air.drag", air.drag); !r) return r;
-  if (auto r = validate_not_negative("air.lift", air.lift); !r) return r;
-  if (model.air.triangles.empty() && (air.drag > 0 || air.lift > 0)) {
-    return refuse("air.drag", "given without air.triangles, nothing would feel it",
-                  number(air.drag));
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<void> validate(const Changes& changes, const Model& model) {
@@ -115,7 +104,7 @@ Result<void> validate(const Changes& changes, const Model& model) {
   if (changes.damping) {
     if (auto r = validate_damping(*changes.damping); !r) return r;
   }
-  return changes.air ? validate_air(*changes.air, model) : Result<void>();
+  return changes.air ? validate_air(*changes.air, !model.air.triangles.empty()) : Result<void>();
 }
 
 }  // namespace weft

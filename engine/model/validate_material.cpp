@@ -3,7 +3,9 @@
 #include <span>
 #include <utility>
 
+#include "engine/model/pressures.h"
 #include "engine/model/validate.h"
+#include "engine/public_vectors.h"
 #include "engine/validation.h"
 #include "kernels/reference/membrane.h"
 
@@ -91,17 +93,24 @@ Result<void> validate_air(const Air& air, std::size_t particles) {
     const std::string field = element("air.triangles", i);
     if (auto r = validate_corners(field, air.triangles[i], particles); !r) return r;
   }
-  if (auto r = validate_not_negative("air.density", air.density); !r) return r;
-  if (auto r = validate_not_negative("air.drag", air.drag); !r) return r;
-  if (auto r = validate_not_negative("air.lift", air.lift); !r) return r;
-  if (air.triangles.empty() && (air.drag > 0 || air.lift > 0)) {
-    return refuse("air.drag", "given without air.triangles, nothing would feel it",
-                  number(air.drag));
-  }
+  const ChangedAir numbers{air.density, air.drag, air.lift, air.ram};
+  if (auto r = weft::validate_air(numbers, !air.triangles.empty()); !r) return r;
   return validate_wind(air.wind);
 }
 
 }  // namespace
+
+Result<void> validate_air(const ChangedAir& air, bool has_triangles) {
+  if (auto r = validate_not_negative("air.density", air.density); !r) return r;
+  for (const auto& [field, value] :
+       {std::pair{"air.drag", air.drag}, std::pair{"air.lift", air.lift},
+        std::pair{"air.ram", air.ram}}) {
+    if (auto r = validate_not_negative(field, value); !r) return r;
+    if (value > 0 && !has_triangles)
+      return refuse(field, "given without air.triangles, nothing would feel it", number(value));
+  }
+  return {};
+}
 
 Result<void> validate_wind(Vec3 wind) {
   if (finite(wind)) return {};
@@ -150,6 +159,8 @@ Result<void> validate_material(const SceneDescription& d) {
   }
   if (auto r = validate_damping(d.damping); !r) return r;
   if (auto r = validate_not_negative("friction", d.friction); !r) return r;
+  const auto place = [&](std::uint32_t i) { return to_internal(d.positions[i]); };
+  if (auto r = validate_pressures(d.pressures, {}, d.surface, place); !r) return r;
   if (auto r = validate_self_contact(d.self_contact, !d.surface.empty()); !r) return r;
   return validate_air(d.air, d.positions.size());
 }

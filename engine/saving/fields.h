@@ -46,8 +46,13 @@ void visit_fields(Is<Damping> auto& damping, auto& archive) {
 }
 
 void visit_fields(Is<Air> auto& air, auto& archive) {
-  auto& [triangles, density, drag, lift, wind] = air;
-  archive(triangles, density, drag, lift, wind);
+  auto& [triangles, density, drag, lift, wind, ram] = air;
+  archive(triangles, density, drag, lift, wind, ram);
+}
+
+void visit_fields(Is<Pressure> auto& part, auto& archive) {
+  auto& [pressure, triangles, gas, volume, ambient] = part;
+  archive(pressure, triangles, gas, volume, ambient);
 }
 
 void visit_fields(Is<SelfContact> auto& contact, auto& archive) {
@@ -57,9 +62,9 @@ void visit_fields(Is<SelfContact> auto& contact, auto& archive) {
 
 void visit_fields(Is<SceneDescription> auto& scene, auto& archive) {
   auto& [positions, velocities, masses, fixed, constraints, membrane, bending, anchors, seams,
-         surface, damping, air, friction, self_contact, gravity, spheres, radii] = scene;
+         surface, damping, air, pressures, friction, self_contact, gravity, spheres, radii] = scene;
   archive(positions, velocities, masses, fixed, constraints, membrane, bending, anchors, seams,
-          surface, damping, air, friction, self_contact, gravity, spheres, radii);
+          surface, damping, air, pressures, friction, self_contact, gravity, spheres, radii);
 }
 
 // body.h

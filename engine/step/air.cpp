@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "engine/step/motion.h"
+#include "engine/step/pressure.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -85,6 +86,7 @@ void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, d
         model.air.triangles.size(), kStretch,
         [&](std::size_t first, std::size_t last) { find_resistances(s, x, v, first, last); });
   }
+  find_ram(s, x, v, h);
   const double q = share_of_decay(c, h);
   team.for_each_part(model.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     for (std::size_t slot = first; slot < last; ++slot) {
@@ -95,7 +97,7 @@ void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, d
   });
 }
 
-AirPace find_air_pace(const State& s) {
+AirPace find_air_pace(State& s) {
   const Model& model = *s.model;
   if (!model.has_air()) return {};
   const AirStore& air = model.air;
@@ -113,7 +115,7 @@ AirPace find_air_pace(const State& s) {
   if (!(mass > 0) || !(area2 > 0)) return {};
   const double rate = 0.25 * air.density * (air.drag + air.lift) * flow / mass;
   const double cell = std::sqrt(area2 / static_cast<double>(air.triangles.size()));
-  return {rate, std::sqrt(rate * (flow / area2) / cell)};
+  return {rate + rate_of_ram(s), std::sqrt(rate * (flow / area2) / cell)};
 }
 
 double parts_for_air(const AirPace& pace, double dt) {

@@ -35,8 +35,8 @@ namespace weft {
 
 /// Whether velocities cause forces.
 bool is_resisted(const Model& model);
-/// State::total_force during h from here on, with the rate of decay c. Only where velocities cause
-/// forces.
+/// State::total_force during h from here on, with the rate of decay c, but for pressures; and the
+/// ram pressure. Only where State::total_force has room.
 void find_resistance(State& s, double c, double h, Team& team);
 /// The same for particles at x with the velocities v.
 void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, double c, double h,
@@ -46,11 +46,13 @@ void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, d
 ///
 ///     rate = density / 2 C U / s        at which it takes the velocity of cloth across the wind
 ///     turning^2 = rate U / l            of a wave of one cell, which the wind turns
+///
+/// The rate of ram pressure (pressure.h) is added to the first one. It acts on no wave of a cell.
 struct AirPace {
   double rate = 0, turning = 0;  // 1/s
 };
 /// 0 without air.
-AirPace find_air_pace(const State& s);
+AirPace find_air_pace(State& s);
 /// In how many parts of dt the forces are to be found anew, 1 or more. What stands across the wind
 /// and is turned along it loses its force, at once and not at the end of a step: in a part the air
 /// is not to take more than the share tuning::kAirShare of a velocity.

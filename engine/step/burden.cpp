@@ -6,6 +6,7 @@
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/spheres/sphere_contacts.h"
 #include "engine/step/motion.h"
+#include "engine/step/pressure.h"
 
 namespace weft {
 namespace {
@@ -60,13 +61,16 @@ bool do_pins_move(const State& s) {
 
 }  // namespace
 
+/// Pressures pull by their sum: those of a closed surface hold each other.
 double mean_acceleration(const State& s) {
   if (s.forces().size() == 0) return length(s.gravity);
-  double sum = 0, mass = 0;
+  const bool is_pressed = presses(s);
+  const kernels::Vectors& force = is_pressed ? s.pressed.beside : s.forces();
+  double sum = is_pressed ? length(sum_of_pressure(s)) : 0, mass = 0;
   for (std::uint32_t slot = 0; slot < s.model->slots(); ++slot) {
     if (!is_free_cloth(*s.model, slot)) continue;
     mass += s.model->mass[slot];
-    sum += s.model->mass[slot] * length(acceleration(s, slot));
+    sum += s.model->mass[slot] * length(s.gravity + s.model->inverse_mass[slot] * force[slot]);
   }
   return mass > 0 ? sum / mass : 0;
 }

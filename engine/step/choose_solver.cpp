@@ -58,9 +58,9 @@ Solver solver_for(const Model& model, const Settings& settings) {
 /// springs unless another scheme is asked for.
 bool is_for_small_steps(const Model& model, const Settings& settings) {
   const bool springs = model.constraints.has_springs() && settings.scheme == Scheme::automatic;
-  return springs || model.self_contact.on || model.membrane.size() > 0 ||
-         model.bending.size() > 0 || model.anchors.size() > 0 || model.seams.size() > 0 ||
-         is_of_small_steps(settings.scheme);
+  return springs || model.self_contact.on || !model.pressures.empty() ||
+         model.membrane.size() > 0 || model.bending.size() > 0 || model.anchors.size() > 0 ||
+         model.seams.size() > 0 || is_of_small_steps(settings.scheme);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/step/burden.h"
+#include "engine/step/pressure.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -38,7 +39,9 @@ double usual_length(State& s, double dt) {
   burden.weights *= std::exp2(2 * std::min(0.0, s.refinement));
   const double of_load =
       substep_length(s.model->small_steps().load, s.position.view(), burden, s.settings.tolerance);
-  const double length = std::min({tuning::kLongestSubstep, length_for_air(s), of_load});
+  const double of_pressure = presses(s) ? length_for_pressure(s) : tuning::kLongestSubstep;
+  const double length =
+      std::min({tuning::kLongestSubstep, length_for_air(s), of_load, of_pressure});
   if (!refines_substeps(s)) return length;
   const double shorter = std::exp2(-std::max(0.0, s.refinement));
   if (s.settings.motion_tolerance == 0) return length * shorter;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/model/pressures.h"
 #include "engine/model/saved_model.h"
 #include "engine/saving/sealed.h"
 #include "engine/solvers/small_steps/small_steps.h"
@@ -13,7 +14,7 @@ namespace weft {
 namespace {
 
 /// The version changes with whatever is written here, and in the functions visit_fields.
-constexpr Kind kState{{'w', 'e', 'f', 't', 's', 't', 'a', 't'}, "state", 4};
+constexpr Kind kState{{'w', 'e', 'f', 't', 's', 't', 'a', 't'}, "state", 5};
 
 void visit_settings(auto& settings, auto& archive) {
   std::apply([&](auto&... each) { archive(each...); }, memory_settings(settings));
@@ -43,6 +44,14 @@ const char* fault_of(const LastingState& s, const Model& model) {
   if (!has_slots(s.position) || !has_slots(s.velocity) || (has_force && !has_slots(s.force)))
     return "particles";
   if (!are_finite(s) || !(std::abs(s.refinement) <= kMostRefinement)) return "numbers";
+  const auto place = [&](std::uint32_t slot) { return s.position[slot]; };
+  for (const Pressure& part : s.pressures) {
+    if (part.gas && !(part.volume > 0)) return "pressures";
+  }
+  const auto is_finite = [](double each) { return std::isfinite(each); };
+  if (s.gas.size() != s.pressures.size() || !std::ranges::all_of(s.gas, is_finite))
+    return "pressures";
+  if (!validate_pressures(s.pressures, {}, model.surface, place)) return "pressures";
   if (!s.pins.fit(model)) return "pins";
   if (!s.anchors.fit(model)) return "anchors";
   if (!s.seams.fit(model)) return "seams";

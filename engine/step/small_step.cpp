@@ -9,7 +9,7 @@
 #include "engine/solvers/sweeps/sweeps.h"
 #include "engine/step/energy.h"
 #include "engine/step/exact_substep.h"
-#include "engine/step/frame_air.h"
+#include "engine/step/frame_forces.h"
 #include "engine/step/frame_passes.h"
 #include "engine/step/frame_places.h"
 #include "engine/step/frame_plan.h"
@@ -51,16 +51,17 @@ class Frame {
   /// Of a step.
   void begin_motion(const FramePlan& plan) {
     begin(plan, s_.velocity.view());
-    air_.begin();
+    forces_.begin();
     give_ = give_per_mass(s_, plan_);
     const double give_before = plan_.placed ? 0 : s_.give_per_mass;
     elastic_energy_before_ = elastic_energy(s_.position, std::max(give_, give_before));
   }
   void substep() {
-    air_.begin_substep(team_);
+    forces_.begin_substep(team_);
     solver_.advance(team_);
     const bool to_tolerance = s_.settings.iterations == 0;
     for (int i = 0; i < std::max(1, s_.settings.iterations); ++i) sweep();
+    forces_.end_sweep(team_);
     solver_.take_contact_visits();  // as a sweep for each substep
     const double rest = passes_.left() - passes_.share_of_substep(places_.left());
     places_.end_substep();
@@ -149,8 +150,8 @@ class Frame {
   /// J, by springs, triangles of fabric and bending elements, since the beginning: there those that
   /// have become stiffer because substeps are shorter had no more than before.
   double released() { return elastic_energy_before_ - elastic_energy(s_.solved, give_); }
-  /// See FrameAir::end().
-  double end_air() { return air_.end(); }
+  /// See FrameForces::end().
+  double end_forces() { return forces_.end(); }
   /// Besides a sweep for each substep, in the time of sweeps.
   double passes_taken() const { return passes_.taken(); }
   std::uint32_t passed_particle() const { return spheres_.passed_particle(); }
@@ -220,7 +221,7 @@ class Frame {
   FramePlan plan_;
   FramePlaces places_{s_, plan_};
   FramePasses passes_{*s_.model, s_.contacts, report_};
-  FrameAir air_{s_, plan_, places_};
+  FrameForces forces_{s_, plan_, places_};
   FrameSpheres spheres_{s_, places_, report_};
   double give_ = 0;                   // s^2, give_per_mass()
   double elastic_energy_before_ = 0;  // J, in the beginning
@@ -307,7 +308,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
           [&] { trial.worsen(correct_velocities(s, *s.sweeps, false, budget, report, team)); });
   }
   timed(report, Stage::commit, [&] {
-    const double work = frame.end_air();
+    const double work = frame.end_forces();
     change = measure_energy_change(s, team);
     change.gain -= 2 * work;
   });

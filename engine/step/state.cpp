@@ -13,6 +13,7 @@
 #include "engine/step/air.h"
 #include "engine/step/choose_solver.h"
 #include "engine/step/fast_springs.h"
+#include "engine/step/pressure.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -22,6 +23,8 @@ LastingState::LastingState(const Model& model)
       velocity(model.initial_velocity),
       gravity(model.gravity),
       wind(model.air.wind),
+      pressures(model.pressures),
+      gas(model.pressures.size()),
       anchors(model),
       seams(model),
       rest(model) {}
@@ -45,13 +48,11 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   impulses.resize((model->slots() + kStretch - 1) / kStretch);
   contacts = make_sphere_contacts(*model);
   if (settings.backend == Backend::reference) predicted.resize(model->slots());
-  if (is_resisted(*model)) total_force.resize(model->slots());
   if (model->damping.motion > 0) velocity_before_decay.resize(model->slots());
   if (model->has_air()) {
     resistances.resize(model->air.triangles.size());
-    air_from.resize(model->slots());
-    air_impulse.resize(model->slots());
   }
+  make_room_for_pressure(*this);
   if (model->constraints.has_springs() && settings.solver != Solver::small_steps) {
     laws.emplace(model->constraints);
   }
@@ -117,6 +118,7 @@ void State::copy(const State& from) {
 void State::take(LastingState&& from, const Settings& its) {
   const bool same = alike(settings, its);
   LastingState::operator=(std::move(from));
+  make_room_for_pressure(*this);
   if (!same) forget_past();
   if (!same || !settings.sleep) rest.wake();
 }
@@ -149,6 +151,11 @@ void State::go_on_from(const State& from) {
     small_steps->go_on_from(*from.small_steps, velocity.view(), gravity);
 }
 
+std::size_t Pressed::bytes() const {
+  return bytes_of(given) + bytes_of(volume) + bytes_of(volume_before) + bytes_of(ram) +
+         bytes_of(caught) + beside.bytes() + held.bytes() + before.bytes() + area.bytes();
+}
+
 std::size_t State::bytes() const {
   std::size_t sum = 0;
   for (const kernels::Vectors* v :
@@ -159,7 +166,8 @@ std::size_t State::bytes() const {
   }
   sum += contacts.bytes() + nearby.bytes() + bytes_of(impulses) + bytes_of(inverse_mass_of_met) +
          bytes_of(resistances) + pins.bytes() + anchors.bytes() + seams.bytes() + bodies.bytes() +
-         rest.bytes() + measure->bytes();
+         rest.bytes() + pressed.bytes() + bytes_of(pressures) + bytes_of(gas) + measure->bytes();
+  for (const Pressure& part : pressures) sum += bytes_of(part.triangles);
   if (team_state) sum += sizeof(Team::SharedState);
   if (arena_run) sum += sizeof(ArenaRun);
   if (laws) sum += laws->bytes();

@@ -49,6 +49,24 @@ struct Resistance {
   kernels::Vector spin{};
 };
 
+/// A piece of cloth in the air: sums over its triangles.
+struct Caught {
+  kernels::Vector mouth{}, moved{};  // m^2, areas times normals; m^3/s, velocities by area
+  double area = 0, mass = 0;         // m^2, kg
+};
+
+/// What pressures do at the moment (pressure.h).
+struct Pressed {
+  std::vector<double> given;                  // Pa, of each of LastingState::pressures
+  std::vector<double> volume, volume_before;  // m^3, of those that are of gas
+  std::vector<double> ram;                    // Pa, of each piece in the air
+  std::vector<Caught> caught;
+  kernels::Vectors beside;        // N, of all but pressures; empty without pressures
+  kernels::Vectors held, before;  // N, of all pressures but of gas: now, and in the substep before
+  kernels::Vectors area;          // m^2, of a gas
+  std::size_t bytes() const;
+};
+
 /// A state to return to: what a step may change before it is over.
 struct Checkpoint {
   kernels::Vectors position, velocity;
@@ -77,6 +95,8 @@ struct LastingState {
   kernels::Vectors force;  // external; empty: none
   kernels::Vector gravity{}, wind{};
   CarriedWay way;  // through the air
+  std::vector<Pressure> pressures;
+  std::vector<double> gas;  // Pa, of each pressure: what the last substep came to; 0: of no gas
   Pins pins;
   Anchors anchors;
   Seams seams;
@@ -96,12 +116,12 @@ struct LastingState {
   /// All of it under other settings: positions are given ones, and nothing is known of the past.
   void forget_past();
   friend void visit_fields(Is<LastingState> auto& state, auto& archive) {
-    auto& [position, velocity, force, gravity, wind, way, pins, anchors, seams, bodies, placed,
-           displaced, rests_differ, lost_energy, elastic_energy, give_per_mass, longest_substep,
-           refinement, rest, asleep] = state;
-    archive(position, velocity, force, gravity, wind, way, pins, anchors, seams, bodies, placed,
-            displaced, rests_differ, lost_energy, elastic_energy, give_per_mass, longest_substep,
-            refinement, rest, asleep);
+    auto& [position, velocity, force, gravity, wind, way, pressures, gas, pins, anchors, seams,
+           bodies, placed, displaced, rests_differ, lost_energy, elastic_energy, give_per_mass,
+           longest_substep, refinement, rest, asleep] = state;
+    archive(position, velocity, force, gravity, wind, way, pressures, gas, pins, anchors, seams,
+            bodies, placed, displaced, rests_differ, lost_energy, elastic_energy, give_per_mass,
+            longest_substep, refinement, rest, asleep);
   }
 };
 
@@ -113,6 +133,7 @@ struct State : LastingState {
   kernels::Vectors total_force;  // besides gravity (air.h); empty where velocities cause none
   std::vector<Resistance> resistances;     // per triangle
   kernels::Vectors air_from, air_impulse;  // of small steps: in a part of a frame, m and N s
+  Pressed pressed;
   double air_parts = 1;       // of a frame of small steps, in which the air is looked at (air.h)
   double air_turning = 0;     // 1/s, when the frame begins (AirPace)
   double way_per_second = 0;  // 1 over the length of the present step

@@ -10,6 +10,7 @@
 #include "engine/step/exact_substep.h"
 #include "engine/step/frame_plan.h"
 #include "engine/step/plan.h"
+#include "engine/step/pressure.h"
 #include "engine/step/project.h"
 #include "engine/step/reporting.h"
 #include "engine/step/small_step.h"
@@ -86,6 +87,7 @@ class OneStep {
   /// Returns whether all of dt was done.
   bool run(double dt) {
     timed(report_, Stage::solve_positions, [&] {
+      if (presses(s_)) find_forces(0, dt);
       const OutOfPlace found = find_out_of_place(s_, team_);
       if (!found.any()) return;
       transaction_.move();
@@ -103,6 +105,8 @@ class OneStep {
       if (!do_substep(dt / plan_.substeps, left)) return false;
     }
     transaction_.commit();
+    for (std::size_t i = 0; i < s_.pressures.size(); ++i)
+      if (s_.pressures[i].gas) s_.gas[i] = s_.pressed.given[i];
     s_.placed = s_.displaced = s_.rests_differ = false;
     s_.refinement = next_refinement();
     return true;
@@ -145,7 +149,7 @@ class OneStep {
     const Budget budget{positions_.left(attempt, report_.iterations),
                         velocities_.left(attempt, report_.velocity_iterations)};
     bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
-    if (is_resisted(*s_.model)) {
+    if (s_.total_force.size() > 0) {
       timed(report_, Stage::predict, [&] { resist(attempt, h); });
       is_predicted = false;
     }
@@ -168,12 +172,27 @@ class OneStep {
       const AirPace air = find_air_pace(s_);
       s_.air_parts = parts_for_air(air, h);
       s_.air_turning = air.turning;
-      return find_resistance(s_, 0, h / s_.air_parts, team_);
+      const double part = h / s_.air_parts;
+      return find_forces(0, s_.model->has_ram() ? std::max(part, least_held(h)) : part);
     }
-    find_resistance(s_, decays ? s_.model->damping.motion : 0, h, team_);
+    find_forces(decays ? s_.model->damping.motion : 0, h);
     if (!decays) return;
     s_.velocity_before_decay = s_.velocity;
     decay(s_, h);
+  }
+
+  /// s, of a frame h: how long the air is held at least.
+  double least_held(double h) const {
+    const int substeps = s_.settings.substeps;
+    return substeps == kAutomaticSubsteps ? std::min(h, tuning::kLongestSubstep) : h / substeps;
+  }
+  /// See find_resistance.
+  void find_forces(double decay, double h) {
+    find_resistance(s_, decay, h, team_);
+    if (!presses(s_)) return;
+    s_.pressed.beside = s_.total_force;
+    begin_pressing(s_);
+    press(s_, s_.position.view());
   }
 
   void reject(const Attempt& attempt) {

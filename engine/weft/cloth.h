@@ -202,7 +202,7 @@ struct ChangedMembrane {
 /// New numbers of the air (Air).
 struct ChangedAir {
   double density = 0;  ///< kg/m^3
-  double drag = 0, lift = 0;
+  double drag = 0, lift = 0, ram = 0;
 };
 
 /// Changes of a cloth that moves. Everything that is not listed stays as it is.
@@ -216,6 +216,12 @@ struct Changes {
   std::vector<ChangedValue> bending = {};  ///< m/N, compliances of bending elements
   std::optional<Damping> damping = {};
   std::optional<ChangedAir> air = {};  ///< of the triangles that the description has
+};
+
+/// A pressure (Pressure) of a cloth as it is.
+struct PressureNow {
+  double pressure = 0;  ///< Pa, more than the air around has
+  double volume = 0;    ///< m^3, that its triangles enclose; 0 if they do not close
 };
 
 /// New limits of an anchor.
@@ -336,6 +342,16 @@ class WEFT_API Cloth {
   Result<void> set_gravity(Vec3 gravity);
   /// m/s, Air::wind from the next step on.
   Result<void> set_wind(Vec3 wind);
+  /// Pa, on all triangles of SceneDescription::surface from the next step on (Pressure); 0: none.
+  /// It replaces all pressures. It may be another one in each frame, and does not change within
+  /// one. Other solvers than small_steps refuse pressures. An automatic solver becomes small_steps,
+  /// at the cost of a change().
+  Result<void> set_pressure(double pressure);
+  /// The same for parts of the surface, and for gas that they enclose; empty: none. A gas of volume
+  /// 0 has its pressure at the volume of the present positions.
+  Result<void> set_pressure(std::span<const Pressure> pressures);
+  /// At the present positions, in the order in which they were set.
+  std::vector<PressureNow> pressures() const;
   /// Moves a fixed particle. It travels to the position in a straight line during the next step,
   /// however far that is, and the cloth takes on its speed; position() returns the new place at
   /// once. The last move before a step counts; write_positions cancels all moves. A fixed particle
@@ -442,7 +458,7 @@ class WEFT_API Cloth {
   struct Impl;
   State* state();  // null where it was moved from
   explicit Cloth(std::unique_ptr<Impl> impl);
-  Result<void> prepare_for_bodies();
+  Result<void> prepare_for(std::string_view what);
   std::unique_ptr<Impl> impl_;
 };
 

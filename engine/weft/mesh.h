@@ -42,6 +42,7 @@ struct Material {
   double damping_motion = 0;   ///< 1/s, as Damping::motion
   double drag = 0;             ///< as Air::drag
   double lift = 0;             ///< as Air::lift
+  double ram = 0;              ///< as Air::ram
 };
 
 /// The error is one line that names the field and the value that were refused.

@@ -94,8 +94,8 @@ struct Damping {
   double motion = 0;   ///< 1/s; velocities fall by exp(-motion t), whatever the step
 };
 
-/// Drag and lift on triangles of the cloth. With v the mean velocity of its corners relative to the
-/// wind, a triangle of area A and unit normal n feels the force
+/// Drag, lift and ram pressure on triangles of the cloth. With v the mean velocity of its corners
+/// relative to the wind, a triangle of area A and unit normal n feels the force
 ///
 ///     -1/2 density A |n . v| (drag v + lift (|v| n' - |n . v| v / |v|))
 ///
@@ -106,12 +106,48 @@ struct Damping {
 /// with the mass m it falls with v^2 = 2 m g / (density A drag) in the end. With small_steps the
 /// force is found once or a few times a step, else once a substep. It cannot make light cloth
 /// faster than the air, at any step.
+///
+/// Drag and lift are of one triangle, and hold no canopy open: where its skirt stands along the
+/// flow they have no part along the normal. The air that a canopy or a sail catches stands still in
+/// it and presses on all of it alike. So each piece of the triangles (those that share particles)
+/// feels the pressure
+///
+///     -1/2 density ram |u| u      along the normals,   u = v . S / |S|
+///
+/// S is the sum of the triangles' areas times normals, which is that of the mouth of a canopy, and
+/// v the mean velocity of the piece relative to the wind, by area. It presses from the side that
+/// the flow meets, whichever way the triangles face. A flat plate feels 1/2 density A ram u^2
+/// besides its drag, a closed surface nothing. By small_steps it follows normals in every substep.
 struct Air {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double density = 1.2;  ///< kg/m^3
   double drag = 0;       ///< C_d, of the area that the triangle shows
   double lift = 0;       ///< C_l
   Vec3 wind;             ///< m/s; Cloth::set_wind changes it
+  double ram = 0;        ///< C_p, of the flow that a piece catches; 1.2 for a canopy
+};
+
+/// A pressure on triangles of `surface`. It is more on one side of them than on the other, so it
+/// pushes along the normals, out of the side from which the corners are seen counter-clockwise; a
+/// negative one against them. It follows the normals in every substep, and does the work of the
+/// volume that the triangles sweep: none where it stands still. Several on a triangle add up.
+/// Solver small_steps only; `automatic` becomes small_steps.
+///
+/// The pressure of a gas falls as its volume grows, at a constant temperature:
+///
+///     (ambient + pressure now) (volume now) = (ambient + pressure) volume
+///
+/// Its triangles enclose it: as many of them have a side in one direction as in the other, and the
+/// normals point outwards. A given pressure above k / 2 R inflates a ball without end: threads of k
+/// N/m hold no more.
+struct Pressure {
+  double pressure = 0;                        ///< Pa, more than the air around has
+  std::vector<std::uint32_t> triangles = {};  ///< by their numbers in `surface`; empty: all
+  bool gas = false;                           ///< else the pressure stays as it is
+  double volume = 0;         ///< m^3, where the gas has this pressure; 0: the one that it has now
+  double ambient = 101'325;  ///< Pa, of the air around a gas, > 0
+
+  bool operator==(const Pressure&) const = default;
 };
 
 /// Keeps a particle near a point that an animation moves (Cloth::move_anchors), as the skin of a
@@ -191,6 +227,7 @@ struct SceneDescription {
   std::vector<std::array<std::uint32_t, 3>> surface;
   Damping damping;
   Air air;
+  std::vector<Pressure> pressures;  ///< Cloth::set_pressure changes them
   double friction = 0.3;  ///< Coulomb's coefficient of the cloth on bodies (body.h); at least 0
   SelfContact self_contact;
   Vec3 gravity{0, -10, 0};  ///< m/s^2

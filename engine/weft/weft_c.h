@@ -94,6 +94,17 @@ WEFT_API size_t weft_bytes_size(const weft_bytes* bytes);
 
 enum { WEFT_DISTANCE = 0, WEFT_ROPE = 1 }; /* ConstraintKind, in a byte each */
 
+typedef struct weft_pressure { /* Pressure */
+  size_t size;                 /* of an array: the same in all of it */
+  double pressure;
+  size_t triangle_count;
+  const uint32_t* triangles; /* by their numbers; without any: all */
+  int gas;                   /* yes or no */
+  double volume, ambient;
+} weft_pressure;
+
+WEFT_API weft_result weft_init_pressure(weft_pressure* pressure, size_t size);
+
 typedef struct weft_scene { /* SceneDescription */
   size_t size;
   size_t particle_count;
@@ -154,6 +165,10 @@ typedef struct weft_scene { /* SceneDescription */
 
   int self_contact; /* yes or no: whether layers of the cloth keep off each other */
   double self_contact_thickness, self_contact_friction;
+
+  double air_ram;
+  size_t pressure_count;
+  const weft_pressure* pressures; /* of surface_triangles */
 } weft_scene;
 
 typedef struct weft_model_info { /* ModelInfo */
@@ -325,6 +340,13 @@ WEFT_API weft_result weft_write_velocities(weft_cloth* cloth, size_t count, cons
 WEFT_API weft_result weft_write_forces(weft_cloth* cloth, size_t count, const double* in);
 WEFT_API weft_result weft_set_gravity(weft_cloth* cloth, const double gravity[3]);
 WEFT_API weft_result weft_set_wind(weft_cloth* cloth, const double wind[3]);
+/* On the whole surface; 0: none. */
+WEFT_API weft_result weft_set_pressure(weft_cloth* cloth, double pressure);
+WEFT_API weft_result weft_set_pressures(weft_cloth* cloth, size_t count,
+                                        const weft_pressure* pressures);
+/* PressureNow. count: number of pressures of the cloth. volumes: or NULL. */
+WEFT_API weft_result weft_read_pressures(const weft_cloth* cloth, size_t count, double* pressures,
+                                         double* volumes);
 WEFT_API weft_result weft_move_fixed(weft_cloth* cloth, size_t count, const uint32_t* particles,
                                      const double* positions);
 WEFT_API weft_result weft_place_fixed(weft_cloth* cloth, size_t count, const uint32_t* particles,
@@ -372,6 +394,7 @@ typedef struct weft_changes {
   double damping_stretch, damping_bending, damping_motion;
   int change_air; /* likewise */
   double air_density, air_drag, air_lift;
+  double air_ram;
 } weft_changes;
 
 WEFT_API weft_result weft_init_changes(weft_changes* changes, size_t size);
@@ -458,6 +481,7 @@ typedef struct weft_material { /* Material */
   double density, thickness, warp, weft, shear, bending;
   double damping_stretch, damping_bending, damping_motion, drag, lift;
   double friction;
+  double ram;
 } weft_material;
 
 WEFT_API weft_result weft_init_material(weft_material* material, size_t size);

@@ -150,6 +150,7 @@ class Session {
     const auto v = vector();
     changed(cloth, [&] { return weft_set_gravity(cloth, v.data()); });
     changed(cloth, [&] { return weft_set_wind(cloth, v.data()); });
+    changed(cloth, [&] { return weft_set_pressure(cloth, v[0]); });
   }
   void move_pins() {
     weft_cloth* cloth = some_cloth();

@@ -15,10 +15,10 @@ std::string number(double x) { return fmt::format("{}", x + 0.); }
 std::string material_text(const Material& m) {
   return fmt::format(
       R"({{"density": {}, "thickness": {}, "warp": {}, "weft": {}, "shear": {}, "bending": {}, )"
-      R"("damping_stretch": {}, "damping_bending": {}, "damping_motion": {}, "drag": {}, "lift": {}, "friction": {}}})",
+      R"("damping_stretch": {}, "damping_bending": {}, "damping_motion": {}, "drag": {}, "lift": {}, "ram": {}, "friction": {}}})",
       number(m.density), number(m.thickness), number(m.warp), number(m.weft), number(m.shear),
       number(m.bending), number(m.damping_stretch), number(m.damping_bending),
-      number(m.damping_motion), number(m.drag), number(m.lift), number(m.friction));
+      number(m.damping_motion), number(m.drag), number(m.lift), number(m.ram), number(m.friction));
 }
 
 /// Two triangles of it.

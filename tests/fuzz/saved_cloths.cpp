@@ -22,7 +22,8 @@ SceneDescription with_everything() {
   scene.seams = {{.a = 2, .b = 3}};
   scene.surface = {{1, 2, 4}, {2, 5, 4}};
   scene.air.triangles = {{0, 1, 2}};
-  scene.air.drag = 1;
+  scene.air.drag = scene.air.ram = 1;
+  scene.pressures = {{.pressure = 2, .triangles = {1}}};
   return scene;
 }
 

@@ -47,6 +47,7 @@ SceneDescription with(SceneDescription scene, const Changes& changes) {
     scene.air.density = changes.air->density;
     scene.air.drag = changes.air->drag;
     scene.air.lift = changes.air->lift;
+    scene.air.ram = changes.air->ram;
   }
   return scene;
 }

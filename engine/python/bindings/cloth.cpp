@@ -212,7 +212,26 @@ void add_writing(ClothClass& cloth) {
             const auto used = use(c);
             check(c.value.set_wind(wind));
           },
-          py::arg("wind"), "m/s, from the next step on");
+          py::arg("wind"), "m/s, from the next step on")
+      .def(
+          "set_pressure",
+          [](HeldCloth& c, const py::object& pressure) {
+            const bool is_list = py::isinstance<py::list>(pressure);
+            const auto parts = is_list ? taken(Given<std::vector<Pressure>>{pressure}, "pressures")
+                                       : std::vector<Pressure>{};
+            const double everywhere = is_list ? 0 : taken(Given<double>{pressure}, "pressure");
+            const auto used = use(c);
+            check(is_list ? c.value.set_pressure(parts) : c.value.set_pressure(everywhere));
+          },
+          py::arg("pressure"),
+          "Pa, on all triangles of the surface from the next step on; or a list of Pressure")
+      .def(
+          "pressures",
+          [](const HeldCloth& c) {
+            const auto used = use(c);
+            return c.value.pressures();
+          },
+          "a list of PressureNow, in the order in which they were set");
 }
 
 }  // namespace

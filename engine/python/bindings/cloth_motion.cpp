@@ -51,7 +51,8 @@ void add_changes(py::module_& m) {
   Fields<ChangedAir> air(m, "ChangedAir", "New numbers of the air.");
   air.field("density", &ChangedAir::density, "kg/m^3")
       .field("drag", &ChangedAir::drag, "as Air.drag")
-      .field("lift", &ChangedAir::lift, "as Air.lift");
+      .field("lift", &ChangedAir::lift, "as Air.lift")
+      .field("ram", &ChangedAir::ram, "as Air.ram");
   Fields<Changes> changes(m, "Changes", "Changes of a cloth that moves.");
   changes.array("fix", &Changes::fix, "particles")
       .array("release", &Changes::release, "fixed particles")

@@ -24,7 +24,8 @@ void add_materials(py::module_& m) {
       .field("damping_bending", &Material::damping_bending, "s")
       .field("damping_motion", &Material::damping_motion, "1/s")
       .field("drag", &Material::drag, "as Air.drag")
-      .field("lift", &Material::lift, "as Air.lift");
+      .field("lift", &Material::lift, "as Air.lift")
+      .field("ram", &Material::ram, "as Air.ram");
   m.def(
       "check_material", [](const Material& given) { check(check_material(given)); },
       py::arg("material"), "Raises Error with the field and the value that are refused.");

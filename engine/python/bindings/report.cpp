@@ -64,6 +64,10 @@ void add_report(py::module_& m) {
       .def_readonly("max_shear", &Strain::max_shear, "rad")
       .def_readonly("worst_element", &Strain::worst_element,
                     "the triangle of the largest strain or shear");
+  py::class_<PressureNow>(m, "PressureNow", "A Pressure of a cloth as it is.")
+      .def_readonly("pressure", &PressureNow::pressure, "Pa, more than the air around has")
+      .def_readonly("volume", &PressureNow::volume,
+                    "m^3, that its triangles enclose; 0 if they do not close");
   py::class_<Energy>(m, "Energy", "Energy of the particles that are not fixed.")
       .def_readonly("kinetic", &Energy::kinetic, "J")
       .def_readonly("potential", &Energy::potential, "J, zero at the origin")

@@ -49,7 +49,15 @@ void add_parts(py::module_& m) {
       .field("density", &Air::density, "kg/m^3")
       .field("drag", &Air::drag, "of the area that a triangle shows")
       .field("lift", &Air::lift, "across the wind")
+      .field("ram", &Air::ram, "of the flow that a piece of the cloth catches")
       .field("wind", &Air::wind, "m/s");
+
+  Fields<Pressure> pressure(m, "Pressure", "A pressure on triangles of the surface.");
+  pressure.field("pressure", &Pressure::pressure, "Pa, more than the air around has")
+      .array("triangles", &Pressure::triangles, "by their numbers; empty: all")
+      .field("gas", &Pressure::gas, "whether it falls as the volume grows")
+      .field("volume", &Pressure::volume, "m^3, where a gas has the pressure; 0: that of now")
+      .field("ambient", &Pressure::ambient, "Pa, of the air around a gas");
 
   Fields<SelfContact> self_contact(m, "SelfContact", "Layers of the cloth keep off each other.");
   self_contact.field("on", &SelfContact::on, "whether they do")
@@ -160,6 +168,7 @@ void add_scene(py::module_& m) {
   scene.field("damping", &Scene::damping, "a Damping")
       .field("air", &Scene::air, "an Air")
       .field("friction", &Scene::friction, "Coulomb's, of the cloth beside bodies")
+      .field("pressures", &Scene::pressures, "a list of Pressure")
       .field("self_contact", &Scene::self_contact, "a SelfContact")
       .field("gravity", &Scene::gravity, "m/s^2");
   add_model(m);

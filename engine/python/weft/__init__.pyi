@@ -39,10 +39,23 @@ class Air:
     density: float
     drag: float
     lift: float
+    ram: float
     @property
     def wind(self) -> NDArray[Any]: ...
     @wind.setter
     def wind(self, value: ArrayLike) -> None: ...
+
+
+class Pressure:
+    def __init__(self, **fields: Any) -> None: ...
+    pressure: float
+    @property
+    def triangles(self) -> NDArray[Any]: ...
+    @triangles.setter
+    def triangles(self, value: ArrayLike) -> None: ...
+    gas: bool
+    volume: float
+    ambient: float
 
 
 class SelfContact:
@@ -105,6 +118,7 @@ class SceneDescription:
     damping: Damping
     air: Air
     friction: float
+    pressures: list[Pressure]
     self_contact: SelfContact
     @property
     def gravity(self) -> NDArray[Any]: ...
@@ -222,6 +236,7 @@ class Material:
     damping_motion: float
     drag: float
     lift: float
+    ram: float
 
 
 class Ropes:
@@ -521,6 +536,13 @@ class Strain:
     def worst_element(self) -> int: ...
 
 
+class PressureNow:
+    @property
+    def pressure(self) -> float: ...
+    @property
+    def volume(self) -> float: ...
+
+
 class Energy:
     @property
     def kinetic(self) -> float: ...
@@ -563,6 +585,8 @@ class Cloth:
     def write_forces(self, forces: ArrayLike) -> None: ...
     def set_gravity(self, gravity: ArrayLike) -> None: ...
     def set_wind(self, wind: ArrayLike) -> None: ...
+    def set_pressure(self, pressure: ArrayLike) -> None: ...
+    def pressures(self) -> list[PressureNow]: ...
     def move_fixed(self, particles: ArrayLike, positions: ArrayLike) -> None: ...
     def place_fixed(self, particles: ArrayLike, positions: ArrayLike) -> None: ...
     def change(self, changes: Changes) -> None: ...
@@ -596,6 +620,7 @@ class ChangedAir:
     density: float
     drag: float
     lift: float
+    ram: float
 
 
 class Changes:

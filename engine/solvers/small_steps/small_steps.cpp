@@ -52,6 +52,11 @@ class StoredSmallSteps final : public SmallSteps {
     store_.accelerate(gravity, force);
   }
 
+  double give_of_force() const override { return now_.formula.give(now_.h); }
+  void shift(std::uint32_t slot, kernels::Vector by) override {
+    store_.points(true).move(slot, by);
+  }
+
   /// From the end of a substep to the prediction of the next, where anchors and bodies are then.
   void advance(Team& team) override {
     end_contacts(team);

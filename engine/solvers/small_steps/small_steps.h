@@ -128,6 +128,10 @@ class SmallSteps {
                      kernels::VectorsView force, const FramePlan& plan, Team& team) = 0;
   /// Between two substeps: what acts from now on.
   virtual void accelerate(kernels::Vector gravity, kernels::VectorsView force) = 0;
+  /// s^2, over the mass: by so much a force moves a particle in the present substep.
+  virtual double give_of_force() const = 0;
+  /// After a sweep: of a force that this substep did not know of.
+  virtual void shift(std::uint32_t slot, kernels::Vector by) = 0;
   /// The stages of a substep.
   virtual void advance(Team& team) = 0;
   virtual void sweep(Team& team) = 0;

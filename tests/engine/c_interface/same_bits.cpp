@@ -410,6 +410,66 @@ TEST_CASE("anchors that are moved, limited and scaled") {
   step_both(b, 0.01);
 }
 
+/// A tetrahedron that nothing joins, in wind.
+SceneDescription blown() {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  scene.masses = {1, 2, 3, 4};
+  scene.surface = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  scene.air.triangles = {{1, 2, 3}};
+  scene.air.ram = 1.3;
+  scene.air.wind = {3, 0, 1};
+  scene.pressures = {{.pressure = 20, .triangles = {1, 3}},
+                     {.pressure = 500, .gas = true, .volume = 0.1, .ambient = 9000}};
+  return scene;
+}
+
+TEST_CASE("pressures of a scene, and others that are set") {
+  Both b = both(blown(), {});
+  step_both(b, 0.01);
+  REQUIRE(b.cpp.pressures().size() == 2);
+  std::array<double, 2> pressures{}, volumes{};
+  REQUIRE(weft_read_pressures(b.c.get(), 2, pressures.data(), volumes.data()) == WEFT_OK);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(pressures[i] == b.cpp.pressures()[i].pressure);
+    CHECK(volumes[i] == b.cpp.pressures()[i].volume);
+  }
+  CHECK(volumes[1] > 0.1);
+  CHECK(weft_read_pressures(b.c.get(), 3, pressures.data(), nullptr) == WEFT_REFUSED);
+  CHECK(std::string(weft_last_message()) == "count: the cloth has 2 pressures (3)");
+
+  const std::uint32_t listed[] = {2, 0};
+  weft_pressure parts[2] = {initial(weft_init_pressure), initial(weft_init_pressure)};
+  CHECK(parts[0].ambient == Pressure{}.ambient);
+  parts[0].pressure = 7, parts[0].gas = 1;
+  parts[1].pressure = -3, parts[1].triangles = listed, parts[1].triangle_count = 2;
+  REQUIRE(weft_set_pressures(b.c.get(), 2, parts) == WEFT_OK);
+  const std::vector<Pressure> others{{.pressure = 7, .gas = true},
+                                     {.pressure = -3, .triangles = {2, 0}}};
+  REQUIRE(b.cpp.set_pressure(others));
+  step_both(b, 0.01);
+  REQUIRE(weft_set_pressure(b.c.get(), 11) == WEFT_OK);
+  REQUIRE(b.cpp.set_pressure(11));
+  step_both(b, 0.01);
+  auto changes = initial(weft_init_changes);
+  changes.change_air = 1, changes.air_density = 1.1, changes.air_ram = 0.7;
+  REQUIRE(weft_change(b.c.get(), &changes) == WEFT_OK);
+  REQUIRE(b.cpp.change({.air = ChangedAir{1.1, 0, 0, 0.7}}));
+  step_both(b, 0.01);
+
+  parts[1].triangles = nullptr;
+  CHECK(weft_set_pressures(b.c.get(), 2, parts) == WEFT_REFUSED);
+  CHECK(std::string(weft_last_message()) == "pressures[1].triangles: must not be NULL (2)");
+  parts[1].size = 8;
+  CHECK(weft_set_pressures(b.c.get(), 2, parts) == WEFT_REFUSED);
+  CHECK(std::string(weft_last_message()).find("pressures[1].size: must be that of") == 0);
+  CHECK(weft_set_pressures(b.c.get(), 1, nullptr) == WEFT_REFUSED);
+  CHECK(weft_set_pressure(nullptr, 1) == WEFT_REFUSED);
+  check_equal(b);
+  REQUIRE(weft_set_pressures(b.c.get(), 0, nullptr) == WEFT_OK);
+  CHECK(weft_read_pressures(b.c.get(), 0, nullptr, nullptr) == WEFT_OK);
+}
+
 TEST_CASE("states and models that are saved are the same bytes, and go on") {
   std::uint32_t body = 0;
   Both b = on_a_ball(body);

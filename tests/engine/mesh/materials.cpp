@@ -71,6 +71,7 @@ TEST_CASE("a material's errors name the field and the value") {
   CHECK(error_with(&Material::damping_motion, -1).starts_with("material.damping_motion: "));
   CHECK(error_with(&Material::drag, -1).starts_with("material.drag: "));
   CHECK(error_with(&Material::lift, -1).starts_with("material.lift: "));
+  CHECK(error_with(&Material::ram, -1).starts_with("material.ram: "));
 }
 
 TEST_CASE("thickness and friction of layers are the material's") {
@@ -94,11 +95,13 @@ TEST_CASE("damping and air are the material's") {
   mesh.material->damping_bending = 2;
   mesh.material->damping_motion = 3;
   mesh.material->lift = 4;
+  mesh.material->ram = 5;
   const SceneDescription scene = made(mesh).scene;
   CHECK(scene.damping.stretch == 1);
   CHECK(scene.damping.bending == 2);
   CHECK(scene.damping.motion == 3);
   CHECK(scene.air.lift == 4);
+  CHECK(scene.air.ram == 5);
   CHECK(scene.air.drag == 0);
   CHECK(scene.air.triangles.size() == 8);
   CHECK(build_model(scene));

@@ -94,6 +94,8 @@ void check_same(const SceneDescription& a, const SceneDescription& b) {
   CHECK(a.air.density == b.air.density);
   CHECK(a.air.drag == b.air.drag);
   CHECK(a.air.lift == b.air.lift);
+  CHECK(a.air.ram == b.air.ram);
+  CHECK(a.pressures == b.pressures);
   CHECK(same(a.air.wind, b.air.wind));
   CHECK(same(a.gravity, b.gravity));
   CHECK(sorted(a.spheres) == sorted(b.spheres));

@@ -49,6 +49,48 @@ class Forces(unittest.TestCase):
         run(cloth, 1, dt=0.001)
         self.assertTrue(np.allclose(cloth.read_velocities(), (0, -0.01, 0), atol=1e-4))
 
+    def test_ram_pressure_bears_a_plate(self):
+        bears = math.sqrt(2 * 6 * 10 / (1.2 * 0.5 * 1.5))  # m/s
+        cloth = plate(density=1.2, ram=1.5, wind=(0, bears, 0))
+        run(cloth, 20)
+        self.assertLess(np.abs(cloth.read_velocities()).max(), 1e-3)
+
+    def test_pressures(self):
+        cloth = cloth_of_scene(weft.Settings(scheme=weft.Scheme.implicit),
+                               positions=[(0, 0, 0), (0, 0, 1), (1, 0, 0)], masses=[2, 2, 2],
+                               surface=[(0, 1, 2)], gravity=(0, 0, 0),
+                               pressures=[weft.Pressure(pressure=24)])
+        run(cloth, 1)
+        self.assertTrue(np.allclose(cloth.read_velocities(), (0, 0.02, 0), atol=1e-6))  # p A t / m
+        cloth.set_pressure(-24)
+        run(cloth, 1)
+        self.assertTrue(np.allclose(cloth.read_velocities(), 0, atol=1e-6))
+        self.assertEqual([now.pressure for now in cloth.pressures()], [-24])
+        cloth.set_pressure([weft.Pressure(pressure=12, triangles=[0]), weft.Pressure(pressure=36)])
+        run(cloth, 1)
+        self.assertTrue(np.allclose(cloth.read_velocities(), (0, 0.04, 0), atol=1e-6))
+        cloth.set_pressure(0)
+        self.assertEqual(cloth.pressures(), [])
+        for wrong, message in ((math.nan, r"pressures\[0\].pressure: .*nan"),
+                               ([weft.Pressure(pressure=1, gas=True)], r"pressures\[0\].gas: "),
+                               ([weft.Pressure(pressure=1, triangles=[4])],
+                                r"pressures\[0\].triangles\[0\]: .*4")):
+            with self.assertRaisesRegex(weft.Error, message):
+                cloth.set_pressure(wrong)
+        with self.assertRaises(ValueError):
+            cloth.set_pressure("high")
+
+    def test_a_gas_keeps_its_pressure_times_its_volume(self):
+        corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        cloth = cloth_of_scene(positions=corners, masses=[1] * 4, gravity=(0, 0, 0),
+                               surface=[(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+        cloth.set_pressure([weft.Pressure(pressure=1000, gas=True, ambient=5000)])
+        self.assertAlmostEqual(cloth.pressures()[0].volume, 1 / 6, 12)
+        run(cloth, 3)
+        now = cloth.pressures()[0]
+        self.assertGreater(now.volume, 0.18)
+        self.assertAlmostEqual((5000 + now.pressure) * now.volume, 1000, 6)
+
     def test_all_motion_decays(self):
         cloth = cloth_of_scene(positions=[(0, 0, 0)], velocities=[(3, 0, 0)], masses=[1],
                                gravity=(0, 0, 0), damping=weft.Damping(motion=2))

@@ -61,5 +61,5 @@ def write_scene(file, scene, bodies):
         "surface": scene.surface.tolist(), "friction": scene.friction,
         "damping": {k: getattr(damping, k) for k in ("stretch", "bending", "motion")},
         "air": {"triangles": air.triangles.tolist(), "density": air.density, "drag": air.drag,
-                "lift": air.lift, "wind": air.wind.tolist()},
+                "lift": air.lift, "ram": air.ram, "wind": air.wind.tolist()},
         "gravity": scene.gravity.tolist(), "bodies": bodies}))

@@ -463,12 +463,12 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(state)), model.size(),
                 static_cast<unsigned long long>(checksum(model)));
   }
-  CHECK(state[8] == std::byte{4});
-  CHECK(model[8] == std::byte{2});
-  CHECK(state.size() == 11083);
-  CHECK(checksum(state) == 0x561702f9ee61b8bb);
-  CHECK(model.size() == 707);
-  CHECK(checksum(model) == 0xe33ea8d79c2a07e6);
+  CHECK(state[8] == std::byte{5});
+  CHECK(model[8] == std::byte{3});
+  CHECK(state.size() == 11099);
+  CHECK(checksum(state) == 0x847b3bfa6dc248bc);
+  CHECK(model.size() == 723);
+  CHECK(checksum(model) == 0x8ada2edf204814c4);
 }
 
 }  // namespace

@@ -156,6 +156,27 @@ TEST_CASE("nor does a step in air, of motion that decays") {
   }
 }
 
+TEST_CASE("nor does a step under pressures, of gas and of wind that is caught") {
+  for (const Backend backend : kBackends) {
+    SceneDescription scene = scene_of("hang", 7);
+    for (std::uint32_t i = 0; i < 41; ++i) scene.air.triangles.push_back({i, i + 1, i + 7});
+    scene.air.ram = 1;
+    scene.surface = {{10, 11, 17}, {10, 18, 11}, {11, 18, 17}, {17, 18, 10}};  // of no volume
+    scene.pressures = {{.pressure = 3, .triangles = {1}},
+                       {.pressure = 2, .gas = true, .volume = 1, .ambient = 1e-3}};
+    Cloth cloth = cloth_of(scene, on(backend, {.solver = Solver::small_steps}));
+    std::size_t failed = 0;
+    const std::size_t before = allocations();
+    for (int k = 0; k < 20; ++k) {
+      failed += !cloth.step(0.01);
+      failed += !cloth.set_wind({0.1 * k, 3, 0});
+    }
+    const std::size_t after = allocations();
+    CHECK(failed == 0);
+    if (backend == Backend::simd) CHECK(after == before);
+  }
+}
+
 TEST_CASE("nor does a warm step with bending elements, nor the first") {
   for (const Backend backend : kBackends) {
     SceneDescription scene = with_rows(scene_of("corners", 9), 9, 1e-4);

@@ -154,7 +154,8 @@ Changes some_changes(const SceneDescription& scene) {
     changes.bending = {{0, 2 * scene.bending[0].compliance}};
     changes.damping = {.stretch = 1e-4, .bending = 2e-3, .motion = 0.3};
   }
-  if (!scene.air.triangles.empty()) changes.air = {.density = 1, .drag = 0.7, .lift = 0.4};
+  if (!scene.air.triangles.empty())
+    changes.air = {.density = 1, .drag = 0.7, .lift = 0.4, .ram = 0.6};
   return changes;
 }
 

@@ -37,6 +37,7 @@ TEST_CASE("what lies on bodies and slides") { check(body_forms()); }
 TEST_CASE("what lies on other layers, slides and stands" * doctest::test_suite("slow")) {
   check(layer_forms());
 }
+TEST_CASE("what air presses" * doctest::test_suite("slow")) { check(pressure_forms()); }
 
 TEST_CASE("a heavy strip that is short sags by load / 8, a long one hangs down by its length") {
   CHECK(heavy_elastica(0.01).y == doctest::Approx(-0.01 / 8).epsilon(1e-4));

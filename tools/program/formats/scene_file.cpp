@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/model/pressures.h"
 #include "tools/program/files/json_reading.h"
 #include "tools/program/files/text_file.h"
 #include "tools/program/formats/scene_bodies.h"
@@ -114,6 +115,8 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.damping = read_damping(json, key);
   } else if (key == "air") {
     scene.air = read_air(json, key);
+  } else if (key == "pressures") {
+    scene.pressures = read_array(json, key, read_pressure);
   } else if (key == "spheres") {
     scene.spheres = read_array(json, key, read_index);
   } else if (key == "radii") {
@@ -230,6 +233,7 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
     text += fmt::format(",\n\"damping\": {}", damping_text(scene.damping));
   }
   if (has_air(scene.air)) text += fmt::format(",\n\"air\": {}", air_text(scene.air));
+  add_rows(text, "pressures", scene.pressures, pressure_row);
   add_numbers(text, "spheres", scene.spheres);
   add_numbers(text, "radii", scene.radii);
   if (scene.friction != SceneDescription{}.friction)
@@ -244,6 +248,9 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
 
 SceneDescription present_scene(const SceneDescription& scene, const Cloth& cloth) {
   SceneDescription present = scene;
+  present.pressures = with_volumes(scene.pressures, scene.surface, [&](std::uint32_t i) {
+    return kernels::Vector{scene.positions[i].x, scene.positions[i].y, scene.positions[i].z};
+  });
   present.velocities.resize(scene.positions.size());
   for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
     present.positions[i] = cloth.position(i);

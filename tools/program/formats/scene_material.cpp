@@ -31,6 +31,12 @@ void check_given(const Json& json, const std::string& place,
 }
 
 /// What is left out keeps its value.
+void read_if_given(const Json& json, const std::string& place, const char* key, bool& value) {
+  if (!json.contains(key)) return;
+  if (!json[key].is_boolean()) refuse(within(place, key), "true or false", json[key]);
+  value = json[key];
+}
+
 void read_if_given(const Json& json, const std::string& place, const char* key, double& value) {
   if (json.contains(key)) value = read_number(json[key], within(place, key));
 }
@@ -111,7 +117,7 @@ Damping read_damping(const Json& json, const std::string& place) {
 }
 
 Air read_air(const Json& json, const std::string& place) {
-  check_keys(json, place, {"triangles", "density", "drag", "lift", "wind"});
+  check_keys(json, place, {"triangles", "density", "drag", "lift", "ram", "wind"});
   Air air;
   if (json.contains("triangles")) {
     air.triangles = read_array(json["triangles"], within(place, "triangles"), read_triangle);
@@ -119,6 +125,7 @@ Air read_air(const Json& json, const std::string& place) {
   read_if_given(json, place, "density", air.density);
   read_if_given(json, place, "drag", air.drag);
   read_if_given(json, place, "lift", air.lift);
+  read_if_given(json, place, "ram", air.ram);
   if (json.contains("wind")) air.wind = read_vector(json["wind"], within(place, "wind"));
   return air;
 }
@@ -126,13 +133,23 @@ Air read_air(const Json& json, const std::string& place) {
 SelfContact read_self_contact(const Json& json, const std::string& place) {
   check_keys(json, place, {"on", "thickness", "friction"});
   SelfContact contact{.on = true};
-  if (json.contains("on")) {
-    if (!json["on"].is_boolean()) refuse(within(place, "on"), "true or false", json["on"]);
-    contact.on = json["on"];
-  }
+  read_if_given(json, place, "on", contact.on);
   read_if_given(json, place, "thickness", contact.thickness);
   read_if_given(json, place, "friction", contact.friction);
   return contact;
+}
+
+Pressure read_pressure(const Json& json, const std::string& place) {
+  check_keys(json, place, {"pressure", "triangles", "gas", "volume", "ambient"});
+  check_given(json, place, {"pressure"});
+  Pressure part;
+  read_if_given(json, place, "pressure", part.pressure);
+  if (json.contains("triangles"))
+    part.triangles = read_array(json["triangles"], within(place, "triangles"), read_index);
+  read_if_given(json, place, "gas", part.gas);
+  read_if_given(json, place, "volume", part.volume);
+  read_if_given(json, place, "ambient", part.ambient);
+  return part;
 }
 
 Anchor read_anchor(const Json& json, const std::string& place) {
@@ -159,6 +176,15 @@ Seam read_seam(const Json& json, const std::string& place) {
   read_if_given(json, place, "time", seam.time);
   read_distance_if_given(json, place, "max_force", seam.max_force);
   return seam;
+}
+
+std::string pressure_row(const Pressure& part) {
+  Json row{{"pressure", part.pressure}};
+  if (!part.triangles.empty()) row["triangles"] = part.triangles;
+  if (part.gas) row["gas"] = true;
+  if (part.volume != 0) row["volume"] = part.volume;
+  if (part.ambient != Pressure{}.ambient) row["ambient"] = part.ambient;
+  return row.dump();
 }
 
 std::string seam_row(const Seam& seam) {
@@ -206,7 +232,7 @@ bool has_damping(const Damping& damping) {
 bool has_air(const Air& air) {
   const Air plain;
   return !air.triangles.empty() || air.density != plain.density || air.drag > 0 || air.lift > 0 ||
-         air.wind.x != 0 || air.wind.y != 0 || air.wind.z != 0;
+         air.ram > 0 || air.wind.x != 0 || air.wind.y != 0 || air.wind.z != 0;
 }
 
 std::string damping_text(const Damping& damping) {
@@ -220,6 +246,7 @@ std::string air_text(const Air& air) {
               {"density", air.density},
               {"drag", air.drag},
               {"lift", air.lift},
+              {"ram", air.ram},
               {"wind", Json{air.wind.x, air.wind.y, air.wind.z}}}
       .dump();
 }

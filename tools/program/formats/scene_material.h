@@ -1,5 +1,5 @@
-/// What a scene file says of fabric: triangles of it, bending elements, damping, air, anchors and
-/// seams.
+/// What a scene file says of fabric: triangles of it, bending elements, damping, air, pressures,
+/// anchors and seams.
 #pragma once
 
 #include <weft/weft.h>
@@ -18,12 +18,14 @@ Damping read_damping(const Json& json, const std::string& place);
 Air read_air(const Json& json, const std::string& place);
 /// A cloth that says so touches itself, unless "on" is false.
 SelfContact read_self_contact(const Json& json, const std::string& place);
+Pressure read_pressure(const Json& json, const std::string& place);
 Anchor read_anchor(const Json& json, const std::string& place);
 Seam read_seam(const Json& json, const std::string& place);
 
 std::string membrane_row(const MembraneElement& element);
 std::string bending_row(const BendingElement& element);
 std::string anchor_row(const Anchor& anchor);
+std::string pressure_row(const Pressure& part);
 std::string seam_row(const Seam& seam);
 /// Whether they differ from what a description has by itself.
 bool has_damping(const Damping& damping);

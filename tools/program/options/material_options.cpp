@@ -30,7 +30,8 @@ constexpr Field kFields[] = {{"density", &Material::density},
                              {"damping_bending", &Material::damping_bending},
                              {"damping_motion", &Material::damping_motion},
                              {"drag", &Material::drag},
-                             {"lift", &Material::lift}};
+                             {"lift", &Material::lift},
+                             {"ram", &Material::ram}};
 
 struct Change {
   std::string_view option;

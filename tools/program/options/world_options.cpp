@@ -86,6 +86,21 @@ Result<void> set_self_contact(const WorldOptions& options, SceneDescription& sce
   return {};
 }
 
+/// A scene that had no air has it on its whole surface.
+Result<void> set_pressures(const WorldOptions& options, SceneDescription& scene) {
+  if (options.ram) {
+    if (!(*options.ram >= 0)) return Error{fmt::format("--ram: {} is below 0", *options.ram)};
+    if (scene.air.triangles.empty()) scene.air.triangles = scene.surface;
+    if (scene.air.triangles.empty()) return Error{"--ram: the scene has no faces"};
+    scene.air.ram = *options.ram;
+  }
+  if (options.gas && !options.pressure) return Error{"--gas: needs --pressure"};
+  if (!options.pressure) return {};
+  if (scene.surface.empty()) return Error{"--pressure: the scene has no faces"};
+  scene.pressures = {{.pressure = *options.pressure, .gas = options.gas}};
+  return {};
+}
+
 }  // namespace
 
 void add_world_options(Verb verb, WorldOptions& options) {
@@ -108,6 +123,15 @@ void add_world_options(Verb verb, WorldOptions& options) {
               "on or off: whether layers of the cloth keep the thickness of its material from each "
               "other, 0.001 without (default: what a scene has: off, but for tunic, stack, fold, "
               "curtain, twist, ribbon, funnel and outfit)");
+  verb.option(
+      "--ram", options.ram,
+      "pressure coefficient of air that a piece of the cloth catches, as a canopy or a sail: "
+      "about 1.2 (default: 0, or what the material or the .json scene has)");
+  verb.option("--pressure", options.pressure,
+              "Pa, on all faces of the cloth, out of the sides from which their corners are seen "
+              "counter-clockwise; below 0: into them (default: what a .json scene has)");
+  verb.flag("--gas", options.gas,
+            "--pressure is that of a gas which the faces enclose: it falls as the volume grows");
   verb.option("--damping-motion", options.damping_motion,
               "1/s: velocities fall by exp(-this t) (default: what the material or the .json scene "
               "has)");
@@ -136,6 +160,7 @@ Result<std::vector<std::string>> surround(const WorldOptions& options, SceneDesc
   }
   if (auto set = set_surfaces(options, scene, bodies); !set) return Error{set.error()};
   if (auto set = set_self_contact(options, scene); !set) return Error{set.error()};
+  if (auto set = set_pressures(options, scene); !set) return Error{set.error()};
   return notes;
 }
 

@@ -1,5 +1,5 @@
-/// The world of a cloth: gravity, spheres, bodies, friction, the decay of its motion, and whether
-/// it touches itself.
+/// The world of a cloth: gravity, spheres, bodies, friction, the decay of its motion, pressures,
+/// and whether it touches itself.
 #pragma once
 
 #include <weft/weft.h>
@@ -23,6 +23,9 @@ struct WorldOptions {
   std::optional<double> friction = {};
   std::optional<double> thickness = {};          ///< m
   std::optional<std::string> self_contact = {};  ///< on, off
+  std::optional<double> ram = {};                ///< as Air::ram
+  std::optional<double> pressure = {};           ///< Pa, on the whole surface
+  bool gas = false;                              ///< whether that is of a gas
 };
 
 void add_world_options(Verb verb, WorldOptions& options);

@@ -68,6 +68,7 @@ std::vector<Form> film_forms();
 std::vector<Form> motion_forms();
 std::vector<Form> body_forms();
 std::vector<Form> layer_forms();
+std::vector<Form> pressure_forms();
 
 /// The cloth of a scene on its way by one thread, timed. Throws where weft refuses the scene, the
 /// settings or a step.

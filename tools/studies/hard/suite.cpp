@@ -12,7 +12,7 @@ std::vector<Case> all_cases() {
        {mass_cases(), infeasible_cases(), start_cases(), step_cases(), place_cases(),
         motion_cases(), length_cases(), graph_cases(), material_cases(), input_cases(),
         sheet_cases(), budget_cases(), rest_cases(), bending_cases(), body_cases(), mesh_cases(),
-        layer_cases(), knot_cases()}) {
+        layer_cases(), knot_cases(), pressure_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

@@ -28,6 +28,7 @@ std::vector<Case> body_cases();
 std::vector<Case> mesh_cases();
 std::vector<Case> layer_cases();
 std::vector<Case> knot_cases();
+std::vector<Case> pressure_cases();
 
 std::vector<Case> all_cases();
 

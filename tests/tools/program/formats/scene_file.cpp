@@ -51,6 +51,8 @@ void check_same_material(const SceneDescription& a, const SceneDescription& b) {
   CHECK(a.air.density == b.air.density);
   CHECK(a.air.drag == b.air.drag);
   CHECK(a.air.lift == b.air.lift);
+  CHECK(a.air.ram == b.air.ram);
+  CHECK(a.pressures == b.pressures);
   CHECK(same(a.air.wind, b.air.wind));
 }
 
@@ -99,6 +101,40 @@ TEST_CASE("velocities and ropes survive writing and reading") {
   const auto again = parse_scene(scene_text(scene));
   REQUIRE(again);
   check_same(scene, again.value().description);
+}
+
+TEST_CASE("pressures survive writing and reading to the last bit") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  scene.masses = {1, 1, 1, 1};
+  scene.surface = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  scene.air.triangles = {{0, 1, 2}};
+  scene.air.ram = 1.0 / 3;
+  scene.pressures = {{.pressure = -0.1},
+                     {.pressure = 1.0 / 7, .triangles = {2, 0}},
+                     {.pressure = 5, .gas = true, .volume = 1.0 / 9, .ambient = 1e5 / 3}};
+  const auto again = parse_scene(scene_text(scene));
+  REQUIRE(again);
+  check_same(scene, again.value().description);
+  CHECK(error_with(R"("pressures": [{"triangles": [1]}])") ==
+        "pressures[0]: the key 'pressure' is missing");
+  CHECK(error_with(R"("pressures": [{"pressure": 1, "gas": 1}])").find("pressures[0].gas") == 0);
+  CHECK(error_with(R"("pressures": [{"pressure": "high"}])").find("pressures[0].pressure") == 0);
+  CHECK(error_with(R"("pressures": [{"pressure": 1, "unit": "bar"}])").find("unit") !=
+        std::string::npos);
+}
+
+TEST_CASE("a scene that goes on has the volume at which its gas had its pressure") {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  scene.masses = {1, 1, 1, 1};
+  scene.surface = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  scene.pressures = {{.pressure = 1000, .gas = true}};
+  auto cloth = Cloth::create(build_model(scene).value(), {});
+  REQUIRE(cloth.value().step(0.01));
+  const SceneDescription present = present_scene(scene, cloth.value());
+  CHECK(present.pressures[0].volume == doctest::Approx(1. / 6));
+  CHECK(cloth.value().pressures()[0].volume > 0.168);
 }
 
 TEST_CASE("a material survives writing and reading to the last bit") {

@@ -15,7 +15,7 @@ TEST_CASE("a material file has the fields of a material by name") {
   const auto material = parse_material(
       R"({"density": 1, "thickness": 2, "warp": 3, "weft": 4, "shear": 5, "bending": 6,
           "damping_stretch": 7, "damping_bending": 8, "damping_motion": 9, "drag": 10, "lift": 11,
-          "friction": 12})");
+          "friction": 12, "ram": 13})");
   REQUIRE(material);
   const Material& m = material.value();
   CHECK(m.density == 1);
@@ -30,6 +30,7 @@ TEST_CASE("a material file has the fields of a material by name") {
   CHECK(m.drag == 10);
   CHECK(m.lift == 11);
   CHECK(m.friction == 12);
+  CHECK(m.ram == 13);
   CHECK(parse_material("{}").value().friction == 0.3);
 }
 

@@ -74,6 +74,23 @@ TEST_CASE("self-contact is on or off, or what the scene has") {
   CHECK_FALSE(scene.self_contact.on);
 }
 
+TEST_CASE("air presses on the faces of a scene, as a ram pressure, a given one or that of a gas") {
+  SceneDescription scene = two_particles();
+  std::vector<SceneBody> bodies;
+  scene.positions.push_back({0, 0, 1});
+  scene.masses.push_back(1);
+  scene.surface = {{0, 1, 2}};
+  REQUIRE(surround({.ram = 1.2, .pressure = -30}, scene, bodies));
+  CHECK(scene.air.ram == 1.2);
+  CHECK(scene.air.triangles == scene.surface);
+  REQUIRE(scene.pressures.size() == 1);
+  CHECK(scene.pressures[0] == Pressure{.pressure = -30});
+  REQUIRE(surround({.pressure = 40, .gas = true}, scene, bodies));
+  CHECK(scene.pressures == std::vector<Pressure>{{.pressure = 40, .gas = true}});
+  REQUIRE(surround({}, scene, bodies));
+  CHECK(scene.pressures.size() == 1);
+}
+
 TEST_CASE("what is wrong with the surroundings is refused by option and value") {
   const auto error_of = [](const WorldOptions& options) {
     SceneDescription scene = two_particles();
@@ -90,6 +107,10 @@ TEST_CASE("what is wrong with the surroundings is refused by option and value") 
   CHECK(error_of({.planes = {"0,1,0,0"}, .thickness = -1}) == "--thickness: -1 is below 0");
   CHECK(error_of({.self_contact = "1"}) == "--self-contact: '1' is not on or off");
   CHECK(error_of({.damping_motion = -1}) == "--damping-motion: -1 is below 0");
+  CHECK(error_of({.ram = -1}) == "--ram: -1 is below 0");
+  CHECK(error_of({.ram = 1}) == "--ram: the scene has no faces");
+  CHECK(error_of({.pressure = 1}) == "--pressure: the scene has no faces");
+  CHECK(error_of({.gas = true}) == "--gas: needs --pressure");
   CHECK(error_of({.spheres = {"1,2,3"}}) ==
         "--sphere: '1,2,3' is not x,y,z,radius or x,y,z,radius,mass");
   CHECK(error_of({.spheres = {"1,2,3,x"}}).starts_with("--sphere: '1,2,3,x' is not"));

@@ -1,0 +1,97 @@
+#include "engine/c_interface/pressures.h"
+
+#include "engine/c_interface/arrays.h"
+#include "engine/c_interface/handles.h"
+#include "engine/c_interface/structs.h"
+
+namespace weft::c_interface {
+namespace {
+
+Result<Pressure> read_pressure(const std::string& name, const weft_pressure* pressure) {
+  const auto read = read_struct(name, pressure, pressure_of({}));
+  if (!read) return Error{read.error()};
+  const weft_pressure& p = read.value();
+  Arrays in;
+  const auto triangles =
+      in.needed<std::uint32_t>(name + ".triangles", p.triangles, p.triangle_count);
+  if (!in.are_good()) return in.error();
+  return Pressure{.pressure = p.pressure,
+                  .triangles = list_of(triangles),
+                  .gas = p.gas != 0,
+                  .volume = p.volume,
+                  .ambient = p.ambient};
+}
+
+}  // namespace
+
+weft_pressure pressure_of(const Pressure& part) {
+  return {.size = sizeof(weft_pressure),
+          .pressure = part.pressure,
+          .triangle_count = part.triangles.size(),
+          .triangles = part.triangles.data(),
+          .gas = part.gas ? 1 : 0,
+          .volume = part.volume,
+          .ambient = part.ambient};
+}
+
+Result<std::vector<Pressure>> read_pressures(std::size_t count, const weft_pressure* pressures) {
+  std::vector<Pressure> list;
+  if (count == 0) return list;
+  if (auto r = check_struct("pressures[0]", pressures); !r) return Error{r.error()};
+  const auto* bytes = reinterpret_cast<const std::byte*>(pressures);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string name = "pressures[" + std::to_string(i) + "]";
+    const auto* one = reinterpret_cast<const weft_pressure*>(bytes + i * pressures->size);
+    if (one->size != pressures->size) {
+      return Error{name + ".size: must be that of pressures[0] (" + std::to_string(one->size) +
+                   ")"};
+    }
+    auto part = read_pressure(name, one);
+    if (!part) return Error{part.error()};
+    list.push_back(std::move(part).value());
+  }
+  return list;
+}
+
+}  // namespace weft::c_interface
+
+using namespace weft::c_interface;
+
+weft_result weft_init_pressure(weft_pressure* pressure, size_t size) {
+  return init_struct("pressure", pressure_of({}), pressure, size);
+}
+
+weft_result weft_set_pressure(weft_cloth* cloth, double pressure) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}}); !r) return r;
+    return cloth->cloth.set_pressure(pressure);
+  });
+}
+
+weft_result weft_set_pressures(weft_cloth* cloth, size_t count, const weft_pressure* pressures) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}}); !r) return r;
+    const auto read = read_pressures(count, pressures);
+    if (!read) return weft::Error{read.error()};
+    return cloth->cloth.set_pressure(read.value());
+  });
+}
+
+weft_result weft_read_pressures(const weft_cloth* cloth, size_t count, double* pressures,
+                                double* volumes) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}}); !r) return r;
+    const std::vector<weft::PressureNow> now = cloth->cloth.pressures();
+    if (count != now.size()) {
+      return weft::Error{"count: the cloth has " + std::to_string(now.size()) + " pressures (" +
+                         std::to_string(count) + ")"};
+    }
+    if (count == 0) return {};
+    if (auto r = given({{"pressures", pressures}}); !r) return r;
+    for (std::size_t i = 0; i < count; ++i) {
+      pressures[i] = now[i].pressure;
+      if (volumes != nullptr) volumes[i] = now[i].volume;
+    }
+    return {};
+  });
+}
