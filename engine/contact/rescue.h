@@ -1,7 +1,7 @@
 /// Stage 8 of an interval: what to do about pairs that went through each other. First they
 /// are stopped where they would have met, as by inelastic blows; that may send others through each
-/// other, so it is done in rounds. Then what still fails moves in rigid zones, which grow by what they
-/// meet (impact_zones.h).
+/// other, so it is done in rounds. Then what still fails moves in rigid zones, which grow by what
+/// they meet (impact_zones.h).
 #pragma once
 
 #include "engine/contact/impact_zones.h"
