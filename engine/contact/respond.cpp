@@ -90,7 +90,7 @@ void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near
   points.place_vertices_asked(clock);
   for (NearPairs& pairs : near) {
     for (NearState& state : pairs.states) {
-      state.is_touching = false;
+      state.is_touching = state.is_linked = false;
       state.push = 0;
       state.grip = {};
     }
@@ -212,13 +212,9 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
 
 void Response::remember(const ContactScene& scene, NearPairs& near, std::size_t list,
                         std::size_t i) {
+  if (std::exchange(near.states[i].is_linked, true)) return;
   for (const std::uint32_t point : near.list.points(i)) {
     if (!scene.points.is_of_cloth(point)) continue;
-    bool is_known = false;
-    for (std::uint32_t link = first_link_[point]; link != kNoIndex && !is_known;
-         link = links_[link].next)
-      is_known = links_[link].list == list && links_[link].pair == i;
-    if (is_known) continue;
     if (first_link_[point] == kNoIndex) linked_.push_back(point);
     links_.push_back(
         {static_cast<std::uint32_t>(list), static_cast<std::uint32_t>(i), first_link_[point]});
