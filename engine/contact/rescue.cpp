@@ -19,11 +19,12 @@ class Mover {
 
   void move(std::uint32_t slot, Vector by, Vector faster, Vector of_surface) {
     ContactParticle particle = scene_.particles.read(slot);
+    const Vector before = particle.v;
     particle.x = particle.x + by;
     particle.v = particle.v + faster;
     scene_.particles.write(slot, particle);
+    if (body_ == kNoIndex) return hold(slot, before);
     scene_.points.set_end(slot, particle.x);
-    if (body_ == kNoIndex) return scene_.particles.jolt(slot, faster);
     scene_.particles.stop(slot, {body_, of_surface});
     const double momentum = scene_.model.mass[slot] * scene_.particles.momentum_share();
     scene_.impulses.add(body_, scene_.clock.motions()[body_].to.centre, particle.x,
@@ -31,6 +32,13 @@ class Mover {
   }
 
  private:
+  /// What cloth has moved is held by bodies of a closed form: what it meets takes the rest.
+  void hold(std::uint32_t slot, Vector v_before) {
+    scene_.particles.push(slot, {}, {});
+    scene_.points.set_end(slot, scene_.particles.position(slot));
+    scene_.particles.jolt(slot, scene_.particles.read(slot).v - v_before);
+  }
+
   const ContactScene& scene_;
   const std::uint32_t body_;
 };

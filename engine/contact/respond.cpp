@@ -71,7 +71,7 @@ void Response::begin(const ContactScene& scene, const Near& near) {
   for (const std::uint32_t point : asked_) is_asked_[point] = false;
   asked_.clear();
   for (std::size_t list = 0; list < kPairLists; ++list) {
-    for (auto* bits : {&touching_[list], &touching_now_[list]})
+    for (auto* bits : {&touching_[list], &touching_now_[list], &given_[list]})
       bits->assign(near[list].list.blocks.size(), 0);
     for (std::size_t i = 0; i < near[list].list.size(); ++i) {
       for (const std::uint32_t point : near[list].list.points(i)) {
@@ -91,10 +91,11 @@ void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near
   for (NearPairs& pairs : near) {
     for (NearState& state : pairs.states) {
       state.is_touching = state.is_linked = false;
-      state.push = 0;
+      state.push = state.given = 0;
       state.grip = {};
     }
   }
+  for (auto& bits : given_) std::ranges::fill(bits, std::uint16_t{0});
   for (const std::uint32_t slot : linked_) first_link_[slot] = kNoIndex;
   linked_.clear();
   links_.clear();
@@ -110,6 +111,9 @@ simd::PairTouch Response::touch_of(const ContactScene& scene, NearPairs& near,
 
 void Response::find_touching(const ContactScene& scene, Near& near, Team& team) {
   scene.points.read_cloth(scene.particles);
+  if (scene.particles.is_mended()) {  // nothing is taken back then
+    for (auto& bits : given_) std::ranges::fill(bits, std::uint16_t{0});
+  }
   for (std::size_t list = 0; list < kPairLists; ++list) {
     NearPairs& pairs = near[list];
     const simd::PairTouch touch = touch_of(scene, pairs, touching_[list]);
@@ -148,6 +152,7 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   Encounter e = meet(scene, near, i);
   near.set_under(i, e.is_under);
   near.set_normal(i, e.normal);
+  if (state.given > 0 && e.gap > state.target) return layers::take_back(scene, e, state);
   if (!e.pushes) return false;
   e.read_start(scene);
   if (pair.is_within_cloth()) return layers::resist(scene, e, state);
@@ -249,8 +254,8 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
 
 std::size_t Response::bytes() const {
   return bytes_of(touching_[0]) + bytes_of(touching_[1]) + bytes_of(touching_now_[0]) +
-         bytes_of(touching_now_[1]) + bytes_of(asked_) + is_asked_.capacity() / 8 +
-         bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
+         bytes_of(touching_now_[1]) + bytes_of(given_[0]) + bytes_of(given_[1]) + bytes_of(asked_) +
+         is_asked_.capacity() / 8 + bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
 }
 
 }  // namespace weft

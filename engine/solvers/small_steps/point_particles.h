@@ -25,6 +25,7 @@ class PointParticles final : public ContactParticles {
   void touch(std::uint32_t slot, const TouchedSurface& surface) override {
     if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
   }
+  bool is_on_body(std::uint32_t slot) const override { return points_.bodies->touches(slot); }
   void stop(std::uint32_t slot, const TouchedSurface& surface) override {
     points_.arrived.push_back({slot, surface});
   }
