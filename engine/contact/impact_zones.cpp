@@ -187,7 +187,7 @@ void ImpactZones::move(const ContactScene& scene, double time) {
                                   ? (1 / time) * (end - start)
                                   : motion.velocity + cross(motion.spin, start - motion.centre);
       const ContactParticle particle = scene.particles.read(point);
-      mover.move(point, end - particle.x, velocity - particle.v, velocity);
+      mover.move_in_zone(point, end - particle.x, velocity - particle.v, velocity);
     }
   }
 }

@@ -8,6 +8,10 @@
 /// out by and by, without speed.
 ///
 /// A particle on a body of a closed form goes no further: the others take its way, too.
+///
+/// A push may be more than is needed once others have moved the same points. Until the substep ends
+/// so much of it is taken back (projected Gauss-Seidel): if not, what lies over a border is lifted,
+/// and falls, for ever.
 #pragma once
 
 #include "engine/contact/encounter.h"
@@ -17,5 +21,8 @@ namespace weft::layers {
 
 /// A pair that is nearer than its thickness. Returns whether it was pushed apart.
 bool resist(const ContactScene& scene, Encounter& e, NearState& state);
+/// One that is farther apart than its pushes were to bring it. Returns whether points were moved.
+/// Those that touch a body stay: it would not follow them.
+bool take_back(const ContactScene& scene, Encounter& e, NearState& state);
 
 }  // namespace weft::layers

@@ -10,22 +10,40 @@ class Mover {
   /// body: kNoIndex where cloth stops cloth.
   Mover(const ContactScene& scene, std::uint32_t body) : scene_(scene), body_(body) {}
 
+  /// What cloth has moved is held by bodies of a closed form: what it meets takes the rest.
   /// of_surface: m/s, of the body there.
   void move(std::uint32_t slot, kernels::Vector by, kernels::Vector faster,
             kernels::Vector of_surface) const {
+    const kernels::Vector before = scene_.particles.read(slot).v;
+    put(slot, by, faster);
+    if (body_ != kNoIndex) return load(slot, faster, of_surface);
+    scene_.particles.push(slot, {}, {});
+    scene_.points.set_end(slot, scene_.particles.position(slot));
+    scene_.particles.jolt(slot, scene_.particles.read(slot).v - before);
+  }
+  /// Nothing but the body holds it: the others of a rigid zone are moved likewise.
+  void move_in_zone(std::uint32_t slot, kernels::Vector by, kernels::Vector faster,
+                    kernels::Vector of_surface) const {
+    put(slot, by, faster);
+    if (body_ != kNoIndex) return load(slot, faster, of_surface);
+    scene_.particles.jolt(slot, faster);
+  }
+
+ private:
+  void put(std::uint32_t slot, kernels::Vector by, kernels::Vector faster) const {
     ContactParticle particle = scene_.particles.read(slot);
     particle.x = particle.x + by;
     particle.v = particle.v + faster;
     scene_.particles.write(slot, particle);
     scene_.points.set_end(slot, particle.x);
-    if (body_ == kNoIndex) return scene_.particles.jolt(slot, faster);
+  }
+  void load(std::uint32_t slot, kernels::Vector faster, kernels::Vector of_surface) const {
     scene_.particles.stop(slot, {body_, of_surface});
     const double momentum = scene_.model.mass[slot] * scene_.particles.momentum_share();
-    scene_.impulses.add(body_, scene_.clock.motions()[body_].to.centre, particle.x,
-                        momentum * faster, of_surface);
+    scene_.impulses.add(body_, scene_.clock.motions()[body_].to.centre,
+                        scene_.particles.position(slot), momentum * faster, of_surface);
   }
 
- private:
   const ContactScene& scene_;
   const std::uint32_t body_;
 };

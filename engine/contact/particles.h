@@ -34,6 +34,8 @@ class ContactParticles {
   virtual void write(std::uint32_t slot, const ContactParticle& particle) = 0;
   /// It touches a body in this substep.
   virtual void touch(std::uint32_t slot, const TouchedSurface& surface) = 0;
+  /// Whether it has touched one in this substep.
+  virtual bool is_on_body(std::uint32_t slot) const = 0;
   /// It was put elsewhere when the substep was over: from there it goes on at first order.
   virtual void stop(std::uint32_t slot, const TouchedSurface& surface) = 0;
   /// Its velocity was changed by `by` in a moment: its past is changed alike, and what two

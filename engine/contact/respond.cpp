@@ -71,7 +71,7 @@ void Response::begin(const ContactScene& scene, const Near& near) {
   for (const std::uint32_t point : asked_) is_asked_[point] = false;
   asked_.clear();
   for (std::size_t list = 0; list < kPairLists; ++list) {
-    for (auto* bits : {&touching_[list], &touching_now_[list]})
+    for (auto* bits : {&touching_[list], &touching_now_[list], &given_[list]})
       bits->assign(near[list].list.blocks.size(), 0);
     for (std::size_t i = 0; i < near[list].list.size(); ++i) {
       for (const std::uint32_t point : near[list].list.points(i)) {
@@ -90,11 +90,12 @@ void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near
   points.place_vertices_asked(clock);
   for (NearPairs& pairs : near) {
     for (NearState& state : pairs.states) {
-      state.is_touching = false;
-      state.push = 0;
+      state.is_touching = state.is_linked = false;
+      state.push = state.given = 0;
       state.grip = {};
     }
   }
+  for (auto& bits : given_) std::ranges::fill(bits, std::uint16_t{0});
   for (const std::uint32_t slot : linked_) first_link_[slot] = kNoIndex;
   linked_.clear();
   links_.clear();
@@ -110,6 +111,9 @@ simd::PairTouch Response::touch_of(const ContactScene& scene, NearPairs& near,
 
 void Response::find_touching(const ContactScene& scene, Near& near, Team& team) {
   scene.points.read_cloth(scene.particles);
+  if (scene.particles.is_mended()) {  // nothing is taken back then
+    for (auto& bits : given_) std::ranges::fill(bits, std::uint16_t{0});
+  }
   for (std::size_t list = 0; list < kPairLists; ++list) {
     NearPairs& pairs = near[list];
     const simd::PairTouch touch = touch_of(scene, pairs, touching_[list]);
@@ -148,6 +152,7 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   Encounter e = meet(scene, near, i);
   near.set_under(i, e.is_under);
   near.set_normal(i, e.normal);
+  if (state.given > 0 && e.gap > state.target) return layers::take_back(scene, e, state);
   if (!e.pushes) return false;
   e.read_start(scene);
   if (pair.is_within_cloth()) return layers::resist(scene, e, state);
@@ -212,13 +217,9 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
 
 void Response::remember(const ContactScene& scene, NearPairs& near, std::size_t list,
                         std::size_t i) {
+  if (std::exchange(near.states[i].is_linked, true)) return;
   for (const std::uint32_t point : near.list.points(i)) {
     if (!scene.points.is_of_cloth(point)) continue;
-    bool is_known = false;
-    for (std::uint32_t link = first_link_[point]; link != kNoIndex && !is_known;
-         link = links_[link].next)
-      is_known = links_[link].list == list && links_[link].pair == i;
-    if (is_known) continue;
     if (first_link_[point] == kNoIndex) linked_.push_back(point);
     links_.push_back(
         {static_cast<std::uint32_t>(list), static_cast<std::uint32_t>(i), first_link_[point]});
@@ -253,8 +254,8 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
 
 std::size_t Response::bytes() const {
   return bytes_of(touching_[0]) + bytes_of(touching_[1]) + bytes_of(touching_now_[0]) +
-         bytes_of(touching_now_[1]) + bytes_of(asked_) + is_asked_.capacity() / 8 +
-         bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
+         bytes_of(touching_now_[1]) + bytes_of(given_[0]) + bytes_of(given_[1]) + bytes_of(asked_) +
+         is_asked_.capacity() / 8 + bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
 }
 
 }  // namespace weft

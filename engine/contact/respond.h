@@ -62,11 +62,18 @@ class Response {
   static void push(const ContactScene& scene, const Encounter& e, const Pair& pair,
                    const reference::Stop& stop, double weight, reference::Grip& grip);
   void find_touching(const ContactScene& scene, Near& near, Team& team);
+  void note_given(bool has_given, std::size_t list, std::size_t i) {
+    std::uint16_t& bits = given_[list][i / kernels::kLanes];
+    const std::uint32_t bit = 1u << i % kernels::kLanes;
+    bits = static_cast<std::uint16_t>(has_given ? bits | bit : bits & ~bit);
+  }
   void remember(const ContactScene& scene, NearPairs& near, std::size_t list, std::size_t i);
 
   const simd::Table& table_;
   /// Per block, a bit per lane: when a sweep began, and as of late.
   std::array<std::vector<std::uint16_t>, kPairLists> touching_, touching_now_;
+  /// Likewise: pairs of layers that may take back some of their pushes in this substep.
+  std::array<std::vector<std::uint16_t>, kPairLists> given_;
   std::vector<std::uint32_t> asked_;  // points of near pairs
   std::vector<bool> is_asked_;        // per point
   /// Pairs that have touched in this substep, in lists by slot.
@@ -108,15 +115,16 @@ void Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Move
   NearPairs& pairs = near[list];
   const simd::PairTouch touch = touch_of(scene, pairs, touching_now_[list]);
   for (std::size_t block = 0; block < touching_[list].size(); ++block) {
-    const std::uint32_t turned = pairs.turned[block];
+    const std::uint32_t turned = pairs.turned[block], given = given_[list][block];
     const std::uint32_t bits =
-        touching_[list][block] & (turn == Turn::points_of_bodies ? turned : ~turned);
+        (touching_[list][block] | given) & (turn == Turn::points_of_bodies ? turned : ~turned);
     if (bits == 0) continue;
     table_.touch_pairs(touch, has_edges(list), block, block + 1);
-    for_each_lane(block, bits & touching_now_[list][block], [&](std::size_t i) {
+    for_each_lane(block, bits & (touching_now_[list][block] | given), [&](std::size_t i) {
       visits_ += tuning::kVisitsOfTouch;
       if (!resist(scene, pairs, i)) return;
       remember(scene, pairs, list, i);
+      note_given(pairs.states[i].given > 0, list, i);
       for (const std::uint32_t point : pairs.list.points(i)) {
         if (scene.points.is_of_cloth(point)) moved(point, pairs.states[i].push);
       }

@@ -25,6 +25,7 @@ class PointParticles final : public ContactParticles {
   void touch(std::uint32_t slot, const TouchedSurface& surface) override {
     if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
   }
+  bool is_on_body(std::uint32_t slot) const override { return points_.bodies->touches(slot); }
   void stop(std::uint32_t slot, const TouchedSurface& surface) override {
     points_.arrived.push_back({slot, surface});
   }
@@ -32,7 +33,9 @@ class PointParticles final : public ContactParticles {
     points_.jolts.push_back({slot, by});
   }
   void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) override {
-    const kernels::Vector kept = points_.bodies->kept_out(slot, start(slot), comes_out);
+    const bool stays = dot(comes_out, comes_out) == 0;  // mostly
+    const kernels::Vector kept =
+        stays ? comes_out : points_.bodies->kept_out(slot, start(slot), comes_out);
     points_.shift(slot, kept, by + kept);
     points_.grip_by_bodies(slot);
   }

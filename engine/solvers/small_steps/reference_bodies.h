@@ -52,6 +52,8 @@ class ReferenceBodies {
   kernels::Vector kept_out(std::uint32_t slot, kernels::Vector start, kernels::Vector by) const;
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
+  /// Whether it has touched one in this substep.
+  bool touches(std::uint32_t slot) const { return on_[slot]; }
   /// impulse: as add_arrival (body_touches.h) has it.
   void arrive(const TouchedSurface& surface, kernels::Vector x, kernels::Vector v,
               kernels::Vector impulse);

@@ -70,6 +70,11 @@ class SimdBodies {
   kernels::Vector kept_out(std::uint32_t slot, kernels::Vector start, kernels::Vector by) const;
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
+  /// Whether it has touched one in this substep.
+  bool touches(std::uint32_t slot) const {
+    const std::uint32_t place = layout_.place_of[slot];
+    return place != kNoIndex && (on_[place / kernels::kLanes] >> place % kernels::kLanes & 1) != 0;
+  }
   /// The surface, of several bodies the first one's, that a particle at x touches.
   TouchedSurface touched_by(std::uint32_t slot, kernels::Vector x) const;
   /// arrived(slot): it touches a body, and did not when the last substep ended. moved(slot):

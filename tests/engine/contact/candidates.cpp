@@ -36,6 +36,7 @@ class Particles final : public ContactParticles {
   ContactParticle read(std::uint32_t slot) const override { return {from[slot], to[slot], {}}; }
   void write(std::uint32_t, const ContactParticle&) override {}
   void touch(std::uint32_t, const TouchedSurface&) override {}
+  bool is_on_body(std::uint32_t) const override { return false; }
   void stop(std::uint32_t, const TouchedSurface&) override {}
   void jolt(std::uint32_t, Vector) override {}
   void push(std::uint32_t, Vector, Vector) override {}

@@ -93,6 +93,30 @@ TEST_CASE("a stack that falls on the floor lies on it, layer by layer") {
   CHECK(load == doctest::Approx(weight).epsilon(0.02));
 }
 
+/// Two squares of 1 m over each other, of which one is turned by an angle.
+SceneDescription askew(double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto lower = [](double u, double v) { return Vec3{u - 0.5, 0.01, v - 0.5}; };
+  const auto upper = [=](double u, double v) {
+    const Vec3 from = lower(u, v);
+    return Vec3{c * from.x + s * from.z, 0.02, c * from.z - s * from.x};
+  };
+  return scene_of({{11, 11, lower}, {11, 11, upper}}, 0.3);
+}
+
+TEST_CASE("two layers whose borders lie over each other come to rest") {
+  for (const Backend backend : kBackends) {
+    CAPTURE(backend);
+    Cloth cloth = cloth_of(askew(0.1), small_steps(backend));
+    add_floor(cloth);
+    run(cloth, kFrame, 60);
+    for (int frame = 0; frame < 5; ++frame) {
+      step(cloth, kFrame);
+      CHECK(fastest(cloth) < 1e-3);
+    }
+  }
+}
+
 TEST_CASE("a sheet that folds on the floor does not go through itself, and rests") {
   const SceneDescription scene = standing(16);
   Cloth cloth = cloth_of(scene, small_steps());
