@@ -85,7 +85,7 @@ simd::PairMeasure AdjacentFeatures::measure_of(const ContactPoints& points, std:
   return {.pairs = pairs_[list].blocks.data(),
           .points = begins_.data(),
           .ways = ways_.data(),
-          .reach = 64 * points.rounding(),
+          .reach = 64 * points.rounding_of_cloth(),
           .beyond = std::numeric_limits<float>::infinity(),
           .distance = reinterpret_cast<float(*)[kLanes]>(distance_.data()),
           .near = near_.data()};

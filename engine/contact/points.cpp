@@ -37,6 +37,9 @@ float next_power(double x) {
   return std::ldexp(1.f, exponent);
 }
 
+/// m, of floats at a distance from the origin: some of their last digits.
+float rounding_at(double distance) { return 0x1p-21f * next_power(distance); }
+
 bool is_same(const reference::Placement& a, const reference::Placement& b) {
   return a.x == b.x && a.y == b.y && a.z == b.z && a.centre == b.centre;
 }
@@ -197,7 +200,7 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
     farthest = std::max(farthest, dot(from, from));
     write_start_and_way(slot);
   }
-  const float rounding = 0x1p-21f * next_power(std::sqrt(farthest));
+  const float rounding = rounding_at(std::sqrt(farthest));
   are_floats_same = are_floats_same && rounding == rounding_;
   rounding_ = rounding;
   way_of_bodies_ = (to_ - from_) * time * speeds_.of_bodies;
@@ -259,6 +262,8 @@ void ContactPoints::activate_vertex(std::uint32_t point) {
   if (std::exchange(is_active_[point - slots_], std::uint8_t{1}) != 0) return;
   active_.push_back(point);
   place_vertex(point);
+  const float rounding = rounding_at(length(start_[point] - origin_));
+  rounding_of_vertices_ = std::max(rounding_of_vertices_, rounding);
 }
 
 /// In the present interval.
@@ -271,7 +276,8 @@ void ContactPoints::place_vertex(std::uint32_t point) {
   end_[point] = surface.ends.placed(from + to_ * way);
   write_start_and_way(point);
   way_quads_[4 * std::size_t{point} + 3] = 0;
-  write_box(point, surface.thickness + static_cast<double>(rounding_));
+  const float rounding = std::max(rounding_, rounding_at(length(start_[point] - origin_)));
+  write_box(point, surface.thickness + static_cast<double>(rounding));
 }
 
 void ContactPoints::find_reach() {
@@ -326,6 +332,7 @@ void ContactPoints::lay_tubes() {
   ++layings_;
   for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
   active_.clear();
+  rounding_of_vertices_ = 0;
   if (touches_itself_) surfaces_[kClothSurface].may_cross.assign(cloth().triangles.size(), 0);
   for (ContactSurface& surface : of_bodies()) {
     surface.is_near.assign(surface.triangles->triangles.size(), 0);
@@ -343,7 +350,8 @@ void ContactPoints::lay_vertex(std::uint32_t point) {
   const Vector a = surface.from[i] + laid_from_ * way, b = surface.from[i] + until_ * way;
   const SeenFromBody& seen = surface.seen;
   const double far = std::max(length(a), length(b));
-  const double beyond = (seen.turn * far + 2 * length(b - a)) * seen.turn / 8;
+  const double beyond = (seen.turn * far + 2 * length(b - a)) * seen.turn / 8 +
+                        static_cast<double>(rounding_at(far + length(seen.begins.centre)));
   const Vector begins = seen.begins.placed(a), ends = seen.ends.placed(b);
   set_tube(point, {box_around(begins, begins, seen.beyond + beyond),
                    box_around(ends, ends, seen.beyond + beyond)});

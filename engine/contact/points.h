@@ -158,8 +158,10 @@ class ContactPoints {
   bool hold(const ContactParticles& cloth) const;
   /// Makes the box of a point hold its way.
   void take_way_in(std::uint32_t point);
-  /// m, of quads.
-  float rounding() const { return rounding_; }
+  /// m, of quads: of the cloth, and of the vertices that are active, too. Those of a large triangle
+  /// are far away.
+  float rounding_of_cloth() const { return rounding_; }
+  float rounding() const { return std::max(rounding_, rounding_of_vertices_); }
   std::size_t bytes() const;
 
  private:
@@ -211,7 +213,7 @@ class ContactPoints {
   kernels::Vector drift_{};                                     // m, of all in the interval
   double largest_way_ = 0, way_of_bodies_ = 0, travelled_ = 0;  // m, beside that
   double way_of_near_ = 0;  // m, of bodies that the cloth may come to
-  float rounding_ = 0;
+  float rounding_ = 0, rounding_of_vertices_ = 0;
   std::vector<kernels::Vector> start_, end_;
   std::vector<double> reach_, ways_;  // per slot
   std::vector<Box> box_;

@@ -105,6 +105,7 @@ simd::PairTouch Response::touch_of(const ContactScene& scene, NearPairs& near,
                                    std::vector<std::uint16_t>& touching) const {
   return {.pairs = near.list.blocks.data(),
           .points = scene.points.places(),
+          .rounding = 4 * scene.points.rounding(),
           .sides = near.sides.data(),
           .touching = touching.data()};
 }

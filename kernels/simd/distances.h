@@ -155,10 +155,10 @@ template <class From>
     FloatVector r = from(corners);
     const Floats distance = xsimd::sqrt(dot(r, r));
     FloatVector before = load(side.normal, lane);
-    const FloatMask stays = dot(r, before) > Floats(0.f);
+    const FloatMask stays = dot(r, before) > Floats(0.f) && distance > Floats(t.rounding);
     FloatVector n = (Floats(1.f) / xsimd::max(distance, tiny())) * r;
     store(side.normal, lane, select(stays, n, before));
-    FloatMask is_near = distance < load(side.thickness + lane);
+    FloatMask is_near = distance < load(side.thickness + lane) + Floats(t.rounding);
     if (edges) is_near = is_near && may_face(corners, kSurelyPast);
     touching |= bits(!stays || is_near) << lane;
   }

@@ -37,6 +37,7 @@ struct alignas(64) PairSide {
 struct PairTouch {
   const PairBlock* pairs = nullptr;
   const float* points = nullptr;
+  float rounding = 0;  // m, of the distances: what is nearer is not judged by them
   PairSide* sides = nullptr;
   std::uint16_t* touching = nullptr;  // written: nearer than the thickness, or not as last seen
 };

@@ -90,6 +90,18 @@ TEST_CASE("vertices that cannot be are refused, and nothing changes") {
   CHECK(cloth.state_hash() == other.state_hash());
 }
 
+TEST_CASE("cloth lies on two triangles of 40 km as on small ones") {
+  for (const double size : {2.0, 10'000.0, 40'000.0}) {
+    CAPTURE(size);
+    Cloth cloth = cloth_of(sheet_over_origin(12, 0.02), small_steps());
+    add(cloth, {.shape = shape_of(plane_mesh(size, 1)), .thickness = 2e-3});
+    for (int frame = 0; frame < 30; ++frame)
+      REQUIRE(cloth.step(1.0 / 60).value().status == Status::converged);
+    for (std::uint32_t i = 0; i < cloth.particle_count(); ++i)
+      CHECK(cloth.position(i).y == doctest::Approx(2e-3).epsilon(0.01));
+  }
+}
+
 /// Cloth that has come to lie on a sphere, and a box that some of its particles are inside of.
 struct Draped {
   Cloth cloth;
