@@ -48,9 +48,6 @@ bool is_same(const reference::Placement& a, const reference::Placement& b) {
 
 void ContactPoints::begin(const BodyClock& clock) {
   slots_ = model_.slots();
-  particles_.clear();
-  for (std::uint32_t slot = 0; slot < slots_; ++slot)
-    if (model_.is_particle(slot)) particles_.push_back(slot);
   largest_thickness_ = 0;
   has_tubes_ = false;
   speeds_ = {};
@@ -71,6 +68,9 @@ void ContactPoints::begin(const BodyClock& clock) {
   if (empty()) count = 0;
   surfaces_.resize(count);
   if (count == 0) return;
+  particles_.clear();
+  for (std::uint32_t slot = 0; slot < slots_; ++slot)
+    if (model_.is_particle(slot)) particles_.push_back(slot);
   for (auto* vectors : {&start_, &end_}) vectors->resize(points);
   for (auto* vectors : {&substep_from_, &substep_to_}) vectors->resize(points - slots_);
   for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->resize(4 * points);
