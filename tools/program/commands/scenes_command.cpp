@@ -22,8 +22,8 @@ std::string lines_of(bool is_fabric) {
 
 std::string text() {
   return fmt::format(
-      "Of rigid edges; a --material makes fabric of all but chain:\n{}\n"
-      "Of {}, or of another --material:\n{}\n"
+      "Scenes of rigid edges; a --material makes fabric of all but chain:\n{}\n"
+      "Scenes of {}, or of another --material:\n{}\n"
       "weft run NAME runs one, and --size N takes N particles along a side.\n",
       lines_of(false), scenes::kFabric, lines_of(true));
 }
