@@ -1,6 +1,7 @@
 #include "tools/program/recording/recording.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -240,7 +241,7 @@ RecordingFile::RecordingFile(std::string path, std::FILE* file)
     : path_(std::move(path)), file_(file) {}
 
 Result<RecordingFile> RecordingFile::open(const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "wbe");
+  std::FILE* file = std::fopen(path.c_str(), "abe");
   if (file == nullptr)
     return Error{fmt::format("cannot write '{}': {}", path, std::strerror(errno))};
   return RecordingFile(path, file);
@@ -248,7 +249,11 @@ Result<RecordingFile> RecordingFile::open(const std::string& path) {
 
 void RecordingFile::add_part(std::span<const std::byte> part) {
   if (!written_) return;
-  const bool complete = std::fwrite(part.data(), 1, part.size(), file_.get()) == part.size() &&
+  const bool is_emptied = std::exchange(has_part_, true) ||
+                          ftruncate(fileno(file_.get()), 0) == 0 ||
+                          errno == EINVAL;  // a device has nothing to lose
+  const bool complete = is_emptied &&
+                        std::fwrite(part.data(), 1, part.size(), file_.get()) == part.size() &&
                         std::fflush(file_.get()) == 0;
   if (!complete)
     written_ = Error{fmt::format("cannot write '{}': {}", path_, std::strerror(errno))};

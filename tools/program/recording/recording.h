@@ -66,7 +66,8 @@ std::vector<std::byte> bytes_of_end();
 
 class RecordingFile {
  public:
-  /// An error if nothing can be written there.
+  /// An error if nothing can be written there. A recording that is there stays until the first part
+  /// replaces it: a run that is refused loses none.
   static Result<RecordingFile> open(const std::string& path);
 
   /// In the order of the parts.
@@ -81,6 +82,7 @@ class RecordingFile {
   };
   std::string path_;
   std::unique_ptr<std::FILE, Close> file_;
+  bool has_part_ = false;
   Result<void> written_;
 };
 

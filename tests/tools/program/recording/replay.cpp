@@ -275,6 +275,19 @@ TEST_CASE("what is no recording is refused in one line") {
   has(refusal("replay " + recorded.file + " --isa x87"), "--isa: 'x87' is not one of");
 }
 
+TEST_CASE("a run that is refused leaves the recording that was there, another run replaces it") {
+  const Recorded recorded("hang --size 4 --steps 3");
+  const auto run = [&](const std::string& options) {
+    return run_program(recorded.folder,
+                       "run hang --size 4 --steps 1 --record " + recorded.file + options);
+  };
+  CHECK(run(" --out " + recorded.folder.file("no/such/folder/a.obj")).exit_code == 2);
+  CHECK(run(" --resume " + recorded.folder.write("state.json", "{}")).exit_code == 2);
+  has(recorded.replay().out, "replayed  3 frames to the same bits");
+  CHECK(run("").exit_code == 0);
+  has(recorded.replay().out, "replayed  1 frame to the same bits");
+}
+
 TEST_CASE("settings are the same after they were JSON, and each field must be there") {
   Settings settings;
   settings.tolerance = 0.1 + 0.2;
