@@ -191,6 +191,10 @@ inline constexpr int kMostBendingSteps = 200;
 /// the next as the last one has it. With one, strips of denim at cells of 0.5 mm crumple: the turns
 /// that are predicted are mostly noise, which stretches the cloth (perf/tried.md).
 inline constexpr int kTurnsOfBending = 2;
+/// Of the angle between the line of an element's ends and that from its middle to a particle that
+/// tells how it turns about that line. At 0 a strip that flies loses ten times as much of its spin
+/// as tests allow; from 0.25 to 0.95 all tests of bending pass.
+inline constexpr double kLeastSineBeside = 0.5;
 /// Steps along the diagonal, over the root of n (b h)^2 K_ii / m_i in the mean (4 to 5 were
 /// measured of grids and irregular triangles). A factorisation is made where that is at least
 /// kLeastFactored, of at most kMostFactored particles, and where it is estimated to take less time

@@ -6,12 +6,11 @@
 
 #include "engine/lists.h"
 #include "engine/model/model.h"
+#include "engine/tuning.h"
 #include "kernels/reference/bending.h"
 
 namespace weft {
 namespace {
-
-constexpr double kLeastSineBeside = 0.5;  // of the angle to the line of the ends
 
 /// Per slot: what a constraint or a triangle of fabric joins it to.
 Lists joins_of_slots(const Model& model) {
@@ -43,7 +42,7 @@ std::optional<std::uint32_t> slot_beside(const Model& model,
     if (std::ranges::count(element.slots, slot) > 0) return;
     const kernels::Vector away = at(slot) - middle;
     const double across = length(cross(away, along)), sine = across / (length(away) * size);
-    if (!(sine > kLeastSineBeside) || !(across * sine > most)) return;
+    if (!(sine > tuning::kLeastSineBeside) || !(across * sine > most)) return;
     most = across * sine;
     best = slot;
   };
