@@ -25,8 +25,8 @@ struct ContactSurface {
   double friction = 0;            // beside surfaces before it
   bool two_sided = true;
   bool is_open = true;  // it has a border: what is not inside may be on either side
-  BoxTree tree;  // of its triangles, around tubes; of what is rigid
-                 // around triangles, in coordinates of the body
+  BoxTree tree;         // of its triangles, around tubes; of what is rigid
+                        // around triangles, in coordinates of the body
   // Of a body:
   std::shared_ptr<const BodyShape> shape;  // keeps its triangles
   SideNormals normals;
