@@ -145,6 +145,8 @@ Shared build(const TriangleMesh& mesh) {
     if (auto r = validate_sides(mesh); !r) return Error{r.error()};
   }
   shape.surface = make_triangle_surface(triangles, places, {});
+  shape.is_open = std::ranges::any_of(shape.surface.opposite,
+                                      [](const auto& third) { return third[1] == kNoIndex; });
   return std::make_shared<BodyShape>(std::move(shape));
 }
 

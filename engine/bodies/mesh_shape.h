@@ -13,6 +13,7 @@ struct MeshShape {
   std::vector<kernels::Vector> vertices{};
   TriangleSurface surface{};
   bool two_sided = false;
+  bool is_open = false;  // it has a border
 };
 
 }  // namespace weft

@@ -60,7 +60,8 @@ SeenPair see(const ContactPoints& points, const Pair& pair, const Four& four, co
   if (!is_inside && is_placed &&
       is_ghost_by(points, pair, x, look.nearest, look.normal, tuning::kContactLean))
     return {};
-  return {.sight = later.two_sided ? Sight::in_front : Sight::asks_side,
+  const bool is_where_seen = later.two_sided || (later.is_open && !is_inside);
+  return {.sight = is_where_seen ? Sight::in_front : Sight::asks_side,
           .is_inside = is_inside,
           .is_placed = is_placed,
           .look = look};

@@ -123,6 +123,7 @@ ContactSurface& ContactPoints::surface_for(const BodyClock& clock, std::size_t b
     const MeshShape& mesh = *b.shape->mesh();
     surface.triangles = &mesh.surface;
     surface.two_sided = mesh.two_sided;
+    surface.is_open = mesh.is_open;
     surface.tree = BoxTree(mesh.surface.in_order);
     surface.shape = b.shape;
     surface.is_rigid = false;

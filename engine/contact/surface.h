@@ -24,8 +24,9 @@ struct ContactSurface {
   double thickness = 0;           // m, that it keeps from surfaces before it
   double friction = 0;            // beside surfaces before it
   bool two_sided = true;
-  BoxTree tree;  // of its triangles, around tubes; of what is rigid
-                 // around triangles, in coordinates of the body
+  bool is_open = true;  // it has a border: what is not inside may be on either side
+  BoxTree tree;         // of its triangles, around tubes; of what is rigid
+                        // around triangles, in coordinates of the body
   // Of a body:
   std::shared_ptr<const BodyShape> shape;  // keeps its triangles
   SideNormals normals;

@@ -76,8 +76,9 @@ WEFT_API Hull box(Vec3 size);
 /// The front of a triangle is the side from which its corners run counterclockwise. A one-sided
 /// mesh, as the body of a character is, keeps cloth in front of it. Two triangles that share an
 /// edge must run along it in opposite directions. A particle that starts inside a closed mesh comes
-/// out at the vertex, edge or triangle that is nearest to it. An open mesh has no inside: cloth
-/// that starts behind it, farther away than the thickness, stays there.
+/// out at the vertex, edge or triangle that is nearest to it. So does one that starts behind an
+/// open mesh within the box around its vertices. Cloth behind it outside of that box stays on its
+/// side, and is kept from the mesh there as it is in front.
 ///
 /// A two-sided mesh keeps cloth on the side where the cloth is.
 ///

@@ -113,6 +113,7 @@ void name_what_crosses(RunSummary& summary, const StepReport& report, const Clot
   surface.places = particle_positions(cloth);
   miss.crossing_frame = summary.last_frame();
   miss.crossing = name_crossing(surface, plan.bodies, miss.crossing_frame * plan.dt);
+  if (miss.crossing.count == 0 && miss.inside == 0) miss.inside = report.intersecting;
 }
 
 void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
@@ -230,6 +231,10 @@ std::string text(const Miss& miss) {
         "of {}{}",
         end, crossing.triangle, crossing.body, at.x, at.y, at.z, miss.crossing_frame,
         counted(crossing.count, "crossing"), contacts);
+  }
+  if (miss.inside > 0) {
+    return fmt::format("{}; {} of the cloth {} inside a body{}", end,
+                       counted(miss.inside, "particle"), miss.inside == 1 ? "is" : "are", contacts);
   }
   if (miss.constraint == kNoIndex) return end + contacts;
   return fmt::format("{}; constraint {} has the largest strain, {}{}", end, miss.constraint,

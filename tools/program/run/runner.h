@@ -66,10 +66,11 @@ struct Miss {
   std::uint32_t passed_particle = kNoIndex;  ///< that went through a sphere
   NamedCrossing crossing{};  ///< with a body that is a mesh, the first that was left
   int crossing_frame = 0;    ///< when a frame ended: which one
+  int inside = 0;            ///< particles, where nothing crosses
 };
 
 /// "frame 3: iteration_limit; constraint 7 has the largest strain, 2.1 %". Where triangles cross a
-/// body it names the first in place of the strain.
+/// body it names the first in place of the strain, and where cloth is inside one it says so.
 std::string text(const Miss& miss);
 
 /// All figures of a run. Counts and seconds are sums over its frames; strains are fractions,

@@ -269,9 +269,33 @@ TEST_CASE("a miss names what its report names") {
   CHECK(text(limit) == "frame 3: iteration_limit; constraint 7 has the largest strain, 2.1 %");
   const Miss deep{.frame = 3, .status = Status::infeasible, .max_penetration = 0.02};
   CHECK(text(deep) == "frame 3: infeasible; contacts are up to 0.02 m deep");
+  const Miss inside{.frame = 1,
+                    .status = Status::iteration_limit,
+                    .max_penetration = 0.5,
+                    .constraint = 7,
+                    .inside = 4};
+  CHECK(text(inside) ==
+        "frame 1: iteration_limit; 4 particles of the cloth are inside a body; contacts are up to "
+        "0.5 m deep");
   const Miss passed{
       .frame = 9, .status = Status::passed_through, .constraint = 7, .passed_particle = 4};
   CHECK(text(passed) == "frame 9: passed_through; particle 4 went through a sphere");
+}
+
+TEST_CASE("a sheet in a closed room that is turned outwards is said to be inside") {
+  SceneDescription scene = hang(4);
+  scene.fixed.clear();
+  TriangleMesh room;
+  for (std::uint32_t corner = 0; corner < 8; ++corner) {
+    room.vertices.push_back(
+        {corner & 1 ? 5.0 : -5.0, corner & 2 ? 5.0 : -5.0, corner & 4 ? 5.0 : -5.0});
+  }
+  room.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto summary = run(scene, {}, {.dt = 1.0 / 60, .steps = 2, .bodies = {{.shape = room}}});
+  REQUIRE(summary);
+  REQUIRE(summary.value().first_miss);
+  CHECK(text(*summary.value().first_miss).find("inside a body") != std::string::npos);
 }
 
 /// A quarter of a turn about the pinned side's middle, half a metre up and on, in a second.
