@@ -9,6 +9,12 @@ import { Hand } from './hand.js';
 const byId = (id) => document.getElementById(id);
 const DT = 1 / 60;
 const OPTIONS = { heat: false, heatRange: 0.01, threads: 'none', bodies: true, pins: true, contacts: false };
+/** What each scene begins with: only over the ball does the cloth fold far enough to meet itself. */
+const BEGINNINGS = {
+  sheet: { side: 40, selfContact: false },
+  skirt: { side: 24, selfContact: false },
+  drape: { side: 40, selfContact: true },
+};
 /** How many of the last frames the shown time is a mean of. */
 const FRAMES = 30;
 
@@ -34,12 +40,9 @@ function boxOf({ places: [places] }, scene) {
 class Page {
   constructor(module) {
     this.cloth = new Cloth(module);
-    const sizes = { skirt: 24 };
-    this.choices = {
-      scene: SCENES.includes(address.get('scene')) ? address.get('scene') : 'sheet',
-      material: 'cotton', tolerance: 0.01, substeps: 0, wind: 0, selfContact: false,
-    };
-    this.choices.side = Number(address.get('side')) || sizes[this.choices.scene] || 40;
+    const scene = SCENES.includes(address.get('scene')) ? address.get('scene') : 'sheet';
+    this.choices = { scene, material: 'cotton', tolerance: 0.01, substeps: 0, wind: 0, ...BEGINNINGS[scene] };
+    if (Number(address.get('side')) > 0) this.choices.side = Number(address.get('side'));
     this.times = [];
     this.frame = 0;
     this.isPlaying = address.get('play') !== '0';
@@ -100,7 +103,7 @@ class Page {
   listen() {
     const on = (id, work) => byId(id).addEventListener('click', work);
     for (const scene of SCENES) {
-      on(`scene-${scene}`, () => this.restart({ scene, side: scene === 'skirt' ? 24 : 40 }, false));
+      on(`scene-${scene}`, () => this.restart({ scene, ...BEGINNINGS[scene] }, false));
     }
     on('play', () => this.setPlaying(!this.isPlaying));
     on('again', () => this.restart({}, false));
