@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+
+#include "engine/hypotenuse.h"
 
 namespace weft::mesh {
 
@@ -18,7 +19,7 @@ inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec3 cross(Vec3 a, Vec3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double length(Vec3 v) { return std::hypot(v.x, v.y, v.z); }
+inline double length(Vec3 v) { return hypotenuse(v.x, v.y, v.z); }
 /// Along v; nothing else where v is 0.
 inline Vec3 unit(Vec3 v) {
   const double size = length(v);

@@ -37,7 +37,7 @@ Result<void> check_struct(std::string_view name, const Struct* it) {
 /// The part of `value` that the caller's struct has; what it has beyond becomes 0.
 template <class Struct>
 void write_struct(const Struct& value, Struct* out) {
-  static_assert(std::is_trivially_copyable_v<Struct> && alignof(Struct) == alignof(std::size_t));
+  static_assert(std::is_trivially_copyable_v<Struct> && alignof(Struct) >= alignof(std::size_t));
   const std::size_t size = out->size, known = std::min(size, sizeof(Struct));
   std::memcpy(static_cast<void*>(out), &value, known);
   std::memset(reinterpret_cast<std::byte*>(out) + known, 0, size - known);

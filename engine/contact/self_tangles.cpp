@@ -84,7 +84,7 @@ bool SelfTangles::has(std::uint32_t a, std::uint32_t b) const {
 }
 
 bool SelfTangles::has_one_at_edge(std::uint32_t edge, std::uint32_t triangle) const {
-  const auto [p, q] = cloth_->edges[edge];
+  const std::uint32_t p = cloth_->edges[edge][0], q = cloth_->edges[edge][1];
   return std::ranges::any_of(cloth_->triangles_at[p], [&](std::uint32_t at_edge) {
     const TriangleSurface::Triangle& t = cloth_->triangles[at_edge];
     return std::ranges::find(t, q) != t.end() && has(at_edge, triangle);
@@ -97,7 +97,7 @@ bool SelfTangles::has_features_of(const Pair& pair) const {
            std::ranges::any_of(cloth_->triangles_at[pair.first],
                                [&](std::uint32_t t) { return has(t, pair.second); });
   }
-  const auto [p, q] = cloth_->edges[pair.second];
+  const std::uint32_t p = cloth_->edges[pair.second][0], q = cloth_->edges[pair.second][1];
   return std::ranges::any_of(cloth_->triangles_at[p], [&](std::uint32_t at_edge) {
     const TriangleSurface::Triangle& t = cloth_->triangles[at_edge];
     return is_one_[at_edge] != 0 && std::ranges::find(t, q) != t.end() &&

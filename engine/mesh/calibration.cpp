@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/hypotenuse.h"
 #include "engine/mesh/corners.h"
 #include "engine/mesh/moments.h"
 #include "engine/tuning.h"
@@ -57,8 +58,8 @@ struct Patch {
   /// is stored where all factors are 1.
   double unevenness() const {
     if (!(area > 0)) return 0;
-    return (std::abs(stored[0][0] - area) + std::hypot(stored[1][0], stored[2][0]) +
-            std::hypot(stored[3][0], stored[4][0])) /
+    return (std::abs(stored[0][0] - area) + hypotenuse(stored[1][0], stored[2][0]) +
+            hypotenuse(stored[3][0], stored[4][0])) /
            area;
   }
 };

@@ -92,7 +92,7 @@ class Collector {
 struct Key {
   std::array<std::uint32_t, 4> particles{};  ///< ascending; kNoIndex after those of a triangle
   std::uint32_t face = 0;
-  auto operator<=>(const Key&) const = default;
+  std::strong_ordering operator<=>(const Key&) const = default;
 };
 
 std::vector<Key> sorted_keys(const std::vector<Face>& faces) {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/geometry.h"
+#include "engine/hypotenuse.h"
 #include "engine/mesh/partition.h"
 
 namespace weft::mesh {
@@ -39,7 +40,7 @@ double mean_edge(const SceneDescription& scene) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [u, v] = element.rest[i];
       const auto [next_u, next_v] = element.rest[(i + 1) % 3];
-      sum += std::hypot(next_u - u, next_v - v);
+      sum += hypotenuse(next_u - u, next_v - v);
     }
   }
   const std::size_t edges = scene.constraints.size() + 3 * scene.membrane.size();

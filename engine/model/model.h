@@ -8,12 +8,12 @@
 #include <weft/weft.h>
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "engine/hypotenuse.h"
 #include "engine/lists.h"
 #include "engine/model/on_demand.h"
 #include "engine/model/unevenness.h"
@@ -90,7 +90,7 @@ struct MembraneStore {
     for (std::size_t i = 0; i < size(); ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto &from = rest[i][k], &to = rest[i][(k + 1) % 3];
-        work(slots[i][k], slots[i][(k + 1) % 3], std::hypot(to[0] - from[0], to[1] - from[1]));
+        work(slots[i][k], slots[i][(k + 1) % 3], hypotenuse(to[0] - from[0], to[1] - from[1]));
       }
     }
   }

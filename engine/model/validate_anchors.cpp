@@ -1,6 +1,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/hypotenuse.h"
 #include "engine/model/model.h"
 #include "engine/model/validate.h"
 #include "engine/validation.h"
@@ -10,7 +11,7 @@ namespace {
 
 Result<void> validate_normal(const std::string& field, Vec3 normal) {
   if (!finite(normal)) return refuse(field, "must be finite", text(normal));
-  const double length = std::hypot(normal.x, normal.y, normal.z);
+  const double length = hypotenuse(normal.x, normal.y, normal.z);
   if (length > 0 && std::isfinite(length)) return {};
   return refuse(field, "must have a length", text(normal));
 }

@@ -3,6 +3,7 @@
 #include <span>
 #include <utility>
 
+#include "engine/hypotenuse.h"
 #include "engine/model/pressures.h"
 #include "engine/model/validate.h"
 #include "engine/public_vectors.h"
@@ -67,7 +68,7 @@ Result<void> validate_rest(const std::string& field, const MembraneElement& e) {
   for (std::size_t k = 0; k < 3; ++k) {
     const auto& [u, v] = e.rest[k];
     const auto& [next_u, next_v] = e.rest[(k + 1) % 3];
-    sides[k] = std::hypot(next_u - u, next_v - v);
+    sides[k] = hypotenuse(next_u - u, next_v - v);
     if (sides[k] >= kLeastSide && sides[k] <= kMostSide) continue;
     return refuse(element(field, k), "must be from 1e-75 to 1e75 m away from the next corner",
                   number(sides[k]));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/hypotenuse.h"
 #include "engine/model/model.h"
 #include "engine/step/choose_solver.h"
 #include "engine/validation.h"
@@ -79,8 +80,8 @@ Result<void> validate_membrane_for_lanes(const MembraneStore& s) {
     const reference::MembraneShape& shape = s.element[i].shape;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto &from = s.rest[i][k], &to = s.rest[i][(k + 1) % 3];
-      const double height = 1 / std::hypot(shape.u[k], shape.v[k]);
-      const double side = std::hypot(to[0] - from[0], to[1] - from[1]);
+      const double height = 1 / hypotenuse(shape.u[k], shape.v[k]);
+      const double side = hypotenuse(to[0] - from[0], to[1] - from[1]);
       if (fits_float(height) && fits_float(side)) continue;
       const std::string field = element("membrane", s.described[i]) + ".rest";
       if (auto r = validate_float(field + ": its height", height); !r) return r;

@@ -10,7 +10,7 @@
 ///
 /// A default JobSystem is the oneTBB arena that the calling thread is in. A thread that is in no
 /// arena, and has never used oneTBB, works alone: weft starts no thread.
-///
+/// So does every thread where weft is built without oneTBB (WEFT_TBB=OFF).
 /// Results do not depend on which thread runs which job.
 #pragma once
 

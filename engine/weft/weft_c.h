@@ -269,7 +269,7 @@ typedef struct weft_report { /* StepReport */
 } weft_report;
 
 /* JobSystem. Set both functions or neither; they must not throw. NULL in place of the struct is the
- * oneTBB arena that the calling thread is in. */
+ * oneTBB arena that the calling thread is in (jobs.h). */
 typedef struct weft_jobs {
   size_t size;
   void* host; /* the first argument of the functions */

@@ -14,7 +14,7 @@ std::span<const T> between(const std::vector<T>& list, SlotOf slot_of, std::size
                            std::size_t last) {
   const auto begin = std::ranges::lower_bound(list, first, {}, slot_of);
   const auto end = std::ranges::lower_bound(begin, list.end(), last, {}, slot_of);
-  return {begin, end};
+  return {list.data() + (begin - list.begin()), static_cast<std::size_t>(end - begin)};
 }
 std::size_t slot_of_row(const simd::WovenRow& row) { return row.four[0]; }
 std::size_t slot_of_loose(const YarnPlaces::Loose& loose) { return loose.slot; }
