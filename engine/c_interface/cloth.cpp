@@ -116,6 +116,20 @@ weft_result weft_load_state(weft_cloth* cloth, const void* bytes, size_t size) {
   });
 }
 
+weft_result weft_begin_recording(weft_cloth* cloth, const char* path, const char* note) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}, {"path", path}}); !r) return r;
+    return cloth->cloth.begin_recording(path, note == nullptr ? "" : note);
+  });
+}
+
+weft_result weft_end_recording(weft_cloth* cloth) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}}); !r) return r;
+    return cloth->cloth.end_recording();
+  });
+}
+
 size_t weft_particle_count(const weft_cloth* cloth) {
   return ask("cloth", cloth, [&] { return cloth->cloth.particle_count(); });
 }

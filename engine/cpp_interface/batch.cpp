@@ -8,6 +8,7 @@
 
 #include "engine/model/validate.h"
 #include "engine/parallel/crew.h"
+#include "engine/recording/recorder.h"
 #include "engine/step/state.h"
 #include "engine/step/step.h"
 #include "engine/step/validate_settings.h"
@@ -81,7 +82,9 @@ void ClothBatch::lead(std::size_t i, Team& team) noexcept {
   State& s = state(i);
   s.is_in_batch = false;
   try {
-    steps_[i].result = step(s, steps_[i].dt, team);
+    const double dt = steps_[i].dt;
+    Recorder* const recorder = steps_[i].cloth->recorder_.get();
+    steps_[i].result = recorded(recorder, s, dt, [&] { return step(s, dt, team); });
   } catch (const std::bad_alloc&) {
     steps_[i].result = out_of_memory();
   }

@@ -6,6 +6,7 @@
 #include "engine/model/change.h"
 #include "engine/model/validate.h"
 #include "engine/public_vectors.h"
+#include "engine/recording/recorder.h"
 #include "engine/step/choose_solver.h"
 #include "engine/step/saved_state.h"
 #include "engine/step/step_in_team.h"
@@ -143,7 +144,21 @@ Result<void> Cloth::change(const Changes& changes) {
 Result<StepReport> Cloth::step(double dt, const JobSystem& jobs) {
   if (auto valid = validate_time_step(dt); !valid) return Error{valid.error()};
   if (auto valid = validate(jobs); !valid) return Error{valid.error()};
-  return step_in_team(impl_->state, dt, jobs);
+  State& state = impl_->state;
+  return recorded(recorder_.get(), state, dt, [&] { return step_in_team(state, dt, jobs); });
+}
+
+Result<void> Cloth::begin_recording(const std::string& path, std::string_view note) {
+  if (recorder_) return refuse("path", "the cloth is being recorded already", in_one_line(path));
+  auto begun = Recorder::begin(path, note, impl_->asked, impl_->state);
+  if (!begun) return Error{begun.error()};
+  recorder_ = std::move(begun).value();
+  return {};
+}
+
+Result<void> Cloth::end_recording() {
+  if (!recorder_) return Error{"recording: nothing is being recorded (none)"};
+  return std::exchange(recorder_, nullptr)->end();
 }
 
 State* Cloth::state() { return impl_ ? &impl_->state : nullptr; }

@@ -1,6 +1,5 @@
 /// Values of a cloth are read, written and measured.
 #include <algorithm>
-#include <bit>
 
 #include "engine/cpp_interface/cloth_impl.h"
 #include "engine/measure/state_measure.h"
@@ -9,6 +8,7 @@
 #include "engine/public_vectors.h"
 #include "engine/spheres/sphere_contacts.h"
 #include "engine/step/pressure.h"
+#include "engine/step/state_hash.h"
 #include "engine/validation.h"
 
 namespace weft {
@@ -34,22 +34,6 @@ Result<void> read(const Model& model, const kernels::Vectors& from, FloatVectors
     to[2] = static_cast<float>(v.z);
   }
   return {};
-}
-
-void hash_bits(std::uint64_t& hash, double value) {
-  const auto bits = std::bit_cast<std::uint64_t>(value);
-  for (int byte = 0; byte < 8; ++byte) {
-    hash ^= (bits >> (8 * byte)) & 0xff;
-    hash *= 0x100000001b3u;
-  }
-}
-
-void hash_bits(std::uint64_t& hash, const Model& model, const kernels::Vectors& vectors) {
-  for (const std::uint32_t slot : model.ordering.slot_of) {
-    hash_bits(hash, vectors.x[slot]);
-    hash_bits(hash, vectors.y[slot]);
-    hash_bits(hash, vectors.z[slot]);
-  }
 }
 
 }  // namespace
@@ -185,11 +169,6 @@ Energy Cloth::energy() const {
                         impl_->state.velocity, impl_->state.give_per_mass);
 }
 
-std::uint64_t Cloth::state_hash() const {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  hash_bits(hash, *impl_->state.model, impl_->state.position);
-  hash_bits(hash, *impl_->state.model, impl_->state.velocity);
-  return hash;
-}
+std::uint64_t Cloth::state_hash() const { return weft::state_hash(impl_->state); }
 
 }  // namespace weft

@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -80,6 +81,10 @@ class ArchiveWriter {
     } else {
       for (const T& value : list) add(value);
     }
+  }
+  void add(const std::string& text) {
+    add(std::uint64_t{text.size()});
+    for (const char c : text) add(c);
   }
   template <class T, std::size_t n>
   void add(const std::array<T, n>& list) {
@@ -153,6 +158,10 @@ class ArchiveReader {
     list.clear();
     if constexpr (Scalar<T>) list.reserve(count);
     for (std::uint64_t i = 0; i < count && is_good_; ++i) take(list.emplace_back());
+  }
+  void take(std::string& text) {
+    text.assign(take_count(1), '\0');
+    for (char& c : text) take(c);
   }
   template <class T, std::size_t n>
   void take(std::array<T, n>& list) {

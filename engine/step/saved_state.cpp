@@ -6,15 +6,11 @@
 
 #include "engine/model/pressures.h"
 #include "engine/model/saved_model.h"
-#include "engine/saving/sealed.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/validation.h"
 
 namespace weft {
 namespace {
-
-/// The version changes with whatever is written here, and in the functions visit_fields.
-constexpr Kind kState{{'w', 'e', 'f', 't', 's', 't', 'a', 't'}, "state", 5};
 
 void visit_settings(auto& settings, auto& archive) {
   std::apply([&](auto&... each) { archive(each...); }, memory_settings(settings));
@@ -70,11 +66,11 @@ std::vector<std::byte> save_state(const State& state) {
   archive(fingerprint(*state.model));
   visit_settings(state.settings, archive);
   archive(static_cast<const LastingState&>(state), std::move(past).bytes());
-  return seal(kState, std::move(archive).bytes());
+  return seal(kSavedState, std::move(archive).bytes());
 }
 
 Result<SavedState> read_state(std::span<const std::byte> bytes, const Model& model) {
-  const auto content = unseal(kState, bytes);
+  const auto content = unseal(kSavedState, bytes);
   if (!content) return Error{content.error()};
   ArchiveReader archive(content.value());
   std::uint64_t its_model = 0;

@@ -5,10 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "engine/saving/sealed.h"
 #include "engine/step/state.h"
 
 namespace weft {
 
+/// The version changes with whatever is written here, and in the functions visit_fields.
+inline constexpr Kind kSavedState{{'w', 'e', 'f', 't', 's', 't', 'a', 't'}, "state", 5};
 std::vector<std::byte> save_state(const State& state);
 
 /// A state that was read, and is one of the model.

@@ -23,11 +23,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace weft {
 
+class Recorder;
 struct State;
 
 /// converged: every constraint is within its tolerance, and so is bending; nothing crosses a
@@ -453,6 +455,18 @@ class WEFT_API Cloth {
   std::uint64_t state_hash() const;
   std::size_t bytes() const;  ///< held by this cloth, without the shared model
 
+  /// Writes all that this cloth does from now on to a file, for a report of a bug: its settings,
+  /// model and state, and in each step what calls changed before it and the hash that it came to.
+  /// `weft replay FILE` does the same steps again elsewhere, and names the first that comes to
+  /// other bits. Each step is in the file before it begins: of a program that crashes, the file has
+  /// all until there. The note is shown by `weft replay`. A step takes longer, and allocates. The
+  /// recording stays with this cloth when it is moved; a clone has none. An error: the file cannot
+  /// be written, or this cloth is being recorded. A file that is there is replaced.
+  Result<void> begin_recording(const std::string& path, std::string_view note = {});
+  /// Completes the file, which also ends with the cloth, but is not marked as complete then. An
+  /// error: nothing was recorded, or something could not be written.
+  Result<void> end_recording();
+
  private:
   friend class ClothBatch;
   struct Impl;
@@ -460,6 +474,7 @@ class WEFT_API Cloth {
   explicit Cloth(std::unique_ptr<Impl> impl);
   Result<void> prepare_for(std::string_view what);
   std::unique_ptr<Impl> impl_;
+  std::unique_ptr<Recorder> recorder_;  // null: nothing is recorded
 };
 
 }  // namespace weft

@@ -309,6 +309,9 @@ WEFT_API weft_result weft_clone_cloth(const weft_cloth* cloth, weft_cloth** out)
 WEFT_API weft_result weft_copy_state(weft_cloth* to, const weft_cloth* from);
 WEFT_API weft_result weft_save_state(const weft_cloth* cloth, weft_bytes** out);
 WEFT_API weft_result weft_load_state(weft_cloth* cloth, const void* bytes, size_t size);
+/* note: or NULL. */
+WEFT_API weft_result weft_begin_recording(weft_cloth* cloth, const char* path, const char* note);
+WEFT_API weft_result weft_end_recording(weft_cloth* cloth);
 
 WEFT_API size_t weft_particle_count(const weft_cloth* cloth);
 /* A new handle of the model that the cloth has now. */

@@ -1,9 +1,12 @@
 #include "cloth.h"
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 #include <weft/cloth.h>
 
+#include <filesystem>
 #include <optional>
+#include <string>
 
 #include "arrays.h"
 #include "buffers.h"
@@ -119,6 +122,22 @@ void add_making(ClothClass& cloth) {
             check(c.value.load_state(bytes));
           },
           py::arg("bytes"), "Goes on where the saved cloth was. Damaged bytes are refused.")
+      .def(
+          "begin_recording",
+          [](HeldCloth& c, const std::filesystem::path& path, const std::string& note) {
+            const auto used = use(c);
+            check(c.value.begin_recording(path.string(), note));
+          },
+          py::arg("path"), py::arg("note") = "",
+          "Writes all that this cloth does from now on to a file, which `weft replay FILE` runs "
+          "again.")
+      .def(
+          "end_recording",
+          [](HeldCloth& c) {
+            const auto used = use(c);
+            check(c.value.end_recording());
+          },
+          "Completes the file.")
       .def("step", &step, py::arg("dt"), py::arg("arena") = nullptr,
            "Advances by dt seconds, without Python's lock.");
 }

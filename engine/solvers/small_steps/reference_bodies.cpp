@@ -13,6 +13,7 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
                             const Misplaced& misplaced) {
   clock_.begin(bodies, h, substeps, stands);
   meshes_.begin(clock_, start, misplaced);
+  on_.clear();
   if (empty()) return;
   on_.assign(model_.slots(), false);
   if (before.size() == on_.size()) on_ = before;

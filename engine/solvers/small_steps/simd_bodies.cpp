@@ -60,10 +60,11 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
   meshes_.begin(clock_, start, misplaced);
   pairs_.clear();
   first_pair_.clear();
+  on_.clear();
   if (empty()) return;
   make_room();
   h_ = h;
-  std::ranges::fill(on_, std::uint16_t{0});
+  on_.assign(layout_.blocks.size(), 0);
   if (before.size() == on_.size()) std::ranges::copy(before, on_.begin());
   impulses_.begin(bodies);
 }

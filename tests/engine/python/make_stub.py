@@ -9,6 +9,7 @@ import re
 
 HEAD = '''"""Type hints of the module; its docstrings document every name. Made by make_stub.py."""
 from collections.abc import Iterable
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,8 @@ ARRAY = r"\bnumpy\.ndarray(\[[\w.]+\])?"
 SHORTER = [(r"weft\._weft\.", ""), (r"\bList\[", "list["), (r"\bTuple\[", "tuple["), (r"\bDict\[", "dict["),
            (r"\bhandle\b", "Any"), (r"\b[iI]terable\b", "Iterable[Any]"),
            (r"\[\d+\]", ""), (r"\b(list|dict)\b(?!\[)", r"\1[Any]"), (r"dict\[Any\]", "dict[Any, Any]"),
-           (r"Optional\[([^][]*(\[[^][]*\])?)\]", r"\1 | None"), (r"\bbuffer\b", "Any")]
+           (r"Optional\[([^][]*(\[[^][]*\])?)\]", r"\1 | None"), (r"\bbuffer\b", "Any"),
+           (r"\bos\.PathLike\b", "str | PathLike[str]")]
 
 
 def shorter(kind):

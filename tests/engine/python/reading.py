@@ -1,5 +1,7 @@
 """What is read of a cloth, a batch and a surface, views' lifetimes, and saved states."""
 import gc
+import pathlib
+import tempfile
 import unittest
 
 import numpy as np
@@ -36,6 +38,21 @@ class Cloths(unittest.TestCase):
             one.step(0.01)
         self.assertEqual(cloth.state_hash(), again.state_hash())
         self.assertEqual(cloth.state_hash(), other.state_hash())
+
+    def test_recorded(self):
+        cloth = cloth_of(9)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "cloth.weft")
+            cloth.begin_recording(file, note="from Python")
+            cloth.step(0.01)
+            before = file.stat().st_size
+            cloth.end_recording()
+            self.assertGreater(file.stat().st_size, before)
+            self.assertIn(b"from Python", file.read_bytes())
+            with self.assertRaisesRegex(weft.Error, "path: cannot be written"):
+                cloth.begin_recording(pathlib.Path(folder, "no", "such"))
+        with self.assertRaisesRegex(weft.Error, "nothing is being recorded"):
+            cloth.end_recording()
 
     def test_bodies_bear_the_cloth(self):
         cloth = weft.Cloth.create(model_of(sheet(9, pins=[])))

@@ -34,13 +34,13 @@ Result<ReplayOptions> options_of(const GivenOptions& given) {
 /// What is another one here than where the run was recorded.
 void tell_of_others(const RecordedStart& start, Isa isa) {
   if (start.version != version_text()) {
-    print_message(fmt::format("weft: recorded by weft {}, and this is {}: frames may differ\n",
+    print_message(fmt::format("weft: recorded by weft {}, and this is {}: steps may differ\n",
                               shown(start.version), version_text()));
   }
-  if (isa == start.isa || start.settings.backend == Backend::reference) return;
-  const bool rounds_otherwise = isa == Isa::sse2 || start.isa == Isa::sse2;
+  if (isa == start.settings.isa || start.settings.backend == Backend::reference) return;
+  const bool rounds_otherwise = isa == Isa::sse2 || start.settings.isa == Isa::sse2;
   print_message(fmt::format(
-      "weft: recorded on {}, and this runs on {}: frames {}\n", name(start.isa), name(isa),
+      "weft: recorded on {}, and this runs on {}: steps {}\n", name(start.settings.isa), name(isa),
       rounds_otherwise ? "differ, since sse2 rounds otherwise" : "should not differ"));
 }
 
@@ -48,27 +48,29 @@ std::string result_text(const RecordedResult& result) {
   return fmt::format("{:016x} ({})", result.hash, name(result.status));
 }
 
+/// The steps that were done; the file may end within one.
+std::size_t done_steps(const Recording& recording) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(recording.steps, [](const auto& step) { return bool(step.result); }));
+}
+
 std::string text(const Recording& recording, const ReplaySummary& summary) {
   const RecordedStart& start = recording.start;
-  const int frames = summary.last_frame - start.frames_before;
-  std::string text =
-      fmt::format("recorded  {}, weft {}, {}, frames {} to {} of {:.6g} s\n", start.scene,
-                  start.version, name(start.isa), start.frames_before + 1, start.frames, start.dt);
+  const std::size_t steps = done_steps(recording);
+  std::string text = fmt::format("recorded  {}{}weft {}, {}, {}\n", shown(start.note),
+                                 start.note.empty() ? "" : ", ", shown(start.version),
+                                 name(start.settings.isa), counted(steps, "step"));
   if (!recording.is_finished)
-    text += "end       missing: the run was killed, or the file is cut off\n";
-  text += fmt::format("replayed  {} to the same bits\n", counted(frames, "frame"));
-  if (frames > 0) {
-    text +=
-        fmt::format("state     {}\n",
-                    result_text(*recording.frames[static_cast<std::size_t>(frames) - 1].result));
-  }
+    text += "end       missing: the program was killed, or the file is cut off\n";
+  text += fmt::format("replayed  {} to the same bits\n", counted(summary.last_step, "step"));
+  if (summary.last_state) text += fmt::format("state     {}\n", result_text(*summary.last_state));
   return text;
 }
 
 std::string text(const Difference& difference) {
-  const std::string where = difference.frame == 0
-                                ? "the state before the first frame"
-                                : fmt::format("frame {} is the first that", difference.frame);
+  const std::string where = difference.step == 0
+                                ? "the state before the first step"
+                                : fmt::format("step {} is the first that", difference.step);
   return fmt::format("{} differs: recorded {}, now {}", where, result_text(difference.recorded),
                      result_text(difference.found));
 }
@@ -82,7 +84,7 @@ Result<int> replay_verb(const GivenOptions& given) {
   Result<ReplaySummary> summary = Error{""};
   {
     RunPlan plan;
-    plan.steps = std::max(1, static_cast<int>(recording.value().frames.size()));
+    plan.steps = std::max(1, static_cast<int>(recording.value().steps.size()));
     RunProgress progress(plan);
     summary = replay(recording.value(), options.value(), [&](int, const StepReport& report) {
       progress.add_frame();
@@ -100,8 +102,8 @@ Result<int> replay_verb(const GivenOptions& given) {
   if (auto printed = print_text(text(recording.value(), summary.value())); !printed)
     return Error{printed.error()};
   if (summary.value().past_end) {
-    print_message(fmt::format("weft: the run ended within frame {}; here that comes to {}\n",
-                              summary.value().last_frame + 1,
+    print_message(fmt::format("weft: the program ended within step {}; here that comes to {}\n",
+                              summary.value().last_step + 1,
                               result_text(*summary.value().past_end)));
   }
   if (!summary.value().difference) return kDone;
@@ -114,11 +116,11 @@ Result<int> replay_verb(const GivenOptions& given) {
 void add_replay_command(CommandLine& line) {
   auto given = std::make_shared<GivenOptions>();
   Verb verb =
-      line.add_verb("replay", "Run a recording again; name the first frame that differs", [given] {
+      line.add_verb("replay", "Run a recording again; name the first step that differs", [given] {
         const auto result = replay_verb(*given);
         return result ? result.value() : refuse(result.error());
       });
-  verb.required("FILE", given->file, "what `weft run --record` wrote");
+  verb.required("FILE", given->file, "what `weft run --record` or Cloth::begin_recording wrote");
   verb.option("--isa", given->isa,
               "sse2, avx2, avx512 or neon (default: as recorded, or the best there is)");
   verb.within(0, kMaxThreads, "--threads", given->threads,

@@ -103,7 +103,6 @@ struct Prepared {
   RunPlan plan;
   std::optional<JsonOutput> json;
   std::optional<StateFile> state;
-  std::optional<RecordingFile> recording;
 };
 
 Result<Prepared> prepare(const RunOptions& options) {
@@ -121,15 +120,11 @@ Result<Prepared> prepare(const RunOptions& options) {
   plan.value().surface = source.value().description.surface;
   plan.value().touches_itself = source.value().description.self_contact.on;
   plan.value().scene = source.value().name;
+  plan.value().record = options.record;
   plan.value().up = source.value().up;
   plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
-  Prepared prepared{std::move(source.value()),
-                    model.value(),
-                    settings.value(),
-                    std::move(plan.value()),
-                    std::nullopt,
-                    std::nullopt,
-                    std::nullopt};
+  Prepared prepared{std::move(source.value()), model.value(), settings.value(),
+                    std::move(plan.value()),   std::nullopt,  std::nullopt};
   if (options.json) {
     auto json = JsonOutput::open(*options.json);
     if (!json) return Error{fmt::format("--json: {}", json.error())};
@@ -140,17 +135,11 @@ Result<Prepared> prepare(const RunOptions& options) {
     if (!state) return Error{fmt::format("--save: {}", state.error())};
     prepared.state = std::move(state.value());
   }
-  if (options.record) {
-    auto recording = RecordingFile::open(*options.record);
-    if (!recording) return Error{fmt::format("--record: {}", recording.error())};
-    prepared.recording = std::move(recording.value());
-  }
   return prepared;
 }
 
 Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
   RunPlan plan = prepared.plan;
-  if (prepared.recording) plan.recording = &*prepared.recording;
   RunProgress progress(plan);
   bool stopped = false;
   plan.stop = [&] {
@@ -191,7 +180,7 @@ int interrupted(const RunSummary& summary, const RunPlan& plan) {
 Result<int> run_verb(const RunOptions& options) {
   auto prepared = prepare(options);
   if (!prepared) return Error{prepared.error()};
-  auto& [source, model, settings, plan, json, state, recording] = prepared.value();
+  auto& [source, model, settings, plan, json, state] = prepared.value();
   for (const std::string& note : source.notes) print_message(fmt::format("weft: {}\n", note));
   const OrderlyInterrupt interrupt;
   auto outputs = Outputs::open(options.out, source, model, settings, plan.dt);
@@ -206,10 +195,6 @@ Result<int> run_verb(const RunOptions& options) {
   if (state) {
     if (auto saved = state->finish(); !saved)
       return Error{fmt::format("--save: {}", saved.error())};
-  }
-  if (recording) {
-    if (auto recorded = recording->finish(); !recorded)
-      return Error{fmt::format("--record: {}", recorded.error())};
   }
   if (json) {
     auto written = json->write(to_json(report));

@@ -80,18 +80,19 @@ void add_errors(RunSummary& summary, Errors& errors, const Cloth& cloth, const R
   summary.energy_gain = summary.frames == 1 ? gain : std::max(summary.energy_gain, gain);
 }
 
-RecordedStart start_of(const Cloth& cloth, const Settings& settings, const RunPlan& plan,
-                       int frames_before) {
-  return {.version = version_text(),
-          .scene = plan.scene,
-          .isa = cloth.settings().isa,
-          .settings = settings,
-          .frames_before = frames_before,
-          .frames = plan.steps,
-          .dt = plan.dt,
-          .model = save_model(*cloth.model()),
-          .state = cloth.save_state(),
-          .hash = cloth.state_hash()};
+Result<void> begin_recording(Cloth& cloth, const RunPlan& plan, int frames_before) {
+  if (!plan.record) return {};
+  const std::string note = frames_before == 0
+                               ? plan.scene
+                               : fmt::format("after frame {}, {}", frames_before, plan.scene);
+  const auto begun = cloth.begin_recording(*plan.record, note);
+  return begun ? Result<void>{} : Error{fmt::format("--record: {}", begun.error())};
+}
+
+Result<void> end_recording(Cloth& cloth, const RunPlan& plan) {
+  if (!plan.record) return {};
+  const auto ended = cloth.end_recording();
+  return ended ? Result<void>{} : Error{fmt::format("--record: {}", ended.error())};
 }
 
 /// The surface is that of the cloth.
@@ -149,8 +150,8 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     }
     summary.resumed_at = plan.resume->frame;
   }
-  if (plan.recording)
-    plan.recording->add_part(bytes_of(start_of(cloth, settings, plan, summary.resumed_at)));
+  if (auto begun = begin_recording(cloth, plan, summary.resumed_at); !begun)
+    return Error{begun.error()};
   TriangleSet surface{{}, plan.surface};
   summary.energy_start = cloth.energy().total();
   summary.lowest = std::numeric_limits<double>::infinity();
@@ -158,7 +159,6 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
          committed(summary.total.status) && !summary.stopped) {
     const double end_of_frame = (summary.last_frame() + 1) * plan.dt;
     const FrameCalls calls = calls_at(pins, bodies.value(), cloth, end_of_frame);
-    if (plan.recording) plan.recording->add_part(bytes_of(calls));
     if (auto done = apply(calls, cloth); !done) return Error{done.error()};
     const double cpu_start = cpu_seconds();
     const auto start = Clock::now();
@@ -169,14 +169,13 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     add_frame(summary, report.value());
     summary.step_seconds += elapsed.count();
     summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
-    if (plan.recording)
-      plan.recording->add_part(bytes_of(RecordedResult{report.value().status, cloth.state_hash()}));
     add_errors(summary, errors, cloth, plan);
     name_what_crosses(summary, report.value(), cloth, plan, surface);
     if (plan.check_intersections) look_for_crossings(summary, cloth, plan, surface);
     summary.stopped = plan.stop && plan.stop();
     if (on_frame) on_frame(summary.last_frame(), cloth, report.value());
   }
+  if (auto ended = end_recording(cloth, plan); !ended) return Error{ended.error()};
   summary.finished_runs = summary.stopped ? 0 : 1;
   finish(summary, errors, cloth);
   return summary;
@@ -188,7 +187,7 @@ Result<RunSummary> run_repeatedly(const std::shared_ptr<const Model>& model,
   auto best = run_once(model, settings, plan, on_frame);
   if (!best || plan.repeat <= 1 || best.value().stopped) return best;
   RunPlan again = plan;
-  again.recording = nullptr;
+  again.record.reset();
   for (int finished = 1; finished <= plan.repeat; ++finished) {
     auto next = run_once(model, settings, again, {});
     if (!next) return next;

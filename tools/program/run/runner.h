@@ -16,7 +16,6 @@
 
 #include "tools/program/measure/crossings.h"
 #include "tools/program/measure/fabric_measure.h"
-#include "tools/program/recording/recording.h"
 #include "tools/program/run/run_state.h"
 #include "tools/scenes/pin_moves.h"
 #include "tools/scenes/scene_body.h"
@@ -43,11 +42,10 @@ struct RunPlan {
   bool check_intersections = false;
   bool touches_itself = false;
   std::vector<std::array<std::uint32_t, 3>> surface = {};
-  double Vec3::*up = &Vec3::y;  ///< what RunSummary::lowest is measured along
-  FabricMeasure fabric = {};    ///< what RunSummary::fabric is measured by
-  /// Gets the parts of the first run, but the end.
-  RecordingFile* recording = nullptr;
-  std::string scene = {};  ///< its name, for the recording
+  double Vec3::*up = &Vec3::y;             ///< what RunSummary::lowest is measured along
+  FabricMeasure fabric = {};               ///< what RunSummary::fabric is measured by
+  std::optional<std::string> record = {};  ///< the file that the first run is recorded in
+  std::string scene = {};                  ///< its name, for the recording
 };
 
 /// Called once per frame, frames counted from 1 (those before RunPlan::resume too), with the state

@@ -4,16 +4,13 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 
 #include "tests/tools/run_program.h"
 #include "tests/tools/running_program.h"
 #include "tests/tools/temporary_folder.h"
-#include "tools/program/files/json_reading.h"
-#include "tools/program/recording/recording.h"
-#include "tools/program/recording/settings_json.h"
+#include "tools/program/recording/replay.h"
 
 namespace weft::tools {
 namespace {
@@ -40,9 +37,9 @@ struct Recorded {
       text.append(reinterpret_cast<const char*>(part.data()), part.size());
     };
     add(bytes_of(recording.start));
-    for (const RecordedFrame& frame : recording.frames) {
-      add(bytes_of(frame.calls));
-      if (frame.result) add(bytes_of(*frame.result));
+    for (const RecordedStep& step : recording.steps) {
+      add(bytes_of(step.calls));
+      if (step.result) add(bytes_of(*step.result));
     }
     if (recording.is_finished) add(bytes_of_end());
     folder.write("run.weft", text);
@@ -81,69 +78,62 @@ TEST_CASE(
     const Outcome replayed = recorded.replay();
     CHECK(replayed.exit_code == 0);
     CHECK(replayed.err.empty());
-    const auto frames = recorded.read().frames;
-    has(replayed.out, "replayed  " + std::to_string(frames.size()) + " frames to the same bits\n");
+    const auto steps = recorded.read().steps;
+    has(replayed.out, "replayed  " + std::to_string(steps.size()) + " steps to the same bits\n");
     char hash[17];
     std::snprintf(hash, sizeof hash, "%016llx",
-                  static_cast<unsigned long long>(frames.back().result->hash));
+                  static_cast<unsigned long long>(steps.back().result->hash));
     has(replayed.out, hash);
     CHECK(report_of(folder, run)["state_hash"] == hash);
   }
 }
 
-TEST_CASE("a recording has every call, and a run that goes on or repeats has the first") {
+TEST_CASE("a recording has the first of repeated runs, and says after which frame a run goes on") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("scene.json", kMovingScene);
   const Recorded recorded(scene + " --steps 12 --repeat 2");
   const Recording whole = recorded.read();
   CHECK(whole.is_finished);
-  REQUIRE(whole.frames.size() == 12);
-  const FrameCalls& calls = whole.frames[2].calls;
-  REQUIRE(calls.pins.size() == 1);
-  CHECK(calls.pins[0].particle == 0);
-  CHECK(calls.pins[0].position.y == doctest::Approx(0.03));
-  REQUIRE(calls.bodies.size() == 1);
-  CHECK(calls.bodies[0].pose.position.y == doctest::Approx(0.03));
-  REQUIRE(calls.deformed.size() == 1);
-  CHECK(calls.deformed[0].vertices[0].y == doctest::Approx(-1.97));
+  REQUIRE(whole.steps.size() == 12);
 
   const std::string state = folder.file("state.weft");
   REQUIRE(run_program(folder, "run " + scene + " --steps 5 --save " + state).exit_code == 0);
   const Recorded resumed(scene + " --steps 12 --resume " + state);
   const Recording rest = resumed.read();
-  CHECK(rest.start.frames_before == 5);
-  REQUIRE(rest.frames.size() == 7);
-  CHECK(rest.frames.back().result->hash == whole.frames.back().result->hash);
-  has(resumed.replay().out, "frames 6 to 12 of 0.01 s\n");
+  REQUIRE(rest.steps.size() == 7);
+  CHECK(rest.steps.back().result->hash == whole.steps.back().result->hash);
+  has(resumed.replay().out, "recorded  after frame 5, ");
 }
 
-TEST_CASE("the first frame that differs is named") {
+TEST_CASE("the first step that differs is named") {
   const Recorded recorded("hang --size 5 --steps 9");
   Recording changed = recorded.read();
-  changed.frames[6].result->hash ^= 1;
-  changed.frames[7].result->hash ^= 1;
+  changed.steps[6].result->hash ^= 1;
+  changed.steps[7].result->hash ^= 1;
   recorded.write(changed);
   const Outcome replayed = recorded.replay();
   CHECK(replayed.exit_code == 1);
-  has(replayed.out, "replayed  6 frames to the same bits\n");
-  CHECK(replayed.err.starts_with("weft: frame 7 is the first that differs: recorded "));
+  has(replayed.out, "replayed  6 steps to the same bits\n");
+  CHECK(replayed.err.starts_with("weft: step 7 is the first that differs: recorded "));
   changed.start.hash ^= 1;
   recorded.write(changed);
-  has(recorded.replay().err, "weft: the state before the first frame differs: recorded ");
+  has(recorded.replay().err, "weft: the state before the first step differs: recorded ");
 }
 
-TEST_CASE("a call that is another one differs in its frame") {
+TEST_CASE("calls of a step that are others differ there, or are refused there") {
   const TemporaryFolder folder;
   const Recorded recorded(folder.write("scene.json", kMovingScene) + " --steps 9");
   Recording changed = recorded.read();
-  changed.frames[3].calls.pins[0].position.x += 1e-9;
+  RecordedCalls& calls = changed.steps[3].calls;
+  REQUIRE(!calls.state.empty());  // a pin and two bodies move
+  calls.state.clear();
   recorded.write(changed);
-  has(recorded.replay().err, "weft: frame 4 is the first that differs");
-  changed.frames[3].calls.pins[0].particle = 1;
+  has(recorded.replay().err, "weft: step 4 is the first that differs");
+  calls.state.push_back({1u << 30, 0, {}});
   recorded.write(changed);
   const Outcome refused = recorded.replay();
   CHECK(refused.exit_code == 2);
-  has(refused.err, "frame 4: particle: is not fixed (1)");
+  has(refused.err, "step 4: patch: is of other bytes (1073741824)");
 }
 
 TEST_CASE("another version and other instructions are told") {
@@ -154,7 +144,7 @@ TEST_CASE("another version and other instructions are told") {
   const Outcome replayed = recorded.replay();
   CHECK(replayed.exit_code == 0);
   CHECK(replayed.err == "weft: recorded by weft 0.1.0, and this is " WEFT_VERSION
-                        ": frames may differ\n");
+                        ": steps may differ\n");
   old.start.state[9] ^= std::byte{1};
   recorded.write(old);
   const Outcome refused = recorded.replay();
@@ -162,19 +152,19 @@ TEST_CASE("another version and other instructions are told") {
   has(refused.err, "(recorded by weft 0.1.0, and this is " WEFT_VERSION ")\n");
 
   old = recorded.read();
-  const Isa isa = old.start.isa;
-  old.start.isa = isa == Isa::neon ? Isa::avx2 : Isa::neon;  // this machine lacks it
+  const Isa isa = old.start.settings.isa;
+  old.start.settings.isa = isa == Isa::neon ? Isa::avx2 : Isa::neon;  // this machine lacks it
   old.start.version = WEFT_VERSION;
   old.start.state[9] ^= std::byte{1};
   recorded.write(old);
   const Outcome elsewhere = recorded.replay();
   CHECK(elsewhere.exit_code == 0);
-  has(elsewhere.err, std::string("weft: recorded on ") + std::string(name(old.start.isa)) +
+  has(elsewhere.err, std::string("weft: recorded on ") + std::string(name(old.start.settings.isa)) +
                          ", and this runs on " + std::string(name(isa)) +
-                         ": frames should not differ\n");
+                         ": steps should not differ\n");
 }
 
-TEST_CASE("sse2 rounds otherwise: the first frame that differs is named") {
+TEST_CASE("sse2 rounds otherwise: the first step that differs is named") {
   const TemporaryFolder folder;
   for (const char* isa : {"sse2", "avx2"}) {
     const std::string run = "run chain --size 3 --steps 1 --isa ";
@@ -183,11 +173,11 @@ TEST_CASE("sse2 rounds otherwise: the first frame that differs is named") {
   const Recorded recorded("hang --size 9 --solver gauss_seidel --steps 30 --isa avx2");
   const Outcome replayed = recorded.replay(" --isa sse2 --threads 1");
   CHECK(replayed.exit_code == 1);
-  has(replayed.err, "weft: recorded on avx2, and this runs on sse2: frames differ, since sse2");
+  has(replayed.err, "weft: recorded on avx2, and this runs on sse2: steps differ, since sse2");
   has(replayed.err, " is the first that differs: recorded ");
 }
 
-TEST_CASE("each byte that is another one is told, and its frame") {
+TEST_CASE("each byte that is another one is told, and its step") {
   const Recorded recorded("chain --size 3 --steps 3");
   const std::string bytes = recorded.folder.read("run.weft");
   REQUIRE(parse_recording(std::as_bytes(std::span(bytes))));
@@ -198,18 +188,17 @@ TEST_CASE("each byte that is another one is told, and its frame") {
     const auto parsed = parse_recording(std::as_bytes(std::span(damaged)));
     CAPTURE(i);
     CHECK_FALSE(parsed);
-    if (!parsed) told.insert(parsed.error().substr(0, 21));
+    if (!parsed) told.insert(parsed.error().substr(0, 20));
   }
-  for (const char* frame :
-       {"is damaged in frame 1", "is damaged in frame 2", "is damaged in frame 3"})
-    CHECK(told.contains(frame));
+  for (const char* step : {"is damaged in step 1", "is damaged in step 2", "is damaged in step 3"})
+    CHECK(told.contains(step));
   std::string damaged = bytes;
   damaged[bytes.size() - 60] = static_cast<char>(damaged[bytes.size() - 60] ^ 1);
   recorded.folder.write("run.weft", damaged);
   const Outcome refused = recorded.replay();
   CHECK(refused.exit_code == 2);
   CHECK(refused.err.find('\n') == refused.err.size() - 1);
-  has(refused.err, "run.weft': is damaged in frame 3");
+  has(refused.err, "run.weft': is damaged in step 3");
 }
 
 TEST_CASE("a recording that is cut off anywhere is replayed as far as it goes, and says so") {
@@ -222,33 +211,33 @@ TEST_CASE("a recording that is cut off anywhere is replayed as far as it goes, a
     const auto cut = parse_recording(std::as_bytes(std::span(bytes.data(), size)));
     if (!cut) continue;  // within the start
     CHECK_FALSE(cut.value().is_finished);
-    CHECK(cut.value().frames.size() >= most);
-    most = cut.value().frames.size();
-    any_within = any_within || (most > 0 && !cut.value().frames.back().result);
+    CHECK(cut.value().steps.size() >= most);
+    most = cut.value().steps.size();
+    any_within = any_within || (most > 0 && !cut.value().steps.back().result);
   }
   CHECK(most == 3);
   CHECK(any_within);
 
   Recording within = recorded.read();
   within.is_finished = false;
-  within.frames.back().result.reset();
+  within.steps.back().result.reset();
   recorded.write(within);
   const Outcome replayed = recorded.replay();
   CHECK(replayed.exit_code == 0);
-  has(replayed.out, "end       missing: the run was killed, or the file is cut off\n");
-  has(replayed.out, "replayed  2 frames to the same bits\n");
-  has(replayed.err, "weft: the run ended within frame 3; here that comes to ");
+  has(replayed.out, "end       missing: the program was killed, or the file is cut off\n");
+  has(replayed.out, "replayed  2 steps to the same bits\n");
+  has(replayed.err, "weft: the program ended within step 3; here that comes to ");
 }
 
 TEST_CASE("a run that is killed leaves a recording of what it did") {
   const TemporaryFolder folder;
   const std::string file = folder.file("run.weft");
   Running running(folder, {"run", "hang", "--size", "5", "--steps", "100000000", "--record", file});
-  const auto frames = [&] {
+  const auto steps = [&] {
     const auto recording = read_recording(file);
-    return recording ? recording.value().frames.size() : 0;
+    return recording ? recording.value().steps.size() : 0;
   };
-  wait_for([&] { return std::filesystem::exists(file) && frames() > 3; });
+  wait_for([&] { return std::filesystem::exists(file) && steps() > 3; });
   running.kill_at_once();
   const Outcome replayed = run_program(folder, "replay " + file);
   CHECK(replayed.exit_code == 0);
@@ -269,7 +258,7 @@ TEST_CASE("what is no recording is refused in one line") {
   has(refusal("replay " + folder.write("text", std::string(999, 'x'))), "is not a recording");
   has(refusal("replay"), "FILE is required");
   has(refusal("run hang --steps 1 --record " + folder.file("no/such/folder")),
-      "--record: cannot write '");
+      "--record: path: cannot be written (");
   has(refusal("run hang --steps 1 --record a --save ./a"), "is named twice");
   const Recorded recorded("hang --size 4 --steps 1");
   has(refusal("replay " + recorded.file + " --isa x87"), "--isa: 'x87' is not one of");
@@ -283,47 +272,9 @@ TEST_CASE("a run that is refused leaves the recording that was there, another ru
   };
   CHECK(run(" --out " + recorded.folder.file("no/such/folder/a.obj")).exit_code == 2);
   CHECK(run(" --resume " + recorded.folder.write("state.json", "{}")).exit_code == 2);
-  has(recorded.replay().out, "replayed  3 frames to the same bits");
+  has(recorded.replay().out, "replayed  3 steps to the same bits");
   CHECK(run("").exit_code == 0);
-  has(recorded.replay().out, "replayed  1 frame to the same bits");
-}
-
-TEST_CASE("settings are the same after they were JSON, and each field must be there") {
-  Settings settings;
-  settings.tolerance = 0.1 + 0.2;
-  settings.substeps = 7;
-  settings.solver = Solver::yarn;
-  settings.scheme = Scheme::rattle;
-  settings.backend = Backend::reference;
-  settings.isa = Isa::avx2;
-  settings.directions = Directions::each;
-  settings.sleep = settings.velocity_correction = settings.anticipate_products = true;
-  settings.skip = settings.anticipate = false;
-  const Json json = Json::parse(settings_json(settings).dump());
-  CHECK(json.size() == 20);
-  const Settings read = read_settings(json, "settings");
-  CHECK(settings_json(read) == json);
-  CHECK(read.tolerance == settings.tolerance);
-  CHECK(read.solver == Solver::yarn);
-  const auto refusal = [&](const char* key, const Json& value) -> std::string {
-    Json changed = json;
-    changed[key] = value;
-    try {
-      read_settings(changed, "settings");
-    } catch (const Refused& refused) {
-      return refused.message;
-    }
-    return "";
-  };
-  CHECK(refusal("solver", "magic").starts_with("settings.solver: 'magic' is not one of "));
-  CHECK(refusal("threads", -1) == "settings.threads: expected a whole number, not -1");
-  CHECK(refusal("sleep", 1) == "settings.sleep: expected true or false, not 1");
-  CHECK(refusal("colour", 1) == "settings: unknown key 'colour'");
-  for (const auto& [key, value] : json.items()) {
-    Json without = json;
-    without.erase(key);
-    CHECK_THROWS_AS(read_settings(without, "settings"), Refused);
-  }
+  has(recorded.replay().out, "replayed  1 step to the same bits");
 }
 
 }  // namespace

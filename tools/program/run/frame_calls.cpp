@@ -1,4 +1,4 @@
-#include "tools/program/recording/frame_calls.h"
+#include "tools/program/run/frame_calls.h"
 
 namespace weft::tools {
 
