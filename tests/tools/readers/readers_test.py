@@ -40,7 +40,7 @@ class Readers(unittest.TestCase):
         self.addCleanup(self.holder.cleanup)
         self.folder = pathlib.Path(self.holder.name)
         outs = [f"--out={self.folder / name}" for name in ("frame_%04d.obj", "motion.pc2", "motion.pvd")]
-        subprocess.run([WEFT, "run", "drape", "--size", "9", "--steps", "12", *outs],
+        subprocess.run([WEFT, "run", "hang", "--material", "cotton", "--size", "9", "--steps", "12", *outs],
                        check=True, stdout=subprocess.DEVNULL)
         shutil.copy(self.folder / "frame_0000.obj", self.folder / "start.obj")
 
