@@ -13,7 +13,8 @@ import tempfile
 import unittest
 import zlib
 
-import chromium
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools/viewer"))
+import chromium  # noqa: E402
 
 WEFT = sys.argv.pop() if len(sys.argv) > 1 else "weft"
 

@@ -11,7 +11,8 @@ import subprocess
 import sys
 import unittest
 
-import chromium
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools/viewer"))
+import chromium  # noqa: E402
 
 FOLDER = pathlib.Path(sys.argv.pop() if len(sys.argv) > 1 else "build/web")
 BUILD = pathlib.Path(__file__).resolve().parents[3] / "tools/web/build"

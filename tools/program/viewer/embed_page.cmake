@@ -17,14 +17,15 @@ file(WRITE ${SOURCE} "// Made by embed_page.cmake.
 
 namespace weft::tools {
 namespace {
-constexpr std::string_view kParts[]{
+// Not string_view, whose lengths the compiler would count character by character.
+constexpr const char* kParts[]{
 ${parts}};
 }  // namespace
 
 std::string_view page_template() {
   static const std::string page = [] {
     std::string whole;
-    for (const std::string_view part : kParts) whole += part;
+    for (const char* part : kParts) whole += part;
     return whole;
   }();
   return page;

@@ -3,8 +3,8 @@
 
     precision_charts.py precision.json --out FOLDER
 
-precision: error against time per frame, a row for each scene; motion: what was asked for of the
-motion, what was got, and its time; sizes: time against size.
+precision: error against time per frame, a row for each scene; first_scene: the first row alone;
+motion: what was asked for of the motion, what was got, and its time; sizes: time against size.
 """
 
 import study_figures
@@ -194,7 +194,7 @@ def precision_figure(study):
         axes.set_xlabel("ms per frame of 10 ms")
 
     threads = scenes[0]["threads"]
-    figure.suptitle("What an error costs", x=0.075, y=1 - 0.14 / height, ha="left",
+    figure.suptitle("The cost of an error", x=0.075, y=1 - 0.14 / height, ha="left",
                     fontweight="bold", fontsize=12.5)
     notes = [f"lower left is better; {threads} thread{'s' if threads > 1 else ''}, "
              f"{scenes[0]['frames']} frames, {'wall' if threads > 1 else 'processor'} time; every solver at its best of substeps, tolerances and "
@@ -296,7 +296,8 @@ def sizes_figure(sizes, quick):
 
 
 def figures_of(study):
-    figures = {"precision": precision_figure(study)}
+    figures = {"precision": precision_figure(study),
+               "first_scene": precision_figure({**study, "scenes": study["scenes"][:1]})}
     if study["motion"]:
         figures["motion"] = motion_figure(study["motion"], study["quick"])
     if "sizes" in study:
