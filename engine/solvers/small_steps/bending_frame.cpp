@@ -68,16 +68,18 @@ void BendingFrame::begin(const FramePlan& plan, double weight) {
 }
 
 /// The impulse acts from the end of its substep on, which is in the middle of the group.
+int BendingFrame::solved_in(std::int64_t group) const {
+  const auto begin_of = [&](std::int64_t g) { return static_cast<int>(g * substeps_ / groups_); };
+  const int first = begin_of(group), n = begin_of(group + 1) - first;
+  return first + (n - 1) / 2;
+}
+
 std::optional<BendingStep> BendingFrame::next(double give) {
   if (rows_.empty()) return {};
-  const auto begin_of = [&](std::int64_t group) {
-    return static_cast<int>(group * substeps_ / groups_);
-  };
   const int k = done_++;
   const std::int64_t group = ((k + 1) * std::int64_t{groups_} - 1) / substeps_;
-  const int first = begin_of(group), n = begin_of(group + 1) - first;
-  if (k != first + (n - 1) / 2) return {};
-  return step(give, n);
+  if (k != solved_in(group)) return {};
+  return step(give, 0.5 * (solved_in(groups_ + group + 1) - solved_in(groups_ + group - 1)));
 }
 
 /// Of what is not factored. By single substeps: groups change no damping.

@@ -1,7 +1,9 @@
 /// When and how the bending of a frame is solved (bending_system.h).
 ///
 /// Where all cloth is soft, one solution stands for a group of n substeps, with the impulse of all
-/// of them in its middle. Else n is 1. In a group the force is that of the law
+/// of them in its middle. Else n is 1. Of groups of unequal lengths n is half of the way from the
+/// impulse before to the one after: with their own lengths stiffness would change once a frame, and
+/// cloth gains energy from that. In a group the force is that of the law
 ///
 ///     M d / f = - K (p + d) - tau / h K (p + n d - s),
 ///
@@ -18,6 +20,7 @@
 
 #include <weft/weft.h>
 
+#include <cstdint>
 #include <optional>
 
 #include "engine/model/model.h"
@@ -59,7 +62,9 @@ class BendingFrame {
   double resolved(double give) const { return 1 / ((1 - 0.5 * omega_) * give); }
 
  private:
-  BendingStep step(double give, int n) const { return {give, double(n), damping_}; }
+  BendingStep step(double give, double n) const { return {give, n, damping_}; }
+  /// The substep of this frame, or of others like it before and after.
+  int solved_in(std::int64_t group) const;
   int longest_group(const FramePlan& plan) const;
   double most_damping() const;
   bool is_to_be_factored() const;

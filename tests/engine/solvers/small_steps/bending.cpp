@@ -1,5 +1,4 @@
-/// Bending elements in small steps: closed forms, what they conserve, and how often they are
-/// solved.
+/// Bending elements in small steps: closed forms, and what they conserve.
 #include <doctest/doctest.h>
 #include <weft/mesh.h>
 
@@ -106,89 +105,6 @@ TEST_CASE("an element whose free particles have no weight is passed over") {
   const std::vector<std::uint32_t>& element = model->small_steps().bending.element;
   CHECK(std::ranges::count(element, 0u) == 0);
   CHECK(std::ranges::count(element, 1u) == 1);
-}
-
-// --------------------------------------------------------------------------- when it is solved
-
-/// How often bending is solved in a frame. Its impulses are those of all substeps, and each is in
-/// the middle of its group.
-int solutions(BendingFrame& bending, const FramePlan& plan) {
-  bending.begin(plan, 1);
-  const double give = SubstepFormula::of(Scheme::bdf2, 1).give(plan.h);
-  int count = 0;
-  double impulses = 0, moments = 0;
-  for (int k = 0; k < plan.substeps; ++k) {
-    const auto step = bending.next(give);
-    if (!step) continue;
-    ++count;
-    CHECK(step->count <= tuning::kLongestGroup);
-    impulses += step->count;
-    moments += step->count * (k + 1);
-  }
-  CHECK(impulses == plan.substeps);
-  CHECK(std::abs(moments / impulses - 0.5 * plan.substeps) <= 0.5 + 1e-9);
-  return count;
-}
-
-TEST_CASE("solutions stand for all substeps of a frame, and soft cloth has few") {
-  const auto model = model_of(cantilever({}));
-  BendingFrame bending(*model, settings_on(Backend::simd, 1));
-  for (const int substeps : {1, 2, 3, 7, 8, 9, 31, 64}) {
-    CHECK(solutions(bending, {.h = 0.01, .substeps = substeps}) == substeps);
-    CHECK(solutions(bending, {.h = 1e-6, .substeps = substeps}) ==
-          (substeps + tuning::kLongestGroup - 1) / tuning::kLongestGroup);
-  }
-}
-
-TEST_CASE("the stiffest particle bounds how many substeps have one solution") {
-  SceneDescription scene = cantilever({});
-  scene.bending.back().compliance /= 100;
-  const auto stiff = model_of(scene);
-  const auto usual = model_of(cantilever({}));
-  BendingFrame bending(*stiff, settings_on(Backend::simd, 1));
-  BendingFrame softer(*usual, settings_on(Backend::simd, 1));
-  // Of a strip of 8 segments of 25 mm. The row 1 4 6 4 1 has the end's half a mass in it.
-  const double row = 16.42 * 1e-3 / (0.2 * std::pow(0.025, 4));
-  const double h = std::sqrt(tuning::kBendingGroup / row) / 4.01;
-  CHECK(solutions(softer, {.h = h, .substeps = 64}) == 16);
-  CHECK(solutions(bending, {.h = h, .substeps = 64}) == 64);
-}
-
-TEST_CASE("what is solved in few substeps moves nearly as what is solved in each") {
-  // The same strip in substeps as short as the groups of the first, and as its substeps.
-  const SceneDescription strip = cantilever({.stiffness = 1e-4});
-  const auto tip = static_cast<std::uint32_t>(strip.positions.size() - 1);
-  for (const Backend backend : kBackends) {
-    Cloth few = cloth_of(strip, settings_on(backend, 80));
-    Cloth many = cloth_of(strip, settings_on(backend, 640));
-    run(few, kFrame, 30);
-    run(many, kFrame, 30);
-    const double apart = distance(few.position(tip), many.position(tip));
-    CHECK(apart > 0);
-    CHECK(apart < 5e-3 * distance(few.position(tip), strip.positions[tip]));
-  }
-}
-
-TEST_CASE("a stiff strip beside much that is soft moves as alone") {
-  const SceneDescription alone = cantilever({.stiffness = 1e-4});
-  SceneDescription mixed = alone;
-  const auto tip = static_cast<std::uint32_t>(alone.positions.size() - 1);
-  for (std::uint32_t k = 0; k < 3 * alone.bending.size(); ++k) {
-    const auto first = static_cast<std::uint32_t>(mixed.positions.size());
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      mixed.positions.push_back({0.02 * i, 1.0 + k, 0});
-      mixed.masses.push_back(alone.masses[2]);
-    }
-    mixed.bending.push_back({{first, first + 1, first + 2, kNoIndex}, {1, -2, 1, 0}, 0, 1e5});
-  }
-  for (const Backend backend : kBackends) {
-    Cloth one = cloth_of(alone, settings_on(backend, 80));
-    Cloth other = cloth_of(mixed, settings_on(backend, 80));
-    run(one, kFrame, 30);
-    run(other, kFrame, 30);
-    CHECK(distance(one.position(tip), other.position(tip)) <
-          0.01 * distance(one.position(tip), alone.positions[tip]));
-  }
 }
 
 // ----------------------------------------------------------------------------- both solvers
