@@ -51,7 +51,6 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
                                      int substeps, Team& team) {
   points_.begin_interval(particles, clock, substeps);
   const bool have_moved = search_.find(points_, candidates_, team);
-  if (is_new_ || tangles_.any()) points_.activate_all();
   near_search_.measure(points_, candidates_, have_moved, team);
   if (is_new_) tangles_.find(points_);
   is_new_ = false;
@@ -87,10 +86,7 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
       tangles_.take_in(points_, candidates_[failure.list].pairs[failure.pair]);
   }
   // Only tangles, and what had to be stopped, lead others through a body.
-  if (tangles_.any() || has_failed) {
-    points_.activate_all();
-    tangles_.find_crossing_at_end(points_);
-  }
+  if (tangles_.any() || has_failed) tangles_.find_crossing_at_end(points_);
   if (tangles_.count_within() > 0 || !verification_.failures().empty())
     if (points_.touches_itself()) tangles_.find_crossing_within_at_end(points_);
   if (!has_moved) return false;

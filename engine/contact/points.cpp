@@ -53,12 +53,16 @@ void ContactPoints::begin(const BodyClock& clock) {
   speeds_ = {};
   surface_pairs_.clear();
   std::size_t points = slots_, count = 1;
+  const std::size_t count_before = surfaces_.size();
+  bool has_other_places = start_.capacity() == 0;
   for (std::size_t body = 0; body < clock.bodies().size(); ++body) {
     if (clock.bodies()[body].shape->mesh() == nullptr) continue;
     add_cloth();
     ContactSurface& surface = surface_for(clock, body, count);
-    if (std::exchange(surface.first_point, static_cast<std::uint32_t>(points)) != points)
+    if (std::exchange(surface.first_point, static_cast<std::uint32_t>(points)) != points) {
       surface.placing = 0;
+      has_other_places = true;
+    }
     points += clock.bodies()[body].from.size();
     surface_pairs_.push_back({kClothSurface, static_cast<std::uint16_t>(count)});
     ++count;
@@ -67,23 +71,27 @@ void ContactPoints::begin(const BodyClock& clock) {
   if (touches_itself_) prepare_for_itself();
   if (empty()) count = 0;
   surfaces_.resize(count);
+  has_other_places = has_other_places || count != count_before;
   if (count == 0) return;
   particles_.clear();
   for (std::uint32_t slot = 0; slot < slots_; ++slot)
     if (model_.is_particle(slot)) particles_.push_back(slot);
-  for (auto* vectors : {&start_, &end_}) vectors->resize(points);
-  for (auto* vectors : {&substep_from_, &substep_to_}) vectors->resize(points - slots_);
-  for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->resize(4 * points);
-  box_.resize(points);
-  tube_.resize(points);
-  lane_tubes_.resize(points);
-  laid_.assign(points - slots_, 0);
-  layings_ = 0;
-  placed_.resize(points - slots_);
-  is_active_.assign(points - slots_, 0);
-  active_.clear();
+  forget_active();
+  if (has_other_places || surface_of_.size() != points - slots_) make_room(clock, points);
+}
+
+/// Of vertices those alone cost something that are looked at.
+void ContactPoints::make_room(const BodyClock& clock, std::size_t points) {
+  for (auto* vectors : {&start_, &end_}) vectors->make_room(points);
+  for (auto* vectors : {&substep_from_, &substep_to_}) vectors->make_room(points - slots_);
+  for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->make_room(4 * points);
+  box_.make_room(points);
+  tube_.make_room(points);
+  lane_tubes_.make_room(points);
+  for (auto* numbers : {&laid_, &placed_}) numbers->make_room(points - slots_);
+  is_active_.make_room(points - slots_);
   surface_of_.clear();
-  for (std::uint16_t i = 1; i < count; ++i) {
+  for (std::uint16_t i = 1; i < surfaces_.size(); ++i) {
     const std::size_t vertices = clock.bodies()[surfaces_[i].body].from.size();
     surface_of_.insert(surface_of_.end(), vertices, i);
   }
@@ -125,6 +133,7 @@ ContactSurface& ContactPoints::surface_for(const BodyClock& clock, std::size_t b
     surface.two_sided = mesh.two_sided;
     surface.is_open = mesh.is_open;
     surface.tree = BoxTree(mesh.surface.in_order);
+    surface.active.make_room(mesh.surface.triangles.size());
     surface.shape = b.shape;
     surface.is_rigid = false;
     surface.placing = 0;
@@ -167,8 +176,8 @@ void ContactPoints::look_ahead(const ContactParticles& cloth, const BodyClock& c
     start_[slot] = cloth.start(slot);
     end_[slot] = cloth.position(slot) - start_[slot];
   }
-  speeds_ = speeds_of_step(model_, std::span(start_).first(slots_), std::span(end_).first(slots_),
-                           of_bodies(), clock);
+  speeds_ =
+      speeds_of_step(model_, {start_.data(), slots_}, {end_.data(), slots_}, of_bodies(), clock);
 }
 
 void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyClock& clock,
@@ -246,7 +255,7 @@ void ContactPoints::write_start_and_way(std::size_t point) {
 
 void ContactPoints::activate(std::uint16_t surface, std::uint32_t triangle) {
   ContactSurface& s = surfaces_[surface];
-  if (std::exchange(s.is_near[triangle], std::uint8_t{1}) != 0) return;
+  if (std::exchange(s.active[triangle], layings_) == layings_) return;
   for (const std::uint32_t corner : s.triangles->triangles[triangle]) {
     activate_vertex(s.first_point + corner);
     for (const std::uint32_t other : s.triangles->neighbours[corner])
@@ -254,9 +263,10 @@ void ContactPoints::activate(std::uint16_t surface, std::uint32_t triangle) {
   }
 }
 
-void ContactPoints::activate_all() {
-  for (auto point = static_cast<std::uint32_t>(slots_); point < start_.size(); ++point)
-    activate_vertex(point);
+void ContactPoints::forget_active() {
+  for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
+  active_.clear();
+  rounding_of_vertices_ = 0;
 }
 
 void ContactPoints::activate_vertex(std::uint32_t point) {
@@ -331,14 +341,9 @@ void ContactPoints::lay_tubes() {
   laid_from_ = from_;
   for (const std::uint32_t slot : particles_) set_tube(slot, tube_around(slot));
   ++layings_;
-  for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
-  active_.clear();
-  rounding_of_vertices_ = 0;
+  forget_active();
   if (touches_itself_) surfaces_[kClothSurface].may_cross.assign(cloth().triangles.size(), 0);
-  for (ContactSurface& surface : of_bodies()) {
-    surface.is_near.assign(surface.triangles->triangles.size(), 0);
-    surface.may_cross.assign(cloth().triangles.size(), 0);
-  }
+  for (ContactSurface& surface : of_bodies()) surface.may_cross.assign(cloth().triangles.size(), 0);
   has_tubes_ = true;
 }
 
@@ -432,7 +437,7 @@ std::size_t ContactPoints::bytes() const {
                       bytes_of(laid_) + bytes_of(shortest_) + bytes_of(placed_) +
                       bytes_of(active_) + bytes_of(is_active_);
   for (const ContactSurface& surface : surfaces_)
-    bytes += surface.tree.bytes() + surface.normals.bytes() + bytes_of(surface.is_near);
+    bytes += surface.tree.bytes() + surface.normals.bytes() + bytes_of(surface.active);
   return bytes;
 }
 

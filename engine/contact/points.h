@@ -62,11 +62,10 @@ class ContactPoints {
   void look_ahead(const ContactParticles& cloth, const BodyClock& clock);
   const ContactSpeeds& speeds() const { return speeds_; }
   /// Of an interval, whose first substep is predicted. Of bodies those vertices are placed that are
-  /// active: those that candidates have, and their neighbours.
+  /// active: those of triangles that are looked at, and their neighbours.
   void begin_interval(const ContactParticles& cloth, const BodyClock& clock, int substeps);
-  /// The triangle of a body has candidates: its vertices are active until boxes are widened anew.
+  /// The triangle of a body is looked at: its vertices are active until tubes are laid anew.
   void activate(std::uint16_t surface, std::uint32_t triangle);
-  void activate_all();
   /// m, that a point may come off the way that it is expected to take: a share of the ways that its
   /// neighbours take, and that bodies do, for these may take it along.
   double reach(std::uint32_t point) const { return point < slots_ ? reach_[point] : 0; }
@@ -165,7 +164,7 @@ class ContactPoints {
   std::size_t bytes() const;
 
  private:
-  static void write(kernels::AlignedVector<float>& quads, std::size_t point, kernels::Vector v) {
+  static void write(SparseArray<float>& quads, std::size_t point, kernels::Vector v) {
     quads[4 * point] = static_cast<float>(v.x);
     quads[4 * point + 1] = static_cast<float>(v.y);
     quads[4 * point + 2] = static_cast<float>(v.z);
@@ -182,11 +181,13 @@ class ContactPoints {
   }
   void add_cloth();
   void prepare_for_itself();
+  void make_room(const BodyClock& clock, std::size_t points);
   ContactSurface& surface_for(const BodyClock& clock, std::size_t body, std::size_t place);
   bool holds(std::uint32_t point, kernels::Vector place) const;
   static void take_vertices(ContactSurface& surface, const TravellingBody& body);
   void see_from(ContactSurface& surface, const PoseTravel& travel) const;
   void activate_vertex(std::uint32_t point);
+  void forget_active();
   void place_vertex(std::uint32_t point);
   void write_start_and_way(std::size_t point);
   Tube tube_around(std::uint32_t slot) const;
@@ -214,25 +215,25 @@ class ContactPoints {
   double largest_way_ = 0, way_of_bodies_ = 0, travelled_ = 0;  // m, beside that
   double way_of_near_ = 0;  // m, of bodies that the cloth may come to
   float rounding_ = 0, rounding_of_vertices_ = 0;
-  std::vector<kernels::Vector> start_, end_;
+  SparseArray<kernels::Vector> start_, end_;
   std::vector<double> reach_, ways_;  // per slot
-  std::vector<Box> box_;
-  std::vector<Tube> tube_;
-  kernels::AlignedVector<simd::PointTube> lane_tubes_;
+  SparseArray<Box> box_;
+  SparseArray<Tube> tube_;
+  SparseArray<simd::PointTube> lane_tubes_;
   bool has_tubes_ = false;
   double from_ = 0, to_ = 0, until_ = 0;  // shares of the step: of the interval, and to its end
   double laid_from_ = 0;                  // likewise: when tubes were laid
   double time_left_ = 0;                  // s, until the step ends
   std::vector<double> shortest_;          // m, per slot: of its edges, of cloth that touches itself
   std::uint32_t layings_ = 0;
-  std::vector<std::uint32_t> laid_;  // per vertex: in which its tube was made
+  SparseArray<std::uint32_t> laid_;  // per vertex: in which its tube was made
   std::uint32_t placings_ = 0;
-  std::vector<std::uint32_t> placed_;    // per vertex: ContactSurface::placing when it was placed
+  SparseArray<std::uint32_t> placed_;    // per vertex: ContactSurface::placing when it was placed
   std::vector<std::uint32_t> active_;    // vertices
-  std::vector<std::uint8_t> is_active_;  // per vertex
-  kernels::AlignedVector<float> start_quads_, way_quads_, place_quads_;
+  SparseArray<std::uint8_t> is_active_;  // per vertex
+  SparseArray<float> start_quads_, way_quads_, place_quads_;
   std::vector<std::uint32_t> asked_;
-  std::vector<kernels::Vector> substep_from_, substep_to_;  // per vertex that was asked for
+  SparseArray<kernels::Vector> substep_from_, substep_to_;  // per vertex that was asked for
 };
 
 template <class Moved>

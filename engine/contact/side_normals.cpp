@@ -15,13 +15,13 @@ void SideNormals::begin(const TriangleSurface& surface, const Vector* places, bo
   if (!are_same || surface_ != &surface) ++interval_;
   surface_ = &surface;
   places_ = places;
-  triangles_.resize(surface.triangles.size());
-  edges_.resize(surface.edges.size());
-  points_.resize(surface.triangles_at.size());
+  triangles_.make_room(surface.triangles.size());
+  edges_.make_room(surface.edges.size());
+  points_.make_room(surface.triangles_at.size());
 }
 
 template <class Compute>
-Vector SideNormals::known(std::vector<Known>& normals, std::uint32_t i, Compute&& compute) {
+Vector SideNormals::known(SparseArray<Known>& normals, std::uint32_t i, Compute&& compute) {
   if (normals[i].interval != interval_) normals[i] = {compute(), interval_};
   return normals[i].normal;
 }

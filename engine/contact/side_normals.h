@@ -5,8 +5,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "engine/sparse_array.h"
 #include "engine/triangles/triangle_surface.h"
 #include "kernels/vectors.h"
 
@@ -24,16 +24,16 @@ class SideNormals {
 
  private:
   struct Known {
-    kernels::Vector normal{};
-    std::uint32_t interval = 0;  // in which it was computed
+    kernels::Vector normal;
+    std::uint32_t interval;  // in which it was computed; 0: in none
   };
   template <class Compute>
-  kernels::Vector known(std::vector<Known>& normals, std::uint32_t i, Compute&& compute);
+  kernels::Vector known(SparseArray<Known>& normals, std::uint32_t i, Compute&& compute);
 
   const TriangleSurface* surface_ = nullptr;
   const kernels::Vector* places_ = nullptr;
   std::uint32_t interval_ = 0;
-  std::vector<Known> triangles_, edges_, points_;
+  SparseArray<Known> triangles_, edges_, points_;
 };
 
 }  // namespace weft

@@ -12,6 +12,7 @@
 #include "engine/contact/seen_from_body.h"
 #include "engine/contact/side_normals.h"
 #include "engine/contact/tube.h"
+#include "engine/sparse_array.h"
 #include "engine/triangles/box_tree.h"
 #include "engine/triangles/triangle_surface.h"
 
@@ -37,7 +38,7 @@ struct ContactSurface {
   SeenFromBody seen;                              // from when tubes were laid until the step ends
   std::uint32_t placing = 0;            // another one where its vertices are to be placed anew
   reference::Placement begins, ends;    // in the present interval
-  std::vector<std::uint8_t> is_near;    // per triangle: it has candidates
+  SparseArray<std::uint32_t> active;    // per triangle: the laying of tubes since which it is
   std::vector<std::uint8_t> may_cross;  // per triangle of the cloth: tubes of both meet
 
   /// A box of the world as the tree has it.

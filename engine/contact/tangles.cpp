@@ -54,7 +54,7 @@ struct NearestTriangle {
   bool is_there = false;
 };
 
-NearestTriangle find_nearest(const ContactPoints& points, std::uint32_t slot, SurfacePair pair) {
+NearestTriangle find_nearest(ContactPoints& points, std::uint32_t slot, SurfacePair pair) {
   const ContactSurface& surface = points.surfaces()[pair.b];
   const Vector x = points.start(slot);
   const Vector from = in_tree(points, surface, slot);
@@ -63,6 +63,7 @@ NearestTriangle find_nearest(const ContactPoints& points, std::uint32_t slot, Su
   surface.tree.near(
       {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)},
       [&](std::uint32_t triangle) {
+        points.activate(pair.b, triangle);
         const auto [a, b, c] = surface.points_of(triangle);
         const reference::Nearest other =
             reference::nearest_in_triangle(x, points.start(a), points.start(b), points.start(c));
@@ -159,6 +160,7 @@ void Tangles::come_off(ContactPoints& points, std::uint32_t triangle, Near& near
     ContactSurface& body = points.surfaces()[pair.b];
     if (body.two_sided) continue;
     body.tree.find(table_, body.as_in_tree(box), [&](std::uint32_t other) {
+      points.activate(pair.b, other);
       const TriangleSurface::Triangle its = body.points_of(other);
       const Corners there{points.start(its[0]), points.start(its[1]), points.start(its[2])};
       if (are_beside(corners, there) || are_beside(there, corners)) return;
@@ -257,7 +259,7 @@ void Tangles::gather_slots() {
 }
 
 template <class At>
-bool Tangles::crosses(const ContactPoints& points, std::uint32_t triangle, At&& at) const {
+bool Tangles::crosses(ContactPoints& points, std::uint32_t triangle, At&& at) const {
   const auto [a, b, c] = cloth_->triangles[triangle];
   const Corners corners{at(a), at(b), at(c)};
   const Box box = box_of(points, corners);
@@ -267,6 +269,7 @@ bool Tangles::crosses(const ContactPoints& points, std::uint32_t triangle, At&& 
     if (does || surface.may_cross[triangle] == 0) continue;
     surface.tree.find(table_, surface.as_in_tree(box), [&](std::uint32_t other) {
       if (does) return;
+      points.activate(pair.b, other);
       const auto [p, q, r] = surface.points_of(other);
       const Corners its{at(p), at(q), at(r)};
       if (are_beside(corners, its) || are_beside(its, corners)) return;
@@ -277,7 +280,7 @@ bool Tangles::crosses(const ContactPoints& points, std::uint32_t triangle, At&& 
 }
 
 template <class At>
-void Tangles::find_crossing(const ContactPoints& points, At&& at) {
+void Tangles::find_crossing(ContactPoints& points, At&& at) {
   forget_crossing();
   for (std::uint32_t t = 0; t < cloth_->triangles.size(); ++t) {
     if (!cloth_->is_point(t) && crosses(points, t, at)) add_crossing(t);
@@ -285,7 +288,7 @@ void Tangles::find_crossing(const ContactPoints& points, At&& at) {
   gather_slots();
 }
 
-void Tangles::find_crossing_at_end(const ContactPoints& points) {
+void Tangles::find_crossing_at_end(ContactPoints& points) {
   find_crossing(points, [&](std::uint32_t point) { return points.end(point); });
 }
 

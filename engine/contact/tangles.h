@@ -32,7 +32,7 @@ class Tangles {
   /// The pair could not be kept apart.
   void take_in(const ContactPoints& points, const Pair& pair);
   /// Finds what crosses where an interval ends: bodies, and the cloth itself.
-  void find_crossing_at_end(const ContactPoints& points);
+  void find_crossing_at_end(ContactPoints& points);
   void find_crossing_within_at_end(const ContactPoints& points);
 
   bool any() const { return !triangles_.empty() || !misplaced_.inside.empty(); }
@@ -58,9 +58,9 @@ class Tangles {
 
  private:
   template <class At>
-  void find_crossing(const ContactPoints& points, At&& at);
+  void find_crossing(ContactPoints& points, At&& at);
   template <class At>
-  bool crosses(const ContactPoints& points, std::uint32_t triangle, At&& at) const;
+  bool crosses(ContactPoints& points, std::uint32_t triangle, At&& at) const;
   bool any_is_inside(const std::array<std::uint32_t, 4>& points) const;
   void come_off(ContactPoints& points, std::uint32_t triangle, Near& near) const;
   static void come_off_corner(ContactPoints& points, SurfacePair pair, std::uint32_t triangle,

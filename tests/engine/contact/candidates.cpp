@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/contact/near.h"
+#include "engine/contact/tangles.h"
 #include "engine/model/model.h"
 #include "kernels/reference/distances.h"
 #include "tests/support/body_meshes.h"
@@ -358,6 +359,46 @@ TEST_CASE("pairs within a cloth that may come near in an interval are among the 
   CHECK(far > 300);
   CHECK(adjacent > 100);
   CHECK(left_out > 1000);
+}
+
+/// Tangles ask for places that nobody asked for before.
+TEST_CASE(
+    "of a mesh those vertices alone are placed that are looked at, and what is inside is known") {
+  Beside now(1, false, false);
+  now.predict();
+  const simd::Table& table = simd::table(simd::best_isa());
+  ContactPoints points(*now.model);
+  points.begin(now.clock);
+  points.look_ahead(now.particles, now.clock);
+  points.begin_interval(now.particles, now.clock, 4);
+  CandidateSearch search(table);
+  Candidates candidates;
+  Team team;
+  search.find(points, candidates, team);
+  Tangles tangles(table);
+  tangles.begin(points.cloth(), {});
+  tangles.find(points);
+  const Vector centre{0.01, -0.137, 0.02};
+  int inside = 0, placed = 0;
+  for (std::uint32_t slot = 0; slot < now.model->slots(); ++slot) {
+    const double from_centre = length(points.start(slot) - centre);
+    if (tangles.is_inside(slot)) {
+      ++inside;
+      CHECK(from_centre < 0.15);
+    } else {
+      CHECK((!now.model->is_particle(slot) || from_centre > 0.147));  // its faces are that near
+    }
+  }
+  const ContactSurface& ball = points.surfaces()[1];
+  for (std::size_t i = 0; i < ball.from.size(); ++i) {
+    const Vector at = points.start(ball.first_point + static_cast<std::uint32_t>(i));
+    if (at == Vector{}) continue;
+    ++placed;
+    CHECK(length(at - (centre + ball.from[i])) < 1e-12);
+  }
+  CHECK(inside > 0);
+  CHECK(placed > 10);
+  CHECK(placed < 0.5 * static_cast<double>(ball.from.size()));
 }
 
 }  // namespace
