@@ -66,9 +66,8 @@ void add_solver_options(Verb verb, SolverOptions& options) {
               "auto (default), small_steps, gauss_seidel, yarn or direct; gauss_seidel where "
               "--anticipate, --skip or --directions choose among its methods");
   verb.option("--scheme", options.scheme,
-              "auto (default): bdf2 with small_steps (stiff plates: implicit), else paper. "
-              "small_steps: implicit, or bdf2: "
-              "second order; the other solvers: paper, or rattle: second order, implies "
+              "auto (default): bdf2 with small_steps, else paper. small_steps: implicit, "
+              "or bdf2: second order; the other solvers: paper, or rattle: second order, implies "
               "--velocity-correction on");
   verb.option(
       "--anticipate", options.anticipate,

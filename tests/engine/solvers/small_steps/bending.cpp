@@ -10,9 +10,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
-#include "engine/solvers/small_steps/bending_frame.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
-#include "engine/tuning.h"
 #include "tests/support/bending.h"
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
