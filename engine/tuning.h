@@ -115,6 +115,9 @@ inline constexpr double kLayerTime = 3e-3;
 /// Of what layers are too far apart so much is taken back in a visit. With all of it a stack that
 /// lands sinks deeper, and gains 3e-5 J as it comes out; without it two layers never rest.
 inline constexpr double kTakenBack = 0.5;
+/// The cosine of the angle at which bodies are against each other, so that what lies between them
+/// is held by both, and not pressed out.
+inline constexpr double kAgainst = 0.9;
 /// s, of a substep in which bodies stand: what is under a surface comes out wherever it is.
 inline constexpr double kAtOnce = 1e6;
 /// Compliance of a yarn's constraints in a sweep, relative to the diagonal of its matrix. That of a

@@ -16,6 +16,7 @@ struct Encounter {
   reference::Nearest nearest{};
   kernels::Vector normal{};  // from the second feature to the first, where both were on their sides
   double gap = 0;            // m
+  reference::Yield yield{};  // of the body
   bool is_under = false;     // one is on the wrong side of the other
   bool pushes = false;
 

@@ -57,6 +57,7 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   near_search_.find(points_, candidates_, tangles_, near_, team);
   tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);
+  squeeze_.begin(scene(particles, clock), near_);
   for (const PairList& list : candidates_)
     visits_ += tuning::kVisitsOfLook * static_cast<double>(list.size());
   for (const NearPairs& near : near_)
@@ -64,8 +65,10 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   interval_ = substeps * clock.h();
 }
 
-void SurfaceContacts::advance(const BodyClock& clock) {
-  if (!empty()) response_.advance(clock, points_, near_);
+void SurfaceContacts::advance(ContactParticles& particles, const BodyClock& clock) {
+  if (empty()) return;
+  response_.advance(clock, points_, near_);
+  squeeze_.share(scene(particles, clock), near_);
 }
 
 bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock& clock,
@@ -74,6 +77,7 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
   const ContactScene scene = this->scene(particles, clock);
   points_.measure_moves(particles);
   late_depth_ = 0;
+  squeeze_.take_in(scene, near_, tangles_);
   bool has_moved = push_late_apart(scene, team);
   verification_.find(scene, search_, near_search_, candidates_, team);
   const bool has_failed = !verification_.failures().empty();
@@ -179,7 +183,8 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
 
 std::size_t SurfaceContacts::bytes() const {
   std::size_t bytes = points_.bytes() + search_.bytes() + near_search_.bytes() + response_.bytes() +
-                      tangles_.bytes() + bytes_of(impulses_.of_body) + zones_.bytes();
+                      squeeze_.bytes() + tangles_.bytes() + bytes_of(impulses_.of_body) +
+                      zones_.bytes();
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
     bytes +=

@@ -7,6 +7,7 @@
 ///   3  near: which of them may touch; tangles: what comes out
 ///      in each substep:
 ///   4  points: where the vertices of bodies are that near pairs have
+///      squeeze: how bodies share the room between them
 ///   5  respond: lanes find which near pairs touch
 ///   6  respond: these are pushed apart, along normals of that moment, with friction
 ///      when the interval is over:
@@ -25,6 +26,7 @@
 
 #include "engine/contact/rescue.h"
 #include "engine/contact/respond.h"
+#include "engine/contact/squeeze.h"
 #include "engine/contact/touch.h"
 
 namespace weft {
@@ -36,8 +38,9 @@ enum class ContactStart : std::uint8_t { known, anew, goes_on };
 
 class SurfaceContacts {
  public:
-  SurfaceContacts(const Model& model, const simd::Table& table)
+  SurfaceContacts(const Model& model, const simd::Table& table, Room& room)
       : model_(model),
+        room_(room),
         points_(model),
         search_(table),
         near_search_(table),
@@ -55,7 +58,7 @@ class SurfaceContacts {
   /// with it.
   void predict(ContactParticles& particles, const BodyClock& clock, Team& team);
   /// The clock has advanced to the end of the substep.
-  void advance(const BodyClock& clock);
+  void advance(ContactParticles& particles, const BodyClock& clock);
   /// moved(slot, by): by how much (m).
   template <class Moved>
   void sweep(ContactParticles& particles, const BodyClock& clock, Team& team, Moved&& moved) {
@@ -96,7 +99,7 @@ class SurfaceContacts {
 
  private:
   ContactScene scene(ContactParticles& particles, const BodyClock& clock) {
-    return {model_, clock, points_, particles, impulses_, tangles_};
+    return {model_, clock, points_, particles, impulses_, tangles_, room_};
   }
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
@@ -105,10 +108,12 @@ class SurfaceContacts {
   void expect_failures(const ContactScene& scene);
 
   const Model& model_;
+  Room& room_;
   ContactPoints points_;
   CandidateSearch search_;
   NearSearch near_search_;
   Response response_;
+  Squeeze squeeze_;
   Verification verification_;
   Candidates candidates_;
   Near near_;

@@ -76,7 +76,8 @@ void slow(const ContactScene& scene, const Encounter& e, const Shares& shares, d
     at[k] = scene.read_moving(e.points[k]);
     relative = relative + e.nearest.weight[k] * at[k].v;
   }
-  const reference::Slowed slowed = reference::slow(e.normal, relative, friction, grip);
+  const reference::Slowed slowed =
+      reference::slow(e.normal, relative, friction, scene.clock.h(), grip);
   for (std::size_t k = 0; k < 4; ++k) {
     if (shares.of[k] == 0) continue;
     at[k].v = at[k].v + shares.of[k] * slowed.change;

@@ -140,7 +140,9 @@ Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::
   }
   e.normal = e.is_under ? -1.0 * direct : direct;
   e.gap = (e.is_under ? -l : l) - thickness;
-  if (!(e.gap < 0) || !is_in_place(pair.kind, e.nearest)) return e;
+  if (!pair.is_within_cloth())
+    e.yield = scene.yield(e.points, e.nearest.weight, scene.points.later(pair).body);
+  if (!(e.gap + e.yield.by < 0) || !is_in_place(pair.kind, e.nearest)) return e;
   const Vector seen = pair.kind == PairKind::edges ? e.normal : direct;
   e.pushes = !is_ghost(scene.points.surfaces(), pair, e.x, e.nearest, seen, tuning::kTouchLean,
                        [&](std::uint32_t point) { return scene.now(point); });
@@ -166,6 +168,7 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   }
   if (!(weight > 0)) return false;
   weight = std::max(weight, least_weight(scene.points, e.points));
+  state.grip.yield = e.yield;
   const ContactSurface& later = scene.points.later(pair);
   const reference::Stop stop =
       reference::stop({e.normal, e.gap, slip}, later.friction, scene.clock.h(), state.grip);
@@ -191,7 +194,8 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
     surface.velocity = surface.velocity - outward * at[k].v;
     on_body = on_body - outward * e.x[k];
   }
-  const reference::Slowed slow = reference::slow(e.normal, relative, later.friction, grip);
+  const reference::Slowed slow =
+      reference::slow(e.normal, relative, later.friction, scene.clock.h(), grip);
   Vector impulse{};
   for (std::size_t k = 0; k < 4; ++k) {
     const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k];
@@ -246,7 +250,8 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
       for_each_lane(block, touching_[list][block], [&](std::size_t i) {
         if (near[list].list.pairs[i].is_within_cloth()) return;
         const Encounter e = meet(scene, near[list], i);
-        if (e.pushes) deepest = std::max(deepest, -e.gap);
+        const double spared = std::min(e.yield.by, near[list].states[i].thickness);
+        if (e.pushes) deepest = std::max(deepest, -e.gap - spared);
       });
     }
   }

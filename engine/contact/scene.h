@@ -4,6 +4,7 @@
 #include "engine/contact/impulses.h"
 #include "engine/contact/particles.h"
 #include "engine/contact/points.h"
+#include "engine/contact/room.h"
 #include "engine/contact/tangles.h"
 
 namespace weft {
@@ -15,6 +16,7 @@ struct ContactScene {
   ContactParticles& particles;
   ContactImpulses& impulses;
   const Tangles& tangles;
+  Room& room;
 
   /// A point in the present substep; a vertex of a body is one that was asked for.
   ContactParticle read(std::uint32_t point) const {
@@ -36,6 +38,19 @@ struct ContactScene {
   /// And where it was when the substep began.
   kernels::Vector start(std::uint32_t point) const {
     return points.is_of_cloth(point) ? particles.start(point) : points.from(point);
+  }
+  /// What a body yields to a feature of the cloth, whose points count by their weights.
+  reference::Yield yield(const std::array<std::uint32_t, 4>& four,
+                         const std::array<double, 4>& weights, std::uint32_t body) const {
+    reference::Yield sum;
+    if (!room.any()) return sum;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!points.is_of_cloth(four[k])) continue;
+      const reference::Yield of = room.of(four[k], body);
+      const double w = std::abs(weights[k]);
+      sum = {sum.by + w * of.by, sum.retreat + w * of.retreat};
+    }
+    return sum;
   }
   /// Where any point is when the present substep ends.
   kernels::Vector now(std::uint32_t point) const {

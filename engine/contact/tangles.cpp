@@ -228,6 +228,18 @@ void Tangles::take_in(const ContactPoints& points, const Pair& pair) {
     inside.insert(std::ranges::lower_bound(inside, pair.first), pair.first);
 }
 
+void Tangles::let_in(const ContactPoints& points, const Pair& pair) {
+  take_in(points, pair);
+  if (pair.kind == PairKind::point_triangle) {
+    if (pair.is_turned()) add_crossing(pair.second);
+    return;
+  }
+  const auto [a, b] = cloth_->edges[pair.first];
+  for (const std::uint32_t t : cloth_->triangles_at[a]) {
+    if (std::ranges::find(cloth_->triangles[t], b) != cloth_->triangles[t].end()) add_crossing(t);
+  }
+}
+
 bool Tangles::any_is_inside(const std::array<std::uint32_t, 4>& points) const {
   return std::ranges::any_of(points, [&](std::uint32_t point) { return is_inside(point); });
 }
@@ -243,6 +255,7 @@ void Tangles::forget_crossing() {
 void Tangles::add_crossing(std::uint32_t triangle) {
   has_triangle_.resize(cloth_->triangles.size());
   has_edge_.resize(cloth_->edges.size());
+  if (has_triangle_[triangle]) return;
   has_triangle_[triangle] = true;
   for (const std::uint32_t edge : cloth_->edges_of[triangle]) has_edge_[edge] = true;
   triangles_.push_back(triangle);

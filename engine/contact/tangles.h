@@ -31,6 +31,8 @@ class Tangles {
   void come_out(ContactPoints& points, Near& near);
   /// The pair could not be kept apart.
   void take_in(const ContactPoints& points, const Pair& pair);
+  /// Bodies that overlap are both to have what is between them: it is no failure of the pair.
+  void let_in(const ContactPoints& points, const Pair& pair);
   /// Finds what crosses where an interval ends: bodies, and the cloth itself.
   void find_crossing_at_end(ContactPoints& points);
   void find_crossing_within_at_end(const ContactPoints& points);

@@ -162,12 +162,12 @@ void Verification::find_late(const ContactScene& scene, const NearSearch& near_s
         const FourPoints x = points.ends_of(four);
         const reference::Nearest found = nearest(pair.kind, x);
         const double l = length(found.r);
-        if (!(l < tuning::kLate * later.thickness) || l == 0 || !is_in_place(pair.kind, found))
-          return {};
+        const double thickness = later.thickness - scene.yield(four, found.weight, later.body).by;
+        if (!(l < tuning::kLate * thickness) || l == 0 || !is_in_place(pair.kind, found)) return {};
         if (is_ghost(points.surfaces(), pair, x, found, (1 / l) * found.r, tuning::kTouchLean, at))
           return {};
         if (!later.two_sided && scene.tangles.is_inside(four)) return {};
-        return {.fails = true, .time = 1, .depth = later.thickness - l};
+        return {.fails = true, .time = 1, .depth = thickness - l};
       });
   leave_each_once(candidates);
 }

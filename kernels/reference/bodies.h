@@ -186,11 +186,25 @@ inline Vector kept_out(const BodyMotion& body, Vector start, Vector by, double r
   return by + std::max(0.0, std::min(0.0, from.gap) - to.gap) * body.from.turned(to.normal);
 }
 
+inline constexpr double kPressed = 1e6;  // over what a body yields
+
+/// How much of its distance a body gives up where another one leaves no room for it
+/// (engine/contact/room.h). m: at the end of the substep, and what of it is new, since both bodies
+/// close on each other.
+struct Yield {
+  double by = 0, retreat = 0;
+
+  /// m, by which the other body presses for the sake of friction: what has no room between solid
+  /// bodies is held by any friction.
+  double presses() const { return kPressed * by; }
+};
+
 /// What contacts of a particle and a body have done in a substep.
 struct Grip {
   double pushed = 0, held = 0;     // m: along the normal, without what came out, and by friction
   double stopped = 0, slowed = 0;  // m/s, likewise
   double came_out = 0;             // m, along the normal: the rest of the pushes
+  Yield yield{};
 };
 
 /// How a point of the cloth and the surface under it have come together in a substep.
@@ -225,17 +239,18 @@ struct Stop {
   Vector by{};           // m, of the point, altogether
 };
 inline Stop stop(const Encounter& e, double friction, double h, Grip& done) {
-  const double approach = -dot(e.normal, e.slip), began = e.gap + approach - done.came_out;
+  const double toward = -dot(e.normal, e.slip), gap = e.gap + done.yield.by;
+  const double approach = toward - done.yield.retreat, began = gap + approach - done.came_out;
   const double recovers = h * std::min(kFastestRecovery, kRecovery - began / kRecoveryTime);
   const double target = std::min(0.0, began < 0 ? began + recovers : 0.0);
-  const double push = target - e.gap;
+  const double push = target - gap;
   if (!(push > 0)) return {};
   const double stays_out = std::min(push, std::max(0.0, approach));
   done.pushed += stays_out;
   done.came_out += push - stays_out;
-  const Vector along = e.slip + approach * e.normal;
+  const Vector along = e.slip + toward * e.normal;
   const double l = length(along);
-  const double held = held_share(l, friction * done.pushed, done.held);
+  const double held = held_share(l, friction * (done.pushed + done.yield.presses()), done.held);
   return {push, push - stays_out, (1 - held) * l, push * e.normal - held * along};
 }
 
@@ -244,12 +259,13 @@ struct Slowed {
   Vector change{};   // m/s
   double taken = 0;  // m/s, along the surface
 };
-inline Slowed slow(Vector normal, Vector relative, double friction, Grip& done) {
-  const double into = std::max(0.0, -dot(normal, relative));
+inline Slowed slow(Vector normal, Vector relative, double friction, double h, Grip& done) {
+  const double into = std::max(0.0, -dot(normal, relative) - done.yield.retreat / h);
   done.stopped += into;
   const Vector sliding = relative - dot(normal, relative) * normal;
   const double l = length(sliding);
-  const double slowed = held_share(l, friction * done.stopped, done.slowed);
+  const double may = friction * (done.stopped + done.yield.presses() / h);
+  const double slowed = held_share(l, may, done.slowed);
   return {into * normal - slowed * sliding, slowed * l};
 }
 
@@ -267,7 +283,7 @@ inline Gripped grip(const BodyMotion& body, Vector start, Vector x, Vector v, do
   gripped.push = stopped.push;
   gripped.start = start + stopped.comes_out * n;
   gripped.x = x + stopped.by;
-  const Slowed slowed = slow(n, v - body.velocity_at(gripped.x), body.friction, done);
+  const Slowed slowed = slow(n, v - body.velocity_at(gripped.x), body.friction, body.h, done);
   gripped.v = v + slowed.change;
   gripped.friction = 2 * slowed.taken * (stopped.slid / body.h);
   return gripped;

@@ -154,7 +154,9 @@ template <class At>
       p.near = p.near && !is_quick;
     }
     if (bits(p.near) == 0) continue;
-    const Floats approach = none - dot(p.normal, p.slip);
+    const Floats yields_by = load(grips.yields_by + lane), retreat = load(grips.retreat + lane);
+    const Floats toward = none - dot(p.normal, p.slip), approach = toward - retreat;
+    p.gap = p.gap + yields_by;
     const Floats came_out = load(grips.came_out + lane);
     const Floats push = push_of(p, approach, came_out, h.h);
     const FloatMask on = push > none;
@@ -162,9 +164,10 @@ template <class At>
     const Floats stays_out = xsimd::min(push, xsimd::max(none, approach));
     const Floats pushed = load(grips.pushed + lane) + stays_out;
     Floats held = load(grips.held + lane);
-    FloatVector along = fused(approach, p.normal, p.slip);
-    const Floats share =
-        held_share(xsimd::sqrt(dot(along, along)), Floats(f.friction) * pushed, held);
+    FloatVector along = fused(toward, p.normal, p.slip);
+    const Floats presses = Floats(static_cast<float>(reference::kPressed)) * yields_by;
+    const Floats most_held = Floats(f.friction) * (pushed + presses);
+    const Floats share = held_share(xsimd::sqrt(dot(along, along)), most_held, held);
     FloatVector by = fused_from(share, along, push * p.normal);
     FloatVector predicted = at.get(flight.predicted, block.place, lane);
     FloatVector v_before = at.get(flight.v, block.place, lane);
@@ -175,12 +178,14 @@ template <class At>
     FloatVector surface = splat(f.velocity) + cross(splat(f.spin), r);
     FloatVector relative = v - surface;
     const Floats out = dot(p.normal, relative);
-    const Floats into = xsimd::max(none, none - out);
+    const Floats per_second(1.f / h.h);
+    const Floats into = xsimd::max(none, none - out - retreat * per_second);
     const Floats stopped = load(grips.stopped + lane) + into;
     Floats slowed = load(grips.slowed + lane);
     FloatVector sliding = fused_from(out, p.normal, relative);
     const Floats square = dot(sliding, sliding);
-    const Floats taken = held_share(xsimd::sqrt(square), Floats(f.friction) * stopped, slowed);
+    const Floats most_slowed = Floats(f.friction) * (stopped + presses * per_second);
+    const Floats taken = held_share(xsimd::sqrt(square), most_slowed, slowed);
     FloatVector change = fused_from(taken, sliding, into * p.normal);
 
     xsimd::select(on, pushed, load(grips.pushed + lane)).store_unaligned(grips.pushed + lane);
@@ -235,7 +240,8 @@ template <class At>
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     FloatVector u = at.get(h.flight.u, block.place, lane);
     const GripLanes p = begin_grip(h, block, f, lane, at, u);
-    const Floats depth = xsimd::select(p.near, Floats(0.f) - p.gap, Floats(0.f));
+    const Floats spared = load(h.spared + i * kernels::kLanes + lane);
+    const Floats depth = xsimd::select(p.near, Floats(0.f) - p.gap - spared, Floats(0.f));
     deepest = xsimd::max(deepest, depth);
   }
   return deepest;

@@ -68,6 +68,7 @@ struct alignas(64) BodyGrips {
   float pushed[kernels::kLanes], held[kernels::kLanes];
   float stopped[kernels::kLanes], slowed[kernels::kLanes];
   float came_out[kernels::kLanes];
+  float yields_by[kernels::kLanes], retreat[kernels::kLanes];
   LaneVectors linear, angular;
   float friction[kernels::kLanes];
 };
@@ -85,6 +86,7 @@ struct BodyHold {
   float rate = 0;                     // of SubstepWeights
   float momentum_share = 1;           // by which a change of velocity counts as momentum
   float h = 0;
+  const float* spared = nullptr;  // m, per pair and lane: of the depth that is measured
 };
 
 }  // namespace weft::simd

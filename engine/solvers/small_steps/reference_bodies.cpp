@@ -18,6 +18,7 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
   on_.assign(model_.slots(), false);
   if (before.size() == on_.size()) on_ = before;
   impulses_.begin(bodies);
+  room_.begin(model_.slots());
 }
 
 void ReferenceBodies::advance(double part, ContactParticles& particles, Team& team) {
@@ -25,18 +26,35 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
   if (clock_.is_interval_over()) clock_.begin_interval(meshes_.interval_for(particles, clock_));
   meshes_.predict(particles, clock_, team);
   clock_.advance();
-  meshes_.advance(clock_);
+  room_.begin_substep();
+  meshes_.advance(particles, clock_);
   momentum_share_ = 1 / part;
   grips_.assign(model_.slots() * clock_.bodies().size(), {});
   before_.swap(on_);
   on_.assign(model_.slots(), false);
+  share_room(particles);
+}
+
+/// To particles that touched a body when the last substep ended.
+void ReferenceBodies::share_room(ContactParticles& particles) {
+  for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
+    if (!before_[slot]) continue;
+    claims_.clear();
+    for (std::size_t body = 0; body < clock_.bodies().size(); ++body) {
+      if (clock_.bodies()[body].shape->mesh() == nullptr)
+        claims_.push_back(claim_of(clock_, body, particles.start(slot), radius(slot)));
+    }
+    room_.share(claims_, clock_.h(), slot);
+  }
+  for (const Room::Entry& entry : room_.entries())
+    grips_[entry.slot * clock_.bodies().size() + entry.body].yield = entry.yield;
 }
 
 /// They move by any way: nobody knows how far.
 void ReferenceBodies::find_standing(ContactParticles& particles, Team& team) {
   if (!clock_.stands()) return;
   meshes_.predict(particles, clock_, team);
-  meshes_.advance(clock_);
+  meshes_.advance(particles, clock_);
 }
 
 TouchedSurface ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& x, Vector& v) {
@@ -86,7 +104,9 @@ double ReferenceBodies::deepest(const kernels::Vectors& start, const kernels::Ve
       if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
       const reference::BodyMotion& body = clock_.motions()[i];
       const reference::Touch touch = find_touch(body, start[slot], x[slot], radius(slot));
-      if (touch.is_near) deepest = std::max(deepest, -touch.gap);
+      const double spared =
+          std::min(body.thickness + radius(slot), room_.of(slot, static_cast<std::uint32_t>(i)).by);
+      if (touch.is_near) deepest = std::max(deepest, -touch.gap - spared);
     }
   }
   return deepest;

@@ -15,7 +15,7 @@ namespace weft {
 class ReferenceBodies {
  public:
   ReferenceBodies(const Model& model, const simd::Table& table)
-      : model_(model), meshes_(model, table) {}
+      : model_(model), meshes_(model, table, room_) {}
 
   using Touching = std::vector<bool>;  // per slot
 
@@ -64,15 +64,18 @@ class ReferenceBodies {
   void read_contacts(const ContactParticles& particles, std::vector<BodyTouch>& contacts) const;
 
  private:
+  void share_room(ContactParticles& particles);
   double radius(std::uint32_t slot) const { return model_.has_spheres() ? model_.radius[slot] : 0; }
 
   const Model& model_;
   BodyClock clock_;
+  Room room_;
   SurfaceContacts meshes_;
   double momentum_share_ = 1;
   std::vector<reference::Grip> grips_;  // per slot and body
   Touching on_, before_;
-  ContactImpulses impulses_;  // but for those that meshes have given
+  std::vector<Claim> claims_;  // scratch
+  ContactImpulses impulses_;   // but for those that meshes have given
 };
 
 }  // namespace weft

@@ -67,6 +67,7 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
   on_.assign(layout_.blocks.size(), 0);
   if (before.size() == on_.size()) std::ranges::copy(before, on_.begin());
   impulses_.begin(bodies);
+  room_.begin(model_.slots());
 }
 
 void SimdBodies::advance(const simd::Flight& flight, const float* base, double part,
@@ -78,23 +79,57 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   }
   meshes_.predict(particles, clock_, team);
   clock_.advance();
-  meshes_.advance(clock_);
+  room_.begin_substep();
+  meshes_.advance(particles, clock_);
   write_frames();
   before_.swap(on_);
   std::ranges::fill(on_, std::uint16_t{0});
   momentum_share_ = 1 / part;
   for (simd::BodyGrips& grips : grips_) {
-    for (float* lanes : {grips.pushed, grips.held, grips.stopped, grips.slowed, grips.came_out})
+    for (float* lanes : {grips.pushed, grips.held, grips.stopped, grips.slowed, grips.came_out,
+                         grips.yields_by, grips.retreat})
       std::fill_n(lanes, kLanes, 0.f);
   }
   for (auto* bits : {&touching_, &moved_, &quick_}) std::ranges::fill(*bits, std::uint16_t{0});
+  share_room(particles);
+}
+
+/// Among bodies of a closed form, to particles that touched one when the last substep ended. What
+/// they yield to any particle is for lanes, too.
+void SimdBodies::share_room(ContactParticles& particles) {
+  for (std::size_t active = 0; active + 1 < first_pair_.size(); ++active) {
+    const std::size_t first = first_pair_[active], last = first_pair_[active + 1];
+    if (last - first < 2) continue;
+    const std::uint32_t block = pairs_[first].block;
+    for (std::uint32_t bits = before_[block]; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      const std::uint32_t slot = layout_.slot_at[block * kLanes + lane];
+      claims_.clear();
+      for (std::size_t i = first; i < last; ++i) {
+        claims_.push_back(claim_of(clock_, pairs_[i].body, particles.start(slot),
+                                   static_cast<double>(layout_.blocks[block].radius[lane])));
+      }
+      room_.share(claims_, clock_.h(), slot);
+    }
+  }
+  if (pairs_.empty()) return;
+  for (const Room::Entry& entry : room_.entries()) {
+    const std::uint32_t place = layout_.place_of[entry.slot];
+    if (place == kNoIndex) continue;
+    const std::size_t block = place / kLanes, lane = place % kLanes;
+    for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
+      if (pairs_[i].body != entry.body) continue;
+      grips_[i].yields_by[lane] = static_cast<float>(entry.yield.by);
+      grips_[i].retreat[lane] = static_cast<float>(entry.yield.retreat);
+    }
+  }
 }
 
 /// They move by any way: nobody knows how far.
 void SimdBodies::find_standing(ContactParticles& particles, Team& team) {
   if (!clock_.stands()) return;
   meshes_.predict(particles, clock_, team);
-  meshes_.advance(clock_);
+  meshes_.advance(particles, clock_);
 }
 
 SimdBodies::Extent SimdBodies::extent_of(std::size_t block, int substeps,
@@ -272,9 +307,10 @@ TouchedSurface SimdBodies::hold(std::uint32_t slot, Particle& particle) {
     const BodyMotion& body = clock_.motions()[pairs_[i].body];
     simd::BodyGrips& lanes = grips_[i];
     const auto number = [](float x) { return static_cast<double>(x); };
-    reference::Grip grip{number(lanes.pushed[lane]), number(lanes.held[lane]),
-                         number(lanes.stopped[lane]), number(lanes.slowed[lane]),
-                         number(lanes.came_out[lane])};
+    reference::Grip grip{
+        number(lanes.pushed[lane]),   number(lanes.held[lane]),
+        number(lanes.stopped[lane]),  number(lanes.slowed[lane]),
+        number(lanes.came_out[lane]), {number(lanes.yields_by[lane]), number(lanes.retreat[lane])}};
     const reference::Gripped gripped =
         reference::grip(body, particle.start, particle.x, particle.v,
                         number(layout_.blocks[block].radius[lane]), grip);
@@ -336,12 +372,28 @@ bool SimdBodies::begins_to_touch(std::uint32_t slot) {
   return begins;
 }
 
+/// m, of its distance from each particle of the block.
+std::array<float, kLanes> SimdBodies::spared_by(std::size_t block, std::uint32_t body) const {
+  std::array<float, kLanes> spared{};
+  if (!room_.any()) return spared;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const std::uint32_t slot = layout_.slot_at[block * kLanes + lane];
+    if (slot == kNoIndex) continue;
+    const double most =
+        clock_.motions()[body].thickness + static_cast<double>(layout_.blocks[block].radius[lane]);
+    spared[lane] = static_cast<float>(std::min(most, room_.of(slot, body).by));
+  }
+  return spared;
+}
+
 double SimdBodies::deepest(const simd::Flight& flight, const float* base,
                            ContactParticles& particles, Team& team) {
   double deepest = meshes_.deepest(particles, clock_, team);
   simd::BodyHold hold = hold_of(flight, base, 0);
   std::array<simd::BodyPair, 64> pairs;
+  std::array<std::array<float, kLanes>, 64> spared;
   hold.pairs = pairs.data();
+  hold.spared = spared[0].data();
   std::size_t count = 0;
   const auto measure = [&] {
     const float depth = table_.deepest_in_bodies(hold, 0, std::exchange(count, 0));
@@ -355,6 +407,7 @@ double SimdBodies::deepest(const simd::Flight& flight, const float* base,
     for (std::uint32_t body = 0; body < boxes_.size(); ++body) {
       if (!may_touch(extent, body, boxes_[body], 0)) continue;
       if (count == pairs.size()) measure();
+      spared[count] = spared_by(block, body);
       pairs[count++] = {block, body};
     }
   }
@@ -408,7 +461,7 @@ std::size_t SimdBodies::bytes() const {
          bytes_of(pairs_) + bytes_of(first_pair_) + bytes_of(pairs_of_) + bytes_of(grips_) +
          bytes_of(touching_) + bytes_of(moved_) + bytes_of(quick_) + bytes_of(on_) +
          bytes_of(before_) + bytes_of(held_) + bytes_of(arrived_) + bytes_of(impulses_.of_body) +
-         bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_);
+         bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_) + bytes_of(claims_) + room_.bytes();
 }
 
 }  // namespace weft

@@ -5,6 +5,7 @@
 /// substep, after each sweep.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <span>
 #include <vector>
@@ -27,7 +28,7 @@ class SimdBodies {
         far_(tuning::kLocalShare * settings.tolerance),
         contact_tolerance_(settings.contact_tolerance),
         table_(table),
-        meshes_(model, table) {}
+        meshes_(model, table, room_) {}
 
   /// Who touched a body when the last substep of a frame ended, per block.
   using Touching = std::vector<std::uint16_t>;
@@ -121,6 +122,8 @@ class SimdBodies {
   /// Whether particles of such a block may touch the body, which is in the box, in that time (s).
   bool may_touch(const Extent& extent, std::size_t body, const BodyClock::Box& box,
                  double time) const;
+  void share_room(ContactParticles& particles);
+  std::array<float, kernels::kLanes> spared_by(std::size_t block, std::uint32_t body) const;
   /// Adds what grips have given to impulses_.
   void collect_impulses();
   void write_frames();
@@ -131,6 +134,7 @@ class SimdBodies {
   const double contact_tolerance_;  // m
   const simd::Table& table_;
   BodyClock clock_;
+  Room room_;
   SurfaceContacts meshes_;
   BodyLayout layout_;  // made when the first body is there
   double h_ = 0;
@@ -150,6 +154,7 @@ class SimdBodies {
   std::vector<BodyClock::Box> boxes_;  // scratch
   std::vector<Extent> extents_;        // likewise
   std::vector<std::uint16_t> now_;     // likewise
+  std::vector<Claim> claims_;          // likewise
 };
 
 template <class Arrived, class Moved, class Quick>

@@ -109,6 +109,7 @@ struct GrippedBlock {
   kernels::AlignedVector<float> base, u, u_before, predicted, v;
   simd::BodyBlock block{};
   simd::BodyGrips grips{};
+  std::array<float, kLanes> spared{};
   std::uint16_t touching = 0, moved = 0, quick = 0;
 
   GrippedBlock(bool is_woven, Random& random) : woven(is_woven) {
@@ -125,6 +126,9 @@ struct GrippedBlock {
       block.far[lane] = static_cast<float>(kFar * kFar);
       grips.pushed[lane] = lane % 3 == 0 ? 1e-4f : 0.f;
       grips.came_out[lane] = lane % 4 == 0 ? 2e-5f : 0.f;
+      grips.yields_by[lane] = lane % 6 == 1 ? 4e-4f : 0.f;
+      grips.retreat[lane] = lane % 12 == 1 ? 1e-4f : 0.f;
+      spared[lane] = lane % 6 == 1 ? 3e-4f : 0.f;
     }
   }
   std::size_t place(std::size_t lane) const { return woven ? lane : 4 * lane; }
@@ -159,7 +163,8 @@ struct GrippedBlock {
             .woven = woven,
             .rate = static_cast<float>(kRate),
             .momentum_share = static_cast<float>(kMomentumShare),
-            .h = static_cast<float>(kH)};
+            .h = static_cast<float>(kH),
+            .spared = spared.data()};
   }
 };
 
@@ -177,8 +182,10 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
     CAPTURE(seed);
     CAPTURE(lane);
     const Vector start = before.read(before.u_before, lane), x = before.read(before.u, lane);
-    reference::Grip grip{.pushed = double{before.grips.pushed[lane]},
-                         .came_out = double{before.grips.came_out[lane]}};
+    reference::Grip grip{
+        .pushed = double{before.grips.pushed[lane]},
+        .came_out = double{before.grips.came_out[lane]},
+        .yield = {double{before.grips.yields_by[lane]}, double{before.grips.retreat[lane]}}};
     const reference::Gripped expected = reference::grip(body.motion, start, x, before.settled(lane),
                                                         double{before.block.radius[lane]}, grip);
     const bool is_free = before.block.mass[lane] > 0;
@@ -206,7 +213,7 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
     const reference::Touch touch =
         find_touch(body.motion, after.read(after.u_before, lane), after.read(after.u, lane),
                    double{after.block.radius[lane]});
-    if (touch.is_near) deepest = std::max(deepest, -touch.gap);
+    if (touch.is_near) deepest = std::max(deepest, -touch.gap - double{after.spared[lane]});
   }
   const float found = table.deepest_in_bodies(after.hold(body, pair), 0, 1);
   CHECK(std::abs(double{found} - deepest) < 1e-6);

@@ -1,0 +1,190 @@
+#include "engine/contact/squeeze.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/bytes_of.h"
+#include "engine/tuning.h"
+
+namespace weft {
+
+using kernels::Vector;
+
+namespace {
+
+bool is_closed_form(const ContactScene& scene, std::uint32_t body) {
+  return scene.clock.bodies()[body].shape->mesh() == nullptr;
+}
+
+}  // namespace
+
+/// Particles with near pairs of two bodies, or of one and a body of a closed form, whose normals
+/// are against each other.
+void Squeeze::find_slots(const ContactScene& scene, const Near& near) {
+  asked_.clear();
+  for (const NearPairs& pairs : near) {
+    for (std::size_t i = 0; i < pairs.list.size(); ++i) {
+      const Pair& pair = pairs.list.pairs[i];
+      if (pair.is_within_cloth()) continue;
+      const Vector normal = pair.outward() * pairs.normal(i);
+      for (const std::uint32_t point : pairs.list.points(i)) {
+        if (scene.points.is_of_cloth(point))
+          asked_.push_back({point, scene.points.later(pair).body, normal});
+      }
+    }
+  }
+  std::ranges::sort(asked_, {}, &Asked::slot);
+  for (std::size_t first = 0, last = 0; first < asked_.size(); first = last) {
+    const std::uint32_t slot = asked_[first].slot;
+    at_one_.clear();
+    for (; last < asked_.size() && asked_[last].slot == slot; ++last)
+      at_one_.push_back(asked_[last]);
+    for (std::uint32_t body = 0; body < scene.clock.bodies().size(); ++body) {
+      if (!is_closed_form(scene, body)) continue;
+      const Claim claim = claim_of(scene.clock, body, scene.points.start(slot), 0);
+      at_one_.push_back({slot, body, claim.normal});
+    }
+    const auto are_against = [](const Asked& a, const Asked& b) {
+      return a.body != b.body && dot(a.normal, b.normal) < -tuning::kAgainst / 2;
+    };
+    const bool is_between = std::ranges::any_of(at_one_, [&](const Asked& a) {
+      return std::ranges::any_of(at_one_, [&](const Asked& b) { return are_against(a, b); });
+    });
+    if (is_between) slots_.push_back(slot);
+  }
+}
+
+void Squeeze::begin(const ContactScene& scene, const Near& near) {
+  pairs_.clear();
+  slots_.clear();
+  beside_.clear();
+  if (scene.clock.bodies().size() < 2) return;
+  find_slots(scene, near);
+  if (slots_.empty()) return;
+  for (std::uint32_t list = 0; list < kPairLists; ++list) {
+    for (std::uint32_t i = 0; i < near[list].list.size(); ++i) {
+      if (near[list].list.pairs[i].is_within_cloth()) continue;
+      const auto points = near[list].list.points(i);
+      const bool is_between = std::ranges::any_of(
+          points, [&](std::uint32_t point) { return std::ranges::binary_search(slots_, point); });
+      if (!is_between) continue;
+      for (const std::uint32_t point : points) {
+        if (scene.points.is_of_cloth(point))
+          beside_.push_back({point, static_cast<std::uint32_t>(pairs_.size())});
+      }
+      pairs_.push_back({list, i});
+    }
+  }
+  std::ranges::sort(beside_);
+}
+
+std::span<const Squeeze::OfSlot> Squeeze::beside(std::uint32_t slot) const {
+  const auto range = std::ranges::equal_range(beside_, slot, {}, &OfSlot::slot);
+  return {range.begin(), range.end()};
+}
+
+Squeeze::Seen Squeeze::see(const ContactScene& scene, const NearPairs& near, std::size_t i) const {
+  const Pair& pair = near.list.pairs[i];
+  Seen seen{.points = near.list.points(i)};
+  for (std::size_t k = 0; k < 4; ++k) seen.x[k] = scene.start(seen.points[k]);
+  const reference::Nearest found = nearest(pair.kind, seen.x);
+  seen.is_in_place = is_in_place(pair.kind, found);
+  const Vector side = near.normal(i);
+  const double l = length(found.r), sign = dot(found.r, side) >= 0 ? 1 : -1;
+  const Vector n = l > kTouching ? (sign / l) * found.r : side;
+  seen.claim = {.body = scene.points.later(pair).body,
+                .normal = pair.outward() * n,
+                .distance = sign * l,
+                .thickness = near.states[i].thickness};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double weight = std::abs(found.weight[k]);
+    if (scene.points.is_of_cloth(seen.points[k])) {
+      seen.at = seen.at + weight * seen.x[k];
+    } else {
+      const Vector way = scene.points.to(seen.points[k]) - seen.x[k];
+      seen.claim.velocity = seen.claim.velocity + (weight / scene.clock.h()) * way;
+    }
+  }
+  return seen;
+}
+
+Claim Squeeze::claim_at(const ContactScene& scene, const Seen& of, Vector at) {
+  std::array<Vector, 3> corners{};
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!scene.points.is_of_cloth(of.points[k])) corners[count++] = of.x[k];
+  }
+  for (std::size_t k = count; k < 3; ++k) corners[k] = corners[count - 1];
+  const Vector r = reference::nearest_in_triangle(at, corners[0], corners[1], corners[2]).r;
+  const double l = length(r), sign = dot(r, of.claim.normal) >= 0 ? 1 : -1;
+  Claim claim = of.claim;
+  claim.distance = sign * l;
+  if (l > kTouching) claim.normal = (sign / l) * r;
+  return claim;
+}
+
+/// Of a body that of its nearest feature counts.
+void Squeeze::take_nearest(const Claim& claim) {
+  for (Claim& known : claims_) {
+    if (known.body != claim.body) continue;
+    if (std::abs(claim.distance) < std::abs(known.distance)) known = claim;
+    return;
+  }
+  claims_.push_back(claim);
+}
+
+void Squeeze::share(const ContactScene& scene, const Near& near) {
+  seen_.clear();
+  for (const Place& place : pairs_) seen_.push_back(see(scene, near[place.list], place.pair));
+  for (const Seen& here : seen_) {
+    if (here.is_in_place && here.claim.distance < 2 * scene.points.largest_thickness())
+      share_at(scene, here);
+  }
+}
+
+void Squeeze::share_at(const ContactScene& scene, const Seen& here) {
+  std::array<std::uint32_t, 3> slots{};
+  std::size_t count = 0;
+  for (const std::uint32_t point : here.points) {
+    if (scene.points.is_of_cloth(point)) slots[count++] = point;
+  }
+  const std::span<const std::uint32_t> of_cloth = std::span(slots).first(count);
+  claims_.clear();
+  for (const std::uint32_t slot : of_cloth) {
+    for (const OfSlot& other : beside(slot)) {
+      const Seen& there = seen_[other.index];
+      if (there.claim.body != here.claim.body &&
+          dot(there.claim.normal, here.claim.normal) < -tuning::kAgainst)
+        take_nearest(claim_at(scene, there, here.at));
+    }
+  }
+  for (std::uint32_t body = 0; body < scene.clock.bodies().size(); ++body) {
+    const double radius =
+        count == 1 && scene.model.has_spheres() ? scene.model.radius[slots[0]] : 0;
+    if (is_closed_form(scene, body))
+      claims_.push_back(claim_of(scene.clock, body, here.at, radius));
+  }
+  for (const Claim& other : claims_) scene.room.share(here.claim, other, scene.clock.h(), of_cloth);
+}
+
+void Squeeze::take_in(const ContactScene& scene, const Near& near, Tangles& tangles) const {
+  if (!scene.room.any()) return;
+  for (const Place& place : pairs_) {
+    const NearPairs& pairs = near[place.list];
+    const Pair& pair = pairs.list.pairs[place.pair];
+    const double thickness = pairs.states[place.pair].thickness;
+    const auto points = pairs.list.points(place.pair);
+    const bool lets_in = std::ranges::any_of(points, [&](std::uint32_t point) {
+      return scene.points.is_of_cloth(point) &&
+             scene.room.of(point, scene.points.later(pair).body).by > thickness;
+    });
+    if (lets_in && pairs.is_under(place.pair)) tangles.let_in(scene.points, pair);
+  }
+}
+
+std::size_t Squeeze::bytes() const {
+  return bytes_of(pairs_) + bytes_of(slots_) + bytes_of(beside_) + bytes_of(seen_) +
+         bytes_of(claims_) + bytes_of(asked_) + bytes_of(at_one_);
+}
+
+}  // namespace weft

@@ -1,0 +1,66 @@
+/// Near pairs of particles that lie between bodies, one of which is a mesh: what these leave of
+/// room is shared when each substep begins (room.h).
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/contact/look.h"
+#include "engine/contact/near_pairs.h"
+#include "engine/contact/scene.h"
+#include "engine/contact/tangles.h"
+
+namespace weft {
+
+class Squeeze {
+ public:
+  /// Of an interval.
+  void begin(const ContactScene& scene, const Near& near);
+  /// Of a substep.
+  void share(const ContactScene& scene, const Near& near);
+  /// When an interval is over: particles and triangles that bodies which overlap have let in.
+  void take_in(const ContactScene& scene, const Near& near, Tangles& tangles) const;
+  std::size_t bytes() const;
+
+ private:
+  struct Place {
+    std::uint32_t list = 0, pair = 0;
+  };
+  /// A pair of a body's feature and one of the cloth, when the substep begins.
+  struct Seen {
+    std::array<std::uint32_t, 4> points{};
+    FourPoints x{};
+    kernels::Vector at{};  // of the cloth, where both are nearest
+    Claim claim{};
+    bool is_in_place = false;
+  };
+  struct OfSlot {
+    std::uint32_t slot = 0, index = 0;  // of pairs_
+
+    auto operator<=>(const OfSlot&) const = default;
+  };
+  /// What one feature of a body asks of a particle, as far as its direction is concerned.
+  struct Asked {
+    std::uint32_t slot = 0, body = 0;
+    kernels::Vector normal{};
+  };
+  Seen see(const ContactScene& scene, const NearPairs& near, std::size_t i) const;
+  /// What the body of a pair asks of another place beside its feature.
+  static Claim claim_at(const ContactScene& scene, const Seen& of, kernels::Vector at);
+  void find_slots(const ContactScene& scene, const Near& near);
+  void share_at(const ContactScene& scene, const Seen& here);
+  std::span<const OfSlot> beside(std::uint32_t slot) const;
+  void take_nearest(const Claim& claim);
+
+  std::vector<Place> pairs_;           // of particles between bodies
+  std::vector<std::uint32_t> slots_;   // these, ascending
+  std::vector<OfSlot> beside_;         // by slots
+  std::vector<Seen> seen_;             // of pairs_
+  std::vector<Claim> claims_;          // scratch
+  std::vector<Asked> asked_, at_one_;  // likewise
+};
+
+}  // namespace weft

@@ -1,0 +1,118 @@
+/// Cloth between two bodies that leave less room than both their thicknesses.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/support/body_meshes.h"
+#include "tests/support/clothes.h"
+#include "tests/support/sheets.h"
+#include "tests/support/vectors.h"
+
+namespace weft::test::engine_contact_squeezed {
+namespace {
+
+constexpr double kThickness = 1e-3;  // m, of each body
+constexpr Vec3 kTable{0.3, 0.1, 0.3}, kPlate{0.2, 0.1, 0.2};
+
+ShapeDescription shape(Vec3 size, bool is_mesh) {
+  if (is_mesh) return box_mesh(size, 4);
+  return box(size);
+}
+
+struct Press {
+  bool table_is_mesh = false, plate_is_mesh = false;
+  double room = 0;      // m, between both in the end
+  double friction = 0;  // of all
+  double rate = 60;     // Hz
+  Backend backend = Backend::simd;
+};
+
+struct Held {
+  double fastest = 0;              // m/s, once the plate stands
+  double highest = 0, lowest = 1;  // m, over the table, under the middle of the plate
+  int missed = 0;                  // frames, likewise
+  double friction = 0, work = 0;   // J, of all frames: what it took, and what bodies put in
+};
+
+/// A sheet of cotton lies on a table. A plate comes down on it within a quarter of a second, and
+/// stands for half a second.
+Held press(const Press& by) {
+  MeshDescription mesh = quads(13);
+  for (Vec3& v : mesh.positions)
+    v = {(v.x - 6) * 0.26 / 12, kTable.y / 2 + kThickness, (v.y - 6) * 0.26 / 12};
+  mesh.material = find_material("cotton").value();
+  SceneDescription scene = made(mesh).scene;
+  scene.friction = by.friction;
+  Cloth cloth =
+      cloth_of(scene, {.solver = Solver::small_steps, .backend = by.backend, .threads = 1});
+  add(cloth, {.shape = shape_of(shape(kTable, by.table_is_mesh)),
+              .thickness = kThickness,
+              .friction = by.friction});
+  const auto pose = [&](double room) {
+    return Pose{.position = {0, (kTable.y + kPlate.y) / 2 + room, 0}};
+  };
+  const double from = 0.05;
+  const std::uint32_t plate = add(cloth, {.shape = shape_of(shape(kPlate, by.plate_is_mesh)),
+                                          .pose = pose(from),
+                                          .thickness = kThickness,
+                                          .friction = by.friction});
+  Held held;
+  const auto frames = std::lround(0.75 * by.rate);
+  for (long i = 1; i <= frames; ++i) {
+    const double time = static_cast<double>(i) / by.rate, left = std::max(0.0, 1 - 4 * time);
+    REQUIRE(cloth.move_body(plate, pose(by.room + left * (from - by.room))));
+    const StepReport report = step(cloth, 1 / by.rate);
+    held.friction += report.friction_work;
+    held.work += std::max(0.0, report.body_work);
+    if (time < 0.5) continue;
+    for (const Vec3 v : velocities(cloth)) held.fastest = std::max(held.fastest, length(v));
+    held.missed += report.status == Status::converged ? 0 : 1;
+  }
+  for (const Vec3 x : positions(cloth)) {
+    if (std::max(std::abs(x.x), std::abs(x.z)) > 0.08) continue;
+    held.highest = std::max(held.highest, x.y - kTable.y / 2);
+    held.lowest = std::min(held.lowest, x.y - kTable.y / 2);
+  }
+  return held;
+}
+
+void check_held(const Press& by) {
+  CAPTURE(by.table_is_mesh);
+  CAPTURE(by.plate_is_mesh);
+  CAPTURE(by.room);
+  CAPTURE(by.rate);
+  const Held held = press(by);
+  CHECK(held.missed == 0);
+  CHECK(held.fastest < 0.05);
+  CHECK(held.friction <= held.work + 1e-6);
+  CHECK(std::abs(held.lowest - by.room / 2) < 5e-5);
+  CHECK(std::abs(held.highest - by.room / 2) < 5e-5);
+}
+
+TEST_CASE("two bodies share the room between them, and what they hold rests") {
+  for (const double rate : {30.0, 60.0, 240.0}) {
+    for (const double room : {1.5e-3, 5e-4}) {
+      check_held({.room = room, .friction = 0.3, .rate = rate});
+      check_held({.plate_is_mesh = true, .room = room, .friction = 0.3, .rate = rate});
+    }
+    check_held({.table_is_mesh = true, .room = 1.5e-3, .friction = 0.3, .rate = rate});
+    check_held({.table_is_mesh = true,
+                .plate_is_mesh = true,
+                .room = 1.5e-3,
+                .friction = 0.3,
+                .rate = rate});
+  }
+}
+
+TEST_CASE("two bodies share the room in double, too, and without friction") {
+  check_held({.room = 1e-3, .friction = 0.3, .backend = Backend::reference});
+  check_held({.room = 1e-3, .friction = 0});
+  check_held({.table_is_mesh = true, .plate_is_mesh = true, .room = 1.5e-3, .friction = 0});
+}
+
+}  // namespace
+}  // namespace weft::test::engine_contact_squeezed
