@@ -102,8 +102,11 @@ WEFT_API Result<std::shared_ptr<const BodyShape>> build_shape(const ShapeDescrip
 /// A body for Cloth::add_body.
 struct Body {
   std::shared_ptr<const BodyShape> shape;
-  Pose pose{};              ///< where it is
-  double thickness = 1e-3;  ///< m, at least 0: the distance at which it keeps particles
+  Pose pose{};  ///< where it is
+  /// m, at least 0: the distance at which it keeps particles. Two bodies that leave less than both
+  /// their thicknesses share what there is, in proportion, and StepReport::max_penetration tells
+  /// what is missing beyond that.
+  double thickness = 1e-3;
   /// Coulomb's coefficient, at least 0. The coefficient of a contact is the geometric mean of this
   /// one and the cloth's (SceneDescription::friction).
   double friction = 0.3;

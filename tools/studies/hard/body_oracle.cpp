@@ -86,10 +86,11 @@ Vec3 in_body(const Pose& pose, Vec3 x) {
 double max_penetration(const SceneDescription& scene, const Snapshot& state, const TrialBody& body,
                        const Pose& pose) {
   const std::vector<bool> fixed = fixed_particles(scene);
+  const double thickness = body.thickness - body.yields;
   double deepest = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     if (fixed[i]) continue;
-    deepest = std::max(deepest, -body.solid.gap(in_body(pose, state.positions[i]), body.thickness));
+    deepest = std::max(deepest, -body.solid.gap(in_body(pose, state.positions[i]), thickness));
   }
   return deepest;
 }

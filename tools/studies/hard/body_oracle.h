@@ -39,6 +39,7 @@ struct TrialBody {
   std::function<std::vector<Vec3>(double time)> vertices = {};
   std::shared_ptr<const BodyShape> shape;
   double thickness = 1e-3;  ///< m
+  double yields = 0;        ///< m of it, to a body with which it shares the room between them
   double friction = 0.3;
   std::function<Pose(double time)> pose;
   int appears = 0;  ///< before this step
@@ -47,7 +48,8 @@ struct TrialBody {
 /// y such that the pose takes it to x.
 Vec3 in_body(const Pose& pose, Vec3 x);
 
-/// Not of meshes: m, the deepest that a particle which is free is under the surface at `thickness`.
+/// Not of meshes: m, the deepest that a particle which is free is under the surface at what is left
+/// of the thickness.
 double max_penetration(const SceneDescription& scene, const Snapshot& state, const TrialBody& body,
                        const Pose& pose);
 /// Whether the straight way of a particle, as the body sees it, begins and ends outside and leads
