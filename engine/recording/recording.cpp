@@ -65,9 +65,9 @@ Result<void> parse_part(const Kind& kind, std::span<const std::byte> bytes, auto
 }
 
 /// The parts of a file, one after the other.
-class Parts {
+class RecordingParts {
  public:
-  explicit Parts(std::span<const std::byte> bytes) : left_(bytes) {}
+  explicit RecordingParts(std::span<const std::byte> bytes) : left_(bytes) {}
 
   enum class Next { part, end, cut_off, damaged };
   Next look() const {
@@ -124,16 +124,17 @@ std::vector<std::byte> bytes_of(const RecordedResult& result) { return part(kRes
 std::vector<std::byte> bytes_of_end() { return part(kEndPart, std::uint8_t{0}); }
 
 Result<Recording> parse_recording(std::span<const std::byte> bytes) {
-  Parts parts(bytes);
-  if (parts.look() != Parts::Next::part) return Error{"is not a recording of weft's, or cut off"};
+  RecordingParts parts(bytes);
+  if (parts.look() != RecordingParts::Next::part)
+    return Error{"is not a recording of weft's, or cut off"};
   Recording recording;
   if (auto parsed = parse_part(kStartPart, parts.take(), recording.start); !parsed)
     return Error{parsed.error()};
   while (true) {
     const std::string place = "is damaged in step " + std::to_string(step_at(recording.steps));
     const auto next = parts.look();
-    if (next == Parts::Next::damaged) return Error{place};
-    if (next != Parts::Next::part) return recording;
+    if (next == RecordingParts::Next::damaged) return Error{place};
+    if (next != RecordingParts::Next::part) return recording;
     const auto part = parts.take();
     if (is_of(kEndPart, part)) break;
     if (auto added = add_step_part(part, recording.steps); !added) return Error{place};
