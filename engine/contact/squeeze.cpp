@@ -44,6 +44,7 @@ void Squeeze::find_slots(const ContactScene& scene, const Near& near) {
       const Claim claim = claim_of(scene.clock, body, scene.points.start(slot), 0);
       at_one_.push_back({slot, body, claim.normal});
     }
+    // By less than what counts in a substep: normals turn until the interval is over.
     const auto are_against = [](const Asked& a, const Asked& b) {
       return a.body != b.body && dot(a.normal, b.normal) < -tuning::kAgainst / 2;
     };

@@ -1,7 +1,6 @@
 #include "engine/recording/patches.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "engine/validation.h"
 

@@ -35,7 +35,8 @@ Result<std::unique_ptr<Recorder>> Recorder::begin(const std::string& path, std::
                             .model = save_model(*state.model),
                             .state = save_state(state),
                             .hash = state_hash(state)};
-  std::FILE* const file = std::fopen(path.c_str(), "wb");
+  std::FILE* const file =
+      std::fopen(path.c_str(), "wbe");  // e: a process of the host does not inherit it
   if (file == nullptr) return not_written(path);
   std::unique_ptr<Recorder> recorder(new Recorder(path, file, state.model));
   recorder->add_part(bytes_of(start));

@@ -16,15 +16,6 @@ constexpr Kind kEndPart{{'w', 'e', 'f', 't', ' ', 'e', 'n', 'd'}, "end", 1};
 
 }  // namespace
 
-void visit_fields(Is<Settings> auto& settings, auto& archive) {
-  auto& [tolerance, substeps, iterations, renew_after, max_iterations, contact_tolerance,
-         velocity_tolerance, motion_tolerance, impulse_limit, solver, scheme, backend, isa, threads,
-         directions, anticipate, anticipate_products, sleep, skip, velocity_correction] = settings;
-  archive(tolerance, substeps, iterations, renew_after, max_iterations, contact_tolerance,
-          velocity_tolerance, motion_tolerance, impulse_limit, solver, scheme, backend, isa,
-          threads, directions, anticipate, anticipate_products, sleep, skip, velocity_correction);
-}
-
 void visit_fields(Is<RecordedStart> auto& start, auto& archive) {
   auto& [version, note, settings, model, state, hash] = start;
   archive(version, note, settings, model, state, hash);

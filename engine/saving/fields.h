@@ -109,6 +109,17 @@ void visit_fields(Is<BodyLoad> auto& load, auto& archive) {
   archive(force, moment);
 }
 
+// settings.h
+
+void visit_fields(Is<Settings> auto& settings, auto& archive) {
+  auto& [tolerance, substeps, iterations, renew_after, max_iterations, contact_tolerance,
+         velocity_tolerance, motion_tolerance, impulse_limit, solver, scheme, backend, isa, threads,
+         directions, anticipate, anticipate_products, sleep, skip, velocity_correction] = settings;
+  archive(tolerance, substeps, iterations, renew_after, max_iterations, contact_tolerance,
+          velocity_tolerance, motion_tolerance, impulse_limit, solver, scheme, backend, isa,
+          threads, directions, anticipate, anticipate_products, sleep, skip, velocity_correction);
+}
+
 // cloth.h
 
 void visit_fields(Is<AnchorLimit> auto& limit, auto& archive) {

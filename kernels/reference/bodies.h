@@ -186,7 +186,7 @@ inline Vector kept_out(const BodyMotion& body, Vector start, Vector by, double r
   return by + std::max(0.0, std::min(0.0, from.gap) - to.gap) * body.from.turned(to.normal);
 }
 
-inline constexpr double kPressed = 1e6;  // over what a body yields
+inline constexpr double kPressed = 1e6;  // over what a body yields: more than any pull
 
 /// How much of its distance a body gives up where another one leaves no room for it
 /// (engine/contact/room.h). m: at the end of the substep, and what of it is new, since both bodies
