@@ -176,6 +176,8 @@ std::size_t Cloth::particle_count() const { return impl_->state.model->particles
 const std::shared_ptr<const Model>& Cloth::model() const { return impl_->state.model; }
 const Settings& Cloth::settings() const { return impl_->state.settings; }
 
-std::size_t Cloth::bytes() const { return impl_->state.bytes(); }
+std::size_t Cloth::bytes() const {
+  return impl_->state.bytes() + (recorder_ ? recorder_->bytes() : 0);
+}
 
 }  // namespace weft

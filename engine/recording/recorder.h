@@ -28,6 +28,7 @@ class Recorder {
   void after_step(const State& state, Status status) noexcept;
   /// Whether all that was to be written is.
   Result<void> end();
+  std::size_t bytes() const { return state_.capacity(); }
 
  private:
   struct Close {

@@ -159,7 +159,9 @@ TEST_CASE("a step is in the file before it begins, and one that is refused leave
   const TemporaryFolder folder;
   const std::string file = folder.file("cloth.weft");
   auto cloth = std::make_unique<Cloth>(cloth_of(square()));
+  const std::size_t bytes = cloth->bytes();
   REQUIRE(cloth->begin_recording(file));
+  CHECK(cloth->bytes() >= bytes + cloth->save_state().size());
   REQUIRE(cloth->step(0.01));
   CHECK_FALSE(cloth->step(-1));
   REQUIRE(cloth->step(0.01));

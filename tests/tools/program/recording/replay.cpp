@@ -136,6 +136,17 @@ TEST_CASE("calls of a step that are others differ there, or are refused there") 
   has(refused.err, "step 4: patch: is of other bytes (1073741824)");
 }
 
+TEST_CASE("a step that was not done, for want of memory, is passed over") {
+  const Recorded recorded("hang --size 5 --steps 5");
+  Recording changed = recorded.read();
+  changed.steps.insert(changed.steps.begin() + 2, RecordedStep{{0.01, {}, {}}, {}});
+  recorded.write(changed);
+  const Outcome replayed = recorded.replay();
+  CHECK(replayed.exit_code == 0);
+  has(replayed.out, "hang, weft " WEFT_VERSION);
+  has(replayed.out, "replayed  5 steps to the same bits\n");
+}
+
 TEST_CASE("another version and other instructions are told") {
   const Recorded recorded("hang --size 9 --steps 30");
   Recording old = recorded.read();
