@@ -80,8 +80,9 @@ void Squeeze::begin(const ContactScene& scene, const Near& near) {
 }
 
 std::span<const Squeeze::OfSlot> Squeeze::beside(std::uint32_t slot) const {
-  const auto range = std::ranges::equal_range(beside_, slot, {}, &OfSlot::slot);
-  return {range.begin(), range.end()};
+  const auto first = std::ranges::lower_bound(beside_, slot, {}, &OfSlot::slot);
+  const auto last = std::ranges::upper_bound(beside_, slot, {}, &OfSlot::slot);
+  return {beside_.data() + (first - beside_.begin()), static_cast<std::size_t>(last - first)};
 }
 
 Squeeze::Seen Squeeze::see(const ContactScene& scene, const NearPairs& near, std::size_t i) const {

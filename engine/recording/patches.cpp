@@ -15,8 +15,8 @@ Patch replacement(std::size_t at, std::size_t removed, Bytes put) {
 
 /// All between what is the same at the beginning and at the end.
 Patch middle(Bytes before, Bytes after) {
-  const auto first = std::ranges::mismatch(before, after).in1 - before.begin();
-  const auto at = static_cast<std::size_t>(first);
+  const auto differs = std::mismatch(before.begin(), before.end(), after.begin(), after.end());
+  const auto at = static_cast<std::size_t>(differs.first - before.begin());
   const std::size_t most = std::min(before.size(), after.size()) - at;
   std::size_t same = 0;  // at the end
   while (same < most && before[before.size() - same - 1] == after[after.size() - same - 1]) ++same;
