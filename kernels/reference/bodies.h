@@ -172,6 +172,22 @@ inline Touch find_touch(const BodyMotion& body, Vector start, Vector x, double r
   return touch;
 }
 
+/// m, by which both ends of a way may be moved beside the body that the particle touches nothing:
+/// both are in front of one face by that, or the longest way that comes of it does not reach the
+/// capsule. Where it is not positive the particle may touch.
+inline double clear_of(const BodyMotion& body, Vector start, Vector x, double radius) {
+  const Vector y0 = body.from.from_place(start), y1 = body.to.from_place(x);
+  const double thickness = body.thickness + radius;
+  if (body.solid.faces.empty())
+    return (gap_of_capsule(body.solid, thickness, y1).gap - length(y1 - y0)) / 3;
+  double clear = -std::numeric_limits<double>::infinity();
+  for (const Face& face : body.solid.faces) {
+    const double nearer = std::min(dot(face.normal, y0), dot(face.normal, y1));
+    clear = std::max(clear, nearer - face.offset - thickness);
+  }
+  return clear;
+}
+
 /// The way of the particle beside the material of the body that was where it began.
 inline Vector slip_of(const BodyMotion& body, Vector start, Vector x) {
   return x - body.to.placed(body.from.from_place(start));
@@ -181,8 +197,9 @@ inline Vector slip_of(const BodyMotion& body, Vector start, Vector x) {
 /// body.
 inline Vector kept_out(const BodyMotion& body, Vector start, Vector by, double radius) {
   const double thickness = body.thickness + radius;
-  const Gap from = gap_of(body.solid, thickness, body.from.from_place(start)),
-            to = gap_of(body.solid, thickness, body.from.from_place(start + by));
+  const Gap to = gap_of(body.solid, thickness, body.from.from_place(start + by));
+  if (to.gap >= 0) return by;
+  const Gap from = gap_of(body.solid, thickness, body.from.from_place(start));
   return by + std::max(0.0, std::min(0.0, from.gap) - to.gap) * body.from.turned(to.normal);
 }
 
@@ -269,10 +286,9 @@ inline Slowed slow(Vector normal, Vector relative, double friction, double h, Gr
   return {into * normal - slowed * sliding, slowed * l};
 }
 
-/// v: the velocity at x.
-inline Gripped grip(const BodyMotion& body, Vector start, Vector x, Vector v, double radius,
+/// v: the velocity at x. touch: of that way.
+inline Gripped grip(const BodyMotion& body, const Touch& touch, Vector start, Vector x, Vector v,
                     Grip& done) {
-  const Touch touch = find_touch(body, start, x, radius);
   Gripped gripped{.start = start, .x = x, .v = v};
   if (!touch.is_near) return gripped;
   const Vector n = touch.normal;

@@ -108,25 +108,30 @@ struct LanePoints {
       at += places.stride;
     }
   }
-  void put_start(std::uint32_t slot, kernels::Vector position) const {
+  ParticleAtHand take(std::uint32_t slot) const {
+    ParticleAtHand hand{.start = place(u_start, slot),
+                        .x = place(u, slot),
+                        .predicted = place(predicted, slot),
+                        .v = vector(v, slot),
+                        .is_mended = is_mended()};
+    hand.led_to = hand.is_mended ? place(led_to, slot) : hand.x;
+    return hand;
+  }
+  void put_back(std::uint32_t slot, const ParticleAtHand& hand) const {
+    put_place(u, slot, hand.x);
+    put_place(u_start, slot, hand.start);
+    put_place(predicted, slot, hand.predicted);
+    if (hand.is_mended) put_place(led_to, slot, hand.led_to);
     std::size_t at = places.of(slot);
-    for (const double to : {position.x, position.y, position.z}) {
-      const float before =
-          std::exchange(u_start[at], static_cast<float>(to - static_cast<double>(base[at])));
-      if (is_mended()) predicted[at] = led_to[at] += u_start[at] - before;
+    for (const double speed : {hand.v.x, hand.v.y, hand.v.z}) {
+      v[at] = static_cast<float>(speed);
       at += places.stride;
     }
   }
-  /// Where it began, without speed, and where it is.
-  void shift(std::uint32_t slot, kernels::Vector start_by, kernels::Vector by) const {
+  void put_place(float* to, std::uint32_t slot, kernels::Vector x) const {
     std::size_t at = places.of(slot);
-    for (const auto& [of_start, change] :
-         {std::pair{start_by.x, by.x}, std::pair{start_by.y, by.y}, std::pair{start_by.z, by.z}}) {
-      const auto start_change = static_cast<float>(of_start);
-      u_start[at] += start_change;
-      predicted[at] += start_change;
-      if (is_mended()) led_to[at] += start_change;
-      u[at] += static_cast<float>(change);
+    for (const double component : {x.x, x.y, x.z}) {
+      to[at] = static_cast<float>(component - static_cast<double>(base[at]));
       at += places.stride;
     }
   }
@@ -146,13 +151,9 @@ struct LanePoints {
 using LaneParticles = PointParticles<LanePoints>;
 
 inline void LanePoints::grip_by_bodies(std::uint32_t slot) const {
-  SimdBodies::Particle particle{position_at_start(slot), position(slot), settled(slot)};
-  const TouchedSurface surface = bodies->hold(slot, particle);
-  if (surface.is_there()) {
-    put(slot, particle.x, particle.v);
-    put_start(slot, particle.start);
-    if (bodies->begins_to_touch(slot)) arrived.push_back({slot, surface});
-  }
+  if (bodies->clear_of(slot, position_at_start(slot), position(slot)) > 0) return;
+  ParticleAtHand hand = take(slot);
+  if (hold_by_bodies(*this, slot, hand)) put_back(slot, hand);
 }
 
 inline void LanePoints::grip(std::uint32_t slot) const {

@@ -364,9 +364,9 @@ void LaneStore::keep(Team& team) {
 }
 
 std::size_t LaneStore::bytes() const {
-  return 11 * bytes_of(u_) + bytes_of(largest_) + bytes_of(aside_) + links_.bytes() +
-         membrane_.bytes() + bending_.bytes() + anchors_.bytes() + bodies_.bytes() +
-         bytes_of(past_.touching) + past_.misplaced.bytes();
+  return 11 * bytes_of(u_) + bytes_of(largest_) + bytes_of(aside_) + at_hand_.bytes() +
+         links_.bytes() + membrane_.bytes() + bending_.bytes() + anchors_.bytes() +
+         bodies_.bytes() + bytes_of(past_.touching) + past_.misplaced.bytes();
 }
 
 }  // namespace weft

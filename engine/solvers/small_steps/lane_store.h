@@ -161,6 +161,7 @@ class LaneStore {
 
   kernels::AlignedVector<float> base_, u_, u_before_, predicted_, v_, v_before_, acceleration_;
   kernels::AlignedVector<float> aside_;  // u_ before mending, with laws only
+  ParticlesAtHand at_hand_;              // scratch of sweeps
   std::vector<float> largest_;           // departure or move, per part of floats
 };
 

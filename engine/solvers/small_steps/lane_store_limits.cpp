@@ -24,7 +24,7 @@ void LaneStore::hold_bodies(Team& team) {
 
 void LaneStore::hold_by_meshes(Team& team) {
   const LanePoints points = this->points(true);
-  LaneParticles particles(points);
+  TakenParticles particles(points, at_hand_);
   bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot) { now_.passes.look_at(slot); });
 }
 
@@ -33,6 +33,7 @@ void LaneStore::begin_bodies(const FramePlan& plan) {
       plan.bodies, plan.h, plan.substeps, plan.projects(),
       now_.has_past && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
       plan.contact_start(), past_.misplaced);
+  if (bodies_.has_meshes()) at_hand_.make_room(model_.slots());
 }
 
 void LaneStore::advance_bodies(double part, Team& team) {

@@ -1,13 +1,17 @@
 /// Particles of small steps as contacts with meshes see them, in lanes and in double.
 #pragma once
 
+#include <vector>
+
+#include "engine/bytes_of.h"
 #include "engine/contact/particles.h"
+#include "engine/solvers/small_steps/particle_at_hand.h"
 
 namespace weft {
 
-/// Points: LanePoints, or ReferenceStore::Points.
+/// Each is read and written where it stands. Points: LanePoints, or ReferenceStore::Points.
 template <class Points>
-class PointParticles final : public ContactParticles {
+class PointParticles : public ContactParticles {
  public:
   explicit PointParticles(const Points& points) : points_(points) {}
 
@@ -19,8 +23,9 @@ class PointParticles final : public ContactParticles {
     return {start(slot), position(slot), points_.settled(slot)};
   }
   void write(std::uint32_t slot, const ContactParticle& particle) override {
-    points_.put(slot, particle.x, particle.v);
-    points_.put_start(slot, particle.start);
+    ParticleAtHand hand = points_.take(slot);
+    hand.stop(particle);
+    points_.put_back(slot, hand);
   }
   void touch(std::uint32_t slot, const TouchedSurface& surface) override {
     if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
@@ -33,17 +38,82 @@ class PointParticles final : public ContactParticles {
     points_.jolts.push_back({slot, by});
   }
   void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) override {
-    const bool stays = dot(comes_out, comes_out) == 0;  // mostly
-    const kernels::Vector kept =
-        stays ? comes_out : points_.bodies->kept_out(slot, start(slot), comes_out);
-    points_.shift(slot, kept, by + kept);
-    points_.grip_by_bodies(slot);
+    ParticleAtHand hand = points_.take(slot);
+    push(slot, hand, by, comes_out);
+    points_.put_back(slot, hand);
   }
   bool is_mended() const override { return points_.is_mended(); }
   double momentum_share() const override { return points_.bodies->momentum_share(); }
 
- private:
+ protected:
+  void push(std::uint32_t slot, ParticleAtHand& hand, kernels::Vector by,
+            kernels::Vector comes_out) const {
+    const bool stays = dot(comes_out, comes_out) == 0;  // mostly
+    const kernels::Vector kept =
+        stays ? comes_out : points_.bodies->kept_out(slot, hand.start, comes_out);
+    hand.shift(kept, by + kept);
+    hold_by_bodies(points_, slot, hand);
+  }
   const Points& points_;
+};
+
+/// Memory for particles that a sweep has at hand.
+struct ParticlesAtHand {
+  std::vector<ParticleAtHand> of;      // per slot
+  std::vector<std::uint8_t> is_there;  // likewise
+  std::vector<std::uint32_t> slots;    // that are there
+
+  void make_room(std::size_t count) {
+    of.resize(count);
+    is_there.resize(count, 0);
+    slots.reserve(count);
+  }
+  std::size_t bytes() const { return bytes_of(of) + bytes_of(is_there) + bytes_of(slots); }
+};
+
+/// A sweep visits a particle many times: it is taken when more than its position is asked for, and
+/// put back when the sweep ends.
+template <class Points>
+class TakenParticles final : public PointParticles<Points> {
+ public:
+  TakenParticles(const Points& points, ParticlesAtHand& at_hand)
+      : PointParticles<Points>(points), at_hand_(at_hand) {}
+  TakenParticles(const TakenParticles&) = delete;
+  TakenParticles& operator=(const TakenParticles&) = delete;
+  ~TakenParticles() override {
+    for (const std::uint32_t slot : at_hand_.slots) {
+      points().put_back(slot, at_hand_.of[slot]);
+      at_hand_.is_there[slot] = 0;
+    }
+    at_hand_.slots.clear();
+  }
+
+  kernels::Vector position(std::uint32_t slot) const override {
+    return at_hand_.is_there[slot] != 0 ? at_hand_.of[slot].x : points().position(slot);
+  }
+  kernels::Vector start(std::uint32_t slot) const override { return hand(slot).start; }
+  ContactParticle read(std::uint32_t slot) const override {
+    const ParticleAtHand& at = hand(slot);
+    return {at.start, at.x, at.settled(points().rate)};
+  }
+  void write(std::uint32_t slot, const ContactParticle& particle) override {
+    hand(slot).stop(particle);
+  }
+  void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) override {
+    PointParticles<Points>::push(slot, hand(slot), by, comes_out);
+  }
+
+ private:
+  const Points& points() const { return this->points_; }
+  ParticleAtHand& hand(std::uint32_t slot) const {
+    if (at_hand_.is_there[slot] == 0) {
+      at_hand_.of[slot] = points().take(slot);
+      at_hand_.is_there[slot] = 1;
+      at_hand_.slots.push_back(slot);
+    }
+    return at_hand_.of[slot];
+  }
+  ParticlesAtHand& at_hand_;
 };
 
 }  // namespace weft

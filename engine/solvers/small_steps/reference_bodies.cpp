@@ -57,22 +57,30 @@ void ReferenceBodies::find_standing(ContactParticles& particles, Team& team) {
   meshes_.advance(particles, clock_);
 }
 
-TouchedSurface ReferenceBodies::hold(std::uint32_t slot, Vector& start, Vector& x, Vector& v) {
+double ReferenceBodies::clear_of(std::uint32_t slot, Vector start, Vector x) const {
+  double clear = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
+    if (clock_.bodies()[i].shape->mesh() == nullptr)
+      clear = std::min(clear, reference::clear_of(clock_.motions()[i], start, x, radius(slot)));
+  }
+  return clear;
+}
+
+TouchedSurface ReferenceBodies::hold(std::uint32_t slot, ContactParticle& at) {
   TouchedSurface surface;
   if (model_.inverse_mass[slot] == 0) return surface;
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
     if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
     const reference::BodyMotion& body = clock_.motions()[i];
     reference::Grip& grip = grips_[slot * clock_.bodies().size() + i];
-    const reference::Gripped gripped = reference::grip(body, start, x, v, radius(slot), grip);
+    const reference::Touch touch = find_touch(body, at.start, at.x, radius(slot));
+    const reference::Gripped gripped = reference::grip(body, touch, at.start, at.x, at.v, grip);
     if (!gripped.is_touching) continue;
     surface = {static_cast<std::uint32_t>(i), body.velocity_at(gripped.x)};
     const double momentum = model_.mass[slot] * momentum_share_;
-    impulses_.add(i, body.to.centre, gripped.x, momentum * (gripped.v - v), surface.velocity);
+    impulses_.add(i, body.to.centre, gripped.x, momentum * (gripped.v - at.v), surface.velocity);
     impulses_.friction += 0.5 * momentum * gripped.friction;
-    start = gripped.start;
-    x = gripped.x;
-    v = gripped.v;
+    at = {gripped.start, gripped.x, gripped.v};
   }
   return surface;
 }

@@ -44,10 +44,11 @@ class ReferenceBodies {
   }
   /// As ContactParticles::momentum_share().
   double momentum_share() const { return momentum_share_; }
-  /// Moves a particle that went from start to x, with the velocity v there. Returns the surface
+  /// m, by which one particle, and its start, may be moved before it can touch one.
+  double clear_of(std::uint32_t slot, kernels::Vector start, kernels::Vector x) const;
+  /// Moves a particle in a substep; v is settled. Returns the surface
   /// that it touches, the last of several, if there is one.
-  TouchedSurface hold(std::uint32_t slot, kernels::Vector& start, kernels::Vector& x,
-                      kernels::Vector& v);
+  TouchedSurface hold(std::uint32_t slot, ContactParticle& particle);
   /// A particle that began there is moved by `by`, without speed: no deeper into bodies.
   kernels::Vector kept_out(std::uint32_t slot, kernels::Vector start, kernels::Vector by) const;
   /// After that: whether it did not in this substep before, and not when the last one ended.

@@ -381,6 +381,7 @@ void ReferenceStore::begin_bodies(const FramePlan& plan) {
   bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects(),
                 now_.has_past && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
                 plan.contact_start(), past_.misplaced);
+  if (bodies_.has_meshes()) at_hand_.make_room(model_.slots());
 }
 
 void ReferenceStore::advance_bodies(double part, Team& team) {
@@ -402,7 +403,7 @@ void ReferenceStore::hold_bodies(Team&) {
 
 void ReferenceStore::hold_by_meshes(Team& team) {
   const Points points = this->points(true);
-  PointParticles particles(points);
+  TakenParticles particles(points, at_hand_);
   const double strain = now_.local_tolerance();
   bodies_.hold_by_meshes(particles, team, [&](std::uint32_t slot, double by) {
     if (by > strain * shortest_[slot]) now_.passes.look_at(slot);
@@ -483,7 +484,7 @@ void ReferenceStore::turn(const Turn& by) {
 
 std::size_t ReferenceStore::bytes() const {
   return 10 * x_.bytes() + bending_.bytes() + bytes_of(out_) + bytes_of(multiplier_) +
-         bytes_of(membrane_multiplier_) + aside_.bytes();
+         bytes_of(membrane_multiplier_) + aside_.bytes() + at_hand_.bytes();
 }
 
 }  // namespace weft

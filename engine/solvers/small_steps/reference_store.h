@@ -144,7 +144,8 @@ class ReferenceStore {
   std::vector<bool> at_limit_, at_limit_before_;  // per anchor, in this substep and in the last
   std::vector<double> multiplier_;                // per constraint; with springs only
   std::vector<reference::MembraneMultipliers> membrane_multiplier_;  // per triangle of fabric
-  kernels::Vectors aside_;  // x_ before mending, with laws only
+  kernels::Vectors aside_;   // x_ before mending, with laws only
+  ParticlesAtHand at_hand_;  // scratch of sweeps
 };
 
 /// As local passes, anchors and bodies see and move them; in lanes: lane_points.h.
@@ -174,19 +175,15 @@ struct ReferenceStore::Points {
     predicted.set(slot, led_to[slot]);
     v.set(slot, velocity);
   }
-  void put_start(std::uint32_t slot, kernels::Vector position) const {
-    if (is_mended()) {
-      led_to.add(slot, position - start[slot]);
-      predicted.set(slot, led_to[slot]);
-    }
-    start.set(slot, position);
+  ParticleAtHand take(std::uint32_t slot) const {
+    return {start[slot], x[slot], predicted[slot], led_to[slot], v[slot], is_mended()};
   }
-  /// Where it began, without speed, and where it is.
-  void shift(std::uint32_t slot, kernels::Vector start_by, kernels::Vector by) const {
-    start.add(slot, start_by);
-    predicted.add(slot, start_by);
-    if (is_mended()) led_to.add(slot, start_by);
-    x.add(slot, by);
+  void put_back(std::uint32_t slot, const ParticleAtHand& hand) const {
+    x.set(slot, hand.x);
+    start.set(slot, hand.start);
+    predicted.set(slot, hand.predicted);
+    if (hand.is_mended) led_to.set(slot, hand.led_to);
+    v.set(slot, hand.v);
   }
   kernels::Vector difference(std::uint32_t a, std::uint32_t b) const { return x[a] - x[b]; }
   void move(std::uint32_t slot, kernels::Vector by) const {
@@ -201,13 +198,10 @@ struct ReferenceStore::Points {
   }
   bool grip(std::uint32_t slot) const;
   bool grip_by_bodies(std::uint32_t slot) const {
-    kernels::Vector to = x[slot], velocity = settled(slot), from = start[slot];
-    const TouchedSurface surface = bodies->hold(slot, from, to, velocity);
-    if (!surface.is_there()) return false;
-    put(slot, to, velocity);
-    put_start(slot, from);
-    if (bodies->begins_to_touch(slot)) arrived.push_back({slot, surface});
-    return true;
+    ParticleAtHand hand = take(slot);
+    const bool is_held = hold_by_bodies(*this, slot, hand);
+    if (is_held) put_back(slot, hand);
+    return is_held;
   }
   void push(std::uint32_t slot, kernels::Vector by) const {
     move(slot, by);

@@ -298,22 +298,36 @@ void SimdBodies::hold(const simd::Flight& flight, const float* base, float rate,
   }
 }
 
-TouchedSurface SimdBodies::hold(std::uint32_t slot, Particle& particle) {
+double SimdBodies::clear_of(std::uint32_t slot, Vector start, Vector x) const {
+  const std::uint32_t place = layout_.place_of[slot];
+  double clear = std::numeric_limits<double>::infinity();
+  if (place == kNoIndex || pairs_.empty()) return clear;
+  const std::size_t block = place / kLanes;
+  const auto radius = static_cast<double>(layout_.blocks[block].radius[place % kLanes]);
+  for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i)
+    clear =
+        std::min(clear, reference::clear_of(clock_.motions()[pairs_[i].body], start, x, radius));
+  return clear;
+}
+
+TouchedSurface SimdBodies::hold(std::uint32_t slot, ContactParticle& particle) {
   const std::uint32_t place = layout_.place_of[slot];
   TouchedSurface surface;
   if (place == kNoIndex || pairs_.empty()) return surface;
   const std::size_t block = place / kLanes, lane = place % kLanes;
   for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
     const BodyMotion& body = clock_.motions()[pairs_[i].body];
-    simd::BodyGrips& lanes = grips_[i];
     const auto number = [](float x) { return static_cast<double>(x); };
+    const reference::Touch touch =
+        find_touch(body, particle.start, particle.x, number(layout_.blocks[block].radius[lane]));
+    if (!touch.is_near) continue;
+    simd::BodyGrips& lanes = grips_[i];
     reference::Grip grip{
         number(lanes.pushed[lane]),   number(lanes.held[lane]),
         number(lanes.stopped[lane]),  number(lanes.slowed[lane]),
         number(lanes.came_out[lane]), {number(lanes.yields_by[lane]), number(lanes.retreat[lane])}};
     const reference::Gripped gripped =
-        reference::grip(body, particle.start, particle.x, particle.v,
-                        number(layout_.blocks[block].radius[lane]), grip);
+        reference::grip(body, touch, particle.start, particle.x, particle.v, grip);
     if (!gripped.is_touching) continue;
     lanes.pushed[lane] = static_cast<float>(grip.pushed);
     lanes.held[lane] = static_cast<float>(grip.held);
@@ -333,9 +347,7 @@ TouchedSurface SimdBodies::hold(std::uint32_t slot, Particle& particle) {
     lanes.friction[lane] += static_cast<float>(momentum * gripped.friction);
     const auto bit = static_cast<std::uint16_t>(1u << lane);
     touching_[i] = static_cast<std::uint16_t>(touching_[i] | bit);
-    particle.start = gripped.start;
-    particle.x = gripped.x;
-    particle.v = gripped.v;
+    particle = {gripped.start, gripped.x, gripped.v};
     surface = {pairs_[i].body, body.velocity_at(gripped.x)};
   }
   return surface;

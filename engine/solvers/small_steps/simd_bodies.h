@@ -32,10 +32,6 @@ class SimdBodies {
 
   /// Who touched a body when the last substep of a frame ended, per block.
   using Touching = std::vector<std::uint16_t>;
-  /// A particle in a substep, in coordinates of the world; v settled.
-  struct Particle {
-    kernels::Vector start{}, x{}, v{};
-  };
 
   bool empty() const { return clock_.bodies().empty() && meshes_.empty(); }
   bool has_meshes() const { return !meshes_.empty(); }
@@ -65,8 +61,10 @@ class SimdBodies {
   /// As ContactParticles::momentum_share().
   double momentum_share() const { return momentum_share_; }
   const SurfaceContacts& meshes() const { return meshes_; }
+  /// m, by which one particle, and its start, may be moved before it can touch one.
+  double clear_of(std::uint32_t slot, kernels::Vector start, kernels::Vector x) const;
   /// Of one particle. Returns the surface that it touches, the last of several, if there is one.
-  TouchedSurface hold(std::uint32_t slot, Particle& particle);
+  TouchedSurface hold(std::uint32_t slot, ContactParticle& particle);
   /// A particle that began there is moved by `by`, without speed: no deeper into bodies.
   kernels::Vector kept_out(std::uint32_t slot, kernels::Vector start, kernels::Vector by) const;
   /// After that: whether it did not in this substep before, and not when the last one ended.

@@ -186,8 +186,10 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
         .pushed = double{before.grips.pushed[lane]},
         .came_out = double{before.grips.came_out[lane]},
         .yield = {double{before.grips.yields_by[lane]}, double{before.grips.retreat[lane]}}};
-    const reference::Gripped expected = reference::grip(body.motion, start, x, before.settled(lane),
-                                                        double{before.block.radius[lane]}, grip);
+    const reference::Touch touch =
+        find_touch(body.motion, start, x, double{before.block.radius[lane]});
+    const reference::Gripped expected =
+        reference::grip(body.motion, touch, start, x, before.settled(lane), grip);
     const bool is_free = before.block.mass[lane] > 0;
     const bool touches = is_free && expected.is_touching;
     if (!(expected.push > 0 && expected.push < 1e-6))  // else rounding decides
