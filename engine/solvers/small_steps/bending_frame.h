@@ -74,7 +74,6 @@ class BendingFrame {
   const double part_;
   const double particles_;  // that bend
   const double mean_;       // 1/s^2, of K_ii / m_i
-  const double stiffest_;   // 1/s^2, no swing has a larger square of its frequency
   const Scheme scheme_;
   const bool is_timed_;  // the error of motion is measured
   bool is_factored_ = false;
