@@ -88,7 +88,8 @@ void ReferenceStore::begin_bending(const FramePlan& plan) {
   bending_frame_.begin(plan, weight);
   bending_.forget_guess();
   if (bending_frame_.is_factored())
-    bending_.prepare_factor(model_.bending_fronts(), bending_frame_.usual().law());
+    bending_.prepare_factor(model_.bending_fronts(), bending_frame_.usual().law(),
+                            now_.has_past && past_.h == now_.h);
   else
     bending_.prepare_diagonal(bending_frame_.usual().law());
 }

@@ -49,7 +49,7 @@ void SimdBending::for_floats(Team& team, Work&& work) const {
   team.for_each_part(4 * layout_.rows.slots(), kFloatsOfPart, work);
 }
 
-void SimdBending::begin(const FramePlan& plan, const float* acceleration) {
+void SimdBending::begin(const FramePlan& plan, const float* acceleration, bool goes_on) {
   if (layout_.empty()) return;
   double weight = 0;
   for (std::size_t slot = 0; slot < layout_.rows.slots(); ++slot) {
@@ -62,7 +62,7 @@ void SimdBending::begin(const FramePlan& plan, const float* acceleration) {
   frame_.begin(plan, weight);
   give_ = error_ = 0;
   if (frame_.is_factored())
-    stiff_.prepare_factor(model_.bending_fronts(), frame_.usual().law());
+    stiff_.prepare_factor(model_.bending_fronts(), frame_.usual().law(), goes_on);
   else
     soft_.prepare_diagonal(frame_.usual().law());
 }

@@ -113,10 +113,11 @@ struct Solver {
   const System& system;
   BendingSystem<Real> solver;
 
-  Solver(const System& of, bool by_factor, const BendingLaw& law, simd::Isa isa = simd::best_isa())
+  Solver(const System& of, bool by_factor, const BendingLaw& law, simd::Isa isa = simd::best_isa(),
+         bool exactly = false)
       : system(of), solver(of.rows, simd::table(isa)) {
     if constexpr (std::is_same_v<Real, double>) {
-      if (by_factor) solver.prepare_factor(of.fronts, law);
+      if (by_factor) solver.prepare_factor(of.fronts, law, exactly);
     }
     if (!by_factor) solver.prepare_diagonal(law);
   }
