@@ -149,13 +149,14 @@ void ReferenceStore::bend(Team& team) {
   if (!step) return;
   double* const guess = bending_.guess();
   const double scale = give_ > 0 ? step->give / give_ : 0;
+  const int passes = give_ > 0 ? 1 : bending_frame_.passes(*step);
   give_ = step->give;
   double left = 0;
   for (std::size_t i = 0; i < 4 * model_.slots(); ++i) guess[i] *= scale;
   const auto at = [&](std::size_t i) {
     return Vector{guess[4 * i], guess[4 * i + 1], guess[4 * i + 2]};
   };
-  for (int pass = 0; pass < bending_frame_.passes(*step); ++pass) {
+  for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t i = 0; i < model_.slots(); ++i) {
       x_.view().add(i, at(i));
       from_.set(i, before_[i] - (step->count - 1) * at(i));
@@ -168,7 +169,6 @@ void ReferenceStore::bend(Team& team) {
   }
   bending_error_ = std::max(bending_error_, left);
   for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, step->count * at(i));
-  if (bending_frame_.is_factored()) give_ = 0;
 }
 
 void ReferenceStore::pull(const BendingStep& step) {

@@ -139,14 +139,23 @@ void SimdBending::bend_softly(float* u, const float* start, const BendingStep& s
   });
 }
 
-/// What is damped is solved twice: how its elements turn is read from where bending takes them.
-/// What stiff cloth is predicted to do is mostly noise (tuning::kTurnsOfBending).
+/// The elements of damped bending turn as they do where the last force of bending takes them: what
+/// stiff cloth is predicted to do by itself is mostly noise. Where there was none in the frame that
+/// is found by a solution (tuning::kTurnsOfBending).
 void SimdBending::bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team) {
   double* const guess = stiff_.guess();
-  stiff_.forget_guess();
-  for (int pass = 0; pass < frame_.passes(step); ++pass) {
+  const int passes = give_ == 0 ? frame_.passes(step) : 1;
+  const double scale = give_ == 0 ? 0 : step.give / give_;
+  give_ = step.give;
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      guess[i] *= scale;
+      u[i] += static_cast<float>(guess[i]);
+    }
+  });
+  for (int pass = 0; pass < passes; ++pass) {
     const double left = solve_stiffly(u, start, step, team);
-    if (pass + 1 == frame_.passes(step)) error_ = std::max(error_, left);
+    if (pass + 1 == passes) error_ = std::max(error_, left);
     if (stiff_.steps() == 0) continue;
     const double* const by = stiff_.change();
     for_floats(team, [&](std::size_t first, std::size_t last) {
