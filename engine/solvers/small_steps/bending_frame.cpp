@@ -9,18 +9,11 @@
 #include "engine/tuning.h"
 
 namespace weft {
-namespace {
-
-/// By anything that takes up what a solution leaves of a balance of forces.
-bool has_holds(const Model& model) { return !model.holds.empty() || model.has_attached(); }
-
-}  // namespace
 
 BendingFrame::BendingFrame(const Model& model, const Settings& settings)
     : model_(model),
       rows_(model.small_steps().bending.rows),
-      part_((has_holds(model) ? tuning::kBendingPart : tuning::kFreeBendingPart) *
-            std::min(settings.tolerance, tuning::kLoosestBending)),
+      part_(tuning::kBendingPart * std::min(settings.tolerance, tuning::kLoosestBending)),
       particles_(count_that_bend(rows_)),
       mean_(mean_stiffness(rows_)),
       scheme_(settings.scheme),

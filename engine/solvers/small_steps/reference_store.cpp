@@ -149,25 +149,21 @@ void ReferenceStore::bend(Team& team) {
   if (!step) return;
   double* const guess = bending_.guess();
   const double scale = give_ > 0 ? step->give / give_ : 0;
-  const int passes = give_ > 0 ? 1 : bending_frame_.passes(*step);
   give_ = step->give;
-  double left = 0;
   for (std::size_t i = 0; i < 4 * model_.slots(); ++i) guess[i] *= scale;
   const auto at = [&](std::size_t i) {
     return Vector{guess[4 * i], guess[4 * i + 1], guess[4 * i + 2]};
   };
-  for (int pass = 0; pass < passes; ++pass) {
-    for (std::size_t i = 0; i < model_.slots(); ++i) {
-      x_.view().add(i, at(i));
-      from_.set(i, before_[i] - (step->count - 1) * at(i));
-    }
-    pull(*step);
-    left = bending_.solve(step->law(), bending_frame_.limits(), team);
-    for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, -1 * at(i));
-    for (std::size_t i = 0; bending_.steps() > 0 && i < 4 * model_.slots(); ++i)
-      guess[i] += bending_.change()[i];
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    x_.view().add(i, at(i));
+    from_.set(i, before_[i] - (step->count - 1) * at(i));
   }
-  bending_error_ = std::max(bending_error_, left);
+  pull(*step);
+  bending_error_ =
+      std::max(bending_error_, bending_.solve(step->law(), bending_frame_.limits(), team));
+  for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, -1 * at(i));
+  for (std::size_t i = 0; bending_.steps() > 0 && i < 4 * model_.slots(); ++i)
+    guess[i] += bending_.change()[i];
   for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, step->count * at(i));
 }
 

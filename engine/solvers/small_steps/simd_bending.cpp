@@ -139,13 +139,12 @@ void SimdBending::bend_softly(float* u, const float* start, const BendingStep& s
   });
 }
 
-/// The elements of damped bending turn as they do where the last force of bending takes them: what
-/// stiff cloth is predicted to do by itself is mostly noise. Where there was none in the frame that
-/// is found by a solution (tuning::kTurnsOfBending).
+/// Elements of damped bending turn as they do where the last force of bending takes them: what
+/// stiff cloth is predicted to do by itself is mostly noise.
 void SimdBending::bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team) {
   double* const guess = stiff_.guess();
-  const int passes = give_ == 0 ? frame_.passes(step) : 1;
-  const double scale = give_ == 0 ? 0 : step.give / give_;
+  if (give_ == 0) stiff_.forget_guess();
+  const double scale = give_ == 0 ? 1 : step.give / give_;
   give_ = step.give;
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -153,18 +152,15 @@ void SimdBending::bend_stiffly(float* u, const float* start, const BendingStep& 
       u[i] += static_cast<float>(guess[i]);
     }
   });
-  for (int pass = 0; pass < passes; ++pass) {
-    const double left = solve_stiffly(u, start, step, team);
-    if (pass + 1 == passes) error_ = std::max(error_, left);
-    if (stiff_.steps() == 0) continue;
-    const double* const by = stiff_.change();
-    for_floats(team, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        guess[i] += by[i];
-        u[i] += static_cast<float>(by[i]);
-      }
-    });
-  }
+  error_ = std::max(error_, solve_stiffly(u, start, step, team));
+  if (stiff_.steps() == 0) return;
+  const double* const by = stiff_.change();
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      guess[i] += by[i];
+      u[i] += static_cast<float>(by[i]);
+    }
+  });
 }
 
 double SimdBending::solve_stiffly(const float* u, const float* start, const BendingStep& step,
