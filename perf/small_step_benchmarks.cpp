@@ -194,7 +194,7 @@ void run_bending(benchmark::State& state, const Shared& shared, simd::Isa isa, i
   const kernels::AlignedVector<float> start = u;
   for (auto _ : state) {
     std::ranges::copy(start, u.begin());
-    bending.begin(plan, u.data());  // without a guess
+    bending.begin(plan, u.data(), false);  // without a guess
     bending.bend(u.data(), u.data(), plan.h * plan.h, team);
   }
   const double footprint =

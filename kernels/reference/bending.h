@@ -27,20 +27,6 @@ inline kernels::Vector weighted_sum(const BendingElement& e, kernels::VectorsVie
   return d;
 }
 
-/// A vector that has become shorter than this part of itself has no direction in floats.
-inline constexpr double kVanished = 0x1p-20;
-
-/// How v moves where it swings as `from` does, which moves by `by`: all of it up to 60 degrees,
-/// and nothing from a right angle on.
-inline kernels::Vector swing(kernels::Vector v, kernels::Vector from, kernels::Vector by) {
-  const kernels::Vector to = from + by;
-  const double was = length(from), size = was * std::max(length(to), kVanished * was);
-  if (!(size > 0)) return {0, 0, 0};
-  const double cosine = std::max(0.0, dot(from, to) / size);
-  const kernels::Vector w = (1 / size) * cross(from, by), wv = cross(w, v);
-  return std::min(1.0, 2 * cosine) * (wv + (1 / (1 + cosine)) * cross(w, wv));
-}
-
 inline bool has_three(const BendingElement& e) { return e.slots[2] == e.slots[3]; }
 
 /// The arms of an element tell how it turns: one along it, and one across that. Of four particles
@@ -73,21 +59,39 @@ inline BendingArms arms(const BendingElement& e, kernels::VectorsView x) {
   return {arm(0, 2), e.beside ? x[*e.beside] - x[middle] : weighted_sum(e, x)};
 }
 
+/// A vector that goes from v - by / 2 to v + by / 2.
+struct Way {
+  kernels::Vector v, by;
+};
+
+/// How an element turns, by the ways of its arms: a vector along the axis, of twice the tangent of
+/// half the angle. A turn takes any vector v from v - by / 2 to v + by / 2 where by = turn x v. No
+/// arm turns the element by more than a right angle, and one that has turned about all by less.
+inline kernels::Vector turn_of(const Way& along, const Way& across) {
+  const auto bounded = [](double part, double square, double most) {
+    const double size = std::max(square, 0.25 * most);
+    return size > 0 ? part / size : 0;
+  };
+  const double square = dot(along.v, along.v);
+  const kernels::Vector swing =
+      bounded(1, square, dot(along.by, along.by)) * cross(along.v, along.by);
+  const kernels::Vector rest = across.by - cross(swing, across.v),
+                        normal = cross(along.v, across.v);
+  const double twist = bounded(dot(normal, rest), dot(normal, normal), square * dot(rest, rest));
+  return swing + twist * along.v;
+}
+
 /// How d has changed since the substep began, for one who turns with the element: the damping of an
 /// element is about what it bends, and cloth that spins keeps its spin. The direction of d says
 /// nothing of a fine cell, where most of d is what sweeps have left.
 inline kernels::Vector bent(const BendingElement& e, kernels::VectorsView x,
                             kernels::VectorsView start) {
-  const kernels::Vector s = weighted_sum(e, start);
-  const BendingArms was = arms(e, start), now = arms(e, x);
-  const kernels::Vector by = now.along - was.along;
-  const kernels::Vector swung = s + swing(s, was.along, by),
-                        across = was.across + swing(was.across, was.along, by);
-  const double square = dot(now.along, now.along);
-  const auto beside = [&](kernels::Vector v) {
-    return square > 0 ? v - (dot(v, now.along) / square) * now.along : v;
+  const auto way = [](kernels::Vector from, kernels::Vector to) {
+    return Way{0.5 * (from + to), to - from};
   };
-  return weighted_sum(e, x) - swung - swing(swung, beside(across), beside(now.across - across));
+  const Way d = way(weighted_sum(e, start), weighted_sum(e, x));
+  const BendingArms was = arms(e, start), now = arms(e, x);
+  return d.by - cross(turn_of(way(was.along, now.along), way(was.across, now.across)), d.v);
 }
 
 /// The force f of the law

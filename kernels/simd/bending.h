@@ -82,19 +82,26 @@ template <bool kFour, bool kArms>
   return (Floats(1.f) - rest / xsimd::max(xsimd::sqrt(dot(d, d)), shortest)) * d;
 }
 
-/// How v moves where it swings as `from` does, which moves by `by`.
-[[gnu::always_inline]] inline FloatVector swing(const FloatVector& v, const FloatVector& from,
-                                                const FloatVector& by) {
-  const Floats none(0.f), one(1.f), least(std::numeric_limits<float>::min());
-  FloatVector to = from + by;
-  const Floats was = xsimd::sqrt(dot(from, from)), now = xsimd::sqrt(dot(to, to));
-  const Floats vanished(static_cast<float>(reference::kVanished));
-  const Floats size = one / xsimd::max(was * xsimd::max(now, vanished * was), least);
-  const Floats cosine = xsimd::max(none, size * dot(from, to));
-  FloatVector w = size * cross(from, by);
-  FloatVector wv = cross(w, v);
-  const Floats part = xsimd::min(one, cosine + cosine);
-  return part * fused(one / (one + cosine), cross(w, wv), wv);
+/// A vector that goes from v - by / 2 to v + by / 2.
+struct Way {
+  FloatVector v, by;
+  /// To `to`.
+  [[gnu::always_inline]] static Way ending(const FloatVector& to, const FloatVector& by) {
+    return {fused_from(Floats(0.5f), by, to), by};
+  }
+};
+
+/// How an element turns (kernels/reference/bending.h).
+[[gnu::always_inline]] inline FloatVector turn_of(const Way& along, const Way& across) {
+  const Floats quarter(0.25f), least(std::numeric_limits<float>::min());
+  const Floats square = dot(along.v, along.v);
+  const Floats size = xsimd::max(xsimd::max(square, quarter * dot(along.by, along.by)), least);
+  FloatVector swing = (Floats(1.f) / size) * cross(along.v, along.by);
+  FloatVector rest = across.by - cross(swing, across.v);
+  FloatVector normal = cross(along.v, across.v);
+  const Floats most = quarter * (square * dot(rest, rest));
+  const Floats twist = dot(normal, rest) / xsimd::max(xsimd::max(dot(normal, normal), most), least);
+  return fused(twist, along.v, swing);
 }
 
 /// How d has changed, by `by` in space, for one who turns with the element. at: by how much
@@ -104,26 +111,14 @@ template <bool kFour>
                                                std::uint32_t lane, const BentQuads<kFour, true>& at,
                                                const BentQuads<kFour, true>& moved,
                                                const FloatVector& d, const FloatVector& by) {
-  const Floats least(std::numeric_limits<float>::min());
-  FloatVector s = d - by;
-  FloatVector along = load_span(b.spans.along[block], lane) + at.along();
-  FloatVector along_by = moved.along();
-  FloatVector along_was = along - along_by;
-  FloatVector across_by = moved.across();
-  FloatVector across_was = load_span(b.spans.across[block], lane) + at.across() - across_by;
+  const Way of_d = Way::ending(d, by);
+  const Way along = Way::ending(load_span(b.spans.along[block], lane) + at.along(), moved.along());
+  Way across = Way::ending(load_span(b.spans.across[block], lane) + at.across(), moved.across());
   if constexpr (!kFour) {
     const Floats alone = load(b.blocks[block].weight[2] + lane);
-    across_was = fused(alone, s, across_was);
-    across_by = fused(alone, by, across_by);
+    across = {fused(alone, of_d.v, across.v), fused(alone, by, across.by)};
   }
-  FloatVector swung = swing(s, along_was, along_by);
-  FloatVector aside = swing(across_was, along_was, along_by);
-  FloatVector across = across_was + aside;
-  across_by = across_by - aside;
-  const Floats share = Floats(1.f) / xsimd::max(dot(along, along), least);
-  FloatVector from = fused_from(share * dot(across, along), along, across);
-  FloatVector beside = fused_from(share * dot(across_by, along), along, across_by);
-  return by - swung - swing(s + swung, from, beside);
+  return by - cross(turn_of(along, across), of_d.v);
 }
 
 [[gnu::always_inline]] inline void pull_quad(float* to, const std::uint32_t* slot, Floats weight,

@@ -5,6 +5,8 @@
 /// range is short enough that its sum is right to five digits.
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/simd/bending_data.h"
 #include "kernels/simd/fours.h"
 
@@ -148,26 +150,34 @@ void solve_vectors_forward(const Front& f, const FrontVectors& v, std::size_t co
   }
 }
 
-/// own = L^-T (D^-1 own), where below is the solution of the rows below.
+/// own = L^-T (D^-1 own), where below is the solution of the rows below. Of four columns at a time
+/// these are subtracted: sums that do not wait for each other.
 void solve_vectors_backward(const Front& f, const FrontVectors& v, std::size_t columns,
                             std::size_t rows) {
   const std::size_t triangle = f.stride - f.below;
-  for (std::size_t i = columns; i-- > 0;) {
-    const double* const l = f.panel + i * f.stride;
-    FourDoubles x[2] = {FourDoubles::all(f.reciprocal[i]) * FourDoubles::load(v.own + 4 * i),
-                        FourDoubles::all(0)};
-    std::size_t k = 0;
-    for (; k + 2 <= rows; k += 2) {
-      for (std::size_t j = 0; j < 2; ++j)
-        x[j] = fused_from(FourDoubles::all(l[triangle + k + j]),
-                          FourDoubles::load(v.below + 4 * (k + j)), x[j]);
+  const auto subtract_below = [&]<std::size_t kColumns>(
+                                  std::size_t first,
+                                  std::integral_constant<std::size_t, kColumns>) {
+    const double* const l = f.panel + first * f.stride + triangle;
+    FourDoubles x[kColumns];
+    for (std::size_t j = 0; j < kColumns; ++j)
+      x[j] = FourDoubles::all(f.reciprocal[first + j]) * FourDoubles::load(v.own + 4 * (first + j));
+    for (std::size_t k = 0; k < rows; ++k) {
+      const FourDoubles below = FourDoubles::load(v.below + 4 * k);
+      for (std::size_t j = 0; j < kColumns; ++j)
+        x[j] = fused_from(FourDoubles::all(l[j * f.stride + k]), below, x[j]);
     }
-    if (k < rows)
-      x[0] =
-          fused_from(FourDoubles::all(l[triangle + k]), FourDoubles::load(v.below + 4 * k), x[0]);
-    for (k = i + 1; k < columns; ++k)
-      x[k & 1] = fused_from(FourDoubles::all(l[k]), FourDoubles::load(v.own + 4 * k), x[k & 1]);
-    (x[0] + x[1]).store(v.own + 4 * i);
+    for (std::size_t j = 0; j < kColumns; ++j) x[j].store(v.own + 4 * (first + j));
+  };
+  std::size_t i = 0;
+  for (; i + 4 <= columns; i += 4) subtract_below(i, std::integral_constant<std::size_t, 4>());
+  for (; i < columns; ++i) subtract_below(i, std::integral_constant<std::size_t, 1>());
+  for (i = columns; i-- > 0;) {
+    const double* const l = f.panel + i * f.stride;
+    FourDoubles x = FourDoubles::load(v.own + 4 * i);
+    for (std::size_t k = i + 1; k < columns; ++k)
+      x = fused_from(FourDoubles::all(l[k]), FourDoubles::load(v.own + 4 * k), x);
+    x.store(v.own + 4 * i);
   }
 }
 

@@ -1,10 +1,17 @@
 #include "engine/solvers/direct/front_factor.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "engine/bytes_of.h"
 
 namespace weft {
+namespace {
+
+/// Of four numbers. A copy of any count is a call.
+void copy_vector(const double* from, double* to) { std::memcpy(to, from, 4 * sizeof *to); }
+
+}  // namespace
 
 FrontFactor::FrontFactor(const DirectFronts& fronts, const simd::Table& kernels)
     : fronts_(fronts), kernels_(kernels) {
@@ -84,15 +91,15 @@ void FrontFactor::solve_vectors(double* b) {
   for (std::size_t i = 0; i < fronts_.fronts.size(); ++i) {
     const DirectFront& own = fronts_.fronts[i];
     const auto rows = fronts_.rows[i];
-    for (std::size_t r = 0; r < rows.size(); ++r) std::copy_n(vectors(rows[r]), 4, below + 4 * r);
+    for (std::size_t r = 0; r < rows.size(); ++r) copy_vector(vectors(rows[r]), below + 4 * r);
     kernels_.solve_vectors_forward(front_at(i), {vectors(own.first), below}, own.count,
                                    rows.size());
-    for (std::size_t r = 0; r < rows.size(); ++r) std::copy_n(below + 4 * r, 4, vectors(rows[r]));
+    for (std::size_t r = 0; r < rows.size(); ++r) copy_vector(below + 4 * r, vectors(rows[r]));
   }
   for (std::size_t i = fronts_.fronts.size(); i-- > 0;) {
     const DirectFront& own = fronts_.fronts[i];
     const auto rows = fronts_.rows[i];
-    for (std::size_t r = 0; r < rows.size(); ++r) std::copy_n(vectors(rows[r]), 4, below + 4 * r);
+    for (std::size_t r = 0; r < rows.size(); ++r) copy_vector(vectors(rows[r]), below + 4 * r);
     kernels_.solve_vectors_backward(front_at(i), {vectors(own.first), below}, own.count,
                                     rows.size());
   }

@@ -1,6 +1,7 @@
 #include "engine/solvers/small_steps/bending_factor.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
@@ -86,10 +87,10 @@ void BendingFactor::factorise(const BendingLaw& law) {
 
 void BendingFactor::solve(const double* r, double* z) {
   for (std::size_t i = 0; i < fronts_.slots.size(); ++i)
-    std::copy_n(r + 4 * std::size_t{fronts_.slots[i]}, 4, right_.data() + 4 * i);
+    std::memcpy(right_.data() + 4 * i, r + 4 * std::size_t{fronts_.slots[i]}, 4 * sizeof *r);
   factor_.solve_vectors(right_.data());
   for (std::size_t i = 0; i < fronts_.slots.size(); ++i)
-    std::copy_n(right_.data() + 4 * i, 4, z + 4 * std::size_t{fronts_.slots[i]});
+    std::memcpy(z + 4 * std::size_t{fronts_.slots[i]}, right_.data() + 4 * i, 4 * sizeof *z);
 }
 
 std::size_t BendingFronts::bytes() const {

@@ -9,41 +9,19 @@
 #include "engine/tuning.h"
 
 namespace weft {
-namespace {
-
-/// Of M^-1/2 K M^-1/2: the largest sum of a row, which bounds what is largest (Gershgorin).
-double largest_stiffness(const BendingRows& rows) {
-  double most = 0;
-  for (std::size_t slot = 0; slot < rows.slots(); ++slot) {
-    double sum = 0;
-    for (std::uint32_t e = rows.columns.begin[slot]; e < rows.columns.begin[slot + 1]; ++e) {
-      const double masses = rows.doubles.mass[slot] * rows.doubles.mass[rows.columns.items[e]];
-      sum += std::abs(rows.values[e]) / std::sqrt(masses);
-    }
-    most = std::max(most, sum);
-  }
-  return most;
-}
-
-/// By anything that takes up what a solution leaves of a balance of forces.
-bool has_holds(const Model& model) { return !model.holds.empty() || model.has_attached(); }
-
-}  // namespace
 
 BendingFrame::BendingFrame(const Model& model, const Settings& settings)
     : model_(model),
       rows_(model.small_steps().bending.rows),
-      part_((has_holds(model) ? tuning::kBendingPart : tuning::kFreeBendingPart) *
-            std::min(settings.tolerance, tuning::kLoosestBending)),
+      part_(tuning::kBendingPart * std::min(settings.tolerance, tuning::kLoosestBending)),
       particles_(count_that_bend(rows_)),
       mean_(mean_stiffness(rows_)),
-      stiffest_(largest_stiffness(rows_)),
       scheme_(settings.scheme),
       is_timed_(settings.motion_tolerance > 0) {}
 
 int BendingFrame::longest_group(const FramePlan& plan) const {
   if (is_timed_) return 1;
-  const double most = std::sqrt(tuning::kBendingGroup / stiffest_) / plan.h;
+  const double most = std::sqrt(tuning::kBendingGroup / rows_.stiffest) / plan.h;
   const int longest = std::min(tuning::kLongestGroup, plan.substeps);
   return std::max(1, static_cast<int>(std::min<double>(most, longest)));
 }

@@ -51,10 +51,6 @@ class BendingFrame {
   BendingStep usual() const { return step(give_, longest_); }
 
   bool is_factored() const { return is_factored_; }
-  /// How often a step is solved, each time for what elements have turned by after the last.
-  int passes(const BendingStep& step) const {
-    return is_factored_ && step.damping > 0 ? tuning::kTurnsOfBending : 1;
-  }
   BendingLimits limits() const { return {part_, weight_, tuning::kMostBendingSteps}; }
   /// 1/s^2. What constraints do after bending may load elements that are stiffer than a substep
   /// resolves: these have no more energy than the softest that is not resolved has, of substeps
@@ -74,7 +70,6 @@ class BendingFrame {
   const double part_;
   const double particles_;  // that bend
   const double mean_;       // 1/s^2, of K_ii / m_i
-  const double stiffest_;   // 1/s^2, no swing has a larger square of its frequency
   const Scheme scheme_;
   const bool is_timed_;  // the error of motion is measured
   bool is_factored_ = false;

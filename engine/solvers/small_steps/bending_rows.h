@@ -37,6 +37,8 @@ struct BendingRows {
   BendingValues<float> floats;
   BendingValues<double> doubles;
 
+  double stiffest = 0;  // 1/s^2, no swing has a larger square of its frequency
+
   bool empty() const { return values.empty(); }
   std::size_t slots() const { return doubles.mass.size(); }
   std::size_t groups() const { return begin.empty() ? 0 : begin.size() - 1; }

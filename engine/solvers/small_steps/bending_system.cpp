@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/bytes_of.h"
 
@@ -78,17 +79,17 @@ void BendingSystem<Real>::prepare_diagonal(const BendingLaw& law) {
   }
 }
 
-/// A factorisation serves all substeps of about its length, so that a frame which is a little
-/// longer than the last one costs none: it is that of a round number.
+/// Factorisations of a round number serve all substeps of about its length: frames of changing
+/// lengths cost none.
 template <class Real>
-void BendingSystem<Real>::prepare_factor(
-    const BendingFronts& fronts, const BendingLaw& law) requires std::is_same_v<Real, double> {
-  if (law == prepared_ && factor_ != nullptr) return;
+void BendingSystem<Real>::prepare_factor(const BendingFronts& fronts, const BendingLaw& law,
+                                         bool exactly) requires std::is_same_v<Real, double> {
+  const double level = std::round(kFactorsPerOctave * std::log2(law.inertia)) / kFactorsPerOctave;
+  const BendingLaw of = exactly ? law : BendingLaw{std::exp2(level), law.stiffness};
+  if (law == prepared_ && factor_ != nullptr && factor_->law == of) return;
   prepare_diagonal(law);
   z_.resize(4 * rows_.slots());
-  const double level = std::round(kFactorsPerOctave * std::log2(law.inertia)) / kFactorsPerOctave;
-  const BendingLaw round{std::exp2(level), law.stiffness};
-  auto found = std::ranges::find_if(made_, [&](const Factor& f) { return f.law == round; });
+  auto found = std::ranges::find_if(made_, [&](const Factor& f) { return f.law == of; });
   if (found == made_.end()) {
     if (made_.size() < kMostFactors) {
       made_.push_back({.factor = std::make_unique<BendingFactor>(rows_, fronts, table_)});
@@ -96,18 +97,18 @@ void BendingSystem<Real>::prepare_factor(
     } else {
       found = std::ranges::min_element(made_, {}, &Factor::used);
     }
-    found->law = round;
-    found->factor->factorise(round);
+    found->law = of;
+    found->factor->factorise(of);
   }
   found->used = ++uses_;
-  factor_ = found->factor.get();
+  factor_ = &*found;
 }
 
 /// Returns r . P r; z = P r of a factorisation.
 template <class Real>
 double BendingSystem<Real>::precondition(Team& team) {
   if constexpr (std::is_same_v<Real, double>) {
-    factor_->solve(residual_.data(), z_.data());
+    factor_->factor->solve(residual_.data(), z_.data());
     return sum(team, [&](std::size_t first, std::size_t last) {
       return table_.dot_vectors(residual_.data(), z_.data(), first, last);
     });
@@ -126,30 +127,66 @@ void BendingSystem<Real>::turn(double beta, Team& team) {
   });
 }
 
+/// r is what is left of the guess, and p = r / diagonal.
+template <class Real>
+simd::BendingNorms BendingSystem<Real>::begin(const simd::BendingMatrix<Real>& a, Team& team) {
+  return sum(team, norms_, [&](std::size_t first, std::size_t last) {
+    return kernels_of<Real>(table_).begin(gradients(), a.mass, a.inertia, first, last);
+  });
+}
+
+/// Returns p . A p.
+template <class Real>
+double BendingSystem<Real>::multiply(const simd::BendingMatrix<Real>& a, Team& team) {
+  return sum(team, [&](std::size_t first, std::size_t last) {
+    return kernels_of<Real>(table_).multiply(a, direction_.data(), product_.data(),
+                                             first / simd::kBendingRows, last / simd::kBendingRows);
+  });
+}
+
+/// By so many times p. Returns what is left in the norm of the diagonal, squared.
+template <class Real>
+double BendingSystem<Real>::step(double by, Team& team) {
+  const bool is_first = steps_++ == 0;
+  return sum(team, [&](std::size_t first, std::size_t last) {
+    return kernels_of<Real>(table_).step(gradients(), static_cast<Real>(by), is_first, first, last);
+  });
+}
+
+/// Each step takes up what rounding left of the last one.
+template <class Real>
+double BendingSystem<Real>::solve_exactly(const simd::BendingMatrix<Real>& a,
+                                          const BendingLimits& limits, Team& team) {
+  const simd::BendingNorms start = begin(a, team);
+  const double force = std::max(start.left + start.force, limits.weight);
+  const double enough = limits.part * limits.part * force;
+  double before = std::numeric_limits<double>::infinity(), now = start.left;
+  while (steps_ < limits.most_steps && now > enough && now < before) {
+    if constexpr (std::is_same_v<Real, double>)
+      factor_->factor->solve(residual_.data(), direction_.data());
+    multiply(a, team);
+    before = now;
+    now = step(1, team);
+  }
+  return force > 0 ? std::sqrt(now / force) : 0;
+}
+
 template <class Real>
 double BendingSystem<Real>::solve(const BendingLaw& law, const BendingLimits& limits, Team& team) {
-  const simd::BendingGradients<Real> g = gradients();
   const simd::BendingMatrix<Real> a = rows_.matrix<Real>(law);
-  const simd::BendingKernels<Real>& kernels = kernels_of<Real>(table_);
   const bool has_factor = factor_ != nullptr;
-  const simd::BendingNorms start = sum(team, norms_, [&](std::size_t first, std::size_t last) {
-    return kernels.begin(g, a.mass, a.inertia, first, last);
-  });
+  steps_ = 0;
+  if (has_factor && factor_->law == law) return solve_exactly(a, limits, team);
+  const simd::BendingNorms start = begin(a, team);
   double before = 1, now = has_factor ? precondition(team) : start.left;
   const double force = std::max(now + start.force, limits.weight);
   const double enough = limits.part * limits.part * force;
-  for (steps_ = 0; steps_ < limits.most_steps && now > enough; ++steps_) {
+  while (steps_ < limits.most_steps && now > enough) {
     if (has_factor || steps_ > 0) turn(steps_ > 0 ? now / before : 0, team);
-    const double curved = sum(team, [&](std::size_t first, std::size_t last) {
-      return kernels.multiply(a, g.direction, g.product, first / simd::kBendingRows,
-                              last / simd::kBendingRows);
-    });
+    const double curved = multiply(a, team);
     if (!(curved > 0)) break;
     before = now;
-    const auto by = static_cast<Real>(now / curved);
-    now = sum(team, [&](std::size_t first, std::size_t last) {
-      return kernels.step(g, by, steps_ == 0, first, last);
-    });
+    now = step(now / curved, team);
     if (has_factor) now = precondition(team);
   }
   return force > 0 ? std::sqrt(now / force) : 0;

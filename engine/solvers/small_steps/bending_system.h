@@ -8,8 +8,11 @@
 /// of two preconditioners:
 ///
 ///   diagonal   that of A: cloth that is soft in a substep takes a few steps
-///   factor     a sparse factorisation (bending_factor.h) of A, or of that of nearly the same
-///              substep: a step or two, however stiff; in double alone
+///   factor     a sparse factorisation (bending_factor.h) of that of nearly the same substep: two
+///              or three steps, however stiff; in double alone
+///
+/// By a factorisation of A itself one step is the solution, but for rounding: what is left is
+/// measured in the norm of the diagonal, which takes no second one.
 ///
 /// Vectors have four numbers for each slot. A vector of what is fixed is 0. Results do not depend
 /// on the number of threads. Nothing is allocated once every preconditioner has been made that the
@@ -44,8 +47,9 @@ class BendingSystem {
   void allocate();
   /// Solutions by this law, or nearly so, are to come.
   void prepare_diagonal(const BendingLaw& law);
-  void prepare_factor(const BendingFronts& fronts,
-                      const BendingLaw& law) requires std::is_same_v<Real, double>;
+  /// exactly: by this very law.
+  void prepare_factor(const BendingFronts& fronts, const BendingLaw& law,
+                      bool exactly) requires std::is_same_v<Real, double>;
 
   /// Of the last solution, or 0 of none.
   Real* guess() { return guess_.data(); }
@@ -73,6 +77,10 @@ class BendingSystem {
   void for_slots(Team& team, Work&& work) const;
   double precondition(Team& team);
   void turn(double beta, Team& team);
+  simd::BendingNorms begin(const simd::BendingMatrix<Real>& a, Team& team);
+  double multiply(const simd::BendingMatrix<Real>& a, Team& team);
+  double step(double by, Team& team);
+  double solve_exactly(const simd::BendingMatrix<Real>& a, const BendingLimits& limits, Team& team);
 
   /// One that has been made, for substeps of nearly this length.
   struct Factor {
@@ -90,7 +98,7 @@ class BendingSystem {
   std::vector<simd::BendingNorms> norms_;
   kernels::AlignedVector<double> z_;  // the residual, preconditioned
   std::vector<Factor> made_;
-  BendingFactor* factor_ = nullptr;  // or null: the diagonal
+  Factor* factor_ = nullptr;  // or null: the diagonal
   std::uint64_t uses_ = 0;
   int steps_ = 0;
 };

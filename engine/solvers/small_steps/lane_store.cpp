@@ -109,7 +109,9 @@ void LaneStore::accelerate(kernels::Vector gravity, kernels::VectorsView force) 
   }
 }
 
-void LaneStore::begin_bending(const FramePlan& plan) { bending_.begin(plan, acceleration_.data()); }
+void LaneStore::begin_bending(const FramePlan& plan) {
+  bending_.begin(plan, acceleration_.data(), now_.has_past && past_.h == now_.h);
+}
 
 /// Without a past the particles are taken to have been in free flight.
 void LaneStore::begin_past(Team& team) {

@@ -88,7 +88,8 @@ void ReferenceStore::begin_bending(const FramePlan& plan) {
   bending_frame_.begin(plan, weight);
   bending_.forget_guess();
   if (bending_frame_.is_factored())
-    bending_.prepare_factor(model_.bending_fronts(), bending_frame_.usual().law());
+    bending_.prepare_factor(model_.bending_fronts(), bending_frame_.usual().law(),
+                            now_.has_past && past_.h == now_.h);
   else
     bending_.prepare_diagonal(bending_frame_.usual().law());
 }
@@ -149,25 +150,21 @@ void ReferenceStore::bend(Team& team) {
   double* const guess = bending_.guess();
   const double scale = give_ > 0 ? step->give / give_ : 0;
   give_ = step->give;
-  double left = 0;
   for (std::size_t i = 0; i < 4 * model_.slots(); ++i) guess[i] *= scale;
   const auto at = [&](std::size_t i) {
     return Vector{guess[4 * i], guess[4 * i + 1], guess[4 * i + 2]};
   };
-  for (int pass = 0; pass < bending_frame_.passes(*step); ++pass) {
-    for (std::size_t i = 0; i < model_.slots(); ++i) {
-      x_.view().add(i, at(i));
-      from_.set(i, before_[i] - (step->count - 1) * at(i));
-    }
-    pull(*step);
-    left = bending_.solve(step->law(), bending_frame_.limits(), team);
-    for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, -1 * at(i));
-    for (std::size_t i = 0; bending_.steps() > 0 && i < 4 * model_.slots(); ++i)
-      guess[i] += bending_.change()[i];
+  for (std::size_t i = 0; i < model_.slots(); ++i) {
+    x_.view().add(i, at(i));
+    from_.set(i, before_[i] - (step->count - 1) * at(i));
   }
-  bending_error_ = std::max(bending_error_, left);
+  pull(*step);
+  bending_error_ =
+      std::max(bending_error_, bending_.solve(step->law(), bending_frame_.limits(), team));
+  for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, -1 * at(i));
+  for (std::size_t i = 0; bending_.steps() > 0 && i < 4 * model_.slots(); ++i)
+    guess[i] += bending_.change()[i];
   for (std::size_t i = 0; i < model_.slots(); ++i) x_.view().add(i, step->count * at(i));
-  if (bending_frame_.is_factored()) give_ = 0;
 }
 
 void ReferenceStore::pull(const BendingStep& step) {

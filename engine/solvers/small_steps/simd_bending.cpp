@@ -49,7 +49,7 @@ void SimdBending::for_floats(Team& team, Work&& work) const {
   team.for_each_part(4 * layout_.rows.slots(), kFloatsOfPart, work);
 }
 
-void SimdBending::begin(const FramePlan& plan, const float* acceleration) {
+void SimdBending::begin(const FramePlan& plan, const float* acceleration, bool goes_on) {
   if (layout_.empty()) return;
   double weight = 0;
   for (std::size_t slot = 0; slot < layout_.rows.slots(); ++slot) {
@@ -62,7 +62,7 @@ void SimdBending::begin(const FramePlan& plan, const float* acceleration) {
   frame_.begin(plan, weight);
   give_ = error_ = 0;
   if (frame_.is_factored())
-    stiff_.prepare_factor(model_.bending_fronts(), frame_.usual().law());
+    stiff_.prepare_factor(model_.bending_fronts(), frame_.usual().law(), goes_on);
   else
     soft_.prepare_diagonal(frame_.usual().law());
 }
@@ -139,23 +139,28 @@ void SimdBending::bend_softly(float* u, const float* start, const BendingStep& s
   });
 }
 
-/// What is damped is solved twice: how its elements turn is read from where bending takes them.
-/// What stiff cloth is predicted to do is mostly noise (tuning::kTurnsOfBending).
+/// Elements of damped bending turn as they do where the last force of bending takes them: what
+/// stiff cloth is predicted to do by itself is mostly noise.
 void SimdBending::bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team) {
   double* const guess = stiff_.guess();
-  stiff_.forget_guess();
-  for (int pass = 0; pass < frame_.passes(step); ++pass) {
-    const double left = solve_stiffly(u, start, step, team);
-    if (pass + 1 == frame_.passes(step)) error_ = std::max(error_, left);
-    if (stiff_.steps() == 0) continue;
-    const double* const by = stiff_.change();
-    for_floats(team, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        guess[i] += by[i];
-        u[i] += static_cast<float>(by[i]);
-      }
-    });
-  }
+  if (give_ == 0) stiff_.forget_guess();
+  const double scale = give_ == 0 ? 1 : step.give / give_;
+  give_ = step.give;
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      guess[i] *= scale;
+      u[i] += static_cast<float>(guess[i]);
+    }
+  });
+  error_ = std::max(error_, solve_stiffly(u, start, step, team));
+  if (stiff_.steps() == 0) return;
+  const double* const by = stiff_.change();
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      guess[i] += by[i];
+      u[i] += static_cast<float>(by[i]);
+    }
+  });
 }
 
 double SimdBending::solve_stiffly(const float* u, const float* start, const BendingStep& step,

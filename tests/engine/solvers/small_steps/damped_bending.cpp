@@ -78,7 +78,7 @@ TEST_CASE("a damped strip of fine cells rests where one without damping does" *
   }
 }
 
-TEST_CASE("lanes follow the double reference where damped bending is solved twice") {
+TEST_CASE("lanes follow the double reference where damped bending is factored") {
   const SceneDescription scene = fine_strip("denim");
   Settings settings{.tolerance = 1e-3, .substeps = 46, .threads = 1};
   Cloth lanes = cloth_of(scene, settings);
