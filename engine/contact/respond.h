@@ -10,6 +10,7 @@
 /// inverse mass. Points of bodies have none: what they do not take loads the body.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -55,8 +56,9 @@ class Response {
   static void for_each_lane(std::size_t block, std::uint32_t bits, Visit&& visit);
   simd::PairTouch touch_of(const ContactScene& scene, NearPairs& near,
                            std::vector<std::uint16_t>& touching) const;
+  /// Returns the longest push (m).
   template <class Moved>
-  void push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved);
+  double push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved);
   /// Returns whether it was pushed apart.
   static bool resist(const ContactScene& scene, NearPairs& near, std::size_t i);
   static void push(const ContactScene& scene, const Encounter& e, const Pair& pair,
@@ -98,22 +100,29 @@ void Response::for_each_lane(std::size_t block, std::uint32_t bits, Visit&& visi
 ///
 /// Particles first: of a pair that is a mean of several, which a push moves all at once, the
 /// corners are then where they may be, and what lies flat has nothing left to push.
+///
+/// Two faces that meet over a corner of a body, as a tent does over its pole, are pushed to either
+/// side of it by points that both share: the steeper they are, the more turns lift their edge.
 template <class Moved>
 void Response::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved) {
   find_touching(scene, near, team);
   for (const NearPairs& pairs : near)
     visits_ += tuning::kVisitsOfLook * static_cast<double>(pairs.list.size());
+  double pushed = 0;
   for (int round = 0; round < tuning::kMeshRounds; ++round) {
     for (const Turn turn : {Turn::points, Turn::edges, Turn::points_of_bodies})
-      push_apart(scene, near, turn, moved);
+      pushed = push_apart(scene, near, turn, moved);
   }
+  for (int turn = 0; turn < tuning::kCornerTurns && pushed > tuning::kCornerPush; ++turn)
+    pushed = push_apart(scene, near, Turn::points_of_bodies, moved);
 }
 
 template <class Moved>
-void Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved) {
+double Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved) {
   const std::size_t list = turn == Turn::edges ? 1 : 0;
   NearPairs& pairs = near[list];
   const simd::PairTouch touch = touch_of(scene, pairs, touching_now_[list]);
+  double longest = 0;
   for (std::size_t block = 0; block < touching_[list].size(); ++block) {
     const std::uint32_t turned = pairs.turned[block], given = given_[list][block];
     const std::uint32_t bits =
@@ -122,7 +131,9 @@ void Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Move
     table_.touch_pairs(touch, has_edges(list), block, block + 1);
     for_each_lane(block, bits & (touching_now_[list][block] | given), [&](std::size_t i) {
       visits_ += tuning::kVisitsOfTouch;
+      const double before = pairs.states[i].push;
       if (!resist(scene, pairs, i)) return;
+      longest = std::max(longest, pairs.states[i].push - before);
       remember(scene, pairs, list, i);
       note_given(pairs.states[i].given > 0, list, i);
       for (const std::uint32_t point : pairs.list.points(i)) {
@@ -130,6 +141,7 @@ void Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Move
       }
     });
   }
+  return longest;
 }
 
 }  // namespace weft

@@ -35,7 +35,8 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
   share_room(particles);
 }
 
-/// To particles that touched a body when the last substep ended.
+/// To particles that touched a body when the last substep ended. Where one has its share no body
+/// pushes it: it touches them all the same.
 void ReferenceBodies::share_room(ContactParticles& particles) {
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
     if (!before_[slot]) continue;
@@ -46,8 +47,10 @@ void ReferenceBodies::share_room(ContactParticles& particles) {
     }
     room_.share(claims_, clock_.h(), slot);
   }
-  for (const Room::Entry& entry : room_.entries())
+  for (const Room::Entry& entry : room_.entries()) {
     grips_[entry.slot * clock_.bodies().size() + entry.body].yield = entry.yield;
+    if (clock_.bodies()[entry.body].shape->mesh() == nullptr) on_[entry.slot] = true;
+  }
 }
 
 /// They move by any way: nobody knows how far.

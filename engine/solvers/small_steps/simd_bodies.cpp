@@ -95,7 +95,8 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
 }
 
 /// Among bodies of a closed form, to particles that touched one when the last substep ended. What
-/// they yield to any particle is for lanes, too.
+/// they yield to any particle is for lanes, too. Where it has its share no body pushes it: it
+/// touches them all the same, and has its share in the next substep.
 void SimdBodies::share_room(ContactParticles& particles) {
   for (std::size_t active = 0; active + 1 < first_pair_.size(); ++active) {
     const std::size_t first = first_pair_[active], last = first_pair_[active + 1];
@@ -119,6 +120,7 @@ void SimdBodies::share_room(ContactParticles& particles) {
     const std::size_t block = place / kLanes, lane = place % kLanes;
     for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
       if (pairs_[i].body != entry.body) continue;
+      on_[block] = static_cast<std::uint16_t>(on_[block] | 1u << lane);
       grips_[i].yields_by[lane] = static_cast<float>(entry.yield.by);
       grips_[i].retreat[lane] = static_cast<float>(entry.yield.retreat);
     }

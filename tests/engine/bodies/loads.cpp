@@ -96,6 +96,33 @@ TEST_CASE("friction takes what a plane does that is drawn away under a sheet") {
   }
 }
 
+TEST_CASE("friction takes the energy that a sheet loses as it slides down") {
+  const Backend backend = each_backend();
+  const double angle = 0.44, downhill = std::sin(angle);  // tan = 0.47
+  const std::array<ShapeDescription, 2> shapes{Plane{}, box_mesh({8, 2, 8}, 43)};
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    for (const int substeps : {1, 5, kAutomaticSubsteps}) {
+      CAPTURE(i);
+      CAPTURE(substeps);
+      SceneDescription scene = sheet(8, i == 0 ? 1e-3 : 1 + 1e-3);
+      const auto tilt = turn({0, 0, 1}, angle);
+      for (Vec3& x : scene.positions) x = turned(tilt, x);
+      Cloth cloth = cloth_in_substeps(scene, backend, substeps);
+      test::add(
+          cloth,
+          Body{.shape = shape_of(shapes[i]), .pose = {.rotation = tilt}, .friction = kFriction});
+      const double before = cloth.energy().total();
+      double taken = 0;
+      for (int k = 0; k < 30; ++k) taken += step(cloth, 1.0 / 60).friction_work;
+      const double acceleration = kG * (downhill - kFriction * std::cos(angle));
+      const double way = acceleration / 8;
+      CHECK(taken ==
+            doctest::Approx(kFriction * std::cos(angle) * mass_of(scene) * kG * way).epsilon(0.02));
+      CHECK(taken == doctest::Approx(before - cloth.energy().total()).epsilon(0.01));
+    }
+  }
+}
+
 /// A sheet falls on a body that moves to and fro and turns, and is gone in the end.
 void check_balance(const ShapeDescription& shape, Backend backend, int substeps, double tolerance) {
   CAPTURE(substeps);

@@ -205,6 +205,39 @@ TEST_CASE("a sheet hangs over a ball of triangles as over a ball") {
   for (const Vec3 x : positions(on_mesh)) CHECK(length(x) > 0.121 - flat - 1e-4);
 }
 
+/// A cone of eight sides, 4 cm wide at the height -0.45 m, whose tip is at the origin.
+TriangleMesh needle() {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0, -0.45, 0}};
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const double angle = std::numbers::pi / 4 * i;
+    mesh.vertices.push_back({0.02 * std::cos(angle), -0.45, 0.02 * std::sin(angle)});
+    const std::uint32_t a = 2 + i, b = 2 + (i + 1) % 8;
+    mesh.triangles.insert(mesh.triangles.end(), {{0, b, a}, {1, a, b}});
+  }
+  return mesh;
+}
+
+TEST_CASE("coarse cloth stays at its thickness from the tip of a needle, as a tent on its pole") {
+  const Backend backend = each_backend();
+  for (const std::uint32_t size : {2u, 4u}) {
+    for (const double rate : {30.0, 60.0, 240.0}) {
+      CAPTURE(size);
+      CAPTURE(rate);
+      MeshDescription mesh = right_triangles(size);
+      for (Vec3& v : mesh.positions) v = {v.x / (size - 1) - 0.47, 0.05, v.y / (size - 1) - 0.48};
+      mesh.material = find_material("cotton").value();
+      Cloth cloth = cloth_of(made(mesh).scene, small_steps(backend));
+      add(cloth, {.shape = shape_of(needle()), .thickness = 1e-3});
+      int missed = 0;
+      const auto frames = std::lround(1.5 * rate);
+      for (long i = 0; i < frames; ++i)
+        missed += step(cloth, 1 / rate).status == Status::converged ? 0 : 1;
+      CHECK(missed == 0);
+    }
+  }
+}
+
 TEST_CASE("bodies of triangles bring no energy in but by their work") {
   const Backend backend = each_backend();
   for (const bool moves : {false, true}) {
