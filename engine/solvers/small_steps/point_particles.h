@@ -22,6 +22,9 @@ class PointParticles final : public ContactParticles {
     points_.put(slot, particle.x, particle.v);
     points_.put_start(slot, particle.start);
   }
+  void move_to(std::uint32_t slot, kernels::Vector x, kernels::Vector v) override {
+    points_.put(slot, x, v);
+  }
   void touch(std::uint32_t slot, const TouchedSurface& surface) override {
     if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
   }
