@@ -119,6 +119,17 @@ Result<void> validate_sides(const TriangleMesh& mesh) {
   return {};
 }
 
+BoxTree tree_of(const MeshShape& mesh) {
+  BoxTree tree(mesh.surface.in_order);
+  tree.refit([&](std::uint32_t triangle) {
+    Box box = Box::none();
+    for (const std::uint32_t corner : mesh.surface.triangles[triangle])
+      box.add(Box::at(mesh.vertices[corner]));
+    return box;
+  });
+  return tree;
+}
+
 Shared build(const TriangleMesh& mesh) {
   MeshShape shape{.two_sided = mesh.two_sided};
   std::vector<std::array<double, 3>> places;
@@ -145,6 +156,7 @@ Shared build(const TriangleMesh& mesh) {
     if (auto r = validate_sides(mesh); !r) return Error{r.error()};
   }
   shape.surface = make_triangle_surface(triangles, places, {});
+  shape.tree = tree_of(shape);
   shape.is_open = std::ranges::any_of(shape.surface.opposite,
                                       [](const auto& third) { return third[1] == kNoIndex; });
   return std::make_shared<BodyShape>(std::move(shape));

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/triangles/box_tree.h"
 #include "engine/triangles/triangle_surface.h"
 #include "kernels/vectors.h"
 
@@ -12,6 +13,7 @@ namespace weft {
 struct MeshShape {
   std::vector<kernels::Vector> vertices{};
   TriangleSurface surface{};
+  BoxTree tree{};  // of its triangles
   bool two_sided = false;
   bool is_open = false;  // it has a border
 };

@@ -28,15 +28,15 @@ void CandidateSearch::find_all(ContactPoints& points, SurfacePair pair, Candidat
     features.add(b);
   };
   if (!body.is_rigid) {
-    body.tree.refit([&](std::uint32_t t) { return points.in_tree(body, body.points_of(t)); });
-    BoxTree::meet(table_, cloth.tree, body.tree, add);
+    body.own_tree.refit([&](std::uint32_t t) { return points.in_tree(body, body.points_of(t)); });
+    BoxTree::meet(table_, cloth.tree(), body.tree(), add);
     features.finish();
     return;
   }
-  if (!body.seen(cloth.tree.box()).meets(body.tree.box())) return;
+  if (!body.seen(cloth.tree().box()).meets(body.tree().box())) return;
   seen_.begin();
   seen_cloth_.refit([&](std::uint32_t t) { return seen_.box(points, body, cloth.points_of(t)); });
-  BoxTree::meet(table_, seen_cloth_, body.tree, add);
+  BoxTree::meet(table_, seen_cloth_, body.tree(), add);
   features.finish();
 }
 
@@ -44,7 +44,7 @@ bool CandidateSearch::find(ContactPoints& points, Candidates& candidates, Team& 
   if (points.has_tubes()) return renew(points, candidates, team);
   points.lay_tubes();
   ContactSurface& cloth = points.surfaces()[kClothSurface];
-  cloth.tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
+  cloth.own_tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
   if (owner_of_edge_.empty()) find_owners(cloth);
   for (PairList& list : candidates) list.clear();
   for (const SurfacePair pair : points.surface_pairs()) find_all(points, pair, candidates);
@@ -54,7 +54,7 @@ bool CandidateSearch::find(ContactPoints& points, Candidates& candidates, Team& 
 
 void CandidateSearch::find_owners(const ContactSurface& cloth) {
   const TriangleSurface& s = *cloth.triangles;
-  seen_cloth_ = cloth.tree;
+  seen_cloth_ = cloth.tree();
   seen_.resize(s.triangles_at.size());
   owner_of_edge_.resize(s.edges.size());
   owner_of_point_.resize(s.triangles_at.size());
@@ -104,15 +104,16 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates, Team&
   }
   for (const SurfacePair pair : points.surface_pairs()) {
     const ContactSurface& body = points.surfaces()[pair.b];
-    if (!body.as_in_tree(all).meets(body.tree.box())) continue;
+    if (!body.as_in_tree(all).meets(body.tree().box())) continue;
     OwnedFeatures features(table_, points, pair, candidates);
     seen_.begin();
     for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
       if (is_renewed_[t] == 0) continue;
-      body.tree.find(table_, seen_.box(points, body, cloth.triangles[t]), [&](std::uint32_t other) {
-        if (features.triangle() != t) features.begin(t);
-        features.add(other);
-      });
+      body.tree().find(table_, seen_.box(points, body, cloth.triangles[t]),
+                       [&](std::uint32_t other) {
+                         if (features.triangle() != t) features.begin(t);
+                         features.add(other);
+                       });
     }
     features.finish();
   }
@@ -127,7 +128,8 @@ void CandidateSearch::find_beside(ContactPoints& points, std::uint32_t triangle,
     const simd::PointTube tube = Tube{box, box}.in_lanes();
     features.begin(triangle, {&tube, &tube, &tube});
     const ContactSurface& body = points.surfaces()[pair.b];
-    body.tree.find(table_, body.as_in_tree(box), [&](std::uint32_t other) { features.add(other); });
+    body.tree().find(table_, body.as_in_tree(box),
+                     [&](std::uint32_t other) { features.add(other); });
     features.finish();
   }
 }

@@ -22,7 +22,7 @@ void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candi
   if (adjacent_.empty()) adjacent_.make(*cloth.triangles);
   adjacent_.find(points, candidates, team);
   OwnedFeatures features(table_, points, kWithinCloth, candidates);
-  BoxTree::meet_itself(table_, cloth.tree, [&](std::uint32_t a, std::uint32_t b) {
+  BoxTree::meet_itself(table_, cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
     if (share_a_corner(triangles[a], triangles[b])) return;
     if (features.triangle() != a) features.begin(a);
     features.add(b);
@@ -36,11 +36,11 @@ void CandidateSearch::find_within_cloth_of(ContactPoints& points, Candidates& ca
                                            Team& team) {
   ContactSurface& cloth = points.surfaces()[kClothSurface];
   const auto& triangles = cloth.triangles->triangles;
-  cloth.tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
+  cloth.own_tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
   OwnedFeatures features(table_, points, kWithinCloth, candidates);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     if (is_renewed_[t] == 0) continue;
-    cloth.tree.find(table_, points.in_tree(cloth, cloth.points_of(t)), [&](std::uint32_t other) {
+    cloth.tree().find(table_, points.in_tree(cloth, cloth.points_of(t)), [&](std::uint32_t other) {
       if (is_renewed_[other] != 0 && other < t) return;
       if (share_a_corner(triangles[t], triangles[other])) return;
       if (features.triangle() != t) features.begin(t);

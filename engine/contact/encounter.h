@@ -11,10 +11,10 @@ namespace weft {
 
 /// Its points where the substep began and where they are, and how it stands to its thickness.
 struct Encounter {
-  std::array<std::uint32_t, 4> points{};
-  FourPoints start{}, x{};  // start: once it is read
-  reference::Nearest nearest{};
-  kernels::Vector normal{};  // from the second feature to the first, where both were on their sides
+  std::array<std::uint32_t, 4> points;
+  FourPoints start, x;  // start: once it is read
+  reference::Nearest nearest;
+  kernels::Vector normal;    // from the second feature to the first, where both were on their sides
   double gap = 0;            // m
   reference::Yield yield{};  // of the body
   bool is_under = false;     // one is on the wrong side of the other

@@ -156,7 +156,6 @@ std::array<bool, 4> push(const ContactScene& scene, Encounter& e, const Shares& 
     const Vector x = scene.particles.position(point), moved = x - e.x[k];
     e.x[k] = x;
     e.start[k] = scene.particles.start(point);
-    scene.points.set_place(point, x);
     e.gap += e.nearest.weight[k] * dot(e.normal, moved);
     is_free[k] = dot(moved, e.normal) / (share * dot(by + comes_out, e.normal)) > 0.5;
   }

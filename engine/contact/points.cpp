@@ -83,7 +83,7 @@ void ContactPoints::begin(const BodyClock& clock) {
 /// Of vertices those alone cost something that are looked at.
 void ContactPoints::make_room(const BodyClock& clock, std::size_t points) {
   for (auto* vectors : {&start_, &end_}) vectors->make_room(points);
-  for (auto* vectors : {&substep_from_, &substep_to_}) vectors->make_room(points - slots_);
+  present_.make_room(points);
   for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->make_room(4 * points);
   box_.make_room(points);
   tube_.make_room(points);
@@ -102,7 +102,7 @@ void ContactPoints::add_cloth() {
   if (!surfaces_.empty()) return;
   ContactSurface& cloth = surfaces_.emplace_back();
   cloth.triangles = &model_.touched_surface();
-  cloth.tree = BoxTree(cloth.triangles->in_order);
+  cloth.own_tree = BoxTree(cloth.triangles->in_order);
 }
 
 void ContactPoints::prepare_for_itself() {
@@ -132,7 +132,7 @@ ContactSurface& ContactPoints::surface_for(const BodyClock& clock, std::size_t b
     surface.triangles = &mesh.surface;
     surface.two_sided = mesh.two_sided;
     surface.is_open = mesh.is_open;
-    surface.tree = BoxTree(mesh.surface.in_order);
+    surface.own_tree = {};
     surface.active.make_room(mesh.surface.triangles.size());
     surface.shape = b.shape;
     surface.is_rigid = false;
@@ -146,7 +146,6 @@ ContactSurface& ContactPoints::surface_for(const BodyClock& clock, std::size_t b
   return surface;
 }
 
-/// A tree in coordinates of the body is made when it begins to keep its shape.
 void ContactPoints::take_vertices(ContactSurface& surface, const TravellingBody& body) {
   const Vector* of_shape = surface.shape->mesh()->vertices.data();
   const bool is_rigid = body.from.data() == of_shape && body.to.data() == of_shape;
@@ -155,6 +154,11 @@ void ContactPoints::take_vertices(ContactSurface& surface, const TravellingBody&
   if (is_rigid && surface.is_rigid) return;
   surface.is_rigid = is_rigid;
   surface.longest = 0;
+  if (is_rigid) {
+    surface.extent = surface.tree().box();
+    return;
+  }
+  if (surface.own_tree.empty()) surface.own_tree = BoxTree(surface.triangles->in_order);
   surface.extent = Box::none();
   for (std::size_t i = 0; i < body.from.size(); ++i) {
     const Vector way = body.to[i] - body.from[i];
@@ -162,13 +166,6 @@ void ContactPoints::take_vertices(ContactSurface& surface, const TravellingBody&
     surface.extent.add(box_around(body.from[i], body.to[i], 0));
   }
   surface.longest = std::sqrt(surface.longest);
-  if (!is_rigid) return;
-  surface.tree.refit([&](std::uint32_t t) {
-    Box box = Box::none();
-    for (const std::uint32_t point : surface.triangles->triangles[t])
-      box.add(box_around(body.from[point], body.from[point], 0));
-    return box;
-  });
 }
 
 void ContactPoints::look_ahead(const ContactParticles& cloth, const BodyClock& clock) {
@@ -230,6 +227,7 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
     const auto before = std::exchange(surface.begins, travel.at(from_));
     const auto end_before = std::exchange(surface.ends, travel.at(to_));
     const bool has_moved = !surface.is_rigid || !is_same(before, surface.begins);
+    surface.stands = surface.is_rigid && travel.turn() == Vector{} && travel.way() == Vector{};
     surface.normals.begin(*surface.triangles, &start_[surface.first_point], !has_moved);
     if (has_moved || surface.placing == 0 || !are_floats_same || !is_same(end_before, surface.ends))
       surface.placing = ++placings_;
@@ -365,22 +363,23 @@ void ContactPoints::lay_vertex(std::uint32_t point) {
 }
 
 void ContactPoints::place_vertices_asked(const BodyClock& clock) {
+  const double rate = 1 / clock.h();
+  const bool are_placed = std::exchange(are_placed_, true);
   for (const std::uint32_t point : asked_) {
     if (is_of_cloth(point)) continue;
     const ContactSurface& surface = surface_of(point);
+    if (are_placed && surface.stands) continue;
     const reference::BodyMotion& motion = clock.motions()[surface.body];
     const std::uint32_t vertex = point - surface.first_point;
-    substep_from_[point - slots_] =
-        clock.vertex(surface.body, vertex, motion.from, clock.share_after(-1));
-    substep_to_[point - slots_] =
-        clock.vertex(surface.body, vertex, motion.to, clock.share_after(0));
-    set_place(point, to(point));
+    const Vector from = clock.vertex(surface.body, vertex, motion.from, clock.share_after(-1)),
+                 to = clock.vertex(surface.body, vertex, motion.to, clock.share_after(0));
+    set_present(point, {from, to, rate * (to - from)});
   }
 }
 
 void ContactPoints::read_cloth(const ContactParticles& cloth) {
   for (const std::uint32_t point : asked_) {
-    if (is_of_cloth(point)) set_place(point, cloth.position(point));
+    if (is_of_cloth(point)) set_present(point, cloth.read(point));
   }
 }
 
@@ -433,11 +432,11 @@ std::size_t ContactPoints::bytes() const {
                       bytes_of(surface_of_) + bytes_of(start_) + bytes_of(end_) + bytes_of(reach_) +
                       bytes_of(ways_) + bytes_of(box_) + bytes_of(tube_) + bytes_of(lane_tubes_) +
                       bytes_of(start_quads_) + bytes_of(way_quads_) + bytes_of(place_quads_) +
-                      bytes_of(asked_) + bytes_of(substep_from_) + bytes_of(substep_to_) +
-                      bytes_of(laid_) + bytes_of(shortest_) + bytes_of(placed_) +
-                      bytes_of(active_) + bytes_of(is_active_);
+                      bytes_of(asked_) + bytes_of(present_) + bytes_of(laid_) +
+                      bytes_of(shortest_) + bytes_of(placed_) + bytes_of(active_) +
+                      bytes_of(is_active_);
   for (const ContactSurface& surface : surfaces_)
-    bytes += surface.tree.bytes() + surface.normals.bytes() + bytes_of(surface.active);
+    bytes += surface.own_tree.bytes() + surface.normals.bytes() + bytes_of(surface.active);
   return bytes;
 }
 

@@ -119,22 +119,35 @@ class ContactPoints {
   /// These points alone are asked for in the substeps of the interval.
   void ask_for(std::span<const std::uint32_t> points) {
     asked_.assign(points.begin(), points.end());
+    are_placed_ = false;
   }
   /// Where vertices that are asked for are when the present substep begins and ends.
   void place_vertices_asked(const BodyClock& clock);
   /// Where those of the cloth have come to.
   void read_cloth(const ContactParticles& cloth);
   const float* places() const { return place_quads_.data(); }
-  void set_place(std::uint32_t point, kernels::Vector x) {
-    write(place_quads_, point, x - origin_);
+  /// A point that was asked for, in the present substep: of the cloth, as it was last read.
+  const ContactParticle& present(std::uint32_t point) const { return present_[point]; }
+  void set_present(std::uint32_t point, const ContactParticle& particle) {
+    present_[point] = particle;
+    write(place_quads_, point, particle.x - origin_);
+  }
+  /// Of the cloth, once it was moved there: as its particles keep it.
+  void read_back(std::uint32_t slot, const ContactParticles& cloth) {
+    present_[slot] = cloth.read(slot);
+  }
+  void read_present(const std::array<std::uint32_t, 4>& points, const ContactParticles& cloth) {
+    for (const std::uint32_t point : points)
+      if (is_of_cloth(point)) set_present(point, cloth.read(point));
   }
   /// Of a vertex that was asked for, where the substep begins and ends.
-  kernels::Vector from(std::uint32_t point) const { return substep_from_[point - slots_]; }
-  kernels::Vector to(std::uint32_t point) const { return substep_to_[point - slots_]; }
+  kernels::Vector from(std::uint32_t point) const { return present_[point].start; }
+  kernels::Vector to(std::uint32_t point) const { return present_[point].x; }
 
   /// Where any vertex is when the present substep ends.
   kernels::Vector vertex_now(const BodyClock& clock, std::uint32_t point) const {
     const ContactSurface& surface = surface_of(point);
+    if (surface.stands) return start_[point];
     return clock.vertex(surface.body, point - surface.first_point, clock.motions()[surface.body].to,
                         clock.share_after(0));
   }
@@ -233,7 +246,8 @@ class ContactPoints {
   SparseArray<std::uint8_t> is_active_;  // per vertex
   SparseArray<float> start_quads_, way_quads_, place_quads_;
   std::vector<std::uint32_t> asked_;
-  SparseArray<kernels::Vector> substep_from_, substep_to_;  // per vertex that was asked for
+  bool are_placed_ = false;  // those of bodies that stand still, too
+  SparseArray<ContactParticle> present_;
 };
 
 template <class Moved>

@@ -105,7 +105,7 @@ simd::PairTouch Response::touch_of(const ContactScene& scene, NearPairs& near,
                                    std::vector<std::uint16_t>& touching) const {
   return {.pairs = near.list.blocks.data(),
           .points = scene.points.places(),
-          .rounding = 4 * scene.points.rounding(),
+          .rounding = kRoundings * scene.points.rounding(),
           .sides = near.sides.data(),
           .touching = touching.data()};
 }
@@ -124,18 +124,28 @@ void Response::find_touching(const ContactScene& scene, Near& near, Team& team) 
   }
 }
 
+namespace {
+
+/// As it was last read.
+void read_start(const ContactPoints& points, Encounter& e) {
+  for (std::size_t k = 0; k < 4; ++k) e.start[k] = points.present(e.points[k]).start;
+}
+
+}  // namespace
+
 /// Where neighbours are nearer, or the features are not beside each other, it does not push.
 Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::size_t i) {
   const Pair& pair = near.list.pairs[i];
-  Encounter e{.points = near.list.points(i)};
-  for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.place(e.points[k]);
+  Encounter e;
+  e.points = near.list.points(i);
+  for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.points.present(e.points[k]).x;
   const double thickness = near.states[i].thickness;
   e.nearest = nearest(pair.kind, e.x);
   const Vector side = near.normal(i);
   const double l = length(e.nearest.r);
   const Vector direct = l > kTouching ? (1 / l) * e.nearest.r : side;
   if (!(dot(e.nearest.r, side) > 0)) {
-    e.read_start(scene);
+    read_start(scene.points, e);
     e.is_under = is_now_under(pair.kind, e, e.nearest.r, side, near.is_under(i), thickness);
   }
   e.normal = e.is_under ? -1.0 * direct : direct;
@@ -155,10 +165,15 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   Encounter e = meet(scene, near, i);
   near.set_under(i, e.is_under);
   near.set_normal(i, e.normal);
-  if (state.given > 0 && e.gap > state.target) return layers::take_back(scene, e, state);
-  if (!e.pushes) return false;
-  e.read_start(scene);
-  if (pair.is_within_cloth()) return layers::resist(scene, e, state);
+  const bool takes_back = state.given > 0 && e.gap > state.target;
+  if (!takes_back && !e.pushes) return false;
+  read_start(scene.points, e);
+  if (pair.is_within_cloth()) {
+    const bool is_pushed =
+        takes_back ? layers::take_back(scene, e, state) : layers::resist(scene, e, state);
+    scene.points.read_present(e.points, scene.particles);
+    return is_pushed;
+  }
   Vector slip{};
   double weight = 0;  // sum of W w^2
   for (std::size_t k = 0; k < 4; ++k) {
@@ -185,13 +200,12 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
   const ContactSurface& later = scene.points.later(pair);
   TouchedSurface surface{.body = later.body};
   Vector relative{}, on_body{};
-  std::array<ContactParticle, 4> at;
   for (std::size_t k = 0; k < 4; ++k) {
     const double w = e.nearest.weight[k], outward = pair.outward() * w;
-    at[k] = scene.read(e.points[k]);
-    relative = relative + w * at[k].v;
+    const Vector v = scene.points.present(e.points[k]).v;
+    relative = relative + w * v;
     if (scene.points.is_of_cloth(e.points[k])) continue;
-    surface.velocity = surface.velocity - outward * at[k].v;
+    surface.velocity = surface.velocity - outward * v;
     on_body = on_body - outward * e.x[k];
   }
   const reference::Slowed slow =
@@ -201,12 +215,16 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
     const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k];
     if (share == 0) continue;
     const double part = share / weight;
-    ContactParticle p = at[k];
+    ContactParticle p = scene.points.present(e.points[k]);
     p.start = p.start + (part * stop.comes_out) * e.normal;
     p.x = p.x + part * stop.by;
     p.v = p.v + part * slow.change;
-    scene.particles.write(e.points[k], p);
-    scene.points.set_place(e.points[k], p.x);
+    if (stop.comes_out > 0)
+      scene.particles.write(e.points[k], p);
+    else
+      scene.particles.move_to(e.points[k], p.x, p.v);
+    scene.points.set_present(e.points[k], p);
+    scene.points.read_back(e.points[k], scene.particles);
     scene.particles.touch(e.points[k], surface);
     const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
     impulse = impulse + (momentum * part) * slow.change;
@@ -237,6 +255,8 @@ bool Response::hold(const ContactScene& scene, Near& near, std::uint32_t slot) {
   for (std::uint32_t link = slot < first_link_.size() ? first_link_[slot] : kNoIndex;
        link != kNoIndex; link = links_[link].next) {
     visits_ += tuning::kVisitsOfTouch;
+    scene.points.read_present(near[links_[link].list].list.points(links_[link].pair),
+                              scene.particles);
     is_pushed = resist(scene, near[links_[link].list], links_[link].pair) || is_pushed;
   }
   return is_pushed;

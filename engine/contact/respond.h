@@ -56,6 +56,7 @@ class Response {
   static void for_each_lane(std::size_t block, std::uint32_t bits, Visit&& visit);
   simd::PairTouch touch_of(const ContactScene& scene, NearPairs& near,
                            std::vector<std::uint16_t>& touching) const;
+  static constexpr float kRoundings = 4;  // of a point, in a distance
   /// Returns the longest push (m).
   template <class Moved>
   double push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved);

@@ -21,8 +21,7 @@ struct ContactScene {
   /// A point in the present substep; a vertex of a body is one that was asked for.
   ContactParticle read(std::uint32_t point) const {
     if (points.is_of_cloth(point)) return particles.read(point);
-    const kernels::Vector from = points.from(point), to = points.to(point);
-    return {from, to, (1 / clock.h()) * (to - from)};
+    return points.present(point);
   }
   /// A particle that the caller moves is as fast as that.
   ContactParticle read_moving(std::uint32_t slot) const {

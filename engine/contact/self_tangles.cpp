@@ -56,7 +56,7 @@ template <class At>
 void SelfTangles::find(const ContactPoints& points, At&& at) {
   pairs_.clear();
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
-  BoxTree::meet(table_, cloth.tree, cloth.tree, [&](std::uint32_t a, std::uint32_t b) {
+  BoxTree::meet(table_, cloth.tree(), cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
     if (b <= a || cloth_->is_point(a) || cloth_->is_point(b)) return;
     const TriangleSurface::Triangle &one = cloth_->triangles[a], &other = cloth_->triangles[b];
     const std::size_t shared = count_shared(one, other);

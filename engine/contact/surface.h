@@ -26,12 +26,12 @@ struct ContactSurface {
   double friction = 0;            // beside surfaces before it
   bool two_sided = true;
   bool is_open = true;  // it has a border: what is not inside may be on either side
-  BoxTree tree;         // of its triangles, around tubes; of what is rigid
-                        // around triangles, in coordinates of the body
+  BoxTree own_tree;     // of its triangles, around tubes: of what is not rigid
   // Of a body:
   std::shared_ptr<const BodyShape> shape;  // keeps its triangles
   SideNormals normals;
   bool is_rigid = false;                          // its vertices are those of its shape
+  bool stands = false;                            // besides, it does not move in this step
   std::span<const kernels::Vector> from{}, to{};  // vertices in its coordinates, in this step
   double longest = 0;                             // m, of their ways in a step
   Box extent = Box::none();                       // of them in its coordinates, all of the step
@@ -41,6 +41,8 @@ struct ContactSurface {
   SparseArray<std::uint32_t> active;    // per triangle: the laying of tubes since which it is
   std::vector<std::uint8_t> may_cross;  // per triangle of the cloth: tubes of both meet
 
+  /// Of what is rigid it is around triangles, in coordinates of the body.
+  const BoxTree& tree() const { return is_rigid ? shape->mesh()->tree : own_tree; }
   /// A box of the world as the tree has it.
   Box as_in_tree(const Box& box) const { return is_rigid ? seen(box) : box; }
   Box as_in_tree(const Tube& tube) const { return is_rigid ? seen(tube) : tube.all(); }

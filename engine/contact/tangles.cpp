@@ -43,7 +43,7 @@ bool may_be_inside(const ContactPoints& points, std::uint32_t slot, const Contac
   const Vector x = in_tree(points, surface, slot);
   const std::array<float, 3> at{static_cast<float>(x.x), static_cast<float>(x.y),
                                 static_cast<float>(x.z)};
-  return surface.tree.box().meets({at, at});
+  return surface.tree().box().meets({at, at});
 }
 
 /// The triangle of a surface that is nearest to a particle when the interval begins.
@@ -60,7 +60,7 @@ NearestTriangle find_nearest(ContactPoints& points, std::uint32_t slot, SurfaceP
   const Vector from = in_tree(points, surface, slot);
   double least = std::numeric_limits<double>::infinity();
   NearestTriangle found;
-  surface.tree.near(
+  surface.tree().near(
       {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)},
       [&](std::uint32_t triangle) {
         points.activate(pair.b, triangle);
@@ -152,14 +152,14 @@ void Tangles::come_off(ContactPoints& points, std::uint32_t triangle, Near& near
   const auto bodies = std::ranges::count_if(points.surface_pairs(), [&](SurfacePair pair) {
     const ContactSurface& body = points.surfaces()[pair.b];
     bool is_near = false;
-    body.tree.find(table_, body.as_in_tree(box), [&](std::uint32_t) { is_near = true; });
+    body.tree().find(table_, body.as_in_tree(box), [&](std::uint32_t) { is_near = true; });
     return is_near;
   });
   if (bodies > 1) return;
   for (const SurfacePair pair : points.surface_pairs()) {
     ContactSurface& body = points.surfaces()[pair.b];
     if (body.two_sided) continue;
-    body.tree.find(table_, body.as_in_tree(box), [&](std::uint32_t other) {
+    body.tree().find(table_, body.as_in_tree(box), [&](std::uint32_t other) {
       points.activate(pair.b, other);
       const TriangleSurface::Triangle its = body.points_of(other);
       const Corners there{points.start(its[0]), points.start(its[1]), points.start(its[2])};
@@ -280,7 +280,7 @@ bool Tangles::crosses(ContactPoints& points, std::uint32_t triangle, At&& at) co
   for (const SurfacePair pair : points.surface_pairs()) {
     const ContactSurface& surface = points.surfaces()[pair.b];
     if (does || surface.may_cross[triangle] == 0) continue;
-    surface.tree.find(table_, surface.as_in_tree(box), [&](std::uint32_t other) {
+    surface.tree().find(table_, surface.as_in_tree(box), [&](std::uint32_t other) {
       if (does) return;
       points.activate(pair.b, other);
       const auto [p, q, r] = surface.points_of(other);

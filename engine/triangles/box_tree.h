@@ -24,6 +24,11 @@ struct Box {
     constexpr float kFar = std::numeric_limits<float>::max();
     return {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
   }
+  static Box at(kernels::Vector place) {
+    const std::array there{static_cast<float>(place.x), static_cast<float>(place.y),
+                           static_cast<float>(place.z)};
+    return {there, there};
+  }
   void add(const Box& other) {
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = std::min(low[k], other.low[k]);
@@ -76,6 +81,7 @@ class BoxTree {
   void near(const std::array<float, 3>& point, Visit&& visit) const;
   /// Around all of it; of a tree that has primitives.
   const Box& box() const { return nodes_[1]; }
+  bool empty() const { return count_ == 0; }
   std::size_t bytes() const;
 
  private:

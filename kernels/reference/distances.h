@@ -41,11 +41,16 @@ inline double share_of_segment(Vector p, Vector a, Vector b) {
   return square > 0 ? std::clamp(dot(u, p - a) / square, 0.0, 1.0) : 0;
 }
 
+/// Of the squares of two lengths: the square of the sine between them, from which on one point
+/// within both is surely the nearest.
+constexpr double kAcross = 1e-3;
+
 /// On a side, or within all of them, where the triangle has an area.
 inline Nearest nearest_in_triangle(Vector p, Vector a, Vector b, Vector c) {
-  const double ab = share_of_segment(p, a, b), bc = share_of_segment(p, b, c),
-               ca = share_of_segment(p, c, a);
-  const std::array<double, 3> sides[] = {{1 - ab, ab, 0}, {0, 1 - bc, bc}, {ca, 0, 1 - ca}};
+  const Vector u = b - a, v = c - a, w = p - a;
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
+  const double area = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
+  const bool is_within = s > 0 && t > 0 && s + t < area;
   Nearest nearest;
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](const std::array<double, 3>& at) {
@@ -55,37 +60,46 @@ inline Nearest nearest_in_triangle(Vector p, Vector a, Vector b, Vector c) {
     least = square;
     nearest = {r, {1, -at[0], -at[1], -at[2]}};
   };
-  for (const auto& side : sides) consider(side);
-  const Vector u = b - a, v = c - a, w = p - a;
-  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
-  const double area = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
+  const auto consider_within = [&] { consider({1 - s / area - t / area, s / area, t / area}); };
+  if (is_within && area > kAcross * uu * vv) {
+    consider_within();
+    return nearest;
+  }
+  const double ab = share_of_segment(p, a, b), bc = share_of_segment(p, b, c),
+               ca = share_of_segment(p, c, a);
+  consider({1 - ab, ab, 0});
+  consider({0, 1 - bc, bc});
+  consider({ca, 0, 1 - ca});
   constexpr double kFlat = 1e-14;
-  if (area > kFlat * uu * vv && s > 0 && t > 0 && s + t < area)
-    consider({1 - s / area - t / area, s / area, t / area});
+  if (is_within && area > kFlat * uu * vv) consider_within();
   return nearest;
 }
 
 /// Within both edges, or at an end of one.
 inline Nearest nearest_of_edges(Vector a, Vector b, Vector c, Vector d) {
+  const Vector u = b - a, v = d - c, w = a - c;
+  const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
+  const double determinant = uu * vv - uv * uv, s = uv * vw - uw * vv, t = uu * vw - uv * uw;
+  const bool is_within = s > 0 && s < determinant && t > 0 && t < determinant;
   Nearest nearest;
   double least = std::numeric_limits<double>::infinity();
-  const Vector u = b - a, v = d - c, w = a - c;
-  const auto consider = [&](double s, double t) {
-    const Vector r = w + s * u - t * v;
+  const auto consider = [&](double at_s, double at_t) {
+    const Vector r = w + at_s * u - at_t * v;
     const double square = dot(r, r);
     if (!(square < least)) return;
     least = square;
-    nearest = {r, {1 - s, s, t - 1, -t}};
+    nearest = {r, {1 - at_s, at_s, at_t - 1, -at_t}};
   };
+  if (is_within && determinant > kAcross * uu * vv) {
+    consider(s / determinant, t / determinant);
+    return nearest;
+  }
   consider(0, share_of_segment(a, c, d));
   consider(1, share_of_segment(b, c, d));
   consider(share_of_segment(c, a, b), 0);
   consider(share_of_segment(d, a, b), 1);
-  const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
-  const double determinant = uu * vv - uv * uv, s = uv * vw - uw * vv, t = uu * vw - uv * uw;
   constexpr double kParallel = 1e-14;
-  if (determinant > kParallel * uu * vv && s > 0 && s < determinant && t > 0 && t < determinant)
-    consider(s / determinant, t / determinant);
+  if (is_within && determinant > kParallel * uu * vv) consider(s / determinant, t / determinant);
   return nearest;
 }
 

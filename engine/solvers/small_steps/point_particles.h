@@ -1,6 +1,7 @@
 /// Particles of small steps as contacts with meshes see them, in lanes and in double.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "engine/bytes_of.h"
@@ -26,6 +27,9 @@ class PointParticles : public ContactParticles {
     ParticleAtHand hand = points_.take(slot);
     hand.stop(particle);
     points_.put_back(slot, hand);
+  }
+  void move_to(std::uint32_t slot, kernels::Vector x, kernels::Vector v) override {
+    points_.put(slot, x, v);
   }
   void touch(std::uint32_t slot, const TouchedSurface& surface) override {
     if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
@@ -59,16 +63,17 @@ class PointParticles : public ContactParticles {
 
 /// Memory for particles that a sweep has at hand.
 struct ParticlesAtHand {
-  std::vector<ParticleAtHand> of;      // per slot
-  std::vector<std::uint8_t> is_there;  // likewise
-  std::vector<std::uint32_t> slots;    // that are there
+  std::vector<ParticleAtHand> of;  // per slot
+  enum class State : std::uint8_t { elsewhere, taken, moved };
+  std::vector<State> state;          // likewise
+  std::vector<std::uint32_t> slots;  // that are not elsewhere
 
   void make_room(std::size_t count) {
     of.resize(count);
-    is_there.resize(count, 0);
+    state.resize(count, State::elsewhere);
     slots.reserve(count);
   }
-  std::size_t bytes() const { return bytes_of(of) + bytes_of(is_there) + bytes_of(slots); }
+  std::size_t bytes() const { return bytes_of(of) + bytes_of(state) + bytes_of(slots); }
 };
 
 /// A sweep visits a particle many times: it is taken when more than its position is asked for, and
@@ -82,14 +87,14 @@ class TakenParticles final : public PointParticles<Points> {
   TakenParticles& operator=(const TakenParticles&) = delete;
   ~TakenParticles() override {
     for (const std::uint32_t slot : at_hand_.slots) {
-      points().put_back(slot, at_hand_.of[slot]);
-      at_hand_.is_there[slot] = 0;
+      const State was = std::exchange(at_hand_.state[slot], State::elsewhere);
+      if (was == State::moved) points().put_back(slot, at_hand_.of[slot]);
     }
     at_hand_.slots.clear();
   }
 
   kernels::Vector position(std::uint32_t slot) const override {
-    return at_hand_.is_there[slot] != 0 ? at_hand_.of[slot].x : points().position(slot);
+    return at_hand_.state[slot] == State::elsewhere ? points().position(slot) : at_hand_.of[slot].x;
   }
   kernels::Vector start(std::uint32_t slot) const override { return hand(slot).start; }
   ContactParticle read(std::uint32_t slot) const override {
@@ -97,21 +102,31 @@ class TakenParticles final : public PointParticles<Points> {
     return {at.start, at.x, at.settled(points().rate)};
   }
   void write(std::uint32_t slot, const ContactParticle& particle) override {
-    hand(slot).stop(particle);
+    moving(slot).stop(particle);
+  }
+  void move_to(std::uint32_t slot, kernels::Vector x, kernels::Vector v) override {
+    ParticleAtHand& hand = moving(slot);
+    hand.stop({hand.start, x, v});
   }
   void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) override {
-    PointParticles<Points>::push(slot, hand(slot), by, comes_out);
+    PointParticles<Points>::push(slot, moving(slot), by, comes_out);
   }
 
  private:
+  using State = ParticlesAtHand::State;
   const Points& points() const { return this->points_; }
   ParticleAtHand& hand(std::uint32_t slot) const {
-    if (at_hand_.is_there[slot] == 0) {
+    if (at_hand_.state[slot] == State::elsewhere) {
       at_hand_.of[slot] = points().take(slot);
-      at_hand_.is_there[slot] = 1;
+      at_hand_.state[slot] = State::taken;
       at_hand_.slots.push_back(slot);
     }
     return at_hand_.of[slot];
+  }
+  ParticleAtHand& moving(std::uint32_t slot) const {
+    ParticleAtHand& particle = hand(slot);
+    at_hand_.state[slot] = State::moved;
+    return particle;
   }
   ParticlesAtHand& at_hand_;
 };
