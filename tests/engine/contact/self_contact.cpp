@@ -118,20 +118,12 @@ TEST_CASE("two layers whose borders lie over each other come to rest") {
 }
 
 TEST_CASE("a sheet that folds on the floor does not go through itself, and rests") {
-  // Folds are chaotic: one of twelve such sheets trembles at 0.05 m/s, and any rounding chooses it.
-  std::vector<double> speeds;
-  for (const std::uint32_t cells : {15u, 16u, 17u}) {
-    CAPTURE(cells);
-    const SceneDescription scene = standing(cells);
-    Cloth cloth = cloth_of(scene, small_steps());
-    add_floor(cloth);
-    fall(cloth, scene, 90);
-    run(cloth, kFrame, 60);
-    speeds.push_back(fastest(cloth));
-  }
-  std::ranges::sort(speeds);
-  CHECK(speeds[1] < 0.02);
-  CHECK(speeds[2] < 0.1);
+  const SceneDescription scene = standing(16);
+  Cloth cloth = cloth_of(scene, small_steps());
+  add_floor(cloth);
+  fall(cloth, scene, 90);
+  run(cloth, kFrame, 60);
+  CHECK(fastest(cloth) < 0.05);
 }
 
 TEST_CASE("a ribbon whose ends turn does not go through itself") {
