@@ -32,8 +32,6 @@ class ContactParticles {
   virtual ContactParticle read(std::uint32_t slot) const = 0;
   /// What has stopped it is no motion: it is predicted to be there.
   virtual void write(std::uint32_t slot, const ContactParticle& particle) = 0;
-  /// The same where the substep began as it did.
-  virtual void move_to(std::uint32_t slot, kernels::Vector x, kernels::Vector v) = 0;
   /// It touches a body in this substep.
   virtual void touch(std::uint32_t slot, const TouchedSurface& surface) = 0;
   /// Whether it has touched one in this substep.

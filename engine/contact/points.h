@@ -132,10 +132,7 @@ class ContactPoints {
     present_[point] = particle;
     write(place_quads_, point, particle.x - origin_);
   }
-  /// Of the cloth, once it was moved there: as its particles keep it.
-  void read_back(std::uint32_t slot, const ContactParticles& cloth) {
-    present_[slot] = cloth.read(slot);
-  }
+  /// Those of the cloth, once they were moved: as it keeps them.
   void read_present(const std::array<std::uint32_t, 4>& points, const ContactParticles& cloth) {
     for (const std::uint32_t point : points)
       if (is_of_cloth(point)) set_present(point, cloth.read(point));

@@ -219,12 +219,8 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
     p.start = p.start + (part * stop.comes_out) * e.normal;
     p.x = p.x + part * stop.by;
     p.v = p.v + part * slow.change;
-    if (stop.comes_out > 0)
-      scene.particles.write(e.points[k], p);
-    else
-      scene.particles.move_to(e.points[k], p.x, p.v);
-    scene.points.set_present(e.points[k], p);
-    scene.points.read_back(e.points[k], scene.particles);
+    scene.particles.write(e.points[k], p);
+    scene.points.set_present(e.points[k], scene.particles.read(e.points[k]));
     scene.particles.touch(e.points[k], surface);
     const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
     impulse = impulse + (momentum * part) * slow.change;

@@ -41,8 +41,8 @@ inline double share_of_segment(Vector p, Vector a, Vector b) {
   return square > 0 ? std::clamp(dot(u, p - a) / square, 0.0, 1.0) : 0;
 }
 
-/// Of the squares of two lengths: the square of the sine between them, from which on one point
-/// within both is surely the nearest.
+/// The square of the sine between two sides from which on the nearest points within both are taken
+/// as they are. Below it rounding may misplace them, and ends are tried, too.
 constexpr double kAcross = 1e-3;
 
 /// On a side, or within all of them, where the triangle has an area.

@@ -28,9 +28,6 @@ class PointParticles : public ContactParticles {
     hand.stop(particle);
     points_.put_back(slot, hand);
   }
-  void move_to(std::uint32_t slot, kernels::Vector x, kernels::Vector v) override {
-    points_.put(slot, x, v);
-  }
   void touch(std::uint32_t slot, const TouchedSurface& surface) override {
     if (points_.bodies->begins_to_touch(slot)) stop(slot, surface);
   }
@@ -103,10 +100,6 @@ class TakenParticles final : public PointParticles<Points> {
   }
   void write(std::uint32_t slot, const ContactParticle& particle) override {
     moving(slot).stop(particle);
-  }
-  void move_to(std::uint32_t slot, kernels::Vector x, kernels::Vector v) override {
-    ParticleAtHand& hand = moving(slot);
-    hand.stop({hand.start, x, v});
   }
   void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) override {
     PointParticles<Points>::push(slot, moving(slot), by, comes_out);

@@ -36,7 +36,6 @@ class Particles final : public ContactParticles {
   Vector start(std::uint32_t slot) const override { return from[slot]; }
   ContactParticle read(std::uint32_t slot) const override { return {from[slot], to[slot], {}}; }
   void write(std::uint32_t, const ContactParticle&) override {}
-  void move_to(std::uint32_t, Vector, Vector) override {}
   void touch(std::uint32_t, const TouchedSurface&) override {}
   bool is_on_body(std::uint32_t) const override { return false; }
   void stop(std::uint32_t, const TouchedSurface&) override {}
