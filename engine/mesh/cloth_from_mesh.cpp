@@ -141,6 +141,9 @@ Result<void> add_material(const MeshDescription& mesh, const Welded& welded,
   scene.membrane = std::move(fabric.membrane);
   cloth.cells = std::move(fabric.cells);
   cloth.counts.thread_lines = fabric.threads.size();
+  cloth.counts.recognised_quads -= fabric.cut_again;
+  cloth.counts.quads -= fabric.cut_again;
+  cloth.counts.triangles += 2 * fabric.cut_again;
   scene.bending = bending_of(faces, scene.positions.size(), mesh);
   scene.damping = {material.damping_stretch, material.damping_bending, material.damping_motion};
   scene.air = air_of(scene, material);

@@ -15,7 +15,8 @@ struct Face {
   std::size_t size = 0;  ///< 3 or 4
   std::array<std::uint32_t, 4> particles{};
   std::array<Vec3, 4> places{};
-  Vec3 warp;  ///< as given_warp (warp.h)
+  Vec3 warp;                   ///< as given_warp (warp.h)
+  bool is_recognised = false;  ///< it was two triangles (grid_recognition.h)
 
   std::size_t next(std::size_t i) const { return i + 1 < size ? i + 1 : 0; }
   std::size_t previous(std::size_t i) const { return i > 0 ? i - 1 : size - 1; }

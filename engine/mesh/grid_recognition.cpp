@@ -34,6 +34,7 @@ Face joined(const Face& first, std::size_t side, const Face& other, std::size_t 
   Face quad;
   quad.size = 4;
   quad.warp = first.warp;
+  quad.is_recognised = true;
   const auto put = [&](std::size_t at, const Face& face, std::size_t corner) {
     quad.particles[at] = face.particles[corner];
     quad.places[at] = face.places[corner];

@@ -168,7 +168,10 @@ Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::v
   Fabric fabric;
   Springs springs(kind);
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (!weave.cells[f]) continue;
+    if (!weave.cells[f]) {
+      fabric.cut_again += faces[f].is_recognised;
+      continue;
+    }
     add_sides(faces[f], *weave.cells[f], springs);
     fabric.cells.push_back(faces[f].particles);
     std::ranges::rotate(fabric.cells.back(),

@@ -95,6 +95,19 @@ TEST_CASE("a grid beside other triangles is recognised up to where they begin") 
   CHECK(cloth.counts.triangles == 5 * 7 * 2);
 }
 
+TEST_CASE(
+    "pairs of triangles whose warp runs across them are no cells, and are counted as triangles") {
+  MeshDescription mesh = with_material(right_triangles(8));
+  REQUIRE(made(mesh).counts.recognised_quads == 49);
+  mesh.warp.assign(98, {1, 1, 0});
+  const MeshCloth cloth = made(mesh);
+  CHECK(cloth.cells.empty());
+  CHECK(cloth.counts.recognised_quads == 0);
+  CHECK(cloth.counts.quads == 0);
+  CHECK(cloth.counts.triangles == 98);
+  CHECK(cloth.scene.membrane.size() == 98);
+}
+
 TEST_CASE("masses are the areas of the faces, a quarter of each rectangle at its corners") {
   const MeshCloth cloth = made(with_material(quads(3)));
   const double quarter = 0.1 / 4;
