@@ -21,8 +21,10 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int subs
   const double per_second = stands ? 0 : 1 / (h * substeps);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const TravellingBody& body = bodies[i];
+    const reference::Placement at = body.travel.at(0);
     motions_[i] = {.solid = body.shape->solid(),
-                   .to = body.travel.at(0),
+                   .from = at,
+                   .to = at,
                    .velocity = per_second * body.travel.way(),
                    .spin = per_second * body.travel.turn(),
                    .thickness = body.thickness,

@@ -18,7 +18,7 @@ class BodyClock {
   void advance();
 
   std::span<const TravellingBody> bodies() const { return bodies_; }
-  /// In the present substep, in the order of the bodies.
+  /// In the present substep, in the order of the bodies; before the first one where they begin.
   std::span<const reference::BodyMotion> motions() const { return motions_; }
   /// Of a body, from now to the end of some substeps.
   struct Box {
