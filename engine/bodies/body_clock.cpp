@@ -22,6 +22,7 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int subs
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const TravellingBody& body = bodies[i];
     motions_[i] = {.solid = body.shape->solid(),
+                   .from = body.travel.at(0),
                    .to = body.travel.at(0),
                    .velocity = per_second * body.travel.way(),
                    .spin = per_second * body.travel.turn(),
