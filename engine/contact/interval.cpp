@@ -44,7 +44,7 @@ double SurfaceContacts::interval_for(const ContactParticles& particles, const Bo
     const double calm =
         std::sqrt(2 * tuning::kContactSpare * thickness / tuning::kCalmAcceleration);
     const double together = speeds.of_cloth + std::max(speeds.of_near, speeds.of_solids);
-    time = std::max(time, time_for(way, together, calm));
+    time = std::max(time, time_for(tuning::kCalmWay * thickness, together, calm));
   }
   return time_for(way, speeds.of_near, time);
 }
