@@ -25,12 +25,28 @@ void SurfaceContacts::begin(const BodyClock& clock, ContactStart start,
   tangles_.begin(points_.cloth(), misplaced);
 }
 
+namespace {
+
+/// s, in which that way (m) is taken, and no longer than that.
+double time_for(double way, double speed, double longest) {
+  return speed * longest > way ? way / speed : longest;
+}
+
+}  // namespace
+
 double SurfaceContacts::interval_for(const ContactParticles& particles, const BodyClock& clock) {
   if (empty()) return tuning::kContactInterval;
   if (!std::exchange(has_looked_ahead_, true)) points_.look_ahead(particles, clock);
-  const double fastest = points_.speeds().of_near;
-  const double way = tuning::kMeshWay * points_.largest_thickness();
-  return fastest > 0 ? std::min(tuning::kContactInterval, way / fastest) : tuning::kContactInterval;
+  const ContactSpeeds& speeds = points_.speeds();
+  const double thickness = points_.largest_thickness(), way = tuning::kMeshWay * thickness;
+  double time = tuning::kContactInterval;
+  if (!points_.touches_itself()) {
+    const double calm =
+        std::sqrt(2 * tuning::kContactSpare * thickness / tuning::kCalmAcceleration);
+    const double together = speeds.of_cloth + std::max(speeds.of_near, speeds.of_solids);
+    time = std::max(time, time_for(tuning::kCalmWay * thickness, together, calm));
+  }
+  return time_for(way, speeds.of_near, time);
 }
 
 void SurfaceContacts::predict(ContactParticles& particles, const BodyClock& clock, Team& team) {

@@ -99,7 +99,7 @@ ContactSpeeds speeds_of_step(const Model& model, std::span<const Vector> starts,
   const ClothInStep cloth(model, starts, ways, h, time);
   const double of_cloth = fastest_beside(model, ways, h, {});
   const auto speeds_beside = [&](Vector drift) {
-    ContactSpeeds speeds{.drift = drift};
+    ContactSpeeds speeds{.drift = drift, .of_cloth = fastest_beside(model, ways, h, drift)};
     for (const ContactSurface& body : bodies) {
       const reference::BodyMotion& motion = clock.motions()[body.body];
       speeds.of_bodies = std::max(
@@ -111,11 +111,15 @@ ContactSpeeds speeds_of_step(const Model& model, std::span<const Vector> starts,
       speeds.of_near = std::max(speeds.of_near, fastest_in(region, motion, time, drift) +
                                                     longest_in(body, region) / time);
     }
+    for (std::size_t body = 0; body < clock.bodies().size(); ++body) {
+      if (clock.bodies()[body].shape->mesh() == nullptr)
+        speeds.of_solids = std::max(speeds.of_solids, clock.fastest(body) + length(drift));
+    }
     return speeds;
   };
   const ContactSpeeds still = speeds_beside({}), moving = speeds_beside(cloth.mean);
-  const double beside = fastest_beside(model, ways, h, cloth.mean);
-  return std::max(beside, moving.of_near) < std::max(of_cloth, still.of_near) ? moving : still;
+  return std::max(moving.of_cloth, moving.of_near) < std::max(of_cloth, still.of_near) ? moving
+                                                                                       : still;
 }
 
 }  // namespace weft

@@ -41,8 +41,9 @@ void Squeeze::find_slots(const ContactScene& scene, const Near& near) {
       at_one_.push_back(asked_[last]);
     for (std::uint32_t body = 0; body < scene.clock.bodies().size(); ++body) {
       if (!is_closed_form(scene, body)) continue;
-      const Claim claim = claim_of(scene.clock, body, scene.points.start(slot), 0);
-      at_one_.push_back({slot, body, claim.normal});
+      const reference::BodyMotion& motion = scene.clock.motions()[body];
+      const Vector place = motion.to.from_place(scene.points.start(slot));
+      at_one_.push_back({slot, body, motion.to.turned(gap_of(motion.solid, 0, place).normal)});
     }
     // By less than what counts in a substep: normals turn until the interval is over.
     const auto are_against = [](const Asked& a, const Asked& b) {

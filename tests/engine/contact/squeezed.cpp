@@ -117,6 +117,10 @@ TEST_CASE("two bodies share the room between them, and what they hold rests") {
   }
 }
 
+TEST_CASE("two bodies share the room between them in frames of a single substep, too") {
+  check_held({.table_is_mesh = true, .room = 1.5e-3, .friction = 0.3, .rate = 1000});
+}
+
 TEST_CASE("cloth that a ball presses into a table is not torn to and fro, nor said to be held") {
   for (const double rate : {30.0, 60.0, 240.0}) {
     CAPTURE(rate);
