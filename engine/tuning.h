@@ -31,8 +31,8 @@ inline constexpr double kMended = 0.8;
 inline constexpr double kContactInterval = 2e-3;
 /// In thicknesses: no vertex of a body takes a longer way in such an interval.
 inline constexpr double kMeshWay = 5;
-/// m/s^2: what lies still speeds up by no more, mostly. Beside meshes an interval lasts until it
-/// may have led out of kContactSpare thicknesses (7.7 ms at 1 mm), unless cloth and bodies come
+/// m/s^2: what lies still speeds up by no more, mostly. Beside a single mesh an interval lasts till
+/// it may have led out of kContactSpare thicknesses (7.7 ms at 1 mm), unless cloth and mesh come
 /// nearer by so many thicknesses before. At 2 m/s^2 cloth that falls by 2 mm slides by 0.6 mm. With
 /// 5 thicknesses a sheet that slides off a ball of triangles misses 15 of 1,680 frames, with 2, 1
 /// and 0.5, and in intervals of 2 ms, 8 or 9.

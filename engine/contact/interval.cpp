@@ -40,10 +40,10 @@ double SurfaceContacts::interval_for(const ContactParticles& particles, const Bo
   const ContactSpeeds& speeds = points_.speeds();
   const double thickness = points_.largest_thickness(), way = tuning::kMeshWay * thickness;
   double time = tuning::kContactInterval;
-  if (!points_.touches_itself()) {
+  if (!points_.touches_itself() && clock.bodies().size() == 1) {
     const double calm =
         std::sqrt(2 * tuning::kContactSpare * thickness / tuning::kCalmAcceleration);
-    const double together = speeds.of_cloth + std::max(speeds.of_near, speeds.of_solids);
+    const double together = speeds.of_cloth + speeds.of_near;
     time = std::max(time, time_for(tuning::kCalmWay * thickness, together, calm));
   }
   return time_for(way, speeds.of_near, time);

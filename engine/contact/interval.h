@@ -52,8 +52,8 @@ class SurfaceContacts {
   /// Of a frame.
   void begin(const BodyClock& clock, ContactStart start, const Misplaced& misplaced);
   /// s, when a substep is predicted. Bodies that are fast beside the cloth are looked at more
-  /// often: on their way they turn, and take cloth along. Where all are slow they are looked at
-  /// seldom, but for cloth that touches itself.
+  /// often: on their way they turn, and take cloth along. A slow one beside slow cloth is looked
+  /// at seldom; but several may press cloth between them, and so may layers.
   double interval_for(const ContactParticles& particles, const BodyClock& clock);
   /// A substep is predicted, and the clock is where it begins: an interval of the clock may begin
   /// with it.

@@ -111,10 +111,6 @@ ContactSpeeds speeds_of_step(const Model& model, std::span<const Vector> starts,
       speeds.of_near = std::max(speeds.of_near, fastest_in(region, motion, time, drift) +
                                                     longest_in(body, region) / time);
     }
-    for (std::size_t body = 0; body < clock.bodies().size(); ++body) {
-      if (clock.bodies()[body].shape->mesh() == nullptr)
-        speeds.of_solids = std::max(speeds.of_solids, clock.fastest(body) + length(drift));
-    }
     return speeds;
   };
   const ContactSpeeds still = speeds_beside({}), moving = speeds_beside(cloth.mean);

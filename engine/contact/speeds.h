@@ -16,7 +16,6 @@ struct ContactSpeeds {
   double of_cloth = 0;      // m/s: no particle is faster
   double of_bodies = 0;     // m/s: no point of any body is faster
   double of_near = 0;       // nor any of those that the cloth may come to until the step ends
-  double of_solids = 0;     // nor any of bodies in closed forms
 };
 
 /// When a step begins; starts: of the slots; ways: that they are to take in a substep.

@@ -13,14 +13,14 @@
 /// added.
 ///
 /// Planes, balls, capsules and hulls touch the particles of the cloth, by a contact in closed form.
-/// Fast particles are stopped too, if the last search (every 2 ms; beside meshes less often where
-/// all are slow) found them near. The search predicts the ways of particles; tests/README.md says
-/// what is faster than that. An edge or a corner of a body between the particles of a coarse cloth
-/// is not seen.
+/// Fast particles are stopped too, if the last search (every 2 ms) found them near. The search
+/// predicts the ways of particles; tests/README.md says what is faster than that.
+///
+/// An edge or a corner of a body between the particles of a coarse cloth is not seen.
 ///
 /// Triangle meshes touch the whole surface of the cloth (SceneDescription::surface): particles
 /// against triangles both ways, and edges against edges. Every 2 ms each pair that may have met is
-/// verified, more often if the mesh is fast, and less often where cloth and bodies are slow. So a
+/// verified, more often if the mesh is fast, and less often if it is alone, and slow. So a
 /// cloth that does not cross the mesh when a step begins does not cross it when the step ends.
 /// Where this is not possible, as between two bodies that close on each other, the report says so
 /// (StepReport::intersecting).

@@ -200,11 +200,9 @@ void SimdBodies::search(const simd::Flight& flight, const float* base) {
     extents_.push_back(extent_of(block, substeps, flight, base));
     longest = std::max(longest, extents_.back().way);
   }
-  const double reach =
-      tuning::kContactReach * longest + tuning::kCalmAcceleration / 2 * share * share;
   for (std::uint32_t block = 0; block < layout_.blocks.size(); ++block) {
     Extent& extent = extents_[block];
-    extent.reach += reach;
+    extent.reach += tuning::kContactReach * longest;
     sum = sum + extent.middle();
     pairs_of_.push_back(static_cast<std::uint32_t>(pairs_.size()));
     for (std::uint32_t body = 0; body < boxes.size(); ++body) {
