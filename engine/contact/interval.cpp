@@ -12,6 +12,15 @@ namespace weft {
 
 using kernels::Vector;
 
+namespace {
+
+/// s, in which that way (m) is taken, and no longer than that.
+double time_for(double way, double speed, double longest) {
+  return speed * longest > way ? way / speed : longest;
+}
+
+}  // namespace
+
 void SurfaceContacts::begin(const BodyClock& clock, ContactStart start,
                             const Misplaced& misplaced) {
   if (start != ContactStart::goes_on) points_.begin(clock);
@@ -24,15 +33,6 @@ void SurfaceContacts::begin(const BodyClock& clock, ContactStart start,
   is_new_ = start != ContactStart::known;
   tangles_.begin(points_.cloth(), misplaced);
 }
-
-namespace {
-
-/// s, in which that way (m) is taken, and no longer than that.
-double time_for(double way, double speed, double longest) {
-  return speed * longest > way ? way / speed : longest;
-}
-
-}  // namespace
 
 double SurfaceContacts::interval_for(const ContactParticles& particles, const BodyClock& clock) {
   if (empty()) return tuning::kContactInterval;

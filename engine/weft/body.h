@@ -14,9 +14,8 @@
 ///
 /// Planes, balls, capsules and hulls touch the particles of the cloth, by a contact in closed form.
 /// Fast particles are stopped too, if the last search (every 2 ms) found them near. The search
-/// predicts the ways of particles; tests/README.md says what is faster than that.
-///
-/// An edge or a corner of a body between the particles of a coarse cloth is not seen.
+/// predicts the ways of particles; tests/README.md says what is faster than that. An edge or a
+/// corner of a body between the particles of a coarse cloth is not seen.
 ///
 /// Triangle meshes touch the whole surface of the cloth (SceneDescription::surface): particles
 /// against triangles both ways, and edges against edges. Every 2 ms each pair that may have met is
