@@ -100,7 +100,7 @@ Squeeze::Seen Squeeze::see(const ContactScene& scene, const NearPairs& near, std
                 .distance = sign * l,
                 .thickness = near.states[i].thickness};
   for (std::size_t k = 0; k < 4; ++k) {
-    const double weight = std::abs(found.weight[k]);
+    const double weight = seen.weight[k] = std::abs(found.weight[k]);
     if (scene.points.is_of_cloth(seen.points[k])) {
       seen.at = seen.at + weight * seen.x[k];
     } else {
@@ -123,6 +123,20 @@ Claim Squeeze::claim_at(const ContactScene& scene, const Seen& of, Vector at) {
   Claim claim = of.claim;
   claim.distance = sign * l;
   if (l > kTouching) claim.normal = (sign / l) * r;
+  return claim;
+}
+
+/// A body of a closed form asks of particles alone: between them it may be through the cloth.
+Claim Squeeze::claim_of_particles(const ContactScene& scene, std::uint32_t body, const Seen& here) {
+  Claim claim = claim_of(scene.clock, body, here.at, 0);
+  claim.distance = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::uint32_t point = here.points[k];
+    if (!scene.points.is_of_cloth(point) || here.weight[k] == 0) continue;
+    const double radius = scene.model.has_spheres() ? scene.model.radius[point] : 0;
+    claim.distance += here.weight[k] * claim_of(scene.clock, body, here.x[k], 0).distance;
+    claim.thickness += here.weight[k] * radius;
+  }
   return claim;
 }
 
@@ -162,10 +176,7 @@ void Squeeze::share_at(const ContactScene& scene, const Seen& here) {
     }
   }
   for (std::uint32_t body = 0; body < scene.clock.bodies().size(); ++body) {
-    const double radius =
-        count == 1 && scene.model.has_spheres() ? scene.model.radius[slots[0]] : 0;
-    if (is_closed_form(scene, body))
-      claims_.push_back(claim_of(scene.clock, body, here.at, radius));
+    if (is_closed_form(scene, body)) claims_.push_back(claim_of_particles(scene, body, here));
   }
   for (const Claim& other : claims_) scene.room.share(here.claim, other, scene.clock.h(), of_cloth);
 }

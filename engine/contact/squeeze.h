@@ -33,6 +33,7 @@ class Squeeze {
   struct Seen {
     std::array<std::uint32_t, 4> points{};
     FourPoints x{};
+    std::array<double, 4> weight{};
     kernels::Vector at{};  // of the cloth, where both are nearest
     Claim claim{};
     bool is_in_place = false;
@@ -50,6 +51,7 @@ class Squeeze {
   Seen see(const ContactScene& scene, const NearPairs& near, std::size_t i) const;
   /// What the body of a pair asks of another place beside its feature.
   static Claim claim_at(const ContactScene& scene, const Seen& of, kernels::Vector at);
+  static Claim claim_of_particles(const ContactScene& scene, std::uint32_t body, const Seen& here);
   void find_slots(const ContactScene& scene, const Near& near);
   void share_at(const ContactScene& scene, const Seen& here);
   std::span<const OfSlot> beside(std::uint32_t slot) const;

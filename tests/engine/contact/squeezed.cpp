@@ -181,5 +181,44 @@ TEST_CASE("two bodies share the room in double, too, and without friction") {
   check_held({.table_is_mesh = true, .plate_is_mesh = true, .room = 1.5e-3, .friction = 0});
 }
 
+/// A square whose middle is 2 mm inside of a hull, since it hangs over the ridge between particles.
+/// A plate of triangles is 4.2 mm above it, where hull and plate leave each particle what both ask
+/// for.
+TEST_CASE("a hull that comes through the cloth between particles leaves them no nearer to it") {
+  constexpr double kHalf = 0.02, kSlope = 0.15, kHull = 1e-3, kAbove = 4e-3;
+  const double height = kHull * std::hypot(1, kSlope) - kSlope * kHalf;
+  const double plate_size = 0.01, apart = 4.2e-3;
+  SceneDescription scene;
+  for (const double x : {-kHalf, kHalf}) {
+    for (const double z : {-kHalf, kHalf}) scene.positions.push_back({x, height, z});
+  }
+  scene.masses.assign(4, 1e-3);
+  scene.constraints = {{0, 1, 2 * kHalf}, {1, 3, 2 * kHalf}, {3, 2, 2 * kHalf}, {2, 0, 2 * kHalf}};
+  scene.surface = {{0, 1, 3}, {0, 3, 2}};
+  scene.friction = 1;
+  for (const Backend backend : {Backend::simd, Backend::reference}) {
+    CAPTURE(backend);
+    Cloth cloth =
+        cloth_of(scene, {.solver = Solver::small_steps, .backend = backend, .threads = 1});
+    Hull ridge;
+    for (const double z : {-0.1, 0.1}) {
+      for (const Vec3& v : {Vec3{-0.1, -0.1 * kSlope, z}, Vec3{0, 0, z},
+                            Vec3{0.1, -0.1 * kSlope, z}, Vec3{0, -0.1, z}})
+        ridge.points.push_back(v);
+    }
+    add(cloth, {.shape = shape_of(ridge), .thickness = kHull, .friction = 1});
+    add(cloth, {.shape = shape_of(box_mesh({0.2, plate_size, 0.2}, 4)),
+                .pose = {.position = {0, height + apart + plate_size / 2, 0}},
+                .thickness = kAbove});
+    for (int frame = 0; frame < 30; ++frame) {
+      CHECK(step(cloth, 1.0 / 60).status == Status::converged);
+      for (const Vec3& x : positions(cloth)) {
+        const double gap = (x.y + kSlope * std::abs(x.x)) / std::hypot(1, kSlope);
+        CHECK(gap > kHull - 2e-6);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace weft::test::engine_contact_squeezed
