@@ -126,7 +126,7 @@ Claim Squeeze::claim_at(const ContactScene& scene, const Seen& of, Vector at) {
   return claim;
 }
 
-/// A body of a closed form asks of particles alone: between them it may be through the cloth.
+/// Of particles alone: between them a closed form may be through the cloth.
 Claim Squeeze::claim_of_particles(const ContactScene& scene, std::uint32_t body, const Seen& here) {
   Claim claim = claim_of(scene.clock, body, here.at, 0);
   claim.distance = 0;

@@ -51,6 +51,7 @@ class Squeeze {
   Seen see(const ContactScene& scene, const NearPairs& near, std::size_t i) const;
   /// What the body of a pair asks of another place beside its feature.
   static Claim claim_at(const ContactScene& scene, const Seen& of, kernels::Vector at);
+  /// What a body of a closed form asks of the particles around a place.
   static Claim claim_of_particles(const ContactScene& scene, std::uint32_t body, const Seen& here);
   void find_slots(const ContactScene& scene, const Near& near);
   void share_at(const ContactScene& scene, const Seen& here);
