@@ -56,6 +56,39 @@ void Squeeze::find_slots(const ContactScene& scene, const Near& near) {
   }
 }
 
+Squeeze::Feature Squeeze::feature_of(const ContactScene& scene, const Pair& pair) {
+  return {.body = scene.points.later(pair).body,
+          .index = pair.is_turned() ? pair.first : pair.second,
+          .kind = pair.kind,
+          .is_vertex = pair.is_turned()};
+}
+
+void Squeeze::find_features(const ContactScene& scene, const Near& near) {
+  features_.clear();
+  for (const Place& place : pairs_)
+    features_.push_back(feature_of(scene, near[place.list].list.pairs[place.pair]));
+  std::ranges::sort(features_);
+  const auto repeated = std::ranges::unique(features_);
+  features_.erase(repeated.begin(), repeated.end());
+  for (Place& place : pairs_) {
+    const Feature feature = feature_of(scene, near[place.list].list.pairs[place.pair]);
+    place.feature = static_cast<std::uint32_t>(std::ranges::lower_bound(features_, feature) -
+                                               features_.begin());
+  }
+}
+
+void Squeeze::find_pairs(const Near& near) {
+  for (std::uint32_t list = 0; list < kPairLists; ++list) {
+    for (std::uint32_t i = 0; i < near[list].list.size(); ++i) {
+      if (near[list].list.pairs[i].is_within_cloth()) continue;
+      const bool is_between = std::ranges::any_of(
+          near[list].list.points(i),
+          [&](std::uint32_t point) { return std::ranges::binary_search(slots_, point); });
+      if (is_between) pairs_.push_back({list, i});
+    }
+  }
+}
+
 void Squeeze::begin(const ContactScene& scene, const Near& near) {
   pairs_.clear();
   slots_.clear();
@@ -63,18 +96,11 @@ void Squeeze::begin(const ContactScene& scene, const Near& near) {
   if (scene.clock.bodies().size() < 2) return;
   find_slots(scene, near);
   if (slots_.empty()) return;
-  for (std::uint32_t list = 0; list < kPairLists; ++list) {
-    for (std::uint32_t i = 0; i < near[list].list.size(); ++i) {
-      if (near[list].list.pairs[i].is_within_cloth()) continue;
-      const auto points = near[list].list.points(i);
-      const bool is_between = std::ranges::any_of(
-          points, [&](std::uint32_t point) { return std::ranges::binary_search(slots_, point); });
-      if (!is_between) continue;
-      for (const std::uint32_t point : points) {
-        if (scene.points.is_of_cloth(point))
-          beside_.push_back({point, static_cast<std::uint32_t>(pairs_.size())});
-      }
-      pairs_.push_back({list, i});
+  find_pairs(near);
+  find_features(scene, near);
+  for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
+    for (const std::uint32_t point : near[pairs_[i].list].list.points(pairs_[i].pair)) {
+      if (scene.points.is_of_cloth(point)) beside_.push_back({point, pairs_[i].feature, i});
     }
   }
   std::ranges::sort(beside_);
@@ -111,14 +137,26 @@ Squeeze::Seen Squeeze::see(const ContactScene& scene, const NearPairs& near, std
   return seen;
 }
 
+namespace {
+
+/// From the nearest place of a vertex, an edge or a triangle.
+Vector from_nearest(Vector at, std::span<const Vector> corners) {
+  if (corners.size() == 1) return at - corners[0];
+  if (corners.size() == 3)
+    return reference::nearest_in_triangle(at, corners[0], corners[1], corners[2]).r;
+  const double share = reference::share_of_segment(at, corners[0], corners[1]);
+  return at - corners[0] - share * (corners[1] - corners[0]);
+}
+
+}  // namespace
+
 Claim Squeeze::claim_at(const ContactScene& scene, const Seen& of, Vector at) {
   std::array<Vector, 3> corners{};
   std::size_t count = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     if (!scene.points.is_of_cloth(of.points[k])) corners[count++] = of.x[k];
   }
-  for (std::size_t k = count; k < 3; ++k) corners[k] = corners[count - 1];
-  const Vector r = reference::nearest_in_triangle(at, corners[0], corners[1], corners[2]).r;
+  const Vector r = from_nearest(at, std::span(corners).first(count));
   const double l = length(r), sign = dot(r, of.claim.normal) >= 0 ? 1 : -1;
   Claim claim = of.claim;
   claim.distance = sign * l;
@@ -153,13 +191,17 @@ void Squeeze::take_nearest(const Claim& claim) {
 void Squeeze::share(const ContactScene& scene, const Near& near) {
   seen_.clear();
   for (const Place& place : pairs_) seen_.push_back(see(scene, near[place.list], place.pair));
-  for (const Seen& here : seen_) {
-    if (here.is_in_place && here.claim.distance < 2 * scene.points.largest_thickness())
-      share_at(scene, here);
+  last_.assign(features_.size(), kNoIndex);
+  for (std::uint32_t i = 0; i < seen_.size(); ++i) {
+    if (seen_[i].is_in_place && seen_[i].claim.distance < 2 * scene.points.largest_thickness())
+      share_at(scene, i);
   }
 }
 
-void Squeeze::share_at(const ContactScene& scene, const Seen& here) {
+/// Each feature of another body is asked once, though it has pairs with each feature of the cloth
+/// around the place.
+void Squeeze::share_at(const ContactScene& scene, std::uint32_t at) {
+  const Seen& here = seen_[at];
   std::array<std::uint32_t, 3> slots{};
   std::size_t count = 0;
   for (const std::uint32_t point : here.points) {
@@ -169,10 +211,14 @@ void Squeeze::share_at(const ContactScene& scene, const Seen& here) {
   claims_.clear();
   for (const std::uint32_t slot : of_cloth) {
     for (const OfSlot& other : beside(slot)) {
-      const Seen& there = seen_[other.index];
-      if (there.claim.body != here.claim.body &&
-          dot(there.claim.normal, here.claim.normal) < -tuning::kAgainst)
-        take_nearest(claim_at(scene, there, here.at));
+      std::uint32_t& last = last_[other.feature];
+      if (last == at) continue;
+      const Seen& there = seen_[other.pair];
+      if (there.claim.body == here.claim.body ||
+          dot(there.claim.normal, here.claim.normal) >= -tuning::kAgainst)
+        continue;
+      last = at;
+      take_nearest(claim_at(scene, there, here.at));
     }
   }
   for (std::uint32_t body = 0; body < scene.clock.bodies().size(); ++body) {
@@ -197,8 +243,9 @@ void Squeeze::take_in(const ContactScene& scene, const Near& near, Tangles& tang
 }
 
 std::size_t Squeeze::bytes() const {
-  return bytes_of(pairs_) + bytes_of(slots_) + bytes_of(beside_) + bytes_of(seen_) +
-         bytes_of(claims_) + bytes_of(asked_) + bytes_of(at_one_);
+  return bytes_of(pairs_) + bytes_of(features_) + bytes_of(slots_) + bytes_of(beside_) +
+         bytes_of(seen_) + bytes_of(last_) + bytes_of(claims_) + bytes_of(asked_) +
+         bytes_of(at_one_);
 }
 
 }  // namespace weft

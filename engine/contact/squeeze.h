@@ -26,8 +26,16 @@ class Squeeze {
   std::size_t bytes() const;
 
  private:
+  /// Of a body: a triangle, an edge or a vertex.
+  struct Feature {
+    std::uint32_t body = 0, index = 0;
+    PairKind kind = PairKind::edges;
+    bool is_vertex = false;
+
+    auto operator<=>(const Feature&) const = default;
+  };
   struct Place {
-    std::uint32_t list = 0, pair = 0;
+    std::uint32_t list = 0, pair = 0, feature = 0;  // of features_
   };
   /// A pair of a body's feature and one of the cloth, when the substep begins.
   struct Seen {
@@ -39,10 +47,11 @@ class Squeeze {
     bool is_in_place = false;
   };
   struct OfSlot {
-    std::uint32_t slot = 0, index = 0;  // of pairs_
+    std::uint32_t slot = 0, feature = 0, pair = 0;  // of features_ and pairs_
 
     auto operator<=>(const OfSlot&) const = default;
   };
+  static Feature feature_of(const ContactScene& scene, const Pair& pair);
   /// What one feature of a body asks of a particle, as far as its direction is concerned.
   struct Asked {
     std::uint32_t slot = 0, body = 0;
@@ -54,14 +63,18 @@ class Squeeze {
   /// What a body of a closed form asks of the particles around a place.
   static Claim claim_of_particles(const ContactScene& scene, std::uint32_t body, const Seen& here);
   void find_slots(const ContactScene& scene, const Near& near);
-  void share_at(const ContactScene& scene, const Seen& here);
+  void find_pairs(const Near& near);
+  void find_features(const ContactScene& scene, const Near& near);
+  void share_at(const ContactScene& scene, std::uint32_t at);
   std::span<const OfSlot> beside(std::uint32_t slot) const;
   void take_nearest(const Claim& claim);
 
   std::vector<Place> pairs_;           // of particles between bodies
-  std::vector<std::uint32_t> slots_;   // these, ascending
+  std::vector<Feature> features_;      // of bodies in these, ascending
+  std::vector<std::uint32_t> slots_;   // their particles, ascending
   std::vector<OfSlot> beside_;         // by slots
   std::vector<Seen> seen_;             // of pairs_
+  std::vector<std::uint32_t> last_;    // of features_: the last pair that asked it
   std::vector<Claim> claims_;          // scratch
   std::vector<Asked> asked_, at_one_;  // likewise
 };

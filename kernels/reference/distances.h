@@ -54,23 +54,23 @@ inline Nearest nearest_in_triangle(Vector p, Vector a, Vector b, Vector c) {
   const bool is_within = s > 0 && t > 0 && s + t < area;
   Nearest nearest;
   double least = std::numeric_limits<double>::infinity();
-  const auto consider = [&](const std::array<double, 3>& at) {
-    const Vector r = at[0] * (p - a) + at[1] * (p - b) + at[2] * (p - c);
+  const auto consider = [&](double at_a, double at_b, double at_c) {
+    const Vector r = at_a * (p - a) + at_b * (p - b) + at_c * (p - c);
     const double square = dot(r, r);
     if (!(square < least)) return;
     least = square;
-    nearest = {r, {1, -at[0], -at[1], -at[2]}};
+    nearest = {r, {1, -at_a, -at_b, -at_c}};
   };
-  const auto consider_within = [&] { consider({1 - s / area - t / area, s / area, t / area}); };
+  const auto consider_within = [&] { consider(1 - s / area - t / area, s / area, t / area); };
   if (is_within && area > kAcross * uu * vv) {
     consider_within();
     return nearest;
   }
   const double ab = share_of_segment(p, a, b), bc = share_of_segment(p, b, c),
                ca = share_of_segment(p, c, a);
-  consider({1 - ab, ab, 0});
-  consider({0, 1 - bc, bc});
-  consider({ca, 0, 1 - ca});
+  consider(1 - ab, ab, 0);
+  consider(0, 1 - bc, bc);
+  consider(ca, 0, 1 - ca);
   constexpr double kFlat = 1e-14;
   if (is_within && area > kFlat * uu * vv) consider_within();
   return nearest;
