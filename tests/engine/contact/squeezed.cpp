@@ -152,27 +152,35 @@ TEST_CASE("friction takes no more than was put in where closed forms overlap, an
   }
 }
 
-TEST_CASE("cloth that a ball presses deep into a body is not thrown about where both meet") {
-  for (const double rate : {30.0, 60.0, 240.0}) {
-    for (const bool table_is_mesh : {false, true}) {
-      for (const bool ball_is_mesh : {false, true}) {
-        for (const double room : {-0.04, -0.06}) {
-          CAPTURE(rate);
-          CAPTURE(table_is_mesh);
-          CAPTURE(ball_is_mesh);
-          CAPTURE(room);
-          const Held held = press({.table_is_mesh = table_is_mesh,
-                                   .plate_is_mesh = ball_is_mesh,
-                                   .by_ball = true,
-                                   .room = room,
-                                   .friction = 0.3,
-                                   .rate = rate});
-          CHECK(held.fastest < 1);
-          CHECK(held.friction <= held.work);
-        }
+void check_presses_deep(double rate) {
+  CAPTURE(rate);
+  for (const bool table_is_mesh : {false, true}) {
+    for (const bool ball_is_mesh : {false, true}) {
+      for (const double room : {-0.04, -0.06}) {
+        CAPTURE(table_is_mesh);
+        CAPTURE(ball_is_mesh);
+        CAPTURE(room);
+        const Held held = press({.table_is_mesh = table_is_mesh,
+                                 .plate_is_mesh = ball_is_mesh,
+                                 .by_ball = true,
+                                 .room = room,
+                                 .friction = 0.3,
+                                 .rate = rate});
+        CHECK(held.fastest < 1);
+        CHECK(held.friction <= held.work);
       }
     }
   }
+}
+
+TEST_CASE("cloth that a ball presses deep into a body is not thrown about where both meet") {
+  check_presses_deep(60);
+}
+
+TEST_CASE("cloth that a ball presses deep into a body is not thrown about at other frame rates" *
+          doctest::test_suite("slow")) {
+  check_presses_deep(30);
+  check_presses_deep(240);
 }
 
 TEST_CASE("two bodies share the room in double, too, and without friction") {
