@@ -40,14 +40,15 @@ TEST_CASE("with --json - stdout is JSON alone, with every key of the contract") 
   CHECK(json["stages"].contains("solve_positions"));
 }
 
-/// Those that are no continuation of the one before.
+/// A line that continues the one before is joined to it by a space, since a term may be broken
+/// where figures are long.
 std::vector<std::string> rows_of(const std::string& table) {
   std::vector<std::string> rows;
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("          ")) {
       REQUIRE_FALSE(rows.empty());
-      rows.back() += line;
+      rows.back() += ' ' + line.substr(line.find_first_not_of(' '));
     } else {
       rows.push_back(line);
     }
