@@ -9,11 +9,14 @@ namespace weft {
 
 using kernels::Vector;
 
-Claim claim_of(const BodyClock& clock, std::size_t body, Vector start, double radius) {
+Claim claim_of(const BodyClock& clock, std::size_t body, Vector x, double radius,
+               SubstepMoment when) {
+  const bool starts = when == SubstepMoment::start;
   const reference::BodyMotion& motion = clock.motions()[body];
-  const reference::Gap gap = gap_of(motion.solid, 0, motion.from.from_place(start));
-  return {static_cast<std::uint32_t>(body), motion.from.turned(gap.normal), gap.gap,
-          motion.thickness + radius, motion.velocity_at(start)};
+  const reference::Placement& at = starts ? motion.from : motion.to;
+  const reference::Gap gap = gap_of(motion.solid, 0, at.from_place(x));
+  return {static_cast<std::uint32_t>(body), at.turned(gap.normal), gap.gap,
+          motion.thickness + radius, starts ? motion.velocity_at(x) : Vector{}};
 }
 
 void Room::begin(std::size_t slots) {

@@ -28,8 +28,12 @@ struct Claim {
   kernels::Vector velocity{};
 };
 
-/// Of a body in a closed form, whose thickness is more by the radius of a particle.
-Claim claim_of(const BodyClock& clock, std::size_t body, kernels::Vector start, double radius);
+enum class SubstepMoment { start, end };
+
+/// Of a body in a closed form, whose thickness is more by the radius of a particle. x: where that
+/// is then. When the substep ends, nothing moves any more.
+Claim claim_of(const BodyClock& clock, std::size_t body, kernels::Vector x, double radius,
+               SubstepMoment when = SubstepMoment::start);
 
 class Room {
  public:

@@ -19,6 +19,7 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
   if (before.size() == on_.size()) on_ = before;
   impulses_.begin(bodies);
   room_.begin(model_.slots());
+  among_forms_.begin(model_.slots());
 }
 
 void ReferenceBodies::advance(double part, ContactParticles& particles, Team& team) {
@@ -38,19 +39,36 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
 /// To particles that touched a body when the last substep ended. Where one has its share no body
 /// pushes it: it touches them all the same.
 void ReferenceBodies::share_room(ContactParticles& particles) {
+  share_among_forms(particles, before_, SubstepMoment::start);
+  for (const Room* room : {&room_, &among_forms_}) {
+    for (const Room::Entry& entry : room->entries()) {
+      reference::Yield& yield = grips_[entry.slot * clock_.bodies().size() + entry.body].yield;
+      if (entry.yield.by > yield.by) yield = entry.yield;
+      if (clock_.bodies()[entry.body].shape->mesh() == nullptr) on_[entry.slot] = true;
+    }
+  }
+}
+
+void ReferenceBodies::share_among_forms(ContactParticles& particles, const Touching& touching,
+                                        SubstepMoment when) {
+  among_forms_.begin_substep();
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
-    if (!before_[slot]) continue;
+    if (!touching[slot]) continue;
+    const Vector x =
+        when == SubstepMoment::start ? particles.start(slot) : particles.position(slot);
     claims_.clear();
     for (std::size_t body = 0; body < clock_.bodies().size(); ++body) {
       if (clock_.bodies()[body].shape->mesh() == nullptr)
-        claims_.push_back(claim_of(clock_, body, particles.start(slot), radius(slot)));
+        claims_.push_back(claim_of(clock_, body, x, radius(slot), when));
     }
-    room_.share(claims_, clock_.h(), slot);
+    among_forms_.share(claims_, clock_.h(), slot);
   }
-  for (const Room::Entry& entry : room_.entries()) {
-    grips_[entry.slot * clock_.bodies().size() + entry.body].yield = entry.yield;
-    if (clock_.bodies()[entry.body].shape->mesh() == nullptr) on_[entry.slot] = true;
-  }
+}
+
+double ReferenceBodies::spared_by(std::size_t body, std::uint32_t slot) const {
+  const auto id = static_cast<std::uint32_t>(body);
+  const double yielded = std::max(room_.of(slot, id).by, among_forms_.of(slot, id).by);
+  return std::min(clock_.motions()[body].thickness + radius(slot), yielded);
 }
 
 /// They move by any way: nobody knows how far.
@@ -109,15 +127,14 @@ bool ReferenceBodies::begins_to_touch(std::uint32_t slot) {
 double ReferenceBodies::deepest(const kernels::Vectors& start, const kernels::Vectors& x,
                                 ContactParticles& particles, Team& team) {
   double deepest = meshes_.deepest(particles, clock_, team);
+  if (clock_.bodies().size() > 1) share_among_forms(particles, on_, SubstepMoment::end);
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
     if (model_.inverse_mass[slot] == 0) continue;
     for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
       if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
       const reference::BodyMotion& body = clock_.motions()[i];
       const reference::Touch touch = find_touch(body, start[slot], x[slot], radius(slot));
-      const double spared =
-          std::min(body.thickness + radius(slot), room_.of(slot, static_cast<std::uint32_t>(i)).by);
-      if (touch.is_near) deepest = std::max(deepest, -touch.gap - spared);
+      if (touch.is_near) deepest = std::max(deepest, -touch.gap - spared_by(i, slot));
     }
   }
   return deepest;

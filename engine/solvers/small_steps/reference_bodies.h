@@ -66,11 +66,16 @@ class ReferenceBodies {
 
  private:
   void share_room(ContactParticles& particles);
+  void share_among_forms(ContactParticles& particles, const Touching& touching, SubstepMoment when);
+  /// m, of its distance from the particle: what there is to share when the substep ends. Beside a
+  /// mesh that is not known, and is what there was when it began.
+  double spared_by(std::size_t body, std::uint32_t slot) const;
   double radius(std::uint32_t slot) const { return model_.has_spheres() ? model_.radius[slot] : 0; }
 
   const Model& model_;
   BodyClock clock_;
-  Room room_;
+  Room room_;         // beside meshes
+  Room among_forms_;  // of bodies of a closed form among themselves
   SurfaceContacts meshes_;
   double momentum_share_ = 1;
   std::vector<reference::Grip> grips_;  // per slot and body

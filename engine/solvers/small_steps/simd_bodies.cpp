@@ -68,6 +68,7 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
   if (before.size() == on_.size()) std::ranges::copy(before, on_.begin());
   impulses_.begin(bodies);
   room_.begin(model_.slots());
+  among_forms_.begin(model_.slots());
 }
 
 void SimdBodies::advance(const simd::Flight& flight, const float* base, double part,
@@ -94,35 +95,45 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   share_room(particles);
 }
 
-/// Among bodies of a closed form, to particles that touched one when the last substep ended. What
-/// they yield to any particle is for lanes, too. Where it has its share no body pushes it: it
-/// touches them all the same, and has its share in the next substep.
+/// To particles that touched a body when the last substep ended. What bodies of a closed form yield
+/// to any particle is for lanes, too. Where it has its share no body pushes it: it touches them all
+/// the same, and has its share in the next substep.
 void SimdBodies::share_room(ContactParticles& particles) {
+  share_among_forms(particles, before_, SubstepMoment::start);
+  if (pairs_.empty()) return;
+  for (const Room* room : {&room_, &among_forms_}) {
+    for (const Room::Entry& entry : room->entries()) {
+      const std::uint32_t place = layout_.place_of[entry.slot];
+      if (place == kNoIndex) continue;
+      const std::size_t block = place / kLanes, lane = place % kLanes;
+      for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
+        if (pairs_[i].body != entry.body) continue;
+        on_[block] = static_cast<std::uint16_t>(on_[block] | 1u << lane);
+        if (!(static_cast<float>(entry.yield.by) > grips_[i].yields_by[lane])) continue;
+        grips_[i].yields_by[lane] = static_cast<float>(entry.yield.by);
+        grips_[i].retreat[lane] = static_cast<float>(entry.yield.retreat);
+      }
+    }
+  }
+}
+
+void SimdBodies::share_among_forms(ContactParticles& particles, const Touching& touching,
+                                   SubstepMoment when) {
+  among_forms_.begin_substep();
   for (std::size_t active = 0; active + 1 < first_pair_.size(); ++active) {
     const std::size_t first = first_pair_[active], last = first_pair_[active + 1];
     if (last - first < 2) continue;
     const std::uint32_t block = pairs_[first].block;
-    for (std::uint32_t bits = before_[block]; bits != 0; bits &= bits - 1) {
+    for (std::uint32_t bits = touching[block]; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
       const std::uint32_t slot = layout_.slot_at[block * kLanes + lane];
+      const auto radius = static_cast<double>(layout_.blocks[block].radius[lane]);
+      const Vector x =
+          when == SubstepMoment::start ? particles.start(slot) : particles.position(slot);
       claims_.clear();
-      for (std::size_t i = first; i < last; ++i) {
-        claims_.push_back(claim_of(clock_, pairs_[i].body, particles.start(slot),
-                                   static_cast<double>(layout_.blocks[block].radius[lane])));
-      }
-      room_.share(claims_, clock_.h(), slot);
-    }
-  }
-  if (pairs_.empty()) return;
-  for (const Room::Entry& entry : room_.entries()) {
-    const std::uint32_t place = layout_.place_of[entry.slot];
-    if (place == kNoIndex) continue;
-    const std::size_t block = place / kLanes, lane = place % kLanes;
-    for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
-      if (pairs_[i].body != entry.body) continue;
-      on_[block] = static_cast<std::uint16_t>(on_[block] | 1u << lane);
-      grips_[i].yields_by[lane] = static_cast<float>(entry.yield.by);
-      grips_[i].retreat[lane] = static_cast<float>(entry.yield.retreat);
+      for (std::size_t i = first; i < last; ++i)
+        claims_.push_back(claim_of(clock_, pairs_[i].body, x, radius, when));
+      among_forms_.share(claims_, clock_.h(), slot);
     }
   }
 }
@@ -386,16 +397,16 @@ bool SimdBodies::begins_to_touch(std::uint32_t slot) {
   return begins;
 }
 
-/// m, of its distance from each particle of the block.
 std::array<float, kLanes> SimdBodies::spared_by(std::size_t block, std::uint32_t body) const {
   std::array<float, kLanes> spared{};
-  if (!room_.any()) return spared;
+  if (!room_.any() && !among_forms_.any()) return spared;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::uint32_t slot = layout_.slot_at[block * kLanes + lane];
     if (slot == kNoIndex) continue;
     const double most =
         clock_.motions()[body].thickness + static_cast<double>(layout_.blocks[block].radius[lane]);
-    spared[lane] = static_cast<float>(std::min(most, room_.of(slot, body).by));
+    const double yielded = std::max(room_.of(slot, body).by, among_forms_.of(slot, body).by);
+    spared[lane] = static_cast<float>(std::min(most, yielded));
   }
   return spared;
 }
@@ -403,6 +414,7 @@ std::array<float, kLanes> SimdBodies::spared_by(std::size_t block, std::uint32_t
 double SimdBodies::deepest(const simd::Flight& flight, const float* base,
                            ContactParticles& particles, Team& team) {
   double deepest = meshes_.deepest(particles, clock_, team);
+  share_among_forms(particles, on_, SubstepMoment::end);
   simd::BodyHold hold = hold_of(flight, base, 0);
   std::array<simd::BodyPair, 64> pairs;
   std::array<std::array<float, kLanes>, 64> spared;
@@ -475,7 +487,8 @@ std::size_t SimdBodies::bytes() const {
          bytes_of(pairs_) + bytes_of(first_pair_) + bytes_of(pairs_of_) + bytes_of(grips_) +
          bytes_of(touching_) + bytes_of(moved_) + bytes_of(quick_) + bytes_of(on_) +
          bytes_of(before_) + bytes_of(held_) + bytes_of(arrived_) + bytes_of(impulses_.of_body) +
-         bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_) + bytes_of(claims_) + room_.bytes();
+         bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_) + bytes_of(claims_) +
+         room_.bytes() + among_forms_.bytes();
 }
 
 }  // namespace weft

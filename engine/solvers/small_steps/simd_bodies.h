@@ -121,6 +121,9 @@ class SimdBodies {
   bool may_touch(const Extent& extent, std::size_t body, const BodyClock::Box& box,
                  double time) const;
   void share_room(ContactParticles& particles);
+  void share_among_forms(ContactParticles& particles, const Touching& touching, SubstepMoment when);
+  /// m, of its distance from each particle of the block: what there is to share when the substep
+  /// ends. Beside a mesh that is not known, and is what there was when it began.
   std::array<float, kernels::kLanes> spared_by(std::size_t block, std::uint32_t body) const;
   /// Adds what grips have given to impulses_.
   void collect_impulses();
@@ -132,7 +135,8 @@ class SimdBodies {
   const double contact_tolerance_;  // m
   const simd::Table& table_;
   BodyClock clock_;
-  Room room_;
+  Room room_;         // beside meshes
+  Room among_forms_;  // of bodies of a closed form among themselves
   SurfaceContacts meshes_;
   BodyLayout layout_;  // made when the first body is there
   double h_ = 0;
