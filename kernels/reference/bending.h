@@ -81,9 +81,19 @@ inline kernels::Vector turn_of(const Way& along, const Way& across) {
   return swing + twist * along.v;
 }
 
+/// Half of the sum of the weights' sizes, over which |d| is the distance of the particles of
+/// positive weight, in their mean, from the others.
+inline double reach_of(const BendingElement& e) {
+  double sum = 0;
+  for (const double w : e.weights) sum += 0.5 * std::abs(w);
+  return sum;
+}
+
 /// How d has changed since the substep began, for one who turns with the element: the damping of an
 /// element is about what it bends, and cloth that spins keeps its spin. The direction of d says
-/// nothing of a fine cell, where most of d is what sweeps have left.
+/// nothing of a fine cell, where most of d is what sweeps have left: there the arms tell how it
+/// turns. In a sharp fold they say nothing, since the arm along it has all but vanished, and a
+/// force that follows it feeds the fold: there d does. Each counts by its length squared.
 inline kernels::Vector bent(const BendingElement& e, kernels::VectorsView x,
                             kernels::VectorsView start) {
   const auto way = [](kernels::Vector from, kernels::Vector to) {
@@ -91,7 +101,12 @@ inline kernels::Vector bent(const BendingElement& e, kernels::VectorsView x,
   };
   const Way d = way(weighted_sum(e, start), weighted_sum(e, x));
   const BendingArms was = arms(e, start), now = arms(e, x);
-  return d.by - cross(turn_of(way(was.along, now.along), way(was.across, now.across)), d.v);
+  const Way along = way(was.along, now.along), across = way(was.across, now.across);
+  const double reach = reach_of(e), flat = reach * reach * dot(along.v, along.v),
+               sum = flat + dot(d.v, d.v);
+  if (sum == 0) return {0, 0, 0};
+  const kernels::Vector for_arms = d.by - cross(turn_of(along, across), d.v);
+  return (1 / sum) * (flat * for_arms + dot(d.v, d.by) * d.v);
 }
 
 /// The force f of the law

@@ -104,6 +104,19 @@ struct Way {
   return fused(twist, along.v, swing);
 }
 
+/// Half of the sum of the weights' sizes.
+template <bool kFour>
+[[gnu::always_inline]] inline Floats reach_of(const BendingBlock& block, std::uint32_t lane) {
+  const Floats w0 = load(block.weight[0] + lane), w1 = load(block.weight[1] + lane);
+  Floats sizes = xsimd::abs(w0) + xsimd::abs(w1), others = w0 + w1;
+  if constexpr (kFour) {
+    const Floats w3 = load(block.weight[2] + lane);
+    sizes = sizes + xsimd::abs(w3);
+    others = others + w3;
+  }
+  return Floats(0.5f) * (sizes + xsimd::abs(others));
+}
+
 /// How d has changed, by `by` in space, for one who turns with the element. at: by how much
 /// particles have moved since the base, moved: since the start of the substep.
 template <bool kFour>
@@ -118,7 +131,12 @@ template <bool kFour>
     const Floats alone = load(b.blocks[block].weight[2] + lane);
     across = {fused(alone, of_d.v, across.v), fused(alone, by, across.by)};
   }
-  return by - cross(turn_of(along, across), of_d.v);
+  const FloatVector for_arms = by - cross(turn_of(along, across), of_d.v);
+  const Floats reach = reach_of<kFour>(b.blocks[block], lane);
+  const Floats flat = reach * reach * dot(along.v, along.v), folded = dot(of_d.v, of_d.v);
+  const Floats part =
+      Floats(1.f) / xsimd::max(flat + folded, Floats(std::numeric_limits<float>::min()));
+  return fused(part * flat, for_arms, (part * dot(of_d.v, by)) * of_d.v);
 }
 
 [[gnu::always_inline]] inline void pull_quad(float* to, const std::uint32_t* slot, Floats weight,
