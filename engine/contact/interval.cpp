@@ -51,10 +51,12 @@ double SurfaceContacts::interval_for(const ContactParticles& particles, const Bo
 
 void SurfaceContacts::predict(ContactParticles& particles, const BodyClock& clock, Team& team) {
   if (empty() || still_holds(particles, clock)) return;
-  if (clock.stands())
+  if (clock.stands()) {
+    end_interval(particles, clock, team);
     begin_interval(particles, clock, 1, team);
-  else if (clock.begins_interval())
+  } else if (clock.begins_interval()) {
     begin_interval(particles, clock, clock.substeps_of_interval(), team);
+  }
 }
 
 /// Where positions are put right, by any way, until a particle comes to a place that was not
@@ -89,7 +91,9 @@ void SurfaceContacts::advance(ContactParticles& particles, const BodyClock& cloc
 
 bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock& clock,
                                    Team& team) {
-  if (empty() || clock.stands() || !clock.is_interval_over() || interval_ == 0) return false;
+  if (empty() || interval_ == 0) return false;
+  if (clock.stands()) return verify_standing(particles, clock, team);
+  if (!clock.is_interval_over()) return false;
   const ContactScene scene = this->scene(particles, clock);
   points_.measure_moves(particles);
   late_depth_ = 0;
@@ -100,20 +104,42 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
   has_moved = has_moved || has_failed;
   if (has_moved) {
     expect_failures(scene);
-    stop_failures(scene, search_, near_search_, verification_, candidates_, interval_, zones_,
-                  failures_, team);
-    for (const Failure& failure : verification_.failures())
-      tangles_.take_in(points_, candidates_[failure.list].pairs[failure.pair]);
+    stop_failures(scene, team);
   }
-  // Only tangles, and what had to be stopped, lead others through a body.
-  if (tangles_.any() || has_failed) tangles_.find_crossing_at_end(points_);
-  if (tangles_.count_within() > 0 || !verification_.failures().empty())
-    if (points_.touches_itself()) tangles_.find_crossing_within_at_end(points_);
+  find_tangles(has_failed);
   if (!has_moved) return false;
   verification_.find_late(scene, near_search_, candidates_, team);
   for (const Failure& late : verification_.failures())
     late_depth_ = std::max(late_depth_, late.depth);
   return true;
+}
+
+/// Cloth that is put right goes nowhere through itself. What it crosses of bodies is stopped when
+/// it moves: they tell on which side it belongs.
+bool SurfaceContacts::verify_standing(ContactParticles& particles, const BodyClock& clock,
+                                      Team& team) {
+  if (!points_.touches_itself()) return false;
+  const ContactScene scene = this->scene(particles, clock);
+  points_.measure_moves(particles);
+  verification_.find(scene, search_, near_search_, candidates_, team);
+  const bool has_failed = !verification_.failures().empty();
+  if (has_failed) stop_failures(scene, team);
+  find_tangles(has_failed);
+  return has_failed;
+}
+
+void SurfaceContacts::stop_failures(const ContactScene& scene, Team& team) {
+  weft::stop_failures(scene, search_, near_search_, verification_, candidates_, interval_, zones_,
+                      failures_, team);
+  for (const Failure& failure : verification_.failures())
+    tangles_.take_in(points_, candidates_[failure.list].pairs[failure.pair]);
+}
+
+/// When an interval ends. Only tangles, and what had to be stopped, lead others through a body.
+void SurfaceContacts::find_tangles(bool has_failed) {
+  if (tangles_.any() || has_failed) tangles_.find_crossing_at_end(points_);
+  if (points_.touches_itself())
+    tangles_.find_crossing_within_at_end(points_, verification_.failures().empty());
 }
 
 /// Before the rest is verified. Returns whether particles had to be moved.

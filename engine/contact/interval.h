@@ -15,6 +15,9 @@
 ///   8  rescue: that is stopped
 ///   9  tangles: what could not be stopped, or crossed from the beginning
 ///
+/// While positions are put right an interval lasts until a particle leaves its box, and has the
+/// stages 7 to 9 for what the cloth has to do with itself.
+///
 /// Particles that are inside of a one-sided body when it appears, or when positions are written,
 /// are known as such until they are out. Triangles that cross a body are known until they do no
 /// longer, and so are pairs of triangles of the cloth that cross each other.
@@ -105,7 +108,10 @@ class SurfaceContacts {
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
   bool still_holds(const ContactParticles& particles, const BodyClock& clock) const;
+  bool verify_standing(ContactParticles& particles, const BodyClock& clock, Team& team);
   bool push_late_apart(const ContactScene& scene, Team& team);
+  void stop_failures(const ContactScene& scene, Team& team);
+  void find_tangles(bool has_failed);
   void expect_failures(const ContactScene& scene);
 
   const Model& model_;

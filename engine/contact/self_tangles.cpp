@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/contact/leads_through.h"
@@ -41,23 +42,30 @@ void SelfTangles::begin(const TriangleSurface& cloth, const std::vector<std::uin
   pairs_ = pairs;
   const std::size_t triangles = cloth.triangles.size();
   std::erase_if(pairs_, [&](std::uint64_t pair) { return (pair & 0xffffffffu) >= triangles; });
+  has_looked_ = false;
   mark();
 }
 
 void SelfTangles::mark() {
-  is_one_.assign(pairs_.empty() ? 0 : cloth_->triangles.size(), 0);
+  const std::size_t triangles = pairs_.empty() ? 0 : cloth_->triangles.size();
+  is_one_.assign(triangles, 0);
+  may_cross_.resize(triangles);
   for (const std::uint64_t pair : pairs_) {
-    is_one_[static_cast<std::size_t>(pair >> 32)] = 1;
-    is_one_[static_cast<std::size_t>(pair & 0xffffffffu)] = 1;
+    for (const std::uint64_t one : {pair >> 32, pair & 0xffffffffu}) {
+      if (std::exchange(is_one_[static_cast<std::size_t>(one)], std::uint8_t{1}) != 0) continue;
+      for (const std::uint32_t corner : cloth_->triangles[static_cast<std::size_t>(one)])
+        for (const std::uint32_t near : cloth_->triangles_at[corner]) may_cross_[near] = 1;
+    }
   }
 }
 
 template <class At>
-void SelfTangles::find(const ContactPoints& points, At&& at) {
+void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
   pairs_.clear();
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
   BoxTree::meet(table_, cloth.tree(), cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
     if (b <= a || cloth_->is_point(a) || cloth_->is_point(b)) return;
+    if (!everywhere && (may_cross_[a] & may_cross_[b]) == 0) return;
     const TriangleSurface::Triangle &one = cloth_->triangles[a], &other = cloth_->triangles[b];
     const std::size_t shared = count_shared(one, other);
     if (shared > 1) return;
@@ -68,15 +76,18 @@ void SelfTangles::find(const ContactPoints& points, At&& at) {
       pairs_.push_back(pair_of(a, b));
   });
   std::ranges::sort(pairs_);
+  if (everywhere) may_cross_.clear();
   mark();
 }
 
 void SelfTangles::find_at_start(const ContactPoints& points) {
-  find(points, [&](std::uint32_t point) { return points.start(point); });
+  find(points, true, [&](std::uint32_t point) { return points.start(point); });
 }
 
-void SelfTangles::find_at_end(const ContactPoints& points) {
-  find(points, [&](std::uint32_t point) { return points.end(point); });
+void SelfTangles::find_at_end(const ContactPoints& points, bool all_verified) {
+  if (pairs_.empty() && all_verified) return;
+  const bool everywhere = !all_verified || !std::exchange(has_looked_, true);
+  find(points, everywhere, [&](std::uint32_t point) { return points.end(point); });
 }
 
 bool SelfTangles::has(std::uint32_t a, std::uint32_t b) const {
@@ -105,6 +116,8 @@ bool SelfTangles::has_features_of(const Pair& pair) const {
   });
 }
 
-std::size_t SelfTangles::bytes() const { return bytes_of(pairs_) + bytes_of(is_one_); }
+std::size_t SelfTangles::bytes() const {
+  return bytes_of(pairs_) + bytes_of(is_one_) + bytes_of(may_cross_);
+}
 
 }  // namespace weft

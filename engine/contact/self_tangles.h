@@ -19,16 +19,18 @@ class SelfTangles {
   /// Of a frame: what the frame before left. A pair is its first triangle and, in the lower half,
   /// its second one, which is the later; pairs ascend.
   void begin(const TriangleSurface& cloth, const std::vector<std::uint64_t>& pairs);
-  /// Finds anew what crosses when an interval begins, or when it ends.
+  /// Finds anew what crosses when an interval begins, or when it ends. Where all was verified in it
+  /// only triangles of pairs, and those beside these, may cross each other. Once in a frame all are
+  /// looked at: rounding may lead on what has just come apart.
   void find_at_start(const ContactPoints& points);
-  void find_at_end(const ContactPoints& points);
+  void find_at_end(const ContactPoints& points, bool all_verified);
   bool leaves_out(const Pair& pair) const { return !pairs_.empty() && has_features_of(pair); }
   const std::vector<std::uint64_t>& pairs() const { return pairs_; }
   std::size_t bytes() const;
 
  private:
   template <class At>
-  void find(const ContactPoints& points, At&& at);
+  void find(const ContactPoints& points, bool everywhere, At&& at);
   bool has_features_of(const Pair& pair) const;
   bool has(std::uint32_t a, std::uint32_t b) const;
   bool has_one_at_edge(std::uint32_t edge, std::uint32_t triangle) const;
@@ -38,6 +40,10 @@ class SelfTangles {
   const TriangleSurface* cloth_ = nullptr;
   std::vector<std::uint64_t> pairs_;
   std::vector<std::uint8_t> is_one_;  // per triangle: it is of a pair
+  /// Per triangle: it has a corner in common with one of a pair, or of what was one since all were
+  /// looked at.
+  std::vector<std::uint8_t> may_cross_;
+  bool has_looked_ = false;  // everywhere, in this frame
 };
 
 }  // namespace weft

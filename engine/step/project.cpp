@@ -117,6 +117,7 @@ class Projection {
         if (carries) take_back(drift);
         const double speed = largest_way(s_.position, s_.solved) / h;
         s_.position = s_.solved;
+        if (is_wedged()) return;
         if (speed < tuning::kPlacedSpeed || stall.has_stalled(speed)) break;
       }
     }
@@ -134,6 +135,13 @@ class Projection {
   }
   void take_back(const kernels::Vectors& drift) {
     for (std::size_t i = 0; i < drift.size(); ++i) s_.solved.set(i, s_.solved[i] - drift[i]);
+  }
+  /// Fabric met itself or a body where no blow stopped it. More of the same would drive it in: what
+  /// is left is for its motion.
+  bool is_wedged() {
+    if (!has_begun_) return false;
+    s_.small_steps->report_bodies(s_.body_report);
+    return s_.body_report.failures.zones > 0;
   }
   int left() const {
     return static_cast<int>(std::max<std::int64_t>(0, most_ - report_.iterations));

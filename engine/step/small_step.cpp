@@ -107,6 +107,7 @@ class Frame {
     sweep_beyond(0);
     sweep_until_few_are_out(0, rest);
     repair(rest);
+    solver_.end_contacts(team_);
     passes_.end();
     places_.read(team_);
   }

@@ -14,6 +14,7 @@
 #include "tests/support/crossing_triangles.h"
 #include "tests/support/isas.h"
 #include "tests/support/layers.h"
+#include "tests/support/meshes.h"
 #include "tests/support/vectors.h"
 
 namespace weft::test::engine_contact_self_contact {
@@ -331,6 +332,39 @@ TEST_CASE("triangles that cross in the beginning come apart, and no others cross
   REQUIRE(loaded.load_state(state));
   run(loaded, kFrame, 7);
   CHECK(loaded.state_hash() == hash);
+}
+
+/// A sheet of 1 m that hangs by its corners, laid out too narrow.
+SceneDescription laid_out(std::uint32_t size, double narrow) {
+  MeshDescription mesh = quads(size);
+  mesh.material = find_material("cotton").value();
+  mesh.rest_positions = mesh.positions;
+  const double cell = 1.0 / (size - 1);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const double x = cell * mesh.positions[i].x - 0.5, z = cell * mesh.positions[i].y - 0.5;
+    mesh.rest_positions[i] = {x, 0, z};
+    mesh.positions[i] = {0.7 * x, 0.5 * x * x, narrow * z};
+  }
+  mesh.pins = {0, size - 1, size * (size - 1), size * size - 1};
+  SceneDescription scene = cloth_from_mesh(mesh).value().scene;
+  scene.self_contact = {.on = true};
+  return scene;
+}
+
+TEST_CASE("cloth that is put right at once goes nowhere through itself") {
+  for (const double narrow : {0.9, 0.8, 0.7}) {
+    CAPTURE(narrow);
+    const SceneDescription scene = laid_out(25, narrow);
+    Cloth cloth = cloth_of(scene, small_steps());
+    REQUIRE(crossings_of(cloth, scene) == 0);
+    for (int frame = 0; frame < 12; ++frame) {
+      CAPTURE(frame);
+      const StepReport report = step(cloth, kFrame);
+      CHECK(report.tangled == 0);
+      CHECK(crossings_of(cloth, scene) == 0);
+      if (frame > 4) CHECK(report.status == Status::converged);
+    }
+  }
 }
 
 TEST_CASE("a report counts pairs that touch each other") {
