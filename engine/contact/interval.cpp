@@ -138,8 +138,7 @@ void SurfaceContacts::stop_failures(const ContactScene& scene, Team& team) {
 /// When an interval ends. Only tangles, and what had to be stopped, lead others through a body.
 void SurfaceContacts::find_tangles(bool has_failed) {
   if (tangles_.any() || has_failed) tangles_.find_crossing_at_end(points_);
-  if (points_.touches_itself())
-    tangles_.find_crossing_within_at_end(points_, verification_.failures().empty());
+  if (points_.touches_itself()) tangles_.find_crossing_within_at_end(points_, has_failed);
 }
 
 /// Before the rest is verified. Returns whether particles had to be moved.

@@ -84,9 +84,9 @@ void SelfTangles::find_at_start(const ContactPoints& points) {
   find(points, true, [&](std::uint32_t point) { return points.start(point); });
 }
 
-void SelfTangles::find_at_end(const ContactPoints& points, bool all_verified) {
-  if (pairs_.empty() && all_verified) return;
-  const bool everywhere = !all_verified || !std::exchange(has_looked_, true);
+void SelfTangles::find_at_end(const ContactPoints& points, bool has_failed) {
+  if (pairs_.empty() && !has_failed) return;
+  const bool everywhere = has_failed || !std::exchange(has_looked_, true);
   find(points, everywhere, [&](std::uint32_t point) { return points.end(point); });
 }
 

@@ -19,11 +19,11 @@ class SelfTangles {
   /// Of a frame: what the frame before left. A pair is its first triangle and, in the lower half,
   /// its second one, which is the later; pairs ascend.
   void begin(const TriangleSurface& cloth, const std::vector<std::uint64_t>& pairs);
-  /// Finds anew what crosses when an interval begins, or when it ends. Where all was verified in it
-  /// only triangles of pairs, and those beside these, may cross each other. Once in a frame all are
-  /// looked at: rounding may lead on what has just come apart.
+  /// Finds anew what crosses when an interval begins, or when it ends. Where nothing had to be
+  /// stopped in it only triangles of pairs, and those beside these, may cross each other. Once in a
+  /// frame all are looked at: rounding may lead on what has just come apart.
   void find_at_start(const ContactPoints& points);
-  void find_at_end(const ContactPoints& points, bool all_verified);
+  void find_at_end(const ContactPoints& points, bool has_failed);
   bool leaves_out(const Pair& pair) const { return !pairs_.empty() && has_features_of(pair); }
   const std::vector<std::uint64_t>& pairs() const { return pairs_; }
   std::size_t bytes() const;

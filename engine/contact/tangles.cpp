@@ -120,8 +120,8 @@ void Tangles::find(ContactPoints& points) {
   misplaced_.tangled = within_.pairs();
 }
 
-void Tangles::find_crossing_within_at_end(const ContactPoints& points, bool all_verified) {
-  within_.find_at_end(points, all_verified);
+void Tangles::find_crossing_within_at_end(const ContactPoints& points, bool has_failed) {
+  within_.find_at_end(points, has_failed);
   misplaced_.tangled = within_.pairs();
 }
 

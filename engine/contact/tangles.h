@@ -35,8 +35,8 @@ class Tangles {
   void let_in(const ContactPoints& points, const Pair& pair);
   /// Finds what crosses where an interval ends: bodies, and the cloth itself.
   void find_crossing_at_end(ContactPoints& points);
-  /// all_verified: but for what crossed already.
-  void find_crossing_within_at_end(const ContactPoints& points, bool all_verified);
+  /// has_failed: something had to be stopped in the interval.
+  void find_crossing_within_at_end(const ContactPoints& points, bool has_failed);
 
   bool any() const { return !triangles_.empty() || !misplaced_.inside.empty(); }
   bool is_inside(std::uint32_t slot) const { return misplaced_.is_inside(slot); }
