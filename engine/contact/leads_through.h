@@ -17,10 +17,12 @@ inline double volume_of(kernels::Vector a, kernels::Vector b, kernels::Vector c,
   return dot(cross(a - d, b - d), c - d);
 }
 
-/// What only touches the triangle does not lead through it.
-inline bool leads_through(kernels::Vector from, kernels::Vector to, const Corners& t) {
+/// What only touches the triangle does not lead through it. beyond: m, what both ends are on their
+/// sides of it at least; where it is below 0 they may be so far before it.
+inline bool leads_through(kernels::Vector from, kernels::Vector to, const Corners& t,
+                          double beyond = tuning::kTouching) {
   const double side = volume_of(t[0], t[1], t[2], from), other = volume_of(t[0], t[1], t[2], to);
-  const double touches = tuning::kTouching * length(cross(t[1] - t[0], t[2] - t[0]));
+  const double touches = beyond * length(cross(t[1] - t[0], t[2] - t[0]));
   if (std::min(side, other) >= -touches || std::max(side, other) <= touches) return false;
   const double turns[] = {volume_of(from, to, t[0], t[1]), volume_of(from, to, t[1], t[2]),
                           volume_of(from, to, t[2], t[0])};
@@ -28,10 +30,11 @@ inline bool leads_through(kernels::Vector from, kernels::Vector to, const Corner
   return least >= 0 || most <= 0;
 }
 
-/// All corners of one triangle are on one side of the other, farther than what only touches it.
-inline bool are_beside(const Corners& one, const Corners& other) {
+/// All corners of one triangle are on one side of the other, farther than `beyond` (m).
+inline bool are_beside(const Corners& one, const Corners& other,
+                       double beyond = tuning::kTouching) {
   const kernels::Vector n = cross(other[1] - other[0], other[2] - other[0]);
-  const double touches = tuning::kTouching * length(n);
+  const double touches = beyond * length(n);
   const double at[] = {dot(n, one[0] - other[0]), dot(n, one[1] - other[0]),
                        dot(n, one[2] - other[0])};
   const auto [least, most] = std::ranges::minmax(at);

@@ -22,15 +22,16 @@ std::size_t count_shared(const TriangleSurface::Triangle& a, const TriangleSurfa
       a, [&](std::uint32_t p) { return std::ranges::find(b, p) != b.end(); }));
 }
 
-/// An edge of one that has no corner of the other leads through that.
+/// An edge of one that has no corner of the other leads through that. beyond: as leads_through has
+/// it.
 template <class At>
 bool edge_leads_through(const TriangleSurface::Triangle& a, const TriangleSurface::Triangle& b,
-                        At&& at) {
+                        double beyond, At&& at) {
   const Corners corners{at(b[0]), at(b[1]), at(b[2])};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t p = a[k], q = a[(k + 1) % 3];
     if (std::ranges::find(b, p) != b.end() || std::ranges::find(b, q) != b.end()) continue;
-    if (leads_through(at(p), at(q), corners)) return true;
+    if (leads_through(at(p), at(q), corners, beyond)) return true;
   }
   return false;
 }
@@ -61,6 +62,7 @@ void SelfTangles::mark() {
 
 template <class At>
 void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
+  before_.swap(pairs_);
   pairs_.clear();
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
   BoxTree::meet(table_, cloth.tree(), cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
@@ -71,8 +73,12 @@ void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
     if (shared > 1) return;
     const Corners its{at(one[0]), at(one[1]), at(one[2])},
         others{at(other[0]), at(other[1]), at(other[2])};
-    if (shared == 0 && (are_beside(its, others) || are_beside(others, its))) return;
-    if (edge_leads_through(one, other, at) || edge_leads_through(other, one, at))
+    // What crossed before is apart where it will be known to stay so.
+    const bool has_crossed = std::ranges::binary_search(before_, pair_of(a, b));
+    const double apart = has_crossed ? tuning::kStaysApart : tuning::kTouching;
+    if (shared == 0 && (are_beside(its, others, apart) || are_beside(others, its, apart))) return;
+    const double beyond = has_crossed ? -apart : apart;
+    if (edge_leads_through(one, other, beyond, at) || edge_leads_through(other, one, beyond, at))
       pairs_.push_back(pair_of(a, b));
   });
   std::ranges::sort(pairs_);
@@ -117,7 +123,7 @@ bool SelfTangles::has_features_of(const Pair& pair) const {
 }
 
 std::size_t SelfTangles::bytes() const {
-  return bytes_of(pairs_) + bytes_of(is_one_) + bytes_of(may_cross_);
+  return bytes_of(pairs_) + bytes_of(before_) + bytes_of(is_one_) + bytes_of(may_cross_);
 }
 
 }  // namespace weft

@@ -39,7 +39,8 @@ class SelfTangles {
   const simd::Table& table_;
   const TriangleSurface* cloth_ = nullptr;
   std::vector<std::uint64_t> pairs_;
-  std::vector<std::uint8_t> is_one_;  // per triangle: it is of a pair
+  std::vector<std::uint64_t> before_;  // scratch
+  std::vector<std::uint8_t> is_one_;   // per triangle: it is of a pair
   /// Per triangle: it has a corner in common with one of a pair, or of what was one since all were
   /// looked at.
   std::vector<std::uint8_t> may_cross_;

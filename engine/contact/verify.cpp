@@ -46,14 +46,20 @@ double largest_move(PairKind kind, const PairMotion& way) {
   return std::sqrt(most);
 }
 
+/// m: features that are apart stay so far apart, or they would be on no side of each other.
+double stays_apart(double distance) {
+  return distance >= tuning::kStaysApart ? tuning::kStaysApart : 0;
+}
+
 /// A time before the features come nearer than a tenth of the thickness, or of their first distance
 /// if that is less, if they do.
 std::optional<double> time_of_meeting(PairKind kind, const PairMotion& way, double distance,
                                       double thickness) {
   using tuning::kMeetingLeft;
   const double move = largest_move(kind, way),
-               least =
-                   kMeetingLeft * std::min(distance, std::max(thickness, kMeetingLeft * distance));
+               part =
+                   kMeetingLeft * std::min(distance, std::max(thickness, kMeetingLeft * distance)),
+               least = std::max(part, stays_apart(distance));
   double time = 0, here = distance;
   for (int i = 0; i < tuning::kMeetingSteps; ++i) {
     const double next = time + tuning::kMeetingStep * (here - 0.5 * least) / move;
@@ -69,8 +75,11 @@ std::optional<double> time_of_meeting(PairKind kind, const PairMotion& way, doub
 std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, double distance,
                               double thickness) {
   const auto separates = [&](Vector n) {
-    const double least = distance > kTouching ? 0 : -kTouching * length(n);  // rounding
-    return separation(kind, way.from, n) > least && separation(kind, way.to, n) > 0;
+    if (distance <= kTouching)  // rounding
+      return separation(kind, way.from, n) > -kTouching * length(n) &&
+             separation(kind, way.to, n) > 0;
+    return separation(kind, way.from, n) > 0 &&
+           separation(kind, way.to, n) > stays_apart(distance) * length(n);
   };
   if (separates(r)) return std::nullopt;
   const Vector end = nearest(kind, way.to).r;
