@@ -32,6 +32,7 @@ void SurfaceContacts::begin(const BodyClock& clock, ContactStart start,
   impulses_.begin(clock.bodies());
   is_new_ = start != ContactStart::known;
   tangles_.begin(points_.cloth(), misplaced);
+  began_tangled_ = tangles_.count_within() > 0;
 }
 
 double SurfaceContacts::interval_for(const ContactParticles& particles, const BodyClock& clock) {
@@ -70,8 +71,10 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   points_.begin_interval(particles, clock, substeps);
   const bool have_moved = search_.find(points_, candidates_, team);
   near_search_.measure(points_, candidates_, have_moved, team);
-  if (is_new_) tangles_.find(points_);
-  is_new_ = false;
+  if (std::exchange(is_new_, false)) {
+    tangles_.find(points_);
+    began_tangled_ = tangles_.count_within() > 0;
+  }
   near_search_.find(points_, candidates_, tangles_, near_, team);
   tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);

@@ -87,6 +87,7 @@ class SurfaceContacts {
     RescueReport report = failures_;
     report.left = tangles_.count();
     report.tangled = tangles_.count_within();
+    report.is_tangled_anew = report.tangled > 0 && !began_tangled_;
     return report;
   }
   struct Touching {
@@ -128,7 +129,8 @@ class SurfaceContacts {
   ImpactZones zones_;
   RescueReport failures_;
   double visits_ = 0;
-  bool is_new_ = false;    // tangles are not known yet
+  bool is_new_ = false;         // tangles are not known yet
+  bool began_tangled_ = false;  // cloth, with itself, in this frame
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
   bool has_looked_ahead_ = false;

@@ -320,7 +320,8 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   }
   if (fixed)
     trial.worsen(Status::fixed_iterations);
-  else if (is_in_body || s.body_report.failures.left > 0 || leaves_bending(s))
+  else if (is_in_body || s.body_report.failures.left > 0 ||
+           s.body_report.failures.is_tangled_anew || leaves_bending(s))
     trial.worsen(Status::iteration_limit);
   if (frame.passed_particle() != kNoIndex) {
     trial.passed_particle = frame.passed_particle();

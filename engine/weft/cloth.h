@@ -142,7 +142,8 @@ struct StepReport {
   int self_contacts = 0;  ///< pairs of features of the cloth that touch each other (SelfContact)
   /// Pairs of triangles of the cloth that cross each other when the step ends. It is 0 with
   /// SelfContact, unless the step began so, or more came together than could be kept apart. They
-  /// touch nothing of each other until they have come apart.
+  /// touch nothing of each other until they have come apart. A step that began without any and ends
+  /// with some has not converged.
   int tangled = 0;
   double max_anchor_error = 0;  ///< m, by which the limits of an anchor are exceeded
   int open_seams = 0;           ///< seams whose particles have not come together yet (Seam)
