@@ -28,7 +28,7 @@ struct Case {
   Vec3 ball_velocity{};  // m/s
 };
 
-/// A flat or wavy sheet in a place of its own, some of which lie in one plane or in each other.
+/// A flat or wavy sheet. Some begin in each other; none lies exactly in the plane of another.
 Sheet random_sheet(Random& random) {
   const std::uint32_t cells = 2 + random.below(6);
   const double cell = random.between(0.01, 0.05), wave = random.below(2) == 0 ? 0 : cell;
@@ -36,10 +36,9 @@ Sheet random_sheet(Random& random) {
   const Vec3 axis = random.in_box(1);
   const Rotation turned =
       is_level || length(axis) < 0.1 ? Rotation{} : turn((1 / length(axis)) * axis, 2);
-  const Pose pose{.position = {random.between(-0.1, 0.1),
-                               0.05 + 0.05 * random.below(6) + random.between(0, 0.01),
-                               random.between(-0.1, 0.1)},
-                  .rotation = turned};
+  const double x = random.between(-0.1, 0.1), level = 0.05 + 0.05 * random.below(6),
+               y = level + random.between(0, 0.01), z = random.between(-0.1, 0.1);
+  const Pose pose{.position = {x, y, z}, .rotation = turned};
   return {cells, cells, [=](double u, double v) {
             const Vec3 flat{cell * cells * (u - 0.5), wave * std::sin(9 * u + 4 * v),
                             cell * cells * (v - 0.5)};
