@@ -63,7 +63,7 @@ Result<std::unique_ptr<Cloth::Impl>> Cloth::Impl::by_small_steps(std::string_vie
 
 void Cloth::Impl::set(kernels::Vector& to, Vec3 value) {
   const kernels::Vector from = std::exchange(to, to_internal(value));
-  if (from.x != to.x || from.y != to.y || from.z != to.z) state.rest.wake();
+  if (from.x != to.x || from.y != to.y || from.z != to.z) state.wake();
 }
 
 void Cloth::Impl::set(kernels::Vectors& vectors, std::uint32_t particle, Vec3 value) {

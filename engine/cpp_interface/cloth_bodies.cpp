@@ -36,46 +36,46 @@ Result<void> validate_vertices(const Bodies& bodies, std::uint32_t id,
 Result<std::uint32_t> Cloth::add_body(const Body& body) {
   if (auto valid = validate(body); !valid) return Error{valid.error()};
   if (auto prepared = prepare_for("body"); !prepared) return Error{prepared.error()};
-  impl_->state.rest.wake();
+  impl_->state.wake();
   return impl_->state.bodies.add(body);
 }
 
 Result<void> Cloth::move_body(std::uint32_t id, const Pose& pose) {
   if (auto r = validate_body(impl_->state.bodies, id); !r) return r;
   if (auto r = validate(pose); !r) return r;
-  if (impl_->state.bodies.move(id, pose)) impl_->state.rest.wake();
+  if (impl_->state.bodies.move(id, pose)) impl_->state.wake();
   return {};
 }
 
 Result<void> Cloth::place_body(std::uint32_t id, const Pose& pose) {
   if (auto r = validate_body(impl_->state.bodies, id); !r) return r;
   if (auto r = validate(pose); !r) return r;
-  if (impl_->state.bodies.place(id, pose)) impl_->state.rest.wake();
+  if (impl_->state.bodies.place(id, pose)) impl_->state.wake();
   return {};
 }
 
 Result<void> Cloth::move_body_vertices(std::uint32_t id, std::span<const Vec3> vertices) {
   if (auto r = validate_vertices(impl_->state.bodies, id, vertices); !r) return r;
-  if (impl_->state.bodies.move_vertices(id, vertices)) impl_->state.rest.wake();
+  if (impl_->state.bodies.move_vertices(id, vertices)) impl_->state.wake();
   return {};
 }
 
 Result<void> Cloth::place_body_vertices(std::uint32_t id, std::span<const Vec3> vertices) {
   if (auto r = validate_vertices(impl_->state.bodies, id, vertices); !r) return r;
-  if (impl_->state.bodies.place_vertices(id, vertices)) impl_->state.rest.wake();
+  if (impl_->state.bodies.place_vertices(id, vertices)) impl_->state.wake();
   return {};
 }
 
 Result<void> Cloth::switch_body(std::uint32_t id, bool on) {
   if (auto r = validate_body(impl_->state.bodies, id); !r) return r;
-  if (impl_->state.bodies.switch_on(id, on)) impl_->state.rest.wake();
+  if (impl_->state.bodies.switch_on(id, on)) impl_->state.wake();
   return {};
 }
 
 Result<void> Cloth::remove_body(std::uint32_t id) {
   if (auto r = validate_body(impl_->state.bodies, id); !r) return r;
   impl_->state.bodies.remove(id);
-  impl_->state.rest.wake();
+  impl_->state.wake();
   return {};
 }
 

@@ -39,7 +39,7 @@ bool is_identity(const RigidMotion& motion) {
 }
 
 Result<void> take_along(State& s, const RigidMotion& motion, double share) {
-  s.rest.wake();
+  s.wake();
   const std::uint32_t lost = carry(s, Carriage(motion, share));
   if (lost == kNoIndex) return {};
   return Error{"motion: takes a particle out of the range of numbers (" +
@@ -77,14 +77,14 @@ Result<void> Cloth::place_fixed(std::span<const std::uint32_t> particles,
   if (particles.empty()) return {};
   impl_->state.pins.put_down(*impl_->state.model, particles, positions, impl_->state.position);
   impl_->state.displaced = true;
-  impl_->state.rest.wake();
+  impl_->state.wake();
   return {};
 }
 
 Result<void> Cloth::move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals) {
   if (auto r = validate_anchor_move(*impl_->state.model, points, normals); !r) return r;
   impl_->state.anchors.move(points, normals);
-  if (impl_->state.anchors.moving()) impl_->state.rest.wake();
+  if (impl_->state.anchors.moving()) impl_->state.wake();
   return {};
 }
 
@@ -104,7 +104,7 @@ Result<void> Cloth::limit_anchors(std::span<const AnchorLimit> limits) {
   const auto same = [](const AnchorLimit& a, const AnchorLimit& b) {
     return a.max_distance == b.max_distance && a.backstop == b.backstop;
   };
-  if (!std::ranges::equal(limits, impl_->state.anchors.limits(), same)) impl_->state.rest.wake();
+  if (!std::ranges::equal(limits, impl_->state.anchors.limits(), same)) impl_->state.wake();
   impl_->state.anchors.limit(limits);
   return {};
 }
@@ -119,7 +119,7 @@ Result<void> Cloth::limit_anchor(std::uint32_t anchor, const AnchorLimit& limit)
 Result<void> Cloth::scale_anchors(double scale) {
   if (auto r = validate_not_negative("scale", scale); !r) return r;
   impl_->state.anchors.scale(scale);
-  if (impl_->state.anchors.moving()) impl_->state.rest.wake();
+  if (impl_->state.anchors.moving()) impl_->state.wake();
   return {};
 }
 

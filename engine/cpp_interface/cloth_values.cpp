@@ -77,7 +77,7 @@ Result<void> Cloth::write_positions(std::span<const Vec3> in) {
   for (std::uint32_t i = 0; i < in.size(); ++i) {
     impl_->state.position.set(impl_->slot(i), to_internal(in[i]));
   }
-  impl_->state.rest.wake();
+  impl_->state.wake();
   impl_->state.pins.put_down(impl_->state.position);
   impl_->state.anchors.put_down();
   impl_->state.placed = true;
@@ -93,14 +93,14 @@ Result<void> Cloth::write_velocities(std::span<const Vec3> in) {
     const bool fixed = impl_->state.model->inverse_mass[slot] == 0;
     impl_->state.velocity.set(slot, fixed ? kernels::Vector{0, 0, 0} : to_internal(in[i]));
   }
-  impl_->state.rest.wake();
+  impl_->state.wake();
   impl_->state.pins.rest();
   return {};
 }
 
 Result<void> Cloth::write_forces(std::span<const Vec3> in) {
   if (in.empty()) {
-    if (impl_->state.force.size() > 0) impl_->state.rest.wake();
+    if (impl_->state.force.size() > 0) impl_->state.wake();
     impl_->state.force.resize(0);
     return {};
   }
@@ -140,7 +140,7 @@ Result<void> Cloth::set_pressure(std::span<const Pressure> pressures) {
   if (!known.empty()) {
     if (auto prepared = prepare_for("pressures"); !prepared) return prepared;
   }
-  impl_->state.rest.wake();
+  impl_->state.wake();
   impl_->state.gas = gas_going_on(impl_->state, known);
   impl_->state.pressures = std::move(known);
   make_room_for_pressure(impl_->state);

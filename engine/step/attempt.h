@@ -42,6 +42,7 @@ struct Trial {
   double seam_work = 0;                      // J
   double motion_error = 0;                   // m/s
   double refinement = 0;                     // that the next step is to begin with
+  Lengthening lengthening;                   // likewise
   int substeps = 1;                          // that it took
   std::uint32_t passed_particle = kNoIndex;  // the description's number
 

@@ -87,16 +87,19 @@ double refinement_for_motion(const State& s, const FramePlan& plan, double error
 
 /// The same for fabric without a motion tolerance. Its load may come from any side, and what
 /// carries it sideways is swept one by one: substeps are shorter where a frame left much to put
-/// right, which took the time of `beyond` sweeps, and longer where it left little, down to those of
-/// cloth that hangs at rest.
-double refinement_for_laws(const State& s, const FramePlan& plan, double beyond,
-                           const Budget& budget) {
+/// right, and longer where it left little, down to those of cloth that hangs at rest.
+double refinement_for_laws(const State& s, const FramePlan& plan, const FrameCourse& course,
+                           const Budget& budget, Lengthening& lengthening) {
   constexpr double kLevel = 0.25;
-  const double share = beyond / plan.substeps;
-  if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget))
+  const double share = course.beyond / plan.substeps;
+  if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget)) {
+    lengthening.take_back();
     return s.refinement + std::log2(1 + share);
+  }
   const double least = -std::log2(kWeightsOfSwing) / 2;
-  return share < tuning::kLittleMended ? std::max(least, s.refinement - kLevel) : s.refinement;
+  if (share >= tuning::kLittleMended || s.refinement <= least) return s.refinement;
+  if (!lengthening.begin(kLevel, course.left)) return s.refinement;
+  return std::max(least, s.refinement - kLevel);
 }
 
 }  // namespace
@@ -161,10 +164,11 @@ FramePlan plan_of_look_ahead(const State& s, double h) {
           .seams = s.seams.states()};
 }
 
-double next_refinement(const State& s, const FramePlan& plan, double error, double beyond,
-                       const Budget& budget) {
-  return s.settings.motion_tolerance > 0 ? refinement_for_motion(s, plan, error, budget)
-                                         : refinement_for_laws(s, plan, beyond, budget);
+double next_refinement(const State& s, const FramePlan& plan, const FrameCourse& course,
+                       const Budget& budget, Lengthening& lengthening) {
+  if (s.settings.motion_tolerance > 0)
+    return refinement_for_motion(s, plan, course.motion_error, budget);
+  return refinement_for_laws(s, plan, course, budget, lengthening);
 }
 
 double refinement_for_bending(const State& s, const FramePlan& plan, double refinement,

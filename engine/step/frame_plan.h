@@ -26,10 +26,16 @@ FramePlan plan_of_look_ahead(const State& s, double h);
 /// s^2, of a sweep: its compliance over w_a + w_b.
 double give_per_mass(const State& s, const FramePlan& plan);
 
-/// State::refinement after a frame whose error of motion was `error` (m/s), and which took the time
-/// of `beyond` sweeps besides one for each substep. Only where refines_substeps(s).
-double next_refinement(const State& s, const FramePlan& plan, double error, double beyond,
-                       const Budget& budget);
+/// How a frame went.
+struct FrameCourse {
+  double motion_error = 0;  // m/s
+  double beyond = 0;        // the time that it took besides a sweep for each substep, in sweeps
+  double left = 0;  // the error after the last substep, before rounds put it right, in tolerances
+};
+
+/// State::refinement after a frame. Only where refines_substeps(s).
+double next_refinement(const State& s, const FramePlan& plan, const FrameCourse& course,
+                       const Budget& budget, Lengthening& lengthening);
 
 /// The same, at least so much that bending, which was not solved to the tolerance, is softer.
 double refinement_for_bending(const State& s, const FramePlan& plan, double refinement,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/measure/state_measure.h"
+#include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/stall.h"
 #include "engine/step/exact_substep.h"
 #include "engine/step/fast_springs.h"

@@ -39,7 +39,8 @@ const char* fault_of(const LastingState& s, const Model& model) {
   const bool has_force = s.force.size() > 0;
   if (!has_slots(s.position) || !has_slots(s.velocity) || (has_force && !has_slots(s.force)))
     return "particles";
-  if (!are_finite(s) || !(std::abs(s.refinement) <= kMostRefinement)) return "numbers";
+  if (!are_finite(s) || !(std::abs(s.refinement) <= kMostRefinement) || !s.lengthening.is_valid())
+    return "numbers";
   const auto place = [&](std::uint32_t slot) { return s.position[slot]; };
   for (const Pressure& part : s.pressures) {
     if (part.gas && !(part.volume > 0)) return "pressures";

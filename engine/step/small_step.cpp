@@ -153,8 +153,9 @@ class Frame {
   double released() { return elastic_energy_before_ - elastic_energy(s_.solved, give_); }
   /// See FrameForces::end().
   double end_forces() { return forces_.end(); }
-  /// Besides a sweep for each substep, in the time of sweeps.
-  double passes_taken() const { return passes_.taken(); }
+  FrameCourse course() const {
+    return {.motion_error = solver_.motion_error(), .beyond = passes_.taken(), .left = left_};
+  }
   std::uint32_t passed_particle() const { return spheres_.passed_particle(); }
 
  private:
@@ -165,16 +166,22 @@ class Frame {
   Status put_right_what_is_left() {
     Stall stall(tuning::kRoundPatience);
     for (int round = 0;; ++round) {
-      if (is_within_tolerance()) return Status::converged;
+      const bool is_within = is_within_tolerance();
+      const double error = error_in_tolerances();
+      left_ = std::max(left_, error);
+      if (is_within) return Status::converged;
       if (s_.settings.iterations > 0) return Status::fixed_iterations;
       if (round >= tuning::kMostRounds || passes_.left() < 1) return Status::iteration_limit;
-      const double distance =
-          std::max({report_.max_penetration, report_.max_anchor_error, report_.max_seam_gap});
-      const double error = std::max(report_.max_error / s_.settings.tolerance,
-                                    distance / s_.settings.contact_tolerance);
       if (stall.has_stalled(error)) return Status::infeasible;
       put_right();
     }
+  }
+  /// The largest, as reported.
+  double error_in_tolerances() const {
+    const double distance =
+        std::max({report_.max_penetration, report_.max_anchor_error, report_.max_seam_gap});
+    return std::max(report_.max_error / s_.settings.tolerance,
+                    distance / s_.settings.contact_tolerance);
   }
   /// By whole sweeps: where the last substep has left so much, as under what falls into the cloth,
   /// a share of the tolerance would not carry the load to the pins.
@@ -224,6 +231,7 @@ class Frame {
   FramePasses passes_{*s_.model, s_.contacts, report_};
   FrameForces forces_{s_, plan_, places_};
   FrameSpheres spheres_{s_, places_, report_};
+  double left_ = 0;                   // FrameCourse
   double give_ = 0;                   // s^2, give_per_mass()
   double elastic_energy_before_ = 0;  // J, in the beginning
 };
@@ -268,7 +276,8 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double h, const
   trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;
   if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
   if (refines_substeps(s)) {
-    trial.refinement = next_refinement(s, plan, trial.motion_error, frame.passes_taken(), budget);
+    trial.lengthening = s.lengthening;
+    trial.refinement = next_refinement(s, plan, frame.course(), budget, trial.lengthening);
     if (leaves_bending(s))
       trial.refinement = refinement_for_bending(s, plan, trial.refinement, budget);
   }

@@ -6,6 +6,7 @@
 #include "engine/bytes_of.h"
 #include "engine/isa.h"
 #include "engine/model/change.h"
+#include "engine/model/saved_model.h"
 #include "engine/solvers/direct/direct_solver.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/sweeps/sweeps.h"
@@ -32,6 +33,7 @@ LastingState::LastingState(const Model& model)
 void LastingState::forget_past() {
   placed = true;
   lost_energy = elastic_energy = give_per_mass = longest_substep = refinement = 0;
+  lengthening = {};
 }
 
 State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
@@ -143,6 +145,7 @@ void State::go_on_from(const State& from) {
   next.pins = {};
   next.pins.go_on_from(from.pins, its_model, *model, next.position);
   next.rest = rest;
+  if (fingerprint(*model) != fingerprint(its_model)) next.lengthening = {};
   take(std::move(next), from.settings);
   displaced = true;
   rests_differ = rests_differ || fast_rest_differs(*model, its_model, settings.tolerance);

@@ -30,6 +30,7 @@
 #include "engine/spheres/nearby_pairs.h"
 #include "engine/spheres/sphere_contacts.h"
 #include "engine/step/anchors.h"
+#include "engine/step/lengthening.h"
 #include "engine/step/pins.h"
 #include "engine/step/rest.h"
 #include "engine/step/seams.h"
@@ -109,19 +110,25 @@ struct LastingState {
   double give_per_mass = 0;   // s^2, of springs in the last step (measure/state_measure.h)
   double longest_substep = 0;  // s, of a solver, since positions were given
   double refinement = 0;       // log2 of the next step's parts, or how much shorter its substeps
+  Lengthening lengthening;     // with refinement, of small steps without a motion_tolerance
   Rest rest;
   StepReport asleep;  // what its steps report while the cloth sleeps
 
   explicit LastingState(const Model& model);
+  /// Something was changed from outside.
+  void wake() {
+    lengthening = {};
+    rest.wake();
+  }
   /// All of it under other settings: positions are given ones, and nothing is known of the past.
   void forget_past();
   friend void visit_fields(Is<LastingState> auto& state, auto& archive) {
     auto& [position, velocity, force, gravity, wind, way, pressures, gas, pins, anchors, seams,
            bodies, placed, displaced, rests_differ, lost_energy, elastic_energy, give_per_mass,
-           longest_substep, refinement, rest, asleep] = state;
+           longest_substep, refinement, lengthening, rest, asleep] = state;
     archive(position, velocity, force, gravity, wind, way, pressures, gas, pins, anchors, seams,
             bodies, placed, displaced, rests_differ, lost_energy, elastic_energy, give_per_mass,
-            longest_substep, refinement, rest, asleep);
+            longest_substep, refinement, lengthening, rest, asleep);
   }
 };
 

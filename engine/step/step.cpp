@@ -109,6 +109,7 @@ class OneStep {
       if (s_.pressures[i].gas) s_.gas[i] = s_.pressed.given[i];
     s_.placed = s_.displaced = s_.rests_differ = false;
     s_.refinement = next_refinement();
+    s_.lengthening = lengthening_;
     return true;
   }
 
@@ -212,6 +213,7 @@ class OneStep {
     report_.seam_work += trial.seam_work;
     report_.motion_error += trial.motion_error;
     refinement_ = trial.refinement;
+    lengthening_ = trial.lengthening;
     if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
   }
 
@@ -238,6 +240,7 @@ class OneStep {
   Plan plan_;
   double parts_ = 0;              // done
   double refinement_ = 0;         // that small steps want next
+  Lengthening lengthening_;       // likewise
   Share positions_, velocities_;  // of the iterations, for the present substep
 };
 

@@ -463,10 +463,10 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(state)), model.size(),
                 static_cast<unsigned long long>(checksum(model)));
   }
-  CHECK(state[8] == std::byte{5});
+  CHECK(state[8] == std::byte{6});
   CHECK(model[8] == std::byte{3});
-  CHECK(state.size() == 11099);
-  CHECK(checksum(state) == 0x847b3bfa6dc248bc);
+  CHECK(state.size() == 11115);
+  CHECK(checksum(state) == 0x0f07393920bfd52b);
   CHECK(model.size() == 723);
   CHECK(checksum(model) == 0x8ada2edf204814c4);
 }

@@ -3,7 +3,11 @@
 #include <weft/mesh.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
@@ -102,6 +106,85 @@ TEST_CASE("fabric comes to rest") {
     const Rest rest = rest_after(12, sheet_of(material, 12, 3), 1 / 60.);
     check_rest(rest);
   }
+}
+
+/// Rows by columns of square cells around a place, level.
+void add_sheet(MeshDescription& mesh, std::uint32_t rows, std::uint32_t columns, double cell,
+               double height) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (std::uint32_t i = 0; i <= rows; ++i) {
+    for (std::uint32_t j = 0; j <= columns; ++j)
+      mesh.positions.push_back({cell * (j - 0.5 * columns), height, cell * (i - 0.5 * rows)});
+  }
+  for (std::uint32_t i = 0; i < rows; ++i) {
+    for (std::uint32_t j = 0; j < columns; ++j) {
+      const std::uint32_t at = first + i * (columns + 1) + j, next = at + columns + 1;
+      mesh.face_sizes.push_back(4);
+      for (const std::uint32_t corner : {at, next, next + 1, at + 1})
+        mesh.corners.push_back(corner);
+    }
+  }
+}
+
+/// A sheet of 12 cm by 30 cm that is held by both long sides, and a patch that falls on it.
+SceneDescription patch_on_a_sheet(const char* material, double cell) {
+  const auto cells = [&](double length) {
+    return static_cast<std::uint32_t>(std::lround(length / cell));
+  };
+  MeshDescription mesh;
+  mesh.material = find_material(material).value();
+  add_sheet(mesh, cells(0.3), cells(0.12), cell, 0);
+  const std::uint32_t in_row = cells(0.12) + 1;
+  for (std::uint32_t i = 0; i <= cells(0.3); ++i)
+    mesh.pins.insert(mesh.pins.end(), {i * in_row, (i + 1) * in_row - 1});
+  add_sheet(mesh, cells(0.16), cells(0.06), cell, 0.01);
+  SceneDescription scene = cloth_from_mesh(mesh).value().scene;
+  scene.self_contact.on = true;
+  return scene;
+}
+
+/// m/s, the largest of half a second, after `seconds`.
+double fastest_after(double seconds, const SceneDescription& scene, double rate) {
+  Cloth cloth = cloth_of(scene, {.threads = 1});
+  run(cloth, 1 / rate, static_cast<int>(seconds * rate));
+  double fastest = 0;
+  for (int frame = 0; frame < rate / 2; ++frame) {
+    const std::vector<Vec3> before = positions(cloth);
+    run(cloth, 1 / rate, 1);
+    for (std::uint32_t i = 0; i < before.size(); ++i)
+      fastest = std::max(fastest, rate * distance(before[i], cloth.position(i)));
+  }
+  return fastest;
+}
+
+// Substeps that became longer in each calm frame, until one failed: 0.1 to 0.4 m/s, for ever.
+TEST_CASE("a patch lies still on a sheet that is held, at any frame rate") {
+  for (const std::string material : {"cotton", "denim"}) {
+    for (const double cell : {0.015, 0.02}) {
+      for (const double rate : {30., 60., 240.}) {
+        CAPTURE(material);
+        CAPTURE(cell);
+        CAPTURE(rate);
+        CHECK(fastest_after(3.5, patch_on_a_sheet(material.c_str(), cell), rate) < 1e-2);
+      }
+    }
+  }
+}
+
+// By a memory that was not of the state, or outlived what it knew.
+TEST_CASE("a saved cloth and a copy have as many substeps as the one that they are of") {
+  const SceneDescription scene = patch_on_a_sheet("cotton", 0.015);
+  Cloth cloth = cloth_of(scene, {.threads = 1});
+  run(cloth, 1 / 60., 40);
+  Cloth copy = cloth.clone(), loaded = cloth_of(scene, {.threads = 1});
+  REQUIRE(loaded.load_state(cloth.save_state()));
+  for (int frame = 0; frame < 60; ++frame) {
+    const int substeps = step(cloth, 1 / 60.).substeps;
+    CHECK(step(copy, 1 / 60.).substeps == substeps);
+    CHECK(step(loaded, 1 / 60.).substeps == substeps);
+  }
+  CHECK(copy.state_hash() == cloth.state_hash());
+  CHECK(loaded.state_hash() == cloth.state_hash());
 }
 
 TEST_CASE("in doubles, too") {

@@ -11,6 +11,7 @@
 #include <tbb/task_arena.h>
 
 #include "tools/program/measure/cpu_time.h"
+#include "tools/program/run/frame_calls.h"
 #include "tools/program/run/step_total.h"
 #include "tools/program/run/warm_up.h"
 #include "tools/program/text/wording.h"
