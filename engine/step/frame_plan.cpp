@@ -58,6 +58,18 @@ void keep_stiffness(const State& s, double dt, FramePlan& plan) {
   if (give < least) plan.omega *= give / least;
 }
 
+/// Where a pin was made, let go or put down, what hangs on it need not pull: fabric that lies on a
+/// table does not. So substeps are no shorter than in the last frame, until one has much to put
+/// right.
+void keep_length(State& s, double dt) {
+  const bool is_by_laws = refines_substeps(s) && s.settings.motion_tolerance == 0;
+  if (!is_by_laws || !s.displaced || s.placed) return;
+  const double part = SubstepFormula::of(s.settings.scheme, 1).part;
+  const double last = std::sqrt(tuning::kOmega * s.give_per_mass) / part;
+  const double shorter = std::log2(std::min(dt, last) / usual_length(s, dt));
+  if (shorter > 0) s.refinement -= shorter;
+}
+
 /// A number of substeps that was given bounds the time of a step: where it is less than automatic
 /// substeps would be, by the time of those.
 double passes_beyond(int substeps, double automatic_substeps) {
@@ -122,6 +134,7 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
                  .anchors = s.anchors.travel(),
                  .seams = s.seams.states()};
   add_bodies(s, plan);
+  keep_length(s, dt);
   const double usual = usual_length(s, dt);
   const double wanted = std::max(1.0, std::ceil(dt / usual));
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {

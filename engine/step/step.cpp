@@ -22,7 +22,7 @@ namespace {
 /// The state at the beginning of a step: it comes back unless the step is committed.
 class Transaction {
  public:
-  explicit Transaction(State& s) : s_(s) {
+  explicit Transaction(State& s) : s_(s), refinement_(s.refinement) {
     s_.step_start.seams = s_.seams;
     s_.step_start.lost_energy = s_.lost_energy;
     s_.step_start.elastic_energy = s_.elastic_energy;
@@ -31,6 +31,7 @@ class Transaction {
   }
   ~Transaction() {
     if (committed_) return;
+    s_.refinement = refinement_;
     std::swap(s_.seams, s_.step_start.seams);
     s_.lost_energy = s_.step_start.lost_energy;
     s_.elastic_energy = s_.step_start.elastic_energy;
@@ -54,6 +55,7 @@ class Transaction {
 
  private:
   State& s_;
+  const double refinement_;
   bool moves_ = false, committed_ = false;
 };
 

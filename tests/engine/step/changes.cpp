@@ -184,7 +184,8 @@ TEST_CASE("one that moves goes on as a new one would from where it is") {
     CHECK(built.state_hash() == cloth.state_hash());
     step(cloth, 0.01);
     step(built, 0.01);
-    CHECK(largest_distance(positions(cloth), positions(built)) <= (remembers ? 3e-3 : 0));
+    // Small steps are as long as before the change; those of a new one know of no load.
+    CHECK(largest_distance(positions(cloth), positions(built)) <= (remembers ? 4e-3 : 0));
   });
 }
 

@@ -187,6 +187,35 @@ TEST_CASE("a saved cloth and a copy have as many substeps as the one that they a
   CHECK(loaded.state_hash() == cloth.state_hash());
 }
 
+// As many as where all of it hangs on the corner: ten times as many.
+TEST_CASE(
+    "where a corner of cloth that lies is taken a frame has at most four times as many substeps") {
+  for (const std::string material : {"cotton", "denim"}) {
+    for (const std::uint32_t cells : {12u, 24u}) {
+      for (const double rate : {30., 60., 240.}) {
+        CAPTURE(material);
+        CAPTURE(cells);
+        CAPTURE(rate);
+        MeshDescription mesh;
+        mesh.material = find_material(material).value();
+        add_sheet(mesh, cells, cells, 0.4 / cells, 1.5e-3);
+        Cloth cloth = cloth_of(cloth_from_mesh(mesh).value().scene, {.threads = 1});
+        REQUIRE(cloth.add_body({.shape = build_shape(Plane{}).value(), .friction = 0.5}));
+        run(cloth, 1 / rate, static_cast<int>(rate / 4));
+        const int before = step(cloth, 1 / rate).substeps;
+        REQUIRE(cloth.change({.fix = {0}}));
+        const StepReport taken = step(cloth, 1 / rate);
+        CHECK(taken.status == Status::converged);
+        CHECK(taken.substeps <= 4 * before);
+        REQUIRE(cloth.change({.release = {0}}));
+        const StepReport let_go = step(cloth, 1 / rate);
+        CHECK(let_go.status == Status::converged);
+        CHECK(let_go.substeps <= 4 * before);
+      }
+    }
+  }
+}
+
 TEST_CASE("in doubles, too") {
   check_rest(rest_after(12, sheet_of_ropes(8, 3), 1 / 60.,
                         {.solver = Solver::small_steps, .backend = Backend::reference}));
