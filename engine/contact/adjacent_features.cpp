@@ -11,7 +11,7 @@ namespace weft {
 
 using kernels::kLanes;
 
-void AdjacentFeatures::make(const TriangleSurface& cloth) {
+void AdjacentFeatures::make(const TriangleSurface& cloth, const SewnPoints& sewn) {
   std::vector<std::uint32_t> seen(cloth.triangles.size(), kNoIndex);
   for (std::uint32_t a = 0; a < cloth.triangles.size(); ++a) {
     if (cloth.is_point(a)) continue;
@@ -19,20 +19,25 @@ void AdjacentFeatures::make(const TriangleSurface& cloth) {
       for (const std::uint32_t b : cloth.triangles_at[corner]) {
         if (b <= a || seen[b] == a) continue;
         seen[b] = a;
-        add_features(cloth, a, b);
+        add_features(cloth, sewn, a, b);
       }
     }
   }
 }
 
-void AdjacentFeatures::add_features(const TriangleSurface& cloth, std::uint32_t a,
-                                    std::uint32_t b) {
+void AdjacentFeatures::add_features(const TriangleSurface& cloth, const SewnPoints& sewn,
+                                    std::uint32_t a, std::uint32_t b) {
+  const auto add_apart = [&](PairKind kind, std::uint32_t first, std::uint32_t second,
+                             const std::array<std::uint32_t, 4>& points, const Owners& owners) {
+    if (!sewn.join(kind, points)) add(kind, first, second, points, owners);
+  };
   const auto add_points = [&](std::uint32_t of, std::uint32_t beside) {
     const auto& its = cloth.triangles[beside];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t point = cloth.triangles[of][k];
       if (!cloth.owns_corner(of, k) || std::ranges::find(its, point) != its.end()) continue;
-      add(PairKind::point_triangle, point, beside, {point, its[0], its[1], its[2]}, {of, beside});
+      add_apart(PairKind::point_triangle, point, beside, {point, its[0], its[1], its[2]},
+                {of, beside});
     }
   };
   add_points(a, b);
@@ -43,7 +48,7 @@ void AdjacentFeatures::add_features(const TriangleSurface& cloth, std::uint32_t 
     for (std::size_t j = 0; j < 3; ++j) {
       const std::uint32_t r = cloth.triangles[b][j], s = cloth.triangles[b][(j + 1) % 3];
       if (!cloth.owns_edge(b, j) || p == r || p == s || q == r || q == s) continue;
-      add(PairKind::edges, cloth.edges_of[a][i], cloth.edges_of[b][j], {p, q, r, s}, {a, b});
+      add_apart(PairKind::edges, cloth.edges_of[a][i], cloth.edges_of[b][j], {p, q, r, s}, {a, b});
     }
   }
 }

@@ -19,7 +19,7 @@ class AdjacentFeatures {
   explicit AdjacentFeatures(const simd::Table& table) : table_(table) {}
 
   bool empty() const { return pairs_[0].size() + pairs_[1].size() == 0; }
-  void make(const TriangleSurface& cloth);
+  void make(const TriangleSurface& cloth, const SewnPoints& sewn);
   /// Adds those whose tubes meet.
   void find(ContactPoints& points, Candidates& candidates, Team& team);
   /// The same of those with a feature of a triangle that is marked.
@@ -30,7 +30,8 @@ class AdjacentFeatures {
  private:
   using Owners = std::array<std::uint32_t, 2>;  // triangles
 
-  void add_features(const TriangleSurface& cloth, std::uint32_t a, std::uint32_t b);
+  void add_features(const TriangleSurface& cloth, const SewnPoints& sewn, std::uint32_t a,
+                    std::uint32_t b);
   void add(PairKind kind, std::uint32_t first, std::uint32_t second,
            const std::array<std::uint32_t, 4>& points, const Owners& owners);
   void read_tubes(ContactPoints& points);

@@ -19,7 +19,7 @@ bool share_a_corner(const TriangleSurface::Triangle& a, const TriangleSurface::T
 void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candidates, Team& team) {
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
   const auto& triangles = cloth.triangles->triangles;
-  if (adjacent_.empty()) adjacent_.make(*cloth.triangles);
+  if (adjacent_.empty()) adjacent_.make(*cloth.triangles, points.sewn());
   adjacent_.find(points, candidates, team);
   OwnedFeatures features(table_, points, kWithinCloth, candidates);
   BoxTree::meet_itself(table_, cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {

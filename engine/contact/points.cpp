@@ -112,7 +112,8 @@ void ContactPoints::prepare_for_itself() {
   cloth.friction = model_.self_contact.friction;
   largest_thickness_ = std::max(largest_thickness_, cloth.thickness);
   if (!rest_.empty()) return;
-  rest_ = RestDistances(model_, cloth.thickness);
+  sewn_ = SewnPoints(model_);
+  rest_ = RestDistances(model_, cloth.thickness, sewn_);
   shortest_.assign(slots_, std::numeric_limits<double>::infinity());
   for (const auto& [a, b] : cloth.triangles->edges) {
     const double l = length(model_.initial_position[a] - model_.initial_position[b]);

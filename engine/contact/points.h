@@ -13,6 +13,7 @@
 #include "engine/contact/look.h"
 #include "engine/contact/particles.h"
 #include "engine/contact/rest_distances.h"
+#include "engine/contact/sewn_points.h"
 #include "engine/contact/speeds.h"
 #include "engine/contact/surface.h"
 #include "engine/model/model.h"
@@ -39,6 +40,8 @@ class ContactPoints {
   double thickness_of(const Pair& pair) const {
     return pair.is_within_cloth() ? rest_.of(pair) : later(pair).thickness;
   }
+  /// Of the cloth.
+  const SewnPoints& sewn() const { return sewn_; }
   const ContactSurface& later(const Pair& pair) const { return later_surface(surfaces_, pair); }
   ContactSurface& later(const Pair& pair) { return later_surface(surfaces_, pair); }
   std::size_t slots() const { return slots_; }
@@ -214,6 +217,7 @@ class ContactPoints {
   std::size_t slots_ = 0;
   std::vector<std::uint32_t> particles_;  // slots; the others are padding
   bool touches_itself_ = false;
+  SewnPoints sewn_;
   RestDistances rest_;
   std::vector<ContactSurface> surfaces_;
   std::vector<SurfacePair> surface_pairs_;

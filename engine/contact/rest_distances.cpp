@@ -42,8 +42,12 @@ std::vector<double> lengths_at_rest(const Model& model, const TriangleSurface& s
 /// Around one triangle, all in its plane.
 class FlatPatch {
  public:
-  FlatPatch(const TriangleSurface& surface, const std::vector<double>& lengths)
-      : surface_(surface), lengths_(lengths), seen_in_(surface.triangles.size(), kNoIndex) {}
+  FlatPatch(const TriangleSurface& surface, const std::vector<double>& lengths,
+            const SewnPoints& sewn)
+      : surface_(surface),
+        lengths_(lengths),
+        sewn_(sewn),
+        seen_in_(surface.triangles.size(), kNoIndex) {}
 
   struct Laid {
     std::uint32_t triangle = 0;
@@ -57,10 +61,15 @@ class FlatPatch {
     laid_.push_back(
         {triangle, {Vector{}, Vector{l, 0, 0}, corner(l, lengths_[ca], lengths_[bc], 1)}});
     seen_in_[triangle] = triangle;
-    for (std::size_t i = 0; i < laid_.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k) lay_beside(i, k, triangle, within);
+    std::size_t edges = 0, corners = 0;
+    while (true) {
+      for (; edges < laid_.size(); ++edges) {
+        for (std::size_t k = 0; k < 3; ++k) lay_beside(edges, k, triangle, within);
+      }
+      if (sewn_.empty() || corners == laid_.size()) return laid_;
+      for (std::size_t k = 0; k < 3; ++k) lay_at_seam(corners, k, triangle, within);
+      ++corners;
     }
-    return laid_;
   }
 
  private:
@@ -76,35 +85,64 @@ class FlatPatch {
     const std::uint32_t p = corners[k], q = corners[(k + 1) % 3];
     const Vector a = laid_[at].corners[k], b = laid_[at].corners[(k + 1) % 3],
                  c = laid_[at].corners[(k + 2) % 3];
-    for (const std::uint32_t next : surface_.triangles_at[p]) {
-      const TriangleSurface::Triangle& its = surface_.triangles[next];
-      if (seen_in_[next] == source || std::ranges::find(its, q) == its.end()) continue;
-      const Laid laid{next, lay(next, p, q, a, b, c)};
-      if (!is_within(laid.corners, within)) continue;
-      seen_in_[next] = source;
-      laid_.push_back(laid);
+    for (const std::uint32_t next : sewn_.triangles_at(surface_, p)) {
+      if (seen_in_[next] == source) continue;
+      const std::size_t at_p = corner_at(next, p), at_q = corner_at(next, q);
+      if (at_p == 3 || at_q == 3 || at_p == at_q) continue;
+      take({next, lay(next, at_p, at_q, a, b, c)}, source, within);
     }
   }
-  /// On the side of the edge from p to q, which are at a and b, that c is not on.
-  Corners lay(std::uint32_t triangle, std::uint32_t p, std::uint32_t q, Vector a, Vector b,
-              Vector c) const {
-    const TriangleSurface::Triangle& t = surface_.triangles[triangle];
-    Corners corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (t[k] == p || t[k] == q) {
-        corners[k] = t[k] == p ? a : b;
-        continue;
-      }
-      const double to_next = lengths_[surface_.edges_of[triangle][k]],
-                   to_last = lengths_[surface_.edges_of[triangle][(k + 2) % 3]];
-      const bool next_is_p = t[(k + 1) % 3] == p;
-      const Vector u = b - a, v = c - a;
-      const double l = length(u);
-      const Vector along = l > 0 ? (1 / l) * u : Vector{1, 0, 0}, across{-along.y, along.x, 0};
-      const Vector at = corner(l, next_is_p ? to_next : to_last, next_is_p ? to_last : to_next,
-                               dot(across, v) > 0 ? -1 : 1);
-      corners[k] = a + at.x * along + at.y * across;
+  /// What a seam joins to a corner alone, and to no edge there, is laid on its other side.
+  void lay_at_seam(std::size_t at, std::size_t k, std::uint32_t source, double within) {
+    const std::uint32_t p = surface_.triangles[laid_[at].triangle][k];
+    const auto triangles = sewn_.triangles_at(surface_, p);
+    if (triangles.size() == surface_.triangles_at[p].size()) return;
+    const Vector x = laid_[at].corners[k];
+    const Vector away = 2 * x - laid_[at].corners[(k + 1) % 3] - laid_[at].corners[(k + 2) % 3];
+    const double l = length(away);
+    const Vector along = l > 0 ? (1 / l) * away : Vector{1, 0, 0}, across{-along.y, along.x, 0};
+    for (const std::uint32_t next : triangles) {
+      if (seen_in_[next] == source) continue;
+      const std::size_t i = corner_at(next, p), j = (i + 1) % 3, m = (i + 2) % 3;
+      const TriangleSurface::Triangle& edges = surface_.edges_of[next];
+      const double to_j = lengths_[edges[i]], to_m = lengths_[edges[m]];
+      const Vector third = corner(to_j, to_m, lengths_[edges[j]], 1);
+      const double half = 0.5 * std::atan2(third.y, third.x), c = std::cos(half),
+                   s = std::sin(half);
+      Corners corners;
+      corners[i] = x;
+      corners[j] = x + (c * to_j) * along - (s * to_j) * across;
+      corners[m] = x + (c * to_m) * along + (s * to_m) * across;
+      take({next, corners}, source, within);
     }
+  }
+  void take(const Laid& laid, std::uint32_t source, double within) {
+    if (!is_within(laid.corners, within)) return;
+    seen_in_[laid.triangle] = source;
+    laid_.push_back(laid);
+  }
+  /// Where the triangle has the point, or one that is sewn to it; 3: nowhere.
+  std::size_t corner_at(std::uint32_t triangle, std::uint32_t point) const {
+    const auto is_it = [&](std::uint32_t corner) { return sewn_.is_one(corner, point); };
+    const TriangleSurface::Triangle& corners = surface_.triangles[triangle];
+    return static_cast<std::size_t>(std::ranges::find_if(corners, is_it) - corners.begin());
+  }
+  /// Its corners p and q are at a and b; on the side of them that c is not on.
+  Corners lay(std::uint32_t triangle, std::size_t p, std::size_t q, Vector a, Vector b,
+              Vector c) const {
+    const std::size_t k = 3 - p - q;
+    const double to_next = lengths_[surface_.edges_of[triangle][k]],
+                 to_last = lengths_[surface_.edges_of[triangle][(k + 2) % 3]];
+    const bool next_is_p = (k + 1) % 3 == p;
+    const Vector u = b - a, v = c - a;
+    const double l = length(u);
+    const Vector along = l > 0 ? (1 / l) * u : Vector{1, 0, 0}, across{-along.y, along.x, 0};
+    const Vector at = corner(l, next_is_p ? to_next : to_last, next_is_p ? to_last : to_next,
+                             dot(across, v) > 0 ? -1 : 1);
+    Corners corners;
+    corners[p] = a;
+    corners[q] = b;
+    corners[k] = a + at.x * along + at.y * across;
     return corners;
   }
   bool is_within(const Corners& corners, double within) const {
@@ -123,6 +161,7 @@ class FlatPatch {
 
   const TriangleSurface& surface_;
   const std::vector<double>& lengths_;
+  const SewnPoints& sewn_;
   std::vector<Laid> laid_;
   std::vector<std::uint32_t> seen_in_;  // per triangle: around which it was laid last
 };
@@ -151,13 +190,18 @@ std::uint64_t RestDistances::key_of(PairKind kind, std::uint32_t first, std::uin
   return std::uint64_t{first} << 33 | std::uint64_t{second} << 1 | (edges ? 1u : 0u);
 }
 
-RestDistances::RestDistances(const Model& model, double thickness) : thickness_(thickness) {
+RestDistances::RestDistances(const Model& model, double thickness, const SewnPoints& sewn)
+    : thickness_(thickness) {
   const TriangleSurface& s = model.touched_surface();
   const std::vector<double> lengths = lengths_at_rest(model, s);
-  FlatPatch patch(s, lengths);
+  FlatPatch patch(s, lengths, sewn);
   const auto take = [&](PairKind kind, std::uint32_t first, std::uint32_t second, double distance) {
     if (distance < thickness)
       nearer_.push_back({key_of(kind, first, second), tuning::kRestDistance * distance});
+  };
+  const auto has_corner = [&](const TriangleSurface::Triangle& triangle, std::uint32_t point) {
+    return std::ranges::any_of(triangle,
+                               [&](std::uint32_t corner) { return sewn.is_one(corner, point); });
   };
   for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
     if (s.is_point(t)) continue;
@@ -167,7 +211,7 @@ RestDistances::RestDistances(const Model& model, double thickness) : thickness_(
     for (const auto& [other, there] : laid) {
       const TriangleSurface::Triangle& its = s.triangles[other];
       for (std::size_t k = 0; k < 3; ++k) {
-        if (std::ranges::find(corners, its[k]) != corners.end()) continue;
+        if (has_corner(corners, its[k])) continue;
         if (are_far(thickness, &there[k], 1, here.data(), 3)) continue;
         take(PairKind::point_triangle, its[k], t,
              length(reference::nearest_in_triangle(there[k], here[0], here[1], here[2]).r));
@@ -178,7 +222,8 @@ RestDistances::RestDistances(const Model& model, double thickness) : thickness_(
           const std::array mine{here[i], here[(i + 1) % 3]}, theirs{there[j], there[(j + 1) % 3]};
           const auto [a, b] = s.edges[s.edges_of[t][i]];
           const auto [c, d] = s.edges[s.edges_of[other][j]];
-          if (a == c || a == d || b == c || b == d) continue;
+          if (sewn.is_one(a, c) || sewn.is_one(a, d) || sewn.is_one(b, c) || sewn.is_one(b, d))
+            continue;
           if (are_far(thickness, mine.data(), 2, theirs.data(), 2)) continue;
           take(PairKind::edges, s.edges_of[t][i], s.edges_of[other][j],
                length(reference::nearest_of_edges(mine[0], mine[1], theirs[0], theirs[1]).r));

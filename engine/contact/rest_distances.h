@@ -3,13 +3,15 @@
 /// would push itself apart otherwise.
 ///
 /// The shape at rest is what lengths at rest tell: around each triangle its neighbours are laid
-/// into its plane, one beside the other.
+/// into its plane, one beside the other, and so are those that seams join to them: what is sewn
+/// together, or will be, has a distance of zero there.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "engine/contact/features.h"
+#include "engine/contact/sewn_points.h"
 #include "engine/model/model.h"
 
 namespace weft {
@@ -17,7 +19,7 @@ namespace weft {
 class RestDistances {
  public:
   RestDistances() = default;
-  RestDistances(const Model& model, double thickness);
+  RestDistances(const Model& model, double thickness, const SewnPoints& sewn);
 
   bool empty() const { return thickness_ == 0; }
   /// m

@@ -22,15 +22,18 @@ std::size_t count_shared(const TriangleSurface::Triangle& a, const TriangleSurfa
       a, [&](std::uint32_t p) { return std::ranges::find(b, p) != b.end(); }));
 }
 
-/// An edge of one that has no corner of the other leads through that. beyond: as leads_through has
-/// it.
+/// An edge of one that has no corner of the other leads through that. Corners that are sewn
+/// together are one. beyond: as leads_through has it.
 template <class At>
 bool edge_leads_through(const TriangleSurface::Triangle& a, const TriangleSurface::Triangle& b,
-                        double beyond, At&& at) {
+                        const SewnPoints& sewn, double beyond, At&& at) {
   const Corners corners{at(b[0]), at(b[1]), at(b[2])};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t p = a[k], q = a[(k + 1) % 3];
-    if (std::ranges::find(b, p) != b.end() || std::ranges::find(b, q) != b.end()) continue;
+    const auto is_end = [&](std::uint32_t corner) {
+      return sewn.is_one(corner, p) || sewn.is_one(corner, q);
+    };
+    if (std::ranges::any_of(b, is_end)) continue;
     if (leads_through(at(p), at(q), corners, beyond)) return true;
   }
   return false;
@@ -65,11 +68,12 @@ void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
   before_.swap(pairs_);
   pairs_.clear();
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
+  const SewnPoints& sewn = points.sewn();
   BoxTree::meet(table_, cloth.tree(), cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
     if (b <= a || cloth_->is_point(a) || cloth_->is_point(b)) return;
     if (!everywhere && (may_cross_[a] & may_cross_[b]) == 0) return;
     const TriangleSurface::Triangle &one = cloth_->triangles[a], &other = cloth_->triangles[b];
-    const std::size_t shared = count_shared(one, other);
+    const std::size_t shared = count_shared(sewn.first_of(one), sewn.first_of(other));
     if (shared > 1) return;
     const Corners its{at(one[0]), at(one[1]), at(one[2])},
         others{at(other[0]), at(other[1]), at(other[2])};
@@ -78,7 +82,8 @@ void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
     const double apart = has_crossed ? tuning::kStaysApart : tuning::kTouching;
     if (shared == 0 && (are_beside(its, others, apart) || are_beside(others, its, apart))) return;
     const double beyond = has_crossed ? -apart : apart;
-    if (edge_leads_through(one, other, beyond, at) || edge_leads_through(other, one, beyond, at))
+    if (edge_leads_through(one, other, sewn, beyond, at) ||
+        edge_leads_through(other, one, sewn, beyond, at))
       pairs_.push_back(pair_of(a, b));
   });
   std::ranges::sort(pairs_);

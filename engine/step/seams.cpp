@@ -15,18 +15,26 @@ double gap(const Model& model, std::size_t i, const kernels::Vectors& x) {
 void Seams::begin(const Model& model, const kernels::Vectors& x, double tolerance) {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const double way = gap(model, i, x);
-    states_[i] = {way / model.seams.time[i], way <= tolerance};
+    const double time = model.seams.time[i];
+    states_[i] = {way / time, time, way <= tolerance};
   }
 }
 
 SeamGaps measure_seams(const Model& model, std::span<const SeamState> states,
                        const kernels::Vectors& x) {
   SeamGaps gaps;
+  double widest = 0;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    if (states[i].is_closed)
+    if (states[i].is_closed) {
       gaps.largest = std::max(gaps.largest, gap(model, i, x));
-    else
-      ++gaps.open;
+      continue;
+    }
+    ++gaps.open;
+    if (!states[i].is_late()) continue;
+    ++gaps.late;
+    const double way = gap(model, i, x);
+    if (gaps.late == 1 || way > widest) gaps.worst_late = static_cast<std::uint32_t>(i);
+    widest = std::max(widest, way);
   }
   return gaps;
 }

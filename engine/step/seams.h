@@ -11,8 +11,8 @@
 namespace weft {
 
 void visit_fields(Is<SeamState> auto& state, auto& archive) {
-  auto& [speed, is_closed] = state;
-  archive(speed, is_closed);
+  auto& [speed, left, is_closed] = state;
+  archive(speed, left, is_closed);
 }
 
 class Seams {
@@ -38,10 +38,11 @@ class Seams {
   std::vector<SeamState> states_;
 };
 
-/// Of some states at x: how many are open, and the largest gap of closed ones, m.
+/// Of some states at x.
 struct SeamGaps {
-  int open = 0;
-  double largest = 0;
+  int open = 0, late = 0;
+  double largest = 0;                   // m, of closed ones
+  std::uint32_t worst_late = kNoIndex;  // the one with the widest gap
 };
 SeamGaps measure_seams(const Model& model, std::span<const SeamState> states,
                        const kernels::Vectors& x);

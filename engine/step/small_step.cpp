@@ -137,6 +137,8 @@ class Frame {
       const SeamGaps gaps = measure_seams(*s_.model, solver_.seams().states(), s_.solved);
       report_.open_seams = gaps.open;
       report_.max_seam_gap = gaps.largest;
+      report_.late_seams = gaps.late;
+      report_.worst_seam = gaps.worst_late;
       if (s_.model->has_laws()) {
         const double of_rigid = s_.model->constraints.has_springs() ? 0 : report_.max_error;
         report_.max_error = std::max(of_rigid, solver_.law_error());
@@ -330,7 +332,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   if (fixed)
     trial.worsen(Status::fixed_iterations);
   else if (is_in_body || s.body_report.failures.left > 0 ||
-           s.body_report.failures.is_tangled_anew || leaves_bending(s))
+           s.body_report.failures.is_tangled_anew || leaves_bending(s) || report.late_seams > 0)
     trial.worsen(Status::iteration_limit);
   if (frame.passed_particle() != kNoIndex) {
     trial.passed_particle = frame.passed_particle();

@@ -9,6 +9,7 @@
 #include "engine/step/air.h"
 #include "engine/step/exact_substep.h"
 #include "engine/step/frame_plan.h"
+#include "engine/step/held_apart.h"
 #include "engine/step/plan.h"
 #include "engine/step/pressure.h"
 #include "engine/step/project.h"
@@ -275,7 +276,13 @@ void fall_asleep(State& s, StepReport& report) {
               .intersecting = report.intersecting,
               .self_contacts = report.self_contacts,
               .tangled = report.tangled,
-              .max_anchor_error = report.max_anchor_error};
+              .max_anchor_error = report.max_anchor_error,
+              .open_seams = report.open_seams,
+              .max_seam_gap = report.max_seam_gap,
+              .late_seams = report.late_seams,
+              .worst_seam = report.worst_seam,
+              .held_apart = report.held_apart,
+              .worst_held = report.worst_held};
 }
 
 /// J. Where bodies overlap, and wherever else a step misses its tolerance, they push particles to
@@ -283,6 +290,14 @@ void fall_asleep(State& s, StepReport& report) {
 double friction_work(const StepReport& report, double counted) {
   if (report.status == Status::converged) return counted;
   return std::min(counted, std::max(0.0, report.energy_lost));
+}
+
+void tell_held_apart(const State& s, StepReport& report) {
+  const HeldApart found = find_held_apart(s);
+  report.held_apart = found.count;
+  report.worst_held = found.constraint;
+  if (report.worst_seam == kNoIndex) report.worst_seam = found.seam;
+  if (found.is_infeasible && s.settings.iterations == 0) worsen(report, Status::infeasible);
 }
 
 void advance(State& s, double dt, StepReport& report, Team& team) {
@@ -310,7 +325,10 @@ void advance(State& s, double dt, StepReport& report, Team& team) {
   if (!done || s.settings.solver != Solver::small_steps) {
     timed(report, Stage::report, [&] { report_errors(s, s.position, done, report, team); });
   }
-  if (done && s.settings.sleep && s.rest.watch(s.position, dt)) fall_asleep(s, report);
+  if (done) tell_held_apart(s, report);
+  const bool is_sewing = report.open_seams > report.late_seams;
+  if (done && s.settings.sleep && !is_sewing && s.rest.watch(s.position, dt))
+    fall_asleep(s, report);
 }
 
 }  // namespace

@@ -33,18 +33,19 @@ class Recorder;
 struct State;
 
 /// converged: every constraint is within its tolerance, and so is bending; nothing crosses a
-///   body or is inside one. The state is committed.
+///   body or is inside one; no seam is late (StepReport::late_seams). The state is committed.
 /// fixed_iterations: Settings::iterations were done; the report tells the error. The state is
 ///   committed.
 /// iteration_limit: a constraint is still out of tolerance after max_iterations (with small_steps:
 ///   after all rounds, or all work that a given number of substeps allows), or bending is out of
-///   tolerance (StepReport::max_bending_error), or something crosses a body or is inside one. The
-///   state is committed.
+///   tolerance (StepReport::max_bending_error), or something crosses a body or is inside one, or a
+///   seam is late. The state is committed.
 /// infeasible: a constraint is out of tolerance, and tens of thousands of iterations (small_steps:
-///   sixteen rounds of a sweep and local passes) hardly reduce the error. There are three causes:
-///   constraints contradict each other (a chain whose ends are too far apart); masses differ by
-///   far; or no way leads from the start to a solution (a sheet of triangles whose pins turned by a
-///   right angle in one step). The state is committed, with the error spread over the constraints.
+///   sixteen rounds of a sweep and local passes) hardly reduce the error. There are four causes:
+///   constraints contradict each other (a chain whose ends are too far apart); two held particles
+///   exclude what joins them (StepReport::held_apart); masses differ by far; or no way leads from
+///   the start to a solution (a sheet of triangles whose pins turned by a right angle in one step).
+///   The state is committed, with the error spread over the constraints.
 /// passed_through: a particle went through a sphere within a substep (tunnelling). Either no
 ///   contact was found in time, or a contact pushed the particle out on the far side. The state is
 ///   committed; shorter steps would have held the particle.
@@ -168,6 +169,18 @@ struct StepReport {
   /// Their sum is the time of the step, but for a few microseconds.
   std::array<double, kStageCount> stage_seconds{};
   ContactMs contact_ms{};  ///< part of stage_seconds
+  /// Seams that are open although their time is over: they pull with too small a force, or
+  /// something holds their ends apart. A step that ends with one has not converged.
+  int late_seams = 0;
+  /// The number of a seam in the description: of late ones the one with the widest gap, or else of
+  /// those in `held_apart`.
+  std::uint32_t worst_seam = kNoIndex;
+  /// Seams that are open, and rigid constraints out of tolerance, between two held particles: both
+  /// are fixed, or anchored without a limit to move within. Only the caller can mend that: by
+  /// moving a pin, or by releasing it. A step that ends with such a constraint, or with such a seam
+  /// that is late, is `infeasible`.
+  int held_apart = 0;
+  std::uint32_t worst_held = kNoIndex;  ///< of these the constraint with the largest strain
 };
 
 /// Strain of all constraints, and of triangles of fabric | |f_u| - 1 | and | |f_v| - 1 |, for the

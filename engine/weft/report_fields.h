@@ -98,6 +98,14 @@ inline constexpr std::tuple kReportFields{
                 "s, of each Stage of the step"},
     ReportField{"contact_ms", &StepReport::contact_ms, OverSteps::sum,
                 "ms, of contacts with bodies: find, sweep and verify"},
+    ReportField{"late_seams", &StepReport::late_seams, OverSteps::last,
+                "seams that are open although their time is over"},
+    ReportField{"worst_seam", &StepReport::worst_seam, OverSteps::last,
+                "the number of one of these, or of one in held_apart, or kNoIndex"},
+    ReportField{"held_apart", &StepReport::held_apart, OverSteps::last,
+                "seams and constraints that two held particles exclude"},
+    ReportField{"worst_held", &StepReport::worst_held, OverSteps::last,
+                "the number of such a constraint, or kNoIndex"},
 };
 inline constexpr std::size_t kReportFieldCount = std::tuple_size_v<decltype(kReportFields)>;
 

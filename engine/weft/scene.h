@@ -176,8 +176,10 @@ struct Anchor {
 /// Two particles that are sewn together while the cloth moves, wherever they begin. They come
 /// together along the straight line between them in the time `time`, never faster. If max_force is
 /// too small for that, they take longer. Then the seam is closed for good: it holds any force. An
-/// open seam does not count as an error (StepReport::open_seams). Positions that are written apart
-/// from each other open it again. Solver small_steps only.
+/// open seam does not count as an error until its time is over (StepReport::open_seams,
+/// late_seams). Positions that are written apart from each other open it again. Faces and edges of
+/// the cloth that have one of the two at a corner touch nothing of those that have the other one
+/// (SelfContact). Solver small_steps only.
 struct Seam {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -189,13 +191,15 @@ struct Seam {
 /// Layers keep the thickness from each other, with friction. Features that are nearer than that in
 /// the shape at rest keep nearly the distance that they have there. So a thickness may be larger
 /// than an edge; but then all neighbours are pairs, folds are stiffer, and a step takes long. Half
-/// an edge is a good bound (tests/README.md has figures).
+/// an edge is a good bound (tests/README.md has figures). What seams join, open or closed, is one
+/// piece in the shape at rest.
 ///
 /// A cloth that does not cross itself when a step begins does not when it ends, however fast it
 /// is: that is verified, and features that would go through each other are stopped. Layers that lie
 /// on each other may be nearer than the thickness by a twentieth, and under a blow by more for a
 /// while; StepReport::max_penetration does not count that. Triangles that cross at the start touch
-/// nothing of each other until they have come apart (StepReport::tangled). Solver small_steps only;
+/// nothing of each other until they have come apart (StepReport::tangled).
+/// Solver small_steps only;
 /// `automatic` becomes small_steps.
 struct SelfContact {
   bool on = false;
@@ -209,8 +213,8 @@ struct SelfContact {
 /// constraint, element, anchor, seam or triangle; particles are numbered from 0.
 ///
 /// At most one constraint may join the same two particles. A constraint between two fixed particles
-/// is legal but inert: it is neither solved nor measured until one of them is released
-/// (Cloth::change).
+/// is legal but inert: it is neither solved nor part of the strain until one of them is released
+/// (Cloth::change). A step tells that it is out of tolerance (StepReport::held_apart).
 struct SceneDescription {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;      ///< empty: at rest; else one per particle

@@ -266,6 +266,10 @@ typedef struct weft_report { /* StepReport */
   double stage_seconds[6]; /* predict, find_contacts, solve_positions, commit,
                               correct_velocities, report */
   weft_contact_ms contact_ms;
+  int late_seams;
+  uint32_t worst_seam;
+  int held_apart;
+  uint32_t worst_held;
 } weft_report;
 
 /* JobSystem. Set both functions or neither; they must not throw. NULL in place of the struct is the

@@ -16,7 +16,10 @@ namespace weft {
 /// What becomes of a seam as a cloth moves.
 struct SeamState {
   double speed = 0;  // m/s, at which it closes
+  double left = 0;   // s, of its time
   bool is_closed = false;
+
+  bool is_late() const { return !is_closed && left <= 0; }
 };
 
 class SeamThreads {
@@ -54,6 +57,7 @@ class SeamThreads {
   void end_substep(const Points& points, double give, double tolerance, Closed&& closed) {
     for (std::size_t i = 0; i < multiplier_.size(); ++i) {
       if (states_[i].is_closed) continue;
+      states_[i].left -= h_;
       const std::uint32_t a = model_.seams.a[i], b = model_.seams.b[i];
       const kernels::Vector d = points.difference(a, b);
       work_ += dot(multiplier_[i], points.start_difference(a, b) - d) / give;

@@ -73,10 +73,10 @@ void check_equal(const weft_report& c, const StepReport& r) {
   CHECK(bool(c.asleep) == r.asleep);
   CHECK(std::array{c.substeps, c.halvings, c.scheme_fallbacks, c.contacts, c.body_contacts,
                    c.contact_failures, c.zones, c.intersecting, c.self_contacts, c.tangled,
-                   c.open_seams} == std::array{r.substeps, r.halvings, r.scheme_fallbacks,
-                                               r.contacts, r.body_contacts, r.contact_failures,
-                                               r.zones, r.intersecting, r.self_contacts, r.tangled,
-                                               r.open_seams});
+                   c.open_seams, c.late_seams, c.held_apart} ==
+        std::array{r.substeps, r.halvings, r.scheme_fallbacks, r.contacts, r.body_contacts,
+                   r.contact_failures, r.zones, r.intersecting, r.self_contacts, r.tangled,
+                   r.open_seams, r.late_seams, r.held_apart});
   CHECK(std::array{c.iterations, c.direction_updates, c.velocity_iterations, c.visits,
                    c.corrections} == std::array{r.iterations, r.direction_updates,
                                                 r.velocity_iterations, r.visits, r.corrections});
@@ -86,8 +86,10 @@ void check_equal(const weft_report& c, const StepReport& r) {
         std::array{r.max_strain, r.rms_strain, r.max_shear, r.max_error, r.max_penetration,
                    r.max_anchor_error, r.max_seam_gap, r.seam_work, r.motion_error, r.energy_lost,
                    r.pin_work, r.body_work, r.friction_work, r.max_bending_error});
-  CHECK(std::array{c.worst_constraint, c.worst_element, c.failed_particle, c.passed_particle} ==
-        std::array{r.worst_constraint, r.worst_element, r.failed_particle, r.passed_particle});
+  CHECK(std::array{c.worst_constraint, c.worst_element, c.failed_particle, c.passed_particle,
+                   c.worst_seam, c.worst_held} == std::array{r.worst_constraint, r.worst_element,
+                                                             r.failed_particle, r.passed_particle,
+                                                             r.worst_seam, r.worst_held});
 }
 
 /// A report in which no two fields have the same value.

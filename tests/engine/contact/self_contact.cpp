@@ -15,6 +15,7 @@
 #include "tests/support/isas.h"
 #include "tests/support/layers.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
 namespace weft::test::engine_contact_self_contact {

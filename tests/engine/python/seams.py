@@ -33,6 +33,8 @@ class Seams(unittest.TestCase):
             report = cloth.step(FRAME)
         self.assertEqual(report.open_seams, 0)
         self.assertLessEqual(report.max_seam_gap, 1e-4)
+        self.assertEqual((report.late_seams, report.held_apart), (0, 0))
+        self.assertEqual((report.worst_seam, report.worst_held), (weft.kNoIndex, weft.kNoIndex))
         self.assertTrue(np.allclose(cloth.position(0), (APART * 2 / 3, 0, 0), atol=1e-3))
         # It holds then, whatever pulls: both go along as one.
         cloth.write_forces([(0, 0, 0), (0, 300, 0)])

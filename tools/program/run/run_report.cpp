@@ -176,8 +176,9 @@ std::string mesh_text(const MeshCounts& mesh) {
 /// Numbers of StepReport that the JSON has in a form of its own: per frame, under the name of a
 /// setting, or as the program measures them.
 constexpr std::string_view kInOwnForm[] = {
-    "asleep",   "substeps",   "iterations", "velocity_iterations", "direction_updates",
-    "contacts", "max_strain", "rms_strain", "max_shear",           "motion_error"};
+    "asleep",     "substeps",   "iterations", "velocity_iterations", "direction_updates",
+    "contacts",   "max_strain", "rms_strain", "max_shear",           "motion_error",
+    "worst_seam", "worst_held"};
 
 /// All other numbers of the total, by their names.
 void add_total(const StepReport& total, Json& json) {
@@ -206,6 +207,25 @@ std::string times_text(const RunSummary& summary) {
   const ContactMs ms = contact_ms(summary);
   return fmt::format("{:.3g} ms per frame to find contacts, {:.3g} in sweeps, {:.3g} to verify",
                      ms.find, ms.sweep, ms.verify);
+}
+
+/// When the run ends.
+std::string open_seams_text(const StepReport& total) {
+  std::string text = fmt::format("{} open in the end", total.open_seams);
+  if (total.late_seams > 0) {
+    text += fmt::format(" and {} of them late, the widest is seam {}", total.late_seams,
+                        total.worst_seam);
+  }
+  return text;
+}
+
+/// When the run ends: what pins or anchors exclude.
+std::string held_text(const StepReport& total) {
+  std::string text = fmt::format("{} between held particles cannot be met where these are",
+                                 counted(total.held_apart, "demand"));
+  if (total.worst_held != kNoIndex) text += fmt::format(", as constraint {}", total.worst_held);
+  if (total.worst_seam != kNoIndex) text += fmt::format(", as seam {}", total.worst_seam);
+  return text;
 }
 
 /// Of the cloth with itself.
@@ -275,6 +295,8 @@ Json to_json(const RunReport& report) {
       {"peak_rss_mb", peak_rss_mb()},
   };
   add_total(total, json);
+  if (total.worst_seam != kNoIndex) json["worst_seam"] = total.worst_seam;
+  if (total.worst_held != kNoIndex) json["worst_held"] = total.worst_held;
   if (summary.intersections) json["intersections"] = *summary.intersections;
   if (summary.fabric) {
     json["max_warp"] = summary.fabric->warp;
@@ -354,9 +376,10 @@ std::string to_table(const RunReport& report) {
   }
   if (summary.model.seams > 0) {
     row("seams",
-        fmt::format("{}, {} open in the end, closed ones {:.3g} m apart at most, {:.3g} J",
-                    summary.model.seams, total.open_seams, total.max_seam_gap, total.seam_work));
+        fmt::format("{}, {}, closed ones {:.3g} m apart at most, {:.3g} J", summary.model.seams,
+                    open_seams_text(total), total.max_seam_gap, total.seam_work));
   }
+  if (total.held_apart > 0) row("held", held_text(total));
   row("work",
       fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {}, {}",
                   summary.iterations_per_step(), mean(total.direction_updates, summary.frames),

@@ -47,7 +47,9 @@ void look_for_miss(RunSummary& summary, const StepReport& report) {
                         .max_penetration = report.max_penetration,
                         .constraint = report.worst_constraint,
                         .failed_particle = report.failed_particle,
-                        .passed_particle = report.passed_particle};
+                        .passed_particle = report.passed_particle,
+                        .late_seam = report.late_seams > 0 ? report.worst_seam : kNoIndex,
+                        .held = report.worst_held};
 }
 
 void add_work(RunSummary& summary, const StepReport& report) {
@@ -236,6 +238,12 @@ std::string text(const Miss& miss) {
     return fmt::format("{}; {} of the cloth {} inside a body{}", end,
                        counted(miss.inside, "particle"), miss.inside == 1 ? "is" : "are", contacts);
   }
+  if (miss.held != kNoIndex) {
+    return fmt::format("{}; constraint {} is between two held particles that exclude it{}", end,
+                       miss.held, contacts);
+  }
+  if (miss.late_seam != kNoIndex)
+    return fmt::format("{}; seam {} is open after its time{}", end, miss.late_seam, contacts);
   if (miss.constraint == kNoIndex) return end + contacts;
   return fmt::format("{}; constraint {} has the largest strain, {}{}", end, miss.constraint,
                      measured_percent(miss.max_strain), contacts);

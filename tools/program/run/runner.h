@@ -62,13 +62,16 @@ struct Miss {
   std::uint32_t constraint = kNoIndex;       ///< with max_strain
   std::uint32_t failed_particle = kNoIndex;  ///< where the numbers ended
   std::uint32_t passed_particle = kNoIndex;  ///< that went through a sphere
+  std::uint32_t late_seam = kNoIndex;        ///< StepReport::worst_seam of late ones
+  std::uint32_t held = kNoIndex;             ///< StepReport::worst_held
   NamedCrossing crossing{};  ///< with a body that is a mesh, the first that was left
   int crossing_frame = 0;    ///< when a frame ended: which one
   int inside = 0;            ///< particles, where nothing crosses
 };
 
 /// "frame 3: iteration_limit; constraint 7 has the largest strain, 2.1 %". Where triangles cross a
-/// body it names the first in place of the strain, and where cloth is inside one it says so.
+/// body it names the first in place of the strain, and where cloth is inside one it says so. Where
+/// a seam is late, or held particles exclude a constraint, it names these.
 std::string text(const Miss& miss);
 
 /// All figures of a run. Counts and seconds are sums over its frames; strains are fractions,

@@ -1,0 +1,46 @@
+#include "engine/contact/sewn_points.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "engine/bytes_of.h"
+
+namespace weft {
+
+SewnPoints::SewnPoints(const Model& model) {
+  const SeamStore& seams = model.seams;
+  if (seams.size() == 0) return;
+  first_.resize(model.slots());
+  std::iota(first_.begin(), first_.end(), 0u);
+  const auto first = [&](std::uint32_t point) {
+    while (first_[point] != point) point = first_[point] = first_[first_[point]];
+    return point;
+  };
+  for (std::size_t i = 0; i < seams.size(); ++i) {
+    const auto [low, high] = std::minmax({first(seams.a[i]), first(seams.b[i])});
+    first_[high] = low;
+  }
+  for (std::uint32_t& point : first_) point = first(point);
+  const TriangleSurface& cloth = model.touched_surface();
+  triangles_at_ = make_lists(first_.size(), [&](auto&& add) {
+    for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
+      if (cloth.is_point(t)) continue;
+      for (const std::uint32_t corner : cloth.triangles[t]) add(first_[corner], t);
+    }
+  });
+}
+
+bool SewnPoints::have_one_in_common(PairKind kind,
+                                    const std::array<std::uint32_t, 4>& points) const {
+  const std::size_t firsts = kind == PairKind::edges ? 2 : 1;
+  for (std::size_t i = 0; i < firsts; ++i) {
+    for (std::size_t j = firsts; j < 4; ++j) {
+      if (is_one(points[i], points[j])) return true;
+    }
+  }
+  return false;
+}
+
+std::size_t SewnPoints::bytes() const { return bytes_of(first_) + triangles_at_.bytes(); }
+
+}  // namespace weft

@@ -1,0 +1,22 @@
+/// What is asked of two held particles, fixed ones or points of anchors without a limit to move
+/// within, and cannot be done where they are: no solver moves them.
+#pragma once
+
+#include <weft/scene.h>
+
+#include <cstdint>
+
+namespace weft {
+
+struct State;
+
+struct HeldApart {
+  int count = 0;                        // constraints and open seams
+  std::uint32_t constraint = kNoIndex;  // the one with the largest strain, in the description
+  std::uint32_t seam = kNoIndex;        // the one with the widest gap
+  /// A constraint is one of them, or a seam whose time is over: no pin can be on its way yet.
+  bool is_infeasible = false;
+};
+HeldApart find_held_apart(const State& s);
+
+}  // namespace weft
