@@ -83,6 +83,10 @@ inline constexpr int kAwakeAtOnce = 8;
 /// m: features that are no farther apart are on no side of each other. At 1e-15 cloth that begins
 /// exactly on a mesh does not come to lie on it; 1e-7 changes nothing.
 inline constexpr double kTouching = 1e-9;
+/// m, by which layers that begin in one plane are moved apart, one beside the other. At 1e-7 floats
+/// hardly tell them apart, and 19 pairs of two sheets that slide over each other are stopped in the
+/// first frame; at 1e-6 and 1e-5 none.
+inline constexpr double kCoplanarWay = 1e-6;
 /// m: features that were farther apart come no nearer than that, and triangles that crossed have
 /// come apart when they are. Without it two layers that a floor bears come to lie in one plane, a
 /// tenth of their distance each interval, and one through the other from there (300 loose pieces in

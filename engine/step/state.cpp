@@ -167,9 +167,10 @@ std::size_t State::bytes() const {
         &air_impulse}) {
     sum += v->bytes();
   }
-  sum += contacts.bytes() + nearby.bytes() + bytes_of(impulses) + bytes_of(inverse_mass_of_met) +
-         bytes_of(resistances) + pins.bytes() + anchors.bytes() + seams.bytes() + bodies.bytes() +
-         rest.bytes() + pressed.bytes() + bytes_of(pressures) + bytes_of(gas) + measure->bytes();
+  sum += contacts.bytes() + nearby.bytes() + coplanar_layers.bytes() + bytes_of(impulses) +
+         bytes_of(inverse_mass_of_met) + bytes_of(resistances) + pins.bytes() + anchors.bytes() +
+         seams.bytes() + bodies.bytes() + rest.bytes() + pressed.bytes() + bytes_of(pressures) +
+         bytes_of(gas) + measure->bytes();
   for (const Pressure& part : pressures) sum += bytes_of(part.triangles);
   if (team_state) sum += sizeof(Team::SharedState);
   if (arena_run) sum += sizeof(ArenaRun);

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/bodies/bodies.h"
+#include "engine/contact/coplanar_layers.h"
 #include "engine/measure/measure.h"
 #include "engine/measure/spring_laws.h"
 #include "engine/model/model.h"
@@ -152,7 +153,8 @@ struct State : LastingState {
   kernels::Vectors substep_positions;  // where a fast substep began; with contacts only
   SphereContacts contacts;
   NearbySpherePairs nearby;  // of the present frame of small steps
-  BodyReport body_report;    // of the present attempt by small steps
+  CoplanarLayers coplanar_layers;
+  BodyReport body_report;  // of the present attempt by small steps
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots
   kernels::AlignedVector<double>

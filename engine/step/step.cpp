@@ -89,6 +89,8 @@ class OneStep {
 
   /// Returns whether all of dt was done.
   bool run(double dt) {
+    if (s_.placed && s_.model->self_contact.on)
+      timed(report_, Stage::commit, [&] { part_layers(); });
     timed(report_, Stage::solve_positions, [&] {
       if (presses(s_)) find_forces(0, dt);
       const OutOfPlace found = find_out_of_place(s_, team_);
@@ -117,6 +119,12 @@ class OneStep {
   }
 
  private:
+  /// Layers that lie in one plane are on no side of each other.
+  void part_layers() {
+    if (!s_.coplanar_layers.find(*s_.model, *s_.kernels, s_.position)) return;
+    transaction_.move();
+    s_.coplanar_layers.part(*s_.model, s_.position);
+  }
   /// Walks the list of attempts. Where a part is rejected the next attempt begins; where one is
   /// accepted the list begins again, at the end of that part.
   bool do_substep(double h, int substeps_left) {

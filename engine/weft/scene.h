@@ -199,8 +199,14 @@ struct Seam {
 /// on each other may be nearer than the thickness by a twentieth, and under a blow by more for a
 /// while; StepReport::max_penetration does not count that. Triangles that cross at the start touch
 /// nothing of each other until they have come apart (StepReport::tangled).
-/// Solver small_steps only;
-/// `automatic` becomes small_steps.
+///
+/// Layers that begin exactly in one plane, or whose positions are written so, are moved apart by
+/// micrometres when the next step begins. Each piece of the cloth moves to its front: the side from
+/// which the corners of its first triangle in `surface` are seen counterclockwise. Pieces whose
+/// triangles come later move farther, and so do layers of one piece that was folded flat. What is
+/// fixed stays.
+///
+/// Solver small_steps only; `automatic` becomes small_steps.
 struct SelfContact {
   bool on = false;
   double thickness = 1e-3;  ///< m, from middle to middle of two layers; > 0 where it is on
