@@ -14,22 +14,22 @@ using kernels::Vectors;
 
 namespace {
 
-using Places = std::array<Vector, 3>;
+using PlacedTriangle = std::array<Vector, 3>;
 
-Places corners_at(const TriangleSurface& cloth, std::uint32_t triangle, const Vectors& x) {
+PlacedTriangle corners_at(const TriangleSurface& cloth, std::uint32_t triangle, const Vectors& x) {
   const auto [a, b, c] = cloth.triangles[triangle];
   return {x[a], x[b], x[c]};
 }
 
 /// A unit vector, or 0 where it has no area.
-Vector front_at(const Places& t) {
+Vector unit_front(const PlacedTriangle& t) {
   const Vector n = cross(t[1] - t[0], t[2] - t[0]);
   return kernels::direction(n, length(n));
 }
 
 /// Whether a line in the plane across n has one on one side and the other one, farther than
 /// `within`, on the other side.
-bool are_apart(const Places& one, const Places& other, Vector n, double within) {
+bool are_apart(const PlacedTriangle& one, const PlacedTriangle& other, Vector n, double within) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector across = cross(n, one[(k + 1) % 3] - one[k]);
     double low = std::numeric_limits<double>::infinity(), high = -low, most = -low, least = low;
@@ -46,8 +46,8 @@ bool are_apart(const Places& one, const Places& other, Vector n, double within) 
   return false;
 }
 
-bool lie_in_one_plane(const Places& one, const Places& other, double within) {
-  const Vector n = front_at(one);
+bool lie_in_one_plane(const PlacedTriangle& one, const PlacedTriangle& other, double within) {
+  const Vector n = unit_front(one);
   const bool is_in_plane = std::ranges::all_of(
       other, [&](Vector place) { return std::abs(dot(n, place - one[0])) <= tuning::kTouching; });
   return is_in_plane && dot(n, n) > 0 && !are_apart(one, other, n, within) &&
@@ -60,7 +60,7 @@ bool have_common_corner(const TriangleSurface::Triangle& a, const TriangleSurfac
 }
 
 /// All that is nearer to it than half of that.
-Box box_within(const Places& points, Vector origin, double within) {
+Box box_within(const PlacedTriangle& points, Vector origin, double within) {
   Box box = Box::none();
   for (const Vector place : points) {
     const Vector d = place - origin;
@@ -117,7 +117,7 @@ void CoplanarLayers::flood(const TriangleSurface& cloth, std::uint32_t first, Ta
 
 void CoplanarLayers::find_places(const TriangleSurface& cloth, const Vectors& x) {
   const auto count = static_cast<std::uint32_t>(cloth.triangles.size());
-  const auto front = [&](std::uint32_t t) { return front_at(corners_at(cloth, t, x)); };
+  const auto front = [&](std::uint32_t t) { return unit_front(corners_at(cloth, t, x)); };
   of_.assign(count, {kNoIndex, kNoIndex, false});
   for (std::uint32_t t = 0; t < count; ++t) {
     if (cloth.is_point(t) || of_[t].layer != kNoIndex) continue;
@@ -173,7 +173,7 @@ void CoplanarLayers::part(const Model& model, Vectors& x) {
     const Place& place = of_[t];
     const double of_piece = layers * piece_rank_[place.piece], of_layer = layer_rank_[place.layer];
     return ((place.is_turned ? -of_piece : of_piece) + of_layer) *
-           front_at(corners_at(cloth, t, x));
+           unit_front(corners_at(cloth, t, x));
   };
   ways_.assign(model.slots(), Vector{});
   for (std::uint32_t slot = 0; slot < model.slots(); ++slot) {

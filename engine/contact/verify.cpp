@@ -51,6 +51,17 @@ double stays_apart(double distance) {
   return distance >= tuning::kStaysApart ? tuning::kStaysApart : 0;
 }
 
+/// Whether features are in one place by what nothing moves, but for rounding: pins that lie on each
+/// other stay so, and what hangs on them turns about them.
+bool touches_where_held(const ContactPoints& points, const std::array<std::uint32_t, 4>& four,
+                        const reference::Nearest& nearest) {
+  constexpr double kRounding = 1e-9;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (std::abs(nearest.weight[k]) > kRounding && points.inverse_mass(four[k]) > 0) return false;
+  }
+  return true;
+}
+
 /// A time before the features come nearer than a tenth of the thickness, or of their first distance
 /// if that is less, if they do.
 std::optional<double> time_of_meeting(PairKind kind, const PairMotion& way, double distance,
@@ -147,6 +158,7 @@ void Verification::find(const ContactScene& scene, CandidateSearch& search, Near
           if (!is_alone) return {.asks = true};
           seen = look(later, pair, way.from);
         }
+        if (!seen.is_apart() && touches_where_held(points, four, seen.nearest)) return {};
         const double distance = std::max(seen.distance, kTouching);
         const Vector r = distance > kTouching ? seen.nearest.r : seen.normal;
         const auto time = meeting(pair.kind, way, r, distance, points.thickness_of(pair));

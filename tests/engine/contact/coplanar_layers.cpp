@@ -3,9 +3,10 @@
 #include <weft/mesh.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -122,6 +123,37 @@ TEST_CASE("a sheet that was folded flat opens with its backs within") {
       const double height = cloth.position(8 * 6 + 2).y - cloth.position(2).y;
       CHECK((front_of(scene, 0).y > 0 ? height : -height) < 0);
     }
+  }
+}
+
+TEST_CASE("two sheets that hang in one plane by pins in one line stop nothing, and stay apart") {
+  const std::uint32_t kCells = 8, kCount = (kCells + 1) * (kCells + 1);
+  std::vector<std::uint32_t> pins;
+  for (std::uint32_t j = 0; j <= kCells; ++j) {
+    pins.push_back(j);
+    pins.push_back(kCount + j);
+  }
+  const auto hanging = [](double aside) {
+    return [aside](double u, double v) { return Vec3{0.3 * v + aside, -0.3 * u, 0}; };
+  };
+  const SceneDescription scene =
+      scene_of({{kCells, kCells, hanging(0)}, {kCells, kCells, hanging(0.017)}}, 0.3, pins);
+  std::vector<std::array<std::uint32_t, 3>> free;  // what pins do not hold in one line
+  std::ranges::copy_if(scene.surface, std::back_inserter(free), [&](const auto& corners) {
+    return std::ranges::none_of(corners,
+                                [&](std::uint32_t corner) { return corner % kCount <= kCells; });
+  });
+  for (const int rate : {30, 60, 240}) {
+    CAPTURE(rate);
+    Cloth cloth = cloth_of(scene, {.threads = 1});
+    for (int frame = 0; frame < rate / 2; ++frame) {
+      const StepReport report = step(cloth, 1.0 / rate);
+      CHECK(report.status == Status::converged);
+      CHECK(report.contact_failures == 0);
+      CHECK(report.tangled == 0);
+      CHECK(count_self_crossings({positions(cloth), free}) == 0);
+    }
+    CHECK(std::abs(cloth.position(kCount + 40).z - cloth.position(40).z) > 0.5 * kLayerThickness);
   }
 }
 
