@@ -24,7 +24,7 @@ class CoplanarLayers {
  public:
   /// Returns whether some lie in one plane at x, over each other or nearer than the thickness.
   bool find(const Model& model, const simd::Table& table, const kernels::Vectors& x);
-  /// Moves apart what was found; what is held stays.
+  /// Moves apart the particles that were found. Held ones stay.
   void part(const Model& model, kernels::Vectors& x);
   std::size_t bytes() const;
 

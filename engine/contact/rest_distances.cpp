@@ -92,7 +92,7 @@ class FlatPatch {
       take({next, lay(next, at_p, at_q, a, b, c)}, source, within);
     }
   }
-  /// What a seam joins to a corner alone, and to no edge there, is laid on its other side.
+  /// Triangles that a seam joins to a corner alone, and to no edge there, lie on its other side.
   void lay_at_seam(std::size_t at, std::size_t k, std::uint32_t source, double within) {
     const std::uint32_t p = surface_.triangles[laid_[at].triangle][k];
     const auto triangles = sewn_.triangles_at(surface_, p);

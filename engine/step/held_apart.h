@@ -1,5 +1,5 @@
-/// What is asked of two held particles, fixed ones or points of anchors without a limit to move
-/// within, and cannot be done where they are: no solver moves them.
+/// Seams and lengths that two held particles exclude where they are. Held are fixed particles, and
+/// those of anchors without a limit to move within: no solver moves them.
 #pragma once
 
 #include <weft/scene.h>

@@ -191,8 +191,8 @@ struct Seam {
 /// Layers keep the thickness from each other, with friction. Features that are nearer than that in
 /// the shape at rest keep nearly the distance that they have there. So a thickness may be larger
 /// than an edge; but then all neighbours are pairs, folds are stiffer, and a step takes long. Half
-/// an edge is a good bound (tests/README.md has figures). What seams join, open or closed, is one
-/// piece in the shape at rest.
+/// an edge is a good bound (tests/README.md has figures). Seams join the cloth in the shape at
+/// rest, whether they are open or closed.
 ///
 /// A cloth that does not cross itself when a step begins does not when it ends, however fast it
 /// is: that is verified, and features that would go through each other are stopped. Layers that lie
@@ -203,8 +203,8 @@ struct Seam {
 /// Layers that begin exactly in one plane, or whose positions are written so, are moved apart by
 /// micrometres when the next step begins. Each piece of the cloth moves to its front: the side from
 /// which the corners of its first triangle in `surface` are seen counterclockwise. Pieces whose
-/// triangles come later move farther, and so do layers of one piece that was folded flat. What is
-/// fixed stays.
+/// triangles come later move farther, and so do layers of one piece that was folded flat. Fixed
+/// particles stay.
 ///
 /// Solver small_steps only; `automatic` becomes small_steps.
 struct SelfContact {
