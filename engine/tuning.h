@@ -457,5 +457,8 @@ inline constexpr double kWovenError = 0.03;
 /// Of warp or weft: the shear that kWovenError is at least measured by. Without it cloth that has
 /// no shear would be yarns on exact rectangles alone.
 inline constexpr double kFeltShear = 0.01;
+/// Ends of a seam that are nearer than this share of a side are drawn as one. A closed seam holds
+/// them far nearer; a larger share draws an open seam as closed.
+inline constexpr double kClosedSeam = 0.05;
 
 }  // namespace weft::tuning

@@ -31,7 +31,7 @@ double scale_of(std::span<const Vec3> positions) {
 }
 
 /// Twice the area of a quad is the product of its diagonals, however it is cut.
-void find_normals(const PointFaces& faces, std::span<const Quad> points, std::span<Quad> normals) {
+void find_areas(const PointFaces& faces, std::span<const Quad> points, std::span<Quad> normals) {
   std::ranges::fill(normals, Quad{});
   for (const auto& [a, b, c] : faces.triangles) {
     const Quad area = cross(points[b] - points[a], points[c] - points[a]);
@@ -41,6 +41,10 @@ void find_normals(const PointFaces& faces, std::span<const Quad> points, std::sp
     const Quad area = cross(points[c] - points[a], points[d] - points[b]);
     for (const std::uint32_t corner : {a, b, c, d}) normals[corner] = normals[corner] + area;
   }
+}
+
+void find_normals(const PointFaces& faces, std::span<const Quad> points, std::span<Quad> normals) {
+  find_areas(faces, points, normals);
   for (Quad& normal : normals) normal = unit(normal);
 }
 

@@ -32,7 +32,9 @@ void to_quads(std::span<const Vec3> positions, double scale, std::span<Quad> qua
 /// 1 / the longest side of the box around them; 1 where that is a point.
 double scale_of(std::span<const Vec3> positions);
 
-/// points: as to_quads gives them.
+/// Twice the areas around each point, which are no units yet. points: as to_quads gives them.
+void find_areas(const PointFaces& faces, std::span<const Quad> points, std::span<Quad> normals);
+/// The same as units.
 void find_normals(const PointFaces& faces, std::span<const Quad> points, std::span<Quad> normals);
 
 }  // namespace weft::surface

@@ -9,6 +9,7 @@
 #include "engine/mesh/mesh_input.h"
 #include "engine/mesh/welding.h"
 #include "engine/model/validate.h"
+#include "engine/surface/closed_seams.h"
 #include "engine/surface/drawn_mesh.h"
 #include "engine/surface/following.h"
 #include "engine/surface/normals.h"
@@ -25,8 +26,11 @@ struct Shape {
   bool is_mapped = false;     // if not, what is below is empty
   PointFaces followed;        // faces between particles
   std::vector<Following> points;
+  ClosedSeams seams;  // not of a mapped one
 
-  std::size_t bytes() const { return drawn.bytes() + followed.bytes() + bytes_of(points); }
+  std::size_t bytes() const {
+    return drawn.bytes() + followed.bytes() + bytes_of(points) + seams.bytes();
+  }
 };
 
 }  // namespace surface
@@ -89,6 +93,7 @@ Result<void> map_points(const std::vector<Vec3>& particles, const DrawnMesh& fol
 
 struct Surface::Impl {
   std::shared_ptr<const Shape> shape;
+  ClosedSeams seams;  // those of the shape, with their workspace
   // The workspace.
   std::vector<Vec3> particles, particle_velocities;  // velocities: of copy_shape
   std::vector<Quad> particle_quads, particle_normals;
@@ -96,7 +101,7 @@ struct Surface::Impl {
   std::vector<Quad> point_quads, point_normals;
 
   explicit Impl(std::shared_ptr<const Shape> of)
-      : shape(std::move(of)), particles(shape->particles) {
+      : shape(std::move(of)), seams(shape->seams), particles(shape->particles) {
     if (shape->is_mapped) {
       particle_quads.resize(shape->particles);
       particle_normals.resize(shape->particles);
@@ -116,7 +121,10 @@ struct Surface::Impl {
 Result<void> Surface::Impl::read(const Cloth& from) {
   if (auto r = validate_size("from", from.particle_count(), particles.size()); !r) return r;
   if (auto r = from.read_positions(std::span(particles)); !r) return r;
-  if (!shape->is_mapped) return {};
+  if (!shape->is_mapped) {
+    seams.join(particles);
+    return {};
+  }
   to_quads(particles, shape->scale, particle_quads);
   find_normals(shape->followed, particle_quads, particle_normals);
   place_points(shape->points, particles, particle_normals, points);
@@ -138,7 +146,9 @@ void Surface::Impl::write_positions(FloatVectors out, Vec3 origin) const {
 
 void Surface::Impl::find_point_normals() {
   to_quads(where(), shape->scale, point_quads);
-  find_normals(shape->drawn.faces, point_quads, point_normals);
+  find_areas(shape->drawn.faces, point_quads, point_normals);
+  seams.add_up(point_normals);
+  for (Quad& normal : point_normals) normal = unit(normal);
 }
 
 void Surface::Impl::write_normals(FloatVectors out) const {
@@ -198,9 +208,10 @@ Result<void> Surface::copy_shape(const Cloth& from, Cloth& to) {
 
 std::size_t Surface::bytes() const {
   const Impl& i = *impl_;
-  return i.shape->bytes() + bytes_of(i.particles) + bytes_of(i.particle_velocities) +
-         bytes_of(i.particle_quads) + bytes_of(i.particle_normals) + bytes_of(i.points) +
-         bytes_of(i.point_velocities) + bytes_of(i.point_quads) + bytes_of(i.point_normals);
+  return i.shape->bytes() + i.seams.bytes() + bytes_of(i.particles) +
+         bytes_of(i.particle_velocities) + bytes_of(i.particle_quads) +
+         bytes_of(i.particle_normals) + bytes_of(i.points) + bytes_of(i.point_velocities) +
+         bytes_of(i.point_quads) + bytes_of(i.point_normals);
 }
 
 Result<Surface> surface_of_mesh(const MeshDescription& mesh, const MeshCloth& cloth) {
@@ -209,6 +220,9 @@ Result<Surface> surface_of_mesh(const MeshDescription& mesh, const MeshCloth& cl
   shape->drawn = drawn_mesh(mesh, cloth.particle_of_vertex);
   shape->particles = cloth.scene.positions.size();
   shape->scale = scale_of(cloth.scene.positions);
+  const auto& places = cloth.scene.positions;
+  shape->seams = ClosedSeams(cloth.scene.seams, places.size(),
+                             seam_reach(point_triangles(shape->drawn), places));
   return Surface(std::make_unique<Surface::Impl>(std::move(shape)));
 }
 

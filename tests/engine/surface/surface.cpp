@@ -294,5 +294,45 @@ TEST_CASE("what does not fit is refused with one line, and nothing is written") 
   CHECK(surface_of_mesh(odd, drawn.made).error().starts_with("corners[2]: no such vertex"));
 }
 
+/// Two sheets of one row of cells side by side, each with its own vertices along z = 0.
+MeshDescription two_panels(double apart) {
+  MeshDescription mesh = cut_sheet(
+      2, 5,
+      [](double row, double column) {
+        return Vec3{column, 0.3 * row, row - 1};
+      },
+      Cut::none);
+  const MeshDescription other = cut_sheet(
+      2, 5,
+      [=](double row, double column) {
+        return Vec3{column, 0.3 * (1 - row) + apart, row};
+      },
+      Cut::none);
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+  for (const std::uint32_t corner : other.corners) mesh.corners.push_back(corner + first);
+  mesh.face_sizes.insert(mesh.face_sizes.end(), other.face_sizes.begin(), other.face_sizes.end());
+  for (std::uint32_t k = 0; k < 5; ++k) mesh.seams.push_back({5 + k, first + k});
+  mesh.seam_time = 1;
+  return mesh;
+}
+
+TEST_CASE(
+    "both sides of a closed seam have one place and one normal, those of an open one do not") {
+  Drawn closed(two_panels(1e-4));
+  const auto normals = closed.normals(), places = closed.vertices();
+  for (std::uint32_t k = 0; k < 5; ++k) {
+    CHECK(distance(normals[5 + k], normals[10 + k]) == 0);
+    CHECK(distance(places[5 + k], places[10 + k]) == 0);
+    CHECK(std::abs(normals[5 + k].y) > 1 - 1e-3);  // between both slopes
+  }
+  Drawn open(two_panels(0.2));
+  const auto apart = open.normals(), where = open.vertices();
+  for (std::uint32_t k = 0; k < 5; ++k) {
+    CHECK(distance(apart[5 + k], apart[10 + k]) > 0.3);
+    CHECK(distance(where[5 + k], where[10 + k]) == doctest::Approx(0.2));
+  }
+}
+
 }  // namespace
 }  // namespace weft::test::engine_surface_surface

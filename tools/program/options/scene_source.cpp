@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "engine/mesh/pieces.h"
@@ -271,6 +272,8 @@ Result<SceneSource> load_as_it_is(const SceneOptions& options) {
 }
 
 }  // namespace
+
+std::string SceneSource::title() const { return std::filesystem::path(name).filename().string(); }
 
 void add_scene_options(Verb verb, SceneOptions& options) {
   verb.required("SCENE", options.scene,

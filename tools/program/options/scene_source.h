@@ -44,6 +44,9 @@ void add_scene_options(Verb verb, SceneOptions& options);
 
 struct SceneSource {
   std::string name;  ///< the built-in name, or the file's path
+  /// For what is written: the built-in name, or the file's without its folders, which say
+  /// something of this machine and nothing of the scene.
+  std::string title() const;
   SceneDescription description;
   Mesh mesh;
   std::vector<PinMove> moves = {};

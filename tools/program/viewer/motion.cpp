@@ -19,7 +19,7 @@ namespace weft::tools {
 namespace {
 
 /// The version changes with the text, the sections and how they are written.
-constexpr Kind kMotion{{'w', 'e', 'f', 't', ' ', 'm', 'o', 'v'}, "motion", 1};
+constexpr Kind kMotion{{'w', 'e', 'f', 't', ' ', 'm', 'o', 'v'}, "motion", 2};
 /// Of the longest side of the box around the cloth as it starts.
 constexpr double kQuantaPerSide = 65535;
 /// A colour of the heat map is far wider.
@@ -59,6 +59,14 @@ std::vector<std::int32_t> pins_of(const SceneDescription& scene) {
   }
   std::ranges::sort(pins);
   return pins;
+}
+
+std::vector<std::int32_t> ends_of(std::span<const Seam> seams) {
+  std::vector<std::int32_t> ends;
+  for (const Seam& seam : seams) {
+    for (const std::uint32_t end : {seam.a, seam.b}) ends.push_back(static_cast<std::int32_t>(end));
+  }
+  return ends;
 }
 
 /// The ends of each piece of each line.
@@ -192,8 +200,9 @@ Json MotionRecorder::header(Sections& sections) const {
   sections.add_triangles("triangles", triangles);
   sections.add_numbers("lines", lines_of(source_->mesh));
   sections.add_numbers("pins", pins_of(scene));
+  sections.add_numbers("seams", ends_of(scene.seams));
   add_structure(sections, scene, *model_, source_->mesh.cells);
-  Json header{{"scene", source_->name},
+  Json header{{"scene", source_->title()},
               {"particles", scene.positions.size()},
               {"samples", figures_->samples},
               {"dt", dt_},

@@ -5,13 +5,14 @@ import {
   LineBasicMaterial, LineSegments, Mesh, MeshPhysicalMaterial, SRGBColorSpace,
 } from 'three';
 import { heatBytes } from './heat.js';
+import { Seams, meanSide, piecesOf, shadeOf, share } from './pieces.js';
 
 export function dynamic(array, size) {
   return new BufferAttribute(array, size).setUsage(DynamicDrawUsage);
 }
 
-/** The normals of vertices are the sums of those of their triangles, weighted by area. */
-export function smoothNormals(triangles, places, normals) {
+/** The normals of vertices are the sums of those of their triangles, weighted by area. Those of a list are one. */
+export function smoothNormals(triangles, places, normals, lists = []) {
   normals.fill(0);
   for (let t = 0; t < triangles.length; t += 3) {
     const a = 3 * triangles[t];
@@ -26,6 +27,7 @@ export function smoothNormals(triangles, places, normals) {
       normals[p + 2] += nz;
     }
   }
+  share(lists, normals);
   for (let i = 0; i < normals.length; i += 3) {
     const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
     normals[i] /= length;
@@ -35,6 +37,8 @@ export function smoothNormals(triangles, places, normals) {
 }
 
 const SHEEN = 0.25;
+/** Ends of a seam that are nearer than this share of a side are drawn as one. */
+const CLOSED = 0.1;
 
 function heatTexture() {
   const bytes = heatBytes();
@@ -45,7 +49,7 @@ function heatTexture() {
   return texture;
 }
 
-/** Front and back have their own colour; with heat both have that of the stretch. */
+/** Front and back have their own colour, and each piece its shade; with heat all have that of the stretch. */
 function fabricMaterial(fabric) {
   const uniforms = {
     backColour: { value: new Color(fabric.back) },
@@ -61,16 +65,19 @@ function fabricMaterial(fabric) {
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', 'attribute float stretch;\nvarying float vStretch;\n#include <common>')
-      .replace('#include <begin_vertex>', 'vStretch = stretch;\n#include <begin_vertex>');
+      .replace('#include <common>', `attribute float stretch, shade;
+        varying float vStretch, vShade;
+        #include <common>`)
+      .replace('#include <begin_vertex>', 'vStretch = stretch;\nvShade = shade;\n#include <begin_vertex>');
     shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', `varying float vStretch;
+      .replace('#include <common>', `varying float vStretch, vShade;
         uniform vec3 backColour;
         uniform sampler2D heatMap;
         uniform float heatRange, heatShare;
         #include <common>`)
       .replace('#include <color_fragment>', `#include <color_fragment>
         if (!gl_FrontFacing) diffuseColor.rgb = backColour;
+        diffuseColor.rgb *= vShade;
         vec3 heat = texture2D(heatMap, vec2(0.5 + 0.498 * clamp(vStretch / heatRange, -1.0, 1.0), 0.5)).rgb;
         diffuseColor.rgb = mix(diffuseColor.rgb, heat, heatShare);`);
   };
@@ -106,6 +113,7 @@ function wireOf(motion) {
 export class ClothView {
   constructor(motion, fabric) {
     this.motion = motion;
+    this.seams = new Seams(motion.seams, CLOSED * meanSide(motion.triangles, motion.places[0]));
     const count = 3 * motion.particles;
     this.places = new Float32Array(count);
     this.normals = new Float32Array(count);
@@ -114,6 +122,8 @@ export class ClothView {
     geometry.setAttribute('position', dynamic(this.places, 3));
     geometry.setAttribute('normal', dynamic(this.normals, 3));
     geometry.setAttribute('stretch', dynamic(this.stretch, 1));
+    const shades = Float32Array.from(piecesOf(motion.particles, motion.triangles), shadeOf);
+    geometry.setAttribute('shade', new BufferAttribute(shades, 1));
     geometry.setIndex(new BufferAttribute(new Uint32Array(motion.triangles), 1));
     this.material = fabricMaterial(fabric);
     this.mesh = new Mesh(geometry, this.material);
@@ -140,7 +150,9 @@ export class ClothView {
   show(sample, share) {
     blend(this.motion.places, sample, share, this.places);
     blend(this.motion.stretch, sample, share, this.stretch);
-    smoothNormals(this.motion.triangles, this.places, this.normals);
+    const lists = this.seams.closed(this.places);
+    share(lists, this.places);
+    smoothNormals(this.motion.triangles, this.places, this.normals, lists);
     for (const name of ['position', 'normal', 'stretch']) {
       this.mesh.geometry.getAttribute(name).needsUpdate = true;
     }

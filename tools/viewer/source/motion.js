@@ -142,6 +142,7 @@ export async function readMotion(file, onProgress = () => {}) {
     triangles: sections.numbers('triangles'),
     lines: sections.numbers('lines'),
     pins: sections.numbers('pins'),
+    seams: sections.numbers('seams'),
     links: {
       ends: sections.numbers('link ends'),
       colours: sections.numbers('link colours'),

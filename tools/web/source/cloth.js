@@ -33,7 +33,7 @@ export class Cloth {
       pins: this.numbers(this.module._page_pin_list(), this.module._page_pins()),
       places: [new Float32Array(3 * particles)],
       stretch: [new Float32Array(particles)],
-      contacts: [[]], lines: [],
+      contacts: [[]], lines: [], seams: [],
       links: { ends: [], yarns: [], colours: [], families: [] },
       fabric: { triangles: [], colours: [] },
       bodies: BODIES[scene].map((body) => ({ ...body, poses: new Float32Array(7) })),
