@@ -12,6 +12,7 @@
 #include "tools/program/commands/run_progress.h"
 #include "tools/program/files/json_output.h"
 #include "tools/program/files/text_file.h"
+#include "tools/program/measure/starts_inside.h"
 #include "tools/program/options/scene_source.h"
 #include "tools/program/options/solver_options.h"
 #include "tools/program/run/outputs.h"
@@ -119,7 +120,7 @@ Result<Prepared> prepare(const RunOptions& options) {
   plan.value().bodies = source.value().bodies;
   plan.value().surface = source.value().description.surface;
   plan.value().touches_itself = source.value().description.self_contact.on;
-  plan.value().scene = source.value().name;
+  plan.value().scene = source.value().title();
   plan.value().record = options.record;
   plan.value().up = source.value().up;
   plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
@@ -160,6 +161,17 @@ Result<RunSummary> run_and_record(Prepared& prepared, Outputs& outputs) {
   return run(prepared.model, prepared.settings, plan, on_frame);
 }
 
+/// What begins inside a body, a line for each body. What goes on began elsewhere.
+void tell_what_begins_inside(const SceneSource& source, const Prepared& prepared) {
+  if (prepared.plan.resume) return;
+  for (const auto& [body, particles] :
+       starts_inside(source.description, source.bodies, prepared.settings.contact_tolerance)) {
+    print_message(fmt::format("weft: {} of the cloth {} inside body {}, and {} pushed out\n",
+                              counted(particles, "particle"), particles == 1 ? "begins" : "begin",
+                              body, particles == 1 ? "is" : "are"));
+  }
+}
+
 /// Files are those of the first run, the report is that of the fastest.
 std::string interruption(const RunSummary& summary, const RunPlan& plan) {
   if (summary.finished_runs == 0) {
@@ -182,13 +194,14 @@ Result<int> run_verb(const RunOptions& options) {
   if (!prepared) return Error{prepared.error()};
   auto& [source, model, settings, plan, json, state] = prepared.value();
   for (const std::string& note : source.notes) print_message(fmt::format("weft: {}\n", note));
+  tell_what_begins_inside(source, prepared.value());
   const OrderlyInterrupt interrupt;
   auto outputs = Outputs::open(options.out, source, model, settings, plan.dt);
   if (!outputs) return Error{outputs.error()};
   auto summary = run_and_record(prepared.value(), outputs.value());
   if (!summary) return Error{summary.error()};
 
-  const RunReport report{source.name, settings, plan, summary.value(), source.counts};
+  const RunReport report{source.title(), settings, plan, summary.value(), source.counts};
   if (auto finished = outputs.value().finish(); !finished) {
     return Error{fmt::format("--out: {}", finished.error())};
   }

@@ -4,41 +4,16 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 #include <system_error>
 #include <utility>
 
 #include "tools/program/files/text_file.h"
+#include "tools/program/formats/inside_out.h"
 #include "tools/program/formats/obj_file.h"
 #include "tools/scenes/mesh.h"
 
 namespace weft::tools {
 namespace {
-
-using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-
-/// Whether no two triangles run along an edge in the same direction.
-bool is_oriented(const Triangles& triangles) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;
-  for (const auto& [a, b, c] : triangles) sides.insert(sides.end(), {{a, b}, {b, c}, {c, a}});
-  std::ranges::sort(sides);
-  return std::ranges::adjacent_find(sides) == sides.end();
-}
-
-/// Whether the surface is closed and oriented and encloses a negative volume.
-bool is_inside_out(const TriangleMesh& mesh) {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> sides;
-  double volume = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    sides.insert({{a, b}, {b, c}, {c, a}});
-    const Vec3 p = mesh.vertices[a], q = mesh.vertices[b], r = mesh.vertices[c];
-    volume += p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) +
-              p.z * (q.x * r.y - q.y * r.x);
-  }
-  return volume < 0 && std::ranges::all_of(sides, [&](const auto& side) {
-           return sides.contains({side.second, side.first});
-         });
-}
 
 /// Of a name with a *.
 Result<std::vector<std::string>> files_like(const std::string& names) {
@@ -94,6 +69,12 @@ Result<TriangleMesh> read_body_mesh(const std::string& path, double scale) {
   return mesh;
 }
 
+std::string note_of_inside_out(const std::string& name, bool is_turned) {
+  return name + (is_turned ? ": its triangles faced inwards, and are turned"
+                           : ": it is inside out: its triangles face inwards, so that it keeps "
+                             "cloth inside; --turn-bodies turns them");
+}
+
 Result<SceneBody> body_of_files(const BodyFiles& files, std::vector<std::string>& notes) {
   SceneBody body;
   TriangleMesh mesh;
@@ -111,15 +92,15 @@ Result<SceneBody> body_of_files(const BodyFiles& files, std::vector<std::string>
     if (!read) return Error{fmt::format("--body: {}", read.error())};
     mesh = std::move(read.value());
   }
-  mesh.two_sided = !is_oriented(mesh.triangles);
+  mesh.two_sided = !is_oriented(mesh);
   if (mesh.two_sided) {
     notes.push_back(fmt::format(
         "{}: its triangles are not all turned the same way, so that it keeps cloth on the side "
         "where it is: turn them, and cloth that gets inside comes out",
         files.names));
   } else if (is_inside_out(mesh)) {
-    notes.push_back(
-        fmt::format("{}: its triangles face inwards, so that it keeps cloth inside", files.names));
+    notes.push_back(note_of_inside_out(files.names, files.turn));
+    if (files.turn) turn(mesh);
   }
   body.shape = std::move(mesh);
   if (const auto built = build_shape(body.shape); !built)

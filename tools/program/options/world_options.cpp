@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "tools/program/formats/body_files.h"
+#include "tools/program/formats/inside_out.h"
 #include "tools/program/text/parse.h"
 
 namespace weft::tools {
@@ -43,7 +44,7 @@ Result<void> add_plane(const std::string& text, std::vector<SceneBody>& bodies) 
 
 Result<void> add_meshes(const WorldOptions& options, double scale, std::vector<SceneBody>& bodies,
                         std::vector<std::string>& notes) {
-  BodyFiles files{.scale = scale};
+  BodyFiles files{.scale = scale, .turn = options.turn_bodies};
   if (options.body_dt) {
     const auto seconds = parse_seconds("--body-dt", *options.body_dt);
     if (!seconds) return Error{seconds.error()};
@@ -59,6 +60,17 @@ Result<void> add_meshes(const WorldOptions& options, double scale, std::vector<S
   }
   if (files.frame && !any_series) return Error{"--body-dt: is for a --body with a * in its name"};
   return {};
+}
+
+/// Of the bodies that a scene has.
+void look_which_way(const WorldOptions& options, std::vector<SceneBody>& bodies,
+                    std::vector<std::string>& notes) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    auto* const mesh = std::get_if<TriangleMesh>(&bodies[i].shape);
+    if (mesh == nullptr || mesh->two_sided || !is_inside_out(*mesh)) continue;
+    notes.push_back(note_of_inside_out(fmt::format("body {}", i), options.turn_bodies));
+    if (options.turn_bodies) turn(*mesh);
+  }
 }
 
 Result<void> set_surfaces(const WorldOptions& options, SceneDescription& scene,
@@ -115,6 +127,8 @@ void add_world_options(Verb verb, WorldOptions& options) {
                 "FILE.obj: a solid mesh; 'FOLDER/*.obj': one that deforms, a file for each frame; "
                 "may be repeated");
   verb.option("--body-dt", options.body_dt, "s, from one file of a --body to the next, as 1/30");
+  verb.flag("--turn-bodies", options.turn_bodies,
+            "turns the triangles of bodies that are inside out: closed meshes that face inwards");
   verb.option("--friction", options.friction,
               "Coulomb's, between the cloth and all bodies (default 0.3, or what they have)");
   verb.option("--thickness", options.thickness,
@@ -154,6 +168,7 @@ Result<std::vector<std::string>> surround(const WorldOptions& options, SceneDesc
     if (auto added = add_sphere(sphere, scene); !added) return Error{added.error()};
   }
   std::vector<std::string> notes;
+  look_which_way(options, bodies, notes);
   if (auto added = add_meshes(options, scale, bodies, notes); !added) return Error{added.error()};
   for (const std::string& plane : options.planes) {
     if (auto added = add_plane(plane, bodies); !added) return Error{added.error()};

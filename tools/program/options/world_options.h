@@ -20,6 +20,7 @@ struct WorldOptions {
   std::vector<std::string> planes = {};       ///< x,y,z,offset
   std::vector<std::string> bodies = {};       ///< as BodyFiles::names
   std::optional<std::string> body_dt = {};    ///< s
+  bool turn_bodies = false;                   ///< those that are inside out
   std::optional<double> friction = {};
   std::optional<double> thickness = {};          ///< m
   std::optional<std::string> self_contact = {};  ///< on, off

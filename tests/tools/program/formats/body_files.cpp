@@ -61,7 +61,8 @@ TEST_CASE("triangles that are turned differently make it two-sided, those turned
   const auto inwards = body_of_files({.names = folder.write("i.obj", obj_of(mesh, {}))}, notes);
   REQUIRE(inwards);
   REQUIRE(notes.size() == 1);
-  CHECK(notes[0].find("face inwards") != std::string::npos);
+  CHECK(notes[0].find("inside out") != std::string::npos);
+  CHECK(notes[0].find("--turn-bodies") != std::string::npos);
   CHECK_FALSE(std::get<TriangleMesh>(inwards.value().shape).two_sided);
   std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
   const auto mixed = body_of_files({.names = folder.write("m.obj", obj_of(mesh, {}))}, notes);
@@ -69,6 +70,39 @@ TEST_CASE("triangles that are turned differently make it two-sided, those turned
   REQUIRE(notes.size() == 2);
   CHECK(notes[1].find("not all turned the same way") != std::string::npos);
   CHECK(std::get<TriangleMesh>(mixed.value().shape).two_sided);
+}
+
+TEST_CASE(
+    "a mesh that is inside out is told, far from the origin and beside an open one, and turned") {
+  const TemporaryFolder folder;
+  TriangleMesh mesh = ball();
+  for (auto& [a, b, c] : mesh.triangles) std::swap(b, c);
+  const std::string far = obj_of(mesh, {1e5, -2e5, 3e5});
+  const auto count = static_cast<int>(mesh.vertices.size());
+  const std::string files[] = {far, far + fmt::format("v 0 0 0\nv 1 0 0\nv 0 1 0\nf {} {} {}\n",
+                                                      count + 1, count + 2, count + 3)};
+  for (const std::string& text : files) {
+    std::vector<std::string> notes;
+    const std::string name = folder.write("far.obj", text);
+    REQUIRE(body_of_files({.names = name}, notes));
+    REQUIRE(notes.size() == 1);
+    CHECK(notes[0].find("--turn-bodies") != std::string::npos);
+    const auto turned = body_of_files({.names = name, .turn = true}, notes);
+    REQUIRE(turned);
+    REQUIRE(notes.size() == 2);
+    CHECK(notes[1].find("are turned") != std::string::npos);
+    const auto& [a, b, c] = std::get<TriangleMesh>(turned.value().shape).triangles[0];
+    CHECK((a == ball().triangles[0][0] && b == ball().triangles[0][1]));
+    CHECK(c == ball().triangles[0][2]);
+  }
+  std::vector<std::string> notes;
+  TriangleMesh hollow = ball();  // a hole in a ball faces inwards, and is right
+  const auto first = static_cast<std::uint32_t>(hollow.vertices.size());
+  for (const Vec3 v : mesh.vertices) hollow.vertices.push_back({v.x / 2, v.y / 2, v.z / 2});
+  for (const auto& [a, b, c] : mesh.triangles)
+    hollow.triangles.push_back({a + first, b + first, c + first});
+  REQUIRE(body_of_files({.names = folder.write("hollow.obj", obj_of(hollow, {}))}, notes));
+  CHECK(notes.empty());
 }
 
 TEST_CASE("errors name the option and the file") {

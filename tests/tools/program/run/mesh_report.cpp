@@ -1,6 +1,7 @@
 /// What the program says of meshes that are not as they should be.
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "tests/tools/run_program.h"
@@ -53,6 +54,24 @@ TEST_CASE("whoever runs loose triangles is told which weld joins them, and the w
   CHECK(joined["loose_pieces"] == 0);
   CHECK(joined["welded_vertices"] == 3 * 72 - 49);
   CHECK(joined["lowest_y"] > -0.1);
+}
+
+TEST_CASE("a report, a page and a recording name the file of a scene, not its folders") {
+  const TemporaryFolder folder;
+  const std::string run = folder.write("soup.obj", soup(2)) + " --weld 1e-5 --steps 2 --out " +
+                          folder.file("a.html") + " --out " + folder.file("a.motion") +
+                          " --record " + folder.file("a.weft");
+  const auto report = report_of(folder, run);
+  CHECK(report["scene"] == "soup.obj");
+  const std::string place = std::filesystem::path(folder.file("soup.obj")).parent_path().string();
+  for (const char* const name : {"a.motion", "a.weft"}) {
+    const std::string bytes = folder.read(name);
+    CHECK(bytes.find("soup.obj") != std::string::npos);
+    CHECK(bytes.find(place) == std::string::npos);
+  }
+  const Outcome table = run_program(folder, "run " + run);
+  CHECK(table.out.find("soup.obj") != std::string::npos);
+  CHECK(table.out.find(place) == std::string::npos);
 }
 
 TEST_CASE("faces that a file has twice, as two-sided surfaces, are used once and named") {
