@@ -61,10 +61,11 @@ void read_bending(const weft_scene& s, Arrays& in, SceneDescription& out) {
   const auto weights = in.needed<std::array<double, 4>>("bending_weights", s.bending_weights, n);
   const auto rests = in.optional<double>("bending_rests", s.bending_rests, n);
   const auto compliances = in.needed<double>("bending_compliances", s.bending_compliances, n);
+  const auto folds = in.optional<double>("bending_folds", s.bending_folds, n);
   if (!in.are_good()) return;
   for (std::size_t i = 0; i < n; ++i) {
-    out.bending.push_back(
-        {particles[i], weights[i], item_or(rests, i, BendingElement{}.rest), compliances[i]});
+    out.bending.push_back({particles[i], weights[i], item_or(rests, i, BendingElement{}.rest),
+                           compliances[i], item_or(folds, i, BendingElement{}.fold)});
   }
 }
 
@@ -149,6 +150,7 @@ void write_elements(const SceneArrays& a, weft_scene& out) {
   out.bending_weights = as_numbers<double>(a.bending_weights);
   out.bending_rests = a.bending_rests.data();
   out.bending_compliances = a.bending_compliances.data();
+  out.bending_folds = a.bending_folds.data();
 }
 
 void write_anchors_and_seams(const SceneArrays& a, weft_scene& out) {
@@ -213,6 +215,7 @@ SceneArrays arrays_of(const SceneDescription& scene) {
     a.bending_weights.push_back(e.weights);
     a.bending_rests.push_back(e.rest);
     a.bending_compliances.push_back(e.compliance);
+    a.bending_folds.push_back(e.fold);
   }
   for (const Anchor& anchor : scene.anchors) {
     a.anchor_particles.push_back(anchor.particle);

@@ -29,6 +29,7 @@ struct SceneArrays {
   std::vector<std::array<double, 4>> bending_weights;
   std::vector<double> bending_rests;
   std::vector<double> bending_compliances;
+  std::vector<double> bending_folds;
 
   std::vector<std::uint32_t> anchor_particles;
   std::vector<Vec3> anchor_points;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/model/bending_element.h"
+
 namespace weft {
 namespace {
 
@@ -73,14 +75,16 @@ double energy_of_bending(const Model& m, const kernels::Vectors& x, double give_
   const BendingStore& s = m.bending;
   double sum = 0;
   for (std::size_t i = 0; i < s.size(); ++i) {
+    const reference::BendingElement e = element_of(s, i);
     kernels::Vector d{0, 0, 0};
     double inverse_mass = 0;
     for (std::size_t k = 0; k < 4; ++k) {
-      d = d + s.weights[i][k] * x[s.slots[i][k]];
-      inverse_mass += m.inverse_mass[s.slots[i][k]] * s.weights[i][k] * s.weights[i][k];
+      d = d + e.weights[k] * x[e.slots[k]];
+      inverse_mass += m.inverse_mass[e.slots[k]] * e.weights[k] * e.weights[k];
     }
-    const double bent = length(d) - s.rest[i];
-    sum += bent * bent / (2 * (s.compliance[i] + give_per_mass * inverse_mass));
+    const double bent = length(d) - e.rest;
+    const double square = e.fold == 0 ? bent * bent : bent_square(e, x);
+    sum += square / (2 * (e.compliance + give_per_mass * inverse_mass));
   }
   return sum;
 }

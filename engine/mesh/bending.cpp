@@ -96,7 +96,8 @@ class Builder {
     if (from == to) return;
     const std::uint32_t number = crossing_at(point(face(one), corner), pair_key(from, to));
     if (number == built_.stencils.size()) {
-      built_.stencils.push_back(without_end(bend(across, i, j), end));
+      const Stencil hinge = bend(across, i, j);
+      built_.stencils.push_back(hinge.fold == 0 ? without_end(hinge, end) : hinge);
     }
     const Stencil& stencil = built_.stencils[number];
     for (const EdgeOfFace& of : across.storing()) {
@@ -157,11 +158,8 @@ class Builder {
     const Vec3 a_of_two = two.places[corner_of(two, edge.a)];
     const Vec3 b_of_two = two.places[corner_of(two, edge.b)];
     Stencil stencil = hinge(a, b, point(one, i), point(two, j), a_of_two, b_of_two, across.is_seam);
-    if (!across.is_seam) {
-      const Vec3 sum =
-          weighted_sum(stencil.weights, {a.place, b.place, one.places[i], two.places[j]});
-      stencil.rest = rest_of(stencil, sum, extent_);
-    }
+    if (!across.is_seam)
+      stencil.fold = fold_of(stencil, {a.place, b.place, one.places[i], two.places[j]}, extent_);
     return stencil;
   }
 
@@ -171,9 +169,7 @@ class Builder {
     const Point a = point(quad, one[0]), b = point(quad, one[2]);
     const Point far_one = point(quad, one[1]), far_two = point(quad, two[1]);
     Stencil stencil = hinge(a, b, far_one, far_two, a.place, b.place, false);
-    const Vec3 sum =
-        weighted_sum(stencil.weights, {a.place, b.place, far_one.place, far_two.place});
-    stencil.rest = rest_of(stencil, sum, extent_);
+    stencil.fold = fold_of(stencil, {a.place, b.place, far_one.place, far_two.place}, extent_);
     built_.contributions.push_back({static_cast<std::uint32_t>(built_.stencils.size()), number,
                                     weight_in_grid(stencil, area(quad))});
     built_.stencils.push_back(stencil);

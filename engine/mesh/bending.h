@@ -25,6 +25,8 @@ struct Stencils {
 ///    points, and where the yarn turns within the cloth the edge's other end as well;
 ///  - in each quad its twist, which is the bend along its shorter diagonal;
 ///  - at other inner edges the bend between their two faces.
+/// Hinges that are bent at rest keep both ends of their edge, which tell their side; rays
+/// (rays.h) have none, and hinges around them tell it.
 /// All are the isometric stencil of Bergou et al., "A Quadratic Bending Model for Inextensible
 /// Surfaces", 2006, over the edge's length: 0 for any plane shape.
 ///

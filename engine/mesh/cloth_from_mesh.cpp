@@ -66,7 +66,7 @@ BendingElement element_of(const Stencil& stencil, double stiffness) {
   for (const double weight : stencil.weights) size += std::abs(weight);
   const double scale = 4 / size;
   BendingElement element{stencil.particles, stencil.weights, scale * stencil.rest,
-                         scale * scale / stiffness};
+                         scale * scale / stiffness, scale * stencil.fold};
   for (double& weight : element.weights) weight *= scale;
   return element;
 }

@@ -52,6 +52,16 @@ Stencil without_end(const Stencil& hinge, std::uint32_t kept) {
   return line;
 }
 
+double fold_of(const Stencil& hinge, const std::array<Vec3, 4>& places, double extent) {
+  const Vec3 sum = weighted_sum(hinge.weights, places);
+  if (rest_of(hinge, sum, extent) == 0) return 0;
+  const Vec3 edge = places[1] - places[0];
+  const Vec3 across =
+      hinge.weights[3] * (places[3] - places[0]) - hinge.weights[2] * (places[2] - places[0]);
+  const Vec3 normal = cross(unit(edge), across);
+  return dot(sum, normal) < 0 ? -length(sum) : length(sum);
+}
+
 double rest_of(const Stencil& stencil, Vec3 sum, double extent) {
   constexpr double kRounding = 0x1p-23;
   double size = 0;

@@ -14,7 +14,8 @@ namespace weft::mesh {
 struct Stencil {
   std::array<std::uint32_t, 4> particles{};  ///< the last may be kNoIndex
   std::array<double, 4> weights{};           ///< 1/m: d is an angle
-  double rest = 0;                           ///< |d| of the shape at rest
+  double rest = 0;                           ///< |d| of the shape at rest, of rays
+  double fold = 0;                           ///< d along the normal at rest, of hinges
   Tensor reading;                            ///< M
 };
 
@@ -37,6 +38,10 @@ Stencil without_end(const Stencil& hinge, std::uint32_t kept);
 
 /// Sum of the weighted places.
 Vec3 weighted_sum(const std::array<double, 4>& weights, const std::array<Vec3, 4>& places);
+
+/// d along the normal of a hinge whose points have these places at rest; 0 where rounding explains
+/// it.
+double fold_of(const Stencil& hinge, const std::array<Vec3, 4>& places, double extent);
 
 /// |sum|, of the weighted places at rest; 0 where rounding of places in single precision explains
 /// it, with the extent of the mesh in m.

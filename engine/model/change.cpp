@@ -86,8 +86,10 @@ class Describer {
 
   BendingElement element(std::size_t i) const {
     const BendingStore& s = model_.bending;
-    BendingElement element{
-        .weights = s.weights[i], .rest = s.rest[i], .compliance = s.compliance[i]};
+    BendingElement element{.weights = s.weights[i],
+                           .rest = s.rest[i],
+                           .compliance = s.compliance[i],
+                           .fold = s.fold[i]};
     const bool has_three = s.slots[i][3] == s.slots[i][2];
     for (std::size_t k = 0; k < 4; ++k) {
       element.particles[k] = k == 3 && has_three ? kNoIndex : particle(s.slots[i][k]);

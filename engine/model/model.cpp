@@ -199,6 +199,7 @@ void Model::store_bending(const SceneDescription& d) {
     bending.weights.push_back(element.weights);
     bending.rest.push_back(element.rest);
     bending.compliance.push_back(element.compliance);
+    bending.fold.push_back(element.fold);
   }
 }
 
@@ -393,8 +394,13 @@ std::size_t MembraneStore::bytes() const {
   return bytes_of(slots) + bytes_of(rest) + bytes_of(element) + bytes_of(described);
 }
 
+bool BendingStore::is_folded() const {
+  return std::ranges::any_of(fold, [](double angle) { return angle != 0; });
+}
+
 std::size_t BendingStore::bytes() const {
-  return bytes_of(slots) + bytes_of(weights) + bytes_of(rest) + bytes_of(compliance);
+  return bytes_of(slots) + bytes_of(weights) + bytes_of(rest) + bytes_of(compliance) +
+         bytes_of(fold);
 }
 
 std::size_t SeamStore::bytes() const {

@@ -70,8 +70,9 @@ struct ConstraintStore {
 struct BendingStore {
   std::vector<std::array<std::uint32_t, 4>> slots;
   std::vector<std::array<double, 4>> weights;
-  std::vector<double> rest, compliance;
+  std::vector<double> rest, compliance, fold;
   std::size_t size() const { return slots.size(); }
+  bool is_folded() const;
   std::size_t bytes() const;
 };
 

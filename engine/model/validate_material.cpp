@@ -51,6 +51,13 @@ Result<void> validate_bending(std::size_t index, const BendingElement& b, std::s
     return refuse(field + ".weights", "must sum to 0 and not all be 0", number(sum));
   }
   if (auto r = validate_not_negative(field + ".rest", b.rest); !r) return r;
+  if (!std::isfinite(b.fold) || std::abs(b.fold) > kMostSquared)
+    return refuse(field + ".fold", "must be finite", number(b.fold));
+  if (has_three && b.fold != 0) {
+    return refuse(field + ".fold", "three particles have no side", number(b.fold));
+  }
+  if (b.rest != 0 && b.fold != 0)
+    return refuse(field + ".fold", "has a rest besides", number(b.fold));
   if (auto r = validate_positive(field + ".compliance", b.compliance); !r) return r;
   return validate_square(field + ".compliance", b.compliance);
 }

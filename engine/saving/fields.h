@@ -26,8 +26,8 @@ void visit_fields(Is<MembraneElement> auto& element, auto& archive) {
 }
 
 void visit_fields(Is<BendingElement> auto& element, auto& archive) {
-  auto& [particles, weights, rest, compliance] = element;
-  archive(particles, weights, rest, compliance);
+  auto& [particles, weights, rest, compliance, fold] = element;
+  archive(particles, weights, rest, compliance, fold);
 }
 
 void visit_fields(Is<Anchor> auto& anchor, auto& archive) {

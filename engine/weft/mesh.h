@@ -105,7 +105,8 @@ struct MeshDescription {
   std::vector<std::array<std::uint32_t, 2>> lines;  ///< two vertices each
   /// The shape at rest, if it differs from `positions`: give one of these two, or neither. Lengths,
   /// areas, angles and masses are those of this shape; vertices are welded and pinned where they
-  /// begin. A face that has an area at the beginning must have an area at rest.
+  /// begin. A face that has an area at the beginning must have an area at rest. Angles between
+  /// faces have a side (BendingElement::fold).
   ///
   /// In space: one place per vertex, m.
   std::vector<Vec3> rest_positions;

@@ -57,11 +57,22 @@ struct Constraint {
 /// With cotangent weights, rest 0 and a compliance of (A0 + A1) / (3 k) this is the isometric
 /// bending of two triangles with the areas A0 and A1 and the stiffness k (Bergou et al.,
 /// "A Quadratic Bending Model for Inextensible Surfaces", 2006).
+///
+/// A rest of |d| has no side: a turn of 60 degrees is as good as one of -60. A hinge of four
+/// particles has one. Its edge joins particles 0 and 1, its faces reach from there to 2 and 3, and
+/// its energy is |d - fold n|^2 / (2 compliance). The normal n of both faces is along
+///
+///     (x1 - x0) x (weights[3] (x3 - x0) - weights[2] (x2 - x0))
+///
+/// So fold is positive where 2 and 3 stand on the side from which the face (0, 1, 3) is seen
+/// counter-clockwise, if their weights are positive. Beyond 166 degrees n is shorter than 1: a fold
+/// that goes right over changes its side without a jump.
 struct BendingElement {
   std::array<std::uint32_t, 4> particles{};  ///< all different; the last may be kNoIndex
   std::array<double, 4> weights{};           ///< the last is 0 where its particle is kNoIndex
   double rest = 0;                           ///< m, |d| of the shape at rest; 0: flat
   double compliance = 0;                     ///< m/N, > 0
+  double fold = 0;                           ///< rad, -pi to pi, of four particles; 0: flat
 };
 
 /// A triangle of fabric. The columns of its deformation F = [f_u f_v] are the images of a unit of

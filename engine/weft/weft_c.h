@@ -169,6 +169,8 @@ typedef struct weft_scene { /* SceneDescription */
   double air_ram;
   size_t pressure_count;
   const weft_pressure* pressures; /* of surface_triangles */
+
+  const double* bending_folds; /* or NULL: 0; m, of hinges */
 } weft_scene;
 
 typedef struct weft_model_info { /* ModelInfo */

@@ -7,6 +7,7 @@
 ///
 ///     f = - k ((1 - rest / |d|) d + damping bent),
 ///
+/// or that of a hinge which is folded at rest (kernels/reference/bending.h),
 /// where bent is how d has changed since the start of the substep for one who turns with the
 /// element, as its arms tell (kernels/reference/bending.h). What rounding does to d is a moment,
 /// and to a sum of pulls no more than to these: a stiff cloth is not pushed away by it.
@@ -42,6 +43,14 @@ struct BentQuads {
     if constexpr (kFour) d = fused(load(block.weight[2] + lane), x[3] - x[2], d);
     return d;
   }
+  /// c_3 (x_3 - x_0) - c_2 (x_2 - x_0)
+  [[gnu::always_inline]] FloatVector sides(const BendingBlock& block,
+                                           std::uint32_t lane) const requires kFour {
+    const Floats w3 = load(block.weight[2] + lane);
+    const Floats w2 =
+        Floats(0.f) - (load(block.weight[0] + lane) + load(block.weight[1] + lane) + w3);
+    return w3 * (x[3] - x[0]) - w2 * (x[2] - x[0]);
+  }
   [[gnu::always_inline]] FloatVector along() const { return x[0] - x[kFour ? 1 : 2]; }
   [[gnu::always_inline]] FloatVector across() const requires kArms {
     return x[3] - x[kFour ? 2 : 1];
@@ -66,6 +75,12 @@ template <bool kFour, bool kArms>
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
       const BentQuads<kFour, kArms> at(base, blocks[i], lane);
       store_span(spans.d[i], lane, at.sum(blocks[i], lane));
+      if constexpr (kFour) {
+        if (spans.sides != nullptr) {
+          store_span(spans.sides[i], lane, at.sides(blocks[i], lane));
+          store_span(spans.along[i], lane, at.along());
+        }
+      }
       if constexpr (kArms) {
         store_span(spans.along[i], lane, at.along());
         store_span(spans.across[i], lane, at.across());
@@ -159,7 +174,66 @@ template <bool kFour>
   pull_quad(to, block.slot[2] + lane, Floats(0.f) - others, f);
 }
 
-template <bool kFour, bool kCurved, bool kDamped>
+/// A hinge that is folded at rest (kernels/reference/bending.h). Of one that is not, fold is 0.
+struct Hinge {
+  FloatVector d, edge, across, normal;
+  Floats fold, reciprocal, g;
+  decltype(Floats() < Floats()) is_flat;
+
+  template <bool kArms>
+  [[gnu::always_inline]] Hinge(const Bending& b, std::size_t block, std::uint32_t lane,
+                               const BentQuads<true, kArms>& at, const FloatVector& of_weights)
+      : d(of_weights),
+        edge(Floats(-1.f) * (load_span(b.spans.along[block], lane) + at.along())),
+        across(load_span(b.spans.sides[block], lane) + at.sides(b.blocks[block], lane)),
+        normal(cross(edge, across)),
+        fold(load(b.folds[block].fold + lane)) {
+    const Floats full = xsimd::sqrt(dot(normal, normal)),
+                 least = Floats(static_cast<float>(reference::kFlattestFold)) *
+                         xsimd::sqrt(dot(edge, edge) * dot(d, d));
+    is_flat = full < least;
+    reciprocal = Floats(1.f) / xsimd::max(xsimd::max(full, least), tiny());
+    normal = reciprocal * normal;
+    g = dot(d, normal);
+  }
+  static Floats tiny() { return Floats(std::numeric_limits<float>::min()); }
+
+  /// |d|^2 - 2 fold g + fold^2
+  [[gnu::always_inline]] Floats bent_square() const { return dot(d, d) - fold * (g + g - fold); }
+  /// bent: d, or what is beyond its rest; damping acts on d, too.
+  [[gnu::always_inline]] void pull(float* to, const BendingBlock& block, std::uint32_t lane,
+                                   const FloatVector& bent, const FloatVector& damping,
+                                   float resolved) const {
+    const Floats stiffness = load(block.stiffness + lane);
+    const Floats none(0.f), w0 = load(block.weight[0] + lane), w1 = load(block.weight[1] + lane),
+                            w3 = load(block.weight[2] + lane), w2 = none - (w0 + w1 + w3);
+    const Floats of_flat = xsimd::select(is_flat, g, none), of_other = g - of_flat;
+    const Floats part = fold * stiffness, over = fold * reciprocal;
+    const Floats squares = fused(w0, w0, fused(w1, w1, fused(w2, w2, w3 * w3)));
+    const Floats sides =
+        fused(Floats(4.f) / xsimd::max(squares, tiny()), dot(across, across), dot(edge, edge));
+    const Floats of_turning = (over * sides) * over;
+    const Floats softness = Floats(resolved) * load(block.softness + lane);
+    const Floats turning =
+        part * xsimd::min(Floats(1.f), softness / xsimd::max(of_turning, tiny()));
+    const FloatVector by_d = fused_from(of_flat / xsimd::max(dot(d, d), tiny()), d, normal);
+    const FloatVector by_normal = reciprocal * fused_from(of_other, normal, d);
+    const FloatVector of_d = fused_from(stiffness, bent, fused(part, by_d, damping));
+    const FloatVector of_across = turning * cross(by_normal, edge);
+    const Floats along = of_flat / xsimd::max(dot(edge, edge), tiny());
+    const FloatVector of_edge = turning * fused_from(along, edge, cross(across, by_normal));
+    const auto add = [&](std::size_t k, const FloatVector& by) {
+      const std::uint32_t* const slot = block.slot[k] + lane;
+      QuadLanes{}.put(to, slot, QuadLanes{}.get(to, slot) + by);
+    };
+    add(0, fused(w0, of_d, fused(w2 - w3, of_across, Floats(-1.f) * of_edge)));
+    add(1, fused(w1, of_d, of_edge));
+    add(2, w2 * (of_d - of_across));
+    add(3, w3 * (of_d + of_across));
+  }
+};
+
+template <bool kFour, bool kCurved, bool kDamped, bool kFolded>
 [[gnu::always_inline]] inline void pull_elements(const Bending& b, float* to, std::size_t first,
                                                  std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
@@ -167,33 +241,47 @@ template <bool kFour, bool kCurved, bool kDamped>
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
       const BentQuads<kFour, kDamped> at(b.u, block, lane);
       const FloatVector d = load_span(b.spans.d[i], lane) + at.sum(block, lane);
-      FloatVector f = d;
-      if constexpr (kCurved) f = curved(block, lane, d);
+      const Floats stiffness = load(block.stiffness + lane);
+      FloatVector damping{Floats(0.f), Floats(0.f), Floats(0.f)};
       if constexpr (kDamped) {
         const BentQuads<kFour, true> moved = at.since({b.start, block, lane});
-        const FloatVector by = moved.sum(block, lane);
-        f = fused(Floats(b.damping), bent(b, i, lane, at, moved, d, by), f);
+        damping = bent(b, i, lane, at, moved, d, moved.sum(block, lane));
       }
-      pull_quads<kFour>(to, block, lane, (Floats(0.f) - load(block.stiffness + lane)) * f);
+      if constexpr (kFolded) {
+        const Floats of_damping = (Floats(0.f) - stiffness) * Floats(b.damping);
+        const FloatVector bent = kCurved ? curved(block, lane, d) : d;
+        Hinge(b, i, lane, at, d).pull(to, block, lane, bent, of_damping * damping, b.resolved);
+      } else {
+        FloatVector f = d;
+        if constexpr (kCurved) f = curved(block, lane, d);
+        if constexpr (kDamped) f = fused(Floats(b.damping), damping, f);
+        pull_quads<kFour>(to, block, lane, (Floats(0.f) - stiffness) * f);
+      }
     }
   }
 }
 
-/// (|d| - rest)^2 k / 2, of what is stiffer than a substep resolves as if it were just resolved.
-/// The lanes of a block are added up one after the other, whatever the width of a vector.
-template <bool kFour>
+/// (|d| - rest)^2 k / 2, or that of folded hinges, of what is stiffer than a substep resolves as if
+/// it were just resolved. The lanes of a block are added up one after the other, whatever the width
+/// of a vector.
+template <bool kFour, bool kFolded>
 [[gnu::always_inline]] inline void measure_energies(const Bending& b, double* energy,
                                                     std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
     const BendingBlock& block = b.blocks[i];
     alignas(64) float of_lane[kernels::kLanes];
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      FloatVector d =
-          load_span(b.spans.d[i], lane) + BentQuads<kFour>(b.u, block, lane).sum(block, lane);
-      const Floats bent = xsimd::sqrt(dot(d, d)) - load(block.rest + lane);
+      const BentQuads<kFour> at(b.u, block, lane);
+      const FloatVector d = load_span(b.spans.d[i], lane) + at.sum(block, lane);
       const Floats part = xsimd::min(Floats(1.f), Floats(b.resolved) * load(block.softness + lane));
-      (Floats(0.5f) * part * load(block.stiffness + lane) * bent * bent)
-          .store_unaligned(of_lane + lane);
+      const Floats half = Floats(0.5f) * part * load(block.stiffness + lane);
+      const Floats bent = xsimd::sqrt(dot(d, d)) - load(block.rest + lane);
+      Floats energies = half * bent * bent;
+      if constexpr (kFolded) {
+        const Hinge hinge(b, i, lane, at, d);
+        energies = xsimd::select(hinge.fold == Floats(0.f), energies, half * hinge.bent_square());
+      }
+      energies.store_unaligned(of_lane + lane);
     }
     energy[i] = 0;
     for (const float e : of_lane) energy[i] += static_cast<double>(e);
@@ -203,8 +291,14 @@ template <bool kFour>
 template <bool kFour, bool kCurved>
 [[gnu::always_inline]] inline void pull_elements(const Bending& b, float* to, std::size_t first,
                                                  std::size_t last) {
-  if (b.damping > 0) return pull_elements<kFour, kCurved, true>(b, to, first, last);
-  pull_elements<kFour, kCurved, false>(b, to, first, last);
+  const auto pull = [&]<bool kFolded>() {
+    if (b.damping > 0) return pull_elements<kFour, kCurved, true, kFolded>(b, to, first, last);
+    pull_elements<kFour, kCurved, false, kFolded>(b, to, first, last);
+  };
+  if constexpr (kFour) {
+    if (b.folds != nullptr) return pull.template operator()<true>();
+  }
+  pull.template operator()<false>();
 }
 template <bool kFour>
 [[gnu::always_inline]] inline void pull_elements(const Bending& b, float* to, std::size_t first,
@@ -217,7 +311,7 @@ template <bool kFour>
 [[gnu::always_inline]] inline void measure_elements(const BendingBlock* blocks,
                                                     const BendingSpans& spans, const float* base,
                                                     std::size_t first, std::size_t last) {
-  if (spans.along != nullptr)
+  if (spans.across != nullptr)
     return measure_elements<kFour, true>(blocks, spans, base, first, last);
   measure_elements<kFour, false>(blocks, spans, base, first, last);
 }
@@ -234,8 +328,9 @@ void pull_bending(const Bending& b, float* to, bool four, std::size_t first, std
 
 void bending_energy(const Bending& b, double* energy, bool four, std::size_t first,
                     std::size_t last) {
-  if (four) return measure_energies<true>(b, energy, first, last);
-  measure_energies<false>(b, energy, first, last);
+  if (!four) return measure_energies<false, false>(b, energy, first, last);
+  if (b.folds != nullptr) return measure_energies<true, true>(b, energy, first, last);
+  measure_energies<true, false>(b, energy, first, last);
 }
 
 }  // namespace

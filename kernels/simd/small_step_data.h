@@ -99,20 +99,27 @@ struct alignas(64) BendingBlock {
   float stiffness[kernels::kLanes];  // k = 1 / compliance, N/m
   float softness[kernels::kLanes];   // compliance / W, W = sum of w_i c_i^2, s^2
 };
-/// Per block, what is measured of the base. Arms serve damping: without it they are null.
+/// By how much hinges of four particles are folded at rest, m.
+struct alignas(64) BendingFolds {
+  float fold[kernels::kLanes];
+};
+/// Per block, what is measured of the base. Arms serve damping, the first of them and `sides`
+/// hinges that are folded at rest: without these they are null.
 struct BendingSpans {
   EdgeSpans* d = nullptr;
   EdgeSpans* along = nullptr;
   EdgeSpans* across = nullptr;
+  EdgeSpans* sides = nullptr;
 };
 struct Bending {
   const float* u = nullptr;
   const float* start = nullptr;  // u when the substep began, of the same base
   const BendingBlock* blocks = nullptr;
   BendingSpans spans;
-  bool curved = false;  // a rest is not 0
-  float damping = 0;    // tau / h
-  float resolved = 0;   // 1/s^2: what is stiffer has a softness of less than 1 / this
+  const BendingFolds* folds = nullptr;  // per block; null: there are none
+  bool curved = false;                  // a rest is not 0
+  float damping = 0;                    // tau / h
+  float resolved = 0;  // 1/s^2: what is stiffer has a softness of less than 1 / this
 };
 
 /// Triangles of fabric (membrane.h), in blocks of kLanes, of one kind each; particles in quads.

@@ -102,6 +102,14 @@ double membrane_energy(const SceneDescription& scene, const std::vector<Vec3>& p
   return energy + fabric_energy(scene, positions);
 }
 
+/// The normal of a hinge that is folded at rest (scene.h).
+Vec3 normal_of(const BendingElement& b, const std::vector<Vec3>& x) {
+  const auto at = [&](std::size_t k) { return x[b.particles[k]]; };
+  const Vec3 n =
+      cross(at(1) - at(0), b.weights[3] * (at(3) - at(0)) - b.weights[2] * (at(2) - at(0)));
+  return (1 / length(n)) * n;
+}
+
 double bending_energy(const SceneDescription& scene, const std::vector<Vec3>& positions) {
   double energy = 0;
   for (const BendingElement& b : scene.bending) {
@@ -111,6 +119,7 @@ double bending_energy(const SceneDescription& scene, const std::vector<Vec3>& po
       const Vec3 p = positions[b.particles[i]];
       d = {d.x + b.weights[i] * p.x, d.y + b.weights[i] * p.y, d.z + b.weights[i] * p.z};
     }
+    if (b.fold != 0) d = d - b.fold * normal_of(b, positions);
     const double more = distance(d, {}) - b.rest;
     energy += more * more / (2 * b.compliance);
   }

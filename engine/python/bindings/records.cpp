@@ -96,7 +96,8 @@ py::dtype record_type<BendingElement>() {
   return type_of({{"particles", "4u4", offsetof(BendingElement, particles)},
                   {"weights", "4f8", offsetof(BendingElement, weights)},
                   {"rest", "f8", offsetof(BendingElement, rest)},
-                  {"compliance", "f8", offsetof(BendingElement, compliance)}},
+                  {"compliance", "f8", offsetof(BendingElement, compliance)},
+                  {"fold", "f8", offsetof(BendingElement, fold)}},
                  sizeof(BendingElement));
 }
 template <>

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/lists.h"
+#include "engine/model/bending_element.h"
 #include "engine/model/model.h"
 #include "engine/tuning.h"
 #include "kernels/reference/bending.h"
@@ -59,7 +60,7 @@ std::vector<std::optional<std::uint32_t>> particles_beside(const Model& model) {
   std::vector<std::optional<std::uint32_t>> beside(store.size());
   const Lists joins = joins_of_slots(model);
   for (std::size_t i = 0; i < store.size(); ++i) {
-    const reference::BendingElement element{store.slots[i], store.weights[i], 0, 0};
+    const reference::BendingElement element = element_of(store, i);
     if (!has_three(element)) continue;
     beside[i] = slot_beside(model, element, joins);
   }

@@ -56,6 +56,8 @@ class BendingFrame {
   /// resolves: these have no more energy than the softest that is not resolved has, of substeps
   /// that a sweep gives by `give` in, (b h)^2 / omega.
   double resolved(double give) const { return 1 / ((1 - 0.5 * omega_) * give); }
+  /// 1/s^2. The same of the part of a fold that its normal turns by, which no solution knows.
+  double resolved_turning(double give) const { return tuning::kResolvedTurning * resolved(give); }
 
  private:
   BendingStep step(double give, double n) const { return {give, n, damping_}; }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/model/bending_element.h"
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/bending_arms.h"
 #include "engine/solvers/small_steps/element_batches.h"
@@ -36,7 +37,10 @@ class BendingLayoutBuilder {
     for (const auto& batch : batches_of(std::move(elements), model_.slots(),
                                         [&](std::uint32_t i) { return slots(i); })) {
       const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
-      for_each_block(batch, [&](std::span<const std::uint32_t> of_block) { add_block(of_block); });
+      for_each_block(batch, [&](std::span<const std::uint32_t> of_block) {
+        add_block(of_block);
+        if (is_folded_) add_folds(of_block);
+      });
       layout_.batches.push_back({first, static_cast<std::uint32_t>(layout_.blocks.size()), four});
     }
   }
@@ -65,8 +69,15 @@ class BendingLayoutBuilder {
       layout_.element.push_back(lane < elements.size() ? elements[lane] : kNoIndex);
     }
   }
+  void add_folds(std::span<const std::uint32_t> elements) {
+    simd::BendingFolds& folds = layout_.folds.emplace_back();
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      folds.fold[lane] =
+          lane < elements.size() ? static_cast<float>(store_.fold[elements[lane]]) : 0;
+    }
+  }
   void fill(simd::BendingBlock& block, std::uint32_t lane, std::uint32_t i) {
-    const auto order = reference::order_of_arms({store_.slots[i], store_.weights[i], 0, 0});
+    const auto order = reference::order_of_arms(element_of(store_, i));
     for (std::size_t k = 0; k < particles(i); ++k) block.slot[k][lane] = store_.slots[i][order[k]];
     for (std::size_t k = 0; k < particles(i) - 1; ++k)
       block.weight[k][lane] = static_cast<float>(store_.weights[i][order[kInBlock[k]]]);
@@ -83,6 +94,7 @@ class BendingLayoutBuilder {
   const Model& model_;
   const BendingStore& store_;
   BendingLayout& layout_;
+  const bool is_folded_ = store_.is_folded();
 };
 
 }  // namespace
@@ -98,7 +110,8 @@ BendingLayout make_bending_layout(const Model& model) {
 }
 
 std::size_t BendingLayout::bytes() const {
-  return bytes_of(blocks) + bytes_of(element) + bytes_of(batches) + bytes_of(beside) + rows.bytes();
+  return bytes_of(blocks) + bytes_of(element) + bytes_of(batches) + bytes_of(beside) +
+         bytes_of(folds) + rows.bytes();
 }
 
 }  // namespace weft

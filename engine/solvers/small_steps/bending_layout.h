@@ -24,6 +24,7 @@ struct BendingLayout {
   std::vector<std::uint32_t> element;  // per block and lane: in Model::bending, or kNoIndex
   std::vector<BendingBatch> batches;
   std::vector<std::optional<std::uint32_t>> beside;  // per element in Model::bending: a slot
+  std::vector<simd::BendingFolds> folds;             // per block; empty: no hinge is folded at rest
   BendingRows rows;
   bool curved = false;  // a rest is not 0
 

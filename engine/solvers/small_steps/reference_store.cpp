@@ -169,14 +169,18 @@ void ReferenceStore::bend(Team& team) {
 
 void ReferenceStore::pull(const BendingStep& step) {
   double* const residual = bending_.residual();
+  const double resolved = bending_frame_.resolved_turning(step.give);
   std::fill_n(residual, 4 * model_.slots(), 0.0);
   for (std::uint32_t i = 0; i < model_.bending.size(); ++i) {
     const reference::BendingElement e = element(i);
-    const Vector f = reference::pull(e, step.damping, x_.view(), from_.view());
+    const double softness =
+        resolved * e.compliance / inverse_mass_of(e, model_.inverse_mass.data());
+    const reference::Pulls pulls =
+        reference::pulls(e, step.damping, softness, x_.view(), from_.view());
     for (std::size_t k = 0; k < 4; ++k) {
       if (!now_.is_free(e.slots[k])) continue;
       double* const of = residual + 4 * std::size_t{e.slots[k]};
-      const Vector by = e.weights[k] * f;
+      const Vector by = pulls[k];
       of[0] += by.x;
       of[1] += by.y;
       of[2] += by.z;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/model/bending_element.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/bending_frame.h"
 #include "engine/solvers/small_steps/bending_system.h"
@@ -115,8 +116,9 @@ class ReferenceStore {
   std::optional<double> departure();
   void pull(const BendingStep& step);
   reference::BendingElement element(std::uint32_t i) const {
-    const BendingStore& s = model_.bending;
-    return {s.slots[i], s.weights[i], s.rest[i], s.compliance[i], layout_.bending.beside[i]};
+    reference::BendingElement element = element_of(model_.bending, i);
+    element.beside = layout_.bending.beside[i];
+    return element;
   }
   /// Of l^2 / rest^2 - 1.
   void relax_chain(std::span<const std::uint32_t> slots, std::span<const std::uint32_t> links,

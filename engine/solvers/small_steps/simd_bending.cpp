@@ -29,10 +29,12 @@ SimdBending::SimdBending(const Model& model, const Settings& settings, const sim
       spans_(layout_.blocks.size()),
       energies_(layout_.blocks.size()) {
   if (!layout_.empty()) soft_.allocate();
-  if (layout_.empty() || model.damping.bending == 0) return;
-  from_.resize(4 * layout_.rows.slots());
-  along_.resize(layout_.blocks.size());
-  across_.resize(layout_.blocks.size());
+  if (layout_.empty()) return;
+  const bool is_damped = model.damping.bending > 0, is_folded = !layout_.folds.empty();
+  if (is_damped) from_.resize(4 * layout_.rows.slots());
+  if (is_damped || is_folded) along_.resize(layout_.blocks.size());
+  if (is_damped) across_.resize(layout_.blocks.size());
+  if (is_folded) sides_.resize(layout_.blocks.size());
 }
 
 template <class Work>
@@ -83,14 +85,19 @@ void SimdBending::bend(float* u, const float* start, double give, Team& team) {
 }
 
 simd::Bending SimdBending::arrays(const float* u) {
-  return {.u = u, .blocks = layout_.blocks.data(), .spans = spans(), .curved = layout_.curved};
+  return {.u = u,
+          .blocks = layout_.blocks.data(),
+          .spans = spans(),
+          .folds = layout_.folds.empty() ? nullptr : layout_.folds.data(),
+          .curved = layout_.curved};
 }
 
 /// Into the residual of soft_.
-void SimdBending::pull(const float* u, const float* start, double damping, Team& team) {
+void SimdBending::pull(const float* u, const float* start, const BendingStep& step, Team& team) {
   simd::Bending bending = arrays(u);
   bending.start = start;
-  bending.damping = static_cast<float>(damping);
+  bending.damping = static_cast<float>(step.damping);
+  bending.resolved = to_finite_float(frame_.resolved_turning(step.give));
   for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
     table_.pull_bending(bending, soft_.residual(), four, first, last);
   });
@@ -123,7 +130,7 @@ void SimdBending::begin_from_guess(float* u, const float* start, const BendingSt
 
 void SimdBending::bend_softly(float* u, const float* start, const BendingStep& step, Team& team) {
   begin_from_guess(u, start, step, team);
-  pull(u, step.damping > 0 ? from_.data() : start, step.damping, team);
+  pull(u, step.damping > 0 ? from_.data() : start, step, team);
   error_ = std::max(error_, soft_.solve(step.law(), frame_.limits(), team));
   float* const guess = soft_.guess();
   const float* const change = soft_.change();
@@ -170,7 +177,7 @@ double SimdBending::solve_stiffly(const float* u, const float* start, const Bend
   for_floats(team, [&](std::size_t first, std::size_t last) {
     std::fill(pulls + first, pulls + last, 0.f);
   });
-  pull(u, start, step.damping, team);
+  pull(u, start, step, team);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) residual[i] = static_cast<double>(pulls[i]);
   });
@@ -188,8 +195,8 @@ double SimdBending::energy(const float* u, double give, Team& team) {
 }
 
 std::size_t SimdBending::bytes() const {
-  return bytes_of(spans_) + bytes_of(along_) + bytes_of(across_) + bytes_of(energies_) +
-         bytes_of(from_) + soft_.bytes() + stiff_.bytes();
+  return bytes_of(spans_) + bytes_of(along_) + bytes_of(across_) + bytes_of(sides_) +
+         bytes_of(energies_) + bytes_of(from_) + soft_.bytes() + stiff_.bytes();
 }
 
 }  // namespace weft

@@ -33,9 +33,11 @@ class SimdBending {
   void for_blocks(Team& team, Work&& work) const;
   template <class Work>
   void for_floats(Team& team, Work&& work) const;
-  simd::BendingSpans spans() { return {spans_.data(), along_.data(), across_.data()}; }
+  simd::BendingSpans spans() {
+    return {spans_.data(), along_.data(), across_.data(), sides_.data()};
+  }
   simd::Bending arrays(const float* u);
-  void pull(const float* u, const float* start, double damping, Team& team);
+  void pull(const float* u, const float* start, const BendingStep& step, Team& team);
   void begin_from_guess(float* u, const float* start, const BendingStep& step, Team& team);
   void bend_softly(float* u, const float* start, const BendingStep& step, Team& team);
   void bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team);
@@ -52,6 +54,7 @@ class SimdBending {
   double error_ = 0;
   kernels::AlignedVector<simd::EdgeSpans> spans_;           // d of the base
   kernels::AlignedVector<simd::EdgeSpans> along_, across_;  // arms of the base, for damping
+  kernels::AlignedVector<simd::EdgeSpans> sides_;           // of the base, for folded hinges
   kernels::AlignedVector<float> from_;                      // the start that damping measures from
   std::vector<double> energies_;                            // J, per block
 };

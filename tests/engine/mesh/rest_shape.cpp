@@ -44,7 +44,8 @@ void check_same_cloth(const SceneDescription& one, const SceneDescription& two) 
   REQUIRE(one.bending.size() == two.bending.size());
   for (std::size_t i = 0; i < one.bending.size(); ++i) {
     const BendingElement &a = one.bending[i], &b = two.bending[i];
-    CHECK((a.particles == b.particles && a.weights == b.weights && a.rest == b.rest));
+    CHECK((a.particles == b.particles && a.weights == b.weights && a.rest == b.rest &&
+           a.fold == b.fold));
     CHECK(a.compliance == b.compliance);
   }
 }

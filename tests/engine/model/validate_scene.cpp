@@ -180,6 +180,9 @@ TEST_CASE("a material that is no material is refused by name, index and value") 
   check_refused([](auto& s) { s.bending[0].weights[3] = 1; },
                 {"bending[0].weights[3]", "no particle", "(1)"});
   check_refused([](auto& s) { s.bending[0].rest = -1; }, {"bending[0].rest", "(-1)"});
+  check_refused([](auto& s) { s.bending[0].fold = 1; },
+                {"bending[0].fold", "three particles have no side", "(1)"});
+  check_refused([](auto& s) { s.bending[0].fold = kNan; }, {"bending[0].fold", "nan"});
   check_refused([](auto& s) { s.bending[0].compliance = 0; }, {"bending[0].compliance", "(0)"});
   check_refused([](auto& s) { s.membrane[0].particles[2] = 999; },
                 {"membrane[0].particles[2]", "(999)"});

@@ -20,7 +20,7 @@ def bending_of(entry):
     particles, weights = entry["particles"], entry["weights"]
     absent = 4 - len(particles)
     return (particles + [weft.kNoIndex] * absent, weights + [0.0] * absent, entry.get("rest", 0),
-            entry["compliance"])
+            entry["compliance"], entry.get("fold", 0))
 
 
 def read_scene(file):
@@ -46,7 +46,7 @@ def entry_of(element):
     present = element["particles"] != weft.kNoIndex
     return {"particles": element["particles"][present].tolist(),
             "weights": element["weights"][present].tolist(), "rest": element["rest"].item(),
-            "compliance": element["compliance"].item()}
+            "compliance": element["compliance"].item(), "fold": element["fold"].item()}
 
 
 def write_scene(file, scene, bodies):

@@ -464,11 +464,11 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(model)));
   }
   CHECK(state[8] == std::byte{6});
-  CHECK(model[8] == std::byte{3});
+  CHECK(model[8] == std::byte{4});
   CHECK(state.size() == 11139);
-  CHECK(checksum(state) == 0xcb06aa32826a70da);
-  CHECK(model.size() == 723);
-  CHECK(checksum(model) == 0x8ada2edf204814c4);
+  CHECK(checksum(state) == 0x04eaed5db97f424e);
+  CHECK(model.size() == 731);
+  CHECK(checksum(model) == 0x6ec0b4eca9cd8e27);
 }
 
 }  // namespace

@@ -28,9 +28,11 @@ struct Elements {
   kernels::AlignedVector<float> base, u, before;
   std::vector<reference::BendingElement> elements;
   simd::BendingBlock block{};
-  simd::EdgeSpans spans[3] = {};  // d, and the arms
+  simd::BendingFolds folds{};
+  bool folded = false;
+  simd::EdgeSpans spans[4] = {};  // d, the arms, and the sides of folded hinges
 
-  Elements(bool four, bool curved) : four(four) {
+  Elements(bool four, bool curved, bool folded = false) : four(four), folded(folded) {
     for (auto* array : {&base, &u, &before}) array->resize(4 * kParticles);
     Random random(11);
     for (std::size_t i = 0; i < kParticles; ++i) {
@@ -55,6 +57,11 @@ struct Elements {
     e.weights[2] = -e.weights[0] - e.weights[1] - e.weights[3];
     e.rest = curved ? random.between(0, 0.02) : 0;
     e.compliance = std::exp2(random.between(-10, 4));
+    if (folded && lane % 4 != 0) {
+      e.rest = 0;
+      e.fold = random.between(-0.02, 0.02);
+    }
+    folds.fold[lane] = static_cast<float>(e.fold);
     const auto order = reference::order_of_arms(e);
     for (std::size_t k = 0; k < 4; ++k) block.slot[k][lane] = e.slots[order[k]];
     block.weight[0][lane] = static_cast<float>(e.weights[order[0]]);
@@ -97,12 +104,13 @@ struct Elements {
     return e.positions();
   }
   simd::Bending bending(const simd::Table& table, bool curved, double damping) {
-    const simd::BendingSpans all{&spans[0], &spans[1], &spans[2]};
+    const simd::BendingSpans all{&spans[0], &spans[1], &spans[2], folded ? &spans[3] : nullptr};
     table.measure_bending(&block, all, base.data(), four, 0, 1);
     return {.u = u.data(),
             .start = before.data(),
             .blocks = &block,
             .spans = all,
+            .folds = folded ? &folds : nullptr,
             .curved = curved,
             .damping = static_cast<float>(damping),
             .resolved = 1e12f};
@@ -117,19 +125,21 @@ struct Elements {
 
 template <class Work>
 void for_all_kinds(Work&& work) {
-  for (const bool four : {false, true}) {
-    for (const bool curved : {false, true}) {
-      for (const double damping : {0., 20.}) work(four, curved, damping);
+  for (const bool curved : {false, true}) {
+    for (const double damping : {0., 20.}) {
+      for (const bool four : {false, true}) work(Elements(four, curved), curved, damping);
+      work(Elements(true, curved, true), curved, damping);
     }
   }
 }
 
 TEST_CASE("an element pulls its particles as in double, and in sum not at all") {
-  for_all_kinds([](bool four, bool curved, double damping) {
+  for_all_kinds([](Elements start, bool curved, double damping) {
+    const bool four = start.four;
     CAPTURE(four);
+    CAPTURE(start.folded);
     CAPTURE(curved);
     CAPTURE(damping);
-    Elements start(four, curved);
     start.fold();
     kernels::Vectors x = start.positions(), before = start.starts();
     for (const simd::Isa isa : supported_isas()) {
@@ -137,13 +147,14 @@ TEST_CASE("an element pulls its particles as in double, and in sum not at all") 
       Elements e = start;
       const kernels::AlignedVector<float> to = e.pulled(simd::table(isa), curved, damping);
       for (const reference::BendingElement& element : start.elements) {
-        const Vector f = reference::pull(element, damping, x.view(), before.view());
-        const double scale = 1 + 4 * length(f);
+        const reference::Pulls f = reference::pulls(element, damping, 1, x.view(), before.view());
+        double scale = 1;
+        for (const Vector& pull : f) scale += 2 * length(pull);
         Vector sum{0, 0, 0};
         for (std::size_t k = 0; k < (four ? 4u : 3u); ++k) {
           const std::size_t at = 4 * std::size_t{element.slots[k]};
           const Vector by{double{to[at]} - 1, double{to[at + 1]} - 1, double{to[at + 2]} - 1};
-          CHECK(length(by - element.weights[k] * f) < 1e-4 * scale);
+          CHECK(length(by - f[k]) < 1e-4 * scale);
           sum = sum + by;
         }
         CHECK(length(sum) < 1e-6 * scale);
@@ -183,11 +194,13 @@ TEST_CASE("nothing is damped of what turns as a whole, in whatever order its par
             other.weights[k] = e.weights[order[k]];
           }
           if (!four) other.slots[3] = other.slots[2];
-          const Vector free = reference::pull(other, 0, x.view(), before.view());
-          const Vector damped = reference::pull(other, damping, x.view(), before.view());
+          const reference::Pulls free = reference::pulls(other, 0, 1, x.view(), before.view());
+          const reference::Pulls damped =
+              reference::pulls(other, damping, 1, x.view(), before.view());
           const double scale =
               damping * length(reference::weighted_sum(e, x.view())) / e.compliance;
-          CHECK(length(damped - free) < 1e-9 * scale);
+          for (std::size_t k = 0; k < 4; ++k)
+            CHECK(length(damped[k] - free[k]) < 1e-9 * scale * reference::reach_of(e));
         } while (std::next_permutation(order.begin(), order.end()));
       }
     }
@@ -218,8 +231,8 @@ TEST_CASE("AVX2 and AVX-512 pull by the same bits, and tell the same energy") {
     MESSAGE("this machine lacks avx512: not tested");
     return;
   }
-  for_all_kinds([](bool four, bool curved, double damping) {
-    Elements e(four, curved);
+  for_all_kinds([](Elements e, bool curved, double damping) {
+    const bool four = e.four;
     const simd::Table &narrow = simd::table(simd::Isa::avx2),
                       &wide = simd::table(simd::Isa::avx512);
     CHECK(e.pulled(narrow, curved, damping) == e.pulled(wide, curved, damping));
@@ -231,10 +244,10 @@ TEST_CASE("AVX2 and AVX-512 pull by the same bits, and tell the same energy") {
 }
 
 TEST_CASE("the energy of a block is that of its elements") {
-  for_all_kinds([](bool four, bool curved, double) {
+  for_all_kinds([](Elements e, bool curved, double) {
+    const bool four = e.four;
     for (const simd::Isa isa : supported_isas()) {
       for (const double resolved : {1e12, 1.}) {  // 1/s^2, of all elements, and of some of them
-        Elements e(four, curved);
         const simd::Table& table = simd::table(isa);
         simd::Bending bending = e.bending(table, curved, 0);
         bending.resolved = static_cast<float>(resolved);
@@ -249,24 +262,67 @@ TEST_CASE("the energy of a block is that of its elements") {
   });
 }
 
-TEST_CASE("a pull is what the energy falls by") {
+TEST_CASE("a pull is what the energy falls by, and turns nothing") {
   for (const bool curved : {false, true}) {
-    Elements e(true, curved);
-    kernels::Vectors x = e.positions(), before = e.starts();
-    for (const reference::BendingElement& element : e.elements) {
-      const Vector f = reference::pull(element, 0, x.view(), before.view());
-      for (std::size_t k = 0; k < 4; ++k) {
-        const std::uint32_t slot = element.slots[k];
-        const Vector at = x[slot], step{1e-7, -2e-7, 5e-8};
-        x.set(slot, at + step);
-        const double more = reference::energy(element, 1e12, kOne.data(), x.view());
-        x.set(slot, at - step);
-        const double less = reference::energy(element, 1e12, kOne.data(), x.view());
-        x.set(slot, at);
-        const double fall = element.weights[k] * dot(f, 2. * step);
-        CHECK(less - more == doctest::Approx(fall).epsilon(1e-3).scale(1e-9));
+    for (const bool folded : {false, true}) {
+      Elements e(true, curved, folded);
+      kernels::Vectors x = e.positions(), before = e.starts();
+      for (const reference::BendingElement& element : e.elements) {
+        const reference::Pulls f = reference::pulls(element, 0, 1, x.view(), before.view());
+        Vector torque{0, 0, 0};
+        double size = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+          const std::uint32_t slot = element.slots[k];
+          const Vector at = x[slot], step{1e-7, -2e-7, 5e-8};
+          x.set(slot, at + step);
+          const double more = reference::energy(element, 1e12, kOne.data(), x.view());
+          x.set(slot, at - step);
+          const double less = reference::energy(element, 1e12, kOne.data(), x.view());
+          x.set(slot, at);
+          const double fall = dot(f[k], 2. * step);
+          CHECK(less - more == doctest::Approx(fall).epsilon(1e-3).scale(1e-9));
+          torque = torque + cross(at, f[k]);
+          size += length(at) * length(f[k]);
+        }
+        CHECK(length(torque) < 1e-9 * size);
       }
     }
+  }
+}
+
+/// Two square faces of the side `side` with an edge along x, at the angle.
+reference::BendingElement hinge_at(double angle, double fold, double side, kernels::Vectors& x) {
+  const double half = angle / 2;
+  x.set(0, {0, 0, 0});
+  x.set(1, {side, 0, 0});
+  x.set(2, {side, -side * std::cos(half), side * std::sin(half)});
+  x.set(3, {0, side * std::cos(half), side * std::sin(half)});
+  reference::BendingElement e{{0, 1, 2, 3}, {-1, -1, 1, 1}, 0, 2};
+  e.fold = fold;
+  return e;
+}
+
+TEST_CASE("a hinge has a side: it stores by how far it is from its fold") {
+  const double side = 0.01;
+  for (const double angle_at_rest : {0.5, 1., 2., -0.5, -2.}) {
+    const double fold = 2 * side * std::sin(angle_at_rest / 2);
+    kernels::Vectors x(4);
+    double last = 0;
+    for (double angle = -3.1; angle < 3.1; angle += 0.01) {
+      const reference::BendingElement e = hinge_at(angle, fold, side, x);
+      const double energy = reference::energy(e, 1e12, kOne.data(), x.view());
+      const double bend = 2 * side * std::sin(angle / 2) - fold;
+      if (std::abs(angle) < 2.8) CHECK(energy == doctest::Approx(bend * bend / (2 * e.compliance)));
+      // Without a jump, over the angle where both faces lie on each other, too.
+      if (angle > -3.1) CHECK(std::abs(energy - last) < 0.1 * side * side);
+      last = energy;
+    }
+    const double over =
+        reference::energy(hinge_at(-3.1, fold, side, x), 1e12, kOne.data(), x.view());
+    CHECK(std::abs(last - over) < 2 * side * side);
+    const reference::BendingElement at_rest = hinge_at(angle_at_rest, fold, side, x);
+    for (const Vector& f : reference::pulls(at_rest, 0, 1, x.view(), x.view()))
+      CHECK(length(f) < 1e-15);
   }
 }
 

@@ -88,7 +88,7 @@ MembraneElement read_membrane(const Json& json, const std::string& place) {
 }
 
 BendingElement read_bending(const Json& json, const std::string& place) {
-  check_keys(json, place, {"particles", "weights", "rest", "compliance"});
+  check_keys(json, place, {"particles", "weights", "rest", "compliance", "fold"});
   check_given(json, place, {"particles", "weights", "compliance"});
   const auto particles = read_array(json["particles"], within(place, "particles"), read_index);
   const auto weights = read_array(json["weights"], within(place, "weights"), read_number);
@@ -104,6 +104,7 @@ BendingElement read_bending(const Json& json, const std::string& place) {
   std::ranges::copy(weights, element.weights.begin());
   read_if_given(json, place, "rest", element.rest);
   read_if_given(json, place, "compliance", element.compliance);
+  read_if_given(json, place, "fold", element.fold);
   return element;
 }
 
@@ -222,6 +223,7 @@ std::string bending_row(const BendingElement& element) {
   Json row{{"particles", first(element.particles)}, {"weights", first(element.weights)}};
   if (element.rest > 0) row["rest"] = element.rest;
   row["compliance"] = element.compliance;
+  if (element.fold != 0) row["fold"] = element.fold;
   return row.dump();
 }
 

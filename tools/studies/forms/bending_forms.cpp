@@ -156,14 +156,6 @@ Reading swing(Pattern pattern, double tau, int cells, int substeps) {
                  : run.reading(size_of(strip.sheet), damped, seen.frequency);
 }
 
-/// The level plane rolled up, without stretching, around an axis across this direction.
-Vec3 rolled(Vec3 p, double radius, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  const double along = c * p.x + s * p.z, across = c * p.z - s * p.x;
-  const double u = radius * std::sin(along / radius);
-  return {c * u - s * across, radius * (1 - std::cos(along / radius)), s * u + c * across};
-}
-
 /// J, of bending elements.
 double bending_energy(const SceneDescription& scene, double radius, double angle) {
   double energy = 0;

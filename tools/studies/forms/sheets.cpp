@@ -142,6 +142,13 @@ MeshDescription mesh_of(const Sheet& sheet, const Material& material) {
   return mesh;
 }
 
+Vec3 rolled(Vec3 p, double radius, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const double along = c * p.x + s * p.z, across = c * p.z - s * p.x;
+  const double u = radius * std::sin(along / radius);
+  return {c * u - s * across, radius * (1 - std::cos(along / radius)), s * u + c * across};
+}
+
 Sheet sheet_of(Pattern pattern, double length, double width, int along) {
   const double cells = width * along / length;
   const bool narrow = pattern == Pattern::equilateral;

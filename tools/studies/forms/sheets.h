@@ -42,6 +42,9 @@ void pin(MeshDescription& mesh, const Place& is_pinned);
 SceneDescription scene_of(const MeshDescription& mesh);
 std::vector<std::uint32_t> particles_at(const SceneDescription& scene, const Place& is_there);
 
+/// The level plane rolled up, without stretching, around an axis that is `angle` away from z.
+Vec3 rolled(Vec3 p, double radius, double angle);
+
 /// A sheet that is held at one end, and the particles of its other end.
 struct Strip {
   Sheet sheet;

@@ -33,6 +33,7 @@ void check_same_material(const SceneDescription& a, const SceneDescription& b) {
     CHECK(a.bending[i].particles == b.bending[i].particles);
     CHECK(a.bending[i].weights == b.bending[i].weights);
     CHECK(a.bending[i].rest == b.bending[i].rest);
+    CHECK(a.bending[i].fold == b.bending[i].fold);
     CHECK(a.bending[i].compliance == b.bending[i].compliance);
   }
   CHECK(a.damping.stretch == b.damping.stretch);
