@@ -65,7 +65,7 @@ struct Constraint {
 ///     (x1 - x0) x (weights[3] (x3 - x0) - weights[2] (x2 - x0))
 ///
 /// So fold is positive where 2 and 3 stand on the side from which the face (0, 1, 3) is seen
-/// counter-clockwise, if their weights are positive. Beyond 166 degrees n is shorter than 1: a fold
+/// counter-clockwise, if their weights are positive. Beyond 147 degrees n is shorter than 1: a fold
 /// that goes right over changes its side without a jump.
 struct BendingElement {
   std::array<std::uint32_t, 4> particles{};  ///< all different; the last may be kNoIndex

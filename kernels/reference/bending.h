@@ -115,9 +115,9 @@ inline kernels::Vector bent(const BendingElement& e, kernels::VectorsView x,
 }
 
 /// A normal of less than this share of |P| |d| is not made a unit: of two faces that lie on each
-/// other it has no direction, and beyond 166 degrees it falls to nothing, so that a fold that goes
+/// other it has no direction, and beyond 147 degrees it falls to nothing, so that a fold that goes
 /// right over changes its side without a jump.
-inline constexpr double kFlattestFold = 0.125;
+inline constexpr double kFlattestFold = 0.3;
 
 /// A hinge that is folded at rest. Its edge P joins particles 0 and 1, and its faces reach from
 /// there to 2 and 3: d is the sum of the ways to these, c_2 y_2 + c_3 y_3, and Q = c_3 y_3 - c_2
