@@ -52,7 +52,7 @@ struct Recording {
   bool is_finished = false;  ///< else the program was killed, or the file is cut off
 };
 
-/// This library's, "0.5.0".
+/// This library's, "0.6.0".
 std::string version_text();
 
 /// The parts, as bytes.

@@ -56,5 +56,5 @@
 #include <weft/settings.h>
 
 #define WEFT_VERSION_MAJOR 0
-#define WEFT_VERSION_MINOR 5
+#define WEFT_VERSION_MINOR 6
 #define WEFT_VERSION_PATCH 0

@@ -17,4 +17,4 @@ weft.Error, with one line that names the field, the index and the value; nothing
 from ._weft import *
 from ._weft import Error, kNoIndex
 
-__version__ = "0.5.0"
+__version__ = "0.6.0"
