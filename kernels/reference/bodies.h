@@ -172,6 +172,14 @@ inline Touch find_touch(const BodyMotion& body, Vector start, Vector x, double r
   return touch;
 }
 
+/// Of one that is not under the surface, too.
+inline Touch find_touch_or_gap(const BodyMotion& body, Vector start, Vector x, double radius) {
+  Touch touch = find_touch(body, start, x, radius);
+  if (touch.is_near) return touch;
+  const Gap gap = gap_of(body.solid, body.thickness + radius, body.to.from_place(x));
+  return {true, body.to.turned(gap.normal), gap.gap};
+}
+
 /// m, by which both ends of a way may be moved beside the body that the particle touches nothing:
 /// both are in front of one face by that, or the longest way that comes of it does not reach the
 /// capsule. Where it is not positive the particle may touch.
@@ -302,6 +310,27 @@ inline Gripped grip(const BodyMotion& body, const Touch& touch, Vector start, Ve
   const Slowed slowed = slow(n, v - body.velocity_at(gripped.x), body.friction, body.h, done);
   gripped.v = v + slowed.change;
   gripped.friction = 2 * slowed.taken * (stopped.slid / body.h);
+  return gripped;
+}
+
+/// What contacts within the cloth have moved in rounds: it is gripped where it came under the
+/// surface, and else follows the body as far as that has pushed too much. touch: its gap and normal
+/// may be those of a particle over the surface.
+inline Gripped follow(const BodyMotion& body, const Touch& touch, Vector start, Vector x, Vector v,
+                      Grip& done) {
+  Gripped gripped = grip(body, touch, start, x, v, done);
+  if (gripped.is_touching) return gripped;
+  const double back = std::min(touch.gap + done.yield.by, done.pushed);
+  if (!(back > 0)) return gripped;
+  const double apart = dot(touch.normal, v - body.velocity_at(x)),
+               faster = std::clamp(apart, 0.0, done.stopped);
+  done.pushed -= back;
+  done.stopped -= faster;
+  gripped.is_touching = true;
+  gripped.normal = touch.normal;
+  gripped.push = -back;
+  gripped.x = x - back * touch.normal;
+  gripped.v = v - faster * touch.normal;
   return gripped;
 }
 

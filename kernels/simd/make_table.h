@@ -49,7 +49,7 @@ constexpr auto as_wide_as_block() {
 }
 #endif
 
-constexpr Table make_table() {
+constexpr Table make_table(const ContactKernels* contacts) {
   return {.predict = predict,
           .commit = commit,
           .commit_watched = commit_watched,
@@ -129,6 +129,7 @@ constexpr Table make_table() {
           .touch_pairs = touch_pairs,
           .find_moved_pairs = find_moved_pairs,
           .find_small = find_small,
+          .contacts = contacts,
           .find_met = find_met,
           .reaches_of_triangle = reaches_of_triangle,
           .meet_triangles = meet_triangles,

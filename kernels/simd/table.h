@@ -1,6 +1,6 @@
 /// The vector kernels, one function pointer per stage, one table per instruction set. What they
 /// read and write stands in sweep_data.h, yarn_data.h, front_data.h, small_step_data.h,
-/// bending_data.h, grip_data.h and nearness_data.h.
+/// bending_data.h, contact_data.h, grip_data.h and nearness_data.h.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 
 #include "kernels/impulse_energy.h"
 #include "kernels/simd/bending_data.h"
+#include "kernels/simd/contact_data.h"
 #include "kernels/simd/front_data.h"
 #include "kernels/simd/grip_data.h"
 #include "kernels/simd/isa.h"
@@ -214,6 +215,7 @@ struct Table {
   /// Of blocks first ... last - 1, a bit per lane: which of `of` are at most `limit`.
   void (*find_small)(const float (*of)[kernels::kLanes], float limit, std::uint16_t* small,
                      std::size_t first, std::size_t last);
+  const ContactKernels* contacts = nullptr;
   /// Which of the boxes the one from low to high meets, a bit each.
   std::uint32_t (*find_met)(const BoxCluster&, const float* low, const float* high);
   /// tubes: of its corners.

@@ -1,0 +1,4 @@
+#include "kernels/simd/contacts.h"
+// By its namespace: flags for another instruction set do not compile.
+constinit const weft::simd::ContactKernels weft::simd::kSse2Contacts =
+    weft::simd::sse2::contact_kernels();
