@@ -1,6 +1,7 @@
 /// Features of surfaces, and pairs of them that may touch.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -21,6 +22,13 @@ struct Pair {
   PairKind kind = PairKind::edges;
 
   bool operator==(const Pair&) const = default;
+  /// Of features of the cloth, which have fewer than 2^31 numbers.
+  std::uint64_t key() const {
+    const bool edges = kind == PairKind::edges;
+    const std::uint64_t from = edges ? std::min(first, second) : first,
+                        to = edges ? std::max(first, second) : second;
+    return std::uint64_t{edges} << 63 | from << 32 | to;
+  }
   /// Both features are of the cloth.
   bool is_within_cloth() const { return a == b; }
   /// The point is of the surface that comes later, the triangle of the one before.

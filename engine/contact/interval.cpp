@@ -21,12 +21,13 @@ double time_for(double way, double speed, double longest) {
 
 }  // namespace
 
-void SurfaceContacts::begin(const BodyClock& clock, ContactStart start,
-                            const Misplaced& misplaced) {
+void SurfaceContacts::begin(const BodyClock& clock, ContactStart start, const Misplaced& misplaced,
+                            const ContactMemory* memory) {
   if (start != ContactStart::goes_on) points_.begin(clock);
   interval_ = late_depth_ = 0;
   has_looked_ahead_ = false;
   failures_ = {};
+  contacts_.begin(memory);
   for (NearPairs& near : near_) near.clear();
   if (empty()) return;
   impulses_.begin(clock.bodies());
@@ -41,7 +42,7 @@ double SurfaceContacts::interval_for(const ContactParticles& particles, const Bo
   const ContactSpeeds& speeds = points_.speeds();
   const double thickness = points_.largest_thickness(), way = tuning::kMeshWay * thickness;
   double time = tuning::kContactInterval;
-  if (!points_.touches_itself() && clock.bodies().size() == 1) {
+  if (clock.bodies().size() <= 1 && tangles_.count_within() == 0) {
     const double calm =
         std::sqrt(2 * tuning::kContactSpare * thickness / tuning::kCalmAcceleration);
     const double together = speeds.of_cloth + speeds.of_near;
@@ -75,7 +76,8 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
     tangles_.find(points_);
     began_tangled_ = tangles_.count_within() > 0;
   }
-  near_search_.find(points_, candidates_, tangles_, near_, team);
+  near_search_.find(points_, candidates_, tangles_, near_, layers_, team);
+  contacts_.find(points_, layers_);
   tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);
   squeeze_.begin(scene(particles, clock), near_);
@@ -86,10 +88,11 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   interval_ = substeps * clock.h();
 }
 
-void SurfaceContacts::advance(ContactParticles& particles, const BodyClock& clock) {
+void SurfaceContacts::advance(ContactParticles& particles, const BodyClock& clock, Team& team) {
   if (empty()) return;
   response_.advance(clock, points_, near_);
   squeeze_.share(scene(particles, clock), near_);
+  contacts_.begin_substep(points_, particles, clock.h(), clock.stands(), team);
 }
 
 bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock& clock,
@@ -163,6 +166,7 @@ void SurfaceContacts::expect_failures(const ContactScene& scene) {
   bool any = false;
   for (const Failure& failure : verification_.failures()) {
     const Pair& pair = candidates_[failure.list].pairs[failure.pair];
+    if (pair.is_within_cloth()) continue;
     NearPairs& near = near_[failure.list];
     const std::size_t known = near.find(pair);
     const bool is_known = known < near.list.size();
@@ -188,10 +192,10 @@ SurfaceContacts::Touching SurfaceContacts::count_touching() const {
   Touching count;
   for (const NearPairs& near : near_) {
     for (std::size_t i = 0; i < near.list.size(); ++i) {
-      if (near.states[i].is_touching)
-        ++(near.list.pairs[i].is_within_cloth() ? count.within_cloth : count.bodies);
+      if (near.states[i].is_touching) ++count.bodies;
     }
   }
+  count.within_cloth = contacts_.count_touching();
   return count;
 }
 

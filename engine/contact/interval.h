@@ -8,8 +8,11 @@
 ///      in each substep:
 ///   4  points: where the vertices of bodies are that near pairs have
 ///      squeeze: how bodies share the room between them
-///   5  respond: lanes find which near pairs touch
-///   6  respond: these are pushed apart, along normals of that moment, with friction
+///      contacts: normals of the cloth beside itself are frozen, and multipliers act again
+///   5  respond: lanes find which near pairs of bodies touch
+///   6  respond: these are pushed apart, along normals of that moment, with friction; contacts:
+///   rounds
+///      of visits beside that
 ///      when the interval is over:
 ///   7  verify: what came near unexpectedly, and what went through each other
 ///   8  rescue: that is stopped
@@ -27,6 +30,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/contact/contacts.h"
 #include "engine/contact/rescue.h"
 #include "engine/contact/respond.h"
 #include "engine/contact/squeeze.h"
@@ -48,12 +52,15 @@ class SurfaceContacts {
         search_(table),
         near_search_(table),
         response_(table),
+        contacts_(table),
         verification_(table),
         tangles_(table) {}
 
   bool empty() const { return points_.empty(); }
-  /// Of a frame.
-  void begin(const BodyClock& clock, ContactStart start, const Misplaced& misplaced);
+  double largest_thickness() const { return points_.largest_thickness(); }
+  /// Of a frame. memory: what the last one has left to contacts within the cloth, if it counts.
+  void begin(const BodyClock& clock, ContactStart start, const Misplaced& misplaced,
+             const ContactMemory* memory);
   /// s, when a substep is predicted. Bodies that are fast beside the cloth are looked at more
   /// often: on their way they turn, and take cloth along. A slow one beside slow cloth is looked
   /// at seldom; but several may press cloth between them, and so may layers.
@@ -62,15 +69,39 @@ class SurfaceContacts {
   /// with it.
   void predict(ContactParticles& particles, const BodyClock& clock, Team& team);
   /// The clock has advanced to the end of the substep.
-  void advance(ContactParticles& particles, const BodyClock& clock);
+  void advance(ContactParticles& particles, const BodyClock& clock, Team& team);
+  /// Before the next substep, or after the last.
+  void end_substep(ContactParticles& particles, Team& team) {
+    contacts_.end_substep(particles, team);
+  }
+  void remember(ContactMemory& memory) { contacts_.remember(memory); }
   /// moved(slot, by): by how much (m).
   template <class Moved>
   void sweep(ContactParticles& particles, const BodyClock& clock, Team& team, Moved&& moved) {
-    response_.sweep(scene(particles, clock), near_, team, moved);
+    const ContactScene scene = this->scene(particles, clock);
+    if (contacts_.empty()) return response_.sweep(scene, near_, team, moved);
+    contacts_.begin_rounds(particles, team);
+    for (int i = 0; i < tuning::kContactRounds; ++i) {
+      response_.round(scene, near_, team, moved);
+      contacts_.round(particles, team);
+    }
+    contacts_.end_rounds(moved);
+    response_.sweep(scene, near_, team, moved);
+  }
+  /// The surface of a mesh that the slot touches in this substep, and its normal there.
+  std::pair<TouchedSurface, kernels::Vector> touched_by(std::uint32_t slot) const {
+    return response_.touched_by(points_, near_, slot);
+  }
+  /// An impulse that a body has given there.
+  void load(const TouchedSurface& surface, const BodyClock& clock, kernels::Vector x,
+            kernels::Vector impulse) {
+    impulses_.add(surface.body, clock.motions()[surface.body].to.centre, x, impulse,
+                  surface.velocity);
   }
   /// Over what the slot has touched in this substep. Returns whether it was pushed.
   bool hold(ContactParticles& particles, const BodyClock& clock, std::uint32_t slot) {
-    return response_.hold(scene(particles, clock), near_, slot);
+    const bool is_pushed = contacts_.hold(particles, slot);
+    return response_.hold(scene(particles, clock), near_, slot) || is_pushed;
   }
   /// After a substep, which may be the last of an interval, and again if particles were moved
   /// since. Returns whether particles had to be moved.
@@ -99,7 +130,9 @@ class SurfaceContacts {
   const Misplaced& misplaced() const { return tangles_.misplaced(); }
   /// Since this was last asked: what it took to find pairs and to push them apart, in visits of a
   /// constraint. It is counted, not measured: what is left undone depends on it.
-  double take_visits() { return std::exchange(visits_, 0) + response_.take_visits(); }
+  double take_visits() {
+    return std::exchange(visits_, 0) + response_.take_visits() + contacts_.take_visits();
+  }
   std::size_t bytes() const;
 
  private:
@@ -121,10 +154,12 @@ class SurfaceContacts {
   CandidateSearch search_;
   NearSearch near_search_;
   Response response_;
+  Contacts contacts_;
   Squeeze squeeze_;
   Verification verification_;
   Candidates candidates_;
   Near near_;
+  std::vector<NearContact> layers_;  // scratch
   ContactImpulses impulses_;
   ImpactZones zones_;
   RescueReport failures_;

@@ -225,7 +225,8 @@ void NearSearch::measure_new(const ContactPoints& points, const Candidates& cand
 }
 
 void NearSearch::find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles,
-                      Near& near, Team& team) {
+                      Near& near, std::vector<NearContact>& layers, Team& team) {
+  layers.clear();
   for (std::size_t list = 0; list < kPairLists; ++list) {
     near[list].clear();
     const PairList& pairs = candidates[list];
@@ -247,6 +248,12 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
       const Four four = pairs.points(i);
       settle(points, pair, four, seen);
       if (seen.sight == Sight::far) continue;
+      if (pair.is_within_cloth()) {
+        if (tangles.cross_beside(pair, four)) continue;
+        layers.push_back(
+            {pair, four, seen.look.normal, points.thickness_of(pair), seen.look.distance});
+        continue;
+      }
       const bool is_under = seen.sight == Sight::behind;
       near[list].add(pair, four, (is_under ? -1.0 : 1.0) * seen.look.normal,
                      points.thickness_of(pair), is_under);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/contact/candidates.h"
+#include "engine/contact/contacts.h"
 #include "engine/contact/near_pairs.h"
 #include "engine/contact/tangles.h"
 #include "engine/parallel/team.h"
@@ -65,8 +66,9 @@ class NearSearch {
   float travelled() const { return travelled_; }
   /// Pairs with a surface that the cloth is behind are left out, but for particles that are known
   /// to be inside: the cloth lies beside another surface there.
+  /// layers: those of the cloth with itself.
   void find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles, Near& near,
-            Team& team);
+            std::vector<NearContact>& layers, Team& team);
   const std::array<Distances, kPairLists>& distances() const { return distances_; }
   std::size_t bytes() const;
 

@@ -15,11 +15,8 @@ namespace weft {
 struct NearState {
   double thickness = 0;      // m
   bool is_touching = false;  // in this substep
-  bool is_blow = false;      // of layers, while they touch: they met in this substep
   bool is_linked = false;    // in this substep: local passes know it by its points
   double push = 0;           // m, along the normal, in this substep
-  double given = 0;          // kg m: what layers may take back of it
-  double target = 0;         // m, of layers, while they touch: beyond the thickness
   reference::Grip grip{};
 };
 

@@ -44,6 +44,12 @@ class ContactParticles {
   /// By other particles of the cloth: `by` is a motion, `comes_out` is none. What begins under a
   /// body of a closed form is pushed no deeper into it, and nothing else ends in one.
   virtual void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) = 0;
+  /// Whether a body of a closed form may touch it.
+  virtual bool is_beside_body(std::uint32_t slot) const = 0;
+  /// Contacts have moved it to x: bodies of a closed form hold it, or it follows them.
+  virtual void move_beside_bodies(std::uint32_t slot, kernels::Vector x) = 0;
+  /// By what acts in the substep.
+  virtual void move_to(std::uint32_t slot, kernels::Vector x) = 0;
   /// What moves a particle from now on, until the substep ends, makes it no faster.
   virtual bool is_mended() const = 0;
   /// A change of velocity in this substep counts as so many times its momentum: 1 / b, since forces

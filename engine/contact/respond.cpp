@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/bytes_of.h"
-#include "engine/contact/layers.h"
 #include "engine/contact/look.h"
 
 namespace weft {
@@ -71,7 +70,7 @@ void Response::begin(const ContactScene& scene, const Near& near) {
   for (const std::uint32_t point : asked_) is_asked_[point] = false;
   asked_.clear();
   for (std::size_t list = 0; list < kPairLists; ++list) {
-    for (auto* bits : {&touching_[list], &touching_now_[list], &given_[list]})
+    for (auto* bits : {&touching_[list], &touching_now_[list]})
       bits->assign(near[list].list.blocks.size(), 0);
     for (std::size_t i = 0; i < near[list].list.size(); ++i) {
       for (const std::uint32_t point : near[list].list.points(i)) {
@@ -91,11 +90,10 @@ void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near
   for (NearPairs& pairs : near) {
     for (NearState& state : pairs.states) {
       state.is_touching = state.is_linked = false;
-      state.push = state.given = 0;
+      state.push = 0;
       state.grip = {};
     }
   }
-  for (auto& bits : given_) std::ranges::fill(bits, std::uint16_t{0});
   for (const std::uint32_t slot : linked_) first_link_[slot] = kNoIndex;
   linked_.clear();
   links_.clear();
@@ -112,9 +110,6 @@ simd::PairTouch Response::touch_of(const ContactScene& scene, NearPairs& near,
 
 void Response::find_touching(const ContactScene& scene, Near& near, Team& team) {
   scene.points.read_cloth(scene.particles);
-  if (scene.particles.is_mended()) {  // nothing is taken back then
-    for (auto& bits : given_) std::ranges::fill(bits, std::uint16_t{0});
-  }
   for (std::size_t list = 0; list < kPairLists; ++list) {
     NearPairs& pairs = near[list];
     const simd::PairTouch touch = touch_of(scene, pairs, touching_[list]);
@@ -150,8 +145,7 @@ Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::
   }
   e.normal = e.is_under ? -1.0 * direct : direct;
   e.gap = (e.is_under ? -l : l) - thickness;
-  if (!pair.is_within_cloth())
-    e.yield = scene.yield(e.points, e.nearest.weight, scene.points.later(pair).body);
+  e.yield = scene.yield(e.points, e.nearest.weight, scene.points.later(pair).body);
   if (!(e.gap + e.yield.by < 0) || !is_in_place(pair.kind, e.nearest)) return e;
   const Vector seen = pair.kind == PairKind::edges ? e.normal : direct;
   e.pushes = !is_ghost(scene.points.surfaces(), pair, e.x, e.nearest, seen, tuning::kTouchLean,
@@ -165,15 +159,8 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   Encounter e = meet(scene, near, i);
   near.set_under(i, e.is_under);
   near.set_normal(i, e.normal);
-  const bool takes_back = state.given > 0 && e.gap > state.target;
-  if (!takes_back && !e.pushes) return false;
+  if (!e.pushes) return false;
   read_start(scene.points, e);
-  if (pair.is_within_cloth()) {
-    const bool is_pushed =
-        takes_back ? layers::take_back(scene, e, state) : layers::resist(scene, e, state);
-    scene.points.read_present(e.points, scene.particles);
-    return is_pushed;
-  }
   Vector slip{};
   double weight = 0;  // sum of W w^2
   for (std::size_t k = 0; k < 4; ++k) {
@@ -192,6 +179,74 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   state.push += stop.push;
   push(scene, e, pair, stop, weight, state.grip);
   return true;
+}
+
+/// Pairs that have touched in this substep, and are farther apart than their pushes were to bring
+/// them, come back: what else moved their points would lift them off a surface that bears them.
+void Response::give_back(const ContactScene& scene, Near& near) const {
+  for (const Link& link : links_) {
+    NearPairs& pairs = near[link.list];
+    NearState& state = pairs.states[link.pair];
+    if (!(state.grip.pushed > 0)) continue;
+    scene.points.read_present(pairs.list.points(link.pair), scene.particles);
+    const Encounter e = meet(scene, pairs, link.pair);
+    const double back = std::min(e.gap + e.yield.by, state.grip.pushed);
+    double weight = 0;
+    Vector relative{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double w = e.nearest.weight[k];
+      weight += scene.points.inverse_mass(e.points[k]) * w * w;
+      relative = relative + w * scene.points.present(e.points[k]).v;
+    }
+    if (!(back > 0) || !(weight > 0)) continue;
+    weight = std::max(weight, least_weight(scene.points, e.points));
+    const double slower = std::clamp(dot(relative, e.normal), 0.0, state.grip.stopped);
+    state.grip.pushed -= back;
+    state.grip.stopped -= slower;
+    state.push -= back;
+    Vector impulse{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k] / weight;
+      if (share == 0) continue;
+      ContactParticle p = scene.points.present(e.points[k]);
+      p.x = p.x - (share * back) * e.normal;
+      p.v = p.v - (share * slower) * e.normal;
+      scene.particles.write(e.points[k], p);
+      scene.points.set_present(e.points[k], scene.particles.read(e.points[k]));
+      const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
+      impulse = impulse - (momentum * share * slower) * e.normal;
+    }
+    const ContactSurface& later = scene.points.later(pairs.list.pairs[link.pair]);
+    Vector on_body{}, velocity{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (scene.points.is_of_cloth(e.points[k])) continue;
+      const double w = pairs.list.pairs[link.pair].outward() * e.nearest.weight[k];
+      on_body = on_body - w * e.x[k];
+      velocity = velocity - w * scene.points.present(e.points[k]).v;
+    }
+    scene.impulses.add(later.body, scene.clock.motions()[later.body].to.centre, on_body, impulse,
+                       velocity);
+  }
+}
+
+std::pair<TouchedSurface, Vector> Response::touched_by(const ContactPoints& points,
+                                                       const Near& near, std::uint32_t slot) const {
+  std::pair<TouchedSurface, Vector> touched;
+  double most = 0;
+  for (std::uint32_t link = slot < first_link_.size() ? first_link_[slot] : kNoIndex;
+       link != kNoIndex; link = links_[link].next) {
+    const NearPairs& pairs = near[links_[link].list];
+    const std::size_t i = links_[link].pair;
+    if (!(pairs.states[i].push > most)) continue;
+    most = pairs.states[i].push;
+    const Pair& pair = pairs.list.pairs[i];
+    touched.second = pair.outward() * pairs.normal(i);
+    touched.first = {.body = points.later(pair).body};
+    for (const std::uint32_t point : pairs.list.points(i)) {
+      if (!points.is_of_cloth(point)) touched.first.velocity = points.present(point).v;
+    }
+  }
+  return touched;
 }
 
 /// Moves what can move, and loads the body.
@@ -264,7 +319,6 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
   for (std::size_t list = 0; list < kPairLists; ++list) {
     for (std::size_t block = 0; block < touching_[list].size(); ++block) {
       for_each_lane(block, touching_[list][block], [&](std::size_t i) {
-        if (near[list].list.pairs[i].is_within_cloth()) return;
         const Encounter e = meet(scene, near[list], i);
         const double spared = std::min(e.yield.by, near[list].states[i].thickness);
         if (e.pushes) deepest = std::max(deepest, -e.gap - spared);
@@ -276,8 +330,8 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
 
 std::size_t Response::bytes() const {
   return bytes_of(touching_[0]) + bytes_of(touching_[1]) + bytes_of(touching_now_[0]) +
-         bytes_of(touching_now_[1]) + bytes_of(given_[0]) + bytes_of(given_[1]) + bytes_of(asked_) +
-         is_asked_.capacity() / 8 + bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
+         bytes_of(touching_now_[1]) + bytes_of(asked_) + is_asked_.capacity() / 8 +
+         bytes_of(first_link_) + bytes_of(linked_) + bytes_of(links_);
 }
 
 }  // namespace weft

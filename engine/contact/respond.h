@@ -40,6 +40,14 @@ class Response {
   /// Over all pairs. moved(slot, by): by how much (m).
   template <class Moved>
   void sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved);
+  /// Beside contacts within the cloth: over all pairs once. A pair that has pushed too much
+  /// follows.
+  template <class Moved>
+  void round(const ContactScene& scene, Near& near, Team& team, Moved&& moved);
+  /// Of a particle that touches bodies in this substep: the surface that has pushed it most, and
+  /// its normal.
+  std::pair<TouchedSurface, kernels::Vector> touched_by(const ContactPoints& points,
+                                                        const Near& near, std::uint32_t slot) const;
   /// Over pairs of the slot that have touched in this substep. Returns whether one was pushed.
   bool hold(const ContactScene& scene, Near& near, std::uint32_t slot);
   /// m, by which a pair is nearer than its thickness.
@@ -61,22 +69,16 @@ class Response {
   template <class Moved>
   double push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved);
   /// Returns whether it was pushed apart.
+  void give_back(const ContactScene& scene, Near& near) const;
   static bool resist(const ContactScene& scene, NearPairs& near, std::size_t i);
   static void push(const ContactScene& scene, const Encounter& e, const Pair& pair,
                    const reference::Stop& stop, double weight, reference::Grip& grip);
   void find_touching(const ContactScene& scene, Near& near, Team& team);
-  void note_given(bool has_given, std::size_t list, std::size_t i) {
-    std::uint16_t& bits = given_[list][i / kernels::kLanes];
-    const std::uint32_t bit = 1u << i % kernels::kLanes;
-    bits = static_cast<std::uint16_t>(has_given ? bits | bit : bits & ~bit);
-  }
   void remember(const ContactScene& scene, NearPairs& near, std::size_t list, std::size_t i);
 
   const simd::Table& table_;
   /// Per block, a bit per lane: when a sweep began, and as of late.
   std::array<std::vector<std::uint16_t>, kPairLists> touching_, touching_now_;
-  /// Likewise: pairs of layers that may take back some of their pushes in this substep.
-  std::array<std::vector<std::uint16_t>, kPairLists> given_;
   std::vector<std::uint32_t> asked_;  // points of near pairs
   std::vector<bool> is_asked_;        // per point
   /// Pairs that have touched in this substep, in lists by slot.
@@ -119,24 +121,32 @@ void Response::sweep(const ContactScene& scene, Near& near, Team& team, Moved&& 
 }
 
 template <class Moved>
+void Response::round(const ContactScene& scene, Near& near, Team& team, Moved&& moved) {
+  if (near[0].list.size() + near[1].list.size() == 0) return;
+  find_touching(scene, near, team);
+  for (const Turn turn : {Turn::points, Turn::edges, Turn::points_of_bodies})
+    push_apart(scene, near, turn, moved);
+  give_back(scene, near);
+}
+
+template <class Moved>
 double Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved) {
   const std::size_t list = turn == Turn::edges ? 1 : 0;
   NearPairs& pairs = near[list];
   const simd::PairTouch touch = touch_of(scene, pairs, touching_now_[list]);
   double longest = 0;
   for (std::size_t block = 0; block < touching_[list].size(); ++block) {
-    const std::uint32_t turned = pairs.turned[block], given = given_[list][block];
+    const std::uint32_t turned = pairs.turned[block];
     const std::uint32_t bits =
-        (touching_[list][block] | given) & (turn == Turn::points_of_bodies ? turned : ~turned);
+        touching_[list][block] & (turn == Turn::points_of_bodies ? turned : ~turned);
     if (bits == 0) continue;
     table_.touch_pairs(touch, has_edges(list), block, block + 1);
-    for_each_lane(block, bits & (touching_now_[list][block] | given), [&](std::size_t i) {
+    for_each_lane(block, bits & touching_now_[list][block], [&](std::size_t i) {
       visits_ += tuning::kVisitsOfTouch;
       const double before = pairs.states[i].push;
       if (!resist(scene, pairs, i)) return;
       longest = std::max(longest, pairs.states[i].push - before);
       remember(scene, pairs, list, i);
-      note_given(pairs.states[i].given > 0, list, i);
       for (const std::uint32_t point : pairs.list.points(i)) {
         if (scene.points.is_of_cloth(point)) moved(point, pairs.states[i].push);
       }

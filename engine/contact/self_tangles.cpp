@@ -113,6 +113,22 @@ bool SelfTangles::has_one_at_edge(std::uint32_t edge, std::uint32_t triangle) co
   });
 }
 
+bool SelfTangles::cross_beside(const Pair& pair, const std::array<std::uint32_t, 4>& points) const {
+  if (pairs_.empty()) return false;
+  const std::size_t firsts = pair.kind == PairKind::edges ? 2 : 1;
+  for (std::size_t i = 0; i < firsts; ++i) {
+    for (const std::uint32_t a : cloth_->triangles_at[points[i]]) {
+      if (is_one_[a] == 0) continue;
+      for (std::size_t k = firsts; k < 4; ++k) {
+        for (const std::uint32_t b : cloth_->triangles_at[points[k]]) {
+          if (is_one_[b] != 0 && has(a, b)) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 bool SelfTangles::has_features_of(const Pair& pair) const {
   if (pair.kind == PairKind::point_triangle) {
     return is_one_[pair.second] != 0 &&

@@ -4,6 +4,7 @@
 /// are kept apart.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -25,6 +26,8 @@ class SelfTangles {
   void find_at_start(const ContactPoints& points);
   void find_at_end(const ContactPoints& points, bool has_failed);
   bool leaves_out(const Pair& pair) const { return !pairs_.empty() && has_features_of(pair); }
+  /// Whether faces beside the features cross each other: there a contact has no side.
+  bool cross_beside(const Pair& pair, const std::array<std::uint32_t, 4>& points) const;
   const std::vector<std::uint64_t>& pairs() const { return pairs_; }
   std::size_t bytes() const;
 

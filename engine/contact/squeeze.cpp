@@ -25,7 +25,6 @@ void Squeeze::find_slots(const ContactScene& scene, const Near& near) {
   for (const NearPairs& pairs : near) {
     for (std::size_t i = 0; i < pairs.list.size(); ++i) {
       const Pair& pair = pairs.list.pairs[i];
-      if (pair.is_within_cloth()) continue;
       const Vector normal = pair.outward() * pairs.normal(i);
       for (const std::uint32_t point : pairs.list.points(i)) {
         if (scene.points.is_of_cloth(point))
@@ -80,7 +79,6 @@ void Squeeze::find_features(const ContactScene& scene, const Near& near) {
 void Squeeze::find_pairs(const Near& near) {
   for (std::uint32_t list = 0; list < kPairLists; ++list) {
     for (std::uint32_t i = 0; i < near[list].list.size(); ++i) {
-      if (near[list].list.pairs[i].is_within_cloth()) continue;
       const bool is_between = std::ranges::any_of(
           near[list].list.points(i),
           [&](std::uint32_t point) { return std::ranges::binary_search(slots_, point); });

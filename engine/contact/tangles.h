@@ -50,6 +50,10 @@ class Tangles {
     if (pair.kind == PairKind::edges) return has_edge_[pair.first];
     return pair.b == kClothSurface && has_triangle_[pair.second];
   }
+  /// Whether a contact within the cloth has no side there.
+  bool cross_beside(const Pair& pair, const std::array<std::uint32_t, 4>& points) const {
+    return within_.cross_beside(pair, points);
+  }
   /// Triangles that cross, and particles inside.
   int count() const {
     return static_cast<int>(triangles_.size()) + static_cast<int>(misplaced_.inside.size());

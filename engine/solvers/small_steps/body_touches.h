@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/contact/interval.h"
@@ -17,6 +19,30 @@ inline BodyTouch touch_of(const BodyClock& clock, std::size_t body, std::uint32_
   const kernels::Vector normal = motion.to.turned(gap.normal);
   return {slot, clock.bodies()[body].id, push, x - gap.gap * normal, normal};
 }
+
+/// Of several bodies of a closed form the one that is nearest to x.
+class NearestForm {
+ public:
+  void consider(const BodyClock& clock, std::uint32_t body, kernels::Vector x) {
+    const reference::BodyMotion& motion = clock.motions()[body];
+    const reference::Gap gap = gap_of(motion.solid, motion.thickness, motion.to.from_place(x));
+    if (gap.gap >= least_) return;
+    least_ = gap.gap;
+    body_ = body;
+    normal_ = motion.to.turned(gap.normal);
+  }
+  /// Its surface, and its normal there; none where none was considered.
+  std::pair<TouchedSurface, kernels::Vector> surface(const BodyClock& clock,
+                                                     kernels::Vector x) const {
+    if (body_ == kNoIndex) return {};
+    return {{body_, clock.motions()[body_].velocity_at(x)}, normal_};
+  }
+
+ private:
+  double least_ = std::numeric_limits<double>::infinity();
+  std::uint32_t body_ = kNoIndex;
+  kernels::Vector normal_{};
+};
 
 /// A particle that arrives at a surface goes on as if it had been in flight: its velocity before,
 /// on which BDF2 builds, is forgotten. `impulse` is the momentum that the particle gains by that,

@@ -358,6 +358,7 @@ void LaneStore::keep(Team& team) {
   past_.at_limit = anchors_.at_limit();
   past_.touching = bodies_.touching();
   past_.misplaced = bodies_.meshes().misplaced();
+  bodies_.remember(past_.contacts);
   is_new_ = false;
   const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -368,7 +369,8 @@ void LaneStore::keep(Team& team) {
 std::size_t LaneStore::bytes() const {
   return 11 * bytes_of(u_) + bytes_of(largest_) + bytes_of(aside_) + at_hand_.bytes() +
          links_.bytes() + membrane_.bytes() + bending_.bytes() + anchors_.bytes() +
-         bodies_.bytes() + bytes_of(past_.touching) + past_.misplaced.bytes();
+         bodies_.bytes() + bytes_of(past_.touching) + past_.misplaced.bytes() +
+         past_.contacts.bytes();
 }
 
 }  // namespace weft

@@ -31,10 +31,12 @@ struct SmallStepsPast {
   SimdAnchors::AtLimit at_limit;
   SimdBodies::Touching touching;
   Misplaced misplaced;
+  ContactMemory contacts;
 
   friend void visit_fields(Is<SmallStepsPast> auto& past, auto& archive) {
-    auto& [h, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced] = past;
-    archive(h, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced);
+    auto& [h, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced, contacts] =
+        past;
+    archive(h, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced, contacts);
   }
 };
 

@@ -32,7 +32,7 @@ void LaneStore::begin_bodies(const FramePlan& plan) {
   bodies_.begin(
       plan.bodies, plan.h, plan.substeps, plan.projects(),
       now_.has_past && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
-      plan.contact_start(), past_.misplaced);
+      plan.contact_start(), past_.misplaced, now_.has_past ? &past_.contacts : nullptr);
   if (bodies_.has_meshes()) at_hand_.make_room(model_.slots());
 }
 
@@ -83,7 +83,7 @@ void LaneStore::jolt(std::uint32_t slot, kernels::Vector by) {
     v_[at] += weights_.last.rate * (u_[at] - predicted_[at]);
     predicted_[at] = u_[at];
     v_before_[at] += static_cast<float>(faster);
-    u_before_[at] = u_[at] - 0.5f * h * (v_[at] + v_before_[at]);
+    u_before_[at] = u_[at] - h * v_[at];
     at += layout_.places().stride;
   }
 }

@@ -34,8 +34,8 @@ bool LaneStore::load_past(ArchiveReader& archive) {
       [&](std::size_t size) { return size == layout_.floats; });
   const bool is_past = has_sizes && past.at_limit.size() == past_.at_limit.size() &&
                        are_slots(model_, past.misplaced.inside) &&
-                       are_slots(model_, past.misplaced.crossing) && past.h >= 0 &&
-                       std::isfinite(past.h) && past.since_renewal >= 0 &&
+                       are_slots(model_, past.misplaced.crossing) && past.contacts.is_whole() &&
+                       past.h >= 0 && std::isfinite(past.h) && past.since_renewal >= 0 &&
                        past.since_renewal <= tuning::kRenewal;
   if (!archive.is_done() || !is_past) return false;
   set_past(std::move(past));
@@ -52,6 +52,7 @@ void LaneStore::go_on_from(const LaneStore& other, kernels::VectorsView v,
   past_.since_renewal = layout_.cell == other.layout_.cell ? its.since_renewal : tuning::kRenewal;
   past_.misplaced.clear();
   past_.misplaced.tangled = its.misplaced.tangled;  // triangles keep their numbers
+  past_.contacts = its.contacts;                    // and so do edges
   const YarnPlaces &places = layout_.places(), &its_places = other.layout_.places();
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     std::size_t to = places.of(slot), at = its_places.of(its_slot);
@@ -97,6 +98,7 @@ void LaneStore::turn(const Turn& by) {
     }
   }
   past_.since_renewal = tuning::kRenewal;
+  past_.contacts.turn(by);
 }
 
 }  // namespace weft

@@ -43,10 +43,29 @@ class PointParticles : public ContactParticles {
     push(slot, hand, by, comes_out);
     points_.put_back(slot, hand);
   }
+  bool is_beside_body(std::uint32_t slot) const override {
+    return points_.bodies->is_beside(slot, start(slot), position(slot));
+  }
+  void move_to(std::uint32_t slot, kernels::Vector x) override { points_.move_to(slot, x); }
+  void move_beside_bodies(std::uint32_t slot, kernels::Vector x) override {
+    ParticleAtHand hand = points_.take(slot);
+    follow(slot, hand, x);
+    points_.put_back(slot, hand);
+  }
   bool is_mended() const override { return points_.is_mended(); }
   double momentum_share() const override { return points_.bodies->momentum_share(); }
 
  protected:
+  void follow(std::uint32_t slot, ParticleAtHand& hand, kernels::Vector x) const {
+    hand.shift({}, x - hand.x);
+    hand.clear = 0;
+    ContactParticle at{hand.start, hand.x, hand.settled(points_.rate)};
+    const TouchedSurface surface = points_.bodies->follow(slot, at);
+    if (!surface.is_there()) return;
+    hand.stop(at);
+    hand.clear = 0;
+    if (points_.bodies->begins_to_touch(slot)) points_.arrived.push_back({slot, surface});
+  }
   void push(std::uint32_t slot, ParticleAtHand& hand, kernels::Vector by,
             kernels::Vector comes_out) const {
     const bool stays = dot(comes_out, comes_out) == 0;  // mostly
@@ -103,6 +122,14 @@ class TakenParticles final : public PointParticles<Points> {
   }
   void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) override {
     PointParticles<Points>::push(slot, moving(slot), by, comes_out);
+  }
+  void move_beside_bodies(std::uint32_t slot, kernels::Vector x) override {
+    PointParticles<Points>::follow(slot, moving(slot), x);
+  }
+  void move_to(std::uint32_t slot, kernels::Vector x) override {
+    if (at_hand_.state[slot] == State::elsewhere) return points().move_to(slot, x);
+    ParticleAtHand& particle = moving(slot);
+    particle.shift({}, x - particle.x);
   }
 
  private:

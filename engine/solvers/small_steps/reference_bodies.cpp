@@ -10,9 +10,9 @@ using kernels::Vector;
 
 void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps,
                             bool stands, const Touching& before, ContactStart start,
-                            const Misplaced& misplaced) {
+                            const Misplaced& misplaced, const ContactMemory* contacts) {
   clock_.begin(bodies, h, substeps, stands);
-  meshes_.begin(clock_, start, misplaced);
+  meshes_.begin(clock_, start, misplaced, contacts);
   on_.clear();
   if (empty()) return;
   on_.assign(model_.slots(), false);
@@ -24,12 +24,12 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
 
 void ReferenceBodies::advance(double part, ContactParticles& particles, Team& team) {
   if (empty()) return;
+  momentum_share_ = 1 / part;
   if (clock_.is_interval_over()) clock_.begin_interval(meshes_.interval_for(particles, clock_));
   meshes_.predict(particles, clock_, team);
   clock_.advance();
   room_.begin_substep();
-  meshes_.advance(particles, clock_);
-  momentum_share_ = 1 / part;
+  meshes_.advance(particles, clock_, team);
   grips_.assign(model_.slots() * clock_.bodies().size(), {});
   before_.swap(on_);
   on_.assign(model_.slots(), false);
@@ -75,7 +75,7 @@ double ReferenceBodies::spared_by(std::size_t body, std::uint32_t slot) const {
 void ReferenceBodies::find_standing(ContactParticles& particles, Team& team) {
   if (!clock_.stands()) return;
   meshes_.predict(particles, clock_, team);
-  meshes_.advance(particles, clock_);
+  meshes_.advance(particles, clock_, team);
 }
 
 double ReferenceBodies::clear_of(std::uint32_t slot, Vector start, Vector x) const {
@@ -87,15 +87,17 @@ double ReferenceBodies::clear_of(std::uint32_t slot, Vector start, Vector x) con
   return clear;
 }
 
-TouchedSurface ReferenceBodies::hold(std::uint32_t slot, ContactParticle& at) {
+template <class GripBy, class Look>
+TouchedSurface ReferenceBodies::hold_by(std::uint32_t slot, ContactParticle& at, GripBy&& grip_by,
+                                        Look&& look) {
   TouchedSurface surface;
   if (model_.inverse_mass[slot] == 0) return surface;
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
     if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
     const reference::BodyMotion& body = clock_.motions()[i];
     reference::Grip& grip = grips_[slot * clock_.bodies().size() + i];
-    const reference::Touch touch = find_touch(body, at.start, at.x, radius(slot));
-    const reference::Gripped gripped = reference::grip(body, touch, at.start, at.x, at.v, grip);
+    const reference::Touch touch = look(body, at.start, at.x, radius(slot));
+    const reference::Gripped gripped = grip_by(body, touch, at.start, at.x, at.v, grip);
     if (!gripped.is_touching) continue;
     surface = {static_cast<std::uint32_t>(i), body.velocity_at(gripped.x)};
     const double momentum = model_.mass[slot] * momentum_share_;
@@ -106,12 +108,27 @@ TouchedSurface ReferenceBodies::hold(std::uint32_t slot, ContactParticle& at) {
   return surface;
 }
 
+TouchedSurface ReferenceBodies::hold(std::uint32_t slot, ContactParticle& at) {
+  return hold_by(slot, at, reference::grip, reference::find_touch);
+}
+TouchedSurface ReferenceBodies::follow(std::uint32_t slot, ContactParticle& at) {
+  return hold_by(slot, at, reference::follow, reference::find_touch_or_gap);
+}
+
 Vector ReferenceBodies::kept_out(std::uint32_t slot, Vector start, Vector by) const {
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
     if (clock_.bodies()[i].shape->mesh() == nullptr)
       by = reference::kept_out(clock_.motions()[i], start, by, radius(slot));
   }
   return by;
+}
+
+std::pair<TouchedSurface, Vector> ReferenceBodies::nearest_surface(std::uint32_t, Vector x) const {
+  NearestForm nearest;
+  for (std::uint32_t body = 0; body < clock_.bodies().size(); ++body) {
+    if (clock_.bodies()[body].shape->mesh() == nullptr) nearest.consider(clock_, body, x);
+  }
+  return nearest.surface(clock_, x);
 }
 
 void ReferenceBodies::arrive(const TouchedSurface& surface, Vector x, Vector v, Vector impulse) {

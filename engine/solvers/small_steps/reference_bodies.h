@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/bodies/body_clock.h"
@@ -23,13 +24,22 @@ class ReferenceBodies {
   /// before: who touched a body when the frame before ended; empty: nothing is known of it.
   /// misplaced: likewise, by meshes; start: whether it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-             const Touching& before, ContactStart start, const Misplaced& misplaced);
+             const Touching& before, ContactStart start, const Misplaced& misplaced,
+             const ContactMemory* contacts);
   /// part: of h, by the scheme.
   void advance(double part, ContactParticles& particles, Team& team);
   bool has_meshes() const { return !meshes_.empty(); }
   double take_visits() { return meshes_.take_visits(); }
   SurfaceContacts& meshes() { return meshes_; }
   const SurfaceContacts& meshes() const { return meshes_; }
+  void remember(ContactMemory& memory) { meshes_.remember(memory); }
+  void end_substep(ContactParticles& particles, Team& team) {
+    meshes_.end_substep(particles, team);
+  }
+  /// Whether a body of a closed form may touch it in this substep.
+  bool is_beside(std::uint32_t slot, kernels::Vector start, kernels::Vector x) const {
+    return clear_of(slot, start, x) < meshes_.largest_thickness();
+  }
   const BodyClock& clock() const { return clock_; }
   /// Finds what may touch, where positions are put right and bodies stand.
   void find_standing(ContactParticles& particles, Team& team);
@@ -49,12 +59,20 @@ class ReferenceBodies {
   /// Moves a particle in a substep; v is settled. Returns the surface
   /// that it touches, the last of several, if there is one.
   TouchedSurface hold(std::uint32_t slot, ContactParticle& particle);
+  /// The same of one that contacts within the cloth have moved (reference::follow).
+  TouchedSurface follow(std::uint32_t slot, ContactParticle& particle);
   /// A particle that began there is moved by `by`, without speed: no deeper into bodies.
   kernels::Vector kept_out(std::uint32_t slot, kernels::Vector start, kernels::Vector by) const;
   /// After that: whether it did not in this substep before, and not when the last one ended.
   bool begins_to_touch(std::uint32_t slot);
   /// Whether it has touched one in this substep.
   bool touches(std::uint32_t slot) const { return on_[slot]; }
+  void load_of_mesh(const TouchedSurface& surface, kernels::Vector x, kernels::Vector impulse) {
+    meshes_.load(surface, clock_, x, impulse);
+  }
+  /// Of bodies of a closed form beside the particle the nearest one's surface, and its normal.
+  std::pair<TouchedSurface, kernels::Vector> nearest_surface(std::uint32_t slot,
+                                                             kernels::Vector x) const;
   /// impulse: as add_arrival (body_touches.h) has it.
   void arrive(const TouchedSurface& surface, kernels::Vector x, kernels::Vector v,
               kernels::Vector impulse);
@@ -65,6 +83,9 @@ class ReferenceBodies {
   void read_contacts(const ContactParticles& particles, std::vector<BodyTouch>& contacts) const;
 
  private:
+  template <class GripBy, class Look>
+  TouchedSurface hold_by(std::uint32_t slot, ContactParticle& particle, GripBy&& grip_by,
+                         Look&& look);
   void share_room(ContactParticles& particles);
   void share_among_forms(ContactParticles& particles, const Touching& touching, SubstepMoment when);
   /// m, of its distance from the particle: what there is to share when the substep ends. Beside a

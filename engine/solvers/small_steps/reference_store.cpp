@@ -349,6 +349,7 @@ void ReferenceStore::keep(Team&) {
   past_.at_limit = at_limit_;
   past_.touching = bodies_.touching();
   past_.misplaced = bodies_.meshes().misplaced();
+  bodies_.remember(past_.contacts);
   for (std::size_t i = 0; i < model_.slots(); ++i) past_.moved.set(i, x_[i] - before_[i]);
 }
 
@@ -381,7 +382,7 @@ void ReferenceStore::advance_anchors() {
 void ReferenceStore::begin_bodies(const FramePlan& plan) {
   bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects(),
                 now_.has_past && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
-                plan.contact_start(), past_.misplaced);
+                plan.contact_start(), past_.misplaced, now_.has_past ? &past_.contacts : nullptr);
   if (bodies_.has_meshes()) at_hand_.make_room(model_.slots());
 }
 
@@ -442,7 +443,7 @@ void ReferenceStore::jolt(std::uint32_t i, Vector by) {
   predicted_.set(i, x_[i]);
   v_.set(i, v);
   v_before_.set(i, v_before);
-  before_.set(i, x_[i] - (0.5 * now_.h) * (v + v_before));
+  before_.set(i, x_[i] - now_.h * v);
 }
 
 void ReferenceStore::go_on_from(const ReferenceStore& other, kernels::VectorsView v,
@@ -451,6 +452,7 @@ void ReferenceStore::go_on_from(const ReferenceStore& other, kernels::VectorsVie
   past_.at_limit = other.past_.at_limit;
   past_.misplaced.clear();
   past_.misplaced.tangled = other.past_.misplaced.tangled;  // triangles keep their numbers
+  past_.contacts = other.past_.contacts;                    // and so do edges
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     const Past& its = other.past_;
     ParticlePast past{its.v[its_slot], its.v_before[its_slot], its.moved[its_slot]};
@@ -468,10 +470,11 @@ bool ReferenceStore::load_past(ArchiveReader& archive) {
   Past past;
   archive(past);
   const auto has_slots = [&](const kernels::Vectors& v) { return v.size() == model_.slots(); };
-  const bool is_past =
-      has_slots(past.v) && has_slots(past.v_before) && has_slots(past.moved) &&
-      past.at_limit.size() == at_limit_.size() && are_slots(model_, past.misplaced.inside) &&
-      are_slots(model_, past.misplaced.crossing) && past.h >= 0 && std::isfinite(past.h);
+  const bool is_past = has_slots(past.v) && has_slots(past.v_before) && has_slots(past.moved) &&
+                       past.at_limit.size() == at_limit_.size() &&
+                       are_slots(model_, past.misplaced.inside) &&
+                       are_slots(model_, past.misplaced.crossing) && past.contacts.is_whole() &&
+                       past.h >= 0 && std::isfinite(past.h);
   if (!archive.is_done() || !is_past) return false;
   past_ = std::move(past);
   return true;
@@ -481,6 +484,7 @@ void ReferenceStore::turn(const Turn& by) {
   for (kernels::Vectors* v : {&past_.v, &past_.v_before, &past_.moved}) {
     for (std::size_t i = 0; i < model_.slots(); ++i) v->set(i, by((*v)[i]));
   }
+  past_.contacts.turn(by);
 }
 
 std::size_t ReferenceStore::bytes() const {

@@ -27,10 +27,11 @@ class ReferenceStore {
     std::vector<bool> at_limit;  // per anchor
     ReferenceBodies::Touching touching;
     Misplaced misplaced;
+    ContactMemory contacts;
 
     friend void visit_fields(Is<Past> auto& past, auto& archive) {
-      auto& [h, v, v_before, moved, at_limit, touching, misplaced] = past;
-      archive(h, v, v_before, moved, at_limit, touching, misplaced);
+      auto& [h, v, v_before, moved, at_limit, touching, misplaced, contacts] = past;
+      archive(h, v, v_before, moved, at_limit, touching, misplaced, contacts);
     }
   };
 
@@ -171,6 +172,7 @@ struct ReferenceStore::Points {
   kernels::Vector settled(std::uint32_t slot) const {
     return v[slot] + rate * (led_to[slot] - predicted[slot]);
   }
+  void move_to(std::uint32_t slot, kernels::Vector position) const { x.set(slot, position); }
   /// What has stopped it is no motion: it is predicted to be where it is.
   void put(std::uint32_t slot, kernels::Vector position, kernels::Vector velocity) const {
     x.set(slot, position);

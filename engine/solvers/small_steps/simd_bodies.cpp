@@ -55,9 +55,9 @@ void SimdBodies::make_room() {
 
 void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
                        std::span<const std::uint16_t> before, ContactStart start,
-                       const Misplaced& misplaced) {
+                       const Misplaced& misplaced, const ContactMemory* contacts) {
   clock_.begin(bodies, h, substeps, stands);
-  meshes_.begin(clock_, start, misplaced);
+  meshes_.begin(clock_, start, misplaced, contacts);
   pairs_.clear();
   first_pair_.clear();
   on_.clear();
@@ -74,6 +74,7 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
 void SimdBodies::advance(const simd::Flight& flight, const float* base, double part,
                          ContactParticles& particles, Team& team) {
   if (empty()) return;
+  momentum_share_ = 1 / part;
   if (clock_.is_interval_over()) {
     clock_.begin_interval(meshes_.interval_for(particles, clock_));
     search(flight, base);
@@ -81,11 +82,10 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   meshes_.predict(particles, clock_, team);
   clock_.advance();
   room_.begin_substep();
-  meshes_.advance(particles, clock_);
+  meshes_.advance(particles, clock_, team);
   write_frames();
   before_.swap(on_);
   std::ranges::fill(on_, std::uint16_t{0});
-  momentum_share_ = 1 / part;
   for (simd::BodyGrips& grips : grips_) {
     for (float* lanes : {grips.pushed, grips.held, grips.stopped, grips.slowed, grips.came_out,
                          grips.yields_by, grips.retreat})
@@ -142,7 +142,7 @@ void SimdBodies::share_among_forms(ContactParticles& particles, const Touching& 
 void SimdBodies::find_standing(ContactParticles& particles, Team& team) {
   if (!clock_.stands()) return;
   meshes_.predict(particles, clock_, team);
-  meshes_.advance(particles, clock_);
+  meshes_.advance(particles, clock_, team);
 }
 
 SimdBodies::Extent SimdBodies::extent_of(std::size_t block, int substeps,
@@ -323,7 +323,9 @@ double SimdBodies::clear_of(std::uint32_t slot, Vector start, Vector x) const {
   return clear;
 }
 
-TouchedSurface SimdBodies::hold(std::uint32_t slot, ContactParticle& particle) {
+template <class GripBy, class Look>
+TouchedSurface SimdBodies::hold_by(std::uint32_t slot, ContactParticle& particle, GripBy&& grip_by,
+                                   Look&& look) {
   const std::uint32_t place = layout_.place_of[slot];
   TouchedSurface surface;
   if (place == kNoIndex || pairs_.empty()) return surface;
@@ -332,7 +334,7 @@ TouchedSurface SimdBodies::hold(std::uint32_t slot, ContactParticle& particle) {
     const BodyMotion& body = clock_.motions()[pairs_[i].body];
     const auto number = [](float x) { return static_cast<double>(x); };
     const reference::Touch touch =
-        find_touch(body, particle.start, particle.x, number(layout_.blocks[block].radius[lane]));
+        look(body, particle.start, particle.x, number(layout_.blocks[block].radius[lane]));
     if (!touch.is_near) continue;
     simd::BodyGrips& lanes = grips_[i];
     reference::Grip grip{
@@ -340,7 +342,7 @@ TouchedSurface SimdBodies::hold(std::uint32_t slot, ContactParticle& particle) {
         number(lanes.stopped[lane]),  number(lanes.slowed[lane]),
         number(lanes.came_out[lane]), {number(lanes.yields_by[lane]), number(lanes.retreat[lane])}};
     const reference::Gripped gripped =
-        reference::grip(body, touch, particle.start, particle.x, particle.v, grip);
+        grip_by(body, touch, particle.start, particle.x, particle.v, grip);
     if (!gripped.is_touching) continue;
     lanes.pushed[lane] = static_cast<float>(grip.pushed);
     lanes.held[lane] = static_cast<float>(grip.held);
@@ -366,6 +368,13 @@ TouchedSurface SimdBodies::hold(std::uint32_t slot, ContactParticle& particle) {
   return surface;
 }
 
+TouchedSurface SimdBodies::hold(std::uint32_t slot, ContactParticle& particle) {
+  return hold_by(slot, particle, reference::grip, reference::find_touch);
+}
+TouchedSurface SimdBodies::follow(std::uint32_t slot, ContactParticle& particle) {
+  return hold_by(slot, particle, reference::follow, reference::find_touch_or_gap);
+}
+
 Vector SimdBodies::kept_out(std::uint32_t slot, Vector start, Vector by) const {
   const std::uint32_t place = layout_.place_of[slot];
   if (place == kNoIndex || pairs_.empty()) return by;
@@ -382,6 +391,16 @@ TouchedSurface SimdBodies::touched_by(std::uint32_t slot, Vector x) const {
   std::size_t i = pairs_of_[block];
   while ((touching_[i] >> lane & 1) == 0) ++i;
   return {pairs_[i].body, clock_.motions()[pairs_[i].body].velocity_at(x)};
+}
+
+std::pair<TouchedSurface, Vector> SimdBodies::nearest_surface(std::uint32_t slot, Vector x) const {
+  const std::uint32_t place = layout_.place_of[slot];
+  NearestForm nearest;
+  if (place == kNoIndex || pairs_.empty()) return nearest.surface(clock_, x);
+  const std::size_t block = place / kLanes;
+  for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i)
+    nearest.consider(clock_, pairs_[i].body, x);
+  return nearest.surface(clock_, x);
 }
 
 void SimdBodies::arrive(const TouchedSurface& surface, Vector x, Vector v, Vector impulse) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/bodies/body_clock.h"
@@ -39,7 +40,8 @@ class SimdBodies {
   /// before: of the frame before; empty: nothing is known of it. misplaced: likewise, of meshes;
   /// start: whether it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
-             std::span<const std::uint16_t> before, ContactStart start, const Misplaced& misplaced);
+             std::span<const std::uint16_t> before, ContactStart start, const Misplaced& misplaced,
+             const ContactMemory* contacts);
   /// Of a substep, whose flights are predicted. part: of h, by the scheme.
   void advance(const simd::Flight& flight, const float* base, double part,
                ContactParticles& particles, Team& team);
@@ -61,10 +63,20 @@ class SimdBodies {
   /// As ContactParticles::momentum_share().
   double momentum_share() const { return momentum_share_; }
   const SurfaceContacts& meshes() const { return meshes_; }
+  void remember(ContactMemory& memory) { meshes_.remember(memory); }
+  void end_substep(ContactParticles& particles, Team& team) {
+    meshes_.end_substep(particles, team);
+  }
+  /// Whether a body of a closed form may touch it in this substep.
+  bool is_beside(std::uint32_t slot, kernels::Vector start, kernels::Vector x) const {
+    return clear_of(slot, start, x) < meshes_.largest_thickness();
+  }
   /// m, by which one particle, and its start, may be moved before it can touch one.
   double clear_of(std::uint32_t slot, kernels::Vector start, kernels::Vector x) const;
   /// Of one particle. Returns the surface that it touches, the last of several, if there is one.
   TouchedSurface hold(std::uint32_t slot, ContactParticle& particle);
+  /// The same of one that contacts within the cloth have moved (reference::follow).
+  TouchedSurface follow(std::uint32_t slot, ContactParticle& particle);
   /// A particle that began there is moved by `by`, without speed: no deeper into bodies.
   kernels::Vector kept_out(std::uint32_t slot, kernels::Vector start, kernels::Vector by) const;
   /// After that: whether it did not in this substep before, and not when the last one ended.
@@ -76,6 +88,12 @@ class SimdBodies {
   }
   /// The surface, of several bodies the first one's, that a particle at x touches.
   TouchedSurface touched_by(std::uint32_t slot, kernels::Vector x) const;
+  void load_of_mesh(const TouchedSurface& surface, kernels::Vector x, kernels::Vector impulse) {
+    meshes_.load(surface, clock_, x, impulse);
+  }
+  /// Of bodies of a closed form beside the particle the nearest one's surface, and its normal.
+  std::pair<TouchedSurface, kernels::Vector> nearest_surface(std::uint32_t slot,
+                                                             kernels::Vector x) const;
   /// arrived(slot): it touches a body, and did not when the last substep ended. moved(slot):
   /// it was moved as far as a constraint of its own may be in error. quick(slot): it is to be held
   /// by itself.
@@ -127,6 +145,9 @@ class SimdBodies {
   std::array<float, kernels::kLanes> spared_by(std::size_t block, std::uint32_t body) const;
   /// Adds what grips have given to impulses_.
   void collect_impulses();
+  template <class GripBy, class Look>
+  TouchedSurface hold_by(std::uint32_t slot, ContactParticle& particle, GripBy&& grip_by,
+                         Look&& look);
   void write_frames();
   simd::BodyHold hold_of(const simd::Flight& flight, const float* base, float rate) const;
 

@@ -257,10 +257,33 @@ class StoredSmallSteps final : public SmallSteps {
       linkage_.for_each_arrival(store_.points(false),
                                 [&](std::uint32_t slot) { now_.arrived.push_back({slot}); });
     }
+    if (store_.bodies().has_meshes()) {
+      const Points points = store_.points(true);
+      PointParticles particles(points);
+      store_.bodies().end_substep(particles, team);
+    }
     take_jolts(now_.jolts, [&](const Jolt& jolt) {
-      if (now_.is_free(jolt.slot)) store_.jolt(jolt.slot, jolt.by);
+      if (now_.is_free(jolt.slot)) store_.jolt(jolt.slot, jolt.by - held_by_body(jolt));
     });
     take_arrivals(now_.arrived, [&](const Arrival& arrival) { begin_at_limit(arrival); });
+  }
+  /// What bodies do not let in of a jolt.
+  kernels::Vector held_by_body(const Jolt& jolt) {
+    auto& bodies = store_.bodies();
+    if (bodies.empty()) return {};
+    const kernels::Vector x = store_.points(false).position(jolt.slot);
+    const double counts = model_.mass[jolt.slot] * now_.next_formula.share_of_past();
+    if (const auto [surface, normal] = bodies.meshes().touched_by(jolt.slot); surface.is_there()) {
+      const kernels::Vector into = std::min(0.0, dot(normal, jolt.by)) * normal;
+      bodies.load_of_mesh(surface, x, counts * into);
+      return into;
+    }
+    if (!bodies.touches(jolt.slot)) return {};
+    const auto [surface, normal] = bodies.nearest_surface(jolt.slot, x);
+    if (!surface.is_there()) return {};
+    const kernels::Vector into = std::min(0.0, dot(normal, jolt.by)) * normal;
+    bodies.arrive(surface, x, store_.velocity(jolt.slot), counts * into);
+    return into;
   }
   /// The velocity is that at the end of this substep, and the past a free flight that leads to it.
   void begin_at_limit(const Arrival& arrival) {

@@ -41,6 +41,9 @@ class Particles final : public ContactParticles {
   void stop(std::uint32_t, const TouchedSurface&) override {}
   void jolt(std::uint32_t, Vector) override {}
   void push(std::uint32_t, Vector, Vector) override {}
+  bool is_beside_body(std::uint32_t) const override { return false; }
+  void move_beside_bodies(std::uint32_t, Vector) override {}
+  void move_to(std::uint32_t, Vector) override {}
   bool is_mended() const override { return false; }
   double momentum_share() const override { return 1; }
 };

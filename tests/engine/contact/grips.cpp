@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/support/body_meshes.h"
 #include "tests/support/clothes.h"
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"

@@ -465,8 +465,8 @@ TEST_CASE("the format is the one of its version") {
   }
   CHECK(state[8] == std::byte{6});
   CHECK(model[8] == std::byte{4});
-  CHECK(state.size() == 11139);
-  CHECK(checksum(state) == 0x04eaed5db97f424e);
+  CHECK(state.size() == 11163);
+  CHECK(checksum(state) == 0x3516a11e2d99aeab);
   CHECK(model.size() == 731);
   CHECK(checksum(model) == 0x6ec0b4eca9cd8e27);
 }

@@ -1,0 +1,148 @@
+/// Contacts of the cloth with itself: constraints with multipliers, in lanes (the law stands in
+/// kernels/reference/contacts.h).
+///
+/// Pairs that may touch in an interval stand in blocks by colours. No point is twice in a colour,
+/// so that threads may do its blocks, in any order. When a substep begins normals are frozen, and
+/// multipliers of the last substep act again. After the cloth was swept, rounds visit pairs that
+/// touch.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "engine/contact/contact_memory.h"
+#include "engine/contact/features.h"
+#include "engine/contact/particles.h"
+#include "engine/contact/points.h"
+#include "engine/parallel/team.h"
+
+namespace weft {
+
+/// A pair that may touch in an interval.
+struct NearContact {
+  Pair pair{};
+  std::array<std::uint32_t, 4> points{};
+  kernels::Vector normal{};  // from the second feature to the first
+  double thickness = 0;      // m
+  double distance = 0;       // m
+};
+
+class Contacts {
+ public:
+  explicit Contacts(const simd::Table& table) : kernels_(*table.contacts) {}
+
+  /// Of a frame: multipliers begin with these, or with none.
+  void begin(const ContactMemory* memory);
+  /// Of an interval. near: in any order that depends on the state alone.
+  void find(const ContactPoints& points, std::vector<NearContact>& near);
+  bool empty() const { return blocks_.empty(); }
+  /// Where a substep of h is predicted. stands: positions are put right, and what is near comes out
+  /// at once.
+  void begin_substep(const ContactPoints& points, ContactParticles& particles, double h,
+                     bool stands, Team& team);
+  /// After a sweep: rounds, each of which visits what touches. Between them bodies may move
+  /// particles, too.
+  void begin_rounds(ContactParticles& particles, Team& team);
+  void round(ContactParticles& particles, Team& team);
+  /// moved(slot, by): by how much (m) contacts have moved it.
+  template <class Moved>
+  void end_rounds(Moved&& moved) const;
+  /// Over what touches at the slot. Returns whether something was moved.
+  bool hold(ContactParticles& particles, std::uint32_t slot);
+  /// The past of points that contacts have pushed is changed as their velocities were. Features
+  /// that met in the substep had a blow, which is no force that goes on.
+  void end_substep(ContactParticles& particles, Team& team);
+  /// Writes the multipliers that the next frame begins with.
+  void remember(ContactMemory& memory);
+  int count_touching() const;
+  /// Since this was last asked, in visits of a constraint.
+  double take_visits() { return std::exchange(visits_, 0); }
+  std::size_t bytes() const;
+
+ private:
+  static constexpr std::size_t kColours = 64;
+  struct Colour {
+    std::uint32_t first = 0, last = 0;  // blocks
+  };
+  /// Of a point, a contact that may push, in a list.
+  struct Link {
+    std::uint32_t point = 0, contact = 0, next = 0;
+  };
+  struct Known {
+    std::uint64_t key = 0;
+    std::array<float, 4> multiplier{};
+  };
+  struct Multiplier {
+    float push = 0;
+    std::array<float, 3> hold{};
+  };
+  void number_points(const ContactPoints& points, std::span<const NearContact> near);
+  void put_in_order(std::vector<NearContact>& near);
+  void colour(const ContactPoints& points, std::span<const NearContact> near);
+  void put_blocks(const ContactPoints& points, std::span<const NearContact> near,
+                  std::span<const std::uint32_t> contacts);
+  void link_active();
+  bool visit(ContactParticles& particles, std::size_t i);
+  void put(const ContactPoints& points, const NearContact& contact, std::size_t block,
+           std::size_t lane);
+  void find_active(float spare, Team& team);
+  void read_moves(const ContactParticles& particles);
+  void write_moves(ContactParticles& particles);
+  void visit_active(Team& team);
+  void set_aside();
+  void take_back_aside();
+  void start_active();
+  simd::ContactSolve solving() { return {blocks_.data(), moves_.data()}; }
+  kernels::Vector move(std::size_t i) const {
+    return {double{moves_[4 * i]}, double{moves_[4 * i + 1]}, double{moves_[4 * i + 2]}};
+  }
+  void set_move(std::size_t i, kernels::Vector to) {
+    moves_[4 * i] = static_cast<float>(to.x);
+    moves_[4 * i + 1] = static_cast<float>(to.y);
+    moves_[4 * i + 2] = static_cast<float>(to.z);
+  }
+  bool is_blow(const simd::ContactBlock& block, std::size_t lane) const {
+    return block.gap[lane] > static_cast<float>(tuning::kMeeting) * block.thickness[lane];
+  }
+
+  const simd::ContactKernels& kernels_;
+  kernels::AlignedVector<simd::ContactBlock> blocks_;  // points beside triangles, then edges
+  std::size_t edges_from_ = 0;                         // blocks
+  std::vector<std::uint64_t> keys_;                    // per block and lane; kNoKey: unused
+  std::vector<Colour> colours_;
+  std::vector<std::uint32_t> points_;             // that contacts have, then those beside these
+  std::size_t moving_ = 0;                        // of points_, that contacts have
+  std::vector<std::uint32_t> number_of_;          // per point, in points_
+  std::vector<kernels::Vector> from_;             // where moves begin
+  kernels::AlignedVector<float> places_, moves_;  // quads
+  std::vector<double> moved_by_;                  // m, per point that contacts have: in rounds
+  std::vector<std::uint8_t> is_beside_body_;      // per point of points_
+  std::vector<std::uint16_t> active_;             // per block, a bit per lane
+  std::vector<std::uint32_t> active_blocks_;
+  std::vector<Colour> active_colours_;  // ranges of active_blocks_
+  std::vector<Link> links_;
+  std::vector<std::uint32_t> first_link_;  // per point that contacts have
+  bool are_linked_ = false;                // of the active blocks
+  std::vector<NearContact> in_order_;      // scratch
+  ContactMemory memory_;
+  bool is_aside_ = false;             // positions are mended: these multipliers are no forces
+  std::vector<Multiplier> aside_;     // per block and lane
+  std::vector<std::uint64_t> taken_;  // scratch: colours, per point
+  std::vector<std::uint32_t> waiting_, by_colour_;  // scratch: contacts
+  std::vector<std::uint8_t> colour_of_;             // likewise, per contact that waits
+  std::vector<Known> known_;                        // likewise
+  double bh_ = 0, visits_ = 0;
+  bool is_frozen_ = false;
+  bool has_ended_ = false;  // the present substep
+};
+
+template <class Moved>
+void Contacts::end_rounds(Moved&& moved) const {
+  for (std::size_t i = 0; i < moving_; ++i)
+    if (moved_by_[i] > 0) moved(points_[i], moved_by_[i]);
+}
+
+}  // namespace weft
