@@ -112,8 +112,11 @@ void Contacts::number_points(const ContactPoints& points, std::span<const NearCo
 void Contacts::put_in_order(std::vector<NearContact>& near) {
   constexpr std::size_t kBins = 16;
   const auto bin_of = [](const NearContact& contact) {
-    const auto bin = static_cast<std::size_t>(4 * contact.distance / contact.thickness);
-    return (is_edges(contact) ? kBins : 0) + std::min(bin, kBins - 1);
+    const double quarters = 4 * contact.distance;  // of thicknesses, which may be 0
+    const bool is_far = !(quarters < (kBins - 1) * contact.thickness);
+    const std::size_t bin =
+        is_far ? kBins - 1 : static_cast<std::size_t>(quarters / contact.thickness);
+    return (is_edges(contact) ? kBins : 0) + bin;
   };
   std::array<std::size_t, 2 * kBins + 1> first{};
   for (const NearContact& contact : near) ++first[bin_of(contact) + 1];
