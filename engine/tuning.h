@@ -261,13 +261,11 @@ inline constexpr double kLocalVisitOfTriangle = 20;
 /// Where at least as many substeps were given as automatic ones would be: the time beyond their
 /// sweeps, in sweeps for each. Less leaves more to later frames; more takes longer.
 inline constexpr double kPassesBeyond = 6;
-/// The same of contacts with meshes: to look at a pair in lanes, and in double (12 and 300 ns).
-/// They count by a share of that where a frame is put right: all of it would leave a garment in the
-/// air that is put on, none of it lets a hopeless one take 20 s.
+/// The same of contacts: to look at a pair or to visit a contact in lanes, and in double (12 and
+/// 300 ns). They count by a share of that where a frame is put right: all of it would leave a
+/// garment in the air that is put on, none of it lets a hopeless one take 20 s.
 inline constexpr double kVisitsOfLook = 2;
 inline constexpr double kVisitsOfTouch = 50;
-/// A visit of a contact in lanes, likewise.
-inline constexpr double kVisitsOfContact = 2;
 inline constexpr double kContactShare = 0.25;
 /// The largest number of visits of local passes in a substep and in a round, in units of all
 /// constraints. Fewer leave more to later substeps; more are spent in vain on what is

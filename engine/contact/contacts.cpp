@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -50,39 +49,60 @@ std::array<std::uint32_t, 4> beside(const TriangleSurface& surface, const NearCo
 }  // namespace
 
 void Contacts::begin(const ContactMemory* memory) {
-  memory != nullptr ? void(memory_ = *memory) : memory_.clear();
+  memory_.clear();
+  if (memory != nullptr) memory_ = *memory;
+  give_ = memory_.give;
+  clear();
+}
+
+void Contacts::clear() {
   blocks_.clear();
   keys_.clear();
   colours_.clear();
   active_blocks_.clear();
   active_colours_.clear();
-  is_frozen_ = is_aside_ = false;
+  is_begun_ = is_aside_ = false;
+}
+
+Contacts::Multiplier Contacts::multiplier(std::size_t contact) const {
+  const simd::ContactBlock& block = blocks_[contact / kLanes];
+  const std::size_t lane = contact % kLanes;
+  return {block.push[lane], block.hold.x[lane], block.hold.y[lane], block.hold.z[lane]};
+}
+
+void Contacts::set_multiplier(std::size_t contact, const Multiplier& to) {
+  simd::ContactBlock& block = blocks_[contact / kLanes];
+  const std::size_t lane = contact % kLanes;
+  block.push[lane] = to[0];
+  block.hold.x[lane] = to[1];
+  block.hold.y[lane] = to[2];
+  block.hold.z[lane] = to[3];
+}
+
+/// It met in the substep.
+bool Contacts::is_blow(std::size_t contact) const {
+  const simd::ContactBlock& block = blocks_[contact / kLanes];
+  const std::size_t lane = contact % kLanes;
+  return block.gap[lane] > static_cast<float>(tuning::kMeeting) * block.thickness[lane];
 }
 
 void Contacts::remember(ContactMemory& memory) {
-  if (blocks_.empty() && !is_frozen_) {
+  if (blocks_.empty()) {
     memory = memory_;
     return;
   }
   memory.clear();
-  memory.give = bh_ * bh_;
+  memory.give = give_;
   known_.clear();
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    const simd::ContactBlock& block = blocks_[i / kLanes];
-    const std::size_t lane = i % kLanes;
     if (keys_[i] == kNoKey) continue;
-    const Multiplier m =
-        is_aside_ ? aside_[i]
-                  : Multiplier{block.push[lane],
-                               {block.hold.x[lane], block.hold.y[lane], block.hold.z[lane]}};
-    if (m.push > 0 && !is_blow(block, lane))
-      known_.push_back({keys_[i], {m.push, m.hold[0], m.hold[1], m.hold[2]}});
+    const Multiplier m = is_aside_ ? aside_[i] : multiplier(i);
+    if (m[0] > 0 && !is_blow(i)) known_.push_back({keys_[i], m});
   }
   std::ranges::sort(known_, {}, &Known::key);
-  for (const Known& one : known_) {
-    memory.keys.push_back(one.key);
-    memory.multipliers.insert(memory.multipliers.end(), one.multiplier.begin(),
-                              one.multiplier.end());
+  for (const auto& [key, m] : known_) {
+    memory.keys.push_back(key);
+    memory.multipliers.insert(memory.multipliers.end(), m.begin(), m.end());
   }
 }
 
@@ -128,23 +148,19 @@ void Contacts::put_in_order(std::vector<NearContact>& near) {
 
 void Contacts::find(const ContactPoints& points, std::vector<NearContact>& near) {
   remember(memory_);
+  clear();
   put_in_order(near);
   number_points(points, near);
-  blocks_.clear();
-  keys_.clear();
-  colours_.clear();
   const auto first_edges = std::ranges::partition_point(near, std::not_fn(is_edges));
   const auto points_count = static_cast<std::size_t>(first_edges - near.begin());
   colour(points, std::span(near).first(points_count));
   edges_from_ = blocks_.size();
   colour(points, std::span(near).subspan(points_count));
+  memory_.clear();  // pairs that are far have come apart
   active_.assign(blocks_.size(), 0);
-  active_blocks_.clear();
-  active_colours_.clear();
   links_.clear();
   first_link_.assign(moving_, kNoIndex);
   are_linked_ = false;
-  is_frozen_ = is_aside_ = false;
 }
 
 /// A colour is the lowest one that none of the points has. A contact that finds none among 64 has
@@ -220,10 +236,7 @@ void Contacts::put(const ContactPoints& points, const NearContact& contact, std:
   const auto known = std::ranges::lower_bound(memory_.keys, key);
   if (known == memory_.keys.end() || *known != key) return;
   const float* m = &memory_.multipliers[4 * static_cast<std::size_t>(known - memory_.keys.begin())];
-  to.push[lane] = m[0];
-  to.hold.x[lane] = m[1];
-  to.hold.y[lane] = m[2];
-  to.hold.z[lane] = m[3];
+  set_multiplier(kLanes * block + lane, {m[0], m[1], m[2], m[3]});
 }
 
 void Contacts::begin_substep(const ContactPoints& points, ContactParticles& particles, double h,
@@ -244,9 +257,8 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
     moves_[4 * i + 3] = places_[4 * i + 3];
     is_beside_body_[i] = particles.is_beside_body(slot) ? 1 : 0;
   }
-  const double bh = stands ? 1 : h / particles.momentum_share();
-  const double before = is_frozen_ ? bh_ * bh_ : memory_.give;
-  const float warm = stands || before == 0 ? 0.f : static_cast<float>(bh * bh / before);
+  const double bh = h / particles.momentum_share(), before = std::exchange(give_, bh * bh);
+  const float warm = stands || before == 0 ? 0.f : static_cast<float>(give_ / before);
   const simd::ContactFreeze freeze{
       .blocks = blocks_.data(),
       .places = places_.data(),
@@ -259,9 +271,8 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
   team.for_each_share(blocks_.size() - edges_from_, [&](std::size_t first, std::size_t last) {
     kernels_.freeze(freeze, true, edges_from_ + first, edges_from_ + last);
   });
-  is_frozen_ = true;
-  has_ended_ = is_aside_ = false;
-  bh_ = bh;
+  is_begun_ = true;
+  is_aside_ = false;
   if (warm == 0) return;
   read_moves(particles);
   find_active(-std::numeric_limits<float>::infinity(), team);
@@ -316,7 +327,7 @@ void Contacts::visit_active(Team& team) {
       });
     }
   }
-  visits_ += tuning::kVisitsOfContact * static_cast<double>(kLanes * active_blocks_.size());
+  visits_ += tuning::kVisitsOfLook * static_cast<double>(kLanes * active_blocks_.size());
 }
 
 void Contacts::begin_rounds(ContactParticles& particles, Team& team) {
@@ -347,9 +358,7 @@ void Contacts::set_aside() {
   if (std::exchange(is_aside_, true)) return;
   aside_.resize(keys_.size());
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    const simd::ContactBlock& block = blocks_[i / kLanes];
-    const std::size_t lane = i % kLanes;
-    aside_[i] = {block.push[lane], {block.hold.x[lane], block.hold.y[lane], block.hold.z[lane]}};
+    aside_[i] = multiplier(i);
   }
 }
 
@@ -403,14 +412,12 @@ bool Contacts::visit(ContactParticles& particles, std::size_t i) {
     contact.inverse_mass[k] = double{moves_[4 * number + 3]};
     x[k] = particles.position(points_[number]) - from_[number];
   }
-  visits_ += tuning::kVisitsOfContact;
+  visits_ += tuning::kVisitsOfLook;
   const std::array<Vector, 4> before = x;
   contact.visit(x);
   if (x == before) return false;
-  block.push[lane] = static_cast<float>(contact.push);
-  block.hold.x[lane] = static_cast<float>(contact.hold.x);
-  block.hold.y[lane] = static_cast<float>(contact.hold.y);
-  block.hold.z[lane] = static_cast<float>(contact.hold.z);
+  set_multiplier(i, {static_cast<float>(contact.push), static_cast<float>(contact.hold.x),
+                     static_cast<float>(contact.hold.y), static_cast<float>(contact.hold.z)});
   for (std::size_t k = 0; k < 4; ++k) {
     const std::uint32_t number = block.point[k][lane];
     if (!(contact.inverse_mass[k] > 0)) continue;
@@ -427,36 +434,23 @@ bool Contacts::visit(ContactParticles& particles, std::size_t i) {
 /// order. (BDF2 damps what multipliers that act again make of a stack 20 times less.) Features that
 /// met in the substep had a blow, which is no force that goes on.
 void Contacts::end_substep(ContactParticles& particles, Team& team) {
-  if (empty() || !is_frozen_ || std::exchange(has_ended_, true)) return;
-  if (is_aside_) take_back_aside();
+  if (!std::exchange(is_begun_, false)) return;
+  if (std::exchange(is_aside_, false)) {
+    for (std::size_t i = 0; i < keys_.size(); ++i) set_multiplier(i, aside_[i]);
+  }
   for (std::size_t i = 0; i < 4 * moving_; ++i) {
     if (i % 4 != 3) moves_[i] = 0;
   }
   find_active(-std::numeric_limits<float>::infinity(), team);
   start_active();
-  const double rate = 1 / bh_;
+  const double rate = 1 / std::sqrt(give_);
   for (std::size_t i = 0; i < moving_; ++i) {
     const Vector by = rate * move(i);
     if (!(by == Vector{})) particles.jolt(points_[i], by);
   }
-  for (const std::uint32_t i : active_blocks_) {
-    simd::ContactBlock& block = blocks_[i];
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if (is_blow(block, lane))
-        block.push[lane] = block.hold.x[lane] = block.hold.y[lane] = block.hold.z[lane] = 0;
-    }
-  }
-}
-
-void Contacts::take_back_aside() {
-  is_aside_ = false;
-  for (std::size_t i = 0; i < keys_.size(); ++i) {
-    simd::ContactBlock& block = blocks_[i / kLanes];
-    const std::size_t lane = i % kLanes;
-    block.push[lane] = aside_[i].push;
-    block.hold.x[lane] = aside_[i].hold[0];
-    block.hold.y[lane] = aside_[i].hold[1];
-    block.hold.z[lane] = aside_[i].hold[2];
+  for (const std::uint32_t block : active_blocks_) {
+    for (std::size_t i = kLanes * block; i < kLanes * (block + 1); ++i)
+      if (is_blow(i)) set_multiplier(i, {});
   }
 }
 

@@ -71,14 +71,15 @@ class Contacts {
   struct Link {
     std::uint32_t point = 0, contact = 0, next = 0;
   };
+  using Multiplier = std::array<float, 4>;  // ContactMemory::multipliers
   struct Known {
     std::uint64_t key = 0;
-    std::array<float, 4> multiplier{};
+    Multiplier multiplier{};
   };
-  struct Multiplier {
-    float push = 0;
-    std::array<float, 3> hold{};
-  };
+  void clear();
+  Multiplier multiplier(std::size_t contact) const;
+  void set_multiplier(std::size_t contact, const Multiplier& to);
+  bool is_blow(std::size_t contact) const;
   void number_points(const ContactPoints& points, std::span<const NearContact> near);
   void put_in_order(std::vector<NearContact>& near);
   void colour(const ContactPoints& points, std::span<const NearContact> near);
@@ -93,7 +94,6 @@ class Contacts {
   void write_moves(ContactParticles& particles);
   void visit_active(Team& team);
   void set_aside();
-  void take_back_aside();
   void start_active();
   simd::ContactSolve solving() { return {blocks_.data(), moves_.data()}; }
   kernels::Vector move(std::size_t i) const {
@@ -103,9 +103,6 @@ class Contacts {
     moves_[4 * i] = static_cast<float>(to.x);
     moves_[4 * i + 1] = static_cast<float>(to.y);
     moves_[4 * i + 2] = static_cast<float>(to.z);
-  }
-  bool is_blow(const simd::ContactBlock& block, std::size_t lane) const {
-    return block.gap[lane] > static_cast<float>(tuning::kMeeting) * block.thickness[lane];
   }
 
   const simd::ContactKernels& kernels_;
@@ -134,9 +131,9 @@ class Contacts {
   std::vector<std::uint32_t> waiting_, by_colour_;  // scratch: contacts
   std::vector<std::uint8_t> colour_of_;             // likewise, per contact that waits
   std::vector<Known> known_;                        // likewise
-  double bh_ = 0, visits_ = 0;
-  bool is_frozen_ = false;
-  bool has_ended_ = false;  // the present substep
+  double give_ = 0;        // s^2: (b h)^2 of the substep that multipliers are of
+  bool is_begun_ = false;  // a substep
+  double visits_ = 0;
 };
 
 template <class Moved>

@@ -121,6 +121,24 @@ void Response::find_touching(const ContactScene& scene, Near& near, Team& team) 
 
 namespace {
 
+/// 1/kg: the sum of W w^2, or the least that counts; 0 where nothing moves.
+double weight_of(const ContactScene& scene, const Encounter& e) {
+  double weight = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double w = e.nearest.weight[k];
+    weight += scene.points.inverse_mass(e.points[k]) * w * w;
+  }
+  return weight > 0 ? std::max(weight, least_weight(scene.points, e.points)) : 0;
+}
+
+/// Of the first feature beside the second.
+Vector relative_velocity(const ContactScene& scene, const Encounter& e) {
+  Vector relative{};
+  for (std::size_t k = 0; k < 4; ++k)
+    relative = relative + e.nearest.weight[k] * scene.points.present(e.points[k]).v;
+  return relative;
+}
+
 /// As it was last read.
 void read_start(const ContactPoints& points, Encounter& e) {
   for (std::size_t k = 0; k < 4; ++k) e.start[k] = points.present(e.points[k]).start;
@@ -161,15 +179,9 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   near.set_normal(i, e.normal);
   if (!e.pushes) return false;
   read_start(scene.points, e);
+  if (!(weight_of(scene, e) > 0)) return false;
   Vector slip{};
-  double weight = 0;  // sum of W w^2
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double w = e.nearest.weight[k];
-    slip = slip + w * (e.x[k] - e.start[k]);
-    weight += scene.points.inverse_mass(e.points[k]) * w * w;
-  }
-  if (!(weight > 0)) return false;
-  weight = std::max(weight, least_weight(scene.points, e.points));
+  for (std::size_t k = 0; k < 4; ++k) slip = slip + e.nearest.weight[k] * (e.x[k] - e.start[k]);
   state.grip.yield = e.yield;
   const ContactSurface& later = scene.points.later(pair);
   const reference::Stop stop =
@@ -177,55 +189,32 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   if (!(stop.push > 0)) return false;
   state.is_touching = true;
   state.push += stop.push;
-  push(scene, e, pair, stop, weight, state.grip);
+  push(scene, e, pair, stop,
+       reference::slow(e.normal, relative_velocity(scene, e), later.friction, scene.clock.h(),
+                       state.grip));
   return true;
 }
 
 /// Pairs that have touched in this substep, and are farther apart than their pushes were to bring
 /// them, come back: what else moved their points would lift them off a surface that bears them.
 void Response::give_back(const ContactScene& scene, Near& near) const {
-  for (const Link& link : links_) {
-    NearPairs& pairs = near[link.list];
-    NearState& state = pairs.states[link.pair];
-    if (!(state.grip.pushed > 0)) continue;
-    scene.points.read_present(pairs.list.points(link.pair), scene.particles);
-    const Encounter e = meet(scene, pairs, link.pair);
-    const double back = std::min(e.gap + e.yield.by, state.grip.pushed);
-    double weight = 0;
-    Vector relative{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      const double w = e.nearest.weight[k];
-      weight += scene.points.inverse_mass(e.points[k]) * w * w;
-      relative = relative + w * scene.points.present(e.points[k]).v;
-    }
+  for (std::size_t k = 0; k < links_.size(); ++k) {
+    const auto [list, i, next] = links_[k];
+    if (k > 0 && links_[k - 1].list == list && links_[k - 1].pair == i)
+      continue;  // by another point
+    reference::Grip& grip = near[list].states[i].grip;
+    if (!(grip.pushed > 0)) continue;
+    scene.points.read_present(near[list].list.points(i), scene.particles);
+    const Encounter e = meet(scene, near[list], i);
+    const double back = std::min(e.gap + e.yield.by, grip.pushed), weight = weight_of(scene, e);
     if (!(back > 0) || !(weight > 0)) continue;
-    weight = std::max(weight, least_weight(scene.points, e.points));
-    const double slower = std::clamp(dot(relative, e.normal), 0.0, state.grip.stopped);
-    state.grip.pushed -= back;
-    state.grip.stopped -= slower;
-    state.push -= back;
-    Vector impulse{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k] / weight;
-      if (share == 0) continue;
-      ContactParticle p = scene.points.present(e.points[k]);
-      p.x = p.x - (share * back) * e.normal;
-      p.v = p.v - (share * slower) * e.normal;
-      scene.particles.write(e.points[k], p);
-      scene.points.set_present(e.points[k], scene.particles.read(e.points[k]));
-      const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
-      impulse = impulse - (momentum * share * slower) * e.normal;
-    }
-    const ContactSurface& later = scene.points.later(pairs.list.pairs[link.pair]);
-    Vector on_body{}, velocity{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (scene.points.is_of_cloth(e.points[k])) continue;
-      const double w = pairs.list.pairs[link.pair].outward() * e.nearest.weight[k];
-      on_body = on_body - w * e.x[k];
-      velocity = velocity - w * scene.points.present(e.points[k]).v;
-    }
-    scene.impulses.add(later.body, scene.clock.motions()[later.body].to.centre, on_body, impulse,
-                       velocity);
+    const double apart = dot(relative_velocity(scene, e), e.normal),
+                 slower = std::clamp(apart, 0.0, grip.stopped);
+    grip.pushed -= back;
+    grip.stopped -= slower;
+    near[list].states[i].push -= back;
+    push(scene, e, near[list].list.pairs[i], {.push = -back, .by = -back * e.normal},
+         {.change = -slower * e.normal});
   }
 }
 
@@ -251,20 +240,17 @@ std::pair<TouchedSurface, Vector> Response::touched_by(const ContactPoints& poin
 
 /// Moves what can move, and loads the body.
 void Response::push(const ContactScene& scene, const Encounter& e, const Pair& pair,
-                    const reference::Stop& stop, double weight, reference::Grip& grip) {
+                    const reference::Stop& stop, const reference::Slowed& slow) {
   const ContactSurface& later = scene.points.later(pair);
+  const double weight = weight_of(scene, e);
   TouchedSurface surface{.body = later.body};
-  Vector relative{}, on_body{};
+  Vector on_body{};
   for (std::size_t k = 0; k < 4; ++k) {
-    const double w = e.nearest.weight[k], outward = pair.outward() * w;
-    const Vector v = scene.points.present(e.points[k]).v;
-    relative = relative + w * v;
     if (scene.points.is_of_cloth(e.points[k])) continue;
-    surface.velocity = surface.velocity - outward * v;
+    const double outward = pair.outward() * e.nearest.weight[k];
+    surface.velocity = surface.velocity - outward * scene.points.present(e.points[k]).v;
     on_body = on_body - outward * e.x[k];
   }
-  const reference::Slowed slow =
-      reference::slow(e.normal, relative, later.friction, scene.clock.h(), grip);
   Vector impulse{};
   for (std::size_t k = 0; k < 4; ++k) {
     const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k];

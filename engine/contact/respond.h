@@ -72,7 +72,7 @@ class Response {
   void give_back(const ContactScene& scene, Near& near) const;
   static bool resist(const ContactScene& scene, NearPairs& near, std::size_t i);
   static void push(const ContactScene& scene, const Encounter& e, const Pair& pair,
-                   const reference::Stop& stop, double weight, reference::Grip& grip);
+                   const reference::Stop& stop, const reference::Slowed& slow);
   void find_touching(const ContactScene& scene, Near& near, Team& team);
   void remember(const ContactScene& scene, NearPairs& near, std::size_t list, std::size_t i);
 

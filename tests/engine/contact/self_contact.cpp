@@ -274,6 +274,29 @@ TEST_CASE("a saved state goes on bit for bit, and so does a copy") {
   CHECK(loaded.state_hash() == cloth.state_hash());
 }
 
+TEST_CASE("layers that have come apart leave no multipliers in the state") {
+  const std::uint32_t kCells = 4;
+  std::vector<std::uint32_t> pins;
+  for (std::uint32_t i = 0; i < (kCells + 1) * (kCells + 1); ++i) pins.push_back(i);
+  const auto level = [](double height) {
+    return [=](double u, double v) { return Vec3{0.1 * u, height, 0.1 * v}; };
+  };
+  const SceneDescription scene = scene_of(
+      {{kCells, kCells, level(0)}, {kCells, kCells, level(1.1 * kLayerThickness)}}, 0.3, pins);
+  Cloth cloth = cloth_of(scene, small_steps());
+  step(cloth, kFrame);
+  run(cloth, kFrame, 10);
+  const std::size_t pressed = cloth.save_state().size();
+  REQUIRE(cloth.set_gravity({0, 5, 0}));
+  run(cloth, kFrame, 20);
+  const std::size_t apart = cloth.save_state().size();
+  CHECK(apart < pressed);
+  Cloth untouched = cloth_of(scene, small_steps());
+  REQUIRE(untouched.set_gravity({0, 5, 0}));
+  run(untouched, kFrame, 1);
+  CHECK(apart == untouched.save_state().size());
+}
+
 TEST_CASE("a step that fails leaves cloth that touches itself as it was") {
   const SceneDescription scene = scene_of(stack(2, 8, 0.006), 0.3);
   Cloth cloth = cloth_of(scene, small_steps());
