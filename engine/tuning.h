@@ -128,13 +128,9 @@ inline constexpr int kClothZoneRounds = 60;
 /// Of what features of a cloth that are nearer than its thickness at rest have there: so much they
 /// keep. At 1 each fold of a fine mesh, and what shears, would be a contact.
 inline constexpr double kRestDistance = 0.7;
-/// In thicknesses: features that were so much farther apart than the thickness when a substep began
-/// meet in it, which is a blow; what was nearer is a force that goes on.
-inline constexpr double kMeeting = 0.02;
-/// So often a sweep visits contacts.
+/// So often a sweep visits contacts. A layer that should slide at 12.4 mm/s slides at 13.4 with two
+/// rounds, at 12.5 with four and at 11.6 with eight, by which a stack takes 1.3 times as long.
 inline constexpr int kContactRounds = 4;
-/// In thicknesses: contacts that are farther apart when rounds begin are not visited in them.
-inline constexpr double kContactSpareInRounds = 0.25;
 /// Of what a pair is nearer than its thickness it comes out by this share in a substep. With 0.05 a
 /// sheet that folds on a floor gains 0.1 % of its energy; without it what was pressed stays
 /// pressed.

@@ -15,25 +15,29 @@ namespace weft {
 
 /// Multipliers of pairs that touch, by their keys, which ascend.
 struct ContactMemory {
+  static constexpr std::size_t kPerPair = 5;
+
   double give = 0;                  // s^2: (b h)^2 of their substep
   std::vector<std::uint64_t> keys;  // Pair::key()
-  std::vector<float> multipliers;   // four a pair: along the normal, and x y z of friction
+  /// kPerPair each: along the normal, x y z of friction, and along the normal in the substep
+  /// before.
+  std::vector<float> multipliers;
 
   void clear() {
     give = 0;
     keys.clear();
     multipliers.clear();
   }
-  /// Each has its four, and keys ascend.
+  /// Each has its own, and keys ascend.
   bool is_whole() const {
-    return multipliers.size() == 4 * keys.size() && std::ranges::is_sorted(keys) &&
+    return multipliers.size() == kPerPair * keys.size() && std::ranges::is_sorted(keys) &&
            std::ranges::all_of(multipliers, [](float m) { return std::isfinite(m); }) &&
            std::isfinite(give) && give >= 0;
   }
   /// by: of a vector.
   template <class Turned>
   void turn(Turned&& by) {
-    for (std::size_t i = 0; i + 3 < multipliers.size(); i += 4) {
+    for (std::size_t i = 0; i + 3 < multipliers.size(); i += kPerPair) {
       const kernels::Vector to = by(kernels::Vector{
           double{multipliers[i + 1]}, double{multipliers[i + 2]}, double{multipliers[i + 3]}});
       multipliers[i + 1] = static_cast<float>(to.x);

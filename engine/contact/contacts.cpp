@@ -67,7 +67,8 @@ void Contacts::clear() {
 Contacts::Multiplier Contacts::multiplier(std::size_t contact) const {
   const simd::ContactBlock& block = blocks_[contact / kLanes];
   const std::size_t lane = contact % kLanes;
-  return {block.push[lane], block.hold.x[lane], block.hold.y[lane], block.hold.z[lane]};
+  return {block.push[lane], block.hold.x[lane], block.hold.y[lane], block.hold.z[lane],
+          block.before[lane]};
 }
 
 void Contacts::set_multiplier(std::size_t contact, const Multiplier& to) {
@@ -77,13 +78,7 @@ void Contacts::set_multiplier(std::size_t contact, const Multiplier& to) {
   block.hold.x[lane] = to[1];
   block.hold.y[lane] = to[2];
   block.hold.z[lane] = to[3];
-}
-
-/// It met in the substep.
-bool Contacts::is_blow(std::size_t contact) const {
-  const simd::ContactBlock& block = blocks_[contact / kLanes];
-  const std::size_t lane = contact % kLanes;
-  return block.gap[lane] > static_cast<float>(tuning::kMeeting) * block.thickness[lane];
+  block.before[lane] = to[4];
 }
 
 void Contacts::remember(ContactMemory& memory) {
@@ -97,7 +92,7 @@ void Contacts::remember(ContactMemory& memory) {
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     if (keys_[i] == kNoKey) continue;
     const Multiplier m = is_aside_ ? aside_[i] : multiplier(i);
-    if (m[0] > 0 && !is_blow(i)) known_.push_back({keys_[i], m});
+    if (m[0] > 0) known_.push_back({keys_[i], m});
   }
   std::ranges::sort(known_, {}, &Known::key);
   for (const auto& [key, m] : known_) {
@@ -235,8 +230,10 @@ void Contacts::put(const ContactPoints& points, const NearContact& contact, std:
   keys_[kLanes * block + lane] = key;
   const auto known = std::ranges::lower_bound(memory_.keys, key);
   if (known == memory_.keys.end() || *known != key) return;
-  const float* m = &memory_.multipliers[4 * static_cast<std::size_t>(known - memory_.keys.begin())];
-  set_multiplier(kLanes * block + lane, {m[0], m[1], m[2], m[3]});
+  Multiplier of_last;
+  const auto at = static_cast<std::size_t>(known - memory_.keys.begin());
+  std::copy_n(&memory_.multipliers[of_last.size() * at], of_last.size(), of_last.begin());
+  set_multiplier(kLanes * block + lane, of_last);
 }
 
 void Contacts::begin_substep(const ContactPoints& points, ContactParticles& particles, double h,
@@ -275,7 +272,7 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
   is_aside_ = false;
   if (warm == 0) return;
   read_moves(particles);
-  find_active(-std::numeric_limits<float>::infinity(), team);
+  find_active(Active::push, team);
   if (active_blocks_.empty()) return;
   start_active();
   write_moves(particles);
@@ -296,14 +293,16 @@ void Contacts::write_moves(ContactParticles& particles) {
   }
 }
 
-/// Blocks that push, or may with so many thicknesses less.
-void Contacts::find_active(float spare, Team& team) {
+/// Blocks that push, or of these and those that are nearer than their targets.
+void Contacts::find_active(Active which, Team& team) {
   team.for_each_share(blocks_.size(), [&](std::size_t first, std::size_t last) {
-    kernels_.find_active(solving(), spare, active_.data(), first, last);
+    kernels_.find_active(solving(), which == Active::push, active_.data(), first, last);
   });
   active_blocks_.clear();
   active_colours_.clear();
+  active_count_ = 0;
   are_linked_ = false;
+  for (const std::uint16_t bits : active_) active_count_ += std::popcount(bits);
   for (const Colour& colour : colours_) {
     const auto begin = static_cast<std::uint32_t>(active_blocks_.size());
     for (std::uint32_t block = colour.first; block < colour.last; ++block)
@@ -327,14 +326,14 @@ void Contacts::visit_active(Team& team) {
       });
     }
   }
-  visits_ += tuning::kVisitsOfLook * static_cast<double>(kLanes * active_blocks_.size());
+  visits_ += tuning::kVisitsOfLook * active_count_;
 }
 
 void Contacts::begin_rounds(ContactParticles& particles, Team& team) {
   if (particles.is_mended()) set_aside();
   read_moves(particles);
   moved_by_.assign(moving_, 0);
-  find_active(static_cast<float>(tuning::kContactSpareInRounds), team);
+  find_active(Active::touch, team);
 }
 
 /// Bodies of a closed form hold what contacts have moved.
@@ -417,7 +416,8 @@ bool Contacts::visit(ContactParticles& particles, std::size_t i) {
   contact.visit(x);
   if (x == before) return false;
   set_multiplier(i, {static_cast<float>(contact.push), static_cast<float>(contact.hold.x),
-                     static_cast<float>(contact.hold.y), static_cast<float>(contact.hold.z)});
+                     static_cast<float>(contact.hold.y), static_cast<float>(contact.hold.z),
+                     block.before[lane]});
   for (std::size_t k = 0; k < 4; ++k) {
     const std::uint32_t number = block.point[k][lane];
     if (!(contact.inverse_mass[k] > 0)) continue;
@@ -431,8 +431,7 @@ bool Contacts::visit(ContactParticles& particles, std::size_t i) {
 }
 
 /// The past of what contacts have pushed is changed as its velocity was: a contact acts at first
-/// order. (BDF2 damps what multipliers that act again make of a stack 20 times less.) Features that
-/// met in the substep had a blow, which is no force that goes on.
+/// order. (BDF2 damps what multipliers that act again make of a stack 20 times less.)
 void Contacts::end_substep(ContactParticles& particles, Team& team) {
   if (!std::exchange(is_begun_, false)) return;
   if (std::exchange(is_aside_, false)) {
@@ -441,16 +440,12 @@ void Contacts::end_substep(ContactParticles& particles, Team& team) {
   for (std::size_t i = 0; i < 4 * moving_; ++i) {
     if (i % 4 != 3) moves_[i] = 0;
   }
-  find_active(-std::numeric_limits<float>::infinity(), team);
+  find_active(Active::push, team);
   start_active();
   const double rate = 1 / std::sqrt(give_);
   for (std::size_t i = 0; i < moving_; ++i) {
     const Vector by = rate * move(i);
     if (!(by == Vector{})) particles.jolt(points_[i], by);
-  }
-  for (const std::uint32_t block : active_blocks_) {
-    for (std::size_t i = kLanes * block; i < kLanes * (block + 1); ++i)
-      if (is_blow(i)) set_multiplier(i, {});
   }
 }
 

@@ -18,6 +18,8 @@
 #include "engine/contact/particles.h"
 #include "engine/contact/points.h"
 #include "engine/parallel/team.h"
+#include "kernels/simd/contact_data.h"
+#include "kernels/simd/table.h"
 
 namespace weft {
 
@@ -52,8 +54,7 @@ class Contacts {
   void end_rounds(Moved&& moved) const;
   /// Over what touches at the slot. Returns whether something was moved.
   bool hold(ContactParticles& particles, std::uint32_t slot);
-  /// The past of points that contacts have pushed is changed as their velocities were. Features
-  /// that met in the substep had a blow, which is no force that goes on.
+  /// The past of points that contacts have pushed is changed as their velocities were.
   void end_substep(ContactParticles& particles, Team& team);
   /// Writes the multipliers that the next frame begins with.
   void remember(ContactMemory& memory);
@@ -71,7 +72,7 @@ class Contacts {
   struct Link {
     std::uint32_t point = 0, contact = 0, next = 0;
   };
-  using Multiplier = std::array<float, 4>;  // ContactMemory::multipliers
+  using Multiplier = std::array<float, ContactMemory::kPerPair>;  // ContactMemory::multipliers
   struct Known {
     std::uint64_t key = 0;
     Multiplier multiplier{};
@@ -79,7 +80,6 @@ class Contacts {
   void clear();
   Multiplier multiplier(std::size_t contact) const;
   void set_multiplier(std::size_t contact, const Multiplier& to);
-  bool is_blow(std::size_t contact) const;
   void number_points(const ContactPoints& points, std::span<const NearContact> near);
   void put_in_order(std::vector<NearContact>& near);
   void colour(const ContactPoints& points, std::span<const NearContact> near);
@@ -89,7 +89,8 @@ class Contacts {
   bool visit(ContactParticles& particles, std::size_t i);
   void put(const ContactPoints& points, const NearContact& contact, std::size_t block,
            std::size_t lane);
-  void find_active(float spare, Team& team);
+  enum class Active : std::uint8_t { push, touch };
+  void find_active(Active which, Team& team);
   void read_moves(const ContactParticles& particles);
   void write_moves(ContactParticles& particles);
   void visit_active(Team& team);
@@ -118,6 +119,7 @@ class Contacts {
   std::vector<double> moved_by_;                  // m, per point that contacts have: in rounds
   std::vector<std::uint8_t> is_beside_body_;      // per point of points_
   std::vector<std::uint16_t> active_;             // per block, a bit per lane
+  double active_count_ = 0;                       // contacts
   std::vector<std::uint32_t> active_blocks_;
   std::vector<Colour> active_colours_;  // ranges of active_blocks_
   std::vector<Link> links_;

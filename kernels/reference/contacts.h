@@ -17,7 +17,9 @@
 /// an error would gain energy from multipliers that the next substep begins with.)
 ///
 /// Multipliers accumulate over visits: a later one takes back what was too much, and friction
-/// follows the load. The next substep begins with them.
+/// follows the load. The next substep begins with them, but with no more than what pushed in the
+/// substep before, too: a force that goes on pushes in both. An impact pushes in one, and would
+/// throw apart what has met if it acted again.
 #pragma once
 
 #include <algorithm>

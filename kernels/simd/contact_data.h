@@ -30,8 +30,9 @@ struct alignas(64) ContactBlock {
   float slack[kernels::kLanes];  // 1/kg: the compliance
   float give[kernels::kLanes];   // kg: a multiplier for a way; 0: the contact is a neighbour's
   // Accumulated:
-  float push[kernels::kLanes];  // kg m, along the normal
-  LaneVectors hold;             // kg m, by friction
+  float push[kernels::kLanes];    // kg m, along the normal
+  LaneVectors hold;               // kg m, by friction
+  float before[kernels::kLanes];  // kg m, along the normal in the last substep
 };
 
 struct ContactFreeze {
@@ -54,13 +55,10 @@ struct ContactKernels {
   void (*start)(const ContactSolve&, const std::uint32_t* blocks, std::size_t count);
   /// One visit of each.
   void (*visit)(const ContactSolve&, const std::uint32_t* blocks, std::size_t count);
-  /// Of blocks first ... last - 1, a bit per lane: which push, or may with `spare` thicknesses
-  /// less.
-  void (*find_active)(const ContactSolve&, float spare, std::uint16_t* active, std::size_t first,
+  /// Of blocks first ... last - 1, a bit per lane: which push, and if not only these are asked for
+  /// which are nearer than their targets.
+  void (*find_active)(const ContactSolve&, bool pushing, std::uint16_t* active, std::size_t first,
                       std::size_t last);
 };
-
-// Of these a library has those of its processor (on_x86_64.cpp, on_aarch64.cpp).
-extern const ContactKernels kSse2Contacts, kAvx2Contacts, kAvx512Contacts, kNeonContacts;
 
 }  // namespace weft::simd

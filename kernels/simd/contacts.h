@@ -124,6 +124,9 @@ struct NearestLanes {
   return per * m;
 }
 
+/// Where two sides meet at 45 degrees a turn leaves half of what is in the plane of both.
+constexpr int kTurnsAtCorner = 3;
+
 /// Takes off r what leans over a face of its edge. towards: the sign of r that leads away from it.
 [[gnu::always_inline]] inline FloatVector off_face(const FloatVector& r, const FloatVector& m,
                                                    bool is_first) {
@@ -153,17 +156,18 @@ template <bool kEdges>
       off = off_face(off, into_face(c.v, d.v, place(block.beside[2]).v), false);
       off = off_face(off, into_face(c.v, d.v, place(block.beside[3]).v), false);
     } else {
-      // Over the face across each side on which the nearest point lies.
-      const auto off_side = [&](const FloatVector& from, Floats opposite, const FloatVector& p,
-                                const FloatVector& q, std::size_t k)
-          __attribute__((always_inline)) {
-        const FloatMask on_side = opposite >= none - single(reference::kLeastWithin);
+      // Over the face across each side on which the nearest point lies. At a corner there are two,
+      // and what one takes off leans over the other: by turns this comes to where both let it be.
+      const auto over_side = [&](Floats opposite, const FloatVector& p, const FloatVector& q,
+                                 std::size_t k) __attribute__((always_inline)) {
         FloatVector m = load(block.towards[k] + lane) * into_face(p, q, place(block.beside[k]).v);
-        return select(on_side, off_face(from, m, false), from);
+        return select(opposite >= none - single(reference::kLeastWithin), m, no_vector());
       };
-      off = off_side(off, nearest.weight[3], b.v, c.v, 0);
-      off = off_side(off, nearest.weight[1], c.v, d.v, 1);
-      off = off_side(off, nearest.weight[2], d.v, b.v, 2);
+      FloatVector bc = over_side(nearest.weight[3], b.v, c.v, 0);
+      FloatVector cd = over_side(nearest.weight[1], c.v, d.v, 1);
+      FloatVector db = over_side(nearest.weight[2], d.v, b.v, 2);
+      for (int turn = 0; turn < kTurnsAtCorner; ++turn)
+        off = off_face(off_face(off_face(off, bc, false), cd, false), db, false);
     }
     const Floats left = xsimd::sqrt(dot(off, off));
     FloatMask stands = nearest.is_in_place && left > single(reference::kLeastLeft) * distance;
@@ -189,9 +193,13 @@ template <bool kEdges>
     store(block.normal, lane, n);
     // Multipliers of the last substep, friction in the plane of now.
     const Floats warm = xsimd::select(stands, Floats(f.warm), none);
-    const Floats push = warm * load(block.push + lane);
+    const Floats last = warm * load(block.push + lane),
+                 push = xsimd::min(last, warm * load(block.before + lane));
     push.store_unaligned(block.push + lane);
-    FloatVector hold = warm * load(block.hold, lane);
+    last.store_unaligned(block.before + lane);
+    const Floats of_hold =
+        warm * xsimd::select(push < last, push / xsimd::max(last, least_square()), one);
+    FloatVector hold = of_hold * load(block.hold, lane);
     hold = fused_from(dot(hold, n), n, hold);
     store(block.hold, lane, hold);
   }
@@ -263,7 +271,7 @@ void visit_contacts(const ContactSolve& solve, const std::uint32_t* blocks, std:
   }
 }
 
-void find_active_contacts(const ContactSolve& solve, float spare, std::uint16_t* active,
+void find_active_contacts(const ContactSolve& solve, bool pushing, std::uint16_t* active,
                           std::size_t first, std::size_t last) {
   const ContactSolve s = solve;
   const Floats none(0.f);
@@ -271,14 +279,17 @@ void find_active_contacts(const ContactSolve& solve, float spare, std::uint16_t*
     const ContactBlock& block = s.blocks[i];
     std::uint32_t found = 0;
     for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
-      const Floats give = load(block.give + lane);
-      if (bits(give > none) == 0) continue;
+      const FloatMask counts = load(block.give + lane) > none;
+      const FloatMask pushes = counts && load(block.push + lane) > none;
+      if (pushing || bits(counts) == 0) {
+        found |= bits(pushes) << lane;
+        continue;
+      }
       FloatVector way = load(block.weight[0] + lane) * weighed(s.moves, block.point[0] + lane).v;
       for (std::uint32_t k = 1; k < 4; ++k)
         way = fused(load(block.weight[k] + lane), weighed(s.moves, block.point[k] + lane).v, way);
       const Floats over = load(block.gap + lane) + dot(load(block.normal, lane), way);
-      const FloatMask near = over < Floats(spare) * load(block.thickness + lane);
-      found |= bits(give > none && (near || load(block.push + lane) > none)) << lane;
+      found |= bits(pushes || (counts && over < none)) << lane;
     }
     active[i] = static_cast<std::uint16_t>(found);
   }

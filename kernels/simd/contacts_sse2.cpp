@@ -1,4 +1,5 @@
 #include "kernels/simd/contacts.h"
+#include "kernels/simd/table.h"
 // By its namespace: flags for another instruction set do not compile.
 constinit const weft::simd::ContactKernels weft::simd::kSse2Contacts =
     weft::simd::sse2::contact_kernels();

@@ -8,7 +8,6 @@
 
 #include "kernels/impulse_energy.h"
 #include "kernels/simd/bending_data.h"
-#include "kernels/simd/contact_data.h"
 #include "kernels/simd/front_data.h"
 #include "kernels/simd/grip_data.h"
 #include "kernels/simd/isa.h"
@@ -19,6 +18,11 @@
 #include "kernels/vectors.h"
 
 namespace weft::simd {
+
+/// Of contact_data.h; a source of its own for each instruction set. A library has those of its
+/// processor (on_x86_64.cpp, on_aarch64.cpp).
+struct ContactKernels;
+extern const ContactKernels kSse2Contacts, kAvx2Contacts, kAvx512Contacts, kNeonContacts;
 
 /// Conjugate gradients on the linear system of bending (bending_system.h), in float or in double.
 template <class Real>
