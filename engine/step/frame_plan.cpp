@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/solvers/small_steps/fold_length.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/step/burden.h"
@@ -40,8 +41,8 @@ double usual_length(State& s, double dt) {
   const double of_load =
       substep_length(s.model->small_steps().load, s.position.view(), burden, s.settings.tolerance);
   const double of_pressure = presses(s) ? length_for_pressure(s) : tuning::kLongestSubstep;
-  const double length =
-      std::min({tuning::kLongestSubstep, length_for_air(s), of_load, of_pressure});
+  const double length = std::min({tuning::kLongestSubstep, length_for_air(s), of_load, of_pressure,
+                                  substep_length_for_folds(*s.model, s.position.view())});
   if (!refines_substeps(s)) return length;
   const double shorter = std::exp2(-std::max(0.0, s.refinement));
   if (s.settings.motion_tolerance == 0) return length * shorter;

@@ -143,12 +143,13 @@ void ReferenceStore::decay(double to, Team&) {
 }
 
 /// Of all elements at once. Particles go where the last force of bending takes them, and from there
-/// to where they bend to.
+/// to where they bend to; what is folded at rest begins at the prediction (simd_bending.cpp).
 void ReferenceStore::bend(Team& team) {
   const std::optional<BendingStep> step = bending_frame_.next(now_.formula.give(now_.h));
   if (!step) return;
   double* const guess = bending_.guess();
-  const double scale = give_ > 0 ? step->give / give_ : 0;
+  const bool begins_anew = give_ == 0 || !layout_.bending.folds.empty();
+  const double scale = begins_anew ? 0 : step->give / give_;
   give_ = step->give;
   for (std::size_t i = 0; i < 4 * model_.slots(); ++i) guess[i] *= scale;
   const auto at = [&](std::size_t i) {

@@ -103,10 +103,15 @@ void SimdBending::pull(const float* u, const float* start, const BendingStep& st
   });
 }
 
+/// A force that depends on where particles are, and not linearly, is that of the prediction. Taken
+/// where the last one leads it would be remembered for another substep: what this leaves of a swing
+/// and what BDF2 leaves make a third order, which is not stable (perf/tried.md).
+bool SimdBending::begins_anew() const { return give_ == 0 || !layout_.folds.empty(); }
+
 /// Particles go where the last force of bending takes them: what is new since then is little.
 void SimdBending::begin_from_guess(float* u, const float* start, const BendingStep& step,
                                    Team& team) {
-  const bool is_first = give_ == 0, is_damped = step.damping > 0;
+  const bool is_first = begins_anew(), is_damped = step.damping > 0;
   const float scale = is_first ? 0 : static_cast<float>(step.give / give_);
   const auto beyond = static_cast<float>(step.count - 1);
   float* const guess = soft_.guess();
@@ -150,8 +155,9 @@ void SimdBending::bend_softly(float* u, const float* start, const BendingStep& s
 /// stiff cloth is predicted to do by itself is mostly noise.
 void SimdBending::bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team) {
   double* const guess = stiff_.guess();
-  if (give_ == 0) stiff_.forget_guess();
-  const double scale = give_ == 0 ? 1 : step.give / give_;
+  const bool is_first = begins_anew();
+  if (is_first) stiff_.forget_guess();
+  const double scale = is_first ? 1 : step.give / give_;
   give_ = step.give;
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {

@@ -38,6 +38,7 @@ class SimdBending {
   }
   simd::Bending arrays(const float* u);
   void pull(const float* u, const float* start, const BendingStep& step, Team& team);
+  bool begins_anew() const;
   void begin_from_guess(float* u, const float* start, const BendingStep& step, Team& team);
   void bend_softly(float* u, const float* start, const BendingStep& step, Team& team);
   void bend_stiffly(float* u, const float* start, const BendingStep& step, Team& team);

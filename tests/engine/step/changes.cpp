@@ -172,10 +172,25 @@ TEST_CASE("a cloth that is changed before its first step is one of the changed d
   });
 }
 
+/// A particle with so many constraints that sweeps leave much of them.
+bool has_hub(const SceneDescription& scene) {
+  std::vector<int> constraints(scene.positions.size());
+  for (const auto& c : scene.constraints) {
+    ++constraints[c.a];
+    ++constraints[c.b];
+  }
+  return std::ranges::max(constraints) > 16;
+}
+
+/// Substeps are given: automatic ones go on as long as before the change, and those of a new cloth
+/// know of no load. By the implicit scheme the two have the same bits. The past of BDF2 goes on,
+/// and that of a new cloth is a free flight. They are 1e-4 m apart, and ten times as far at a hub.
 TEST_CASE("one that moves goes on as a new one would from where it is") {
-  for_all([](const SceneDescription& scene, const Settings& settings) {
+  for_all([](const SceneDescription& scene, Settings settings) {
+    const bool is_small = settings.solver == Solver::small_steps;
+    if (is_small) settings.substeps = 32;
     Cloth cloth = cloth_of(scene, settings);
-    bool remembers = settings.solver == Solver::small_steps;
+    bool remembers = is_small && settings.scheme != Scheme::implicit;
     for (int k = 0; k < 12; ++k) remembers |= step(cloth, 0.01).halvings > 0;
     REQUIRE(cloth.change(some_changes(scene)));
     Cloth built = cloth_of(with(scene, some_changes(scene)), settings);
@@ -184,8 +199,8 @@ TEST_CASE("one that moves goes on as a new one would from where it is") {
     CHECK(built.state_hash() == cloth.state_hash());
     step(cloth, 0.01);
     step(built, 0.01);
-    // Small steps are as long as before the change; those of a new one know of no load.
-    CHECK(largest_distance(positions(cloth), positions(built)) <= (remembers ? 4e-3 : 0));
+    const double most = has_hub(scene) ? 1.2e-3 : 1.2e-4;
+    CHECK(largest_distance(positions(cloth), positions(built)) <= (remembers ? most : 0));
   });
 }
 

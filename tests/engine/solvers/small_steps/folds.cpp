@@ -107,6 +107,84 @@ TEST_CASE("in double, too, and from flat without noise") {
   }
 }
 
+/// One fold in the middle of a strip that is held at one end, in degrees.
+class Pleat {
+ public:
+  Pleat(bool has_triangles, double angle, const char* name, const Settings& settings)
+      : cloth_(cloth_of(scene(has_triangles, angle, name), settings)) {}
+  void run(double dt, double seconds) {
+    for (int frame = 0; frame < std::lround(seconds / dt); ++frame)
+      missed_ += step(cloth_, dt).status != Status::converged;
+  }
+  int missed() const { return missed_; }
+  double angle() const {
+    const Vec3 way = cloth_.position(kAlong) - cloth_.position(kAlong / 2);
+    return std::atan2(way.y, way.x) / kDegree;
+  }
+
+ private:
+  static constexpr std::uint32_t kAlong = 32, kAcross = 8;
+  static constexpr double kSmall = 0.0025;
+  static SceneDescription scene(bool has_triangles, double angle, const char* name) {
+    const auto place = [](double row, double column) {
+      return Vec3{kSmall * column, 0, kSmall * row};
+    };
+    const auto cut = [&](std::uint32_t row, std::uint32_t column) {
+      return !has_triangles ? Cut::none : (row + column) % 3 == 0 ? Cut::first : Cut::second;
+    };
+    MeshDescription mesh = sheet(kAcross + 1, kAlong + 1, place, cut);
+    mesh.material = dry(name);
+    mesh.rest_positions = mesh.positions;
+    const double middle = kSmall * kAlong / 2;
+    for (Vec3& p : mesh.rest_positions) {
+      const double beyond = std::max(0.0, p.x - middle);
+      p.x += beyond * (std::cos(kDegree * angle) - 1);
+      p.y = beyond * std::sin(kDegree * angle);
+    }
+    for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
+      if (mesh.positions[i].x < middle / 2) mesh.pins.push_back(i);
+    }
+    return begun(mesh, 0, 1);
+  }
+  Cloth cloth_;
+  int missed_ = 0;
+};
+
+TEST_CASE("a sharp pleat of small cells comes to rest at its angle") {
+  for (const char* material : {"wool", "denim"}) {
+    for (const bool has_triangles : {false, true}) {
+      for (const double angle : {90., 120., -120.}) {
+        for (const double rate : {30., 60., 240.}) {
+          CAPTURE(std::string(material));
+          CAPTURE(has_triangles);
+          CAPTURE(angle);
+          CAPTURE(rate);
+          Pleat pleat(has_triangles, angle, material, {.tolerance = 1e-3});
+          pleat.run(1 / rate, 3);
+          CHECK(pleat.missed() == 0);
+          const double rest = pleat.angle();
+          CHECK(rest == doctest::Approx(angle).epsilon(2e-3));
+          pleat.run(1 / rate, 0.2);
+          CHECK(pleat.angle() == doctest::Approx(rest).epsilon(5e-4));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("eight given substeps of 60 Hz hold a sharp pleat, by lanes and in double") {
+  for (const Backend backend : kBackends) {
+    Settings settings;
+    settings.tolerance = 1e-3;
+    settings.solver = Solver::small_steps;
+    settings.backend = backend;
+    settings.substeps = 8;
+    Pleat pleat(false, -120, "denim", settings);
+    pleat.run(1. / 60, 3);
+    CHECK(pleat.angle() == doctest::Approx(-120).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("what begins in its rest shape stays there") {
   for (const bool has_triangles : {false, true}) {
     MeshDescription mesh = pleats(has_triangles, 120, dry("denim"));

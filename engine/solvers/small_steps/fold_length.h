@@ -1,0 +1,21 @@
+/// The length of a substep that hinges which are folded at rest bear (kernels/reference/bending.h).
+///
+/// The matrix of bending knows how stiff d is, and not that the normal turns with the faces. Where
+/// a substep does not resolve the swing of the hinge, of the angular frequency w, its solution
+/// unfolds it along a chord, by which the faces become longer, and the sweep after it turns them
+/// back. The sharper the fold is at rest, the more of that is along the faces. So
+///
+///     h = kFoldTurn / (w s^2),
+///
+/// where s is the sine of half the angle at rest.
+#pragma once
+
+#include "engine/model/model.h"
+#include "kernels/vectors.h"
+
+namespace weft {
+
+/// s; infinite without folds. x: where particles are, by their slots.
+double substep_length_for_folds(const Model& model, kernels::VectorsView x);
+
+}  // namespace weft
