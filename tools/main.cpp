@@ -8,10 +8,12 @@
 #include "tools/program/files/text_file.h"
 #include "tools/program/terminal/command_line.h"
 #include "tools/program/terminal/interrupt.h"
+#ifdef WEFT_WITH_STUDIES
 #include "tools/studies/forms/forms_command.h"
 #include "tools/studies/hard/hard_command.h"
 #include "tools/studies/paper/paper_command.h"
 #include "tools/studies/precision/precision_command.h"
+#endif
 
 namespace {
 
@@ -41,10 +43,12 @@ int main(int argc, char** argv) {
   add_scenes_command(line);
   add_scene_command(line);
   add_view_command(line);
+#ifdef WEFT_WITH_STUDIES
   add_paper_command(line);
   add_hard_command(line);
   add_precision_command(line);
   add_forms_command(line);
+#endif
   add_completion_command(line);
   return line.run(argc, argv);
 }
