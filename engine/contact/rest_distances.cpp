@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/contact/look.h"
+#include "engine/erase_repeated.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -234,8 +235,7 @@ RestDistances::RestDistances(const Model& model, double thickness, const SewnPoi
   std::ranges::sort(nearer_, [](const Nearer& a, const Nearer& b) {
     return std::pair(a.key, a.distance) < std::pair(b.key, b.distance);
   });
-  const auto rest = std::ranges::unique(nearer_, {}, &Nearer::key);
-  nearer_.erase(rest.begin(), rest.end());
+  erase_repeated(nearer_, &Nearer::key);
   nearer_.shrink_to_fit();
 }
 

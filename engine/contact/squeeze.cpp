@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/bytes_of.h"
+#include "engine/erase_repeated.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -67,8 +68,7 @@ void Squeeze::find_features(const ContactScene& scene, const Near& near) {
   for (const Place& place : pairs_)
     features_.push_back(feature_of(scene, near[place.list].list.pairs[place.pair]));
   std::ranges::sort(features_);
-  const auto repeated = std::ranges::unique(features_);
-  features_.erase(repeated.begin(), repeated.end());
+  erase_repeated(features_);
   for (Place& place : pairs_) {
     const Feature feature = feature_of(scene, near[place.list].list.pairs[place.pair]);
     place.feature = static_cast<std::uint32_t>(std::ranges::lower_bound(features_, feature) -

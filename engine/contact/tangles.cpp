@@ -8,6 +8,7 @@
 #include "engine/bytes_of.h"
 #include "engine/contact/leads_through.h"
 #include "engine/contact/look.h"
+#include "engine/erase_repeated.h"
 #include "kernels/reference/distances.h"
 
 namespace weft {
@@ -267,8 +268,7 @@ void Tangles::gather_slots() {
   for (const std::uint32_t t : triangles_)
     slots.insert(slots.end(), cloth_->triangles[t].begin(), cloth_->triangles[t].end());
   std::ranges::sort(slots);
-  const auto rest = std::ranges::unique(slots);
-  slots.erase(rest.begin(), rest.end());
+  erase_repeated(slots);
 }
 
 template <class At>

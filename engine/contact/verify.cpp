@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/contact/look.h"
+#include "engine/erase_repeated.h"
 
 namespace weft {
 
@@ -203,8 +204,7 @@ void Verification::leave_each_once(const Candidates& candidates) {
                       std::uint32_t{pair.b}, earlier, later};
   };
   std::ranges::sort(failures_, {}, key);
-  const auto rest = std::ranges::unique(failures_, {}, key);
-  failures_.erase(rest.begin(), rest.end());
+  erase_repeated(failures_, key);
 }
 
 /// Boxes hold what points were expected to do. Of those that did something else candidates are

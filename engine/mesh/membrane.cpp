@@ -174,8 +174,8 @@ Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::v
     }
     add_sides(faces[f], *weave.cells[f], springs);
     fabric.cells.push_back(faces[f].particles);
-    std::ranges::rotate(fabric.cells.back(),
-                        fabric.cells.back().begin() + weave.cells[f]->warp_side);
+    std::rotate(fabric.cells.back().begin(),
+                fabric.cells.back().begin() + weave.cells[f]->warp_side, fabric.cells.back().end());
   }
   for (const Face& part : cells_and_triangles(faces, weave, mesh.weld_distance)) {
     if (!part.is_quad()) fabric.membrane.push_back(triangle_element(part, material, kind));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/bytes_of.h"
+#include "engine/erase_repeated.h"
 
 namespace weft {
 
@@ -13,8 +14,7 @@ void NearbySpherePairs::find(const Model& model, const simd::Table& kernels, ker
   slots_.clear();
   for (const SpherePair& pair : pairs_) slots_.insert(slots_.end(), {pair.sphere, pair.particle});
   std::ranges::sort(slots_);
-  const auto repeated = std::ranges::unique(slots_);
-  slots_.erase(repeated.begin(), repeated.end());
+  erase_repeated(slots_);
   spare_ = margin;
 }
 

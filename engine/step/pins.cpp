@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
+#include "engine/erase_repeated.h"
 
 namespace weft {
 
@@ -43,8 +44,7 @@ void Pins::put_down(const Model& model, std::span<const std::uint32_t> particles
     put_down.push_back({slot_of(i), pin < pins_.size() ? pins_[pin].from : position[slot_of(i)]});
   }
   std::ranges::stable_sort(put_down, {}, &Place::slot);
-  const auto repeated = std::ranges::unique(put_down, {}, &Place::slot);  // the first one counts
-  put_down.erase(repeated.begin(), repeated.end());
+  erase_repeated(put_down, &Place::slot);  // the first one counts
   put_down_ = std::move(put_down);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const Vector place{places[i].x, places[i].y, places[i].z};

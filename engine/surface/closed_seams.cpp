@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "engine/bytes_of.h"
+#include "engine/erase_repeated.h"
 #include "engine/geometry.h"
 #include "engine/tuning.h"
 
@@ -14,8 +15,7 @@ ClosedSeams::ClosedSeams(std::span<const Seam> seams, std::size_t particles, dou
   if (seams_.empty()) return;
   for (const Seam& seam : seams_) particles_.insert(particles_.end(), {seam.a, seam.b});
   std::ranges::sort(particles_);
-  const auto doubles = std::ranges::unique(particles_);
-  particles_.erase(doubles.begin(), doubles.end());
+  erase_repeated(particles_);
   first_.resize(particles);
   count_.resize(particles);
 }

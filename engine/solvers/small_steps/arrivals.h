@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/contact/particles.h"
+#include "engine/erase_repeated.h"
 
 namespace weft {
 
@@ -42,8 +43,7 @@ template <class Visit>
 void take_arrivals(std::vector<Arrival>& arrivals, Visit&& visit) {
   std::ranges::sort(arrivals, {},
                     [](const Arrival& a) { return std::tuple(a.slot, a.surface.body); });
-  const auto rest = std::ranges::unique(arrivals, {}, &Arrival::slot);
-  arrivals.erase(rest.begin(), rest.end());
+  erase_repeated(arrivals, &Arrival::slot);
   for (const Arrival& arrival : arrivals) visit(arrival);
   arrivals.clear();
 }
@@ -52,8 +52,7 @@ void take_arrivals(std::vector<Arrival>& arrivals, Visit&& visit) {
 template <class Visit>
 void take_each_once(std::vector<std::uint32_t>& slots, Visit&& visit) {
   std::ranges::sort(slots);
-  const auto repeated = std::ranges::unique(slots);
-  slots.erase(repeated.begin(), repeated.end());
+  erase_repeated(slots);
   for (const std::uint32_t slot : slots) visit(slot);
   slots.clear();
 }

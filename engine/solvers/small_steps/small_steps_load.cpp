@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/erase_repeated.h"
 #include "engine/lists.h"
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
@@ -77,8 +78,7 @@ std::vector<std::uint32_t> slots_of_linkage(const ConstraintStore& s) {
   std::vector<std::uint32_t> slots(s.a);
   slots.insert(slots.end(), s.b.begin(), s.b.end());
   std::ranges::sort(slots);
-  const auto twice = std::ranges::unique(slots);
-  slots.erase(twice.begin(), twice.end());
+  erase_repeated(slots);
   return slots;
 }
 
@@ -335,8 +335,7 @@ std::vector<SmallStepsLoad::Span> find_ways(const Model& model) {
     return std::pair(way.first_slot, way.last_slot);
   };
   std::ranges::sort(ways, {}, key);
-  const auto rest = std::ranges::unique(ways, {}, pins);
-  ways.erase(rest.begin(), rest.end());
+  erase_repeated(ways, pins);
   ways.shrink_to_fit();
   return ways;
 }

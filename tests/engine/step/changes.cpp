@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/erase_repeated.h"
 #include "tests/support/bending.h"
 #include "tests/support/clothes.h"
 #include "tests/support/membrane.h"
@@ -61,8 +62,7 @@ SceneDescription cotton_cape(int size) {
     if (mesh.points[corner].x < 1.19 / (size - 1)) description.pins.push_back(corner);
   }
   std::ranges::sort(description.pins);
-  const auto rest = std::ranges::unique(description.pins);
-  description.pins.erase(rest.begin(), rest.end());
+  erase_repeated(description.pins);
   description.material = find_material("cotton").value();
   const auto made = cloth_from_mesh(description);
   REQUIRE_MESSAGE(made, made.error());

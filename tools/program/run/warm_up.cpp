@@ -7,6 +7,8 @@
 #include <chrono>
 #include <vector>
 
+#include "engine/erase_repeated.h"
+
 namespace weft::tools {
 namespace {
 
@@ -23,7 +25,8 @@ std::size_t processors_at_work(std::size_t threads) {
     processor[i] = sched_getcpu();
   });
   std::ranges::sort(processor);
-  return processor.size() - std::ranges::unique(processor).size();
+  erase_repeated(processor);
+  return processor.size();
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <span>
 #include <type_traits>
 
+#include "engine/erase_repeated.h"
 #include "engine/saving/sealed.h"
 #include "tools/program/viewer/integers.h"
 #include "tools/program/viewer/sections.h"
@@ -185,8 +186,7 @@ void MotionRecorder::add_contacts(const Cloth& cloth) {
   for (const BodyContact& contact : cloth.body_contacts())
     particles.push_back(static_cast<std::int32_t>(contact.particle));
   std::ranges::sort(particles);
-  const auto doubles = std::ranges::unique(particles);
-  particles.erase(doubles.begin(), doubles.end());
+  erase_repeated(particles);
   append_integers(contact_bytes_, std::array{static_cast<std::int32_t>(particles.size())});
   append_differences(contact_bytes_, particles);
 }
