@@ -58,9 +58,9 @@ class SmallStepsLayoutBuilder {
     const auto first = static_cast<std::uint32_t>(layout_.blocks.size());
     slots_.resize(batch.last - batch.first);
     std::iota(slots_.begin(), slots_.end(), batch.first);
-    const auto others =
-        std::ranges::stable_partition(slots_, [&](std::uint32_t slot) { return is_single(slot); });
-    const std::size_t singles = slots_.size() - others.size();
+    const auto others = std::stable_partition(slots_.begin(), slots_.end(),
+                                              [&](std::uint32_t slot) { return is_single(slot); });
+    const auto singles = static_cast<std::size_t>(others - slots_.begin());
     for (std::size_t i = 0; i < singles; i += kLanes)
       add_block(std::span(slots_).subspan(i, kLanes));
     const auto last = static_cast<std::uint32_t>(layout_.blocks.size());
