@@ -293,7 +293,7 @@ void Contacts::write_moves(ContactParticles& particles) {
   }
 }
 
-/// Blocks that push, or of these and those that are nearer than their targets.
+/// Finds the contacts that push; for `touch` also those that are nearer than their targets.
 void Contacts::find_active(Active which, Team& team) {
   team.for_each_share(blocks_.size(), [&](std::size_t first, std::size_t last) {
     kernels_.find_active(solving(), which == Active::push, active_.data(), first, last);

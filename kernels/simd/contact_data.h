@@ -55,8 +55,8 @@ struct ContactKernels {
   void (*start)(const ContactSolve&, const std::uint32_t* blocks, std::size_t count);
   /// One visit of each.
   void (*visit)(const ContactSolve&, const std::uint32_t* blocks, std::size_t count);
-  /// Of blocks first ... last - 1, a bit per lane: which push, and if not only these are asked for
-  /// which are nearer than their targets.
+  /// Sets a bit per lane in blocks first ... last - 1 for contacts that push, and unless `pushing`
+  /// also for those that are nearer than their targets.
   void (*find_active)(const ContactSolve&, bool pushing, std::uint16_t* active, std::size_t first,
                       std::size_t last);
 };
