@@ -70,6 +70,7 @@ bool SurfaceContacts::still_holds(const ContactParticles& particles, const BodyC
 void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyClock& clock,
                                      int substeps, Team& team) {
   points_.begin_interval(particles, clock, substeps);
+  tangles_.begin_interval();
   const bool have_moved = search_.find(points_, candidates_, team);
   near_search_.measure(points_, candidates_, have_moved, team);
   if (std::exchange(is_new_, false)) {

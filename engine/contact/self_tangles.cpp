@@ -43,20 +43,33 @@ bool edge_leads_through(const TriangleSurface::Triangle& a, const TriangleSurfac
 
 void SelfTangles::begin(const TriangleSurface& cloth, const std::vector<std::uint64_t>& pairs) {
   cloth_ = &cloth;
-  pairs_ = pairs;
+  crossing_ = pairs;
   const std::size_t triangles = cloth.triangles.size();
-  std::erase_if(pairs_, [&](std::uint64_t pair) { return (pair & 0xffffffffu) >= triangles; });
+  std::erase_if(crossing_, [&](std::uint64_t pair) { return (pair & 0xffffffffu) >= triangles; });
   has_looked_ = false;
-  mark();
+  may_cross_.assign(triangles, 0);
+  mark_beside(crossing_);
+  pairs_ = crossing_;
+  mark_ones();
 }
 
-void SelfTangles::mark() {
-  const std::size_t triangles = pairs_.empty() ? 0 : cloth_->triangles.size();
-  is_one_.assign(triangles, 0);
-  may_cross_.resize(triangles);
+void SelfTangles::begin_interval() {
+  if (pairs_ == crossing_) return;
+  pairs_ = crossing_;
+  mark_ones();
+}
+
+void SelfTangles::mark_ones() {
+  is_one_.assign(pairs_.empty() ? 0 : cloth_->triangles.size(), 0);
   for (const std::uint64_t pair : pairs_) {
+    is_one_[static_cast<std::size_t>(pair >> 32)] = 1;
+    is_one_[static_cast<std::size_t>(pair & 0xffffffffu)] = 1;
+  }
+}
+
+void SelfTangles::mark_beside(const std::vector<std::uint64_t>& pairs) {
+  for (const std::uint64_t pair : pairs) {
     for (const std::uint64_t one : {pair >> 32, pair & 0xffffffffu}) {
-      if (std::exchange(is_one_[static_cast<std::size_t>(one)], std::uint8_t{1}) != 0) continue;
       for (const std::uint32_t corner : cloth_->triangles[static_cast<std::size_t>(one)])
         for (const std::uint32_t near : cloth_->triangles_at[corner]) may_cross_[near] = 1;
     }
@@ -65,8 +78,7 @@ void SelfTangles::mark() {
 
 template <class At>
 void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
-  before_.swap(pairs_);
-  pairs_.clear();
+  crossing_.clear();
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
   const SewnPoints& sewn = points.sewn();
   BoxTree::meet(table_, cloth.tree(), cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
@@ -78,25 +90,27 @@ void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
     const Corners its{at(one[0]), at(one[1]), at(one[2])},
         others{at(other[0]), at(other[1]), at(other[2])};
     // What crossed before is apart where it will be known to stay so.
-    const bool has_crossed = std::ranges::binary_search(before_, pair_of(a, b));
+    const bool has_crossed = std::ranges::binary_search(pairs_, pair_of(a, b));
     const double apart = has_crossed ? tuning::kStaysApart : tuning::kTouching;
     if (shared == 0 && (are_beside(its, others, apart) || are_beside(others, its, apart))) return;
     const double beyond = has_crossed ? -apart : apart;
     if (edge_leads_through(one, other, sewn, beyond, at) ||
         edge_leads_through(other, one, sewn, beyond, at))
-      pairs_.push_back(pair_of(a, b));
+      crossing_.push_back(pair_of(a, b));
   });
-  std::ranges::sort(pairs_);
-  if (everywhere) may_cross_.clear();
-  mark();
+  std::ranges::sort(crossing_);
+  if (everywhere) may_cross_.assign(cloth_->triangles.size(), 0);
+  mark_beside(pairs_);
+  mark_beside(crossing_);
 }
 
 void SelfTangles::find_at_start(const ContactPoints& points) {
   find(points, true, [&](std::uint32_t point) { return points.start(point); });
+  begin_interval();
 }
 
 void SelfTangles::find_at_end(const ContactPoints& points, bool has_failed) {
-  if (pairs_.empty() && !has_failed) return;
+  if (pairs_.empty() && crossing_.empty() && !has_failed) return;
   const bool everywhere = has_failed || !std::exchange(has_looked_, true);
   find(points, everywhere, [&](std::uint32_t point) { return points.end(point); });
 }
@@ -144,7 +158,7 @@ bool SelfTangles::has_features_of(const Pair& pair) const {
 }
 
 std::size_t SelfTangles::bytes() const {
-  return bytes_of(pairs_) + bytes_of(before_) + bytes_of(is_one_) + bytes_of(may_cross_);
+  return bytes_of(pairs_) + bytes_of(crossing_) + bytes_of(is_one_) + bytes_of(may_cross_);
 }
 
 }  // namespace weft

@@ -93,7 +93,8 @@ NearestTriangle find_left_by(ContactPoints& points, std::uint32_t slot, SurfaceP
 }  // namespace
 
 void Tangles::begin(const TriangleSurface& cloth, const Misplaced& misplaced) {
-  forget_crossing();
+  crossing_.clear();
+  leave_crossing_alone();
   cloth_ = &cloth;
   misplaced_ = misplaced;
   within_.begin(cloth, misplaced.tangled);
@@ -101,8 +102,15 @@ void Tangles::begin(const TriangleSurface& cloth, const Misplaced& misplaced) {
   if (slots.empty()) return;
   const auto is_one = [&](std::uint32_t slot) { return std::ranges::binary_search(slots, slot); };
   for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
-    if (!cloth.is_point(t) && std::ranges::all_of(cloth.triangles[t], is_one)) add_crossing(t);
+    if (!cloth.is_point(t) && std::ranges::all_of(cloth.triangles[t], is_one))
+      crossing_.push_back(t);
   }
+  leave_crossing_alone();
+}
+
+void Tangles::begin_interval() {
+  leave_crossing_alone();
+  within_.begin_interval();
 }
 
 void Tangles::find(ContactPoints& points) {
@@ -116,14 +124,15 @@ void Tangles::find(ContactPoints& points) {
     if (is_inside) misplaced_.inside.push_back(slot);
   }
   find_crossing(points, [&](std::uint32_t point) { return points.start(point); });
+  leave_crossing_alone();
   if (!points.touches_itself()) return;
   within_.find_at_start(points);
-  misplaced_.tangled = within_.pairs();
+  misplaced_.tangled = within_.crossing();
 }
 
 void Tangles::find_crossing_within_at_end(const ContactPoints& points, bool has_failed) {
   within_.find_at_end(points, has_failed);
-  misplaced_.tangled = within_.pairs();
+  misplaced_.tangled = within_.crossing();
 }
 
 /// They are near to the surface that they leave by, however deep they are.
@@ -232,12 +241,12 @@ void Tangles::take_in(const ContactPoints& points, const Pair& pair) {
 void Tangles::let_in(const ContactPoints& points, const Pair& pair) {
   take_in(points, pair);
   if (pair.kind == PairKind::point_triangle) {
-    if (pair.is_turned()) add_crossing(pair.second);
+    if (pair.is_turned()) leave_alone(pair.second);
     return;
   }
   const auto [a, b] = cloth_->edges[pair.first];
   for (const std::uint32_t t : cloth_->triangles_at[a]) {
-    if (std::ranges::find(cloth_->triangles[t], b) != cloth_->triangles[t].end()) add_crossing(t);
+    if (std::ranges::find(cloth_->triangles[t], b) != cloth_->triangles[t].end()) leave_alone(t);
   }
 }
 
@@ -245,15 +254,16 @@ bool Tangles::any_is_inside(const std::array<std::uint32_t, 4>& points) const {
   return std::ranges::any_of(points, [&](std::uint32_t point) { return is_inside(point); });
 }
 
-void Tangles::forget_crossing() {
+void Tangles::leave_crossing_alone() {
   for (const std::uint32_t t : triangles_) {
     has_triangle_[t] = false;
     for (const std::uint32_t edge : cloth_->edges_of[t]) has_edge_[edge] = false;
   }
   triangles_.clear();
+  for (const std::uint32_t t : crossing_) leave_alone(t);
 }
 
-void Tangles::add_crossing(std::uint32_t triangle) {
+void Tangles::leave_alone(std::uint32_t triangle) {
   has_triangle_.resize(cloth_->triangles.size());
   has_edge_.resize(cloth_->edges.size());
   if (has_triangle_[triangle]) return;
@@ -265,7 +275,7 @@ void Tangles::add_crossing(std::uint32_t triangle) {
 void Tangles::gather_slots() {
   std::vector<std::uint32_t>& slots = misplaced_.crossing;
   slots.clear();
-  for (const std::uint32_t t : triangles_)
+  for (const std::uint32_t t : crossing_)
     slots.insert(slots.end(), cloth_->triangles[t].begin(), cloth_->triangles[t].end());
   std::ranges::sort(slots);
   erase_repeated(slots);
@@ -294,9 +304,9 @@ bool Tangles::crosses(ContactPoints& points, std::uint32_t triangle, At&& at) co
 
 template <class At>
 void Tangles::find_crossing(ContactPoints& points, At&& at) {
-  forget_crossing();
+  crossing_.clear();
   for (std::uint32_t t = 0; t < cloth_->triangles.size(); ++t) {
-    if (!cloth_->is_point(t) && crosses(points, t, at)) add_crossing(t);
+    if (!cloth_->is_point(t) && crosses(points, t, at)) crossing_.push_back(t);
   }
   gather_slots();
 }
@@ -306,7 +316,8 @@ void Tangles::find_crossing_at_end(ContactPoints& points) {
 }
 
 std::size_t Tangles::bytes() const {
-  return misplaced_.bytes() + within_.bytes() + bytes_of(triangles_) +
+  return misplaced_.bytes() + within_.bytes() + bytes_of(crossing_) +
+         bytes_of(triangles_) +
          (has_triangle_.capacity() + has_edge_.capacity()) / 8;
 }
 

@@ -24,6 +24,8 @@ class Tangles {
 
   /// Of a frame: what the frame before left.
   void begin(const TriangleSurface& cloth, const Misplaced& misplaced);
+  /// An interval begins: what crosses now is left alone until it is over.
+  void begin_interval();
   /// Instead, finds anew what is inside and what crosses where an interval begins.
   void find(ContactPoints& points);
   /// Adds to near pairs those by which particles come out that are inside, and triangles off what
@@ -38,7 +40,9 @@ class Tangles {
   /// has_failed: something had to be stopped in the interval.
   void find_crossing_within_at_end(const ContactPoints& points, bool has_failed);
 
-  bool any() const { return !triangles_.empty() || !misplaced_.inside.empty(); }
+  bool any() const {
+    return !triangles_.empty() || !crossing_.empty() || !misplaced_.inside.empty();
+  }
   bool is_inside(std::uint32_t slot) const { return misplaced_.is_inside(slot); }
   bool is_inside(const std::array<std::uint32_t, 4>& points) const {
     return !misplaced_.inside.empty() && any_is_inside(points);
@@ -56,10 +60,10 @@ class Tangles {
   }
   /// Triangles that cross, and particles inside.
   int count() const {
-    return static_cast<int>(triangles_.size()) + static_cast<int>(misplaced_.inside.size());
+    return static_cast<int>(crossing_.size()) + static_cast<int>(misplaced_.inside.size());
   }
   /// Pairs of triangles of the cloth that cross each other.
-  int count_within() const { return static_cast<int>(within_.pairs().size()); }
+  int count_within() const { return static_cast<int>(within_.crossing().size()); }
   const Misplaced& misplaced() const { return misplaced_; }
   std::size_t bytes() const;
 
@@ -77,15 +81,16 @@ class Tangles {
   static void add_under(const ContactPoints& points, const Pair& pair,
                         const std::array<std::uint32_t, 4>& four, kernels::Vector normal,
                         Near& near);
-  void forget_crossing();
-  void add_crossing(std::uint32_t triangle);
+  void leave_alone(std::uint32_t triangle);
+  void leave_crossing_alone();
   void gather_slots();
 
   const simd::Table& table_;
   const TriangleSurface* cloth_ = nullptr;
   Misplaced misplaced_;
   SelfTangles within_;
-  std::vector<std::uint32_t> triangles_;       // that cross
+  std::vector<std::uint32_t> crossing_;        // triangles, as last found
+  std::vector<std::uint32_t> triangles_;       // that are left alone in the interval
   std::vector<bool> has_triangle_, has_edge_;  // empty until the first one crosses
 };
 

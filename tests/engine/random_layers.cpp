@@ -113,5 +113,11 @@ TEST_CASE("random layers: what crosses is reported, and what is apart stays apar
   for_each_case(100, random_layers, check_case);
 }
 
+/// Two triangles come apart in the first look at the end of an interval, and cross again before the
+/// second one.
+TEST_CASE("layers that cross again within a step are reported") {
+  check_case(random_layers(300476));
+}
+
 }  // namespace
 }  // namespace weft::test::engine_random_layers
