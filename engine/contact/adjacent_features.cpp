@@ -55,8 +55,9 @@ void AdjacentFeatures::add_features(const TriangleSurface& cloth, const SewnPoin
 
 void AdjacentFeatures::add(PairKind kind, std::uint32_t first, std::uint32_t second,
                            const std::array<std::uint32_t, 4>& points, const Owners& owners) {
-  const std::size_t list = list_of(kind);
-  pairs_[list].add({first, second, kClothSurface, kClothSurface, kind}, points);
+  const Pair pair{first, second, kClothSurface, kClothSurface, kind};
+  const std::size_t list = list_of(pair);
+  pairs_[list].add(pair, points);
   owners_[list].push_back(owners);
 }
 
@@ -106,7 +107,7 @@ void AdjacentFeatures::add_near(std::size_t list, std::size_t block, std::uint32
 
 void AdjacentFeatures::find(ContactPoints& points, Candidates& candidates, Team& team) {
   read_tubes(points);
-  for (std::size_t list = 0; list < kPairLists; ++list) {
+  for (std::size_t list = kBodyLists; list < kPairLists; ++list) {
     const simd::PairMeasure measure = measure_of(points, list);
     const std::size_t blocks = pairs_[list].blocks.size();
     team.for_each_share(blocks, [&](std::size_t first, std::size_t last) {
@@ -120,7 +121,7 @@ void AdjacentFeatures::find(ContactPoints& points, Candidates& candidates, Team&
 void AdjacentFeatures::find_of(ContactPoints& points, std::span<const std::uint8_t> is_marked,
                                Candidates& candidates, Team& team) {
   read_tubes(points);
-  for (std::size_t list = 0; list < kPairLists; ++list) {
+  for (std::size_t list = kBodyLists; list < kPairLists; ++list) {
     const simd::PairMeasure measure = measure_of(points, list);
     const std::span<const Owners> owners = owners_[list];
     const auto marked_in = [&](std::size_t block) {
@@ -147,7 +148,7 @@ void AdjacentFeatures::find_of(ContactPoints& points, std::span<const std::uint8
 
 std::size_t AdjacentFeatures::bytes() const {
   std::size_t bytes = bytes_of(begins_) + bytes_of(ways_) + bytes_of(distance_) + bytes_of(near_);
-  for (std::size_t list = 0; list < kPairLists; ++list)
+  for (std::size_t list = kBodyLists; list < kPairLists; ++list)
     bytes += pairs_[list].bytes() + bytes_of(owners_[list]);
   return bytes;
 }

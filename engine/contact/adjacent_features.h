@@ -18,7 +18,7 @@ class AdjacentFeatures {
  public:
   explicit AdjacentFeatures(const simd::Table& table) : table_(table) {}
 
-  bool empty() const { return pairs_[0].size() + pairs_[1].size() == 0; }
+  bool empty() const { return owners_[kBodyLists].empty() && owners_[kBodyLists + 1].empty(); }
   void make(const TriangleSurface& cloth, const SewnPoints& sewn);
   /// Adds those whose tubes meet.
   void find(ContactPoints& points, Candidates& candidates, Team& team);

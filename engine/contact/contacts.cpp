@@ -64,7 +64,7 @@ void Contacts::clear() {
   is_begun_ = is_aside_ = false;
 }
 
-Contacts::Multiplier Contacts::multiplier(std::size_t contact) const {
+Multiplier Contacts::multiplier(std::size_t contact) const {
   const simd::ContactBlock& block = blocks_[contact / kLanes];
   const std::size_t lane = contact % kLanes;
   return {block.push[lane], block.hold.x[lane], block.hold.y[lane], block.hold.z[lane],
@@ -88,16 +88,26 @@ void Contacts::remember(ContactMemory& memory) {
   }
   memory.clear();
   memory.give = give_;
-  known_.clear();
+  gather_known();
+  std::ranges::sort(known_.all(), {}, &KnownMultipliers::Known::key);
+  for (const auto& [key, m] : known_.all()) {
+    memory.keys.push_back(key);
+    memory.multipliers.insert(memory.multipliers.end(), m.begin(), m.end());
+  }
+}
+
+/// From the blocks, or where there are none from what the last frame has left.
+void Contacts::gather_known() {
+  known_.begin();
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     if (keys_[i] == kNoKey) continue;
     const Multiplier m = is_aside_ ? aside_[i] : multiplier(i);
-    if (m[0] > 0) known_.push_back({keys_[i], m});
+    if (m[0] > 0) known_.add(keys_[i], m);
   }
-  std::ranges::sort(known_, {}, &Known::key);
-  for (const auto& [key, m] : known_) {
-    memory.keys.push_back(key);
-    memory.multipliers.insert(memory.multipliers.end(), m.begin(), m.end());
+  for (std::size_t i = 0; i < memory_.keys.size(); ++i) {
+    Multiplier m;
+    std::copy_n(&memory_.multipliers[m.size() * i], m.size(), m.begin());
+    known_.add(memory_.keys[i], m);
   }
 }
 
@@ -113,8 +123,11 @@ void Contacts::number_points(const ContactPoints& points, std::span<const NearCo
   for (const NearContact& contact : near)
     for (const std::uint32_t point : contact.points) add(point);
   moving_ = points_.size();
-  for (const NearContact& contact : near)
-    for (const std::uint32_t point : beside(points.cloth(), contact)) add(point);
+  thirds_.clear();
+  for (const NearContact& contact : near) {
+    thirds_.push_back(beside(points.cloth(), contact));
+    for (const std::uint32_t point : thirds_.back()) add(point);
+  }
   const std::size_t quads = points_.size() + kLanes;  // of lanes that are not used, too
   places_.assign(4 * quads, 0);
   moves_.assign(4 * (moving_ + kLanes), 0);
@@ -142,16 +155,18 @@ void Contacts::put_in_order(std::vector<NearContact>& near) {
 }
 
 void Contacts::find(const ContactPoints& points, std::vector<NearContact>& near) {
-  remember(memory_);
+  gather_known();
+  known_.end();
+  memory_.clear();  // pairs that are far have come apart
   clear();
   put_in_order(near);
   number_points(points, near);
   const auto first_edges = std::ranges::partition_point(near, std::not_fn(is_edges));
   const auto points_count = static_cast<std::size_t>(first_edges - near.begin());
-  colour(points, std::span(near).first(points_count));
+  const std::span<const Thirds> thirds = thirds_;
+  colour(points, std::span(near).first(points_count), thirds.first(points_count));
   edges_from_ = blocks_.size();
-  colour(points, std::span(near).subspan(points_count));
-  memory_.clear();  // pairs that are far have come apart
+  colour(points, std::span(near).subspan(points_count), thirds.subspan(points_count));
   active_.assign(blocks_.size(), 0);
   links_.clear();
   first_link_.assign(moving_, kNoIndex);
@@ -160,7 +175,8 @@ void Contacts::find(const ContactPoints& points, std::vector<NearContact>& near)
 
 /// A colour is the lowest one that none of the points has. A contact that finds none among 64 has
 /// one of the next 64.
-void Contacts::colour(const ContactPoints& points, std::span<const NearContact> near) {
+void Contacts::colour(const ContactPoints& points, std::span<const NearContact> near,
+                      std::span<const Thirds> thirds) {
   waiting_.resize(near.size());
   std::iota(waiting_.begin(), waiting_.end(), 0u);
   while (!waiting_.empty()) {
@@ -183,14 +199,15 @@ void Contacts::colour(const ContactPoints& points, std::span<const NearContact> 
     for (std::size_t k = 0; k < waiting_.size(); ++k)
       by_colour_[next[colour_of_[k]]++] = waiting_[k];
     for (std::size_t c = 0; c < kColours; ++c)
-      put_blocks(points, near, std::span(by_colour_).subspan(first[c], first[c + 1] - first[c]));
+      put_blocks(points, near, thirds,
+                 std::span(by_colour_).subspan(first[c], first[c + 1] - first[c]));
     waiting_.assign(by_colour_.begin() + first[kColours], by_colour_.end());
   }
 }
 
 /// Of one colour.
 void Contacts::put_blocks(const ContactPoints& points, std::span<const NearContact> near,
-                          std::span<const std::uint32_t> contacts) {
+                          std::span<const Thirds> thirds, std::span<const std::uint32_t> contacts) {
   if (contacts.empty()) return;
   const auto first = static_cast<std::uint32_t>(blocks_.size());
   for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -198,7 +215,7 @@ void Contacts::put_blocks(const ContactPoints& points, std::span<const NearConta
       blocks_.emplace_back();
       keys_.resize(kLanes * blocks_.size(), kNoKey);
     }
-    put(points, near[contacts[k]], blocks_.size() - 1, k % kLanes);
+    put(points, near[contacts[k]], thirds[contacts[k]], blocks_.size() - 1, k % kLanes);
   }
   for (std::size_t lane = contacts.size() % kLanes; lane != 0 && lane < kLanes; ++lane) {
     for (std::size_t k = 0; k < 4; ++k) {
@@ -209,10 +226,9 @@ void Contacts::put_blocks(const ContactPoints& points, std::span<const NearConta
   colours_.push_back({first, static_cast<std::uint32_t>(blocks_.size())});
 }
 
-void Contacts::put(const ContactPoints& points, const NearContact& contact, std::size_t block,
-                   std::size_t lane) {
+void Contacts::put(const ContactPoints& points, const NearContact& contact, const Thirds& thirds,
+                   std::size_t block, std::size_t lane) {
   simd::ContactBlock& to = blocks_[block];
-  const auto thirds = beside(points.cloth(), contact);
   for (std::size_t k = 0; k < 4; ++k) {
     to.point[k][lane] = number_of_[contact.points[k]];
     to.beside[k][lane] = number_of_[thirds[k]];
@@ -228,12 +244,7 @@ void Contacts::put(const ContactPoints& points, const NearContact& contact, std:
   to.normal.z[lane] = static_cast<float>(contact.normal.z);
   const std::uint64_t key = contact.pair.key();
   keys_[kLanes * block + lane] = key;
-  const auto known = std::ranges::lower_bound(memory_.keys, key);
-  if (known == memory_.keys.end() || *known != key) return;
-  Multiplier of_last;
-  const auto at = static_cast<std::size_t>(known - memory_.keys.begin());
-  std::copy_n(&memory_.multipliers[of_last.size() * at], of_last.size(), of_last.begin());
-  set_multiplier(kLanes * block + lane, of_last);
+  if (const Multiplier* known = known_.find(key)) set_multiplier(kLanes * block + lane, *known);
 }
 
 void Contacts::begin_substep(const ContactPoints& points, ContactParticles& particles, double h,
@@ -462,7 +473,8 @@ std::size_t Contacts::bytes() const {
          bytes_of(moved_by_) + bytes_of(is_beside_body_) + bytes_of(active_) +
          bytes_of(active_blocks_) + bytes_of(active_colours_) + memory_.bytes() + bytes_of(aside_) +
          bytes_of(taken_) + bytes_of(waiting_) + bytes_of(links_) + bytes_of(first_link_) +
-         bytes_of(in_order_) + bytes_of(colour_of_) + bytes_of(by_colour_) + bytes_of(known_);
+         bytes_of(in_order_) + bytes_of(thirds_) + bytes_of(colour_of_) + bytes_of(by_colour_) +
+         known_.bytes();
 }
 
 }  // namespace weft

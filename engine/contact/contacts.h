@@ -15,6 +15,7 @@
 
 #include "engine/contact/contact_memory.h"
 #include "engine/contact/features.h"
+#include "engine/contact/known_multipliers.h"
 #include "engine/contact/particles.h"
 #include "engine/contact/points.h"
 #include "engine/parallel/team.h"
@@ -72,23 +73,21 @@ class Contacts {
   struct Link {
     std::uint32_t point = 0, contact = 0, next = 0;
   };
-  using Multiplier = std::array<float, ContactMemory::kPerPair>;  // ContactMemory::multipliers
-  struct Known {
-    std::uint64_t key = 0;
-    Multiplier multiplier{};
-  };
+  using Thirds = std::array<std::uint32_t, 4>;  // simd::ContactBlock::beside
   void clear();
   Multiplier multiplier(std::size_t contact) const;
   void set_multiplier(std::size_t contact, const Multiplier& to);
+  void gather_known();
   void number_points(const ContactPoints& points, std::span<const NearContact> near);
   void put_in_order(std::vector<NearContact>& near);
-  void colour(const ContactPoints& points, std::span<const NearContact> near);
+  void colour(const ContactPoints& points, std::span<const NearContact> near,
+              std::span<const Thirds> thirds);
   void put_blocks(const ContactPoints& points, std::span<const NearContact> near,
-                  std::span<const std::uint32_t> contacts);
+                  std::span<const Thirds> thirds, std::span<const std::uint32_t> contacts);
   void link_active();
   bool visit(ContactParticles& particles, std::size_t i);
-  void put(const ContactPoints& points, const NearContact& contact, std::size_t block,
-           std::size_t lane);
+  void put(const ContactPoints& points, const NearContact& contact, const Thirds& thirds,
+           std::size_t block, std::size_t lane);
   enum class Active : std::uint8_t { push, touch };
   void find_active(Active which, Team& team);
   void read_moves(const ContactParticles& particles);
@@ -126,13 +125,14 @@ class Contacts {
   std::vector<std::uint32_t> first_link_;  // per point that contacts have
   bool are_linked_ = false;                // of the active blocks
   std::vector<NearContact> in_order_;      // scratch
-  ContactMemory memory_;
-  bool is_aside_ = false;             // positions are mended: these multipliers are no forces
-  std::vector<Multiplier> aside_;     // per block and lane
-  std::vector<std::uint64_t> taken_;  // scratch: colours, per point
+  std::vector<Thirds> thirds_;             // likewise, per near pair
+  ContactMemory memory_;                   // while nothing was found in this frame
+  KnownMultipliers known_;                 // scratch
+  bool is_aside_ = false;                  // positions are mended: these multipliers are no forces
+  std::vector<Multiplier> aside_;          // per block and lane
+  std::vector<std::uint64_t> taken_;       // scratch: colours, per point
   std::vector<std::uint32_t> waiting_, by_colour_;  // scratch: contacts
   std::vector<std::uint8_t> colour_of_;             // likewise, per contact that waits
-  std::vector<Known> known_;                        // likewise
   double give_ = 0;        // s^2: (b h)^2 of the substep that multipliers are of
   bool is_begun_ = false;  // a substep
   double visits_ = 0;

@@ -30,7 +30,7 @@ struct Pair {
     return std::uint64_t{edges} << 63 | from << 32 | to;
   }
   /// Both features are of the cloth.
-  bool is_within_cloth() const { return a == b; }
+  constexpr bool is_within_cloth() const { return a == b; }
   /// The point is of the surface that comes later, the triangle of the one before.
   bool is_turned() const { return a > b; }
   /// 1 where a vector from the second feature to the first leads away from the later surface, else
@@ -119,10 +119,14 @@ struct PairList {
   }
 };
 
-/// Lists of pairs: points beside triangles, and edges.
-inline constexpr std::size_t kPairLists = 2;
-inline constexpr bool has_edges(std::size_t list) { return list == 1; }
-inline constexpr std::size_t list_of(PairKind kind) { return kind == PairKind::edges ? 1 : 0; }
+/// Lists of pairs: points beside triangles, and edges; those of the cloth with bodies come first,
+/// and then those of the cloth with itself.
+inline constexpr std::size_t kBodyLists = 2, kPairLists = 4;
+inline constexpr bool has_edges(std::size_t list) { return list % 2 == 1; }
+inline constexpr bool is_within_cloth(std::size_t list) { return list >= kBodyLists; }
+inline constexpr std::size_t list_of(const Pair& pair) {
+  return (pair.is_within_cloth() ? kBodyLists : 0) + (pair.kind == PairKind::edges ? 1 : 0);
+}
 
 /// Candidates, by lists of pairs.
 using Candidates = std::array<PairList, kPairLists>;

@@ -72,12 +72,13 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   points_.begin_interval(particles, clock, substeps);
   tangles_.begin_interval();
   const bool have_moved = search_.find(points_, candidates_, team);
-  near_search_.measure(points_, candidates_, have_moved, team);
   if (std::exchange(is_new_, false)) {
     tangles_.find(points_);
     began_tangled_ = tangles_.count_within() > 0;
   }
-  near_search_.find(points_, candidates_, tangles_, near_, layers_, team);
+  near_search_.measure(points_, candidates_, have_moved, team);
+  near_search_.find(points_, candidates_, tangles_, near_, team);
+  near_search_.find_layers(points_, candidates_, tangles_, layers_);
   contacts_.find(points_, layers_);
   tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);
@@ -208,7 +209,7 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
   for (const NearPairs& near : near_) {
     for (std::size_t i = 0; i < near.list.size(); ++i) {
       const Pair& pair = near.list.pairs[i];
-      if (!near.states[i].is_touching || pair.is_within_cloth()) continue;
+      if (!near.states[i].is_touching) continue;
       const auto four = near.list.points(i);
       const reference::Nearest found =
           nearest(pair.kind, {at(four[0]), at(four[1]), at(four[2]), at(four[3])});

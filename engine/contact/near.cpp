@@ -71,7 +71,7 @@ SeenPair see(const ContactPoints& points, const Pair& pair, const Four& four, co
 /// for, are left to `settle`.
 SeenPair see(const ContactPoints& points, const Tangles& tangles, const Pair& pair,
              const Four& four) {
-  const bool is_inside = !pair.is_within_cloth() && tangles.is_inside(four);
+  const bool is_inside = tangles.is_inside(four);
   // Faces and edges between particles that are inside follow these.
   const bool is_of_particle = pair.kind == PairKind::point_triangle && !pair.is_turned();
   if ((is_inside && !is_of_particle) || tangles.leaves_out(pair)) return {};
@@ -225,9 +225,8 @@ void NearSearch::measure_new(const ContactPoints& points, const Candidates& cand
 }
 
 void NearSearch::find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles,
-                      Near& near, std::vector<NearContact>& layers, Team& team) {
-  layers.clear();
-  for (std::size_t list = 0; list < kPairLists; ++list) {
+                      Near& near, Team& team) {
+  for (std::size_t list = 0; list < kBodyLists; ++list) {
     near[list].clear();
     const PairList& pairs = candidates[list];
     looked_at_.clear();
@@ -248,15 +247,35 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
       const Four four = pairs.points(i);
       settle(points, pair, four, seen);
       if (seen.sight == Sight::far) continue;
-      if (pair.is_within_cloth()) {
-        if (tangles.cross_beside(pair, four)) continue;
-        layers.push_back(
-            {pair, four, seen.look.normal, points.thickness_of(pair), seen.look.distance});
-        continue;
-      }
       const bool is_under = seen.sight == Sight::behind;
       near[list].add(pair, four, (is_under ? -1.0 : 1.0) * seen.look.normal,
                      points.thickness_of(pair), is_under);
+    }
+  }
+}
+
+void NearSearch::find_layers(ContactPoints& points, const Candidates& candidates,
+                             const Tangles& tangles, std::vector<NearContact>& layers) const {
+  layers.clear();
+  const double touching = 8 * static_cast<double>(points.rounding());
+  for (std::size_t list = kBodyLists; list < kPairLists; ++list) {
+    const Distances& distances = distances_[list];
+    for (std::size_t block = 0; block < distances.near.size(); ++block) {
+      for (std::uint32_t bits = distances.near[block]; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+        const std::size_t i = block * kLanes + lane;
+        const Pair& pair = candidates[list].pairs[i];
+        const Four four = candidates[list].points(i);
+        if (!(points.largest_inverse_mass(four) > 0)) continue;
+        if (tangles.leaves_out(pair) || tangles.cross_beside(pair, four)) continue;
+        const double distance =
+            static_cast<double>(distances.distance[block][lane] - travelled_ / simd::kSurelyApart);
+        // Contacts find their normals themselves where features are apart.
+        const Vector normal = distance > touching
+                                  ? Vector{}
+                                  : look(points.later(pair), pair, points.starts_of(four)).normal;
+        layers.push_back({pair, four, normal, points.thickness_of(pair), distance});
+      }
     }
   }
 }

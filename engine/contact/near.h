@@ -64,11 +64,13 @@ class NearSearch {
   }
   /// m: since candidates were found, by two points beside each other, at most.
   float travelled() const { return travelled_; }
-  /// Pairs with a surface that the cloth is behind are left out, but for particles that are known
-  /// to be inside: the cloth lies beside another surface there.
-  /// layers: those of the cloth with itself.
+  /// Those of the cloth with bodies. Pairs with a surface that the cloth is behind are left out,
+  /// but for particles that are known to be inside: the cloth lies beside another surface there.
   void find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles, Near& near,
-            std::vector<NearContact>& layers, Team& team);
+            Team& team);
+  /// Those of the cloth with itself: contacts leave to neighbours what is theirs.
+  void find_layers(ContactPoints& points, const Candidates& candidates, const Tangles& tangles,
+                   std::vector<NearContact>& layers) const;
   const std::array<Distances, kPairLists>& distances() const { return distances_; }
   std::size_t bytes() const;
 

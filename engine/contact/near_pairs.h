@@ -20,7 +20,7 @@ struct NearState {
   reference::Grip grip{};
 };
 
-/// Near pairs of one list.
+/// Near pairs of one list of the cloth with bodies.
 struct NearPairs {
   PairList list;
   kernels::AlignedVector<simd::PairSide> sides;  // per block
@@ -54,6 +54,6 @@ struct NearPairs {
     return std::uint32_t{1} << (kernels::kLanes + i % kernels::kLanes);
   }
 };
-using Near = std::array<NearPairs, kPairLists>;
+using Near = std::array<NearPairs, kBodyLists>;
 
 }  // namespace weft

@@ -122,7 +122,7 @@ class OwnedFeatures {
   }
   void add_pair(const Pair& pair, const std::array<std::uint32_t, 4>& points, std::uint32_t b) {
     if (pair.is_within_cloth() && points_.sewn().join(pair.kind, points)) return;
-    candidates_[list_of(pair.kind)].add(pair, points);
+    candidates_[list_of(pair)].add(pair, points);
     if (pair.is_within_cloth()) return;
     if (std::exchange(active_, b) != b) points_.activate(surfaces_.b, b);
   }

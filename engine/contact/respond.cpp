@@ -69,7 +69,7 @@ double least_weight(const ContactPoints& points, const std::array<std::uint32_t,
 void Response::begin(const ContactScene& scene, const Near& near) {
   for (const std::uint32_t point : asked_) is_asked_[point] = false;
   asked_.clear();
-  for (std::size_t list = 0; list < kPairLists; ++list) {
+  for (std::size_t list = 0; list < kBodyLists; ++list) {
     for (auto* bits : {&touching_[list], &touching_now_[list]})
       bits->assign(near[list].list.blocks.size(), 0);
     for (std::size_t i = 0; i < near[list].list.size(); ++i) {
@@ -110,7 +110,7 @@ simd::PairTouch Response::touch_of(const ContactScene& scene, NearPairs& near,
 
 void Response::find_touching(const ContactScene& scene, Near& near, Team& team) {
   scene.points.read_cloth(scene.particles);
-  for (std::size_t list = 0; list < kPairLists; ++list) {
+  for (std::size_t list = 0; list < kBodyLists; ++list) {
     NearPairs& pairs = near[list];
     const simd::PairTouch touch = touch_of(scene, pairs, touching_[list]);
     team.for_each_share(pairs.list.blocks.size(), [&](std::size_t first, std::size_t last) {
@@ -302,7 +302,7 @@ bool Response::hold(const ContactScene& scene, Near& near, std::uint32_t slot) {
 double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
   find_touching(scene, near, team);
   double deepest = 0;
-  for (std::size_t list = 0; list < kPairLists; ++list) {
+  for (std::size_t list = 0; list < kBodyLists; ++list) {
     for (std::size_t block = 0; block < touching_[list].size(); ++block) {
       for_each_lane(block, touching_[list][block], [&](std::size_t i) {
         const Encounter e = meet(scene, near[list], i);

@@ -78,7 +78,7 @@ class Response {
 
   const simd::Table& table_;
   /// Per block, a bit per lane: when a sweep began, and as of late.
-  std::array<std::vector<std::uint16_t>, kPairLists> touching_, touching_now_;
+  std::array<std::vector<std::uint16_t>, kBodyLists> touching_, touching_now_;
   std::vector<std::uint32_t> asked_;  // points of near pairs
   std::vector<bool> is_asked_;        // per point
   /// Pairs that have touched in this substep, in lists by slot.

@@ -114,8 +114,11 @@ ContactSpeeds speeds_of_step(const Model& model, std::span<const Vector> starts,
     return speeds;
   };
   const ContactSpeeds still = speeds_beside({}), moving = speeds_beside(cloth.mean);
-  return std::max(moving.of_cloth, moving.of_near) < std::max(of_cloth, still.of_near) ? moving
-                                                                                       : still;
+  // What lies still is predicted to fall for a substep: that is no drift.
+  const double of_load = tuning::kCalmAcceleration * h;
+  return std::max(moving.of_cloth, moving.of_near) + of_load < std::max(of_cloth, still.of_near)
+             ? moving
+             : still;
 }
 
 }  // namespace weft

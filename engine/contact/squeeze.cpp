@@ -77,7 +77,7 @@ void Squeeze::find_features(const ContactScene& scene, const Near& near) {
 }
 
 void Squeeze::find_pairs(const Near& near) {
-  for (std::uint32_t list = 0; list < kPairLists; ++list) {
+  for (std::uint32_t list = 0; list < kBodyLists; ++list) {
     for (std::uint32_t i = 0; i < near[list].list.size(); ++i) {
       const bool is_between = std::ranges::any_of(
           near[list].list.points(i),

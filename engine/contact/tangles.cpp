@@ -144,8 +144,8 @@ void Tangles::come_out(ContactPoints& points, Near& near) {
       if (!left_by.is_there) continue;
       is_out = false;
       const Vector r = left_by.nearest.r, n = kernels::direction(r, length(r));
-      near[list_of(left_by.pair.kind)].add(left_by.pair, left_by.points, -1.0 * n,
-                                           points.thickness_of(left_by.pair), true);
+      near[list_of(left_by.pair)].add(left_by.pair, left_by.points, -1.0 * n,
+                                      points.thickness_of(left_by.pair), true);
     }
     return is_out;
   });
@@ -224,7 +224,7 @@ void Tangles::come_off_edges(ContactPoints& points, SurfacePair pair, std::uint3
 /// Each pair once.
 void Tangles::add_under(const ContactPoints& points, const Pair& pair,
                         const std::array<std::uint32_t, 4>& four, Vector normal, Near& near) {
-  NearPairs& pairs = near[list_of(pair.kind)];
+  NearPairs& pairs = near[list_of(pair)];
   if (pairs.find(pair) == pairs.list.size())
     pairs.add(pair, four, normal, points.thickness_of(pair), true);
 }
@@ -316,8 +316,7 @@ void Tangles::find_crossing_at_end(ContactPoints& points) {
 }
 
 std::size_t Tangles::bytes() const {
-  return misplaced_.bytes() + within_.bytes() + bytes_of(crossing_) +
-         bytes_of(triangles_) +
+  return misplaced_.bytes() + within_.bytes() + bytes_of(crossing_) + bytes_of(triangles_) +
          (has_triangle_.capacity() + has_edge_.capacity()) / 8;
 }
 

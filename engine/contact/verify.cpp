@@ -101,16 +101,17 @@ std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, do
 
 }  // namespace
 
-/// Fails what judge(pair, points, is_alone) says of each pair of candidates that may have come
-/// nearer than `near` and is not left alone. Threads judge, and once more, alone, one of them what
-/// asks.
+/// Fails what judge(pair, points, is_alone) says of each pair of the first `lists` of candidates
+/// that may have come nearer than `near` and is not left alone. Threads judge, and once more,
+/// alone, one of them what asks.
 template <class Judge>
 void Verification::judge_moved(const ContactScene& scene, const NearSearch& near_search,
-                               const Candidates& candidates, double near, Team& team,
-                               Judge&& judge) {
-  if (candidates[0].size() + candidates[1].size() == 0) return;
+                               const Candidates& candidates, std::size_t lists, double near,
+                               Team& team, Judge&& judge) {
+  if (std::ranges::all_of(candidates, [](const PairList& list) { return list.size() == 0; }))
+    return;
   const float most = scene.points.largest_move() + 4 * scene.points.rounding();
-  for (std::uint32_t list = 0; list < kPairLists; ++list) {
+  for (std::uint32_t list = 0; list < lists; ++list) {
     const PairList& pairs = candidates[list];
     moved_.resize(pairs.blocks.size());
     const float spare = static_cast<float>(near) + near_search.travelled();
@@ -150,7 +151,7 @@ void Verification::find(const ContactScene& scene, CandidateSearch& search, Near
   look_beside_strayed(scene, search, near_search, candidates, team);
   ContactPoints& points = scene.points;
   judge_moved(
-      scene, near_search, candidates, 0, team,
+      scene, near_search, candidates, kPairLists, 0, team,
       [&](const Pair& pair, const std::array<std::uint32_t, 4>& four, bool is_alone) -> Verdict {
         const PairMotion way{points.starts_of(four), points.ends_of(four)};
         ContactSurface& later = points.later(pair);
@@ -177,9 +178,8 @@ void Verification::find_late(const ContactScene& scene, const NearSearch& near_s
   if (points.surface_pairs().empty()) return;  // layers press each other, and come apart by and by
   const auto at = [&](std::uint32_t point) { return points.end(point); };
   judge_moved(
-      scene, near_search, candidates, points.largest_thickness(), team,
+      scene, near_search, candidates, kBodyLists, points.largest_thickness(), team,
       [&](const Pair& pair, const std::array<std::uint32_t, 4>& four, bool) -> Verdict {
-        if (pair.is_within_cloth()) return {};
         const ContactSurface& later = points.later(pair);
         const FourPoints x = points.ends_of(four);
         const reference::Nearest found = nearest(pair.kind, x);

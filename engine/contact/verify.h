@@ -42,7 +42,8 @@ class Verification {
   };
   template <class Judge>
   void judge_moved(const ContactScene& scene, const NearSearch& near_search,
-                   const Candidates& candidates, double near, Team& team, Judge&& judge);
+                   const Candidates& candidates, std::size_t lists, double near, Team& team,
+                   Judge&& judge);
   void leave_each_once(const Candidates& candidates);
   void look_beside_strayed(const ContactScene& scene, CandidateSearch& search,
                            NearSearch& near_search, Candidates& candidates, Team& team);
