@@ -52,9 +52,20 @@ struct Contact {
   double slack = 0;  // 1/kg
   double give = 0;   // kg: 1 / (S + a); 0: it is left to a neighbour
   double friction = 0;
-  double push = 0;  // kg m
-  Vector hold{};    // kg m
+  double push = 0;    // kg m
+  Vector hold{};      // kg m
+  double before = 0;  // kg m: the push that the last substep ended with
 
+  /// When a substep begins and its normal is frozen. share: its (b h)^2 over that of the last
+  /// substep. The least push of the last two substeps acts again. Friction is shortened as the push
+  /// is, and lies in the plane of now.
+  void act_again(double share) {
+    const double by = give == 0 ? 0 : share, last = by * push;
+    push = std::min(last, by * before);
+    before = last;
+    hold = by * (push < last ? push / last : 1) * hold;
+    hold = hold - dot(hold, normal) * normal;
+  }
   /// One visit. x: ways of the points since the substep began, which it changes.
   void visit(std::array<Vector, 4>& x) {
     if (give == 0) return;

@@ -26,6 +26,10 @@ Vector draw(Random& random, double size) {
   return {random.between(-size, size), random.between(-size, size), random.between(-size, size)};
 }
 
+Vector hold_of(const simd::ContactBlock& block, std::size_t lane) {
+  return {double{block.hold.x[lane]}, double{block.hold.y[lane]}, double{block.hold.z[lane]}};
+}
+
 /// A block whose features lie on each other, without faces beside them, and ways of their points.
 struct Layers {
   bool edges;
@@ -58,9 +62,14 @@ struct Layers {
       for (auto& towards : block.towards) towards[lane] = -1;
       block.thickness[lane] = static_cast<float>(kThickness);
       block.friction[lane] = static_cast<float>(random.between(0, 0.6));
-      block.push[lane] = random.between(0, 1) < 0.5 ? 0 : static_cast<float>(1e-6);
-      block.hold.x[lane] = block.push[lane] / 10;
-      block.before[lane] = static_cast<float>(random.between(0, 1) < 0.5 ? 2e-6 : 5e-7);
+      // In the last two substeps: nothing, a touch that began or ended, and one that went on.
+      const auto some = [&] { return random.between(0, 1) < 0.3 ? 0 : random.between(2e-7, 2e-6); };
+      block.push[lane] = static_cast<float>(some());
+      block.before[lane] = static_cast<float>(some());
+      const Vector hold = draw(random, 0.1 * double{block.push[lane]});
+      block.hold.x[lane] = static_cast<float>(hold.x);
+      block.hold.y[lane] = static_cast<float>(hold.y);
+      block.hold.z[lane] = static_cast<float>(hold.z);
     }
     for (std::size_t i = 0; i < x.size(); ++i) {
       const auto w = static_cast<float>(inverse_mass[i]);
@@ -75,8 +84,8 @@ struct Layers {
     return {all[block.point[0][lane]], all[block.point[1][lane]], all[block.point[2][lane]],
             all[block.point[3][lane]]};
   }
-  /// As the law has it, before kernels freeze it.
-  Contact contact(std::size_t lane) const {
+  /// As the law has it where a substep begins, before kernels freeze it.
+  Contact contact(std::size_t lane, double warm) const {
     const auto at = of(x, lane);
     const reference::Nearest nearest =
         edges ? reference::nearest_of_edges(at[0], at[1], at[2], at[3])
@@ -84,7 +93,9 @@ struct Layers {
     Contact contact{.weight = nearest.weight,
                     .normal = (1 / length(nearest.r)) * nearest.r,
                     .friction = double{block.friction[lane]},
-                    .push = std::min(double{block.push[lane]}, double{block.before[lane]})};
+                    .push = double{block.push[lane]},
+                    .hold = hold_of(block, lane),
+                    .before = double{block.before[lane]}};
     contact.gap = reference::gap_over_target(length(nearest.r), kThickness, kRecovery);
     double sum = 0, largest = 0;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -95,17 +106,10 @@ struct Layers {
     sum = std::max(sum, reference::kLeastGive * largest);
     contact.slack = reference::kSlack * sum;
     contact.give = sum > 0 ? 1 / (sum + contact.slack) : 0;
-    const double last = double{block.push[lane]};
-    const Vector hold{last > 0 ? contact.push / last * double{block.hold.x[lane]} : 0, 0, 0};
-    contact.hold = hold - dot(hold, contact.normal) * contact.normal;
-    if (contact.give == 0) contact.push = 0, contact.hold = {};  // nobody moves
+    contact.act_again(warm);
     return contact;
   }
 };
-
-Vector hold_of(const simd::ContactBlock& block, std::size_t lane) {
-  return {double{block.hold.x[lane]}, double{block.hold.y[lane]}, double{block.hold.z[lane]}};
-}
 
 void check_near(Vector is, Vector should, double tolerance) {
   CHECK(length(is - should) <= tolerance);
@@ -119,7 +123,7 @@ TEST_CASE("contacts in lanes obey the law in double") {
       CAPTURE(seed);
       Layers layers(seed, seed % 2 == 0);
       std::array<Contact, kLanes> contacts;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) contacts[lane] = layers.contact(lane);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) contacts[lane] = layers.contact(lane, 1);
       simd::ContactBlock& block = layers.block;
       kernels.freeze({.blocks = &block,
                       .places = layers.places.data(),
@@ -154,37 +158,64 @@ TEST_CASE("contacts in lanes obey the law in double") {
   }
 }
 
+/// Both kinds of features, and substeps that are shorter and longer than the last.
 TEST_CASE("multipliers that act again move points by the least of what acted in two substeps") {
   for (const simd::Isa isa : supported_isas()) {
     CAPTURE(text(isa));
     const simd::ContactKernels& kernels = *simd::table(isa).contacts;
-    Layers layers(3, false);
-    simd::ContactBlock& block = layers.block;
-    std::array<Contact, kLanes> contacts;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) contacts[lane] = layers.contact(lane);
-    kernels.freeze({.blocks = &block,
-                    .places = layers.places.data(),
-                    .rounding = 1e-8f,
-                    .warm = 0.5,
-                    .recovery = static_cast<float>(kRecovery)},
-                   false, 0, 1);
-    const std::uint32_t first = 0;
-    kernels.start({&block, layers.moves.data()}, &first, 1);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      CAPTURE(lane);
-      const Contact& contact = contacts[lane];
-      for (std::size_t k = 0; k < 4; ++k) {
-        const float* move = &layers.moves[4 * block.point[k][lane]];
-        const double share = contact.inverse_mass[k] * contact.weight[k];
-        check_near({double{move[0]}, double{move[1]}, double{move[2]}},
-                   layers.ways[block.point[k][lane]] +
-                       share * (double{block.push[lane]} * contact.normal + hold_of(block, lane)),
-                   1e-8);
+    for (const bool edges : {false, true}) {
+      for (const double warm : {0.0, 0.5, 1.0, 2.0}) {
+        CAPTURE(edges);
+        CAPTURE(warm);
+        Layers layers(3, edges);
+        simd::ContactBlock& block = layers.block;
+        std::array<Contact, kLanes> contacts;
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+          contacts[lane] = layers.contact(lane, warm);
+        kernels.freeze({.blocks = &block,
+                        .places = layers.places.data(),
+                        .rounding = 1e-8f,
+                        .warm = static_cast<float>(warm),
+                        .recovery = static_cast<float>(kRecovery)},
+                       edges, 0, 1);
+        const std::uint32_t first = 0;
+        kernels.start({&block, layers.moves.data()}, &first, 1);
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+          CAPTURE(lane);
+          const Contact& contact = contacts[lane];
+          CHECK(double{block.push[lane]} == doctest::Approx(contact.push));
+          CHECK(double{block.before[lane]} == doctest::Approx(contact.before));
+          check_near(hold_of(block, lane), contact.hold, 1e-12);
+          const Vector by =
+              contact.push > 0 ? contact.push * contact.normal + contact.hold : Vector{};
+          for (std::size_t k = 0; k < 4; ++k) {
+            const float* move = &layers.moves[4 * block.point[k][lane]];
+            const double share = contact.inverse_mass[k] * contact.weight[k];
+            check_near({double{move[0]}, double{move[1]}, double{move[2]}},
+                       layers.ways[block.point[k][lane]] + share * by, 1e-8);
+          }
+        }
       }
-      CHECK(double{block.push[lane]} == doctest::Approx(0.5 * contact.push));
-      check_near(hold_of(block, lane), 0.5 * contact.hold, 1e-12);
     }
   }
+}
+
+TEST_CASE("a contact begins with what pushed in both of the last substeps") {
+  Contact contact{.normal = {0, 1, 0}, .give = 1, .push = 3, .hold = {1, 0.5, 0}};
+  contact.act_again(1);  // nothing pushed before: it was a blow
+  CHECK(contact.push == 0);
+  CHECK(contact.hold == Vector{});
+  contact.push = 2;
+  contact.hold = {1, 0, 0};
+  contact.act_again(4);  // the next substep is twice as long
+  CHECK(contact.push == 8);
+  CHECK(contact.hold == Vector{4, 0, 0});
+  contact.push = 1;
+  contact.act_again(1);
+  CHECK(contact.push == 1);
+  contact.push = 5;
+  contact.act_again(1);
+  CHECK(contact.push == 1);
 }
 
 }  // namespace
