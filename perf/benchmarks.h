@@ -61,11 +61,13 @@ void register_particle_benchmarks(Shared& shared);
 void register_constraint_benchmarks(Shared& shared);
 void register_batch_benchmarks(Shared& shared);
 void register_contact_benchmarks(Shared& shared);
+void register_layer_benchmarks(Shared& shared);
 void register_yarn_benchmarks(Shared& shared);
 void register_small_step_benchmarks(Shared& shared);
 void register_direct_benchmarks();
 void register_team_benchmarks();
 void register_step_benchmarks();
 void register_cloth_benchmarks();
+void register_rest_benchmarks();
 
 }  // namespace weft::perf

@@ -51,12 +51,14 @@ int run(int argc, char** argv) {
   register_constraint_benchmarks(shared);
   register_batch_benchmarks(shared);
   register_contact_benchmarks(shared);
+  register_layer_benchmarks(shared);
   register_yarn_benchmarks(shared);
   register_small_step_benchmarks(shared);
   register_direct_benchmarks();
   register_team_benchmarks();
   register_step_benchmarks();
   register_cloth_benchmarks();
+  register_rest_benchmarks();
   // A filter that matches nothing would pass unseen.
   return benchmark::RunSpecifiedBenchmarks() > 0 ? 0 : 1;
 }
