@@ -31,8 +31,8 @@ void SurfaceContacts::begin(const BodyClock& clock, ContactStart start, const Mi
   for (NearPairs& near : near_) near.clear();
   if (empty()) return;
   impulses_.begin(clock.bodies());
-  is_new_ = start != ContactStart::known;
-  tangles_.begin(points_.cloth(), misplaced);
+  start_ = start;
+  if (start != ContactStart::goes_on) tangles_.begin(points_.cloth(), misplaced);
   began_tangled_ = tangles_.count_within() > 0;
 }
 
@@ -72,8 +72,10 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   points_.begin_interval(particles, clock, substeps);
   tangles_.begin_interval();
   const bool have_moved = search_.find(points_, candidates_, team);
-  if (std::exchange(is_new_, false)) {
+  const ContactStart start = std::exchange(start_, ContactStart::known);
+  if (start != ContactStart::known) {
     tangles_.find(points_);
+    if (start == ContactStart::anew) tangles_.find_within(points_);
     began_tangled_ = tangles_.count_within() > 0;
   }
   near_search_.measure(points_, candidates_, have_moved, team);

@@ -39,8 +39,9 @@
 namespace weft {
 
 /// known: tangles are as the frame before left them. anew: positions were given, or a body was, and
-/// they are looked for. goes_on: likewise, where the last frame ended, and bodies still stand as
-/// they did in it.
+/// they are looked for. goes_on: where the last frame ended, and bodies still stand as they did in
+/// it: tangles with bodies are looked for, since positions that are put right are not verified
+/// beside these.
 enum class ContactStart : std::uint8_t { known, anew, goes_on };
 
 class SurfaceContacts {
@@ -164,8 +165,8 @@ class SurfaceContacts {
   ImpactZones zones_;
   RescueReport failures_;
   double visits_ = 0;
-  bool is_new_ = false;         // tangles are not known yet
-  bool began_tangled_ = false;  // cloth, with itself, in this frame
+  ContactStart start_ = ContactStart::known;  // of what comes next
+  bool began_tangled_ = false;                // cloth, with itself, in this frame
   double late_depth_ = 0;  // m, of pairs that came near unexpectedly, when the last interval ended
   double interval_ = 0;    // s
   bool has_looked_ahead_ = false;

@@ -303,9 +303,9 @@ void ContactPoints::find_reach() {
     reach_[b] = std::max(reach_[b], ways_[a]);
   }
   largest_reach_ = 0;
+  const double spare = to_ > from_ ? tuning::kContactSpare : tuning::kContactWideSpare;
   for (double& reach : reach_) {
-    reach = tuning::kContactReach * std::max(reach, way_of_near_) +
-            tuning::kContactSpare * largest_thickness_;
+    reach = tuning::kContactReach * std::max(reach, way_of_near_) + spare * largest_thickness_;
     largest_reach_ = std::max(largest_reach_, reach);
   }
 }

@@ -81,8 +81,8 @@ void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
   crossing_.clear();
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
   const SewnPoints& sewn = points.sewn();
-  BoxTree::meet(table_, cloth.tree(), cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
-    if (b <= a || cloth_->is_point(a) || cloth_->is_point(b)) return;
+  BoxTree::meet_itself(table_, cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
+    if (cloth_->is_point(a) || cloth_->is_point(b)) return;
     if (!everywhere && (may_cross_[a] & may_cross_[b]) == 0) return;
     const TriangleSurface::Triangle &one = cloth_->triangles[a], &other = cloth_->triangles[b];
     const std::size_t shared = count_shared(sewn.first_of(one), sewn.first_of(other));

@@ -125,6 +125,9 @@ void Tangles::find(ContactPoints& points) {
   }
   find_crossing(points, [&](std::uint32_t point) { return points.start(point); });
   leave_crossing_alone();
+}
+
+void Tangles::find_within(const ContactPoints& points) {
   if (!points.touches_itself()) return;
   within_.find_at_start(points);
   misplaced_.tangled = within_.crossing();

@@ -26,8 +26,10 @@ class Tangles {
   void begin(const TriangleSurface& cloth, const Misplaced& misplaced);
   /// An interval begins: what crosses now is left alone until it is over.
   void begin_interval();
-  /// Instead, finds anew what is inside and what crosses where an interval begins.
+  /// Finds anew what is inside and what crosses where an interval begins: bodies, and the cloth
+  /// itself.
   void find(ContactPoints& points);
+  void find_within(const ContactPoints& points);
   /// Adds to near pairs those by which particles come out that are inside, and triangles off what
   /// leads through them. Forgets particles that are out.
   void come_out(ContactPoints& points, Near& near);
