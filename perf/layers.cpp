@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "engine/erase_repeated.h"
 #include "kernels/reference/distances.h"
 
 namespace weft::perf {
@@ -56,8 +57,7 @@ class Squares {
       if (found != of_.end()) met_.insert(met_.end(), found->second.begin(), found->second.end());
     });
     std::ranges::sort(met_);
-    const auto repeated = std::ranges::unique(met_);
-    met_.erase(repeated.begin(), repeated.end());
+    erase_repeated(met_);
     for (const std::uint32_t feature : met_)
       if (rectangles_[feature].meets(rectangle)) visit(feature);
   }

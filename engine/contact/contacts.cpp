@@ -111,7 +111,7 @@ void Contacts::gather_known() {
   }
 }
 
-void Contacts::number_points(const ContactPoints& points, std::span<const NearContact> near) {
+void Contacts::number_points(const ContactPoints& points, std::span<NearContact> near) {
   for (const std::uint32_t point : points_) number_of_[point] = kNoIndex;
   points_.clear();
   const auto add = [&](std::uint32_t point) {
@@ -123,10 +123,9 @@ void Contacts::number_points(const ContactPoints& points, std::span<const NearCo
   for (const NearContact& contact : near)
     for (const std::uint32_t point : contact.points) add(point);
   moving_ = points_.size();
-  thirds_.clear();
-  for (const NearContact& contact : near) {
-    thirds_.push_back(beside(points.cloth(), contact));
-    for (const std::uint32_t point : thirds_.back()) add(point);
+  for (NearContact& contact : near) {
+    contact.beside = beside(points.cloth(), contact);
+    for (const std::uint32_t point : contact.beside) add(point);
   }
   const std::size_t quads = points_.size() + kLanes;  // of lanes that are not used, too
   places_.assign(4 * quads, 0);
@@ -163,10 +162,9 @@ void Contacts::find(const ContactPoints& points, std::vector<NearContact>& near)
   number_points(points, near);
   const auto first_edges = std::ranges::partition_point(near, std::not_fn(is_edges));
   const auto points_count = static_cast<std::size_t>(first_edges - near.begin());
-  const std::span<const Thirds> thirds = thirds_;
-  colour(points, std::span(near).first(points_count), thirds.first(points_count));
+  colour(points, std::span(near).first(points_count));
   edges_from_ = blocks_.size();
-  colour(points, std::span(near).subspan(points_count), thirds.subspan(points_count));
+  colour(points, std::span(near).subspan(points_count));
   active_.assign(blocks_.size(), 0);
   links_.clear();
   first_link_.assign(moving_, kNoIndex);
@@ -175,8 +173,7 @@ void Contacts::find(const ContactPoints& points, std::vector<NearContact>& near)
 
 /// A colour is the lowest one that none of the points has. A contact that finds none among 64 has
 /// one of the next 64.
-void Contacts::colour(const ContactPoints& points, std::span<const NearContact> near,
-                      std::span<const Thirds> thirds) {
+void Contacts::colour(const ContactPoints& points, std::span<const NearContact> near) {
   waiting_.resize(near.size());
   std::iota(waiting_.begin(), waiting_.end(), 0u);
   while (!waiting_.empty()) {
@@ -199,15 +196,14 @@ void Contacts::colour(const ContactPoints& points, std::span<const NearContact> 
     for (std::size_t k = 0; k < waiting_.size(); ++k)
       by_colour_[next[colour_of_[k]]++] = waiting_[k];
     for (std::size_t c = 0; c < kColours; ++c)
-      put_blocks(points, near, thirds,
-                 std::span(by_colour_).subspan(first[c], first[c + 1] - first[c]));
+      put_blocks(points, near, std::span(by_colour_).subspan(first[c], first[c + 1] - first[c]));
     waiting_.assign(by_colour_.begin() + first[kColours], by_colour_.end());
   }
 }
 
 /// Of one colour.
 void Contacts::put_blocks(const ContactPoints& points, std::span<const NearContact> near,
-                          std::span<const Thirds> thirds, std::span<const std::uint32_t> contacts) {
+                          std::span<const std::uint32_t> contacts) {
   if (contacts.empty()) return;
   const auto first = static_cast<std::uint32_t>(blocks_.size());
   for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -215,7 +211,7 @@ void Contacts::put_blocks(const ContactPoints& points, std::span<const NearConta
       blocks_.emplace_back();
       keys_.resize(kLanes * blocks_.size(), kNoKey);
     }
-    put(points, near[contacts[k]], thirds[contacts[k]], blocks_.size() - 1, k % kLanes);
+    put(points, near[contacts[k]], blocks_.size() - 1, k % kLanes);
   }
   for (std::size_t lane = contacts.size() % kLanes; lane != 0 && lane < kLanes; ++lane) {
     for (std::size_t k = 0; k < 4; ++k) {
@@ -226,15 +222,15 @@ void Contacts::put_blocks(const ContactPoints& points, std::span<const NearConta
   colours_.push_back({first, static_cast<std::uint32_t>(blocks_.size())});
 }
 
-void Contacts::put(const ContactPoints& points, const NearContact& contact, const Thirds& thirds,
-                   std::size_t block, std::size_t lane) {
+void Contacts::put(const ContactPoints& points, const NearContact& contact, std::size_t block,
+                   std::size_t lane) {
   simd::ContactBlock& to = blocks_[block];
   for (std::size_t k = 0; k < 4; ++k) {
     to.point[k][lane] = number_of_[contact.points[k]];
-    to.beside[k][lane] = number_of_[thirds[k]];
+    to.beside[k][lane] = number_of_[contact.beside[k]];
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    const bool is_border = thirds[k] == contact.points[k == 0 ? 3 : k];
+    const bool is_border = contact.beside[k] == contact.points[k == 0 ? 3 : k];
     to.towards[k][lane] = is_border ? -1.f : 1.f;
   }
   to.thickness[lane] = static_cast<float>(contact.thickness);
@@ -473,8 +469,7 @@ std::size_t Contacts::bytes() const {
          bytes_of(moved_by_) + bytes_of(is_beside_body_) + bytes_of(active_) +
          bytes_of(active_blocks_) + bytes_of(active_colours_) + memory_.bytes() + bytes_of(aside_) +
          bytes_of(taken_) + bytes_of(waiting_) + bytes_of(links_) + bytes_of(first_link_) +
-         bytes_of(in_order_) + bytes_of(thirds_) + bytes_of(colour_of_) + bytes_of(by_colour_) +
-         known_.bytes();
+         bytes_of(in_order_) + bytes_of(colour_of_) + bytes_of(by_colour_) + known_.bytes();
 }
 
 }  // namespace weft

@@ -28,9 +28,10 @@ namespace weft {
 struct NearContact {
   Pair pair{};
   std::array<std::uint32_t, 4> points{};
-  kernels::Vector normal{};  // from the second feature to the first
-  double thickness = 0;      // m
-  double distance = 0;       // m
+  kernels::Vector normal{};               // from the second feature to the first
+  double thickness = 0;                   // m
+  double distance = 0;                    // m
+  std::array<std::uint32_t, 4> beside{};  // as simd::ContactBlock has it: found by Contacts
 };
 
 class Contacts {
@@ -73,21 +74,19 @@ class Contacts {
   struct Link {
     std::uint32_t point = 0, contact = 0, next = 0;
   };
-  using Thirds = std::array<std::uint32_t, 4>;  // simd::ContactBlock::beside
   void clear();
   Multiplier multiplier(std::size_t contact) const;
   void set_multiplier(std::size_t contact, const Multiplier& to);
   void gather_known();
-  void number_points(const ContactPoints& points, std::span<const NearContact> near);
+  void number_points(const ContactPoints& points, std::span<NearContact> near);
   void put_in_order(std::vector<NearContact>& near);
-  void colour(const ContactPoints& points, std::span<const NearContact> near,
-              std::span<const Thirds> thirds);
+  void colour(const ContactPoints& points, std::span<const NearContact> near);
   void put_blocks(const ContactPoints& points, std::span<const NearContact> near,
-                  std::span<const Thirds> thirds, std::span<const std::uint32_t> contacts);
+                  std::span<const std::uint32_t> contacts);
   void link_active();
   bool visit(ContactParticles& particles, std::size_t i);
-  void put(const ContactPoints& points, const NearContact& contact, const Thirds& thirds,
-           std::size_t block, std::size_t lane);
+  void put(const ContactPoints& points, const NearContact& contact, std::size_t block,
+           std::size_t lane);
   enum class Active : std::uint8_t { push, touch };
   void find_active(Active which, Team& team);
   void read_moves(const ContactParticles& particles);
@@ -125,7 +124,6 @@ class Contacts {
   std::vector<std::uint32_t> first_link_;  // per point that contacts have
   bool are_linked_ = false;                // of the active blocks
   std::vector<NearContact> in_order_;      // scratch
-  std::vector<Thirds> thirds_;             // likewise, per near pair
   ContactMemory memory_;                   // while nothing was found in this frame
   KnownMultipliers known_;                 // scratch
   bool is_aside_ = false;                  // positions are mended: these multipliers are no forces

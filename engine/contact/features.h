@@ -123,7 +123,6 @@ struct PairList {
 /// and then those of the cloth with itself.
 inline constexpr std::size_t kBodyLists = 2, kPairLists = 4;
 inline constexpr bool has_edges(std::size_t list) { return list % 2 == 1; }
-inline constexpr bool is_within_cloth(std::size_t list) { return list >= kBodyLists; }
 inline constexpr std::size_t list_of(const Pair& pair) {
   return (pair.is_within_cloth() ? kBodyLists : 0) + (pair.kind == PairKind::edges ? 1 : 0);
 }
