@@ -1,6 +1,7 @@
 #include "engine/contact/candidates.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -41,14 +42,20 @@ void CandidateSearch::find_all(ContactPoints& points, SurfacePair pair, Candidat
 }
 
 bool CandidateSearch::find(ContactPoints& points, Candidates& candidates, Team& team) {
-  if (points.has_tubes()) return renew(points, candidates, team);
+  const bool have_moved = find_again(points, candidates);
+  if (points.touches_itself()) stars_.add_folded(points, Stars::Fold::comes_near, candidates, team);
+  return have_moved;
+}
+
+bool CandidateSearch::find_again(ContactPoints& points, Candidates& candidates) {
+  if (points.has_tubes()) return renew(points, candidates);
   points.lay_tubes();
   ContactSurface& cloth = points.surfaces()[kClothSurface];
   cloth.own_tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
   if (owner_of_edge_.empty()) find_owners(cloth);
   for (PairList& list : candidates) list.clear();
   for (const SurfacePair pair : points.surface_pairs()) find_all(points, pair, candidates);
-  if (points.touches_itself()) find_within_cloth(points, candidates, team);
+  if (points.touches_itself()) find_within_cloth(points, candidates);
   return true;
 }
 
@@ -79,7 +86,7 @@ std::uint32_t CandidateSearch::owner_of_second(const Pair& pair) const {
 }
 
 /// Candidates of triangles with a corner that has left its tube, and of these alone.
-bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates, Team& team) {
+bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
   std::ranges::fill(has_moved_, std::uint8_t{0});
   bool any = false;
   points.renew_tubes([&](std::uint32_t slot) {
@@ -96,7 +103,7 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates, Team&
       all.add(points.in_tree(points.surfaces()[kClothSurface], cloth.triangles[t]));
   }
   bool have_moved = false;
-  for (PairList& list : candidates) {
+  for (PairList& list : std::span(candidates).first(kStarLists)) {
     have_moved = list.leave_out([&](const Pair& pair) {
       return is_renewed_[owner(pair)] != 0 ||
              (pair.is_within_cloth() && is_renewed_[owner_of_second(pair)] != 0);
@@ -117,7 +124,7 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates, Team&
     }
     features.finish();
   }
-  if (points.touches_itself()) find_within_cloth_of(points, candidates, team);
+  if (points.touches_itself()) find_within_cloth_of(points, candidates);
   return have_moved;
 }
 
@@ -136,7 +143,7 @@ void CandidateSearch::find_beside(ContactPoints& points, std::uint32_t triangle,
 
 std::size_t CandidateSearch::bytes() const {
   return seen_cloth_.bytes() + seen_.bytes() + bytes_of(has_moved_) + bytes_of(is_renewed_) +
-         bytes_of(owner_of_edge_) + bytes_of(owner_of_point_) + adjacent_.bytes();
+         bytes_of(owner_of_edge_) + bytes_of(owner_of_point_) + stars_.bytes();
 }
 
 }  // namespace weft

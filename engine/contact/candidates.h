@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "engine/bytes_of.h"
-#include "engine/contact/adjacent_features.h"
 #include "engine/contact/features.h"
 #include "engine/contact/points.h"
+#include "engine/contact/stars.h"
 
 namespace weft {
 
@@ -39,7 +39,7 @@ class SeenTubes {
 
 class CandidateSearch {
  public:
-  explicit CandidateSearch(const simd::Table& table) : table_(table), adjacent_(table) {}
+  explicit CandidateSearch(const simd::Table& table) : table_(table), stars_(table) {}
 
   /// Of an interval. Returns whether candidates have other places than before.
   bool find(ContactPoints& points, Candidates& candidates, Team& team);
@@ -49,22 +49,27 @@ class CandidateSearch {
   /// The same beside other cloth, of all triangles that have such a corner, by the tubes of their
   /// corners: those are widened to the way that it took.
   void find_within_cloth_beside(ContactPoints& points, std::span<const std::uint8_t> has_strayed,
-                                Candidates& candidates, Team& team);
+                                Candidates& candidates);
+  /// And beside itself, of stars that have folded. Returns whether there are any.
+  bool find_folded(ContactPoints& points, Candidates& candidates, Team& team) {
+    return stars_.add_folded(points, Stars::Fold::crosses, candidates, team);
+  }
   std::size_t bytes() const;
 
  private:
   void find_all(ContactPoints& points, SurfacePair pair, Candidates& candidates);
-  void find_within_cloth(ContactPoints& points, Candidates& candidates, Team& team);
-  void find_within_cloth_of(ContactPoints& points, Candidates& candidates, Team& team);
+  void find_within_cloth(ContactPoints& points, Candidates& candidates);
+  void find_within_cloth_of(ContactPoints& points, Candidates& candidates);
+  bool find_again(ContactPoints& points, Candidates& candidates);
   void find_owners(const ContactSurface& cloth);
   std::uint32_t owner(const Pair& pair) const;
   std::uint32_t owner_of_second(const Pair& pair) const;
-  bool renew(ContactPoints& points, Candidates& candidates, Team& team);
+  bool renew(ContactPoints& points, Candidates& candidates);
 
   const simd::Table& table_;
   BoxTree seen_cloth_;                                         // in coordinates of a body; scratch
   SeenTubes seen_;                                             // scratch
-  AdjacentFeatures adjacent_;                                  // of the cloth
+  Stars stars_;                                                // of the cloth
   std::vector<std::uint32_t> owner_of_edge_, owner_of_point_;  // triangles of the cloth
   std::vector<std::uint8_t> has_moved_;                        // per slot, out of its tube; scratch
   std::vector<std::uint8_t> is_renewed_;                       // per triangle of the cloth; scratch

@@ -16,12 +16,12 @@ bool share_a_corner(const TriangleSurface::Triangle& a, const TriangleSurface::T
 }  // namespace
 
 /// Each pair of triangles once.
-void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candidates, Team& team) {
+void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candidates) {
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
   const auto& triangles = cloth.triangles->triangles;
-  if (adjacent_.empty()) adjacent_.make(*cloth.triangles, points.sewn());
-  adjacent_.find(points, candidates, team);
-  OwnedFeatures features(table_, points, kWithinCloth, candidates);
+  if (stars_.empty()) stars_.make(points);
+  stars_.begin();
+  OwnedFeatures features(table_, points, kWithinCloth, candidates, &stars_);
   BoxTree::meet_itself(table_, cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
     if (share_a_corner(triangles[a], triangles[b])) return;
     if (features.triangle() != a) features.begin(a);
@@ -32,12 +32,11 @@ void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candi
 
 /// Of triangles that are renewed. The tree holds the others where they were when tubes were laid;
 /// the rest is put there now.
-void CandidateSearch::find_within_cloth_of(ContactPoints& points, Candidates& candidates,
-                                           Team& team) {
+void CandidateSearch::find_within_cloth_of(ContactPoints& points, Candidates& candidates) {
   ContactSurface& cloth = points.surfaces()[kClothSurface];
   const auto& triangles = cloth.triangles->triangles;
   cloth.own_tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
-  OwnedFeatures features(table_, points, kWithinCloth, candidates);
+  OwnedFeatures features(table_, points, kWithinCloth, candidates, &stars_);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     if (is_renewed_[t] == 0) continue;
     cloth.tree().find(table_, points.in_tree(cloth, cloth.points_of(t)), [&](std::uint32_t other) {
@@ -48,18 +47,17 @@ void CandidateSearch::find_within_cloth_of(ContactPoints& points, Candidates& ca
     });
   }
   features.finish();
-  adjacent_.find_of(points, is_renewed_, candidates, team);
 }
 
 void CandidateSearch::find_within_cloth_beside(ContactPoints& points,
                                                std::span<const std::uint8_t> has_strayed,
-                                               Candidates& candidates, Team& team) {
+                                               Candidates& candidates) {
   const auto& triangles = points.cloth().triangles;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     const auto [a, b, c] = triangles[t];
     is_renewed_[t] = has_strayed[a] | has_strayed[b] | has_strayed[c];
   }
-  find_within_cloth_of(points, candidates, team);
+  find_within_cloth_of(points, candidates);
 }
 
 }  // namespace weft

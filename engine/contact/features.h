@@ -120,8 +120,8 @@ struct PairList {
 };
 
 /// Lists of pairs: points beside triangles, and edges; those of the cloth with bodies come first,
-/// and then those of the cloth with itself.
-inline constexpr std::size_t kBodyLists = 2, kPairLists = 4;
+/// then those of the cloth with itself, and those of features in one star of it.
+inline constexpr std::size_t kBodyLists = 2, kStarLists = 4, kPairLists = 6;
 inline constexpr bool has_edges(std::size_t list) { return list % 2 == 1; }
 inline constexpr std::size_t list_of(const Pair& pair) {
   return (pair.is_within_cloth() ? kBodyLists : 0) + (pair.kind == PairKind::edges ? 1 : 0);

@@ -26,6 +26,7 @@ class ContactPoints {
  public:
   explicit ContactPoints(const Model& model) : model_(model) {}
 
+  const Model& model() const { return model_; }
   /// Of a frame.
   void begin(const BodyClock& clock);
   /// The cloth's first, where there is something to touch.

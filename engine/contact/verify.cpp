@@ -150,6 +150,8 @@ void Verification::find(const ContactScene& scene, CandidateSearch& search, Near
   failures_.clear();
   look_beside_strayed(scene, search, near_search, candidates, team);
   ContactPoints& points = scene.points;
+  if (points.touches_itself() && search.find_folded(points, candidates, team))
+    near_search.measure_new(points, candidates, team);
   judge_moved(
       scene, near_search, candidates, kPairLists, 0, team,
       [&](const Pair& pair, const std::array<std::uint32_t, 4>& four, bool is_alone) -> Verdict {
@@ -231,8 +233,7 @@ void Verification::look_beside_strayed(const ContactScene& scene, CandidateSearc
     box.add(points.box(c));
     search.find_beside(points, t, box, candidates);
   }
-  if (points.touches_itself())
-    search.find_within_cloth_beside(points, has_strayed_, candidates, team);
+  if (points.touches_itself()) search.find_within_cloth_beside(points, has_strayed_, candidates);
   near_search.measure_new(points, candidates, team);
 }
 

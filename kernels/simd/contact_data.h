@@ -7,6 +7,7 @@
 #include "kernels/runs.h"
 #include "kernels/simd/isa.h"
 #include "kernels/simd/lane_vectors.h"
+#include "kernels/simd/star_data.h"
 
 namespace weft::simd {
 
@@ -59,6 +60,10 @@ struct ContactKernels {
   /// also for those that are nearer than their targets.
   void (*find_active)(const ContactSolve&, bool pushing, std::uint16_t* active, std::size_t first,
                       std::size_t last);
+  /// Of triangles first ... last - 1: threads may do others at a time.
+  void (*turn_triangles)(const TriangleTurns&, std::size_t first, std::size_t last);
+  /// Of blocks first ... last - 1: which stars have a triangle that does not face their direction.
+  void (*find_folded_stars)(const StarFold&, std::size_t first, std::size_t last);
 };
 
 }  // namespace weft::simd

@@ -5,6 +5,7 @@
 #include "kernels/simd/contact_data.h"
 #include "kernels/simd/in_rows.h"
 #include "kernels/simd/quads.h"
+#include "kernels/simd/stars.h"
 
 namespace weft::simd {
 inline namespace WEFT_LANES {
@@ -299,7 +300,9 @@ constexpr ContactKernels contact_kernels() {
   return {.freeze = freeze_contacts,
           .start = start_contacts,
           .visit = visit_contacts,
-          .find_active = find_active_contacts};
+          .find_active = find_active_contacts,
+          .turn_triangles = turn_triangles,
+          .find_folded_stars = find_folded_stars};
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+/// Lengths at rest of the edges of a cloth's surface.
+#pragma once
+
+#include <vector>
+
+#include "engine/model/model.h"
+
+namespace weft {
+
+/// m, per edge of the surface: what a constraint or a triangle of fabric says, or else what it has
+/// where the cloth begins.
+std::vector<double> lengths_at_rest(const Model& model, const TriangleSurface& surface);
+
+}  // namespace weft

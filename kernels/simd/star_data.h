@@ -1,0 +1,39 @@
+/// What kernels of stars (stars.h) read and write. A star is the triangles around a point.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kernels/runs.h"
+
+namespace weft::simd {
+
+/// The area vector of a triangle, in m^2, while its corners move on straight lines: a polynomial of
+/// second degree in time, by its coefficients in Bernstein's form.
+struct alignas(64) TriangleTurn {
+  float area[3][4];  // quads
+  float least[4];    // m^2, first: so much of them is to be along the direction of a star
+};
+
+struct TriangleTurns {
+  const std::uint32_t (*corners)[3] = nullptr;  // per triangle
+  const float* least_area = nullptr;            // m^2, per triangle
+  const float* starts = nullptr;                // of points, in quads
+  const float* ways = nullptr;                  // likewise
+  float share = 1;                              // of the least areas
+  float rounding = 0;                           // m, of places
+  TriangleTurn* turns = nullptr;                // written
+};
+
+/// kLanes stars. Where one has fewer triangles than another they are repeated.
+struct StarBlock {
+  std::uint32_t first = 0, last = 0;  // rows
+};
+struct StarFold {
+  const StarBlock* blocks = nullptr;
+  const std::uint32_t (*rows)[kernels::kLanes] = nullptr;  // of triangles, times four
+  const TriangleTurn* turns = nullptr;
+  std::uint16_t* folded = nullptr;  // written, per block, a bit per lane
+};
+
+}  // namespace weft::simd
