@@ -8,16 +8,18 @@
 namespace weft::simd {
 
 /// Slots whose rows are stored side by side.
-inline constexpr std::size_t kBendingRows = 4;
+inline constexpr std::size_t kBendingRows = 2;
 
-/// The matrix A = inertia M + stiffness K, by groups of kBendingRows slots. An entry is that of
-/// each row of the group; where a row has fewer it has zeros.
+/// The matrix A = inertia M + stiffness K, by groups of kBendingRows slots. An entry has one column
+/// for each row of the group, and these stand side by side as the rows do: rows of a grid are one
+/// stencil. A row that has nothing in such a column has a zero there. So a product may read the
+/// vector before the first slot and the one after the last, where it needs finite numbers.
 template <class Real>
 struct BendingMatrix {
-  const std::uint32_t* begin = nullptr;   // per group: its first entry, and the end of the last
-  const std::uint32_t* column = nullptr;  // per entry and row: 4 slot
-  const Real* value = nullptr;            // per entry and row: of K, N/m
-  const Real* mass = nullptr;             // per slot, kg; of what is fixed: 0
+  const std::uint32_t* begin = nullptr;  // per group: its first entry, and the end of the last
+  const std::int32_t* column = nullptr;  // per entry, of the first row: 4 slot
+  const Real* value = nullptr;           // per entry and row: of K, N/m
+  const Real* mass = nullptr;            // per slot, kg; of what is fixed: 0
   Real inertia = 0;                       // 1/s^2
   Real stiffness = 1;
 };

@@ -14,31 +14,30 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-/// q = A p of the groups first ... last - 1. Returns p . q of their slots.
+/// q = A p of the groups first ... last - 1. Returns p . q of their slots. Entries of a row are
+/// added up in two sums, every other one in the second: products that do not wait for each other.
 template <class Real>
 double multiply_bending(const BendingMatrix<Real>& a, const Real* p, Real* q, std::size_t first,
                         std::size_t last) {
-  using Four = FourOf<Real>;
-  const Four none = Four::all(0);
-  const Four inertia = Four::all(a.inertia), stiffness = Four::all(a.stiffness);
-  Four product = none;
+  using Two = TwoOf<Real>;
+  static_assert(kBendingRows == 2);
+  const Two none = Two::all(0), inertia = Two::all(a.inertia), stiffness = Two::all(a.stiffness);
+  Two product = none;
   for (std::size_t group = first; group < last; ++group) {
-    Four k[kBendingRows] = {none, none, none, none};
-    for (std::size_t i = a.begin[group]; i < a.begin[group + 1]; ++i) {
-      const std::uint32_t* const column = a.column + kBendingRows * i;
-      const Real* const value = a.value + kBendingRows * i;
-#pragma GCC unroll 4
-      for (std::size_t row = 0; row < kBendingRows; ++row)
-        k[row] = fused(Four::all(value[row]), Four::load(p + column[row]), k[row]);
+    const std::int32_t* column = a.column + a.begin[group];
+    const std::int32_t* const end = a.column + a.begin[group + 1];
+    const Real* value = a.value + kBendingRows * std::size_t{a.begin[group]};
+    Two even = none, odd = none;
+    for (; end - column > 1; column += 2, value += 4) {
+      even = fused(Two::each(value), Two::load(p + column[0]), even);
+      odd = fused(Two::each(value + 2), Two::load(p + column[1]), odd);
     }
-#pragma GCC unroll 4
-    for (std::size_t row = 0; row < kBendingRows; ++row) {
-      const std::size_t slot = kBendingRows * group + row;
-      const Four own = Four::load(p + 4 * slot);
-      const Four moved = fused(inertia * Four::all(a.mass[slot]), own, stiffness * k[row]);
-      moved.store(q + 4 * slot);
-      product = fused(own, moved, product);
-    }
+    if (column != end) even = fused(Two::each(value), Two::load(p + *column), even);
+    const std::size_t slot = kBendingRows * group;
+    const Two own = Two::load(p + 4 * slot);
+    const Two moved = fused(inertia * Two::each(a.mass + slot), own, stiffness * (even + odd));
+    moved.store(q + 4 * slot);
+    product = fused(own, moved, product);
   }
   return sum(product);
 }
@@ -47,14 +46,14 @@ double multiply_bending(const BendingMatrix<Real>& a, const Real* p, Real* q, st
 template <class Real>
 BendingNorms begin_gradients(const BendingGradients<Real>& g, const Real* mass, Real inertia,
                              std::size_t first, std::size_t last) {
-  using Four = FourOf<Real>;
-  Four left = Four::all(0), force = left;
-  for (std::size_t slot = first; slot < last; ++slot) {
+  using Two = TwoOf<Real>;
+  Two left = Two::all(0), force = left;
+  for (std::size_t slot = first; slot < last; slot += 2) {
     const std::size_t i = 4 * slot;
-    const Four reciprocal = Four::all(g.reciprocal[slot]);
-    const Four f = Four::all(inertia * mass[slot]) * Four::load(g.guess + i);
-    const Four r = fused_from(Four::all(1), f, Four::load(g.residual + i));
-    const Four p = reciprocal * r;
+    const Two reciprocal = Two::each(g.reciprocal + slot);
+    const Two f = Two::all(inertia) * Two::each(mass + slot) * Two::load(g.guess + i);
+    const Two r = fused_from(Two::all(1), f, Two::load(g.residual + i));
+    const Two p = reciprocal * r;
     r.store(g.residual + i);
     p.store(g.direction + i);
     left = fused(p, r, left);
@@ -68,16 +67,16 @@ BendingNorms begin_gradients(const BendingGradients<Real>& g, const Real* mass, 
 template <class Real>
 double step_gradients(const BendingGradients<Real>& g, Real alpha, bool is_first, std::size_t first,
                       std::size_t last) {
-  using Four = FourOf<Real>;
-  const Four by = Four::all(alpha);
-  Four product = Four::all(0);
-  for (std::size_t slot = first; slot < last; ++slot) {
+  using Two = TwoOf<Real>;
+  const Two by = Two::all(alpha);
+  Two product = Two::all(0);
+  for (std::size_t slot = first; slot < last; slot += 2) {
     const std::size_t i = 4 * slot;
-    const Four p = Four::load(g.direction + i);
-    (is_first ? by * p : fused(by, p, Four::load(g.change + i))).store(g.change + i);
-    const Four r = fused_from(by, Four::load(g.product + i), Four::load(g.residual + i));
+    const Two p = Two::load(g.direction + i);
+    (is_first ? by * p : fused(by, p, Two::load(g.change + i))).store(g.change + i);
+    const Two r = fused_from(by, Two::load(g.product + i), Two::load(g.residual + i));
     r.store(g.residual + i);
-    product = fused(Four::all(g.reciprocal[slot]) * r, r, product);
+    product = fused(Two::each(g.reciprocal + slot) * r, r, product);
   }
   return sum(product);
 }
@@ -86,12 +85,12 @@ double step_gradients(const BendingGradients<Real>& g, Real alpha, bool is_first
 template <class Real>
 void turn_gradients(const BendingGradients<Real>& g, Real beta, std::size_t first,
                     std::size_t last) {
-  using Four = FourOf<Real>;
-  const Four by = Four::all(beta);
-  for (std::size_t slot = first; slot < last; ++slot) {
+  using Two = TwoOf<Real>;
+  const Two by = Two::all(beta);
+  for (std::size_t slot = first; slot < last; slot += 2) {
     const std::size_t i = 4 * slot;
-    const Four r = Four::load(g.residual + i);
-    fused(by, Four::load(g.direction + i), Four::all(g.reciprocal[slot]) * r)
+    const Two r = Two::load(g.residual + i);
+    fused(by, Two::load(g.direction + i), Two::each(g.reciprocal + slot) * r)
         .store(g.direction + i);
   }
 }

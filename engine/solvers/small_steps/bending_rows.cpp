@@ -1,8 +1,11 @@
 #include "engine/solvers/small_steps/bending_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -43,22 +46,24 @@ void add_sorted(std::vector<std::pair<std::uint32_t, double>>& row, BendingRows&
   rows.columns.push_back(columns);
 }
 
-/// Rows with fewer entries than others of their group have zeros times themselves.
+/// Columns of a group by their way from its rows: these of a grid have one stencil.
 void add_groups(BendingRows& rows) {
+  std::map<std::int32_t, std::array<double, kRows>> entries;
   rows.begin.push_back(0);
-  for (std::size_t first = 0; first < rows.slots(); first += kRows) {
-    std::size_t longest = 0;
-    for (std::size_t row = first; row < first + kRows; ++row)
-      longest = std::max(longest, rows.columns[row].size());
-    for (std::size_t k = 0; k < longest; ++k) {
-      for (std::size_t row = first; row < first + kRows; ++row) {
-        const auto columns = rows.columns[row];
-        const bool holds = k < columns.size();
-        rows.column.push_back(4 * (holds ? columns[k] : static_cast<std::uint32_t>(row)));
-        rows.doubles.value.push_back(holds ? rows.values[rows.columns.begin[row] + k] : 0);
+  for (std::uint32_t first = 0; first < rows.slots(); first += kRows) {
+    entries.clear();
+    for (std::uint32_t row = 0; row < kRows; ++row) {
+      const std::uint32_t slot = first + row;
+      for (std::uint32_t e = rows.columns.begin[slot]; e < rows.columns.begin[slot + 1]; ++e) {
+        const auto column = static_cast<std::int32_t>(rows.columns.items[e]);
+        entries[column - static_cast<std::int32_t>(row)][row] = rows.values[e];
       }
     }
-    rows.begin.push_back(static_cast<std::uint32_t>(rows.column.size() / kRows));
+    for (const auto& [column, values] : entries) {
+      rows.column.push_back(4 * column);
+      rows.doubles.value.insert(rows.doubles.value.end(), values.begin(), values.end());
+    }
+    rows.begin.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
 }
 

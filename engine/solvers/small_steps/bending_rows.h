@@ -33,7 +33,8 @@ struct BendingRows {
   Lists columns;               // per slot: slots, ascending, its own among them
   std::vector<double> values;  // in the order of columns.items, N/m
   // The same by groups of rows.
-  std::vector<std::uint32_t> begin, column;
+  std::vector<std::uint32_t> begin;
+  std::vector<std::int32_t> column;
   BendingValues<float> floats;
   BendingValues<double> doubles;
 

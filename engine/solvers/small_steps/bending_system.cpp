@@ -35,8 +35,8 @@ BendingSystem<Real>::BendingSystem(const BendingRows& rows, const simd::Table& t
 
 template <class Real>
 void BendingSystem<Real>::allocate() {
-  for (auto* vector : {&guess_, &change_, &residual_, &direction_, &product_})
-    vector->resize(4 * rows_.slots());
+  for (auto* vector : {&guess_, &change_, &residual_, &product_}) vector->resize(4 * rows_.slots());
+  direction_.resize(4 * rows_.slots() + 2 * kAround);
   reciprocal_.resize(rows_.slots());
   sums_.resize((rows_.slots() + kSlotsOfSum - 1) / kSlotsOfSum);
   norms_.resize(sums_.size());
@@ -44,8 +44,8 @@ void BendingSystem<Real>::allocate() {
 
 template <class Real>
 simd::BendingGradients<Real> BendingSystem<Real>::gradients() {
-  return {residual_.data(), direction_.data(), product_.data(),
-          change_.data(),   guess_.data(),     reciprocal_.data()};
+  return {residual_.data(), direction(),   product_.data(),
+          change_.data(),   guess_.data(), reciprocal_.data()};
 }
 
 template <class Real>
@@ -121,7 +121,7 @@ void BendingSystem<Real>::turn(double beta, Team& team) {
   for_slots(team, [&](std::size_t first, std::size_t last) {
     if constexpr (std::is_same_v<Real, double>) {
       if (factor_ != nullptr)
-        return table_.turn_gradients_to(direction_.data(), z_.data(), beta, first, last);
+        return table_.turn_gradients_to(direction(), z_.data(), beta, first, last);
     }
     kernels_of<Real>(table_).turn(gradients(), static_cast<Real>(beta), first, last);
   });
@@ -139,7 +139,7 @@ simd::BendingNorms BendingSystem<Real>::begin(const simd::BendingMatrix<Real>& a
 template <class Real>
 double BendingSystem<Real>::multiply(const simd::BendingMatrix<Real>& a, Team& team) {
   return sum(team, [&](std::size_t first, std::size_t last) {
-    return kernels_of<Real>(table_).multiply(a, direction_.data(), product_.data(),
+    return kernels_of<Real>(table_).multiply(a, direction(), product_.data(),
                                              first / simd::kBendingRows, last / simd::kBendingRows);
   });
 }
@@ -163,7 +163,7 @@ double BendingSystem<Real>::solve_exactly(const simd::BendingMatrix<Real>& a,
   double before = std::numeric_limits<double>::infinity(), now = start.left;
   while (steps_ < limits.most_steps && now > enough && now < before) {
     if constexpr (std::is_same_v<Real, double>)
-      factor_->factor->solve(residual_.data(), direction_.data());
+      factor_->factor->solve(residual_.data(), direction());
     multiply(a, team);
     before = now;
     now = step(1, team);
@@ -196,8 +196,8 @@ template <class Real>
 std::size_t BendingSystem<Real>::bytes() const {
   std::size_t of_factors = 0;
   for (const Factor& made : made_) of_factors += made.factor->bytes();
-  return 5 * bytes_of(guess_) + bytes_of(reciprocal_) + bytes_of(sums_) + bytes_of(norms_) +
-         bytes_of(z_) + of_factors;
+  return 4 * bytes_of(guess_) + bytes_of(direction_) + bytes_of(reciprocal_) + bytes_of(sums_) +
+         bytes_of(norms_) + bytes_of(z_) + of_factors;
 }
 
 template class BendingSystem<float>;

@@ -66,6 +66,8 @@ class BendingSystem {
   std::size_t bytes() const;
 
  private:
+  /// p. What a product reads before it and after it is 0.
+  Real* direction() { return direction_.data() + kAround; }
   simd::BendingGradients<Real> gradients();
   template <class Result, class Work>
   Result sum(Team& team, std::vector<Result>& parts, Work&& work) const;
@@ -88,6 +90,8 @@ class BendingSystem {
     std::uint64_t used = 0;
     std::unique_ptr<BendingFactor> factor;
   };
+
+  static constexpr std::size_t kAround = 16;  // numbers
 
   const BendingRows& rows_;
   const simd::Table& table_;
