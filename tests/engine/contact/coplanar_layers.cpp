@@ -157,7 +157,8 @@ TEST_CASE("two sheets that hang in one plane by pins in one line stop nothing, a
   }
 }
 
-TEST_CASE("random sheets in few planes, which move against each other, cross nothing") {
+TEST_CASE("random sheets in few planes, which move against each other, cross nothing" *
+          doctest::test_suite("long")) {
   Random random(7);
   for (int k = 0; k < 40; ++k) {
     CAPTURE(k);

@@ -85,7 +85,7 @@ double height_above(const Cloth& cloth, double angle) {
   return least;
 }
 
-TEST_CASE("cloth that begins exactly on a mesh comes to lie on it") {
+TEST_CASE("cloth that begins exactly on a mesh comes to lie on it" * doctest::test_suite("long")) {
   const Backend backend = each_backend();
   constexpr double kThickness = 1e-3;
   for (const double angle : {0.0, 10 * kDegree}) {  // turned, particles are at rounding from it
@@ -278,7 +278,7 @@ std::uint64_t hash_of(const Settings& settings, bool with_surface) {
   return cloth.state_hash();
 }
 
-TEST_CASE("bits do not depend on threads, nor on AVX2 or AVX-512") {
+TEST_CASE("bits do not depend on threads, nor on AVX2 or AVX-512" * doctest::test_suite("long")) {
   for (const bool with_surface : {true, false}) {
     CAPTURE(with_surface);
     Settings settings = small_steps(Backend::simd);

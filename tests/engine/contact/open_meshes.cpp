@@ -63,7 +63,8 @@ Lie lie(const TriangleMesh& floor, std::uint32_t size, double height, double ang
   return found;
 }
 
-TEST_CASE("cloth lies at its thickness on either side of an open mesh, and sticks there") {
+TEST_CASE("cloth lies at its thickness on either side of an open mesh, and sticks there" *
+          doctest::test_suite("long")) {
   for (const bool faces_up : {true, false}) {
     for (const double height : {0.9e-3, 1.2e-3, 2e-3}) {
       for (const auto& [size, cuts] : {std::pair{7u, 1u}, std::pair{13u, 9u}}) {

@@ -99,7 +99,8 @@ TEST_CASE("bits of layers on a mesh do not depend on threads, and a copy goes on
 }
 
 /// Two blocks close on two layers until there is no room for them, and open again.
-TEST_CASE("layers that bodies pinch are reported, and come apart when the bodies open") {
+TEST_CASE("layers that bodies pinch are reported, and come apart when the bodies open" *
+          doctest::test_suite("long")) {
   const SceneDescription scene = scene_of(stack(2, 8, 0.004), 0.3);
   Cloth cloth = cloth_of(scene, small_steps());
   const TriangleMesh block = box_mesh({0.3, 0.05, 0.3}, 3);

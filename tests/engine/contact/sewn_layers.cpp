@@ -119,7 +119,9 @@ void for_each_scene(const std::function<void(const SceneDescription&, int rate)>
   }
 }
 
-TEST_CASE("seams close in their time where cloth touches itself") { for_each_scene(check_closes); }
+TEST_CASE("seams close in their time where cloth touches itself" * doctest::test_suite("long")) {
+  for_each_scene(check_closes);
+}
 
 TEST_CASE(
     "what is sewn falls as without self-contact, however long its edges are beside the thickness") {

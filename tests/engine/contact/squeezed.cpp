@@ -102,7 +102,8 @@ void check_held(const Press& by) {
   CHECK(std::abs(held.highest - by.room / 2) < 5e-5);
 }
 
-TEST_CASE("two bodies share the room between them, and what they hold rests") {
+TEST_CASE("two bodies share the room between them, and what they hold rests" *
+          doctest::test_suite("long")) {
   for (const double rate : {30.0, 60.0, 240.0}) {
     for (const double room : {1.5e-3, 5e-4}) {
       check_held({.room = room, .friction = 0.3, .rate = rate});
@@ -173,7 +174,8 @@ void check_presses_deep(double rate) {
   }
 }
 
-TEST_CASE("cloth that a ball presses deep into a body is not thrown about where both meet") {
+TEST_CASE("cloth that a ball presses deep into a body is not thrown about where both meet" *
+          doctest::test_suite("long")) {
   check_presses_deep(60);
 }
 
