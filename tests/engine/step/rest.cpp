@@ -158,7 +158,8 @@ double fastest_after(double seconds, const SceneDescription& scene, double rate)
 }
 
 // Substeps that became longer in each calm frame, until one failed: 0.1 to 0.4 m/s, for ever.
-TEST_CASE("a patch lies still on a sheet that is held, at any frame rate") {
+TEST_CASE("a patch lies still on a sheet that is held, at any frame rate" *
+          doctest::test_suite("long")) {
   for (const std::string material : {"cotton", "denim"}) {
     for (const double cell : {0.015, 0.02}) {
       for (const double rate : {30., 60., 240.}) {

@@ -150,7 +150,7 @@ class Pleat {
   int missed_ = 0;
 };
 
-TEST_CASE("a sharp pleat of small cells comes to rest at its angle") {
+TEST_CASE("a sharp pleat of small cells comes to rest at its angle" * doctest::test_suite("long")) {
   for (const char* material : {"wool", "denim"}) {
     for (const bool has_triangles : {false, true}) {
       for (const double angle : {90., 120., -120.}) {
