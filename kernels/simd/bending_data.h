@@ -20,7 +20,7 @@ struct BendingMatrix {
   const std::int32_t* column = nullptr;  // per entry, of the first row: 4 slot
   const Real* value = nullptr;           // per entry and row: of K, N/m
   const Real* mass = nullptr;            // per slot, kg; of what is fixed: 0
-  Real inertia = 0;                       // 1/s^2
+  Real inertia = 0;                      // 1/s^2
   Real stiffness = 1;
 };
 
