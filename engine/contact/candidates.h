@@ -50,7 +50,8 @@ class CandidateSearch {
   /// corners: those are widened to the way that it took.
   void find_within_cloth_beside(ContactPoints& points, std::span<const std::uint8_t> has_strayed,
                                 Candidates& candidates);
-  /// And beside itself, of stars that have folded. Returns whether there are any.
+  /// Adds candidates of stars that have folded on their way in the interval. Returns whether there
+  /// are any.
   bool find_folded(ContactPoints& points, Candidates& candidates, Team& team) {
     return stars_.add_folded(points, Stars::Fold::crosses, candidates, team);
   }

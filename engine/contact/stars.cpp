@@ -15,7 +15,7 @@ using kernels::kLanes;
 
 namespace {
 
-/// A triangle of simd::TriangleTurn has so many.
+/// Quads of a simd::TriangleTurn.
 constexpr std::uint32_t kTurnQuads = sizeof(simd::TriangleTurn) / (4 * sizeof(float));
 
 /// Whether the triangles around the point are one ring, and all run around it in one sense.

@@ -5,6 +5,7 @@
 /// direction: along it the star is laid into a plane without a fold. Points move on straight lines,
 /// and the area vector of a triangle is a polynomial of second degree in time. So three dot
 /// products tell for the whole interval whether a triangle faces a direction (Bernstein's form).
+/// Other stars, those of borders above all, are candidates always.
 #pragma once
 
 #include <array>
@@ -27,9 +28,9 @@ class Stars {
   void make(const ContactPoints& points);
   /// Candidates are looked for anew: no star is among them.
   void begin();
-  /// When an interval begins features come near where triangles turn far from the direction of
-  /// their star on the way that is expected. When it ends they may have crossed where triangles
-  /// faced away from it.
+  /// comes_near: an interval begins, and on the way that is expected some triangle has less of its
+  /// area along the direction of the star than features need to keep their distance.
+  /// crosses: an interval ends, and on the way that points took some triangle has faced away.
   enum class Fold : std::uint8_t { comes_near, crosses };
   /// Adds all pairs of features of stars that fold and are not among the candidates yet. Returns
   /// whether there are any.

@@ -1,4 +1,4 @@
-/// What kernels of stars (stars.h) read and write. A star is the triangles around a point.
+/// The data that kernels of stars (stars.h) read and write. A star is the triangles around a point.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace weft::simd {
 /// second degree in time, by its coefficients in Bernstein's form.
 struct alignas(64) TriangleTurn {
   float area[3][4];  // quads
-  float least[4];    // m^2, first: so much of them is to be along the direction of a star
+  float least[4];    // m^2: so much of the area is along the direction of a star that does not fold
 };
 
 struct TriangleTurns {
@@ -25,13 +25,14 @@ struct TriangleTurns {
   TriangleTurn* turns = nullptr;                // written
 };
 
-/// kLanes stars. Where one has fewer triangles than another they are repeated.
+/// kLanes stars, by rows that have a triangle of each. A star with fewer triangles than another one
+/// repeats its own.
 struct StarBlock {
   std::uint32_t first = 0, last = 0;  // rows
 };
 struct StarFold {
   const StarBlock* blocks = nullptr;
-  const std::uint32_t (*rows)[kernels::kLanes] = nullptr;  // of triangles, times four
+  const std::uint32_t (*rows)[kernels::kLanes] = nullptr;  // the number of a triangle, times four
   const TriangleTurn* turns = nullptr;
   std::uint16_t* folded = nullptr;  // written, per block, a bit per lane
 };

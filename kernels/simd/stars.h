@@ -1,4 +1,4 @@
-/// Stars of a cloth that fold: not all of their triangles face one direction all of the time.
+/// Which stars of a cloth fold: not all of their triangles face one direction all of the time.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
   return xsimd::abs(v.x) + xsimd::abs(v.y) + xsimd::abs(v.z);
 }
 
-/// Of kFloats triangles; corners: of each, one row a corner.
+/// Writes the turns of kFloats triangles. corners: by rows; areas: where turns stand.
 [[gnu::always_inline]] inline void turn_lanes(const TriangleTurns& t,
                                               const std::uint32_t (&corners)[3][kFloats],
                                               const std::uint32_t* areas, const float* least) {
