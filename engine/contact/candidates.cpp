@@ -1,7 +1,6 @@
 #include "engine/contact/candidates.h"
 
 #include <algorithm>
-#include <span>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -103,8 +102,9 @@ bool CandidateSearch::renew(ContactPoints& points, Candidates& candidates) {
       all.add(points.in_tree(points.surfaces()[kClothSurface], cloth.triangles[t]));
   }
   bool have_moved = false;
-  for (PairList& list : std::span(candidates).first(kStarLists)) {
-    have_moved = list.leave_out([&](const Pair& pair) {
+  for (std::size_t list = 0; list < kPairLists; ++list) {
+    if (is_of_stars(list)) continue;
+    have_moved = candidates[list].leave_out([&](const Pair& pair) {
       return is_renewed_[owner(pair)] != 0 ||
              (pair.is_within_cloth() && is_renewed_[owner_of_second(pair)] != 0);
     }) || have_moved;

@@ -21,7 +21,7 @@ void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candi
   const auto& triangles = cloth.triangles->triangles;
   if (stars_.empty()) stars_.make(points);
   stars_.begin();
-  OwnedFeatures features(table_, points, kWithinCloth, candidates, &stars_);
+  OwnedFeatures features(table_, points, kWithinCloth, candidates);
   BoxTree::meet_itself(table_, cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
     if (share_a_corner(triangles[a], triangles[b])) return;
     if (features.triangle() != a) features.begin(a);
@@ -36,7 +36,7 @@ void CandidateSearch::find_within_cloth_of(ContactPoints& points, Candidates& ca
   ContactSurface& cloth = points.surfaces()[kClothSurface];
   const auto& triangles = cloth.triangles->triangles;
   cloth.own_tree.refit([&](std::uint32_t t) { return points.in_tree(cloth, cloth.points_of(t)); });
-  OwnedFeatures features(table_, points, kWithinCloth, candidates, &stars_);
+  OwnedFeatures features(table_, points, kWithinCloth, candidates);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     if (is_renewed_[t] == 0) continue;
     cloth.tree().find(table_, points.in_tree(cloth, cloth.points_of(t)), [&](std::uint32_t other) {

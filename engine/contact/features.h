@@ -120,11 +120,18 @@ struct PairList {
 };
 
 /// Lists of pairs: points beside triangles, and edges; those of the cloth with bodies come first,
-/// then those of the cloth with itself, and those of features in one star of it.
-inline constexpr std::size_t kBodyLists = 2, kStarLists = 4, kPairLists = 6;
+/// then those of the cloth with itself, which begin with features in one star (stars.h).
+inline constexpr std::size_t kBodyLists = 2, kStarLists = 2, kPairLists = 6;
 inline constexpr bool has_edges(std::size_t list) { return list % 2 == 1; }
 inline constexpr std::size_t list_of(const Pair& pair) {
-  return (pair.is_within_cloth() ? kBodyLists : 0) + (pair.kind == PairKind::edges ? 1 : 0);
+  return (pair.is_within_cloth() ? kBodyLists + kStarLists : 0) +
+         (pair.kind == PairKind::edges ? 1 : 0);
+}
+inline constexpr std::size_t star_list_of(PairKind kind) {
+  return kBodyLists + (kind == PairKind::edges ? 1 : 0);
+}
+inline constexpr bool is_of_stars(std::size_t list) {
+  return list >= kBodyLists && list < kBodyLists + kStarLists;
 }
 
 /// Candidates, by lists of pairs.

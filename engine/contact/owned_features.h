@@ -17,15 +17,14 @@ namespace weft {
 class OwnedFeatures {
  public:
   OwnedFeatures(const simd::Table& table, ContactPoints& points, SurfacePair surfaces,
-                Candidates& candidates, const Stars* stars = nullptr)
+                Candidates& candidates)
       : table_(table),
         points_(points),
         surfaces_(surfaces),
         a_(points.surfaces()[surfaces.a]),
         b_(points.surfaces()[surfaces.b]),
         may_cross_(points.surfaces()[surfaces.b].may_cross),
-        candidates_(candidates),
-        stars_(stars) {}
+        candidates_(candidates) {}
 
   /// The triangle of the first surface that others are beside from now on.
   void begin(std::uint32_t a) {
@@ -121,9 +120,12 @@ class OwnedFeatures {
       axes_.z[lane] = static_cast<float>(scale * v.z);
     }
   }
+  /// Within the cloth: Stars adds it where it may touch, or it never does.
+  bool is_left_out(const Pair& pair, const std::array<std::uint32_t, 4>& points) const {
+    return are_in_one_star(points_.cloth(), pair) || points_.sewn().join(pair.kind, points);
+  }
   void add_pair(const Pair& pair, const std::array<std::uint32_t, 4>& points, std::uint32_t b) {
-    if (stars_ != nullptr && stars_->are_in_one(points_.cloth(), pair)) return;
-    if (pair.is_within_cloth() && points_.sewn().join(pair.kind, points)) return;
+    if (pair.is_within_cloth() && is_left_out(pair, points)) return;
     candidates_[list_of(pair)].add(pair, points);
     if (pair.is_within_cloth()) return;
     if (std::exchange(active_, b) != b) points_.activate(surfaces_.b, b);
@@ -135,7 +137,6 @@ class OwnedFeatures {
   const ContactSurface &a_, &b_;
   std::vector<std::uint8_t>& may_cross_;
   Candidates& candidates_;
-  const Stars* const stars_;  // of the cloth beside itself, or none
   std::uint32_t triangle_a_ = kNoIndex, active_ = kNoIndex;
   TriangleSurface::Triangle corners_a_{};
   simd::ReachAxes axes_;

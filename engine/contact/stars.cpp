@@ -7,6 +7,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/contact/rest_lengths.h"
+#include "engine/erase_repeated.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -172,7 +173,7 @@ void Stars::add(const ContactPoints& points, std::uint32_t star, Candidates& can
                             const std::array<std::uint32_t, 4>& four) {
     if (points.sewn().join(kind, four)) return;
     const Pair pair{first, second, kClothSurface, kClothSurface, kind};
-    candidates[kStarLists + (kind == PairKind::edges ? 1 : 0)].add(pair, four);
+    candidates[star_list_of(kind)].add(pair, four);
   };
   edges_.clear();
   for (const std::uint32_t t : cloth.triangles_at[star]) {
@@ -185,8 +186,7 @@ void Stars::add(const ContactPoints& points, std::uint32_t star, Candidates& can
     }
   }
   std::ranges::sort(edges_);
-  const auto repeated = std::ranges::unique(edges_);
-  edges_.erase(repeated.begin(), repeated.end());
+  erase_repeated(edges_);
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const auto [p, q] = cloth.edges[edges_[i]];
     for (std::size_t j = i + 1; j < edges_.size(); ++j) {
@@ -199,7 +199,7 @@ void Stars::add(const ContactPoints& points, std::uint32_t star, Candidates& can
   }
 }
 
-bool Stars::are_in_one(const TriangleSurface& cloth, const Pair& pair) const {
+bool are_in_one_star(const TriangleSurface& cloth, const Pair& pair) {
   if (pair.kind == PairKind::edges)
     return first_common(apexes(cloth, pair.first), apexes(cloth, pair.second)) != kNoIndex;
   return first_common(cloth.triangles[pair.second], cloth.neighbours[pair.first]) != kNoIndex;

@@ -20,6 +20,9 @@
 
 namespace weft {
 
+/// Of a pair within the cloth: whether both features stand in one star.
+bool are_in_one_star(const TriangleSurface& cloth, const Pair& pair);
+
 class Stars {
  public:
   explicit Stars(const simd::Table& table) : kernels_(*table.contacts) {}
@@ -35,8 +38,6 @@ class Stars {
   /// Adds all pairs of features of stars that fold and are not among the candidates yet. Returns
   /// whether there are any.
   bool add_folded(const ContactPoints& points, Fold fold, Candidates& candidates, Team& team);
-  /// Whether both features stand in one star.
-  bool are_in_one(const TriangleSurface& cloth, const Pair& pair) const;
   std::size_t bytes() const;
 
  private:

@@ -17,6 +17,7 @@
 #include "kernels/reference/distances.h"
 #include "tests/support/body_meshes.h"
 #include "tests/support/clothes.h"
+#include "tests/support/contact_particles.h"
 #include "tests/support/random.h"
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
@@ -29,31 +30,12 @@ using kernels::Vector;
 constexpr double kH = 1e-3, kThickness = 2e-3;
 constexpr int kSubsteps = 16;
 
-class Particles final : public ContactParticles {
- public:
-  std::vector<Vector> from, to;
-  Vector position(std::uint32_t slot) const override { return to[slot]; }
-  Vector start(std::uint32_t slot) const override { return from[slot]; }
-  ContactParticle read(std::uint32_t slot) const override { return {from[slot], to[slot], {}}; }
-  void write(std::uint32_t, const ContactParticle&) override {}
-  void touch(std::uint32_t, const TouchedSurface&) override {}
-  bool is_on_body(std::uint32_t) const override { return false; }
-  void stop(std::uint32_t, const TouchedSurface&) override {}
-  void jolt(std::uint32_t, Vector) override {}
-  void push(std::uint32_t, Vector, Vector) override {}
-  bool is_beside_body(std::uint32_t) const override { return false; }
-  void move_beside_bodies(std::uint32_t, Vector) override {}
-  void move_to(std::uint32_t, Vector) override {}
-  bool is_mended() const override { return false; }
-  double momentum_share() const override { return 1; }
-};
-
 /// A sheet whose particles go straight on, each with its own velocity.
 struct Moving {
   Random random;
   std::shared_ptr<const Model> model;
   BodyClock clock;
-  Particles particles;
+  StandingParticles particles;
   std::vector<Vector> v;
 
   explicit Moving(std::uint32_t seed) : random(seed) {}

@@ -38,14 +38,14 @@ double fastest(const Cloth& cloth) {
   return most;
 }
 
-/// A sheet that stands on the floor and folds, from one of many starts.
-SceneDescription standing(std::uint32_t cells, double start) {
-  return scene_of({{cells, cells / 2,
-                    [start](double u, double v) {
-                      const double by = 0.002 * std::sin(20 * u) + 1e-3 * chance(u + start, v);
-                      return Vec3{by, 0.02 + 0.6 * u, 0.3 * v};
-                    }}},
-                  0.3);
+/// A sheet that stands on the floor and folds.
+SceneDescription standing(std::uint32_t cells) {
+  return scene_of(
+      {{cells, cells / 2,
+        [](double u, double v) {
+          return Vec3{0.002 * std::sin(20 * u) + 1e-3 * chance(u, v), 0.02 + 0.6 * u, 0.3 * v};
+        }}},
+      0.3);
 }
 
 /// Pairs of triangles.
@@ -54,11 +54,11 @@ int crossings_of(const Cloth& cloth, const SceneDescription& scene) {
   return count_self_crossings({x, scene.surface});
 }
 
-/// No frame ends with a crossing, and all converge. Returns by how much the energy has risen over
-/// what it was before, at most, as a share of what it was first.
-double fall(Cloth& cloth, const SceneDescription& scene, int frames) {
-  const double first = cloth.energy().total();
-  double least = first, risen = 0;
+/// Energy falls but for what the tolerance explains, no frame ends with a crossing, and all
+/// converge.
+void fall(Cloth& cloth, const SceneDescription& scene, int frames) {
+  double energy = cloth.energy().total();
+  const double unit = 1e-3 * energy;
   for (int frame = 0; frame < frames; ++frame) {
     CAPTURE(frame);
     const StepReport report = step(cloth, kFrame);
@@ -66,10 +66,9 @@ double fall(Cloth& cloth, const SceneDescription& scene, int frames) {
     CHECK(report.max_penetration <= 1e-4);
     CHECK(crossings_of(cloth, scene) == 0);
     const double now = cloth.energy().total();
-    risen = std::max(risen, (now - least) / first);
-    least = std::min(least, now);
+    CHECK(now < energy + unit);
+    energy = std::min(energy, now);
   }
-  return risen;
 }
 
 TEST_CASE("a stack that falls on the floor lies on it, layer by layer") {
@@ -77,7 +76,7 @@ TEST_CASE("a stack that falls on the floor lies on it, layer by layer") {
   const SceneDescription scene = scene_of(stack(kLayers, 10, 0.01), 0.3);
   Cloth cloth = cloth_of(scene, small_steps());
   const auto floor = add_floor(cloth);
-  CHECK(fall(cloth, scene, 40) < 1e-3);
+  fall(cloth, scene, 40);
   double lowest = 1, highest = 0;
   for (const Vec3& x : positions(cloth)) {
     lowest = std::min(lowest, x.y);
@@ -122,23 +121,12 @@ TEST_CASE("two layers whose borders lie over each other come to rest") {
 }
 
 TEST_CASE("a sheet that folds on the floor does not go through itself, and rests") {
-  // One start says little. Of 120, nine gain more than a thousandth of their first energy, and
-  // eight of a hundred at most: what a fold is pressed by comes back. In three a flap swings on.
-  int gained = 0, rest = 0;
-  for (const double start : {0., 0.1, 0.2, 0.3}) {
-    CAPTURE(start);
-    const SceneDescription scene = standing(16, start);
-    Cloth cloth = cloth_of(scene, small_steps());
-    add_floor(cloth);
-    const double risen = fall(cloth, scene, 90);
-    CAPTURE(risen);
-    CHECK(risen < 0.08);
-    gained += risen > 1e-3 ? 1 : 0;
-    run(cloth, kFrame, 60);
-    rest += fastest(cloth) < 0.05 ? 1 : 0;
-  }
-  CHECK(gained <= 2);
-  CHECK(rest >= 3);
+  const SceneDescription scene = standing(16);
+  Cloth cloth = cloth_of(scene, small_steps());
+  add_floor(cloth);
+  fall(cloth, scene, 90);
+  run(cloth, kFrame, 60);
+  CHECK(fastest(cloth) < 0.05);
 }
 
 TEST_CASE("a ribbon whose ends turn does not go through itself") {

@@ -10,6 +10,7 @@
 #include "engine/contact/stars.h"
 #include "engine/model/model.h"
 #include "tests/support/clothes.h"
+#include "tests/support/contact_particles.h"
 #include "tests/support/crossing_triangles.h"
 #include "tests/support/random.h"
 #include "tests/support/sheets.h"
@@ -20,30 +21,11 @@ namespace {
 
 using kernels::Vector;
 
-class Particles final : public ContactParticles {
- public:
-  std::vector<Vector> from, to;
-  Vector position(std::uint32_t slot) const override { return to[slot]; }
-  Vector start(std::uint32_t slot) const override { return from[slot]; }
-  ContactParticle read(std::uint32_t slot) const override { return {from[slot], to[slot], {}}; }
-  void write(std::uint32_t, const ContactParticle&) override {}
-  void touch(std::uint32_t, const TouchedSurface&) override {}
-  bool is_on_body(std::uint32_t) const override { return false; }
-  void stop(std::uint32_t, const TouchedSurface&) override {}
-  void jolt(std::uint32_t, Vector) override {}
-  void push(std::uint32_t, Vector, Vector) override {}
-  bool is_beside_body(std::uint32_t) const override { return false; }
-  void move_beside_bodies(std::uint32_t, Vector) override {}
-  void move_to(std::uint32_t, Vector) override {}
-  bool is_mended() const override { return false; }
-  double momentum_share() const override { return 1; }
-};
-
 /// A sheet of irregular triangles whose points move by chance in one interval.
 struct Sheet {
   std::shared_ptr<const Model> model;
   BodyClock clock;
-  Particles particles;
+  StandingParticles particles;
 
   Sheet(std::uint32_t seed, double rough, double way) {
     Random random(seed);
@@ -79,8 +61,8 @@ struct Sheet {
     std::set<std::tuple<PairKind, std::uint32_t, std::uint32_t>> names;
     for (std::size_t list = 0; list < kPairLists; ++list) {
       for (const Pair& pair : candidates[list].pairs) {
-        CHECK(list >= kStarLists);
-        CHECK(stars.are_in_one(points.cloth(), pair));
+        CHECK(is_of_stars(list));
+        CHECK(are_in_one_star(points.cloth(), pair));
         const bool swap = pair.kind == PairKind::edges && pair.second < pair.first;
         CHECK(names
                   .insert(
