@@ -103,6 +103,12 @@ void ContactPoints::add_cloth() {
   ContactSurface& cloth = surfaces_.emplace_back();
   cloth.triangles = &model_.touched_surface();
   cloth.own_tree = BoxTree(cloth.triangles->in_order);
+  shortest_.assign(slots_, std::numeric_limits<double>::infinity());
+  for (const auto& [a, b] : cloth.triangles->edges) {
+    const double l = length(model_.initial_position[a] - model_.initial_position[b]);
+    shortest_[a] = std::min(shortest_[a], l);
+    shortest_[b] = std::min(shortest_[b], l);
+  }
 }
 
 void ContactPoints::prepare_for_itself() {
@@ -114,12 +120,6 @@ void ContactPoints::prepare_for_itself() {
   if (!rest_.empty()) return;
   sewn_ = SewnPoints(model_);
   rest_ = RestDistances(model_, cloth.thickness, sewn_);
-  shortest_.assign(slots_, std::numeric_limits<double>::infinity());
-  for (const auto& [a, b] : cloth.triangles->edges) {
-    const double l = length(model_.initial_position[a] - model_.initial_position[b]);
-    shortest_[a] = std::min(shortest_[a], l);
-    shortest_[b] = std::min(shortest_[b], l);
-  }
 }
 
 /// The surface of a body, which is the one that was there in the last frame if that had its shape.
@@ -182,9 +182,8 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
                                    int substeps) {
   const double before = std::exchange(from_, clock.share_after(0));
   to_ = clock.share_after(substeps);
-  until_ = clock.share_after(clock.substeps_left());
+  if (from_ < laid_from_ || to_ > until_) has_tubes_ = false;
   const double time = clock.stands() ? 0 : clock.time();
-  time_left_ = (until_ - from_) * time;
   drift_ = ((to_ - from_) * time) * speeds_.drift;
   const Vector drifted = ((from_ - before) * time) * speeds_.drift;
   Vector sum{};
@@ -217,6 +216,8 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   travelled_ = std::sqrt(travelled);
   travelled_ += touches_itself_ ? std::max(travelled_, of_other) : of_other;
   find_reach();
+  if (!has_tubes_) until_ = tubes_end(clock.share_after(clock.substeps_left()));
+  time_left_ = (until_ - from_) * time;
   const double beside_itself = this->beside_itself();
   for (const std::uint32_t slot : particles_) {
     write_box(slot, reach_[slot] + beside_itself);
@@ -304,10 +305,28 @@ void ContactPoints::find_reach() {
   }
   largest_reach_ = 0;
   const double spare = to_ > from_ ? tuning::kContactSpare : tuning::kContactWideSpare;
-  for (double& reach : reach_) {
-    reach = tuning::kContactReach * std::max(reach, way_of_near_) + spare * largest_thickness_;
-    largest_reach_ = std::max(largest_reach_, reach);
+  for (const std::uint32_t slot : particles_) {
+    reach_[slot] = strays(slot, tuning::kContactReach * std::max(reach_[slot], way_of_near_)) +
+                   spare * largest_thickness_;
+    largest_reach_ = std::max(largest_reach_, reach_[slot]);
   }
+}
+
+double ContactPoints::strays(std::uint32_t slot, double by) const {
+  return std::min(by, tuning::kContactStray * shortest_[slot]);
+}
+
+/// Tubes that reach over several cells meet many others, and those of cloth that flutters are soon
+/// left. So they end when particles have come, in the mean, as far as an edge is long.
+double ContactPoints::tubes_end(double end) const {
+  double edges = 0, ways = 0;
+  for (const std::uint32_t slot : particles_) {
+    if (shortest_[slot] == std::numeric_limits<double>::infinity()) continue;
+    edges += shortest_[slot];
+    ways += ways_[slot];
+  }
+  const double interval = to_ - from_;
+  return ways > 0 ? std::min(end, from_ + interval * std::max(1.0, edges / ways)) : end;
 }
 
 void ContactPoints::write_box(std::size_t point, double reach) {
@@ -326,11 +345,13 @@ double ContactPoints::beyond_for_itself(std::uint32_t slot, double length_of_way
 Tube ContactPoints::tube_around(std::uint32_t slot) const {
   const Vector x = start_[slot] - origin_, way = end_[slot] - start_[slot];
   const double intervals = to_ > from_ ? 1 / (to_ - from_) : 0;
-  const double reach =
-      tuning::kContactReach * length(way - drift_) + tuning::kContactWideReach * reach_[slot] +
-      (to_ > from_ ? tuning::kContactWideSpare : tuning::kContactStandingSpare) *
-          largest_thickness_ +
-      beside_itself() + beyond_for_itself(slot, intervals * (until_ - from_) * length(way));
+  const double by =
+      tuning::kContactReach * length(way - drift_) + (tuning::kContactWideReach - 1) * reach_[slot];
+  const double reach = reach_[slot] + strays(slot, by) +
+                       (to_ > from_ ? tuning::kContactWideSpare : tuning::kContactStandingSpare) *
+                           largest_thickness_ +
+                       beside_itself() +
+                       beyond_for_itself(slot, intervals * (until_ - from_) * length(way));
   const Vector begins = x - (intervals * (from_ - laid_from_)) * way,
                ends = x + (intervals * (until_ - from_)) * way;
   return {box_around(begins, begins, reach), box_around(ends, ends, reach)};

@@ -212,6 +212,10 @@ class ContactPoints {
   double beyond_for_itself(std::uint32_t slot, double length_of_way) const;
   void lay_vertex(std::uint32_t point);
   void find_reach();
+  /// m, beyond its straight way, and no more than `by`.
+  double strays(std::uint32_t slot, double by) const;
+  /// In shares of the step.
+  double tubes_end(double end) const;
   void write_box(std::size_t point, double reach);
 
   const Model& model_;

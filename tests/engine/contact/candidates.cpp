@@ -242,6 +242,41 @@ TEST_CASE("130 km from the origin as many pairs are candidates as beside it") {
   CHECK(candidates_of(there) == doctest::Approx(static_cast<double>(expected)).epsilon(0.01));
 }
 
+/// A flat sheet of cells of 20 mm that flies on at 20 m/s and flutters.
+struct Fluttering : Moving {
+  explicit Fluttering(double speed) : Moving(5) {
+    MeshDescription mesh = irregular_triangles(20, 0.2, random);
+    for (Vec3& x : mesh.positions) x = {0.02 * x.x, 0, 0.02 * x.y};
+    mesh.material = find_material("cotton").value();
+    SceneDescription scene = made(mesh).scene;
+    scene.self_contact = {.on = true, .thickness = kThickness};
+    model = model_of(scene);
+    clock.begin({}, kH, kSubsteps, false);
+    start(speed);
+    for (Vector& its : v) its = its + Vector{0, 0, 20};
+  }
+};
+
+TEST_CASE("cloth that flutters has few candidates") {
+  const auto candidates_at = [](double speed) {
+    Fluttering now(speed);
+    now.clock.begin_interval(kH);
+    for (std::size_t i = 0; i < now.v.size(); ++i)
+      now.particles.to[i] = now.particles.from[i] + kH * now.v[i];
+    ContactPoints points(*now.model);
+    points.begin(now.clock);
+    points.look_ahead(now.particles, now.clock);
+    points.begin_interval(now.particles, now.clock, 1);
+    CandidateSearch search(simd::table(simd::best_isa()));
+    Candidates candidates;
+    Team team;
+    search.find(points, candidates, team);
+    return names_of(candidates).size() / now.model->particles;
+  };
+  CHECK(candidates_at(1) < 40);
+  CHECK(candidates_at(10) < 80);
+}
+
 /// A sheet in pleats, whose walls are as far apart as cloth is thick. Some of it speeds up.
 struct Pleats : Moving {
   Pleats() : Moving(3) {
