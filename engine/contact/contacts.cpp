@@ -59,6 +59,11 @@ void Contacts::clear() {
   blocks_.clear();
   keys_.clear();
   colours_.clear();
+  place_of_.clear();
+  for (const std::uint32_t slot : points_) known_as_[slot] = Known::no;
+  for (const std::uint32_t slot : beside_) known_as_[slot] = Known::no;
+  points_.clear();
+  beside_.clear();
   active_blocks_.clear();
   active_colours_.clear();
   is_begun_ = is_aside_ = false;
@@ -111,32 +116,48 @@ void Contacts::gather_known() {
   }
 }
 
-void Contacts::number_points(const ContactPoints& points, std::span<NearContact> near) {
-  for (const std::uint32_t point : points_) number_of_[point] = kNoIndex;
-  points_.clear();
-  const auto add = [&](std::uint32_t point) {
-    if (point >= number_of_.size()) number_of_.resize(point + 1, kNoIndex);
-    if (number_of_[point] != kNoIndex) return;
-    number_of_[point] = static_cast<std::uint32_t>(points_.size());
-    points_.push_back(point);
-  };
-  for (const NearContact& contact : near)
-    for (const std::uint32_t point : contact.points) add(point);
-  moving_ = points_.size();
-  for (NearContact& contact : near) {
-    contact.beside = beside(points.cloth(), contact);
-    for (const std::uint32_t point : contact.beside) add(point);
-  }
-  const std::size_t quads = points_.size() + kLanes;  // of lanes that are not used, too
-  places_.assign(4 * quads, 0);
-  moves_.assign(4 * (moving_ + kLanes), 0);
-  from_.resize(points_.size());
-  is_beside_body_.assign(moving_, 0);
+/// Its multiplier is known to what is found now.
+void Contacts::retire(std::size_t contact) {
+  const Multiplier m = multiplier(contact);
+  if (m[0] > 0) known_.add(keys_[contact], m);
+  keys_[contact] = kNoKey;
+  set_multiplier(contact, {});
+  leave_free(contact / kLanes, contact % kLanes);
 }
 
-/// Points beside triangles, then edges; of either kind what is nearest first, so that blocks are
-/// all near or all far.
-void Contacts::put_in_order(std::vector<NearContact>& near) {
+void Contacts::find(const ContactPoints& points, const NearContacts& near) {
+  take_back();
+  if (near.anew) {
+    gather_known();
+    clear();
+  } else {
+    known_.begin();
+    for (const std::uint32_t name : near.gone) retire(place_of_[name]);
+    for (const auto& [name, normal] : near.touching) set_normal(place_of_[name], normal);
+  }
+  known_.end();
+  memory_.clear();  // pairs that are far have come apart
+  if (near.found.empty()) return;
+  find_known(near.found);
+  const std::size_t edges = put_in_order(near.found);
+  know_points(points, near.found);
+  const std::size_t first = place_of_.size();
+  place_of_.resize(first + near.found.size());
+  colour(points, near.found, 0, edges, false);
+  colour(points, near.found, edges, near.found.size(), true);
+  active_.resize(blocks_.size());
+  are_linked_ = false;
+}
+
+/// In a loop of its own: memory is waited for once for several of them.
+void Contacts::find_known(std::span<const NearContact> near) {
+  known_at_.clear();
+  for (const NearContact& contact : near) known_at_.push_back(known_.find(contact.pair.key()));
+}
+
+/// The order of contacts: points beside triangles, then edges; of either kind what is nearest
+/// first, so that blocks are all near or all far. Returns where edges begin.
+std::size_t Contacts::put_in_order(std::span<const NearContact> near) {
   constexpr std::size_t kBins = 16;
   const auto bin_of = [](const NearContact& contact) {
     const double quarters = 4 * contact.distance;  // of thicknesses, which may be 0
@@ -145,50 +166,57 @@ void Contacts::put_in_order(std::vector<NearContact>& near) {
         is_far ? kBins - 1 : static_cast<std::size_t>(quarters / contact.thickness);
     return (is_edges(contact) ? kBins : 0) + bin;
   };
-  std::array<std::size_t, 2 * kBins + 1> first{};
-  for (const NearContact& contact : near) ++first[bin_of(contact) + 1];
+  std::array<std::uint32_t, 2 * kBins + 1> first{};
+  bins_.clear();
+  for (const NearContact& contact : near) {
+    bins_.push_back(static_cast<std::uint8_t>(bin_of(contact)));
+    ++first[bins_.back() + 1u];
+  }
   std::partial_sum(first.begin(), first.end(), first.begin());
-  in_order_.resize(near.size());
-  for (const NearContact& contact : near) in_order_[first[bin_of(contact)]++] = contact;
-  near.swap(in_order_);
+  const std::size_t edges = first[kBins];
+  order_.resize(near.size());
+  for (std::uint32_t i = 0; i < near.size(); ++i) order_[first[bins_[i]]++] = i;
+  return edges;
 }
 
-void Contacts::find(const ContactPoints& points, std::vector<NearContact>& near) {
-  gather_known();
-  known_.end();
-  memory_.clear();  // pairs that are far have come apart
-  clear();
-  put_in_order(near);
-  number_points(points, near);
-  const auto first_edges = std::ranges::partition_point(near, std::not_fn(is_edges));
-  const auto points_count = static_cast<std::size_t>(first_edges - near.begin());
-  colour(points, std::span(near).first(points_count));
-  edges_from_ = blocks_.size();
-  colour(points, std::span(near).subspan(points_count));
-  active_.assign(blocks_.size(), 0);
-  links_.clear();
-  first_link_.assign(moving_, kNoIndex);
-  are_linked_ = false;
+void Contacts::know(std::uint32_t slot, Known as) {
+  Known& known = known_as_[slot];
+  if (known >= as) return;
+  known = as;
+  (as == Known::of_contact ? points_ : beside_).push_back(slot);
 }
 
-/// A colour is the lowest one that none of the points has. A contact that finds none among 64 has
-/// one of the next 64.
-void Contacts::colour(const ContactPoints& points, std::span<const NearContact> near) {
-  waiting_.resize(near.size());
-  std::iota(waiting_.begin(), waiting_.end(), 0u);
+void Contacts::know_points(const ContactPoints& points, std::span<const NearContact> near) {
+  const std::size_t slots = points.slots();
+  known_as_.resize(slots);
+  from_.resize(slots);
+  places_.resize(4 * (slots + kLanes));
+  moves_.resize(4 * (slots + kLanes));
+  moved_by_.resize(slots);
+  is_beside_body_.resize(slots);
+  first_link_.resize(slots, kNoIndex);
+  for (const std::uint32_t i : order_)
+    for (const std::uint32_t slot : near[i].points) know(slot, Known::of_contact);
+}
+
+/// Of contacts first ... last - 1 of the order. A colour is the lowest one that none of the points
+/// has. A contact that finds none among 64 has one of the next 64.
+void Contacts::colour(const ContactPoints& points, std::span<const NearContact> near,
+                      std::size_t first_of_order, std::size_t last_of_order, bool are_edges) {
+  waiting_.assign(order_.begin() + static_cast<std::ptrdiff_t>(first_of_order),
+                  order_.begin() + static_cast<std::ptrdiff_t>(last_of_order));
   while (!waiting_.empty()) {
-    taken_.assign(moving_, 0);
+    taken_.assign(points.slots(), 0);
     colour_of_.clear();
     std::array<std::uint32_t, kColours + 2> first{};
     for (const std::uint32_t i : waiting_) {
       std::uint64_t taken = 0;
-      for (const std::uint32_t point : near[i].points) taken |= taken_[number_of_[point]];
+      for (const std::uint32_t slot : near[i].points) taken |= taken_[slot];
       const auto lowest = static_cast<std::uint8_t>(std::countr_one(taken));
       colour_of_.push_back(lowest);
       ++first[lowest + 1u];
       if (lowest == kColours) continue;
-      for (const std::uint32_t point : near[i].points)
-        taken_[number_of_[point]] |= std::uint64_t{1} << lowest;
+      for (const std::uint32_t slot : near[i].points) taken_[slot] |= std::uint64_t{1} << lowest;
     }
     std::partial_sum(first.begin(), first.end(), first.begin());
     by_colour_.resize(waiting_.size());
@@ -196,51 +224,71 @@ void Contacts::colour(const ContactPoints& points, std::span<const NearContact> 
     for (std::size_t k = 0; k < waiting_.size(); ++k)
       by_colour_[next[colour_of_[k]]++] = waiting_[k];
     for (std::size_t c = 0; c < kColours; ++c)
-      put_blocks(points, near, std::span(by_colour_).subspan(first[c], first[c + 1] - first[c]));
+      put_blocks(points, near, std::span(by_colour_).subspan(first[c], first[c + 1] - first[c]),
+                 are_edges);
     waiting_.assign(by_colour_.begin() + first[kColours], by_colour_.end());
   }
 }
 
 /// Of one colour.
 void Contacts::put_blocks(const ContactPoints& points, std::span<const NearContact> near,
-                          std::span<const std::uint32_t> contacts) {
+                          std::span<const std::uint32_t> contacts, bool are_edges) {
   if (contacts.empty()) return;
-  const auto first = static_cast<std::uint32_t>(blocks_.size());
+  const std::size_t first = blocks_.size(), names = place_of_.size() - near.size();
+  blocks_.resize(first + (contacts.size() + kLanes - 1) / kLanes);
+  keys_.resize(kLanes * blocks_.size(), kNoKey);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    if (k % kLanes == 0) {
-      blocks_.emplace_back();
-      keys_.resize(kLanes * blocks_.size(), kNoKey);
-    }
-    put(points, near[contacts[k]], blocks_.size() - 1, k % kLanes);
+    const std::uint32_t i = contacts[k];
+    const std::size_t at = kLanes * first + k;
+    put(points, near[i], at / kLanes, at % kLanes);
+    place_of_[names + i] = static_cast<std::uint32_t>(at);
+    keys_[at] = near[i].pair.key();
+    if (const Multiplier* known = known_at_[i]) set_multiplier(at, *known);
   }
-  for (std::size_t lane = contacts.size() % kLanes; lane != 0 && lane < kLanes; ++lane) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      const auto nobody = static_cast<std::uint32_t>(moving_ + lane);
-      blocks_.back().point[k][lane] = blocks_.back().beside[k][lane] = nobody;
-    }
-  }
-  colours_.push_back({first, static_cast<std::uint32_t>(blocks_.size())});
+  for (std::size_t lane = contacts.size() % kLanes; lane != 0 && lane < kLanes; ++lane)
+    leave_free(blocks_.size() - 1, lane);
+  colours_.push_back(
+      {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(blocks_.size()), are_edges});
 }
 
 void Contacts::put(const ContactPoints& points, const NearContact& contact, std::size_t block,
                    std::size_t lane) {
   simd::ContactBlock& to = blocks_[block];
+  const std::array<std::uint32_t, 4> thirds = beside(points.cloth(), contact);
   for (std::size_t k = 0; k < 4; ++k) {
-    to.point[k][lane] = number_of_[contact.points[k]];
-    to.beside[k][lane] = number_of_[contact.beside[k]];
+    to.point[k][lane] = contact.points[k];
+    to.beside[k][lane] = thirds[k];
+    know(thirds[k], Known::beside);
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    const bool is_border = contact.beside[k] == contact.points[k == 0 ? 3 : k];
+    const bool is_border = thirds[k] == contact.points[k == 0 ? 3 : k];
     to.towards[k][lane] = is_border ? -1.f : 1.f;
   }
   to.thickness[lane] = static_cast<float>(contact.thickness);
   to.friction[lane] = static_cast<float>(points.later(contact.pair).friction);
-  to.normal.x[lane] = static_cast<float>(contact.normal.x);
-  to.normal.y[lane] = static_cast<float>(contact.normal.y);
-  to.normal.z[lane] = static_cast<float>(contact.normal.z);
-  const std::uint64_t key = contact.pair.key();
-  keys_[kLanes * block + lane] = key;
-  if (const Multiplier* known = known_.find(key)) set_multiplier(kLanes * block + lane, *known);
+  set_normal(kLanes * block + lane, contact.normal);
+}
+
+void Contacts::set_normal(std::size_t contact, Vector normal) {
+  simd::LaneVectors& to = blocks_[contact / kLanes].normal;
+  to.x[contact % kLanes] = static_cast<float>(normal.x);
+  to.y[contact % kLanes] = static_cast<float>(normal.y);
+  to.z[contact % kLanes] = static_cast<float>(normal.z);
+}
+
+/// Its points are nobody's, and have no mass.
+void Contacts::leave_free(std::size_t block, std::size_t lane) {
+  const auto nobody = static_cast<std::uint32_t>(known_as_.size() + lane);
+  for (std::size_t k = 0; k < 4; ++k)
+    blocks_[block].point[k][lane] = blocks_[block].beside[k][lane] = nobody;
+}
+
+/// x: from the origin.
+void Contacts::place(const ContactPoints& points, Vector x, std::uint32_t slot) {
+  places_[4 * slot] = static_cast<float>(x.x);
+  places_[4 * slot + 1] = static_cast<float>(x.y);
+  places_[4 * slot + 2] = static_cast<float>(x.z);
+  places_[4 * slot + 3] = static_cast<float>(points.inverse_mass(slot));
 }
 
 void Contacts::begin_substep(const ContactPoints& points, ContactParticles& particles, double h,
@@ -248,18 +296,17 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
   if (empty()) return;
   const Vector origin = points.origin();
   double farthest = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const std::uint32_t slot = points_[i];
-    from_[i] = stands ? particles.position(slot) : particles.start(slot);
-    const Vector x = from_[i] - origin;
-    farthest = std::max({farthest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
-    places_[4 * i] = static_cast<float>(x.x);
-    places_[4 * i + 1] = static_cast<float>(x.y);
-    places_[4 * i + 2] = static_cast<float>(x.z);
-    places_[4 * i + 3] = static_cast<float>(points.inverse_mass(slot));
-    if (i >= moving_) continue;
-    moves_[4 * i + 3] = places_[4 * i + 3];
-    is_beside_body_[i] = particles.is_beside_body(slot) ? 1 : 0;
+  for (const auto* slots : {&points_, &beside_}) {
+    for (const std::uint32_t slot : *slots) {
+      from_[slot] = stands ? particles.position(slot) : particles.start(slot);
+      const Vector x = from_[slot] - origin;
+      farthest = std::max({farthest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+      place(points, x, slot);
+    }
+  }
+  for (const std::uint32_t slot : points_) {
+    moves_[4 * slot + 3] = places_[4 * slot + 3];
+    is_beside_body_[slot] = particles.is_beside_body(slot) ? 1 : 0;
   }
   const double bh = h / particles.momentum_share(), before = std::exchange(give_, bh * bh);
   const float warm = stands || before == 0 ? 0.f : static_cast<float>(give_ / before);
@@ -269,12 +316,14 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
       .rounding = 0x1p-20f * static_cast<float>(farthest),
       .warm = warm,
       .recovery = stands ? 1.f : static_cast<float>(tuning::kContactRecovery)};
-  team.for_each_share(edges_from_, [&](std::size_t first, std::size_t last) {
-    kernels_.freeze(freeze, false, first, last);
-  });
-  team.for_each_share(blocks_.size() - edges_from_, [&](std::size_t first, std::size_t last) {
-    kernels_.freeze(freeze, true, edges_from_ + first, edges_from_ + last);
-  });
+  for (std::size_t c = 0, next = 0; c < colours_.size(); c = next) {  // all of a kind at once
+    const bool are_edges = colours_[c].are_edges;
+    while (next < colours_.size() && colours_[next].are_edges == are_edges) ++next;
+    const std::size_t begin = colours_[c].first, end = colours_[next - 1].last;
+    team.for_each_share(end - begin, [&](std::size_t first, std::size_t last) {
+      kernels_.freeze(freeze, are_edges, begin + first, begin + last);
+    });
+  }
   is_begun_ = true;
   is_aside_ = false;
   if (warm == 0) return;
@@ -291,12 +340,12 @@ void Contacts::start_active() {
 }
 
 void Contacts::read_moves(const ContactParticles& particles) {
-  for (std::size_t i = 0; i < moving_; ++i) set_move(i, particles.position(points_[i]) - from_[i]);
+  for (const std::uint32_t slot : points_) set_move(slot, particles.position(slot) - from_[slot]);
 }
 
 void Contacts::write_moves(ContactParticles& particles) {
-  for (std::size_t i = 0; i < moving_; ++i) {
-    if (moves_[4 * i + 3] > 0) particles.move_to(points_[i], from_[i] + move(i));
+  for (const std::uint32_t slot : points_) {
+    if (weight(slot) > 0) particles.move_to(slot, from_[slot] + move(slot));
   }
 }
 
@@ -319,10 +368,13 @@ void Contacts::find_active(Active which, Team& team) {
   }
 }
 
+/// From the last colour to the first: a visit undoes some of what those before it have done, and
+/// what is nearest comes last.
 void Contacts::visit_active(Team& team) {
   constexpr std::uint32_t kFewBlocks = 32;  // a thread alone is as fast
   const simd::ContactSolve solve = solving();
-  for (const Colour& colour : active_colours_) {
+  for (std::size_t c = active_colours_.size(); c-- > 0;) {
+    const Colour& colour = active_colours_[c];
     const std::uint32_t* blocks = active_blocks_.data() + colour.first;
     const std::uint32_t count = colour.last - colour.first;
     if (count < kFewBlocks) {
@@ -339,7 +391,7 @@ void Contacts::visit_active(Team& team) {
 void Contacts::begin_rounds(ContactParticles& particles, Team& team) {
   if (particles.is_mended()) set_aside();
   read_moves(particles);
-  moved_by_.assign(moving_, 0);
+  for (const std::uint32_t slot : points_) moved_by_[slot] = 0;
   find_active(Active::touch, team);
 }
 
@@ -348,15 +400,14 @@ void Contacts::round(ContactParticles& particles, Team& team) {
   if (active_blocks_.empty()) return;
   read_moves(particles);
   visit_active(team);
-  for (std::size_t i = 0; i < moving_; ++i) {
-    if (!(moves_[4 * i + 3] > 0)) continue;
-    const std::uint32_t slot = points_[i];
-    const Vector x = particles.position(slot), to = from_[i] + move(i);
-    if (is_beside_body_[i] != 0)
+  for (const std::uint32_t slot : points_) {
+    if (!(weight(slot) > 0)) continue;
+    const Vector x = particles.position(slot), to = from_[slot] + move(slot);
+    if (is_beside_body_[slot] != 0)
       particles.move_beside_bodies(slot, to);
     else
       particles.move_to(slot, to);
-    moved_by_[i] += length(particles.position(slot) - x);
+    moved_by_[slot] += length(particles.position(slot) - x);
   }
 }
 
@@ -368,10 +419,14 @@ void Contacts::set_aside() {
   }
 }
 
+void Contacts::take_back() {
+  if (!std::exchange(is_aside_, false)) return;
+  for (std::size_t i = 0; i < keys_.size(); ++i) set_multiplier(i, aside_[i]);
+}
+
 void Contacts::link_active() {
-  for (const Link& link : links_) first_link_[link.point] = kNoIndex;
+  for (const Link& link : links_) first_link_[link.slot] = kNoIndex;
   links_.clear();
-  first_link_.resize(moving_, kNoIndex);
   for (const std::uint32_t block : active_blocks_) {
     for (std::uint32_t bits = active_[block]; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
@@ -386,13 +441,11 @@ void Contacts::link_active() {
 }
 
 bool Contacts::hold(ContactParticles& particles, std::uint32_t slot) {
-  if (active_blocks_.empty() || slot >= number_of_.size()) return false;
-  const std::uint32_t number = number_of_[slot];
-  if (number >= moving_) return false;
+  if (active_blocks_.empty() || known_as_[slot] != Known::of_contact) return false;
   if (particles.is_mended()) set_aside();
   if (!are_linked_) link_active();
   bool is_pushed = false;
-  for (std::uint32_t i = first_link_[number]; i != kNoIndex; i = links_[i].next)
+  for (std::uint32_t i = first_link_[slot]; i != kNoIndex; i = links_[i].next)
     is_pushed = visit(particles, links_[i].contact) || is_pushed;
   return is_pushed;
 }
@@ -413,10 +466,10 @@ bool Contacts::visit(ContactParticles& particles, std::size_t i) {
                              .hold = vector(block.hold)};
   std::array<Vector, 4> x;
   for (std::size_t k = 0; k < 4; ++k) {
-    const std::uint32_t number = block.point[k][lane];
+    const std::uint32_t slot = block.point[k][lane];
     contact.weight[k] = double{block.weight[k][lane]};
-    contact.inverse_mass[k] = double{moves_[4 * number + 3]};
-    x[k] = particles.position(points_[number]) - from_[number];
+    contact.inverse_mass[k] = weight(slot);
+    x[k] = particles.position(slot) - from_[slot];
   }
   visits_ += tuning::kVisitsOfLook;
   const std::array<Vector, 4> before = x;
@@ -426,13 +479,13 @@ bool Contacts::visit(ContactParticles& particles, std::size_t i) {
                      static_cast<float>(contact.hold.y), static_cast<float>(contact.hold.z),
                      block.before[lane]});
   for (std::size_t k = 0; k < 4; ++k) {
-    const std::uint32_t number = block.point[k][lane];
+    const std::uint32_t slot = block.point[k][lane];
     if (!(contact.inverse_mass[k] > 0)) continue;
-    const Vector to = from_[number] + x[k];
-    if (is_beside_body_[number] != 0)
-      particles.move_beside_bodies(points_[number], to);
+    const Vector to = from_[slot] + x[k];
+    if (is_beside_body_[slot] != 0)
+      particles.move_beside_bodies(slot, to);
     else
-      particles.move_to(points_[number], to);
+      particles.move_to(slot, to);
   }
   return true;
 }
@@ -441,18 +494,14 @@ bool Contacts::visit(ContactParticles& particles, std::size_t i) {
 /// order. (BDF2 damps what multipliers that act again make of a stack 20 times less.)
 void Contacts::end_substep(ContactParticles& particles, Team& team) {
   if (!std::exchange(is_begun_, false)) return;
-  if (std::exchange(is_aside_, false)) {
-    for (std::size_t i = 0; i < keys_.size(); ++i) set_multiplier(i, aside_[i]);
-  }
-  for (std::size_t i = 0; i < 4 * moving_; ++i) {
-    if (i % 4 != 3) moves_[i] = 0;
-  }
+  take_back();
+  for (const std::uint32_t slot : points_) set_move(slot, {});
   find_active(Active::push, team);
   start_active();
   const double rate = 1 / std::sqrt(give_);
-  for (std::size_t i = 0; i < moving_; ++i) {
-    const Vector by = rate * move(i);
-    if (!(by == Vector{})) particles.jolt(points_[i], by);
+  for (const std::uint32_t slot : points_) {
+    const Vector by = rate * move(slot);
+    if (!(by == Vector{})) particles.jolt(slot, by);
   }
 }
 
@@ -464,12 +513,13 @@ int Contacts::count_touching() const {
 }
 
 std::size_t Contacts::bytes() const {
-  return bytes_of(blocks_) + bytes_of(keys_) + bytes_of(colours_) + bytes_of(points_) +
-         bytes_of(number_of_) + bytes_of(from_) + bytes_of(places_) + bytes_of(moves_) +
-         bytes_of(moved_by_) + bytes_of(is_beside_body_) + bytes_of(active_) +
-         bytes_of(active_blocks_) + bytes_of(active_colours_) + memory_.bytes() + bytes_of(aside_) +
-         bytes_of(taken_) + bytes_of(waiting_) + bytes_of(links_) + bytes_of(first_link_) +
-         bytes_of(in_order_) + bytes_of(colour_of_) + bytes_of(by_colour_) + known_.bytes();
+  return bytes_of(blocks_) + bytes_of(keys_) + bytes_of(colours_) + bytes_of(place_of_) +
+         bytes_of(points_) + bytes_of(beside_) + bytes_of(known_as_) + bytes_of(from_) +
+         bytes_of(places_) + bytes_of(moves_) + bytes_of(moved_by_) + bytes_of(is_beside_body_) +
+         bytes_of(first_link_) + bytes_of(active_) + bytes_of(active_blocks_) +
+         bytes_of(active_colours_) + bytes_of(links_) + memory_.bytes() + known_.bytes() +
+         bytes_of(aside_) + bytes_of(known_at_) + bytes_of(bins_) + bytes_of(order_) +
+         bytes_of(taken_) + bytes_of(waiting_) + bytes_of(by_colour_) + bytes_of(colour_of_);
 }
 
 }  // namespace weft

@@ -80,6 +80,7 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   }
   near_search_.measure(points_, candidates_, have_moved, team);
   near_search_.find(points_, candidates_, tangles_, near_, team);
+  layers_.anew = have_moved || contacts_.empty() || tangles_.count_within() > 0;
   near_search_.find_layers(points_, candidates_, tangles_, layers_);
   contacts_.find(points_, layers_);
   tangles_.come_out(points_, near_);

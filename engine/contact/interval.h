@@ -160,7 +160,7 @@ class SurfaceContacts {
   Verification verification_;
   Candidates candidates_;
   Near near_;
-  std::vector<NearContact> layers_;  // scratch
+  NearContacts layers_;  // scratch
   ContactImpulses impulses_;
   ImpactZones zones_;
   RescueReport failures_;

@@ -27,7 +27,7 @@ class KnownMultipliers {
   void add(std::uint64_t key, const Multiplier& multiplier) { known_.push_back({key, multiplier}); }
   /// All are there.
   void end() {
-    places_.assign(std::bit_ceil(2 * known_.size() + 1), kNobody);
+    places_.assign(std::bit_ceil(4 * known_.size() + 1), kNobody);
     for (std::uint32_t i = 0; i < known_.size(); ++i) {
       std::size_t at = place(known_[i].key);
       while (places_[at] != kNobody) at = next(at);
@@ -48,10 +48,12 @@ class KnownMultipliers {
 
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
-  /// By the upper digits of a product (Fibonacci hashing).
+  /// By the upper digits of a product (Fibonacci hashing). Features of neighbours have numbers at
+  /// equal distances, and their products fall into few places unless both are mixed first.
   std::size_t place(std::uint64_t key) const {
     const int digits = std::countr_zero(places_.size());  // of a power of two
-    const std::uint64_t product = key * 0x9e3779b97f4a7c15u;
+    const std::uint64_t mixed = (key ^ key >> 32) * 0xd6e8feb86659fd93u;
+    const std::uint64_t product = (mixed ^ mixed >> 32) * 0x9e3779b97f4a7c15u;
     return digits == 0 ? 0 : static_cast<std::size_t>(product >> (64 - digits));
   }
   std::size_t next(std::size_t at) const { return (at + 1) & (places_.size() - 1); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "engine/bytes_of.h"
 #include "engine/contact/look.h"
@@ -80,6 +81,13 @@ SeenPair see(const ContactPoints& points, const Tangles& tangles, const Pair& pa
   const Look look = look_apart(pair, x);
   if (!look.is_apart()) return {.sight = Sight::touches, .is_inside = is_inside, .look = look};
   return see(points, pair, four, x, look, is_inside);
+}
+
+/// Of a near pair within the cloth.
+bool may_be_contact(const ContactPoints& points, const Tangles& tangles, const Pair& pair,
+                    const Four& four) {
+  return points.largest_inverse_mass(four) > 0 && !tangles.leaves_out(pair) &&
+         !tangles.cross_beside(pair, four);
 }
 
 /// What may be in front of a surface or behind it is one of both, or far.
@@ -254,27 +262,55 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
   }
 }
 
-void NearSearch::find_layers(ContactPoints& points, const Candidates& candidates,
-                             const Tangles& tangles, std::vector<NearContact>& layers) const {
+/// Room for the names of pairs. Those of contacts that are no candidates any more go.
+void NearSearch::give_names(const Candidates& candidates, NearContacts& layers) {
   layers.clear();
+  if (layers.anew) names_ = 0;
+  for (std::size_t list = kBodyLists; list < kPairLists; ++list) {
+    Distances& d = distances_[list];
+    if (layers.anew) d.contacts.clear();
+    d.contacts.resize(d.near.size());
+    d.names.resize(kLanes * d.near.size());
+    for (std::size_t block = 0; block < d.contacts.size(); ++block) {
+      const auto used =
+          static_cast<std::uint16_t>(d.contacts[block] & candidates[list].used[block]);
+      std::uint32_t gone = std::exchange(d.contacts[block], used) & ~std::uint32_t{used};
+      for (; gone != 0; gone &= gone - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(gone));
+        layers.gone.push_back(d.names[kLanes * block + lane]);
+      }
+    }
+  }
+}
+
+void NearSearch::find_layers(ContactPoints& points, const Candidates& candidates,
+                             const Tangles& tangles, NearContacts& layers) {
+  give_names(candidates, layers);
   const double touching = 8 * static_cast<double>(points.rounding());
   for (std::size_t list = kBodyLists; list < kPairLists; ++list) {
-    const Distances& distances = distances_[list];
-    for (std::size_t block = 0; block < distances.near.size(); ++block) {
-      for (std::uint32_t bits = distances.near[block]; bits != 0; bits &= bits - 1) {
+    Distances& d = distances_[list];
+    for (std::size_t block = 0; block < d.near.size(); ++block) {
+      for (std::uint32_t bits = d.near[block]; bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
         const std::size_t i = block * kLanes + lane;
+        const bool is_known = (d.contacts[block] >> lane & 1) != 0;
+        const double distance =
+            static_cast<double>(d.distance[block][lane] - travelled_ / simd::kSurelyApart);
+        if (is_known && distance > touching) continue;
         const Pair& pair = candidates[list].pairs[i];
         const Four four = candidates[list].points(i);
-        if (!(points.largest_inverse_mass(four) > 0)) continue;
-        if (tangles.leaves_out(pair) || tangles.cross_beside(pair, four)) continue;
-        const double distance =
-            static_cast<double>(distances.distance[block][lane] - travelled_ / simd::kSurelyApart);
+        if (!is_known && !may_be_contact(points, tangles, pair, four)) continue;
         // Contacts find their normals themselves where features are apart.
         const Vector normal = distance > touching
                                   ? Vector{}
                                   : look(points.later(pair), pair, points.starts_of(four)).normal;
-        layers.push_back({pair, four, normal, points.thickness_of(pair), distance});
+        if (is_known) {
+          layers.touching.push_back({d.names[i], normal});
+          continue;
+        }
+        d.contacts[block] = static_cast<std::uint16_t>(d.contacts[block] | 1u << lane);
+        d.names[i] = names_++;
+        layers.found.push_back({pair, four, normal, points.thickness_of(pair), distance});
       }
     }
   }
@@ -283,7 +319,8 @@ void NearSearch::find_layers(ContactPoints& points, const Candidates& candidates
 std::size_t NearSearch::bytes() const {
   std::size_t bytes = bytes_of(looked_at_) + bytes_of(seen_);
   for (const Distances& d : distances_)
-    bytes += bytes_of(d.distance) + bytes_of(d.near) + bytes_of(d.awake);
+    bytes += bytes_of(d.distance) + bytes_of(d.near) + bytes_of(d.awake) + bytes_of(d.contacts) +
+             bytes_of(d.names);
   return bytes;
 }
 

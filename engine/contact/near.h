@@ -22,7 +22,10 @@ struct Distances {
   std::vector<Lanes> distance;  // m: kSurelyApart of it, less what points have travelled, is the
                                 // least that a pair may be apart
   std::vector<std::uint16_t> near, awake;  // per block, a bit per lane
-  std::size_t count = 0;                   // of the pairs that are known
+  // Of pairs within the cloth: which are contacts, as bits and by their names (NearContacts).
+  std::vector<std::uint16_t> contacts;
+  std::vector<std::uint32_t> names;
+  std::size_t count = 0;  // of the pairs that are known
 
   void resize(std::size_t blocks) {
     distance.resize(blocks);
@@ -68,9 +71,11 @@ class NearSearch {
   /// but for particles that are known to be inside: the cloth lies beside another surface there.
   void find(ContactPoints& points, const Candidates& candidates, const Tangles& tangles, Near& near,
             Team& team);
-  /// Those of the cloth with itself: contacts leave to neighbours what is theirs.
+  /// Those of the cloth with itself: contacts leave to neighbours what is theirs. Not anew:
+  /// contacts are those of the interval before, but for what is found, and what is no candidate any
+  /// more.
   void find_layers(ContactPoints& points, const Candidates& candidates, const Tangles& tangles,
-                   std::vector<NearContact>& layers) const;
+                   NearContacts& layers);
   const std::array<Distances, kPairLists>& distances() const { return distances_; }
   std::size_t bytes() const;
 
@@ -81,11 +86,13 @@ class NearSearch {
                       std::size_t first, std::size_t last);
   void measure_awake(const simd::PairMeasure& measure, std::size_t list, const PairList& pairs,
                      std::size_t first, std::size_t last);
+  void give_names(const Candidates& candidates, NearContacts& layers);
   class Gathered;
 
   const simd::Table& table_;
   float travelled_ = 0;
   std::array<Distances, kPairLists> distances_;
+  std::uint32_t names_ = 0;             // of contacts
   std::vector<std::size_t> looked_at_;  // pairs; scratch
   std::vector<SeenPair> seen_;          // likewise
 };
