@@ -23,6 +23,15 @@ constexpr std::uint64_t kNoKey = std::numeric_limits<std::uint64_t>::max();
 
 bool is_edges(const NearContact& contact) { return contact.pair.kind == PairKind::edges; }
 
+bool has_thread(const TriangleSurface& surface, const Pair& pair) {
+  if (!surface.has_threads) return false;
+  if (pair.kind == PairKind::edges)
+    return surface.is_thread_edge(pair.first) || surface.is_thread_edge(pair.second);
+  return surface.is_thread(pair.second) ||
+         std::ranges::any_of(surface.triangles_at[pair.first],
+                             [&](std::uint32_t t) { return surface.is_thread(t); });
+}
+
 /// Third corners of the faces beside the features (simd::ContactBlock::beside).
 std::array<std::uint32_t, 4> beside(const TriangleSurface& surface, const NearContact& contact) {
   const auto& four = contact.points;
@@ -35,9 +44,12 @@ std::array<std::uint32_t, 4> beside(const TriangleSurface& surface, const NearCo
     return thirds;
   }
   const auto& triangle = surface.triangles[contact.pair.second];
+  // Nothing leans over the ends of a thread.
+  if (surface.is_thread(contact.pair.second)) return {four[3], four[3], four[3], four[3]};
   std::array<std::uint32_t, 4> thirds{four[3], four[1], four[2], four[1]};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t edge = surface.edges_of[contact.pair.second][k];
+    if (edge == kNoIndex) continue;  // a point alone
     for (const std::uint32_t third : surface.opposite[edge]) {
       const bool is_own = third == triangle[0] || third == triangle[1] || third == triangle[2];
       if (third != kNoIndex && !is_own) thirds[k] = third;
@@ -58,6 +70,7 @@ void Contacts::begin(const ContactMemory* memory) {
 void Contacts::clear() {
   blocks_.clear();
   keys_.clear();
+  of_threads_.clear();
   colours_.clear();
   place_of_.clear();
   for (const std::uint32_t slot : points_) known_as_[slot] = Known::no;
@@ -264,6 +277,11 @@ void Contacts::put(const ContactPoints& points, const NearContact& contact, std:
     const bool is_border = thirds[k] == contact.points[k == 0 ? 3 : k];
     to.towards[k][lane] = is_border ? -1.f : 1.f;
   }
+  const bool is_of_thread = has_thread(points.cloth(), contact.pair);
+  if (is_of_thread) of_threads_.push_back(static_cast<std::uint32_t>(kLanes * block + lane));
+  // A thread that lies just over a corner of faces touches all edges there (OwnedFeatures).
+  constexpr auto kOffEnds = static_cast<float>(reference::kLeastWithin);
+  if (is_edges(contact)) to.towards[0][lane] = is_of_thread ? -kOffEnds : kOffEnds;
   to.thickness[lane] = static_cast<float>(contact.thickness);
   to.friction[lane] = static_cast<float>(points.later(contact.pair).friction);
   set_normal(kLanes * block + lane, contact.normal);
@@ -324,6 +342,7 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
       kernels_.freeze(freeze, are_edges, begin + first, begin + last);
     });
   }
+  bear_threads();
   is_begun_ = true;
   is_aside_ = false;
   if (warm == 0) return;
@@ -332,6 +351,17 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
   if (active_blocks_.empty()) return;
   start_active();
   write_moves(particles);
+}
+
+/// What hangs on a thread may be a hundred times as heavy as the link that bears it. A contact
+/// gives way by its slack times what it bears, in each substep anew, so such a link would sink in:
+/// of threads slack counts what is more than the push that acts again.
+void Contacts::bear_threads() {
+  for (const std::uint32_t i : of_threads_) {
+    simd::ContactBlock& block = blocks_[i / kLanes];
+    const std::size_t lane = i % kLanes;
+    block.gap[lane] -= block.slack[lane] * block.push[lane];
+  }
 }
 
 void Contacts::start_active() {
@@ -513,13 +543,14 @@ int Contacts::count_touching() const {
 }
 
 std::size_t Contacts::bytes() const {
-  return bytes_of(blocks_) + bytes_of(keys_) + bytes_of(colours_) + bytes_of(place_of_) +
-         bytes_of(points_) + bytes_of(beside_) + bytes_of(known_as_) + bytes_of(from_) +
-         bytes_of(places_) + bytes_of(moves_) + bytes_of(moved_by_) + bytes_of(is_beside_body_) +
-         bytes_of(first_link_) + bytes_of(active_) + bytes_of(active_blocks_) +
-         bytes_of(active_colours_) + bytes_of(links_) + memory_.bytes() + known_.bytes() +
-         bytes_of(aside_) + bytes_of(known_at_) + bytes_of(bins_) + bytes_of(order_) +
-         bytes_of(taken_) + bytes_of(waiting_) + bytes_of(by_colour_) + bytes_of(colour_of_);
+  return bytes_of(blocks_) + bytes_of(keys_) + bytes_of(of_threads_) + bytes_of(colours_) +
+         bytes_of(place_of_) + bytes_of(points_) + bytes_of(beside_) + bytes_of(known_as_) +
+         bytes_of(from_) + bytes_of(places_) + bytes_of(moves_) + bytes_of(moved_by_) +
+         bytes_of(is_beside_body_) + bytes_of(first_link_) + bytes_of(active_) +
+         bytes_of(active_blocks_) + bytes_of(active_colours_) + bytes_of(links_) + memory_.bytes() +
+         known_.bytes() + bytes_of(aside_) + bytes_of(known_at_) + bytes_of(bins_) +
+         bytes_of(order_) + bytes_of(taken_) + bytes_of(waiting_) + bytes_of(by_colour_) +
+         bytes_of(colour_of_);
 }
 
 }  // namespace weft

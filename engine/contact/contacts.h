@@ -118,6 +118,7 @@ class Contacts {
   enum class Active : std::uint8_t { push, touch };
   void find_active(Active which, Team& team);
   void place(const ContactPoints& points, kernels::Vector x, std::uint32_t slot);
+  void bear_threads();
   void read_moves(const ContactParticles& particles);
   void write_moves(ContactParticles& particles);
   void visit_active(Team& team);
@@ -136,7 +137,8 @@ class Contacts {
 
   const simd::ContactKernels& kernels_;
   kernels::AlignedVector<simd::ContactBlock> blocks_;
-  std::vector<std::uint64_t> keys_;  // per block and lane; kNoKey: unused
+  std::vector<std::uint64_t> keys_;        // per block and lane; kNoKey: unused
+  std::vector<std::uint32_t> of_threads_;  // blocks and lanes, likewise
   std::vector<Colour> colours_;
   std::vector<std::uint32_t> place_of_;  // per name: block and lane
   std::vector<std::uint32_t> points_;    // that contacts have

@@ -81,7 +81,7 @@ bool CoplanarLayers::find(const Model& model, const simd::Table& table, const Ve
   tree_.refit([&](std::uint32_t t) { return box_within(corners_at(cloth, t, x), origin, within); });
   met_.clear();
   BoxTree::meet_itself(table, tree_, [&](std::uint32_t a, std::uint32_t b) {
-    if (cloth.is_point(a) || cloth.is_point(b)) return;
+    if (!cloth.is_face(a) || !cloth.is_face(b)) return;
     if (have_common_corner(cloth.triangles[a], cloth.triangles[b])) return;
     if (lie_in_one_plane(corners_at(cloth, a, x), corners_at(cloth, b, x), within))
       met_.push_back({std::max(a, b), std::min(a, b)});
@@ -120,7 +120,7 @@ void CoplanarLayers::find_places(const TriangleSurface& cloth, const Vectors& x)
   const auto front = [&](std::uint32_t t) { return unit_front(corners_at(cloth, t, x)); };
   of_.assign(count, {kNoIndex, kNoIndex, false});
   for (std::uint32_t t = 0; t < count; ++t) {
-    if (cloth.is_point(t) || of_[t].layer != kNoIndex) continue;
+    if (!cloth.is_face(t) || of_[t].layer != kNoIndex) continue;
     of_[t].layer = t;
     flood(
         cloth, t,
@@ -130,7 +130,7 @@ void CoplanarLayers::find_places(const TriangleSurface& cloth, const Vectors& x)
         [&](std::uint32_t, std::uint32_t to) { of_[to].layer = t; });
   }
   for (std::uint32_t t = 0; t < count; ++t) {
-    if (cloth.is_point(t) || of_[t].piece != kNoIndex) continue;
+    if (!cloth.is_face(t) || of_[t].piece != kNoIndex) continue;
     of_[t].piece = t;
     flood(
         cloth, t, [&](std::uint32_t, std::uint32_t to) { return of_[to].piece == kNoIndex; },
@@ -180,7 +180,7 @@ void CoplanarLayers::part(const Model& model, Vectors& x) {
     if (model.inverse_mass[slot] == 0) continue;
     double count = 0;
     for (const std::uint32_t t : cloth.triangles_at[slot]) {
-      if (cloth.is_point(t)) continue;
+      if (!cloth.is_face(t)) continue;
       ways_[slot] = ways_[slot] + way(t);
       ++count;
     }

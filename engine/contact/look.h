@@ -85,9 +85,11 @@ struct Look {
   bool is_apart() const { return distance > kTouching; }
 };
 
-/// The normal of the later surface where they touch: of what has none there, of a triangle.
+/// The normal of the later surface where they touch: of what has none there, of a triangle. Of two
+/// edges of which neither is of a face: one that is across both.
 inline kernels::Vector normal_where_touching(ContactSurface& later, const Pair& pair,
-                                             const reference::Nearest& nearest) {
+                                             const reference::Nearest& nearest,
+                                             const FourPoints& x) {
   kernels::Vector n = side_normal(later, pair, nearest);
   if (dot(n, n) == 0) {
     const TriangleSurface& surface = *later.triangles;
@@ -98,6 +100,7 @@ inline kernels::Vector normal_where_touching(ContactSurface& later, const Pair& 
       triangle = surface.triangles_at[pair.first][0];
     n = later.normals.of_triangle(triangle);
   }
+  if (dot(n, n) == 0 && pair.kind == PairKind::edges) n = cross(x[1] - x[0], x[3] - x[2]);
   return pair.outward() * kernels::direction(n, length(n));
 }
 
@@ -111,7 +114,7 @@ inline Look look_apart(const Pair& pair, const FourPoints& x) {
 
 inline Look look(ContactSurface& later, const Pair& pair, const FourPoints& x) {
   Look seen = look_apart(pair, x);
-  if (!seen.is_apart()) seen.normal = normal_where_touching(later, pair, seen.nearest);
+  if (!seen.is_apart()) seen.normal = normal_where_touching(later, pair, seen.nearest, x);
   return seen;
 }
 

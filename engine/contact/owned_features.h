@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -73,13 +74,20 @@ class OwnedFeatures {
   /// Bits of simd::TriangleMeeting: the features that both triangles own.
   std::uint16_t owned_with(std::uint32_t b) const {
     const std::uint32_t of_a = a_.triangles->owns[triangle_a_], of_b = b_.triangles->owns[b];
-    std::uint32_t owned = (of_a & 7) << 1;
-    if (a_.triangles->is_point(triangle_a_)) return static_cast<std::uint16_t>(owned);
-    owned |= (of_b & 7) << 4;
+    if (a_.triangles->is_point(triangle_a_)) return static_cast<std::uint16_t>((of_a & 7) << 1);
+    std::uint32_t owned = 0;
+    if (corners_touch(*a_.triangles, triangle_a_, *b_.triangles, b)) owned |= (of_a & 7) << 1;
+    if (corners_touch(*b_.triangles, b, *a_.triangles, triangle_a_)) owned |= (of_b & 7) << 4;
     for (std::uint32_t j = 0; j < 3; ++j) {
       if (b_.triangles->owns_edge(b, j)) owned |= (of_a >> 3 & 7) << (7 + 3 * j);
     }
     return static_cast<std::uint16_t>(owned);
+  }
+  /// Those of one triangle beside another one. The edges at a corner of a face touch a thread that
+  /// lies over it: the corner alone would let it off to any side.
+  bool corners_touch(const TriangleSurface& a, std::uint32_t of, const TriangleSurface& b,
+                     std::uint32_t other) const {
+    return surfaces_.a != surfaces_.b || !a.is_face(of) || !b.is_thread(other);
   }
   void add_features(std::size_t i, std::uint32_t met) {
     may_cross_[triangle_a_] = 1;
@@ -104,13 +112,19 @@ class OwnedFeatures {
                {corners_a_[k], corners_a_[(k + 1) % 3], corners[j], corners[(j + 1) % 3]}, b);
     }
   }
-  /// Where the interval begins. Lengths do not matter.
+  /// Where the interval begins. Lengths do not matter. Of a thread: any two directions across it.
   void set_axes() {
     const kernels::Vector x[] = {points_.start(corners_a_[0]), points_.start(corners_a_[1]),
                                  points_.start(corners_a_[2])};
-    const kernels::Vector n = cross(x[1] - x[0], x[2] - x[0]);
+    const kernels::Vector n = a_.triangles->is_thread(triangle_a_)
+                                  ? across(x[1] - x[0])
+                                  : cross(x[1] - x[0], x[2] - x[0]);
     set_axis(0, n);
     for (std::size_t k = 0; k < 3; ++k) set_axis(1 + k, cross(n, x[(k + 1) % 3] - x[k]));
+  }
+  static kernels::Vector across(kernels::Vector v) {
+    const bool is_along_x = std::abs(v.x) > std::abs(v.y) && std::abs(v.x) > std::abs(v.z);
+    return cross(v, is_along_x ? kernels::Vector{0, 1, 0} : kernels::Vector{1, 0, 0});
   }
   void set_axis(std::size_t i, kernels::Vector v) {
     const double l = length(v), scale = l > 0 ? 1 / l : 0;

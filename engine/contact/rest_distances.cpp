@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
+#include <functional>
+#include <iterator>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "engine/contact/look.h"
@@ -63,7 +67,7 @@ class FlatPatch {
     const Vector a = laid_[at].corners[k], b = laid_[at].corners[(k + 1) % 3],
                  c = laid_[at].corners[(k + 2) % 3];
     for (const std::uint32_t next : sewn_.triangles_at(surface_, p)) {
-      if (seen_in_[next] == source) continue;
+      if (!surface_.is_face(next) || seen_in_[next] == source) continue;
       const std::size_t at_p = corner_at(next, p), at_q = corner_at(next, q);
       if (at_p == 3 || at_q == 3 || at_p == at_q) continue;
       take({next, lay(next, at_p, at_q, a, b, c)}, source, within);
@@ -79,7 +83,7 @@ class FlatPatch {
     const double l = length(away);
     const Vector along = l > 0 ? (1 / l) * away : Vector{1, 0, 0}, across{-along.y, along.x, 0};
     for (const std::uint32_t next : triangles) {
-      if (seen_in_[next] == source) continue;
+      if (!surface_.is_face(next) || seen_in_[next] == source) continue;
       const std::size_t i = corner_at(next, p), j = (i + 1) % 3, m = (i + 2) % 3;
       const TriangleSurface::Triangle& edges = surface_.edges_of[next];
       const double to_j = lengths_[edges[i]], to_m = lengths_[edges[m]];
@@ -143,6 +147,100 @@ class FlatPatch {
   std::vector<std::uint32_t> seen_in_;  // per triangle: around which it was laid last
 };
 
+/// Ways along threads, and along edges of faces that they are tied to.
+class WaysAlongEdges {
+ public:
+  WaysAlongEdges(const TriangleSurface& surface, const std::vector<double>& lengths,
+                 const SewnPoints& sewn)
+      : surface_(surface),
+        lengths_(lengths),
+        sewn_(sewn),
+        least_(surface.triangles_at.size(), std::numeric_limits<double>::infinity()) {}
+
+  struct Reached {
+    double way = 0;  // m, the shortest
+    std::uint32_t point = 0;
+    auto operator<=>(const Reached&) const = default;
+  };
+  /// All points nearer than that along edges, from the nearest on.
+  const std::vector<Reached>& from(std::uint32_t point, double within) {
+    reached_.clear();
+    waiting_.assign(1, {0, point});
+    least_[point] = 0;
+    seen_.assign(1, point);
+    while (!waiting_.empty()) {
+      std::ranges::pop_heap(waiting_, std::greater<>());
+      const Reached here = waiting_.back();
+      waiting_.pop_back();
+      if (here.way > least_[here.point]) continue;
+      reached_.push_back(here);
+      for (const std::uint32_t t : sewn_.triangles_at(surface_, here.point)) go_on(t, here, within);
+    }
+    for (const std::uint32_t seen : seen_) least_[seen] = std::numeric_limits<double>::infinity();
+    return reached_;
+  }
+
+ private:
+  void go_on(std::uint32_t triangle, const Reached& here, double within) {
+    const TriangleSurface::Triangle& corners = surface_.triangles[triangle];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!sewn_.is_one(corners[k], here.point)) continue;
+      reach({here.way, corners[k]}, within);
+      const std::size_t last = (k + 2) % 3, next = (k + 1) % 3;
+      reach({here.way + lengths_[surface_.edges_of[triangle][k]], corners[next]}, within);
+      reach({here.way + lengths_[surface_.edges_of[triangle][last]], corners[last]}, within);
+    }
+  }
+  void reach(const Reached& there, double within) {
+    if (!(there.way < within) || !(there.way < least_[there.point])) return;
+    least_[there.point] = there.way;
+    seen_.push_back(there.point);
+    waiting_.push_back(there);
+    std::ranges::push_heap(waiting_, std::greater<>());
+  }
+
+  const TriangleSurface& surface_;
+  const std::vector<double>& lengths_;
+  const SewnPoints& sewn_;
+  std::vector<double> least_;  // m, per point
+  std::vector<std::uint32_t> seen_;
+  std::vector<Reached> waiting_, reached_;
+};
+
+/// take(kind, first, second, distance), of threads and what they are tied to: as far apart as the
+/// way from one to the other is long. A pair may come more than once.
+template <class Take>
+void for_each_pair_along_threads(const TriangleSurface& s, const std::vector<double>& lengths,
+                                 const SewnPoints& sewn, double within, Take&& take) {
+  WaysAlongEdges ways(s, lengths, sewn);
+  const auto has = [&](std::span<const std::uint32_t> corners, std::uint32_t point) {
+    return std::ranges::any_of(corners, [&](std::uint32_t c) { return sewn.is_one(c, point); });
+  };
+  for (std::uint32_t point = 0; point < s.triangles_at.size(); ++point) {
+    std::vector<std::uint32_t> threads;
+    std::ranges::copy_if(s.triangles_at[point], std::back_inserter(threads),
+                         [&](std::uint32_t t) { return s.is_thread(t); });
+    if (threads.empty()) continue;
+    for (const auto& [way, other] : ways.from(point, within)) {
+      if (sewn.is_one(other, point)) continue;
+      for (const std::uint32_t t : threads) {
+        if (!has(s.triangles[t], other)) take(PairKind::point_triangle, other, t, way);
+      }
+      for (const std::uint32_t u : s.triangles_at[other]) {
+        if (!has(s.triangles[u], point)) take(PairKind::point_triangle, point, u, way);
+        for (const std::uint32_t edge : s.edges_of[u]) {
+          for (const std::uint32_t t : threads) {
+            const std::uint32_t thread = s.edges_of[t][0];
+            const auto [a, b] = s.edges[thread];
+            if (has(s.edges[edge], a) || has(s.edges[edge], b)) continue;
+            if (has(s.edges[edge], other)) take(PairKind::edges, thread, edge, way);
+          }
+        }
+      }
+    }
+  }
+}
+
 bool are_far(double within, const Vector* a, std::size_t as, const Vector* b, std::size_t bs) {
   const auto beyond = [&](double Vector::*axis) {
     double low_a = a[0].*axis, high_a = low_a, low_b = b[0].*axis, high_b = low_b;
@@ -181,7 +279,7 @@ RestDistances::RestDistances(const Model& model, double thickness, const SewnPoi
                                [&](std::uint32_t corner) { return sewn.is_one(corner, point); });
   };
   for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
-    if (s.is_point(t)) continue;
+    if (!s.is_face(t)) continue;
     const TriangleSurface::Triangle& corners = s.triangles[t];
     const auto& laid = patch.lay_around(t, thickness);
     const Corners here = laid.front().corners;
@@ -208,6 +306,7 @@ RestDistances::RestDistances(const Model& model, double thickness, const SewnPoi
       }
     }
   }
+  if (s.has_threads) for_each_pair_along_threads(s, lengths, sewn, thickness, take);
   std::ranges::sort(nearer_, [](const Nearer& a, const Nearer& b) {
     return std::pair(a.key, a.distance) < std::pair(b.key, b.distance);
   });

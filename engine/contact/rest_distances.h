@@ -4,7 +4,8 @@
 ///
 /// The shape at rest is what lengths at rest tell: around each triangle its neighbours are laid
 /// into its plane, one beside the other, and so are those that seams join to them: what is sewn
-/// together, or will be, has a distance of zero there.
+/// together, or will be, has a distance of zero there. Threads lie at any angle to each other and
+/// to the cloth that they are tied to: they are as far apart as the way along edges is long.
 #pragma once
 
 #include <cstdint>

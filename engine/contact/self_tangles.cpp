@@ -83,10 +83,12 @@ void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
   const SewnPoints& sewn = points.sewn();
   BoxTree::meet_itself(table_, cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
     if (cloth_->is_point(a) || cloth_->is_point(b)) return;
+    const bool are_faces = cloth_->is_face(a) && cloth_->is_face(b);
+    if (!are_faces && !cloth_->is_face(a) && !cloth_->is_face(b)) return;
     if (!everywhere && (may_cross_[a] & may_cross_[b]) == 0) return;
     const TriangleSurface::Triangle &one = cloth_->triangles[a], &other = cloth_->triangles[b];
     const std::size_t shared = count_shared(sewn.first_of(one), sewn.first_of(other));
-    if (shared > 1) return;
+    if (shared > (are_faces ? 1 : 0)) return;
     const Corners its{at(one[0]), at(one[1]), at(one[2])},
         others{at(other[0]), at(other[1]), at(other[2])};
     // What crossed before is apart where it will be known to stay so.

@@ -25,7 +25,10 @@ SewnPoints::SewnPoints(const Model& model) {
   triangles_at_ = make_lists(first_.size(), [&](auto&& add) {
     for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
       if (cloth.is_point(t)) continue;
-      for (const std::uint32_t corner : cloth.triangles[t]) add(first_[corner], t);
+      const auto [a, b, c] = cloth.triangles[t];
+      add(first_[a], t);
+      add(first_[b], t);
+      if (c != b) add(first_[c], t);
     }
   });
 }

@@ -19,9 +19,16 @@ namespace {
 /// Quads of a simd::TriangleTurn.
 constexpr std::uint32_t kTurnQuads = sizeof(simd::TriangleTurn) / (4 * sizeof(float));
 
+bool has_face(const TriangleSurface& cloth, std::uint32_t point) {
+  return std::ranges::any_of(cloth.triangles_at[point],
+                             [&](std::uint32_t t) { return cloth.is_face(t); });
+}
+
 /// Whether the triangles around the point are one ring, and all run around it in one sense.
 bool are_ring(const TriangleSurface& cloth, std::uint32_t point) {
   const auto triangles = cloth.triangles_at[point];
+  if (!std::ranges::all_of(triangles, [&](std::uint32_t t) { return cloth.is_face(t); }))
+    return false;
   const auto after = [&](std::uint32_t triangle, std::size_t steps) {
     const TriangleSurface::Triangle& corners = cloth.triangles[triangle];
     const auto at = static_cast<std::size_t>(std::ranges::find(corners, point) - corners.begin());
@@ -79,7 +86,7 @@ void Stars::find_least_areas(const ContactPoints& points) {
   const double thickness = points.model().self_contact.thickness;
   for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
     least_area_.push_back(0);
-    if (cloth.is_point(t)) continue;
+    if (!cloth.is_face(t)) continue;
     const auto [a, b, c] = cloth.edges_of[t];
     const double longest = std::max({lengths[a], lengths[b], lengths[c]});
     const double half = 0.5 * (lengths[a] + lengths[b] + lengths[c]);
@@ -94,8 +101,7 @@ void Stars::find_least_areas(const ContactPoints& points) {
 
 void Stars::put_in_blocks(const TriangleSurface& cloth) {
   for (std::uint32_t point = 0; point < cloth.triangles_at.size(); ++point) {
-    if (!cloth.triangles_at[point].empty())
-      (are_ring(cloth, point) ? rings_ : open_).push_back(point);
+    if (has_face(cloth, point)) (are_ring(cloth, point) ? rings_ : open_).push_back(point);
   }
   for (std::size_t first = 0; first < rings_.size(); first += kLanes) {
     const auto of_lane = [&](std::size_t lane) {
@@ -177,9 +183,9 @@ void Stars::add(const ContactPoints& points, std::uint32_t star, Candidates& can
   };
   edges_.clear();
   for (const std::uint32_t t : cloth.triangles_at[star]) {
-    if (cloth.is_point(t)) continue;
-    const auto& corners = cloth.triangles[t];
     edges_.insert(edges_.end(), cloth.edges_of[t].begin(), cloth.edges_of[t].end());
+    if (!cloth.is_face(t)) continue;
+    const auto& corners = cloth.triangles[t];
     for (const std::uint32_t p : cloth.neighbours[star]) {
       if (has(corners, p) || first_common(corners, cloth.neighbours[p]) != star) continue;
       add_pair(PairKind::point_triangle, p, t, {p, corners[0], corners[1], corners[2]});

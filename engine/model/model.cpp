@@ -4,6 +4,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/model/pressures.h"
+#include "engine/model/threads.h"
 #include "engine/model/validate.h"
 #include "kernels/reference/relax.h"
 
@@ -370,16 +371,18 @@ const TriangleSurface& Model::touched_surface() const {
   return touched_surface_.get([this] {
     std::vector<std::array<double, 3>> places;
     std::vector<std::uint32_t> loose;
-    std::vector<bool> is_in_triangle(slots());
+    const std::vector<std::array<std::uint32_t, 2>> threads = find_threads(*this);
+    std::vector<bool> is_joined(slots());
     for (const TriangleSurface::Triangle& triangle : surface) {
-      for (const std::uint32_t corner : triangle) is_in_triangle[corner] = true;
+      for (const std::uint32_t corner : triangle) is_joined[corner] = true;
     }
+    for (const auto& [a, b] : threads) is_joined[a] = is_joined[b] = true;
     for (std::uint32_t slot = 0; slot < slots(); ++slot) {
       const kernels::Vector x = initial_position[slot];
       places.push_back({x.x, x.y, x.z});
-      if (!is_in_triangle[slot] && inverse_mass[slot] > 0) loose.push_back(slot);
+      if (!is_joined[slot] && inverse_mass[slot] > 0) loose.push_back(slot);
     }
-    return make_triangle_surface(surface, places, loose);
+    return make_triangle_surface(surface, places, loose, threads);
   });
 }
 

@@ -232,7 +232,7 @@ class Model {
   const YarnLayout& yarns() const;
   const SmallStepsLayout& small_steps() const;
   const BendingFronts& bending_fronts() const;
-  /// The triangles of `surface`, and free particles that are in none.
+  /// The triangles of `surface`, threads (threads.h), and free particles that are in neither.
   const TriangleSurface& touched_surface() const;
 
  private:

@@ -125,10 +125,11 @@ Result<void> validate_wind(Vec3 wind) {
   return refuse("air.wind", "must be finite", text(wind));
 }
 
-Result<void> validate_self_contact(const SelfContact& contact, bool has_surface) {
+Result<void> validate_self_contact(const SelfContact& contact, bool has_features) {
   if (auto r = validate_not_negative("self_contact.friction", contact.friction); !r) return r;
-  if (contact.on && !has_surface)
-    return refuse("self_contact", "needs the triangles of `surface`", "none");
+  if (contact.on && !has_features)
+    return refuse("self_contact", "needs triangles of `surface`, or constraints that are threads",
+                  "none");
   if (contact.on) return validate_positive("self_contact.thickness", contact.thickness);
   return validate_not_negative("self_contact.thickness", contact.thickness);
 }
@@ -169,7 +170,9 @@ Result<void> validate_material(const SceneDescription& d) {
   if (auto r = validate_not_negative("friction", d.friction); !r) return r;
   const auto place = [&](std::uint32_t i) { return to_internal(d.positions[i]); };
   if (auto r = validate_pressures(d.pressures, {}, d.surface, place); !r) return r;
-  if (auto r = validate_self_contact(d.self_contact, !d.surface.empty()); !r) return r;
+  if (auto r = validate_self_contact(d.self_contact, !d.surface.empty() || !d.constraints.empty());
+      !r)
+    return r;
   return validate_air(d.air, d.positions.size());
 }
 

@@ -41,7 +41,12 @@ void join_sides(TriangleSurface& s) {
       s.opposite.push_back({kNoIndex, kNoIndex});
       s.owns[side.triangle] = static_cast<std::uint8_t>(s.owns[side.triangle] | 8u << side.k);
     }
-    s.edges_of[side.triangle][side.k] = static_cast<std::uint32_t>(s.edges.size() - 1);
+    const auto edge = static_cast<std::uint32_t>(s.edges.size() - 1);
+    if (s.is_thread(side.triangle)) {
+      s.edges_of[side.triangle] = {edge, edge, edge};
+      continue;
+    }
+    s.edges_of[side.triangle][side.k] = edge;
     auto& opposite = s.opposite.back();
     const std::uint32_t third = s.triangles[side.triangle][(side.k + 2) % 3];
     if (opposite[0] == kNoIndex)
@@ -108,16 +113,23 @@ std::vector<std::uint32_t> along_curve(const TriangleSurface& s,
 
 TriangleSurface make_triangle_surface(std::span<const TriangleSurface::Triangle> triangles,
                                       std::span<const std::array<double, 3>> places,
-                                      std::span<const std::uint32_t> loose) {
+                                      std::span<const std::uint32_t> loose,
+                                      std::span<const std::array<std::uint32_t, 2>> threads) {
   TriangleSurface s;
   s.triangles.assign(triangles.begin(), triangles.end());
+  for (const auto& [a, b] : threads) s.triangles.push_back({a, b, b});
+  s.has_threads = !threads.empty();
+  const std::size_t joined = s.triangles.size();
   for (const std::uint32_t p : loose) s.triangles.push_back({p, p, p});
   s.owns.resize(s.triangles.size());
   join_sides(s);
   own_corners(s, places.size());
   s.triangles_at = make_lists(places.size(), [&](auto&& add) {
-    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-      for (const std::uint32_t p : s.triangles[t]) add(p, t);
+    for (std::uint32_t t = 0; t < joined; ++t) {
+      const auto [a, b, c] = s.triangles[t];
+      add(a, t);
+      add(b, t);
+      if (c != b) add(c, t);
     }
   });
   s.neighbours = make_lists(places.size(), [&](auto&& add) {

@@ -135,16 +135,16 @@ struct StepReport {
   /// How many of these pairs had to be moved as one, as if glued: with the body, or layers with
   /// each other.
   int zones = 0;
-  /// Triangles of the cloth that cross a triangle mesh when the step ends, and particles inside
-  /// one. It is 0, unless the step began so, a body was put there, or bodies close on the cloth
-  /// from both sides. The edges and faces of these triangles touch nothing until they have come
-  /// apart; their particles are kept out.
+  /// Triangles and threads of the cloth that cross a triangle mesh when the step ends, and
+  /// particles inside one. It is 0, unless the step began so, a body was put there, or bodies close
+  /// on the cloth from both sides. The edges and faces of these triangles touch nothing until they
+  /// have come apart; their particles are kept out.
   int intersecting = 0;
   int self_contacts = 0;  ///< pairs of features of the cloth that touch each other (SelfContact)
-  /// Pairs of triangles of the cloth that cross each other when the step ends. It is 0 with
-  /// SelfContact, unless the step began so, or more came together than could be kept apart. They
-  /// touch nothing of each other until they have come apart. A step that began without any and ends
-  /// with some has not converged.
+  /// Pairs of triangles of the cloth that cross each other when the step ends, and of a triangle
+  /// and a thread that crosses it. It is 0 with SelfContact, unless the step began so, or more came
+  /// together than could be kept apart. They touch nothing of each other until they have come
+  /// apart. A step that began without any and ends with some has not converged.
   int tangled = 0;
   double max_anchor_error = 0;  ///< m, by which the limits of an anchor are exceeded
   int open_seams = 0;           ///< seams whose particles have not come together yet (Seam)

@@ -92,7 +92,8 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 ///
 /// Faces of five and more corners are cut into triangles around the first corner; they should be
 /// convex. Lines are threads that do not stretch. A line along the edge of a face is ignored.
-/// Threads may hang off the cloth, and a mesh may have threads alone.
+/// Threads may hang off the cloth, and a mesh may have threads alone. They touch what cloth
+/// touches, all along their length (SceneDescription::surface).
 ///
 /// An edge of more than two faces stretches as the sum of them, and does not bend. Faces without
 /// area are left out. If several faces have the same corners, as in files of two-sided surfaces,

@@ -198,12 +198,12 @@ struct Seam {
   double max_force = std::numeric_limits<double>::infinity();  ///< N, > 0, while it is open
 };
 
-/// Cloth that touches itself: all cloths and pieces of a scene, by the triangles of `surface`.
-/// Layers keep the thickness from each other, with friction. Features that are nearer than that in
-/// the shape at rest keep nearly the distance that they have there. So a thickness may be larger
-/// than an edge; but then all neighbours are pairs, folds are stiffer, and a step takes long. Half
-/// an edge is a good bound (tests/README.md has figures). Seams join the cloth in the shape at
-/// rest, whether they are open or closed.
+/// Cloth that touches itself: all cloths and pieces of a scene, by the triangles of `surface` and
+/// by threads (SceneDescription::surface). Layers keep the thickness from each other, with
+/// friction. Features that are nearer than that in the shape at rest keep nearly the distance that
+/// they have there. So a thickness may be larger than an edge; but then all neighbours are pairs,
+/// folds are stiffer, and a step takes long. Half an edge is a good bound (tests/README.md has
+/// figures). Seams join the cloth in the shape at rest, whether they are open or closed.
 ///
 /// A cloth that does not cross itself when a step begins does not when it ends, however fast it
 /// is: that is verified, and features that would go through each other are stopped. Layers that lie
@@ -243,8 +243,14 @@ struct SceneDescription {
   std::vector<Anchor> anchors;
   std::vector<Seam> seams;
   /// Triangles of the cloth, by their particles. Bodies that are triangle meshes touch the faces
-  /// and edges of these triangles (body.h); without them they touch particles alone.
-  /// cloth_from_mesh fills this.
+  /// and edges of these triangles (body.h). cloth_from_mesh fills this.
+  ///
+  /// Constraints between other particles are threads: they touch such bodies, and the cloth if it
+  /// touches itself, all along their length. Cords, laces and fringes are chains of them. A
+  /// constraint between two particles of one piece of this surface is no thread: it braces the
+  /// piece. Nor is one that is longer than two constraints that lead from its one end to the other,
+  /// as braces of nets and of stiff cords are. Particles that have neither a triangle nor a thread
+  /// touch as points.
   std::vector<std::array<std::uint32_t, 3>> surface;
   Damping damping;
   Air air;

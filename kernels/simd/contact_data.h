@@ -21,9 +21,11 @@ struct alignas(64) ContactBlock {
   /// across its sides; of a border its own third corner, since beyond a border the triangle counts
   /// as going on.
   std::uint32_t beside[4][kernels::kLanes];
-  float towards[3][kernels::kLanes];  // of a triangle: 1, of borders -1
-  float thickness[kernels::kLanes];   // m
-  float friction[kernels::kLanes];    // Coulomb's coefficient
+  /// Of a triangle: 1, of borders -1. Of edges, the first: so far off their ends they touch, as a
+  /// share of their lengths.
+  float towards[3][kernels::kLanes];
+  float thickness[kernels::kLanes];  // m
+  float friction[kernels::kLanes];   // Coulomb's coefficient
   // Frozen for a substep:
   float weight[4][kernels::kLanes];
   LaneVectors normal;            // a unit vector from the second feature to the first

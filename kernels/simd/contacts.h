@@ -92,7 +92,7 @@ struct NearestLanes {
 [[gnu::always_inline]] inline NearestLanes nearest_of_edges(const FloatVector& a,
                                                             const FloatVector& b,
                                                             const FloatVector& c,
-                                                            const FloatVector& d) {
+                                                            const FloatVector& d, Floats least) {
   const Floats none(0.f), one(1.f);
   FloatVector u = b - a, v = d - c, w = a - c;
   const Floats uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
@@ -100,7 +100,7 @@ struct NearestLanes {
   const FloatMask crosses = determinant > single(reference::kLeastCrossing) * uu * vv;
   const Floats per = one / xsimd::max(determinant, least_square());
   const Floats s = fused_from(uw, vv, uv * vw) * per, t = fused_from(uv, uw, uu * vw) * per;
-  const Floats least = single(reference::kLeastWithin), most = one - least;
+  const Floats most = one - least;
   NearestLanes nearest;
   nearest.is_in_place = crosses && s > least && s < most && t > least && t < most;
   const Floats at_s = from_0_to_1(s), at_t = from_0_to_1(t);
@@ -145,8 +145,9 @@ template <bool kEdges>
     };
     WeighedVector a = place(block.point[0]), b = place(block.point[1]), c = place(block.point[2]),
                   d = place(block.point[3]);
-    NearestLanes nearest =
-        kEdges ? nearest_of_edges(a.v, b.v, c.v, d.v) : nearest_of_triangle(a.v, b.v, c.v, d.v);
+    NearestLanes nearest = kEdges
+                               ? nearest_of_edges(a.v, b.v, c.v, d.v, load(block.towards[0] + lane))
+                               : nearest_of_triangle(a.v, b.v, c.v, d.v);
     FloatVector r = nearest.r, before = load(block.normal, lane);
     const Floats distance = xsimd::sqrt(dot(r, r));
     const FloatMask has_side = distance > Floats(f.rounding);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/model/threads.h"
 #include "tests/support/body_meshes.h"
 #include "tests/support/clothes.h"
 #include "tests/support/crossing_triangles.h"
@@ -73,6 +74,43 @@ Case random_layers(std::uint32_t seed) {
   return c;
 }
 
+/// Cords between the sheets, loose or tied to one of their particles or to two.
+Case random_threads(std::uint32_t seed) {
+  Case c = random_layers(seed);
+  Random random(seed + 1000000);
+  const auto sheets = static_cast<std::uint32_t>(c.scene.positions.size());
+  if (c.scene.velocities.empty()) c.scene.velocities.resize(sheets);
+  const std::uint32_t count = 1 + random.below(4);
+  const auto add_particle = [&](Vec3 place, Vec3 velocity, double mass) {
+    c.scene.positions.push_back(place);
+    c.scene.velocities.push_back(velocity);
+    c.scene.masses.push_back(mass);
+    return static_cast<std::uint32_t>(c.scene.positions.size() - 1);
+  };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t links = 1 + random.below(8);
+    const double link = random.between(0.004, 0.06);
+    const Vec3 box = random.in_box(1), v = random.in_box(2);
+    Vec3 way = random.in_box(1);
+    if (length(way) < 0.1) way = {1, 0, 0};
+    way = (link / length(way)) * way;
+    const bool is_tied = random.below(2) == 0;
+    Vec3 place{0.15 * box.x, 0.2 + 0.15 * box.y, 0.15 * box.z};
+    std::uint32_t last = is_tied ? random.below(sheets) : add_particle(place, v, 1e-3 * link);
+    place = c.scene.positions[last];
+    for (std::uint32_t k = 0; k < links; ++k) {
+      place = place + way + 0.3 * link * random.in_box(1);
+      const std::uint32_t next = add_particle(place, v, 1e-3 * link);
+      const double rest = length(place - c.scene.positions[last]);
+      const bool is_rope = random.below(4) == 0;
+      c.scene.constraints.push_back(
+          {last, next, rest, is_rope ? ConstraintKind::rope : ConstraintKind::distance});
+      last = next;
+    }
+  }
+  return c;
+}
+
 std::string text(const Case& c) {
   std::ostringstream out;
   out << "WEFT_SEED=" << c.seed << " WEFT_CASES=1: " << c.scene.positions.size() << " particles, "
@@ -88,7 +126,9 @@ void check_case(const Case& c) {
   Pose pose{.position = {0, 0.1, 0}};
   std::uint32_t ball = 0;
   if (c.has_ball) ball = add(cloth, {.shape = shape_of(Ball{.radius = 0.05}), .pose = pose});
-  int tangled = count_self_crossings({positions(cloth), c.scene.surface});
+  auto features = c.scene.surface;
+  for (const auto& [a, b] : threads_of(*model_of(c.scene))) features.push_back({a, b, b});
+  int tangled = count_self_crossings({positions(cloth), features});
   for (int k = 0; k < c.steps; ++k) {
     CAPTURE(k);
     if (c.has_ball) {
@@ -102,7 +142,7 @@ void check_case(const Case& c) {
       CHECK(cloth.state_hash() == hash);
       continue;
     }
-    const int now = count_self_crossings({positions(cloth), c.scene.surface});
+    const int now = count_self_crossings({positions(cloth), features});
     if (now > 0) CHECK(report.tangled > 0);
     if (tangled == 0 && report.status == Status::converged) CHECK(report.tangled == 0);
     tangled = report.tangled;
@@ -111,6 +151,10 @@ void check_case(const Case& c) {
 
 TEST_CASE("random layers: what crosses is reported, and what is apart stays apart") {
   for_each_case(100, random_layers, check_case);
+}
+
+TEST_CASE("random layers with threads: what crosses is reported, and what is apart stays apart") {
+  for_each_case(100, random_threads, check_case);
 }
 
 /// Two triangles come apart in the first look at the end of an interval, and cross again before the

@@ -71,10 +71,12 @@ std::vector<std::uint32_t> own_corners(const Triangle& a, const Triangle& b) {
   return own;
 }
 
+bool is_edge(const Placed& p) { return p.corners[1] == p.corners[2]; }
+
 bool cross_beyond_corners(const TriangleView& s, const Placed& a, const Placed& b) {
   const auto of_a = own_corners(a.corners, b.corners), of_b = own_corners(b.corners, a.corners);
   if (of_a.size() == 3) return do_cross(a.feature, b.feature);
-  if (of_a.size() < 2) return false;
+  if (of_a.size() < 2 || is_edge(a) || is_edge(b)) return false;
   const auto side = [&](const std::vector<std::uint32_t>& ends) {
     const Vec3 p = s.points[ends[0]], q = s.points[ends[1]];
     return Feature(Kernel::Segment_3(Point(p.x, p.y, p.z), Point(q.x, q.y, q.z)));

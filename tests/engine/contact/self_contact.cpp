@@ -442,8 +442,12 @@ TEST_CASE("self-contact that cannot be is refused with one line") {
             s.self_contact.friction = friction;
           }).starts_with("self_contact.friction: must be"));
   }
-  CHECK(refused([](SceneDescription& s) { s.surface.clear(); }) ==
-        "self_contact: needs the triangles of `surface` (none)");
+  const auto clear = [](SceneDescription& s) {
+    s.surface.clear();
+    s.constraints.clear();
+  };
+  CHECK(refused(clear) ==
+        "self_contact: needs triangles of `surface`, or constraints that are threads (none)");
   const auto cloth = Cloth::create(build_model(good).value(), {.solver = Solver::yarn});
   REQUIRE_FALSE(cloth);
   CHECK(cloth.error().find("by small_steps only") != std::string::npos);

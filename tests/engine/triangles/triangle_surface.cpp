@@ -174,6 +174,29 @@ TEST_CASE("an edge of three triangles knows two of them; one triangle is all bor
   for (const std::uint32_t p : {0u, 1u, 2u, 4u}) CHECK_FALSE(closed.is_on_border(p));
 }
 
+TEST_CASE("a thread owns its edge and its ends, and leaves the border of faces as it is") {
+  const Places places{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 0}, {3, 0, 0}, {9, 9, 9}};
+  const Triangles tetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const std::vector<std::uint32_t> loose{6};
+  const std::vector<std::array<std::uint32_t, 2>> threads{{1, 4}, {4, 5}};
+  const TriangleSurface s = make_triangle_surface(tetrahedron, places, loose, threads);
+  check_owners(s);
+  CHECK(s.has_threads);
+  for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
+    CHECK(s.is_face(t) == (t < 4));
+    CHECK(s.is_thread(t) == (t == 4 || t == 5));
+    CHECK(s.is_point(t) == (t == 6));
+  }
+  CHECK(s.edges.size() == 8);
+  for (std::uint32_t e = 0; e < s.edges.size(); ++e)
+    CHECK(s.is_thread_edge(e) == (s.edges[e][1] > 3));
+  CHECK(std::ranges::count(s.edges_of[4], s.edges_of[4][0]) == 3);
+  CHECK(s.triangles_at[1].size() == 4);
+  CHECK(s.triangles_at[4].size() == 2);
+  CHECK_FALSE(s.is_on_border(1));
+  CHECK_FALSE(make_triangle_surface(tetrahedron, places, loose).has_threads);
+}
+
 TEST_CASE("points alone, and nothing at all, are surfaces") {
   const Places places{{0, 0, 0}, {1, 0, 0}};
   const std::vector<std::uint32_t> loose{0, 1};

@@ -60,6 +60,7 @@ struct Layers {
           edges ? std::array<std::size_t, 4>{0, 0, 2, 2} : std::array<std::size_t, 4>{3, 1, 2, 1};
       for (std::size_t k = 0; k < 4; ++k) block.beside[k][lane] = block.point[thirds[k]][lane];
       for (auto& towards : block.towards) towards[lane] = -1;
+      if (edges) block.towards[0][lane] = static_cast<float>(reference::kLeastWithin);
       block.thickness[lane] = static_cast<float>(kThickness);
       block.friction[lane] = static_cast<float>(random.between(0, 0.6));
       // In the last two substeps: nothing, a touch that began or ended, and one that went on.

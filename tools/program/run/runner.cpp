@@ -10,6 +10,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include "engine/model/threads.h"
 #include "tools/program/measure/cpu_time.h"
 #include "tools/program/run/frame_calls.h"
 #include "tools/program/run/step_total.h"
@@ -98,7 +99,14 @@ Result<void> end_recording(Cloth& cloth, const RunPlan& plan) {
   return ended ? Result<void>{} : Error{fmt::format("--record: {}", ended.error())};
 }
 
-/// The surface is that of the cloth.
+/// Threads, which an edge of a triangle is when its two others have no length.
+TriangleSet with_threads(const TriangleSet& surface, const Model& model) {
+  TriangleSet all = surface;
+  for (const auto& [a, b] : threads_of(model)) all.triangles.push_back({a, b, b});
+  return all;
+}
+
+/// The surface is that of the cloth, with its threads.
 void look_for_crossings(RunSummary& summary, const Cloth& cloth, const RunPlan& plan,
                         TriangleSet& surface) {
   surface.places = particle_positions(cloth);
@@ -155,7 +163,8 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   }
   if (auto begun = begin_recording(cloth, plan, summary.resumed_at); !begun)
     return Error{begun.error()};
-  TriangleSet surface{{}, plan.surface};
+  TriangleSet surface{{}, plan.surface}, touched;
+  if (plan.check_intersections) touched = with_threads(surface, *model);
   summary.energy_start = cloth.energy().total();
   summary.lowest = std::numeric_limits<double>::infinity();
   while (summary.last_frame() < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
@@ -174,7 +183,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     summary.longest_step_seconds = std::max(summary.longest_step_seconds, elapsed.count());
     add_errors(summary, errors, cloth, plan);
     name_what_crosses(summary, report.value(), cloth, plan, surface);
-    if (plan.check_intersections) look_for_crossings(summary, cloth, plan, surface);
+    if (plan.check_intersections) look_for_crossings(summary, cloth, plan, touched);
     summary.stopped = plan.stop && plan.stop();
     if (on_frame) on_frame(summary.last_frame(), cloth, report.value());
   }
