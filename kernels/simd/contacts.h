@@ -265,7 +265,7 @@ void visit_contacts(const ContactSolve& solve, const std::uint32_t* blocks, std:
       if (bits(by.x != none || by.y != none || by.z != none) == 0) continue;
       pushes.store_unaligned(block.push + lane);
       store(block.hold, lane, held);
-      for (std::uint32_t k = 0; k < 4; ++k) {
+      for (std::uint32_t k = 4; k-- > 0;) {  // a point that is there twice has a weight once
         FloatVector to = fused(at[k].w * weight[k], by, at[k].v);
         put_weighed(s.moves, block.point[k] + lane, to, at[k].w);
       }
