@@ -508,7 +508,8 @@ bool Contacts::visit(ContactParticles& particles, std::size_t i) {
   set_multiplier(i, {static_cast<float>(contact.push), static_cast<float>(contact.hold.x),
                      static_cast<float>(contact.hold.y), static_cast<float>(contact.hold.z),
                      block.before[lane]});
-  for (std::size_t k = 4; k-- > 0;) {  // a thread has its second end twice, the later without weight
+  // A thread has its second end twice, the later one without weight.
+  for (std::size_t k = 4; k-- > 0;) {
     const std::uint32_t slot = block.point[k][lane];
     if (!(contact.inverse_mass[k] > 0)) continue;
     const Vector to = from_[slot] + x[k];

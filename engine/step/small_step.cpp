@@ -42,6 +42,7 @@ class Frame {
     const kernels::VectorsView force =
         s_.forces().size() > 0 ? s_.forces().view() : kernels::VectorsView{};
     s_.nearby.forget();
+    s_.contacts.clear();  // of the last frame: a state that was loaded has none
     solver_.begin(s_.position.view(), velocity, s_.gravity, force, plan_, team_);
   }
   void begin_at_rest(const FramePlan& plan) {
