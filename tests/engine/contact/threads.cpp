@@ -14,6 +14,7 @@
 #include "tests/support/body_meshes.h"
 #include "tests/support/clothes.h"
 #include "tests/support/crossing_triangles.h"
+#include "tests/support/isas.h"
 #include "tests/support/layers.h"
 #include "tests/support/vectors.h"
 
@@ -242,6 +243,30 @@ TEST_CASE("cloth with fringes folds over itself and over its fringes") {
   });
 }
 
+TEST_CASE("threads come to the same bits by AVX2 and AVX-512, and from a state that was saved") {
+  Pieces pieces;
+  const auto sheet = pieces.add_sheet(6, 6, [](double u, double v) {
+    return Vec3{0.12 * (u - 0.5), 0.01, 0.12 * (v - 0.5)};
+  });
+  for (std::uint32_t k = 0; k <= 6; ++k) pieces.hang(sheet + k, 3, {-0.015, 0.0004, 0.001 * k});
+  add_line(pieces, 3, 0.3);
+  const SceneDescription scene = pieces.scene("cotton");
+  std::vector<std::uint64_t> hashes;
+  for (const Isa isa : {Isa::avx2, Isa::avx512}) {
+    if (!simd::supported(isa == Isa::avx2 ? simd::Isa::avx2 : simd::Isa::avx512)) continue;
+    const Settings settings{.solver = Solver::small_steps, .isa = isa, .threads = 1};
+    Cloth cloth = cloth_of(scene, settings);
+    run(cloth, 1.0 / 60, 12);
+    Cloth loaded = cloth_of(scene, settings);
+    REQUIRE(loaded.load_state(cloth.save_state()));
+    run(cloth, 1.0 / 60, 12);
+    run(loaded, 1.0 / 60, 12);
+    CHECK(loaded.state_hash() == cloth.state_hash());
+    hashes.push_back(cloth.state_hash());
+  }
+  for (const std::uint64_t hash : hashes) CHECK(hash == hashes[0]);
+}
+
 TEST_CASE("a drawstring holds the tunnel that it runs through") {
   for_each_setting([](int rate, const char* material) {
     for (const std::uint32_t around : {7u, 10u}) {
@@ -306,6 +331,28 @@ TEST_CASE("links that are shorter than the thickness do not push each other") {
       }
     }
   });
+}
+
+TEST_CASE("particles that nothing joins keep the thickness from each other") {
+  for (const int rate : kRates) {
+    CAPTURE(rate);
+    Pieces pieces;
+    const auto sheet = pieces.add_sheet(2, 2, [](double u, double v) {
+      return Vec3{0.1 * u, 0, 0.1 * v};
+    });
+    pieces.pin(sheet, 9);
+    SceneDescription scene = pieces.scene("cotton");
+    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    for (const double height : {0.003, 0.0042}) {
+      scene.positions.push_back({0.031, height, 0.042});
+      scene.masses.push_back(1e-4);
+    }
+    Cloth cloth = cloth_from(scene);
+    run(cloth, 1.0 / rate, rate / 3);
+    const double low = cloth.position(first).y, high = cloth.position(first + 1).y;
+    CHECK(low == doctest::Approx(kThickness).epsilon(0.1));
+    CHECK(high - low == doctest::Approx(kThickness).epsilon(0.1));
+  }
 }
 
 TEST_CASE("threads that begin through cloth or a mesh are told until they are out") {
