@@ -207,39 +207,57 @@ class WaysAlongEdges {
   std::vector<Reached> waiting_, reached_;
 };
 
-/// take(kind, first, second, distance), of threads and what they are tied to: as far apart as the
-/// way from one to the other is long. A pair may come more than once.
+/// Pairs of threads and of what they are tied to. They are as far apart as the way from one to the
+/// other is long. A pair may come more than once.
 template <class Take>
-void for_each_pair_along_threads(const TriangleSurface& s, const std::vector<double>& lengths,
-                                 const SewnPoints& sewn, double within, Take&& take) {
-  WaysAlongEdges ways(s, lengths, sewn);
-  const auto has = [&](std::span<const std::uint32_t> corners, std::uint32_t point) {
-    return std::ranges::any_of(corners, [&](std::uint32_t c) { return sewn.is_one(c, point); });
-  };
-  for (std::uint32_t point = 0; point < s.triangles_at.size(); ++point) {
-    std::vector<std::uint32_t> threads;
-    std::ranges::copy_if(s.triangles_at[point], std::back_inserter(threads),
-                         [&](std::uint32_t t) { return s.is_thread(t); });
-    if (threads.empty()) continue;
-    for (const auto& [way, other] : ways.from(point, within)) {
-      if (sewn.is_one(other, point)) continue;
-      for (const std::uint32_t t : threads) {
-        if (!has(s.triangles[t], other)) take(PairKind::point_triangle, other, t, way);
-      }
-      for (const std::uint32_t u : s.triangles_at[other]) {
-        if (!has(s.triangles[u], point)) take(PairKind::point_triangle, point, u, way);
-        for (const std::uint32_t edge : s.edges_of[u]) {
-          for (const std::uint32_t t : threads) {
-            const std::uint32_t thread = s.edges_of[t][0];
-            const auto [a, b] = s.edges[thread];
-            if (has(s.edges[edge], a) || has(s.edges[edge], b)) continue;
-            if (has(s.edges[edge], other)) take(PairKind::edges, thread, edge, way);
-          }
-        }
+class PairsAlongThreads {
+ public:
+  /// take(kind, first, second, distance)
+  PairsAlongThreads(const TriangleSurface& surface, const SewnPoints& sewn, Take& take)
+      : surface_(surface), sewn_(sewn), take_(take) {}
+
+  void find(WaysAlongEdges& ways, double within) {
+    for (std::uint32_t point = 0; point < surface_.triangles_at.size(); ++point) {
+      threads_.clear();
+      std::ranges::copy_if(surface_.triangles_at[point], std::back_inserter(threads_),
+                           [&](std::uint32_t t) { return surface_.is_thread(t); });
+      if (threads_.empty()) continue;
+      for (const auto& [way, other] : ways.from(point, within)) {
+        if (!sewn_.is_one(other, point)) add(point, other, way);
       }
     }
   }
-}
+
+ private:
+  bool has(std::span<const std::uint32_t> corners, std::uint32_t point) const {
+    return std::ranges::any_of(corners, [&](std::uint32_t c) { return sewn_.is_one(c, point); });
+  }
+  /// Of the threads at a point, and of what is at another one.
+  void add(std::uint32_t point, std::uint32_t other, double way) const {
+    for (const std::uint32_t t : threads_) {
+      if (!has(surface_.triangles[t], other)) take_(PairKind::point_triangle, other, t, way);
+    }
+    for (const std::uint32_t t : surface_.triangles_at[other]) {
+      if (!has(surface_.triangles[t], point)) take_(PairKind::point_triangle, point, t, way);
+      for (const std::uint32_t edge : surface_.edges_of[t]) {
+        if (has(surface_.edges[edge], other)) add_edge(edge, way);
+      }
+    }
+  }
+  void add_edge(std::uint32_t edge, double way) const {
+    for (const std::uint32_t t : threads_) {
+      const std::uint32_t thread = surface_.edges_of[t][0];
+      const auto [a, b] = surface_.edges[thread];
+      const auto& ends = surface_.edges[edge];
+      if (!has(ends, a) && !has(ends, b)) take_(PairKind::edges, thread, edge, way);
+    }
+  }
+
+  const TriangleSurface& surface_;
+  const SewnPoints& sewn_;
+  Take& take_;
+  std::vector<std::uint32_t> threads_;  // at the point
+};
 
 bool are_far(double within, const Vector* a, std::size_t as, const Vector* b, std::size_t bs) {
   const auto beyond = [&](double Vector::*axis) {
@@ -306,7 +324,10 @@ RestDistances::RestDistances(const Model& model, double thickness, const SewnPoi
       }
     }
   }
-  if (s.has_threads) for_each_pair_along_threads(s, lengths, sewn, thickness, take);
+  if (s.has_threads) {
+    WaysAlongEdges ways(s, lengths, sewn);
+    PairsAlongThreads(s, sewn, take).find(ways, thickness);
+  }
   std::ranges::sort(nearer_, [](const Nearer& a, const Nearer& b) {
     return std::pair(a.key, a.distance) < std::pair(b.key, b.distance);
   });

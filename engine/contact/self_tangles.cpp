@@ -84,7 +84,7 @@ void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
   BoxTree::meet_itself(table_, cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
     if (cloth_->is_point(a) || cloth_->is_point(b)) return;
     const bool are_faces = cloth_->is_face(a) && cloth_->is_face(b);
-    if (!are_faces && !cloth_->is_face(a) && !cloth_->is_face(b)) return;
+    if (!cloth_->is_face(a) && !cloth_->is_face(b)) return;
     if (!everywhere && (may_cross_[a] & may_cross_[b]) == 0) return;
     const TriangleSurface::Triangle &one = cloth_->triangles[a], &other = cloth_->triangles[b];
     const std::size_t shared = count_shared(sewn.first_of(one), sewn.first_of(other));
