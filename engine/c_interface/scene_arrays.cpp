@@ -112,7 +112,8 @@ void read_world(const weft_scene& s, Arrays& in, SceneDescription& out) {
   out.air.ram = s.air_ram;
   out.air.wind = vector_of(s.wind);
   out.friction = s.friction;
-  out.self_contact = {s.self_contact != 0, s.self_contact_thickness, s.self_contact_friction};
+  out.self_contact = {s.self_contact != 0, s.self_contact_thickness, s.self_contact_friction,
+                      s.self_contact_untangle != 0};
   out.gravity = vector_of(s.gravity);
 }
 
@@ -129,6 +130,7 @@ void write_world(const SceneDescription& scene, weft_scene& out) {
   out.self_contact = scene.self_contact.on ? 1 : 0;
   out.self_contact_thickness = scene.self_contact.thickness;
   out.self_contact_friction = scene.self_contact.friction;
+  out.self_contact_untangle = scene.self_contact.untangle ? 1 : 0;
   write_vector(scene.gravity, out.gravity);
 }
 

@@ -28,6 +28,7 @@ void SurfaceContacts::begin(const BodyClock& clock, ContactStart start, const Mi
   has_looked_ahead_ = false;
   failures_ = {};
   contacts_.begin(memory);
+  untangling_.begin();
   for (NearPairs& near : near_) near.clear();
   if (empty()) return;
   impulses_.begin(clock.bodies());
@@ -78,6 +79,9 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
     if (start == ContactStart::anew) tangles_.find_within(points_);
     began_tangled_ = tangles_.count_within() > 0;
   }
+  untangling_.leave();
+  if (model_.self_contact.untangle && !clock.stands())
+    untangling_.begin_interval(points_, tangles_.crossing_within());
   near_search_.measure(points_, candidates_, have_moved, team);
   near_search_.find(points_, candidates_, tangles_, near_, team);
   layers_.anew = have_moved || contacts_.empty() || tangles_.count_within() > 0;
@@ -97,6 +101,7 @@ void SurfaceContacts::advance(ContactParticles& particles, const BodyClock& cloc
   if (empty()) return;
   response_.advance(clock, points_, near_);
   squeeze_.share(scene(particles, clock), near_);
+  untangling_.pull(scene(particles, clock));
   contacts_.begin_substep(points_, particles, clock.h(), clock.stands(), team);
 }
 
@@ -236,8 +241,8 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
 
 std::size_t SurfaceContacts::bytes() const {
   std::size_t bytes = points_.bytes() + search_.bytes() + near_search_.bytes() + response_.bytes() +
-                      squeeze_.bytes() + tangles_.bytes() + bytes_of(impulses_.of_body) +
-                      zones_.bytes();
+                      squeeze_.bytes() + tangles_.bytes() + untangling_.bytes() +
+                      bytes_of(impulses_.of_body) + zones_.bytes();
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
     bytes +=

@@ -35,6 +35,7 @@
 #include "engine/contact/respond.h"
 #include "engine/contact/squeeze.h"
 #include "engine/contact/touch.h"
+#include "engine/contact/untangling.h"
 
 namespace weft {
 
@@ -74,6 +75,7 @@ class SurfaceContacts {
   /// Before the next substep, or after the last.
   void end_substep(ContactParticles& particles, Team& team) {
     contacts_.end_substep(particles, team);
+    untangling_.end_substep(particles);
   }
   void remember(ContactMemory& memory) { contacts_.remember(memory); }
   /// moved(slot, by): by how much (m).
@@ -113,6 +115,8 @@ class SurfaceContacts {
     if (empty()) return 0;
     return std::max(late_depth_, response_.deepest(scene(particles, clock), near_, team));
   }
+  /// J, by what draws tangles apart in this frame.
+  double untangling_work() const { return untangling_.work(); }
   const ContactImpulses& impulses() const { return impulses_; }
   /// Left are triangles that cross, and particles inside.
   RescueReport failures() const {
@@ -171,6 +175,7 @@ class SurfaceContacts {
   double interval_ = 0;    // s
   bool has_looked_ahead_ = false;
   Tangles tangles_;
+  Untangling untangling_;
 };
 
 }  // namespace weft

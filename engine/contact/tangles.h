@@ -66,6 +66,7 @@ class Tangles {
   }
   /// Pairs of triangles of the cloth that cross each other.
   int count_within() const { return static_cast<int>(within_.crossing().size()); }
+  const std::vector<std::uint64_t>& crossing_within() const { return within_.crossing(); }
   const Misplaced& misplaced() const { return misplaced_; }
   std::size_t bytes() const;
 

@@ -63,6 +63,14 @@ bool touches_where_held(const ContactPoints& points, const std::array<std::uint3
   return true;
 }
 
+/// Beside triangles that cross and are drawn apart: a contour may come to the pair and go on beyond
+/// it in one interval.
+bool is_drawn_through(const ContactScene& scene, const Pair& pair,
+                      const std::array<std::uint32_t, 4>& four) {
+  return scene.model.self_contact.untangle && pair.is_within_cloth() &&
+         scene.tangles.cross_beside(pair, four);
+}
+
 /// A time before the features come nearer than a tenth of the thickness, or of their first distance
 /// if that is less, if they do.
 std::optional<double> time_of_meeting(PairKind kind, const PairMotion& way, double distance,
@@ -168,6 +176,7 @@ void Verification::find(const ContactScene& scene, CandidateSearch& search, Near
         const auto time = meeting(pair.kind, way, r, distance, points.thickness_of(pair));
         // What comes out does what it should.
         if (!time || (!later.two_sided && scene.tangles.is_inside(four))) return {};
+        if (is_drawn_through(scene, pair, four)) return {};
         return {.fails = true, .time = *time};
       });
   leave_each_once(candidates);

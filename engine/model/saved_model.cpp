@@ -14,7 +14,7 @@ namespace weft {
 namespace {
 
 /// The version changes with whatever is written here.
-constexpr Kind kModel{{'w', 'e', 'f', 't', 'm', 'o', 'd', 'l'}, "model", 4};
+constexpr Kind kModel{{'w', 'e', 'f', 't', 'm', 'o', 'd', 'l'}, "model", 5};
 
 }  // namespace
 

@@ -56,8 +56,8 @@ void visit_fields(Is<Pressure> auto& part, auto& archive) {
 }
 
 void visit_fields(Is<SelfContact> auto& contact, auto& archive) {
-  auto& [on, thickness, friction] = contact;
-  archive(on, thickness, friction);
+  auto& [on, thickness, friction, untangle] = contact;
+  archive(on, thickness, friction, untangle);
 }
 
 void visit_fields(Is<SceneDescription> auto& scene, auto& archive) {

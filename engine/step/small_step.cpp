@@ -272,7 +272,8 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double h, const
                   kernels::ImpulseEnergy& change, Trial& trial) {
   Remains remains{give_per_mass(s, plan), takes_over_in(s) ? 0 : s.lost_energy};
   trial.seam_work = s.small_steps->seams().work();
-  const double released = frame.released() + trial.seam_work + s.body_report.work;
+  const double released =
+      frame.released() + trial.seam_work + s.body_report.work + s.body_report.untangling;
   if (s.settings.iterations == 0)
     remains.lost_energy = guard_springs(s, remains.lost_energy, released, h, change);
   if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, h), s, h);

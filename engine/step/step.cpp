@@ -326,6 +326,7 @@ void advance(State& s, double dt, StepReport& report, Team& team) {
       report.intersecting = s.body_report.failures.left;
       report.self_contacts = s.body_report.within_cloth;
       report.tangled = s.body_report.failures.tangled;
+      report.untangling_work = s.body_report.untangling;
       s.way = {};
     }
   }

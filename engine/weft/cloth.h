@@ -155,8 +155,8 @@ struct StepReport {
   /// small_steps.
   double motion_error = 0;
   /// J, that the scheme, damped springs and contacts took: the fall of kinetic, potential and
-  /// elastic energy beyond the work of moved pins, seams, forces, air and Damping::motion. 0 by
-  /// gauss_seidel.
+  /// elastic energy beyond the work of moved pins, seams, forces, air, Damping::motion and
+  /// untangling. 0 by gauss_seidel.
   double energy_lost = 0;
   /// J, work of moved pins in this step. It is exact if they move as one rigid body, else it is the
   /// work of the rigid motion nearest to theirs. Jumps do no work. Impulses of fixed spheres count
@@ -181,6 +181,7 @@ struct StepReport {
   /// that is late, is `infeasible`.
   int held_apart = 0;
   std::uint32_t worst_held = kNoIndex;  ///< of these the constraint with the largest strain
+  double untangling_work = 0;  ///< J, of what draws triangles apart that cross (SelfContact)
 };
 
 /// Strain of all constraints, and of triangles of fabric | |f_u| - 1 | and | |f_v| - 1 |, for the

@@ -106,6 +106,7 @@ inline constexpr std::tuple kReportFields{
                 "seams and constraints that two held particles exclude"},
     ReportField{"worst_held", &StepReport::worst_held, OverSteps::last,
                 "the number of such a constraint, or kNoIndex"},
+    ReportField{"untangling_work", &StepReport::untangling_work, OverSteps::sum, "J"},
 };
 inline constexpr std::size_t kReportFieldCount = std::tuple_size_v<decltype(kReportFields)>;
 

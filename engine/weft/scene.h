@@ -211,6 +211,13 @@ struct Seam {
 /// while; StepReport::max_penetration does not count that. Triangles that cross at the start touch
 /// nothing of each other until they have come apart (StepReport::tangled).
 ///
+/// With `untangle` triangles that cross are drawn apart, at 0.2 m/s. Where the line in which they
+/// cross cuts off a part of the cloth, this part comes through: the one with the fewest fixed
+/// particles, the lightest of several. Elsewhere the line becomes shorter. The work of this is
+/// StepReport::untangling_work. Triangles beside those that cross may come to cross, too, for a
+/// while; all others are kept apart as ever. Where pins hold both sides it may stay. Cloth that
+/// does not cross itself has the same bits with `untangle` and without.
+///
 /// Layers that begin exactly in one plane, or whose positions are written so, are moved apart by
 /// micrometres when the next step begins. Each piece of the cloth moves to its front: the side from
 /// which the corners of its first triangle in `surface` are seen counterclockwise. Pieces whose
@@ -222,6 +229,7 @@ struct SelfContact {
   bool on = false;
   double thickness = 1e-3;  ///< m, from middle to middle of two layers; > 0 where it is on
   double friction = 0.3;    ///< Coulomb's coefficient between layers; at least 0
+  bool untangle = false;    ///< whether triangles that cross are drawn apart
 
   bool operator==(const SelfContact&) const = default;
 };

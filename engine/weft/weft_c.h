@@ -171,6 +171,8 @@ typedef struct weft_scene { /* SceneDescription */
   const weft_pressure* pressures; /* of surface_triangles */
 
   const double* bending_folds; /* or NULL: 0; m, of hinges */
+
+  int self_contact_untangle; /* yes or no: whether triangles that cross are drawn apart */
 } weft_scene;
 
 typedef struct weft_model_info { /* ModelInfo */
@@ -272,6 +274,7 @@ typedef struct weft_report { /* StepReport */
   uint32_t worst_seam;
   int held_apart;
   uint32_t worst_held;
+  double untangling_work;
 } weft_report;
 
 /* JobSystem. Set both functions or neither; they must not throw. NULL in place of the struct is the

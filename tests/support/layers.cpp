@@ -7,7 +7,7 @@
 namespace weft::test {
 
 SceneDescription scene_of(const std::vector<Sheet>& sheets, double friction,
-                          const std::vector<std::uint32_t>& pins) {
+                          const std::vector<std::uint32_t>& pins, std::string_view material) {
   MeshDescription mesh;
   for (const Sheet& sheet : sheets) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -27,7 +27,7 @@ SceneDescription scene_of(const std::vector<Sheet>& sheets, double friction,
       }
     }
   }
-  mesh.material = find_material("cotton").value();
+  mesh.material = find_material(material).value();
   mesh.pins = pins;
   SceneDescription scene = cloth_from_mesh(mesh).value().scene;
   scene.air = {};

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string_view>
 #include <vector>
 
 namespace weft::test {
@@ -17,9 +18,10 @@ struct Sheet {
   std::uint32_t rows = 0, columns = 0;
   std::function<Vec3(double u, double v)> place;
 };
-/// Of cotton without air, with self-contact.
+/// Without air, with self-contact.
 SceneDescription scene_of(const std::vector<Sheet>& sheets, double friction,
-                          const std::vector<std::uint32_t>& pins = {});
+                          const std::vector<std::uint32_t>& pins = {},
+                          std::string_view material = "cotton");
 /// Between -0.5 and 0.5: the same for the same u and v, and another for each.
 double chance(double u, double v);
 /// Squares of 0.4 m at rest, each turned a little against the one under it, `apart` from it.

@@ -62,7 +62,8 @@ void add_parts(py::module_& m) {
   Fields<SelfContact> self_contact(m, "SelfContact", "Layers of the cloth keep off each other.");
   self_contact.field("on", &SelfContact::on, "whether they do")
       .field("thickness", &SelfContact::thickness, "m, from the middle of one to that of the next")
-      .field("friction", &SelfContact::friction, "Coulomb's, between layers");
+      .field("friction", &SelfContact::friction, "Coulomb's, between layers")
+      .field("untangle", &SelfContact::untangle, "whether triangles that cross are drawn apart");
 }
 
 void add_particles(Fields<Scene>& scene) {

@@ -64,6 +64,7 @@ class SelfContact:
     on: bool
     thickness: float
     friction: float
+    untangle: bool
 
 
 class SceneDescription:
@@ -530,6 +531,8 @@ class StepReport:
     def held_apart(self) -> int: ...
     @property
     def worst_held(self) -> int: ...
+    @property
+    def untangling_work(self) -> float: ...
 
 
 class Strain:

@@ -13,12 +13,13 @@ struct BodyReport {
   std::vector<BodyImpulse> impulses;   // per body, of what it gave to the cloth
   double work = 0;                     // J, that bodies did on the cloth
   double friction = 0;                 // J, that friction took
+  double untangling = 0;               // J, by what draws tangles apart
   int contacts = 0, within_cloth = 0;  // when the last substep ended
   RescueReport failures;               // of meshes
 
   void clear() {
     impulses.clear();
-    work = friction = 0;
+    work = friction = untangling = 0;
     contacts = within_cloth = 0;
     failures = {};
   }

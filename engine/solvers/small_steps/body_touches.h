@@ -77,6 +77,7 @@ inline void add_report(const SurfaceContacts& meshes, const BodyClock& clock, Bo
   report.contacts += touching.bodies;
   report.within_cloth = touching.within_cloth;
   report.failures = meshes.failures();
+  report.untangling = meshes.untangling_work();
 }
 
 }  // namespace weft

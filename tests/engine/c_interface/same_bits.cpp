@@ -82,10 +82,12 @@ void check_equal(const weft_report& c, const StepReport& r) {
                                                 r.velocity_iterations, r.visits, r.corrections});
   CHECK(std::array{c.max_strain, c.rms_strain, c.max_shear, c.max_error, c.max_penetration,
                    c.max_anchor_error, c.max_seam_gap, c.seam_work, c.motion_error, c.energy_lost,
-                   c.pin_work, c.body_work, c.friction_work, c.max_bending_error} ==
+                   c.pin_work, c.body_work, c.friction_work, c.max_bending_error,
+                   c.untangling_work} ==
         std::array{r.max_strain, r.rms_strain, r.max_shear, r.max_error, r.max_penetration,
                    r.max_anchor_error, r.max_seam_gap, r.seam_work, r.motion_error, r.energy_lost,
-                   r.pin_work, r.body_work, r.friction_work, r.max_bending_error});
+                   r.pin_work, r.body_work, r.friction_work, r.max_bending_error,
+                   r.untangling_work});
   CHECK(std::array{c.worst_constraint, c.worst_element, c.failed_particle, c.passed_particle,
                    c.worst_seam, c.worst_held} == std::array{r.worst_constraint, r.worst_element,
                                                              r.failed_particle, r.passed_particle,
@@ -187,6 +189,7 @@ struct CottonSheet {
     REQUIRE(weft_scene_of(made_in_c.get(), &scene) == WEFT_OK);
     CHECK(scene.self_contact_thickness == c_material.thickness);
     CHECK(scene.self_contact_friction == 0.45);
+    CHECK(scene.self_contact_untangle == 0);
     const auto model =
         made<weft_model>([&](weft_model** out) { return weft_build_model(&scene, out); });
     return {cloth_of(made_in_cpp.scene, {}), made<weft_cloth>([&](weft_cloth** out) {

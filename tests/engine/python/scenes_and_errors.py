@@ -11,7 +11,7 @@ class Scenes(unittest.TestCase):
     def test_arrays_come_back(self):
         mesh = sheet(5)
         scene = weft.cloth_from_mesh(mesh).scene
-        scene.self_contact = weft.SelfContact(on=True, thickness=0.002, friction=0.1)
+        scene.self_contact = weft.SelfContact(on=True, thickness=0.002, friction=0.1, untangle=True)
         again = weft.SceneDescription()
         for field in ("positions", "velocities", "masses", "fixed", "constraints", "membrane", "bending",
                       "anchors", "seams", "surface", "spheres", "radii", "damping", "air", "friction",

@@ -463,12 +463,12 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(state)), model.size(),
                 static_cast<unsigned long long>(checksum(model)));
   }
-  CHECK(state[8] == std::byte{6});
-  CHECK(model[8] == std::byte{4});
-  CHECK(state.size() == 11163);
-  CHECK(checksum(state) == 0x3516a11e2d99aeab);
-  CHECK(model.size() == 731);
-  CHECK(checksum(model) == 0x6ec0b4eca9cd8e27);
+  CHECK(state[8] == std::byte{7});
+  CHECK(model[8] == std::byte{5});
+  CHECK(state.size() == 11171);
+  CHECK(checksum(state) == 0x98b019d8ceaa7b2b);
+  CHECK(model.size() == 732);
+  CHECK(checksum(model) == 0x8c769682beae5121);
 }
 
 }  // namespace

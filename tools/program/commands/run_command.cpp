@@ -13,6 +13,7 @@
 #include "tools/program/files/json_output.h"
 #include "tools/program/files/text_file.h"
 #include "tools/program/measure/starts_inside.h"
+#include "tools/program/measure/starts_tangled.h"
 #include "tools/program/options/scene_source.h"
 #include "tools/program/options/solver_options.h"
 #include "tools/program/run/outputs.h"
@@ -22,6 +23,7 @@
 #include "tools/program/terminal/interrupt.h"
 #include "tools/program/text/file_ending.h"
 #include "tools/program/text/parse.h"
+#include "tools/program/text/wording.h"
 
 namespace weft::tools {
 namespace {
@@ -104,6 +106,7 @@ struct Prepared {
   RunPlan plan;
   std::optional<JsonOutput> json;
   std::optional<StateFile> state;
+  std::size_t tangled = 0;  ///< pairs of triangles, in the scene
 };
 
 Result<Prepared> prepare(const RunOptions& options) {
@@ -114,8 +117,13 @@ Result<Prepared> prepare(const RunOptions& options) {
   if (!settings) return Error{settings.error()};
   auto source = load_scene(options.scene);
   if (!source) return Error{source.error()};
-  const auto model = model_of(source.value());
+  auto model = model_of(source.value());
   if (!model) return Error{model.error()};
+  const std::size_t tangled = starts_tangled(source.value().description);
+  if (tangled > 0) {
+    source.value().description.self_contact.untangle = true;
+    model = build_model(source.value().description);
+  }
   plan.value().moves = source.value().moves;
   plan.value().bodies = source.value().bodies;
   plan.value().surface = source.value().description.surface;
@@ -124,8 +132,13 @@ Result<Prepared> prepare(const RunOptions& options) {
   plan.value().record = options.record;
   plan.value().up = source.value().up;
   plan.value().fabric = FabricMeasure(source.value().description, source.value().mesh.cells);
-  Prepared prepared{std::move(source.value()), model.value(), settings.value(),
-                    std::move(plan.value()),   std::nullopt,  std::nullopt};
+  Prepared prepared{std::move(source.value()),
+                    model.value(),
+                    settings.value(),
+                    std::move(plan.value()),
+                    std::nullopt,
+                    std::nullopt,
+                    tangled};
   if (options.json) {
     auto json = JsonOutput::open(*options.json);
     if (!json) return Error{fmt::format("--json: {}", json.error())};
@@ -172,6 +185,23 @@ void tell_what_begins_inside(const SceneSource& source, const Prepared& prepared
   }
 }
 
+/// Where the cloth crosses itself. What goes on began elsewhere.
+void tell_what_begins_tangled(const Prepared& prepared) {
+  if (prepared.plan.resume || prepared.tangled == 0) return;
+  print_message(fmt::format("weft: {} of triangles of the cloth {} tangled, and {} drawn apart\n",
+                            counted(prepared.tangled, "pair"),
+                            prepared.tangled == 1 ? "begins" : "begin",
+                            prepared.tangled == 1 ? "is" : "are"));
+}
+/// When the run is over.
+void tell_what_is_tangled(const Prepared& prepared, const RunSummary& summary) {
+  if (prepared.plan.resume || prepared.tangled == 0) return;
+  const int left = summary.total.tangled;
+  print_message(left == 0 ? std::string("weft: what began tangled has come out\n")
+                          : fmt::format("weft: {} of triangles {} tangled in the end\n",
+                                        counted(left, "pair"), left == 1 ? "is" : "are"));
+}
+
 /// Files are those of the first run, the report is that of the fastest.
 std::string interruption(const RunSummary& summary, const RunPlan& plan) {
   if (summary.finished_runs == 0) {
@@ -192,14 +222,16 @@ int interrupted(const RunSummary& summary, const RunPlan& plan) {
 Result<int> run_verb(const RunOptions& options) {
   auto prepared = prepare(options);
   if (!prepared) return Error{prepared.error()};
-  auto& [source, model, settings, plan, json, state] = prepared.value();
+  auto& [source, model, settings, plan, json, state, tangled] = prepared.value();
   for (const std::string& note : source.notes) print_message(fmt::format("weft: {}\n", note));
   tell_what_begins_inside(source, prepared.value());
+  tell_what_begins_tangled(prepared.value());
   const OrderlyInterrupt interrupt;
   auto outputs = Outputs::open(options.out, source, model, settings, plan.dt);
   if (!outputs) return Error{outputs.error()};
   auto summary = run_and_record(prepared.value(), outputs.value());
   if (!summary) return Error{summary.error()};
+  tell_what_is_tangled(prepared.value(), summary.value());
 
   const RunReport report{source.title(), settings, plan, summary.value(), source.counts};
   if (auto finished = outputs.value().finish(); !finished) {

@@ -132,11 +132,12 @@ Air read_air(const Json& json, const std::string& place) {
 }
 
 SelfContact read_self_contact(const Json& json, const std::string& place) {
-  check_keys(json, place, {"on", "thickness", "friction"});
+  check_keys(json, place, {"on", "thickness", "friction", "untangle"});
   SelfContact contact{.on = true};
   read_if_given(json, place, "on", contact.on);
   read_if_given(json, place, "thickness", contact.thickness);
   read_if_given(json, place, "friction", contact.friction);
+  read_if_given(json, place, "untangle", contact.untangle);
   return contact;
 }
 
@@ -254,8 +255,9 @@ std::string air_text(const Air& air) {
 }
 
 std::string self_contact_text(const SelfContact& contact) {
-  return Json{{"on", contact.on}, {"thickness", contact.thickness}, {"friction", contact.friction}}
-      .dump();
+  Json json{{"on", contact.on}, {"thickness", contact.thickness}, {"friction", contact.friction}};
+  if (contact.untangle) json["untangle"] = true;
+  return json.dump();
 }
 
 }  // namespace weft::tools

@@ -231,6 +231,8 @@ TEST_CASE("self-contact survives writing and reading, and is refused by key and 
   CHECK(parse_scene(scene_text(scene)).value().description.self_contact == scene.self_contact);
   scene.self_contact.on = false;
   CHECK(parse_scene(scene_text(scene)).value().description.self_contact == scene.self_contact);
+  scene.self_contact.untangle = true;
+  CHECK(parse_scene(scene_text(scene)).value().description.self_contact == scene.self_contact);
   const std::string start = R"({"positions": [[0,0,0]], "masses": [1], "self_contact": )";
   CHECK(parse_scene(start + "{}}").value().description.self_contact == SelfContact{.on = true});
   CHECK(error_with(R"("self_contact": {"on": 1})") ==
