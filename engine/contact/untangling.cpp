@@ -125,8 +125,9 @@ void Untangling::pull(const ContactScene& scene) {
       largest = std::max(largest, inverse);
     }
     pull.force = 0;
-    const double missing = pull.share * tuning::kUntanglingSpeed - way(scene.particles, pull) / h;
     if (!(weight > 0)) continue;
+    const double speed = pull.share * tuning::kUntanglingSpeed,
+                 missing = std::clamp(speed - way(scene.particles, pull) / h, -speed, speed);
     pull.force =
         missing / (tuning::kUntanglingTime + h) / std::max(weight, reference::kLeastGive * largest);
     for (std::size_t k = 0; k < pull.points.size(); ++k) {

@@ -6,8 +6,8 @@
 /// surface collisions through intersection contour minimization").
 ///
 /// A force brings the edge to one speed beside the triangle, as if through honey: it slows down
-/// what is faster. It is as large for any length of substeps, and keeps momentum and angular
-/// momentum. Its work is known to the guard of energy, and no more than speed and weight allow.
+/// what is faster. It is no larger than some weights of the particles, whatever the length of
+/// substeps is, and keeps momentum and angular momentum. Its work is known to the guard of energy.
 #pragma once
 
 #include <array>
