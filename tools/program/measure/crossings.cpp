@@ -181,16 +181,16 @@ std::size_t count_crossings(const TriangleSet& a, const TriangleSet& b) {
   return crossings(a, b).size();
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings_of(const TriangleSet& surface) {
-  auto pairs = near_pairs(surface, surface, 0);
-  std::erase_if(pairs, [&](const auto& pair) {
-    return pair.first >= pair.second ||
-           !cross(corners_of(surface, pair.first), corners_of(surface, pair.second));
-  });
-  return pairs;
+std::size_t count_crossings(const TriangleSet& surface) {
+  const auto crosses = [&](const auto& pair) {
+    return pair.first < pair.second && do_cross(surface, pair.first, pair.second);
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(near_pairs(surface, surface, 0), crosses));
 }
 
-std::size_t count_crossings(const TriangleSet& surface) { return crossings_of(surface).size(); }
+bool do_cross(const TriangleSet& surface, std::uint32_t one, std::uint32_t other) {
+  return cross(corners_of(surface, one), corners_of(surface, other));
+}
 
 NamedCrossing name_crossing(const TriangleSet& cloth, std::span<const SceneBody> bodies,
                             double time) {

@@ -31,9 +31,10 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> near_pairs(const TriangleSe
 /// Pairs of triangles of which an edge of one leads through the other. What only touches does not
 /// cross.
 std::size_t count_crossings(const TriangleSet& a, const TriangleSet& b);
-/// Of a surface with itself, each pair once, the later triangle behind the earlier one.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings_of(const TriangleSet& surface);
+/// Of a surface with itself, each pair once.
 std::size_t count_crossings(const TriangleSet& surface);
+/// Two triangles of one surface.
+bool do_cross(const TriangleSet& surface, std::uint32_t one, std::uint32_t other);
 
 /// The first triangle of a cloth that crosses a body.
 struct NamedCrossing {

@@ -31,17 +31,21 @@ std::vector<std::uint32_t> first_of_sewn(const SceneDescription& scene) {
 
 std::size_t starts_tangled(const SceneDescription& scene) {
   if (!scene.self_contact.on) return 0;
-  auto pairs = crossings_of({scene.positions, scene.surface});
-  if (pairs.empty()) return 0;
+  const TriangleSet surface{scene.positions, scene.surface};
   const std::vector<std::uint32_t> first = first_of_sewn(scene);
-  std::erase_if(pairs, [&](const auto& pair) {
+  const auto are_joined = [&](const auto& pair) {
     return std::ranges::any_of(scene.surface[pair.first], [&](std::uint32_t corner) {
       return std::ranges::any_of(scene.surface[pair.second], [&](std::uint32_t other) {
         return first[corner] == first[other];
       });
     });
-  });
-  return pairs.size();
+  };
+  const auto is_tangled = [&](const auto& pair) {
+    return pair.first < pair.second && !are_joined(pair) &&
+           do_cross(surface, pair.first, pair.second);
+  };
+  return static_cast<std::size_t>(
+      std::ranges::count_if(near_pairs(surface, surface, 0), is_tangled));
 }
 
 }  // namespace weft::tools
