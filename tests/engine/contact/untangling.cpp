@@ -290,7 +290,7 @@ TEST_CASE("cloth that does not cross itself has the same bits with it") {
 }
 
 TEST_CASE("a cloth that is drawn apart goes on from its bytes, and on any number of threads") {
-  const SceneDescription scene = drawn(poked({50, "cotton"}));
+  const SceneDescription scene = drawn(poked({32, "cotton"}));
   Settings settings;
   settings.threads = 1;
   Cloth cloth = cloth_of(scene, settings);
