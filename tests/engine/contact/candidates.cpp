@@ -381,6 +381,67 @@ TEST_CASE("pairs within a cloth that may come near in an interval are among the 
   CHECK(left_out > 1000);
 }
 
+/// Contacts as they are after some intervals, by their names.
+struct LiveContacts {
+  std::vector<std::uint64_t> keys;  // 0: gone
+
+  void take(const NearContacts& layers) {
+    if (layers.anew) keys.clear();
+    for (const std::uint32_t name : layers.gone) {
+      CHECK(keys[name] != 0);
+      keys[name] = 0;
+    }
+    for (const auto& touching : layers.touching) CHECK(keys[touching.name] != 0);
+    for (const NearContact& found : layers.found) keys.push_back(found.pair.key());
+  }
+  std::ptrdiff_t count(std::uint64_t key) const { return std::ranges::count(keys, key); }
+};
+
+TEST_CASE("near pairs are contacts, each once, and go when they are no candidates any more") {
+  Pleats now;
+  const simd::Table& table = simd::table(simd::best_isa());
+  ContactPoints points(*now.model);
+  points.begin(now.clock);
+  CandidateSearch search(table);
+  NearSearch near(table);
+  Tangles tangles(table);
+  tangles.begin(points.cloth(), {});
+  Candidates candidates;
+  Team team;
+  NearContacts layers;
+  LiveContacts live;
+  std::size_t stay = 0, come = 0, gone = 0;
+  for (int interval = 0; interval < 4; ++interval) {
+    CAPTURE(interval);
+    now.predict();
+    if (interval == 0) points.look_ahead(now.particles, now.clock);
+    points.begin_interval(now.particles, now.clock, 4);
+    const bool have_moved = search.find(points, candidates, team);
+    near.measure(points, candidates, have_moved, team);
+    layers.anew = interval == 0 || have_moved;
+    near.find_layers(points, candidates, tangles, layers);
+    live.take(layers);
+    if (!layers.anew) {
+      come += layers.found.size();
+      gone += layers.gone.size();
+    }
+    for (std::size_t list = kBodyLists; list < kPairLists; ++list) {
+      for (std::size_t i = 0; i < candidates[list].size(); ++i) {
+        if (!candidates[list].is_used(i)) continue;
+        const std::size_t block = i / kernels::kLanes, lane = i % kernels::kLanes;
+        const bool is_near = near.distances()[list].near[block] >> lane & 1;
+        const std::ptrdiff_t contacts = live.count(candidates[list].pairs[i].key());
+        CHECK((is_near ? contacts == 1 : contacts <= 1));
+        stay += !layers.anew && contacts == 1;
+      }
+    }
+    now.finish(interval);
+  }
+  CHECK(stay > 100);
+  CHECK(come > 10);
+  CHECK(gone > 10);
+}
+
 /// Tangles ask for places that nobody asked for before.
 TEST_CASE(
     "of a mesh those vertices alone are placed that are looked at, and what is inside is known") {
