@@ -221,12 +221,13 @@ TEST_CASE("pairs that may come near in an interval are among the candidates; oth
   SUBCASE("of one that moves and deforms") { check(1, true, true); }
 }
 
-std::size_t candidates_of(const Beside& now) {
+/// Of an interval of so many substeps.
+std::size_t candidates_of(const Moving& now, int substeps) {
   CHECK(now.model->slots() > now.model->particles);  // with padding, which has no place
   ContactPoints points(*now.model);
   points.begin(now.clock);
   points.look_ahead(now.particles, now.clock);
-  points.begin_interval(now.particles, now.clock, 4);
+  points.begin_interval(now.particles, now.clock, substeps);
   CandidateSearch search(simd::table(simd::best_isa()));
   Candidates candidates;
   Team team;
@@ -237,9 +238,9 @@ std::size_t candidates_of(const Beside& now) {
 TEST_CASE("130 km from the origin as many pairs are candidates as beside it") {
   Beside here(1, false, false), there(1, false, false, {131072, 0, -131072});
   for (Beside* now : {&here, &there}) now->predict();
-  const std::size_t expected = candidates_of(here);
+  const std::size_t expected = candidates_of(here, 4);
   CHECK(expected > 300);
-  CHECK(candidates_of(there) == doctest::Approx(static_cast<double>(expected)).epsilon(0.01));
+  CHECK(candidates_of(there, 4) == doctest::Approx(static_cast<double>(expected)).epsilon(0.01));
 }
 
 /// A flat sheet of cells of 20 mm that flies on at 20 m/s and flutters.
@@ -263,15 +264,7 @@ TEST_CASE("cloth that flutters has few candidates") {
     now.clock.begin_interval(kH);
     for (std::size_t i = 0; i < now.v.size(); ++i)
       now.particles.to[i] = now.particles.from[i] + kH * now.v[i];
-    ContactPoints points(*now.model);
-    points.begin(now.clock);
-    points.look_ahead(now.particles, now.clock);
-    points.begin_interval(now.particles, now.clock, 1);
-    CandidateSearch search(simd::table(simd::best_isa()));
-    Candidates candidates;
-    Team team;
-    search.find(points, candidates, team);
-    return names_of(candidates).size() / now.model->particles;
+    return candidates_of(now, 1) / now.model->particles;
   };
   CHECK(candidates_at(1) < 40);
   CHECK(candidates_at(10) < 80);
