@@ -31,6 +31,10 @@ struct Attempt {
 
 /// accepted: solved and next_velocity are the next state. rejected: the next attempt is wanted.
 /// not_finite: there is no next state.
+///
+/// A part is rejected if its solver gives up or uses up its iterations, if its velocities do not
+/// converge (rattle), or if it gains energy (energy.h). Yarns aim at tuning::kYarnGoal: a part
+/// that misses that is rejected too, unless it is the shortest.
 enum class Outcome : std::uint8_t { accepted, rejected, not_finite };
 
 /// What an attempt came to.
