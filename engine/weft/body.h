@@ -7,15 +7,15 @@
 ///   auto report = cloth.step(1.0 / 60);
 ///   weft::BodyLoad load = cloth.body_load(id.value()).value();  // what the cloth did to it
 ///
-/// In every substep the cloth is kept at the thickness from the surface, with Coulomb friction.
-/// Bodies are solid: a particle that is inside when a step begins comes out by 2 m/s at most, and
+/// In every substep the cloth is kept one thickness away from the surface, with Coulomb friction.
+/// Bodies are solid: a particle that is inside when a step begins comes out at 2 m/s at most, and
 /// gains no speed. Solver small_steps only; `automatic` becomes small_steps when the first body is
 /// added.
 ///
 /// Planes, balls, capsules and hulls touch the particles of the cloth, by a contact in closed form.
 /// Fast particles are stopped too, if the last search (every 2 ms) found them near. The search
-/// predicts the ways of particles; tests/README.md says what is faster than that. An edge or a
-/// corner of a body between the particles of a coarse cloth is not seen.
+/// predicts where particles go; tests/README.md says which bodies are too fast for that. An edge or
+/// a corner of a body between the particles of a coarse cloth is not seen.
 ///
 /// Triangle meshes touch the whole surface of the cloth (SceneDescription::surface): particles
 /// against triangles both ways, and edges against edges. Every 2 ms each pair that may have met is
@@ -36,7 +36,7 @@
 
 namespace weft {
 
-/// A unit quaternion. Other lengths, but for 0, are scaled to 1.
+/// A unit quaternion. Any length other than 0 is scaled to 1.
 struct Rotation {
   double x = 0, y = 0, z = 0, w = 1;
 };
@@ -78,10 +78,10 @@ WEFT_API Hull box(Vec3 size);
 /// mesh, as the body of a character is, keeps cloth in front of it. Two triangles that share an
 /// edge must run along it in opposite directions. A particle that starts inside a closed mesh comes
 /// out at the vertex, edge or triangle that is nearest to it. So does one that starts behind an
-/// open mesh within the box around its vertices. Cloth behind it outside of that box stays on its
-/// side, and is kept from the mesh there as it is in front.
+/// open mesh within the box around its vertices. Cloth behind the mesh and outside that box stays
+/// on its side, where it collides as it does in front.
 ///
-/// A two-sided mesh keeps cloth on the side where the cloth is.
+/// A two-sided mesh keeps cloth on whichever side the cloth is.
 ///
 /// A particle that starts exactly on a mesh counts as in front of it.
 ///
@@ -104,9 +104,9 @@ WEFT_API Result<std::shared_ptr<const BodyShape>> build_shape(const ShapeDescrip
 struct Body {
   std::shared_ptr<const BodyShape> shape;
   Pose pose{};  ///< where it is
-  /// m, at least 0: the distance at which it keeps particles. Two bodies that leave less than both
-  /// their thicknesses share what there is, in proportion, and StepReport::max_penetration tells
-  /// what is missing beyond that.
+  /// m, at least 0: the distance at which it keeps particles. Two bodies that leave less room than
+  /// the sum of their thicknesses share it in proportion, and StepReport::max_penetration reports
+  /// only the depth beyond that.
   double thickness = 1e-3;
   /// Coulomb's coefficient, at least 0. The coefficient of a contact is the geometric mean of this
   /// one and the cloth's (SceneDescription::friction).
@@ -122,7 +122,7 @@ struct BodyLoad {
 
 /// A particle that touched a body in the last substep of a step.
 struct BodyContact {
-  std::uint32_t particle = 0;  ///< if an edge or a triangle touches: its particle nearest to point
+  std::uint32_t particle = 0;  ///< of a touching edge or triangle: its particle nearest to point
   std::uint32_t body = 0;      ///< id of the body
   Vec3 point{};                ///< m, on the surface
   Vec3 normal{};               ///< out of the body

@@ -34,7 +34,7 @@ struct State;
 
 /// converged: every constraint is within its tolerance, and so is bending; nothing crosses a
 ///   body or is inside one; no seam is late (StepReport::late_seams). The state is committed.
-/// fixed_iterations: Settings::iterations were done; the report tells the error. The state is
+/// fixed_iterations: Settings::iterations were done; the report has the error. The state is
 ///   committed.
 /// iteration_limit: a constraint is still out of tolerance after max_iterations (with small_steps:
 ///   after all rounds, or all work that a given number of substeps allows), or bending is out of
@@ -43,7 +43,7 @@ struct State;
 /// infeasible: a constraint is out of tolerance, and tens of thousands of iterations (small_steps:
 ///   sixteen rounds of a sweep and local passes) hardly reduce the error. There are four causes:
 ///   constraints contradict each other (a chain whose ends are too far apart); two held particles
-///   exclude what joins them (StepReport::held_apart); masses differ by far; or no way leads from
+///   exclude what joins them (StepReport::held_apart); masses differ widely; or no way leads from
 ///   the start to a solution (a sheet of triangles whose pins turned by a right angle in one step).
 ///   The state is committed, with the error spread over the constraints.
 /// passed_through: a particle went through a sphere within a substep (tunnelling). Either no
@@ -80,12 +80,12 @@ inline constexpr std::size_t kStageCount = 6;
 WEFT_API std::string_view name(Status);
 WEFT_API std::string_view name(Stage);
 
-/// ms, that contacts with bodies took in the thread that called the step. Holding particles within
-/// local passes is not told apart from these passes: it is part of no figure.
+/// Times of contacts with bodies, in ms of the thread that called the step. Contacts within local
+/// passes count as part of these passes, and are in none of the three figures.
 struct ContactMs {
   double find = 0;    ///< which particles, faces and edges may touch
-  double sweep = 0;   ///< pushing apart those that touch, after each sweep over the constraints
-  double verify = 0;  ///< whether something went through, stopping it, and how deep contacts are
+  double sweep = 0;   ///< pushing contacts apart, after each sweep over the constraints
+  double verify = 0;  ///< whether anything went through; stopping it; the depth of contacts
   bool operator==(const ContactMs&) const = default;
 };
 
@@ -107,23 +107,23 @@ struct StepReport {
   std::int64_t visits = 0;               ///< constraints whose error was looked at, both loops
   std::int64_t corrections = 0;          ///< impulses applied, both loops
   int scheme_fallbacks = 0;  ///< attempts that scheme rattle left to scheme paper (Scheme)
-  int contacts = 0;          ///< candidate pairs, near enough to be watched
+  int contacts = 0;          ///< candidate pairs of spheres and particles
   /// The largest strain of all constraints and triangles of fabric, recomputed from the positions
   /// (Strain).
   double max_strain = 0;
   double rms_strain = 0;
   double max_shear = 0;  ///< rad, the largest of all triangles of fabric
-  /// The largest error of a law; `tolerance` bounds it. For a rigid constraint it is the strain.
+  /// The largest error of a law, which `tolerance` bounds. For a rigid constraint it is the strain.
   /// For a spring it is | |a-b| - rest_length - compliance f | / rest_length, with the tension f
   /// that the solver applied in the last substep. For a triangle of fabric it is the difference of
   /// the two sides of a law (MembraneElement), in strain and in radians of shear.
   double max_error = 0;
   /// The share of the forces of bending that a solution left unbalanced, the largest of all
-  /// substeps (small_steps). Both are root mean squares over the particles, and the weight counts
-  /// instead of the forces where it is more. With 0.01 a cloth bends as if its load were a
-  /// hundredth more or less. `tolerance` bounds it. Bending is solved before constraints and
-  /// contacts; how these move particles within a substep is not in it, and the next substep bends
-  /// from there.
+  /// substeps (small_steps). It is a ratio of root mean squares over the particles; the weight
+  /// counts in place of the bending forces where it is larger. With 0.01 a cloth bends as if its
+  /// load were a hundredth more or less. `tolerance` bounds it. Bending is solved before
+  /// constraints and contacts; how these move particles within a substep is not in it, and the next
+  /// substep bends from there.
   double max_bending_error = 0;
   std::uint32_t worst_constraint = kNoIndex;  ///< of the largest strain, in the description
   std::uint32_t worst_element = kNoIndex;     ///< triangle of the largest strain or shear
@@ -136,37 +136,37 @@ struct StepReport {
   /// each other.
   int zones = 0;
   /// Triangles and threads of the cloth that cross a triangle mesh when the step ends, and
-  /// particles inside one. It is 0, unless the step began so, a body was put there, or bodies close
-  /// on the cloth from both sides. The edges and faces of these triangles touch nothing until they
-  /// have come apart; their particles are kept out.
+  /// particles inside one. It is 0 unless the step began so, a body was put there, or bodies close
+  /// on the cloth from both sides. The edges and faces of these triangles do not collide until they
+  /// are out; their particles do.
   int intersecting = 0;
   int self_contacts = 0;  ///< pairs of features of the cloth that touch each other (SelfContact)
   /// Pairs of triangles of the cloth that cross each other when the step ends, and of a triangle
   /// and a thread that crosses it. It is 0 with SelfContact, unless the step began so, or more came
-  /// together than could be kept apart. They touch nothing of each other until they have come
-  /// apart. A step that began without any and ends with some has not converged.
+  /// together than could be kept apart. They do not collide with each other until they are apart. A
+  /// step that began without any and ends with some has not converged.
   int tangled = 0;
   double max_anchor_error = 0;  ///< m, by which the limits of an anchor are exceeded
   int open_seams = 0;           ///< seams whose particles have not come together yet (Seam)
   double max_seam_gap = 0;  ///< m, between particles of closed seams: bounded by contact_tolerance
   double seam_work = 0;     ///< J, work of open seams in this step
-  /// m/s, an estimate of how far this step leads a particle away from its true motion, at most.
-  /// Without a motion_tolerance it is that of the last substep alone. 0 by other solvers than
+  /// m/s, an estimate of the largest error of motion that this step adds to a particle. Without a
+  /// motion_tolerance it is that of the last substep alone. 0 with other solvers than
   /// small_steps.
   double motion_error = 0;
-  /// J, that the scheme, damped springs and contacts took: the fall of kinetic, potential and
+  /// J, dissipated by the scheme, damped springs and contacts: the fall of kinetic, potential and
   /// elastic energy beyond the work of moved pins, seams, forces, air, Damping::motion and
-  /// untangling. 0 by gauss_seidel.
+  /// untangling. 0 with gauss_seidel.
   double energy_lost = 0;
   /// J, work of moved pins in this step. It is exact if they move as one rigid body, else it is the
   /// work of the rigid motion nearest to theirs. Jumps do no work. Impulses of fixed spheres count
   /// as those of pins; moved spheres are left out.
   double pin_work = 0;
   double body_work = 0;      ///< J, work of moving bodies on the cloth in this step
-  double friction_work = 0;  ///< J, that friction with bodies took; out of tolerance <= energy_lost
+  double friction_work = 0;  ///< J, lost to friction with bodies; out of tolerance <= energy_lost
   std::uint32_t failed_particle = kNoIndex;  ///< with non_finite, non_finite_input: one of them
   std::uint32_t passed_particle = kNoIndex;  ///< with passed_through: one of them
-  /// Their sum is the time of the step, but for a few microseconds.
+  /// Their sum is the time of the step, to a few microseconds.
   std::array<double, kStageCount> stage_seconds{};
   ContactMs contact_ms{};  ///< part of stage_seconds
   /// Seams that are open although their time is over: they pull with too small a force, or
@@ -180,8 +180,8 @@ struct StepReport {
   /// moving a pin, or by releasing it. A step that ends with such a constraint, or with such a seam
   /// that is late, is `infeasible`.
   int held_apart = 0;
-  std::uint32_t worst_held = kNoIndex;  ///< of these the constraint with the largest strain
-  double untangling_work = 0;  ///< J, of what draws triangles apart that cross (SelfContact)
+  std::uint32_t worst_held = kNoIndex;  ///< of these, the constraint with the largest strain
+  double untangling_work = 0;           ///< J, work of SelfContact::untangle
 };
 
 /// Strain of all constraints, and of triangles of fabric | |f_u| - 1 | and | |f_v| - 1 |, for the
@@ -222,7 +222,7 @@ struct ChangedAir {
   double drag = 0, lift = 0, ram = 0;
 };
 
-/// Changes of a cloth that moves. Everything that is not listed stays as it is.
+/// Changes of a cloth that moves. Anything that is not listed stays as it is.
 struct Changes {
   std::vector<std::uint32_t> fix = {};      ///< particles: fixed where they are, at rest
   std::vector<std::uint32_t> release = {};  ///< fixed ones: freed, at the speed of their last move
@@ -237,8 +237,8 @@ struct Changes {
 
 /// A pressure (Pressure) of a cloth as it is.
 struct PressureNow {
-  double pressure = 0;  ///< Pa, more than the air around has
-  double volume = 0;    ///< m^3, that its triangles enclose; 0 if they do not close
+  double pressure = 0;  ///< Pa, above that of the air around it
+  double volume = 0;    ///< m^3, enclosed by its triangles; 0 if they are not closed
 };
 
 /// New limits of an anchor.
@@ -292,15 +292,15 @@ class WEFT_API Cloth {
   /// Takes over the model, state, forces, gravity, wind, pending pin moves and bodies of `from`,
   /// and its solver's memory of the last steps. `from` must be a cloth of the same Model, or of one
   /// that changes made of the same Model. Bodies make an automatic solver small_steps. This cloth
-  /// keeps its settings, and refuses a state that does not go with them. If solver, scheme,
-  /// backend, iterations or a tolerance (but for velocity_tolerance) differ, the solver's memory is
-  /// dropped, and positions out of tolerance are projected as if newly written.
+  /// keeps its settings, and refuses a state that does not fit them. If solver, scheme, backend,
+  /// iterations or a tolerance (but for velocity_tolerance) differ, the solver's memory is dropped,
+  /// and positions out of tolerance are projected as if newly written.
   Result<void> copy_state(const Cloth& from);
 
   /// Everything that copy_state takes over, except the model, as bytes for a file. Numbers are
-  /// little-endian. A checksum tells damage. The shapes of bodies are included. A cloth of an equal
-  /// model (of the same description; load_model) that loads the bytes, in another program too,
-  /// continues bit for bit as this one does, if its settings are the same.
+  /// little-endian. A checksum detects damage. The shapes of bodies are included. A cloth of an
+  /// equal model (of the same description; load_model) that loads the bytes, in another program
+  /// too, continues bit for bit as this one does, if its settings are the same.
   std::vector<std::byte> save_state() const;
   /// Goes on where the saved cloth was, with the settings of this cloth, as copy_state does. It
   /// takes as long as to create a cloth, and hulls of bodies are built again. Bytes that are
@@ -345,13 +345,13 @@ class WEFT_API Cloth {
   /// too, are projected onto the constraints when the next step begins; velocities are unchanged.
   /// (With Settings::iterations nothing is projected.)
   ///
-  /// Fabrics, and all springs that by themselves swing faster than 200 rad/s, are projected too if
-  /// at these positions they would at once become fast. They come to the nearby equilibrium, and
-  /// lose their stored energy. Slower springs keep their stretch, because their swings are visible.
+  /// Fabrics, and all springs with a natural frequency above 200 rad/s, are projected too if these
+  /// positions would at once set them in fast motion. They come to the nearby equilibrium, and lose
+  /// their stored energy. Slower springs keep their stretch, because their swings are visible.
   ///
   /// A fixed particle that moved in the last step keeps its speed.
   Result<void> write_positions(std::span<const Vec3> in);
-  /// Replaces all velocities (m/s); finite, one per particle. Fixed particles are at rest after it.
+  /// Replaces all velocities (m/s); finite, one per particle. Fixed particles are then at rest.
   Result<void> write_velocities(std::span<const Vec3> in);
   /// External forces in N besides gravity, one per particle, kept until replaced. Empty: none.
   Result<void> write_forces(std::span<const Vec3> in);
@@ -378,10 +378,10 @@ class WEFT_API Cloth {
   /// Moves many, in their order: particles[i] to positions[i]. On an error none is moved.
   Result<void> move_fixed(std::span<const std::uint32_t> particles,
                           std::span<const Vec3> positions);
-  /// Puts a fixed particle down somewhere else, without a way between: it is there before the next
-  /// step begins. The cloth is projected after it, fabrics too (write_positions); velocities, and
-  /// the load that the fabric carries, are unchanged. (With Settings::iterations nothing is
-  /// projected: the jump becomes speed.) Particles that a placed sphere jumps over do not set
+  /// Teleports a fixed particle: it is at the new position before the next step begins. The cloth
+  /// is then projected to follow it, fabrics too (write_positions); velocities, and the load that
+  /// the fabric carries, are unchanged. (With Settings::iterations nothing is projected: the jump
+  /// becomes a velocity.) Particles that a teleported sphere jumps over do not set
   /// passed_through.
   Result<void> place_fixed(std::uint32_t particle, Vec3 position);
   /// Places many, as move_fixed does. If memory runs out, nothing is changed.
@@ -405,17 +405,17 @@ class WEFT_API Cloth {
   /// ones stay.
   Result<void> scale_anchors(double scale);
 
-  /// Takes the whole cloth along by a share, 0 to 1, of a rigid motion (of its translation and its
-  /// angle), at once. The cloth does not feel the acceleration: positions, fixed particles, anchors
-  /// and the solver's memory move and turn; velocities turn and gain nothing. Gravity, forces and
-  /// wind belong to the world and stay. The air drags at the cloth in the next step as if the cloth
-  /// had moved this way during that step.
+  /// Moves the whole cloth at once by a share, 0 to 1, of a rigid motion (of its translation and
+  /// its angle), without accelerating it: positions, fixed particles, anchors and the solver's
+  /// memory move and turn; velocities turn and gain nothing. Gravity, forces and wind belong to the
+  /// world and stay. The air drags at the cloth in the next step as if the cloth had moved this way
+  /// during that step.
   ///
   /// To let the cloth feel only the fraction s of its character's acceleration, call
   /// carry(motion, 1 - s) before the step, then move pins and anchors. Velocities are then relative
   /// to the character.
   Result<void> carry(const RigidMotion& motion, double share);
-  /// carry with share 1, but the air does not drag.
+  /// carry with share 1, but without drag of the air.
   Result<void> teleport(const RigidMotion& motion);
 
   /// Adds a body, which is there from the next step on, and returns its id; ids are not used again.
@@ -426,13 +426,13 @@ class WEFT_API Cloth {
   /// evenly about one axis by half a turn at most, and takes cloth along. The last move before a
   /// step counts. A body that is not moved before a step stands still in it.
   Result<void> move_body(std::uint32_t id, const Pose& pose);
-  /// The same without a way between. Cloth that is then inside the body comes out slowly.
+  /// Teleports a body. Cloth that is then inside the body comes out slowly.
   Result<void> place_body(std::uint32_t id, const Pose& pose);
   /// Gives a triangle mesh other vertices, in its own coordinates. They travel there in straight
   /// lines during the next step, while the pose travels too. The last move before a step counts.
   /// Vertices that are not moved before a step stand still in it.
   Result<void> move_body_vertices(std::uint32_t id, std::span<const Vec3> vertices);
-  /// The same without a way between.
+  /// Teleports the vertices.
   Result<void> place_body_vertices(std::uint32_t id, std::span<const Vec3> vertices);
   /// Switches a body on or off. A body that is off touches nothing.
   Result<void> switch_body(std::uint32_t id, bool on);
@@ -444,8 +444,8 @@ class WEFT_API Cloth {
   /// Changes the description of a moving cloth. If memory runs out, or on an error, nothing is
   /// changed. model() is then another one, as build_model makes it of the changed description;
   /// other cloths of the old model keep that. Numbers of particles and constraints stay the same.
-  /// So do positions, and velocities but of particles that are fixed or released. The solver keeps
-  /// its memory, unless Solver::automatic, which chooses anew, chooses another solver.
+  /// So do positions, and velocities except of particles that are fixed or released. The solver
+  /// keeps its memory, unless Solver::automatic, which chooses anew, chooses another solver.
   ///
   /// Constraints that are then longer or shorter than they may be, and those of pins that are
   /// released, are put right when the next step begins; velocities are unchanged. So are fabrics
@@ -470,16 +470,16 @@ class WEFT_API Cloth {
   std::uint64_t state_hash() const;
   std::size_t bytes() const;  ///< held by this cloth, without the shared model
 
-  /// Writes all that this cloth does from now on to a file, for a report of a bug: its settings,
-  /// model and state, and in each step what calls changed before it and the hash that it came to.
-  /// `weft replay FILE` does the same steps again elsewhere, and names the first that comes to
-  /// other bits. Each step is in the file before it begins: of a program that crashes, the file has
-  /// all until there. The note is shown by `weft replay`. A step takes longer, and allocates. The
-  /// recording stays with this cloth when it is moved; a clone has none. An error: the file cannot
-  /// be written, or this cloth is being recorded. A file that is there is replaced.
+  /// Records all that this cloth does from now on in a file, for a bug report: its settings, model
+  /// and state, and of each step the changes before it and the hash of the state that it reached.
+  /// `weft replay FILE` repeats these steps elsewhere, and names the first one with other bits.
+  /// Each step is in the file before it begins, so after a crash the file has everything up to that
+  /// step. `weft replay` shows the note. A step takes longer, and allocates. The recording moves
+  /// with this cloth; a clone has none. An error means that the file cannot be written, or that
+  /// this cloth is being recorded already. An existing file is replaced.
   Result<void> begin_recording(const std::string& path, std::string_view note = {});
-  /// Completes the file, which also ends with the cloth, but is not marked as complete then. An
-  /// error: nothing was recorded, or something could not be written.
+  /// Completes the file. If the cloth is destroyed first, the file ends there and is not marked as
+  /// complete. An error means that nothing was recorded, or that something could not be written.
   Result<void> end_recording();
 
  private:

@@ -16,8 +16,8 @@
 
 namespace weft {
 
-/// A function for the job system to call. A call rounds as the thread does that steps the cloths,
-/// and leaves the floating-point state of its own thread as it was.
+/// A function for the job system to call. A call uses the rounding mode of the thread that steps
+/// the cloths, and restores the floating-point state of its own thread.
 struct Job {
   void (*function)(void* context) noexcept = nullptr;
   void* context = nullptr;
@@ -36,8 +36,8 @@ struct JobSystem {
   /// returns when all calls have returned. The calling thread should take part: weft waits here
   /// until the last call has been made.
   ///
-  /// All calls are alike. The first one begins to work. Calls that come while there is work help;
-  /// calls that come later return at once. So no call waits for another one to begin. run may make
+  /// All calls are alike. The first one begins the work. Calls that start while there is work left
+  /// help; later calls return at once. So no call waits for another one to begin. run may make
   /// fewer calls; the calling thread then does the rest.
   void (*run)(void* host, Job job, int times) noexcept = nullptr;
 };

@@ -54,9 +54,9 @@ struct NamedMaterial {
   std::string_view source;  ///< origin of the values
 };
 
-/// Common fabrics. Cloth of one name differs by a factor of two and more; these are examples.
+/// Common fabrics. Fabrics of one name differ by a factor of two and more; these are examples.
 WEFT_API std::span<const NamedMaterial> materials();
-/// The error lists the names that there are.
+/// The error lists the known names.
 WEFT_API Result<Material> find_material(std::string_view name);
 
 // ----------------------------------------------------------------------------------------- meshes
@@ -70,11 +70,11 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 /// A surface at the beginning, and its shape at rest. Vertices become particles, except those in no
 /// face and no line.
 ///
-/// Without a material every edge of a face becomes a rigid constraint of its length. Edges come in
-/// the order of the faces, then every line. Four-sided faces have diagonals only if `ropes` asks
-/// for them.
+/// Without a material every edge of a face becomes a rigid constraint of its length: first the
+/// edges, in the order of the faces, then every line. Four-sided faces have diagonals only if
+/// `ropes` asks for them.
 ///
-/// With a material faces stretch, shear and bend as it says, whatever their shapes and sizes:
+/// With a material faces stretch, shear and bend as the material says, whatever their shape:
 ///
 /// - A four-sided face that is nearly a rectangle, along warp and weft, becomes springs: its edges
 ///   carry warp and weft and its diagonals shear, within 3 % of the material. Chains of such edges
@@ -85,10 +85,10 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 ///   wide angles opposite to it is flipped, if the shape at rest and the warp stay nearly the same.
 ///
 /// The warp, unless `warp` gives it: in four-sided faces two families of edges cross, from face to
-/// face; opposite edges are of one family. The warp is the family that runs more along y, or, if
-/// both do alike, more along x. This holds for each connected part that consists of near-rectangles
-/// by more than half; the faces between them continue their warp. In other parts the warp is the
-/// direction y within the plane of each face; in parts that lie level it is x.
+/// face; opposite edges are of one family. The warp is the family that runs more along y or, if
+/// both do so equally, more along x. This holds for each connected part that consists of
+/// near-rectangles by more than half; the faces between them continue their warp. In other parts
+/// the warp is the direction y within the plane of each face; in parts that lie level it is x.
 ///
 /// Faces of five and more corners are cut into triangles around the first corner; they should be
 /// convex. Lines are threads that do not stretch. A line along the edge of a face is ignored.
@@ -118,7 +118,7 @@ struct MeshDescription {
   /// Direction of the warp of a material, in the shape at rest (with flat places (u, v, 0)): one
   /// for all faces, or one per face, of any length. Only the part in the plane of the face counts.
   /// A face that has no direction, or one across its plane, continues the faces beside it. Empty:
-  /// as said above; with flat places along v.
+  /// As said above; with flat places along v.
   std::vector<Vec3> warp;
   std::vector<std::uint32_t> pins;   ///< vertices whose particles are fixed
   std::optional<Material> material;  ///< none: rigid edges

@@ -58,15 +58,15 @@ struct Constraint {
 /// bending of two triangles with the areas A0 and A1 and the stiffness k (Bergou et al.,
 /// "A Quadratic Bending Model for Inextensible Surfaces", 2006).
 ///
-/// A rest of |d| has no side: a turn of 60 degrees is as good as one of -60. A hinge of four
-/// particles has one. Its edge joins particles 0 and 1, its faces reach from there to 2 and 3, and
-/// its energy is |d - fold n|^2 / (2 compliance). The normal n of both faces is along
+/// rest has no sign: a turn of 60 degrees is as good as one of -60. A hinge of four particles has a
+/// signed fold. Its edge joins particles 0 and 1, its faces reach from there to 2 and 3, and its
+/// energy is |d - fold n|^2 / (2 compliance). The normal n of both faces is along
 ///
 ///     (x1 - x0) x (weights[3] (x3 - x0) - weights[2] (x2 - x0))
 ///
 /// So fold is positive where 2 and 3 stand on the side from which the face (0, 1, 3) is seen
 /// counter-clockwise, if their weights are positive. Beyond 147 degrees n is shorter than 1: a fold
-/// that goes right over changes its side without a jump.
+/// that turns all the way over changes its sign without a jump.
 struct BendingElement {
   std::array<std::uint32_t, 4> particles{};  ///< all different; the last may be kNoIndex
   std::array<double, 4> weights{};           ///< the last is 0 where its particle is kNoIndex
@@ -106,29 +106,29 @@ struct Damping {
 };
 
 /// Drag, lift and ram pressure on triangles of the cloth. With v the mean velocity of its corners
-/// relative to the wind, a triangle of area A and unit normal n feels the force
+/// relative to the wind, a triangle of area A and unit normal n is subject to the force
 ///
 ///     -1/2 density A |n . v| (drag v + lift (|v| n' - |n . v| v / |v|))
 ///
 /// n' is n or -n, whichever has n' . v >= 0. The first part is against v, the second across it.
 /// There is no force edge-on, and none where v is 0. Each corner takes a third of the force: a
 /// share that is linear in its own velocity, so that the three sum to the formula
-/// (engine/step/air.h). A triangle that moves along its normal feels 1/2 density A drag |v|^2. So
-/// with the mass m it falls with v^2 = 2 m g / (density A drag) in the end. With small_steps the
-/// force is found once or a few times a step, else once a substep. It cannot make light cloth
-/// faster than the air, at any step.
+/// (engine/step/air.h). The force on a triangle that moves along its normal is 1/2 density A drag
+/// |v|^2. So with the mass m its terminal velocity is v^2 = 2 m g / (density A drag). With
+/// small_steps the force is found once or a few times a step, else once a substep. However long the
+/// step, it cannot make light cloth faster than the air.
 ///
-/// Drag and lift are of one triangle, and hold no canopy open: where its skirt stands along the
-/// flow they have no part along the normal. The air that a canopy or a sail catches stands still in
-/// it and presses on all of it alike. So each piece of the triangles (those that share particles)
-/// feels the pressure
+/// Drag and lift act on single triangles, and do not hold a canopy open: where its skirt lies along
+/// the flow they have no component along the normal. The air that a canopy or a sail catches is at
+/// rest in it, and presses on all of it equally. So each piece of the triangles (those that share
+/// particles) is subject to the pressure
 ///
 ///     -1/2 density ram |u| u      along the normals,   u = v . S / |S|
 ///
 /// S is the sum of the triangles' areas times normals, which is that of the mouth of a canopy, and
 /// v the mean velocity of the piece relative to the wind, by area. It presses from the side that
-/// the flow meets, whichever way the triangles face. A flat plate feels 1/2 density A ram u^2
-/// besides its drag, a closed surface nothing. By small_steps it follows normals in every substep.
+/// the flow meets, whichever way the triangles face. The force is 1/2 density A ram u^2 on a flat
+/// plate, besides its drag, and 0 on a closed surface. With small_steps it follows the normals.
 struct Air {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double density = 1.2;  ///< kg/m^3
@@ -138,24 +138,24 @@ struct Air {
   double ram = 0;        ///< C_p, of the flow that a piece catches; 1.2 for a canopy
 };
 
-/// A pressure on triangles of `surface`. It is more on one side of them than on the other, so it
-/// pushes along the normals, out of the side from which the corners are seen counter-clockwise; a
-/// negative one against them. It follows the normals in every substep, and does the work of the
-/// volume that the triangles sweep: none where it stands still. Several on a triangle add up.
-/// Solver small_steps only; `automatic` becomes small_steps.
+/// A difference of pressure across triangles of `surface`. It pushes them along their normals,
+/// towards the side from which their corners are seen counter-clockwise; a negative one pushes the
+/// other way. It follows the normals in every substep. Its work is the pressure times the volume
+/// that the triangles sweep. Several pressures on one triangle add up. Solver small_steps only;
+/// `automatic` becomes small_steps.
 ///
 /// The pressure of a gas falls as its volume grows, at a constant temperature:
 ///
 ///     (ambient + pressure now) (volume now) = (ambient + pressure) volume
 ///
-/// Its triangles enclose it: as many of them have a side in one direction as in the other, and the
-/// normals point outwards. A given pressure above k / 2 R inflates a ball without end: threads of k
-/// N/m hold no more.
+/// Its triangles must enclose it: as many of them run along an edge in one direction as in the
+/// other, and their normals point outwards. A given pressure above k / 2 R inflates a ball without
+/// end: threads of k N/m cannot hold it.
 struct Pressure {
-  double pressure = 0;                        ///< Pa, more than the air around has
+  double pressure = 0;                        ///< Pa, above that of the air around it
   std::vector<std::uint32_t> triangles = {};  ///< by their numbers in `surface`; empty: all
   bool gas = false;                           ///< else the pressure stays as it is
-  double volume = 0;         ///< m^3, where the gas has this pressure; 0: the one that it has now
+  double volume = 0;         ///< m^3, at which the gas has this pressure; 0: its present volume
   double ambient = 101'325;  ///< Pa, of the air around a gas, > 0
 
   bool operator==(const Pressure&) const = default;
@@ -168,7 +168,7 @@ struct Pressure {
 ///     |x - centre| >= backstop_radius,
 ///         centre = point - (backstop_distance + backstop_radius) normal
 ///
-/// Each limit holds one particle alone, and costs far less than a constraint. The particle is put
+/// Each limit holds one particle alone, and costs far less than a constraint. The particle is kept
 /// within its limits, to Settings::contact_tolerance. The part of its velocity that points out of
 /// the limits is removed (relative to the moving limits). So the first limit is a rope that becomes
 /// taut, and the second a floor without bounce and friction. A max_distance of 0 attaches the
@@ -189,8 +189,8 @@ struct Anchor {
 /// too small for that, they take longer. Then the seam is closed for good: it holds any force. An
 /// open seam does not count as an error until its time is over (StepReport::open_seams,
 /// late_seams). Positions that are written apart from each other open it again. Faces and edges of
-/// the cloth that have one of the two at a corner touch nothing of those that have the other one
-/// (SelfContact). Solver small_steps only.
+/// the cloth at one of the two particles do not collide with those at the other (SelfContact).
+/// Solver small_steps only.
 struct Seam {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -199,24 +199,24 @@ struct Seam {
 };
 
 /// Cloth that touches itself: all cloths and pieces of a scene, by the triangles of `surface` and
-/// by threads (SceneDescription::surface). Layers keep the thickness from each other, with
-/// friction. Features that are nearer than that in the shape at rest keep nearly the distance that
-/// they have there. So a thickness may be larger than an edge; but then all neighbours are pairs,
-/// folds are stiffer, and a step takes long. Half an edge is a good bound (tests/README.md has
-/// figures). Seams join the cloth in the shape at rest, whether they are open or closed.
+/// by threads (SceneDescription::surface). Layers stay one thickness apart, with friction. Features
+/// that are nearer than that in the shape at rest keep nearly the distance that they have there. So
+/// a thickness may be larger than an edge; but then all neighbours are in contact, folds are
+/// stiffer, and a step takes long. Half an edge is a good bound (tests/README.md has figures).
+/// Seams join the cloth in the shape at rest, whether they are open or closed.
 ///
-/// A cloth that does not cross itself when a step begins does not when it ends, however fast it
-/// is: that is verified, and features that would go through each other are stopped. Layers that lie
-/// on each other may be nearer than the thickness by a twentieth, and under a blow by more for a
-/// while; StepReport::max_penetration does not count that. Triangles that cross at the start touch
-/// nothing of each other until they have come apart (StepReport::tangled).
+/// A cloth that does not cross itself when a step begins does not cross itself when it ends,
+/// however fast it is: each step verifies this, and stops features that would go through each
+/// other. Layers that lie on each other may be nearer than the thickness by a twentieth, and under
+/// a blow by more for a while; StepReport::max_penetration does not count that. Triangles that
+/// cross at the start do not collide with each other until they are apart (StepReport::tangled).
 ///
 /// With `untangle` triangles that cross are drawn apart, at 0.2 m/s. Where the line in which they
 /// cross cuts off a part of the cloth, this part comes through: the one with the fewest fixed
 /// particles, the lightest of several. Elsewhere the line becomes shorter. The work of this is
 /// StepReport::untangling_work. Triangles beside those that cross may come to cross, too, for a
-/// while; all others are kept apart as ever. Where pins hold both sides it may stay. Cloth that
-/// does not cross itself has the same bits with `untangle` and without.
+/// while; all others are kept apart as ever. Where pins hold both sides the crossing may stay.
+/// Cloth that does not cross itself has the same bits with `untangle` and without.
 ///
 /// Layers that begin exactly in one plane, or whose positions are written so, are moved apart by
 /// micrometres when the next step begins. Each piece of the cloth moves to its front: the side from
@@ -239,7 +239,7 @@ struct SelfContact {
 ///
 /// At most one constraint may join the same two particles. A constraint between two fixed particles
 /// is legal but inert: it is neither solved nor part of the strain until one of them is released
-/// (Cloth::change). A step tells that it is out of tolerance (StepReport::held_apart).
+/// (Cloth::change). A step reports it if it is out of tolerance (StepReport::held_apart).
 struct SceneDescription {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;      ///< empty: at rest; else one per particle
@@ -256,9 +256,9 @@ struct SceneDescription {
   /// Constraints between other particles are threads: they touch such bodies, and the cloth if it
   /// touches itself, all along their length. Cords, laces and fringes are chains of them. A
   /// constraint between two particles of one piece of this surface is no thread: it braces the
-  /// piece. Nor is one that is longer than two constraints that lead from its one end to the other,
-  /// as braces of nets and of stiff cords are. Particles that have neither a triangle nor a thread
-  /// touch as points.
+  /// piece. Nor is one that is longer than two constraints that lead from one of its ends to the
+  /// other, as braces of nets and of stiff cords are. Particles that have neither a triangle nor a
+  /// thread touch as points.
   std::vector<std::array<std::uint32_t, 3>> surface;
   Damping damping;
   Air air;
@@ -277,8 +277,8 @@ struct SceneDescription {
   std::vector<double> radii;
 };
 
-/// A scene that is checked and prepared: topology, colours, rest lengths, masses. Nothing in it
-/// changes from step to step.
+/// A scene that is checked and prepared: topology, colours, rest lengths, masses. It never
+/// changes.
 class Model;
 
 /// Checks the description and prepares it. On an error nothing is built; the error names the field,

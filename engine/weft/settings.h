@@ -5,9 +5,9 @@
 /// The defaults are right for most cloth. Everyday settings (Settings says more of each):
 ///
 ///   tolerance         the largest error that a step may leave
-///   motion_tolerance  how far the motion may be from the true motion
+///   motion_tolerance  the allowed error of motion
 ///   substeps          a fixed number, to bound the time of a step
-///   max_iterations    the largest work of a step
+///   max_iterations    an upper bound on the work of a step
 ///   threads           how many threads a step may use
 ///   sleep             steps of a cloth at rest cost next to nothing
 ///
@@ -46,23 +46,23 @@ namespace weft {
 ///   yarn          all else
 ///   The thresholds are no part of the interface.
 /// small_steps: many short substeps of one relaxed sweep each, over yarns where the cloth has them
-///   and over single constraints elsewhere. Passes over the constraints that are out of tolerance
-///   follow. A sweep leaves a strain that falls with the square of the substep. The length of a
-///   substep follows in closed form from the load that hangs on the pins and from the tolerance
-///   (engine/solvers/small_steps/small_steps_load.h). Use it for any mesh at 0.1 % and looser, and
-///   for a motion that is near the true one. Chains and trees of rigid links and ropes that hang
-///   from one particle are solved as one system, at any tolerance and for masses that differ by a
-///   hundred thousand. In other cloth masses should not differ by more than a hundred.
-///   Keep to substeps of one length: a change by half costs some energy. Only small_steps solves
-///   triangles of fabric, bending, anchors, seams and bodies.
+///   and over single constraints elsewhere. Then come passes over the constraints that are still
+///   out of tolerance. A sweep leaves a strain that falls with the square of the substep. The
+///   length of a substep follows in closed form from the load that hangs on the pins and from the
+///   tolerance (engine/solvers/small_steps/small_steps_load.h). Use it for any mesh at 0.1 % and
+///   looser, and for accurate motion. Chains and trees of rigid links and ropes that hang from one
+///   particle are solved as one system, at any tolerance and for masses that differ by a hundred
+///   thousand. In other cloth masses should not differ by more than a hundred. Keep the length of
+///   substeps constant: a change by half costs some energy. Only small_steps solves triangles of
+///   fabric, bending, anchors, seams and bodies.
 /// yarn: splits the cloth into yarns, chains of constraints that run straight on through it, as
 ///   the yarns of a woven cloth do. Each yarn is solved exactly, many side by side in SIMD lanes.
 ///   If sweeps over the yarns converge slowly, conjugate gradients solve all of them as one system.
 ///   Ropes, hubs and contacts are relaxed one by one after each sweep, and take part in that
-///   system. A taut yarn between two fixed particles, without triangles that brace it, hangs by a
-///   strain. With scheme paper and without springs it keeps most of the strain that yarns may leave
-///   (0.3 %, or the tolerance if that is less), in addition to the strain that the distance of its
-///   ends demands. simd backend only.
+///   system. A taut yarn between two fixed particles sags by its strain, unless triangles brace it.
+///   With scheme paper and without springs it keeps most of the strain that yarns may leave (0.3 %,
+///   or the tolerance if that is less), in addition to the strain that the distance of its ends
+///   demands. simd backend only.
 /// direct: computes all impulses at once by sparse factorisation, and repeats this until the true
 ///   errors are within tolerance: two or three times, at any tolerance. Use it for mass ratios of a
 ///   million. At most 16 bodies may take part: free spheres that touch something or are joined to
@@ -72,7 +72,7 @@ namespace weft {
 ///
 /// If yarn or direct fails, these are tried in this order:
 ///   1. the same solver in shorter parts: the part that was rejected is halved, down to a sixteenth
-///      of the substep (StepReport::halvings counts what was rejected);
+///      of the substep (StepReport::halvings counts rejected attempts);
 ///   2. direct, after yarn, if masses are unequal: it does the rest of the substep;
 ///   3. small_steps;
 ///   4. gauss_seidel, whose result is committed with its error.
@@ -83,7 +83,7 @@ namespace weft {
 /// (engine/step/energy.h). So a step depends slightly on the steps before it, until positions are
 /// written. gauss_seidel is guarded in this way only where it is cut off.
 enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, automatic };
-/// automatic: bdf2 with small_steps, else paper. Cloth::settings() tells which.
+/// automatic: bdf2 with small_steps, else paper. Cloth::settings() says which.
 /// bdf2, implicit: schemes of small_steps alone. bdf2 is BDF2 with variable steps, of second order;
 ///   implicit is the implicit Euler method, of first order. A particle that a contact has moved
 ///   goes on from there at first order. If you write velocities, the stored previous velocities
@@ -115,10 +115,10 @@ inline constexpr int kAutomaticSubsteps = 0;
 
 /// How a cloth is solved. The defaults are the fastest way to 1 % that is known here;
 /// paper_settings() has the settings of the paper. The order of the fields is that of the C struct;
-/// each says whether it is for every day.
+/// each comment says whether a field is for everyday use.
 struct Settings {
   /// Everyday. The strain, | |a-b| - rest | / rest, that every step must reach; of a spring, the
-  /// distance from its law; and the share of the forces of bending that may be left over
+  /// distance from its law; and the fraction of the bending forces that may stay unbalanced
   /// (StepReport::max_bending_error). > 0. The simd backend works in floats. So Cloth::create
   /// refuses rest lengths, tolerance * rest length, and those of the tolerances below that are
   /// used, outside 1e-18 to 1e18.
@@ -126,12 +126,12 @@ struct Settings {
   /// Everyday. Number of substeps of a step; 0 (kAutomaticSubsteps): chosen. Fine meshes need small
   /// substeps.
   ///
-  /// A given number, with small_steps: the errors are looked at after the last substep. There is
-  /// one sweep per substep. The corrections after that take at most the time of 6 further sweeps
-  /// per substep, or of automatic substeps if that is longer; max_iterations lowers this bound. A
-  /// quarter of the time that contacts with meshes take beside those corrections is in it. The
-  /// search for them and their verification are not. With other solvers each substep is solved to
-  /// the tolerances.
+  /// A given number, with small_steps: the errors are checked after the last substep. There is one
+  /// sweep per substep. The corrections after that take at most the time of 6 further sweeps per
+  /// substep, or of automatic substeps if that is longer; max_iterations lowers this bound. A
+  /// quarter of the time of contacts with meshes during these corrections counts towards the bound.
+  /// The search for contacts and their verification do not count. With other solvers each substep
+  /// is solved to the tolerances.
   ///
   /// A chosen number, with small_steps: in closed form, up to 1024. With other solvers: from the
   /// motion (rattle takes up to 2.5 times as many as paper) and, with yarn, from the load of heavy
@@ -148,9 +148,9 @@ struct Settings {
   /// solution along directions that will change is wasted work: 32 saves a fifth of the iterations
   /// and more.
   int renew_after = 32;
-  /// Everyday. The largest work of a whole step, with all its substeps, attempts and schemes; > 0.
-  /// Games should set it to a few times the usual work: what one frame leaves undone, the next must
-  /// do. (For the same time in each frame: `iterations` and `substeps`, solver yarn.)
+  /// Everyday. > 0, an upper bound on the work of a step: substeps, attempts and schemes together.
+  /// Games should set it to a few times the usual work: the next frame does what one leaves undone.
+  /// (For the same time in each frame: `iterations` and `substeps`, solver yarn.)
   ///
   /// With small_steps and given substeps: passes in addition to one sweep per substep, in any
   /// state, projections of a start included; 0 is allowed. A pass is a sweep, or as many visits of
@@ -164,11 +164,11 @@ struct Settings {
   /// Advanced. m, of penetration, and beyond the limits of an anchor, that a step may leave; > 0.
   double contact_tolerance = 1e-4;
   double velocity_tolerance = 0.01;  ///< Advanced. m/s along a constraint; > 0
-  /// Everyday. m/s, by which particles may depart from their true motion; 0: not asked for. weft
-  /// uses more substeps (up to 1024) until the error is small enough, as far as rounding allows;
-  /// StepReport::motion_error tells the error. The estimate leaves out contacts and chaos. Only
-  /// small_steps has it, and automatic then chooses small_steps at any tolerance. It is refused
-  /// with `substeps`, `iterations` or velocity_correction.
+  /// Everyday. m/s, the allowed error of motion of a particle; 0: off. weft uses more substeps (up
+  /// to 1024) until the error is small enough, as far as rounding allows; StepReport::motion_error
+  /// reports the error. The estimate leaves out contacts and chaos. Only small_steps has it, and
+  /// automatic then chooses small_steps at any tolerance. It is refused with `substeps`,
+  /// `iterations` or velocity_correction.
   double motion_tolerance = 0;
   /// Advanced. N s, the largest impulse of one correction; 0: no limit. gauss_seidel on the
   /// reference backend only.

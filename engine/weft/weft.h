@@ -28,13 +28,13 @@
 ///  3. A Model is immutable. Any number of Cloths and threads may share it. A Cloth is not
 ///     synchronised: one thread at a time may call it, const functions included.
 ///  4. weft owns no threads and starts none. Parallel work runs in the oneTBB arena that the
-///     calling thread is in, or in the caller's own job system (jobs.h). All threads round as the
-///     calling thread does. They go back as they were when the step ends: weft changes neither
-///     their priority nor the processors that they may run on.
-///     A oneTBB task may start after its step has ended; it returns at once. So a plugin that holds
-///     weft must not be unloaded while tasks may still start: link it with -z nodelete.
-///     Do not enable floating-point traps: SIMD lanes may divide by zero; those results are not
-///     used. The only global that affects results is WEFT_ISA in the environment (Isa).
+///     calling thread is in, or in the caller's own job system (jobs.h). All threads use the
+///     rounding mode of the calling thread, and get their own back when the step ends. weft changes
+///     neither their priority nor their affinity. A oneTBB task may start after its step has ended;
+///     it returns at once. So a plugin that holds weft must not be unloaded while tasks may still
+///     start: link it with -z nodelete. Do not enable floating-point traps: SIMD lanes may divide
+///     by zero; those results are not used. The only global that affects results is WEFT_ISA in the
+///     environment (Isa).
 ///  5. A step allocates nothing once warm (contact lists grow to their largest size and stay).
 ///  6. Errors are values. Bad input yields one line that names the field, the index and the value,
 ///     and nothing is built or changed. weft throws only what the standard allocator throws.
@@ -44,7 +44,7 @@
 /// sources of weft.
 ///
 /// Versions are major.minor.patch. While major is 0 a new minor version may change this interface
-/// and the bits of results; a new patch changes neither, but for mistakes.
+/// and the bits of results; a new patch changes neither, except to fix mistakes.
 #pragma once
 
 #include <weft/batch.h>

@@ -82,7 +82,7 @@ void add_pins(ClothClass& cloth) {
       .def("move_fixed", fixed(&Cloth::move_fixed), py::arg("particles"), py::arg("positions"),
            "Moves fixed particles, or one: they travel there during the next step.")
       .def("place_fixed", fixed(&Cloth::place_fixed), py::arg("particles"), py::arg("positions"),
-           "Puts fixed particles, or one, down somewhere else, without a way between.")
+           "Teleports fixed particles, or one.")
       .def(
           "change",
           [](HeldCloth& c, const Changes& changes) {

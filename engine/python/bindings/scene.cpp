@@ -117,7 +117,7 @@ void add_model(py::module_& m) {
       .def_readonly("anchors", &ModelInfo::anchors, "points that hold particles")
       .def_readonly("seams", &ModelInfo::seams, "pairs that come together")
       .def_readonly("surface_triangles", &ModelInfo::surface_triangles, "that meshes touch")
-      .def_readonly("air_triangles", &ModelInfo::air_triangles, "that feel the air")
+      .def_readonly("air_triangles", &ModelInfo::air_triangles, "subject to drag and lift")
       .def_readonly("spheres", &ModelInfo::spheres, "particles that others collide with")
       .def_readonly("colours", &ModelInfo::colours, "groups of constraints that share no particle")
       .def_readonly("tiles", &ModelInfo::tiles, "groups that threads may work on in parallel")

@@ -52,7 +52,7 @@ void add_settings(py::module_& m) {
       .field("max_iterations", &Settings::max_iterations, "of a whole step")
       .field("contact_tolerance", &Settings::contact_tolerance, "m")
       .field("velocity_tolerance", &Settings::velocity_tolerance, "m/s")
-      .field("motion_tolerance", &Settings::motion_tolerance, "m/s; 0: not asked for")
+      .field("motion_tolerance", &Settings::motion_tolerance, "m/s, the allowed error; 0: off")
       .field("impulse_limit", &Settings::impulse_limit, "N s; 0: none")
       .field("solver", &Settings::solver, "a Solver")
       .field("scheme", &Settings::scheme, "a Scheme")
