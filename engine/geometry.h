@@ -52,7 +52,7 @@ inline Tensor plus_square(Tensor t, double s, Vec3 v) {
           t.yz + s * v.y * v.z, t.zx + s * v.z * v.x, t.xy + s * v.x * v.y};
 }
 inline double trace(const Tensor& t) { return t.xx + t.yy + t.zz; }
-/// Of all nine elements.
+/// The sum over all nine elements.
 inline double sum_of_squares(const Tensor& t) {
   return t.xx * t.xx + t.yy * t.yy + t.zz * t.zz + 2 * (t.yz * t.yz + t.zx * t.zx + t.xy * t.xy);
 }

@@ -61,7 +61,7 @@ inline constexpr double kContactSpare = 0.3;
 /// other by more than this share of their distance, may become those that touch within an interval.
 /// Others are left to their neighbours, and to the verification.
 inline constexpr double kContactBeyond = 0.2, kContactLean = 0.6, kContactPassing = 0.5;
-/// In thicknesses: what boxes that hold points until a step ends hold beyond. What flutters leaves
+/// In thicknesses: the margin of boxes that hold points until a step ends. Fluttering cloth leaves
 /// them, and its candidates are renewed. While positions are put right boxes of an interval have it
 /// in place of kContactSpare, since nothing tells where points go: the first frame of `outfit` 40
 /// has 223 intervals in place of 266.
@@ -72,9 +72,9 @@ inline constexpr double kContactStandingSpare = 1.5;
 /// the order of pairs alone (perf/tried.md has all of these ablations): with 3 the tunic of a body
 /// that walks leaves its tubes more often.
 inline constexpr double kContactWideReach = 5;
-/// Of cloth that touches itself tubes hold more, so that what speeds up seldom leaves its own: this
-/// part of the shortest edge of a particle, or of its way until the step ends, or what this
-/// acceleration (m/s^2) makes of a way in that time. A falling sheet of 20 x 20 is renewed six
+/// Tubes of cloth that touches itself hold more, so that particles that speed up seldom leave
+/// theirs: this part of the shortest edge of a particle, or of its way until the step ends, or the
+/// way that this acceleration (m/s^2) makes in that time. A falling sheet of 20 x 20 is renewed six
 /// times a frame otherwise, and takes 1.6 times as long.
 inline constexpr double kTubeOfEdge = 0.1, kTubeOfWay = 2, kTubeAcceleration = 40;
 /// In thicknesses, and what the cloth may go in half of a step: bodies that are farther from it
@@ -83,8 +83,8 @@ inline constexpr double kContactRegion = 4;
 /// m: places are floats from an origin, which is a multiple of this. A finer grid moves the origin
 /// more often, and candidates are looked for anew.
 inline constexpr double kContactGrid = 2;
-/// Of the pairs of a block beside meshes that has 16: where so many are awake all are measured,
-/// which is as fast as to gather these. It is about time alone.
+/// Pairs of a block of 16 beside meshes: where so many are awake all are measured, which is as fast
+/// as to gather these. It is about time alone.
 inline constexpr int kAwakeAtOnce = 8;
 /// m: features that are no farther apart are on no side of each other. At 1e-15 cloth that begins
 /// exactly on a mesh does not come to lie on it; 1e-7 changes nothing.
@@ -124,10 +124,10 @@ inline constexpr double kLeastTouchWeight = 0.05;
 /// hard cases are 0.3 and 0.5 mm too deep and do not say so; with one round none.
 inline constexpr double kLate = 0.99;
 inline constexpr int kLateRounds = 3;
-/// Of the thickness, or of the first distance if that is less: features that come nearer meet. Of
-/// the distance that is left the time of meeting is looked for in steps of the next share, at most
-/// so many. With half of the distance, or 10 steps, a sheet does not glide over triangles as over a
-/// plane; with a hundredth, 50 steps, and shares of 0.45 and 0.99 all tests pass.
+/// A share of the thickness, or of the first distance if that is less: features that come nearer
+/// meet. The search for the time of meeting takes steps of the next share of the distance left, at
+/// most so many. With half of the distance, or 10 steps, a sheet does not glide over triangles as
+/// over a plane; with a hundredth, 50 steps, and shares of 0.45 and 0.99 all tests pass.
 inline constexpr double kMeetingLeft = 0.1;
 inline constexpr double kMeetingStep = 0.9;
 inline constexpr int kMeetingSteps = 200;
@@ -138,14 +138,14 @@ inline constexpr int kBlowRounds = 8;
 inline constexpr int kZoneRounds = 12;
 /// The same of cloth that touches itself: after kZoneRounds zones grow by their neighbours, too.
 inline constexpr int kClothZoneRounds = 60;
-/// Of what features of a cloth that are nearer than its thickness at rest have there: so much they
-/// keep. At 1 each fold of a fine mesh, and what shears, would be a contact.
+/// The share that features of a cloth keep of a distance at rest below its thickness. At 1 each
+/// fold of a fine mesh, and each shear, would be a contact.
 inline constexpr double kRestDistance = 0.7;
 /// So often a sweep visits contacts. A layer that should slide at 12.4 mm/s slides at 13.4 with two
 /// rounds, at 12.5 with four and at 11.6 with eight, by which a stack takes 1.3 times as long.
 inline constexpr int kContactRounds = 4;
-/// Of what a pair is nearer than its thickness it comes out by this share in a substep. With 0.05 a
-/// sheet that folds on a floor gains 0.1 % of its energy; without it what was pressed stays
+/// The share of a missing thickness that a pair regains in a substep. With 0.05 a sheet
+/// that folds on a floor gains 0.1 % of its energy; without it pressed pairs stay
 /// pressed.
 inline constexpr double kContactRecovery = 0.02;
 /// The cosine of the angle at which bodies are against each other, so that what lies between them
@@ -177,9 +177,9 @@ inline constexpr double kLongestSubstep = 0.005;
 inline constexpr double kPassing = 0.7;
 /// The largest automatic number of substeps of a step.
 inline constexpr int kMostSubsteps = 1024;
-/// Of the error of motion that is asked for: in frames whose error is below this share of it the
-/// next ones have fewer substeps. A larger share changes their number more often, a smaller one
-/// pays for more than was asked for.
+/// A share of the error of motion that is asked for: after frames with a smaller error the next
+/// ones have fewer substeps. A larger share changes their number more often, a smaller one pays for
+/// more than was asked for.
 inline constexpr double kMotionSpare = 0.3;
 /// More substeps are of use for the motion while its error is this many times what rounding makes
 /// of it.
@@ -194,12 +194,12 @@ inline constexpr double kSofter = 8;
 /// particle moves in between.
 inline constexpr int kRenewal = 16;
 /// s, that a fabric which was put somewhere has to give way, from rest, again and again; then the
-/// longest substep, in which what is stiff comes to rest. What swings with the angular frequency w
-/// keeps 1 / (1 + (w h)^2) of its stretch each time h. A longer time loses more of what the fabric
+/// longest substep, in which stiff fabric comes to rest. A swing with the angular frequency w keeps
+/// 1 / (1 + (w h)^2) of its stretch each time h. A longer time loses more of what the fabric
 /// carried (perf/tried.md).
 inline constexpr double kPlacing = 1. / 60;
-/// Of the speed of its fastest particle. What is contradictory, as around a body that it is too
-/// small for, never comes to rest.
+/// Patience with the speed of its fastest particle. Contradictory cloth, as around a body that it
+/// is too small for, never rests.
 inline constexpr Patience kPlacingPatience{0.9, 8};
 /// m/s, that misplaced fabric reaches in the longest substep: ten times what falls does. Cloth that
 /// moves and is put back as it was must not count as misplaced.
@@ -235,9 +235,9 @@ inline constexpr double kLoosestBending = 0.05;
 /// Where floats go no further a solution ends all the same, and tells what it has left. From 10 to
 /// 800 no bit of `hang` and of strips of all materials changes; with 3 `hang` misses frames.
 inline constexpr int kMostBendingSteps = 200;
-/// Of the angle between the line of an element's ends and that from its middle to a particle that
-/// tells how it turns about that line. At 0 a strip that flies loses ten times as much of its spin
-/// as tests allow; from 0.25 to 0.95 all tests of bending pass.
+/// The sine of the angle between the line of an element's ends and that from its middle to a
+/// particle that tells how it turns about that line. At 0 a strip that flies loses ten times as
+/// much of its spin as tests allow; from 0.25 to 0.95 all tests of bending pass.
 inline constexpr double kLeastSineBeside = 0.5;
 /// Steps along the diagonal, over the root of n (b h)^2 K_ii / m_i in the mean (4 to 5 were
 /// measured of grids and irregular triangles). A factorisation is made where that is at least
@@ -300,19 +300,19 @@ inline constexpr double kAirShare = 0.3;
 /// 0.3 and 0.73 without.
 inline constexpr double kAirTurn = 0.22;
 
-/// Of the volume at which a gas has its given pressure: where it is pressed to less, its pressure
-/// grows no more. A bag that lies flat would else begin with an infinite one.
+/// A share of the volume at which a gas has its given pressure: where it is pressed to less, its
+/// pressure grows no more. A bag that lies flat would else begin with an infinite one.
 inline constexpr double kLeastOfGas = 1e-3;
 /// s, and a share of the mean length of constraints. Cloth rests of which no particle comes farther
-/// than that in that time: 1e-4 m/s with constraints of 5 cm. Of sheets that rest rounding moves
-/// particles by a tenth of it. A longer time lets fewer slow swings fall asleep at a turning point.
+/// than that in that time: 1e-4 m/s with constraints of 5 cm. Rounding moves particles of sheets
+/// that rest by a tenth of it. A longer time lets fewer slow swings fall asleep at a turning point.
 inline constexpr double kRestTime = 0.5;
 inline constexpr double kRestShare = 1e-3;
 
 // ----------------------------------------------------------------------- the choice of a solver
 
-/// The largest share of constraints that close a loop in chains, trees and bridges. Of a bridge a
-/// third do, of a grid half.
+/// The largest share of constraints that close a loop in chains, trees and bridges. In a bridge a
+/// third do, in a grid half.
 inline constexpr double kChainLoops = 0.4;
 /// The tightest tolerance at which small steps are chosen.
 inline constexpr double kLeastTolerance = 1e-3;
@@ -321,7 +321,7 @@ inline constexpr double kLeastTolerance = 1e-3;
 inline constexpr double kNearlyEqualMasses = 100;
 inline constexpr double kUnequalMasses = 1e4;
 /// A free sphere is light if it has at most this many times the mass of a particle that it may
-/// meet: what a heavier one gives a cloth when it lands takes small steps long to pass on.
+/// meet: the blow of a heavier one when it lands takes small steps long to pass on.
 inline constexpr double kLightSphere = 10;
 
 // -------------------------------------------------------------------------------- the control
@@ -474,8 +474,8 @@ inline constexpr double kBendingUneven = 0.1;
 /// material. A larger one makes more quads of curved grids yarns, which are several times as fast
 /// as triangles.
 inline constexpr double kWovenError = 0.03;
-/// Of warp or weft: the shear that kWovenError is at least measured by. Without it cloth that has
-/// no shear would be yarns on exact rectangles alone.
+/// The share of warp or weft that kWovenError is measured by at least. Without it cloth that has no
+/// shear would be yarns on exact rectangles alone.
 inline constexpr double kFeltShear = 0.01;
 /// Ends of a seam that are nearer than this share of a side are drawn as one. A closed seam holds
 /// them far nearer; a larger share draws an open seam as closed.

@@ -1,5 +1,5 @@
-/// What every check of input says, and says it with: one line that names the field, the index and
-/// the value.
+/// The messages of every check of input: one line that names the field, the index and the
+/// value.
 #pragma once
 
 #include <weft/weft.h>
@@ -12,7 +12,8 @@
 
 namespace weft {
 
-/// What has a square, as its inverse has, of all digits; with a margin, for sums.
+/// Numbers between these have squares, and inverses with squares, of all digits, with a
+/// margin.
 inline constexpr double kLeastSquared = 1e-150, kMostSquared = 1e150;
 inline std::string number(double value) {
   char text[32];
@@ -54,8 +55,8 @@ inline Result<void> validate_not_negative(std::string_view field, double value) 
   return refuse(field, "must be finite and at least 0", number(value));
 }
 
-/// Of a length or a mass: so that squares of it, and their inverses, are numbers with all digits,
-/// and sums of inverses are numbers.
+/// Checks a length or a mass: its squares, and their inverses, must be numbers with all digits, and
+/// sums of inverses numbers.
 inline Result<void> validate_square(std::string_view field, double value) {
   if (value >= kLeastSquared && value <= kMostSquared) return {};
   return refuse(field, "must be from 1e-150 to 1e150, to be squared", number(value));

@@ -43,7 +43,7 @@ class Bodies {
   bool move_vertices(std::uint32_t id, std::span<const Vec3> to);
   bool place_vertices(std::uint32_t id, std::span<const Vec3> at);
   bool switch_on(std::uint32_t id, bool on);
-  /// Of a mesh, else 0.
+  /// The number of vertices of a mesh, else 0.
   std::size_t vertices(std::uint32_t id) const;
 
   /// Those that are there; valid until one is changed.

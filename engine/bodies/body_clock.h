@@ -20,7 +20,7 @@ class BodyClock {
   std::span<const TravellingBody> bodies() const { return bodies_; }
   /// In the present substep, in the order of the bodies; before the first one where they begin.
   std::span<const reference::BodyMotion> motions() const { return motions_; }
-  /// Of a body, from now to the end of some substeps.
+  /// A box around a body from now to the end of some substeps.
   struct Box {
     kernels::Vector low{}, high{};
   };
@@ -31,7 +31,7 @@ class BodyClock {
   /// many of the substeps that are left as such a time has, one at least.
   void begin_interval(double time);
   int substeps_of_interval() const { return interval_; }
-  /// Of the step, the present one included; while bodies stand one.
+  /// Substeps of the step, the present one included; while bodies stand, one.
   int substeps_left() const { return stands_ ? 1 : substeps_ - done_; }
   bool begins_interval() const { return interval_ > 0 && interval_left_ == interval_; }
   bool is_interval_over() const { return interval_left_ == 0; }
@@ -41,7 +41,7 @@ class BodyClock {
     const TravellingBody& b = bodies_[body];
     return at.placed(b.from[vertex] + share * (b.to[vertex] - b.from[vertex]));
   }
-  /// Of the step, when some substeps from now are over.
+  /// The share of the step that is over some substeps from now.
   double share_after(int substeps) const { return share(done_ + substeps); }
   bool stands() const { return stands_; }
   double time() const { return h_ * substeps_; }  // s, of the step

@@ -100,7 +100,7 @@ std::vector<TriangleSurface::Triangle> proper(const TriangleMesh& mesh) {
   return triangles;
 }
 
-/// Of a one-sided mesh: every side is run along once in each direction.
+/// Checks a one-sided mesh: every side is run along once in each direction.
 Result<void> validate_sides(const TriangleMesh& mesh) {
   std::vector<std::array<std::uint32_t, 3>> sides;  // from, to, triangle
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {

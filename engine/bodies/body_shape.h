@@ -13,7 +13,7 @@
 
 namespace weft {
 
-/// In coordinates of the body. Of a plane, or the inside of several; or a capsule; or a mesh.
+/// A shape in coordinates of the body: a plane, or the inside of several, or a capsule, or a mesh.
 class BodyShape {
  public:
   BodyShape(std::vector<reference::Face> faces, std::vector<kernels::Vector> corners)
@@ -29,7 +29,7 @@ class BodyShape {
 
   /// Null: it is none, but solid().
   const MeshShape* mesh() const { return mesh_.get(); }
-  /// What it was built of.
+  /// The shape that it was built of.
   const ShapeDescription& description() const { return description_; }
   void describe(const ShapeDescription& description) { description_ = description; }
 
@@ -58,7 +58,7 @@ class BodyShape {
 
 /// Null, or what the shape was built of.
 void visit_fields(const std::shared_ptr<const BodyShape>& shape, ArchiveWriter& archive);
-/// Builds it again. What cannot be built is refused.
+/// Builds it again. A shape that cannot be built is refused.
 void visit_fields(std::shared_ptr<const BodyShape>& shape, ArchiveReader& archive);
 
 }  // namespace weft

@@ -12,7 +12,7 @@ namespace {
 using kernels::Vector;
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Of the extent: a point that is no farther outside does not change the hull.
+/// A share of the extent: a point that is no farther outside does not change the hull.
 constexpr double kRounding = 1e-10;
 
 /// Points are added one after the other: the faces that a point sees go, and it is joined to their

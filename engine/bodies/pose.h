@@ -26,7 +26,7 @@ class PoseTravel {
   double angle_ = 0;
 };
 
-/// Of the length 1.
+/// The same rotation with the length 1.
 Rotation normalized(const Rotation& rotation);
 
 }  // namespace weft

@@ -1,4 +1,4 @@
-/// What is refused of a body, in one line.
+/// Refused fields of a body, in one line each.
 #pragma once
 
 #include <weft/body.h>

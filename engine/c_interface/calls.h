@@ -1,5 +1,5 @@
-/// What every function of the C interface does around its work: no exception leaves it, and what
-/// went wrong is the message of the calling thread.
+/// The frame of every function of the C interface: no exception leaves it, and its error is the
+/// message of the calling thread.
 #pragma once
 
 #include <weft/result.h>

@@ -8,7 +8,7 @@
 
 namespace weft::c_interface {
 
-/// Of an enumeration whose last choice is `last`.
+/// A choice of an enumeration whose last one is `last`.
 template <class Choice>
 Result<void> read_choice(std::string_view field, int number, Choice last, Choice& out) {
   if (number < 0 || number > static_cast<int>(last)) {

@@ -1,4 +1,4 @@
-/// What the handles of C are.
+/// The structs behind the handles of C.
 #pragma once
 
 #include <weft/batch.h>

@@ -1,4 +1,4 @@
-/// What holds a cloth and takes it along, in C: pins, anchors, frames; and changes of it.
+/// Pins, anchors, frames and changes of a cloth in C.
 #include "engine/c_interface/arrays.h"
 #include "engine/c_interface/handles.h"
 #include "engine/c_interface/structs.h"

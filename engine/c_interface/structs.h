@@ -15,7 +15,7 @@
 
 namespace weft::c_interface {
 
-/// What is larger than any struct of ours was never set.
+/// A size above that of any struct of ours was never set.
 inline constexpr std::size_t kMostBytes = 4096;
 
 inline Result<void> check_size(std::string_view name, std::size_t size) {
@@ -56,7 +56,7 @@ weft_result init_struct(std::string_view name, const Struct& defaults, Struct* o
   });
 }
 
-/// What the caller's struct says; what it does not have is as in `defaults`.
+/// The values of the caller's struct; fields that it lacks are as in `defaults`.
 template <class Struct>
 Result<Struct> read_struct(std::string_view name, const Struct* in, const Struct& defaults) {
   if (auto r = check_struct(name, in); !r) return Error{r.error()};

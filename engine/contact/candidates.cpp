@@ -79,7 +79,7 @@ std::uint32_t CandidateSearch::owner(const Pair& pair) const {
   if (pair.kind == PairKind::edges) return owner_of_edge_[pair.first];
   return pair.is_turned() ? pair.second : owner_of_point_[pair.first];
 }
-/// Of a pair within the cloth.
+/// The owner of the second feature of a pair within the cloth.
 std::uint32_t CandidateSearch::owner_of_second(const Pair& pair) const {
   return pair.kind == PairKind::edges ? owner_of_edge_[pair.second] : pair.second;
 }

@@ -24,7 +24,7 @@ class SeenTubes {
     boxes_.resize(points);
     seen_for_.resize(points);
   }
-  /// Of a body that comes next.
+  /// Begins with the body that comes next.
   void begin() { ++bodies_; }
   /// All of a triangle.
   Box box(ContactPoints& points, const ContactSurface& body,
@@ -41,7 +41,7 @@ class CandidateSearch {
  public:
   explicit CandidateSearch(const simd::Table& table) : table_(table), stars_(table) {}
 
-  /// Of an interval. Returns whether candidates have other places than before.
+  /// Finds candidates of an interval. Returns whether candidates have other places than before.
   bool find(ContactPoints& points, Candidates& candidates, Team& team);
   /// Adds candidates of a triangle of the cloth within a box of its own.
   void find_beside(ContactPoints& points, std::uint32_t triangle, const Box& box,

@@ -30,8 +30,8 @@ void CandidateSearch::find_within_cloth(ContactPoints& points, Candidates& candi
   features.finish();
 }
 
-/// Of triangles that are renewed. The tree holds the others where they were when tubes were laid;
-/// the rest is put there now.
+/// Finds candidates of renewed triangles. The tree holds the others where they were when tubes were
+/// laid; the rest is put there now.
 void CandidateSearch::find_within_cloth_of(ContactPoints& points, Candidates& candidates) {
   ContactSurface& cloth = points.surfaces()[kClothSurface];
   const auto& triangles = cloth.triangles->triangles;

@@ -212,8 +212,8 @@ void Contacts::know_points(const ContactPoints& points, std::span<const NearCont
     for (const std::uint32_t slot : near[i].points) know(slot, Known::of_contact);
 }
 
-/// Of contacts first ... last - 1 of the order. A colour is the lowest one that none of the points
-/// has. A contact that finds none among 64 has one of the next 64.
+/// Colours contacts first ... last - 1 of the order. A colour is the lowest one that none of the
+/// points has. A contact that finds none among 64 has one of the next 64.
 void Contacts::colour(const ContactPoints& points, std::span<const NearContact> near,
                       std::size_t first_of_order, std::size_t last_of_order, bool are_edges) {
   waiting_.assign(order_.begin() + static_cast<std::ptrdiff_t>(first_of_order),
@@ -243,7 +243,7 @@ void Contacts::colour(const ContactPoints& points, std::span<const NearContact> 
   }
 }
 
-/// Of one colour.
+/// Puts blocks of one colour.
 void Contacts::put_blocks(const ContactPoints& points, std::span<const NearContact> near,
                           std::span<const std::uint32_t> contacts, bool are_edges) {
   if (contacts.empty()) return;
@@ -353,9 +353,9 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
   write_moves(particles);
 }
 
-/// What hangs on a thread may be a hundred times as heavy as the link that bears it. A contact
-/// gives way by its slack times what it bears, in each substep anew, so such a link would sink in:
-/// of threads slack counts what is more than the push that acts again.
+/// The load of a thread may be a hundred times as heavy as the link that bears it. A contact gives
+/// way by its slack times its load, in each substep anew, so such a link would sink in: slack of
+/// threads counts only the push beyond the one that acts again.
 void Contacts::bear_threads() {
   for (const std::uint32_t i : of_threads_) {
     simd::ContactBlock& block = blocks_[i / kLanes];

@@ -33,7 +33,7 @@ struct NearContact {
   double thickness = 0;      // m
   double distance = 0;       // m
 };
-/// What an interval changes. A contact is named by how many were found before it since contacts
+/// The changes of an interval. A contact is named by how many were found before it since contacts
 /// were last found anew.
 struct NearContacts {
   bool anew = false;  // all others are forgotten
@@ -57,9 +57,9 @@ class Contacts {
  public:
   explicit Contacts(const simd::Table& table) : kernels_(*table.contacts) {}
 
-  /// Of a frame: multipliers begin with these, or with none.
+  /// Begins a frame: multipliers begin with these, or with none.
   void begin(const ContactMemory* memory);
-  /// Of an interval. Found are contacts in any order that depends on the state alone.
+  /// Finds those of an interval. Found are contacts in any order that depends on the state alone.
   void find(const ContactPoints& points, const NearContacts& near);
   bool empty() const { return blocks_.empty(); }
   /// Where a substep of h is predicted. stands: positions are put right, and what is near comes out
@@ -90,7 +90,7 @@ class Contacts {
     std::uint32_t first = 0, last = 0;  // blocks
     bool are_edges = false;             // or points beside triangles
   };
-  /// Of a point, a contact that may push, in a list.
+  /// A contact of a point that may push, in a list.
   struct Link {
     std::uint32_t slot = 0, contact = 0, next = 0;
   };

@@ -4,10 +4,10 @@
 /// A contour leads from one edge that pierces a triangle to the next one. It vanishes in two ways:
 /// it leaves the cloth over a border, or it becomes a point in the two places of the cloth that
 /// meet in it. So it cuts off a part that is on the wrong side if that part has a border, or if
-/// there is a part without one wherever the contour runs. Of such parts the one with the fewest
-/// held particles is the wrong one, and of several the lightest. A contour that ends within the
-/// cloth cuts off nothing. Where more than two triangles have an edge, as where a pocket is sewn
-/// on, each of the sheets that meet has a border.
+/// there is a part without one wherever the contour runs. The wrong one is such a part with the
+/// fewest held particles, and the lightest of several. A contour that ends within the cloth cuts
+/// off nothing. Where more than two triangles have an edge, as where a pocket is sewn on, each of
+/// the sheets that meet has a border.
 #pragma once
 
 #include <array>
@@ -57,8 +57,8 @@ class WrongPart {
   std::size_t bytes() const;
 
  private:
-  /// What was reached from points beside the contour, without crossing it. It grows, and becomes a
-  /// part of another one where they meet.
+  /// Points reached from beside the contour, without crossing it. It grows, and becomes a part of
+  /// another one where they meet.
   struct Region {
     std::uint32_t first = kNoIndex, last = kNoIndex;  // of waiting_: points to go on from
     double mass = 0;

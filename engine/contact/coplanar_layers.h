@@ -29,7 +29,7 @@ class CoplanarLayers {
   std::size_t bytes() const;
 
  private:
-  /// Of a triangle. Numbers are those of the first triangles.
+  /// The place of a triangle. Numbers are those of the first triangles.
   struct Place {
     std::uint32_t piece = 0, layer = 0;
     bool is_turned = false;  // its front is behind that of its piece

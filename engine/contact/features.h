@@ -22,7 +22,7 @@ struct Pair {
   PairKind kind = PairKind::edges;
 
   bool operator==(const Pair&) const = default;
-  /// Of features of the cloth, which have fewer than 2^31 numbers.
+  /// A key of features of the cloth, which have fewer than 2^31 numbers.
   std::uint64_t key() const {
     const bool edges = kind == PairKind::edges;
     const std::uint64_t from = edges ? std::min(first, second) : first,

@@ -25,7 +25,7 @@ class Inertia {
     xz_ -= mass * r.x * r.z;
     yz_ -= mass * r.y * r.z;
   }
-  /// What lies on a line turns around it by nothing.
+  /// Particles on one line do not turn around it.
   Vector solve(Vector l) const {
     constexpr double kLeast = 1e-9;
     const double spare = kLeast * (xx_ + yy_ + zz_);

@@ -1,6 +1,6 @@
 /// Rigid impact zones (Bridson, Fedkiw and Anderson, 2002): particles that went through each other
 /// in an interval, whatever blows did. The particles of a zone take its way as one rigid body, so
-/// that none of them meets another. What is free keeps the momentum and the angular momentum of its
+/// that none of them meets another. A free zone keeps the momentum and the angular momentum of its
 /// particles. A zone with points of a body goes with that, and one with a fixed particle with this.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace weft {
 
 class ImpactZones {
  public:
-  /// Of an interval.
+  /// Begins an interval.
   void begin();
   /// The points of a pair are in one zone from now on.
   void join(const std::array<std::uint32_t, 4>& points);

@@ -130,8 +130,8 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
   return true;
 }
 
-/// Cloth that is put right goes nowhere through itself. What it crosses of bodies is stopped when
-/// it moves: they tell on which side it belongs.
+/// Cloth that is put right goes nowhere through itself. Crossings of bodies are stopped when it
+/// moves: they tell on which side it belongs.
 bool SurfaceContacts::verify_standing(ContactParticles& particles, const BodyClock& clock,
                                       Team& team) {
   if (!points_.touches_itself()) return false;
@@ -169,9 +169,9 @@ bool SurfaceContacts::push_late_apart(const ContactScene& scene, Team& team) {
   return true;
 }
 
-/// What was not expected to touch is near from now on, so that what puts the cloth right until the
-/// step is over keeps it apart. What went through each other unnoticed was taken to be on the other
-/// side: now it is known on which it was.
+/// Pairs that were not expected to touch are near from now on, so that putting the cloth right
+/// until the step is over keeps them apart. Pairs that went through unnoticed were taken to be on
+/// the other side: now their side is known.
 void SurfaceContacts::expect_failures(const ContactScene& scene) {
   bool any = false;
   for (const Failure& failure : verification_.failures()) {

@@ -60,7 +60,7 @@ class SurfaceContacts {
 
   bool empty() const { return points_.empty(); }
   double largest_thickness() const { return points_.largest_thickness(); }
-  /// Of a frame. memory: what the last one has left to contacts within the cloth, if it counts.
+  /// Begins a frame. memory: that of the last one for contacts within the cloth, if it counts.
   void begin(const BodyClock& clock, ContactStart start, const Misplaced& misplaced,
              const ContactMemory* memory);
   /// s, when a substep is predicted. Bodies that are fast beside the cloth are looked at more

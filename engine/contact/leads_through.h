@@ -17,8 +17,8 @@ inline double volume_of(kernels::Vector a, kernels::Vector b, kernels::Vector c,
   return dot(cross(a - d, b - d), c - d);
 }
 
-/// What only touches the triangle does not lead through it. beyond: m, what both ends are on their
-/// sides of it at least; where it is below 0 they may be so far before it.
+/// A way that only touches the triangle does not lead through it. beyond: m, the least distance of
+/// both ends on their sides; where it is below 0 they may be so far before it.
 inline bool leads_through(kernels::Vector from, kernels::Vector to, const Corners& t,
                           double beyond = tuning::kTouching) {
   const double side = volume_of(t[0], t[1], t[2], from), other = volume_of(t[0], t[1], t[2], to);

@@ -29,7 +29,7 @@ inline bool is_in_place(PairKind kind, const reference::Nearest& nearest) {
 
 /// x: the points of the pair; at(point): where any point is. Whether another feature of one of both
 /// surfaces is nearer than those of the pair: along n, which leads from the second feature to the
-/// first, a neighbour stands out by more than the sine `lean`. What the pair would push along is no
+/// first, a neighbour stands out by more than the sine `lean`. The direction of the push is no
 /// normal of the surface then.
 template <class At>
 bool is_ghost(std::span<const ContactSurface> surfaces, const Pair& pair, const FourPoints& x,
@@ -85,8 +85,8 @@ struct Look {
   bool is_apart() const { return distance > kTouching; }
 };
 
-/// The normal of the later surface where they touch: of what has none there, of a triangle. Of two
-/// edges of which neither is of a face: one that is across both.
+/// The normal of the later surface where they touch, that of a triangle if there is none. For two
+/// edges that are in no face: one that is across both.
 inline kernels::Vector normal_where_touching(ContactSurface& later, const Pair& pair,
                                              const reference::Nearest& nearest,
                                              const FourPoints& x) {
@@ -144,7 +144,7 @@ bool neighbour_stands_out(const ContactSurface& surface, std::uint32_t point, ke
   return false;
 }
 
-/// Of a triangle's nearest point; n leads from it to the other feature.
+/// The look at a triangle's nearest point; n leads from it to the other feature.
 template <class At>
 bool triangle_is_ghost(const ContactSurface& surface, std::uint32_t triangle,
                        const reference::Nearest& nearest, kernels::Vector n, double lean, At&& at) {

@@ -10,7 +10,7 @@ class Mover {
   /// body: kNoIndex where cloth stops cloth.
   Mover(const ContactScene& scene, std::uint32_t body) : scene_(scene), body_(body) {}
 
-  /// What cloth has moved is held by bodies of a closed form: what it meets takes the rest.
+  /// Bodies of a closed form hold particles that cloth has moved: the other feature takes the rest.
   /// of_surface: m/s, of the body there.
   void move(std::uint32_t slot, kernels::Vector by, kernels::Vector faster,
             kernels::Vector of_surface) const {

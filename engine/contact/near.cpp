@@ -83,14 +83,14 @@ SeenPair see(const ContactPoints& points, const Tangles& tangles, const Pair& pa
   return see(points, pair, four, x, look, is_inside);
 }
 
-/// Of a near pair within the cloth.
+/// Whether a near pair within the cloth may be a contact.
 bool may_be_contact(const ContactPoints& points, const Tangles& tangles, const Pair& pair,
                     const Four& four) {
   return points.largest_inverse_mass(four) > 0 && !tangles.leaves_out(pair) &&
          !tangles.cross_beside(pair, four);
 }
 
-/// What may be in front of a surface or behind it is one of both, or far.
+/// A pair that may be in front of a surface or behind it is one of both, or far.
 void settle(ContactPoints& points, const Pair& pair, const Four& four, SeenPair& seen) {
   ContactSurface& later = points.later(pair);
   if (seen.sight == Sight::touches) {
@@ -173,7 +173,7 @@ void NearSearch::measure_blocks(const simd::PairMeasure& measure, std::size_t li
   }
 }
 
-/// Of blocks that are known.
+/// Measures blocks that are known.
 void NearSearch::measure_awake(const simd::PairMeasure& measure, std::size_t list,
                                const PairList& pairs, std::size_t first, std::size_t last) {
   Distances& d = distances_[list];

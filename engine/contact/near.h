@@ -16,7 +16,7 @@
 
 namespace weft {
 
-/// What is known of a list of candidates.
+/// The known distances of a list of candidates.
 struct Distances {
   using Lanes = std::array<float, kernels::kLanes>;
   std::vector<Lanes> distance;  // m: kSurelyApart of it, less what points have travelled, is the

@@ -94,7 +94,7 @@ class OwnedFeatures {
     for (std::uint32_t left = met & ~1u; left != 0; left &= left - 1)
       add_feature(triangles_b_[i], corners_b_[i], static_cast<std::size_t>(std::countr_zero(left)));
   }
-  /// Of the triangle b, which has these corners.
+  /// Adds a feature of the triangle b, which has these corners.
   void add_feature(std::uint32_t b, const std::uint32_t (&corners)[3], std::size_t bit) {
     if (bit < 4) {
       const std::uint32_t point = corners_a_[bit - 1];
@@ -112,7 +112,8 @@ class OwnedFeatures {
                {corners_a_[k], corners_a_[(k + 1) % 3], corners[j], corners[(j + 1) % 3]}, b);
     }
   }
-  /// Where the interval begins. Lengths do not matter. Of a thread: any two directions across it.
+  /// Axes at the start of the interval, of any length. A thread has any two directions across
+  /// it.
   void set_axes() {
     const kernels::Vector x[] = {points_.start(corners_a_[0]), points_.start(corners_a_[1]),
                                  points_.start(corners_a_[2])};

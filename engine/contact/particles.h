@@ -30,7 +30,7 @@ class ContactParticles {
   virtual kernels::Vector position(std::uint32_t slot) const = 0;
   virtual kernels::Vector start(std::uint32_t slot) const = 0;
   virtual ContactParticle read(std::uint32_t slot) const = 0;
-  /// What has stopped it is no motion: it is predicted to be there.
+  /// A stop by contacts is no motion: it is predicted to be there.
   virtual void write(std::uint32_t slot, const ContactParticle& particle) = 0;
   /// It touches a body in this substep.
   virtual void touch(std::uint32_t slot, const TouchedSurface& surface) = 0;
@@ -41,8 +41,8 @@ class ContactParticles {
   /// Its velocity was changed by `by` in a moment: its past is changed alike, and what two
   /// particles do to each other keeps their momentum.
   virtual void jolt(std::uint32_t slot, kernels::Vector by) = 0;
-  /// By other particles of the cloth: `by` is a motion, `comes_out` is none. What begins under a
-  /// body of a closed form is pushed no deeper into it, and nothing else ends in one.
+  /// A push by other particles of the cloth: `by` is a motion, `comes_out` is none. A particle that
+  /// begins under a body of a closed form is pushed no deeper into it, and no other ends in one.
   virtual void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) = 0;
   /// Whether a body of a closed form may touch it.
   virtual bool is_beside_body(std::uint32_t slot) const = 0;
@@ -50,7 +50,7 @@ class ContactParticles {
   virtual void move_beside_bodies(std::uint32_t slot, kernels::Vector x) = 0;
   /// By what acts in the substep.
   virtual void move_to(std::uint32_t slot, kernels::Vector x) = 0;
-  /// What moves a particle from now on, until the substep ends, makes it no faster.
+  /// Moves of a particle from now on, until the substep ends, make it no faster.
   virtual bool is_mended() const = 0;
   /// A change of velocity in this substep counts as so many times its momentum: 1 / b, since forces
   /// act in the part b of a substep alone (kernels/simd/small_steps.h).

@@ -22,7 +22,7 @@ Vector rounded(Vector v) {
   return {round(v.x), round(v.y), round(v.z)};
 }
 
-/// Of two places, from the origin, and all that is within `reach` of the way between them.
+/// A box around two places, from the origin, and all within `reach` of the way between them.
 Box box_around(Vector a, Vector b, double reach) {
   const auto low = [&](double x, double y) { return static_cast<float>(std::min(x, y) - reach); };
   const auto high = [&](double x, double y) { return static_cast<float>(std::max(x, y) + reach); };
@@ -30,7 +30,7 @@ Box box_around(Vector a, Vector b, double reach) {
           {high(a.x, b.x), high(a.y, b.y), high(a.z, b.z)}};
 }
 
-/// Of two, that is not less.
+/// The next power of two that is not less.
 float next_power(double x) {
   int exponent = 0;
   std::frexp(x, &exponent);
@@ -80,7 +80,7 @@ void ContactPoints::begin(const BodyClock& clock) {
   if (has_other_places || surface_of_.size() != points - slots_) make_room(clock, points);
 }
 
-/// Of vertices those alone cost something that are looked at.
+/// Only vertices that are looked at cost something.
 void ContactPoints::make_room(const BodyClock& clock, std::size_t points) {
   for (auto* vectors : {&start_, &end_}) vectors->make_room(points);
   present_.make_room(points);

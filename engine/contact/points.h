@@ -27,7 +27,7 @@ class ContactPoints {
   explicit ContactPoints(const Model& model) : model_(model) {}
 
   const Model& model() const { return model_; }
-  /// Of a frame.
+  /// Begins a frame.
   void begin(const BodyClock& clock);
   /// The cloth's first, where there is something to touch.
   const std::vector<ContactSurface>& surfaces() const { return surfaces_; }
@@ -41,13 +41,13 @@ class ContactPoints {
   double thickness_of(const Pair& pair) const {
     return pair.is_within_cloth() ? rest_.of(pair) : later(pair).thickness;
   }
-  /// Of the cloth.
+  /// Sewn points of the cloth.
   const SewnPoints& sewn() const { return sewn_; }
   const ContactSurface& later(const Pair& pair) const { return later_surface(surfaces_, pair); }
   ContactSurface& later(const Pair& pair) { return later_surface(surfaces_, pair); }
   std::size_t slots() const { return slots_; }
   bool is_of_cloth(std::uint32_t point) const { return point < slots_; }
-  /// Of a vertex of a body.
+  /// The surface of a vertex of a body.
   const ContactSurface& surface_of(std::uint32_t point) const {
     return surfaces_[surface_of_[point - slots_]];
   }
@@ -61,12 +61,12 @@ class ContactPoints {
     return largest;
   }
 
-  /// Of a step, whose first substep is predicted: how fast all will be. While bodies stand nobody
+  /// Finds the speeds of a step, whose first substep is predicted. While bodies stand nobody
   /// asks.
   void look_ahead(const ContactParticles& cloth, const BodyClock& clock);
   const ContactSpeeds& speeds() const { return speeds_; }
-  /// Of an interval, whose first substep is predicted. Of bodies those vertices are placed that are
-  /// active: those of triangles that are looked at, and their neighbours.
+  /// Begins an interval, whose first substep is predicted. It places the active vertices of bodies:
+  /// those of triangles that are looked at, and their neighbours.
   void begin_interval(const ContactParticles& cloth, const BodyClock& clock, int substeps);
   /// The triangle of a body is looked at: its vertices are active until tubes are laid anew.
   void activate(std::uint16_t surface, std::uint32_t triangle);
@@ -90,10 +90,10 @@ class ContactPoints {
   kernels::Vector origin() const { return origin_; }
   /// Where the point was when the interval began.
   kernels::Vector start(std::uint32_t point) const { return start_[point]; }
-  /// What holds all places that it is expected to come to in the interval.
+  /// A box around all places that it is expected to come to in the interval.
   const Box& box(std::uint32_t point) const { return box_[point]; }
-  /// What holds those of all intervals until the step ends, as far as it was known when candidates
-  /// were looked for. Those of vertices are made when they are first asked for.
+  /// A tube around those of all intervals until the step ends, as far as known when candidates were
+  /// looked for. Those of vertices are made when they are first asked for.
   const Tube& tube(std::uint32_t point) {
     if (point >= slots_ && laid_[point - slots_] != layings_) lay_vertex(point);
     return tube_[point];
@@ -114,7 +114,7 @@ class ContactPoints {
   void renew_tubes(Moved&& moved);
   /// It holds no longer.
   void forget_tube(std::uint32_t slot) { set_tube(slot, {Box::none(), Box::none()}); }
-  /// Of a point that came to a place that was not expected: all of its way.
+  /// Widens the tube of a point that came to an unexpected place to all of its way.
   void widen_tube_to_way(std::uint32_t slot) { set_tube(slot, {box_[slot], box_[slot]}); }
   /// In quads, from the origin. The fourth of a way is the point's reach.
   const float* starts() const { return start_quads_.data(); }
@@ -141,7 +141,7 @@ class ContactPoints {
     for (const std::uint32_t point : points)
       if (is_of_cloth(point)) set_present(point, cloth.read(point));
   }
-  /// Of a vertex that was asked for, where the substep begins and ends.
+  /// The place of a vertex that was asked for, where the substep begins and ends.
   kernels::Vector from(std::uint32_t point) const { return present_[point].start; }
   kernels::Vector to(std::uint32_t point) const { return present_[point].x; }
 

@@ -12,7 +12,7 @@ using kernels::Vector;
 
 namespace {
 
-/// Of a particle; one that the caller moves is as fast as in the interval.
+/// The velocity of a particle; one that the caller moves is as fast as in the interval.
 Vector velocity_in(const ContactScene& scene, std::uint32_t slot, double time) {
   const ContactPoints& points = scene.points;
   if (points.inverse_mass(slot) > 0) return scene.particles.read(slot).v;

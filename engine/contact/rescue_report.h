@@ -1,4 +1,4 @@
-/// What verification has found, and what became of it.
+/// The failures that verification has found, and their outcome.
 #pragma once
 
 namespace weft {

@@ -131,7 +131,7 @@ double weight_of(const ContactScene& scene, const Encounter& e) {
   return weight > 0 ? std::max(weight, least_weight(scene.points, e.points)) : 0;
 }
 
-/// Of the first feature beside the second.
+/// The velocity of the first feature beside the second.
 Vector relative_velocity(const ContactScene& scene, const Encounter& e) {
   Vector relative{};
   for (std::size_t k = 0; k < 4; ++k)

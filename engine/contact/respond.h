@@ -33,9 +33,9 @@ class Response {
  public:
   explicit Response(const simd::Table& table) : table_(table) {}
 
-  /// Of an interval.
+  /// Begins an interval.
   void begin(const ContactScene& scene, const Near& near);
-  /// Of a substep.
+  /// Advances by a substep.
   void advance(const BodyClock& clock, ContactPoints& points, Near& near);
   /// Over all pairs. moved(slot, by): by how much (m).
   template <class Moved>
@@ -44,8 +44,8 @@ class Response {
   /// follows.
   template <class Moved>
   void round(const ContactScene& scene, Near& near, Team& team, Moved&& moved);
-  /// Of a particle that touches bodies in this substep: the surface that has pushed it most, and
-  /// its normal.
+  /// The surface that has pushed a particle most in this substep, and its
+  /// normal.
   std::pair<TouchedSurface, kernels::Vector> touched_by(const ContactPoints& points,
                                                         const Near& near, std::uint32_t slot) const;
   /// Over pairs of the slot that have touched in this substep. Returns whether one was pushed.

@@ -232,7 +232,7 @@ class PairsAlongThreads {
   bool has(std::span<const std::uint32_t> corners, std::uint32_t point) const {
     return std::ranges::any_of(corners, [&](std::uint32_t c) { return sewn_.is_one(c, point); });
   }
-  /// Of the threads at a point, and of what is at another one.
+  /// Adds the threads at a point, and the features at another one.
   void add(std::uint32_t point, std::uint32_t other, double way) const {
     for (const std::uint32_t t : threads_) {
       if (!has(surface_.triangles[t], other)) take_(PairKind::point_triangle, other, t, way);

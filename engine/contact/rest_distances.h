@@ -25,7 +25,7 @@ class RestDistances {
   bool empty() const { return thickness_ == 0; }
   /// m
   double of(const Pair& pair) const;
-  /// Of pairs that are nearer than the thickness at rest.
+  /// The number of pairs that are nearer than the thickness at rest.
   std::size_t count() const { return nearer_.size(); }
   std::size_t bytes() const { return nearer_.capacity() * sizeof(Nearer); }
 

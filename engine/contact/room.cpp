@@ -49,7 +49,7 @@ void Room::share(std::span<const Claim> claims, double h, std::uint32_t slot) {
   }
 }
 
-/// Of several the one that yields most.
+/// The one that yields most of several counts.
 void Room::add(std::uint32_t slot, std::uint32_t body, const Yield& yield) {
   for (std::uint32_t i = first_[slot]; i != kNoIndex; i = entries_[i].next) {
     if (entries_[i].body != body) continue;

@@ -19,7 +19,7 @@
 
 namespace weft {
 
-/// What a body asks of a place when a substep begins.
+/// The claim of a body on a place when a substep begins.
 struct Claim {
   std::uint32_t body = 0;    // of the clock
   kernels::Vector normal{};  // out of the body
@@ -30,8 +30,8 @@ struct Claim {
 
 enum class SubstepMoment { start, end };
 
-/// Of a body in a closed form, whose thickness is more by the radius of a particle. x: where that
-/// is then. When the substep ends, nothing moves any more.
+/// The claim of a body in a closed form, whose thickness is more by the radius of a particle. x:
+/// where that is then. When the substep ends, nothing moves any more.
 Claim claim_of(const BodyClock& clock, std::size_t body, kernels::Vector x, double radius,
                SubstepMoment when = SubstepMoment::start);
 
@@ -43,7 +43,7 @@ class Room {
     Yield yield{};
   };
 
-  /// Of a frame.
+  /// Begins a frame.
   void begin(std::size_t slots);
   void begin_substep();
   /// Particles at a place, or around one, that both claim.
@@ -52,7 +52,7 @@ class Room {
   void share(std::span<const Claim> claims, double h, std::uint32_t slot);
   bool any() const { return !entries_.empty(); }
   std::span<const Entry> entries() const { return entries_; }
-  /// What the body yields to a particle.
+  /// The yield of the body to a particle.
   Yield of(std::uint32_t slot, std::uint32_t body) const;
   std::size_t bytes() const;
 

@@ -38,7 +38,7 @@ struct ContactScene {
   kernels::Vector start(std::uint32_t point) const {
     return points.is_of_cloth(point) ? particles.start(point) : points.from(point);
   }
-  /// What a body yields to a feature of the cloth, whose points count by their weights.
+  /// The yield of a body to a feature of the cloth, whose points count by their weights.
   reference::Yield yield(const std::array<std::uint32_t, 4>& four,
                          const std::array<double, 4>& weights, std::uint32_t body) const {
     reference::Yield sum;

@@ -1,5 +1,5 @@
-/// What boxes of the world are in coordinates of a body that travels: so the tree of a body that
-/// keeps its shape stands still, and its vertices need not be placed to be looked for.
+/// Boxes of the world in coordinates of a body that travels: so the tree of a body that keeps its
+/// shape stands still, and its vertices need not be placed to be looked for.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace weft {
 struct SeenFromBody {
   reference::Placement begins, ends;  // from the origin of boxes
   double turn = 0, way = 0;           // rad, and m of its centre, between them
-  double beyond = 0;                  // m: what the body keeps away
+  double beyond = 0;                  // m: the distance it keeps
 
   /// Holds all places of the body, at any time on its way, that may be within `beyond` of the box.
   /// A place that turns by an angle stays within a part of its way of the line between its ends.

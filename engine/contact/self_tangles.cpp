@@ -91,7 +91,7 @@ void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
     if (shared > (are_faces ? 1 : 0)) return;
     const Corners its{at(one[0]), at(one[1]), at(one[2])},
         others{at(other[0]), at(other[1]), at(other[2])};
-    // What crossed before is apart where it will be known to stay so.
+    // Pairs that crossed before are apart where they will be known to stay so.
     const bool has_crossed = std::ranges::binary_search(pairs_, pair_of(a, b));
     const double apart = has_crossed ? tuning::kStaysApart : tuning::kTouching;
     if (shared == 0 && (are_beside(its, others, apart) || are_beside(others, its, apart))) return;

@@ -114,7 +114,7 @@ ContactSpeeds speeds_of_step(const Model& model, std::span<const Vector> starts,
     return speeds;
   };
   const ContactSpeeds still = speeds_beside({}), moving = speeds_beside(cloth.mean);
-  // What lies still is predicted to fall for a substep: that is no drift.
+  // Cloth that lies still is predicted to fall for a substep: that is no drift.
   const double of_load = tuning::kCalmAcceleration * h;
   return std::max(moving.of_cloth, moving.of_near) + of_load < std::max(of_cloth, still.of_near)
              ? moving

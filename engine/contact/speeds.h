@@ -1,5 +1,5 @@
-/// How fast a cloth and the bodies that are meshes move beside each other in a step. What all of
-/// them do together, as cloth and the body that walks in it, brings no two of them nearer.
+/// How fast a cloth and the bodies that are meshes move beside each other in a step. A motion of
+/// all together, as of cloth and the body that walks in it, brings no two of them nearer.
 #pragma once
 
 #include <span>

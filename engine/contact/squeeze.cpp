@@ -162,7 +162,7 @@ Claim Squeeze::claim_at(const ContactScene& scene, const Seen& of, Vector at) {
   return claim;
 }
 
-/// Of particles alone: between them a closed form may be through the cloth.
+/// The claim on particles alone: between them a closed form may be through the cloth.
 Claim Squeeze::claim_of_particles(const ContactScene& scene, std::uint32_t body, const Seen& here) {
   Claim claim = claim_of(scene.clock, body, here.at, 0);
   claim.distance = 0;
@@ -176,7 +176,7 @@ Claim Squeeze::claim_of_particles(const ContactScene& scene, std::uint32_t body,
   return claim;
 }
 
-/// Of a body that of its nearest feature counts.
+/// The claim of the nearest feature of a body counts.
 void Squeeze::take_nearest(const Claim& claim) {
   for (Claim& known : claims_) {
     if (known.body != claim.body) continue;

@@ -17,16 +17,16 @@ namespace weft {
 
 class Squeeze {
  public:
-  /// Of an interval.
+  /// Begins an interval.
   void begin(const ContactScene& scene, const Near& near);
-  /// Of a substep.
+  /// Shares the room in a substep.
   void share(const ContactScene& scene, const Near& near);
   /// When an interval is over: particles and triangles that bodies which overlap have let in.
   void take_in(const ContactScene& scene, const Near& near, Tangles& tangles) const;
   std::size_t bytes() const;
 
  private:
-  /// Of a body: a triangle, an edge or a vertex.
+  /// A triangle, an edge or a vertex of a body.
   struct Feature {
     std::uint32_t body = 0, index = 0;
     PairKind kind = PairKind::edges;
@@ -52,15 +52,15 @@ class Squeeze {
     auto operator<=>(const OfSlot&) const = default;
   };
   static Feature feature_of(const ContactScene& scene, const Pair& pair);
-  /// What one feature of a body asks of a particle, as far as its direction is concerned.
+  /// The direction of the claim of a feature of a body on a particle.
   struct Asked {
     std::uint32_t slot = 0, body = 0;
     kernels::Vector normal{};
   };
   Seen see(const ContactScene& scene, const NearPairs& near, std::size_t i) const;
-  /// What the body of a pair asks of another place beside its feature.
+  /// The claim of the body of a pair on another place beside its feature.
   static Claim claim_at(const ContactScene& scene, const Seen& of, kernels::Vector at);
-  /// What a body of a closed form asks of the particles around a place.
+  /// The claim of a body of a closed form on the particles around a place.
   static Claim claim_of_particles(const ContactScene& scene, std::uint32_t body, const Seen& here);
   void find_slots(const ContactScene& scene, const Near& near);
   void find_pairs(const Near& near);

@@ -20,7 +20,7 @@
 
 namespace weft {
 
-/// Of a pair within the cloth: whether both features stand in one star.
+/// Whether both features of a pair within the cloth stand in one star.
 bool are_in_one_star(const TriangleSurface& cloth, const Pair& pair);
 
 class Stars {

@@ -41,7 +41,7 @@ struct ContactSurface {
   SparseArray<std::uint32_t> active;    // per triangle: the laying of tubes since which it is
   std::vector<std::uint8_t> may_cross;  // per triangle of the cloth: tubes of both meet
 
-  /// Of what is rigid it is around triangles, in coordinates of the body.
+  /// The tree of a rigid body is around triangles, in coordinates of the body.
   const BoxTree& tree() const { return is_rigid ? shape->mesh()->tree : own_tree; }
   /// A box of the world as the tree has it.
   Box as_in_tree(const Box& box) const { return is_rigid ? seen(box) : box; }

@@ -155,7 +155,7 @@ void Tangles::come_out(ContactPoints& points, Near& near) {
   for (const std::uint32_t t : triangles_) come_off(points, t, near);
 }
 
-/// What leads through a triangle whose particles are all out is a corner or an edge of a one-sided
+/// A feature through a triangle whose particles are all out is a corner or an edge of a one-sided
 /// body: it shows the way by its normal. Between two bodies it would lead into the other one.
 void Tangles::come_off(ContactPoints& points, std::uint32_t triangle, Near& near) const {
   const TriangleSurface::Triangle& t = cloth_->triangles[triangle];

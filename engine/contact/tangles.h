@@ -22,7 +22,7 @@ class Tangles {
  public:
   explicit Tangles(const simd::Table& table) : table_(table), within_(table) {}
 
-  /// Of a frame: what the frame before left.
+  /// Begins a frame with the tangles that the frame before left.
   void begin(const TriangleSurface& cloth, const Misplaced& misplaced);
   /// An interval begins: what crosses now is left alone until it is over.
   void begin_interval();

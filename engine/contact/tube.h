@@ -1,5 +1,5 @@
-/// What holds a point on its way through some time: a box when that begins and one when it ends,
-/// and what lies between them on straight lines. Points that travel beside each other stay apart in
+/// The hull of a point on its way through some time: a box when that begins and one when it ends,
+/// and the space between them on straight lines. Points that travel beside each other stay apart in
 /// their tubes, where boxes around all of their ways would meet.
 #pragma once
 
@@ -34,7 +34,7 @@ struct Tube {
     return tube;
   }
 
-  /// Of the time of a tube, in shares of it.
+  /// A part of the time of a tube, in shares of it.
   class Part {
    public:
     Part(double from, double to) : from_(static_cast<float>(from)), to_(static_cast<float>(to)) {}

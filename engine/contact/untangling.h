@@ -22,11 +22,11 @@ namespace weft {
 
 class Untangling {
  public:
-  /// Of an interval. crossing: as Contours::find has it.
+  /// Begins an interval. crossing: as Contours::find has it.
   void begin_interval(const ContactPoints& points, const std::vector<std::uint64_t>& crossing);
   /// Nothing is drawn in this interval.
   void leave() { pulls_.clear(); }
-  /// Of a frame.
+  /// Begins a frame.
   void begin() { work_ = 0, is_begun_ = false, leave(); }
   /// When a substep is predicted.
   void pull(const ContactScene& scene);

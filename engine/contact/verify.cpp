@@ -174,7 +174,7 @@ void Verification::find(const ContactScene& scene, CandidateSearch& search, Near
         const double distance = std::max(seen.distance, kTouching);
         const Vector r = distance > kTouching ? seen.nearest.r : seen.normal;
         const auto time = meeting(pair.kind, way, r, distance, points.thickness_of(pair));
-        // What comes out does what it should.
+        // A particle that comes out does what it should.
         if (!time || (!later.two_sided && scene.tangles.is_inside(four))) return {};
         if (is_drawn_through(scene, pair, four)) return {};
         return {.fails = true, .time = *time};
@@ -218,8 +218,8 @@ void Verification::leave_each_once(const Candidates& candidates) {
   erase_repeated(failures_, key);
 }
 
-/// Boxes hold what points were expected to do. Of those that did something else candidates are
-/// found anew, by boxes around the ways of their triangles.
+/// Boxes hold the expected places of points. Candidates of points that went elsewhere are found
+/// anew, by boxes around the ways of their triangles.
 void Verification::look_beside_strayed(const ContactScene& scene, CandidateSearch& search,
                                        NearSearch& near_search, Candidates& candidates,
                                        Team& team) {

@@ -35,7 +35,7 @@ class Verification {
                  const Candidates& candidates, Team& team);
 
  private:
-  /// What is found of a pair. asks: one thread is to look at it, since it asks for normals.
+  /// The verdict on a pair. asks: one thread is to look at it, since it asks for normals.
   struct Verdict {
     bool fails = false, asks = false;
     double time = 0, depth = 0;

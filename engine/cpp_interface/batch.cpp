@@ -90,7 +90,7 @@ void ClothBatch::lead(std::size_t i, Team& team) noexcept {
   }
 }
 
-/// What the first cloth has, which keeps it for later batches; null without memory.
+/// The run of the first cloth, which keeps it for later batches; null without memory.
 std::shared_ptr<ArenaRun> ClothBatch::arena_run() const {
   const auto admitted =
       std::ranges::find_if(steps_, [](const ClothStep& step) { return bool(step.result); });

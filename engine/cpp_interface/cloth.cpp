@@ -22,7 +22,7 @@ bool is_empty(const Changes& changes) {
          changes.bending.empty() && !changes.damping && !changes.air;
 }
 
-/// What is used for a model: asked is valid in itself, and its isa is chosen.
+/// The settings used for a model: asked is valid in itself, and its isa is chosen.
 Result<Settings> resolve(const Settings& asked, const Model& model) {
   if (asked.backend == Backend::simd) {
     if (auto valid = validate_for_lanes(asked, model); !valid) return Error{valid.error()};

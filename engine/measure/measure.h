@@ -30,7 +30,7 @@ class Measure {
   /// laws, what is left of them counts in place of the strain.
   double error(kernels::VectorsView x, const SpringLaws* laws, SphereContacts& contacts,
                Team& team);
-  /// Of the simd backend.
+  /// The measure of the simd backend.
   SimdMeasure& lanes() { return *lanes_; }
   std::size_t bytes() const;
 

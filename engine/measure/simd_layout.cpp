@@ -42,7 +42,7 @@ void cut_batches(const Ordering& ordering, SimdLayout& layout) {
   for (const Chunk& chunk : layout.chunks) layout.runs.push_back(chunk.run);
 }
 
-/// Of a slot; the number of tiles for those that are in none.
+/// The tile of a slot; the number of tiles for those that are in none.
 std::uint32_t tile_of(const Ordering& ordering, std::uint32_t slot) {
   const auto tile = std::ranges::upper_bound(ordering.tiles, slot, {}, &Tile::last_slot);
   return static_cast<std::uint32_t>(tile - ordering.tiles.begin());

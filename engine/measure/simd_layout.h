@@ -1,4 +1,4 @@
-/// What the vector kernels need to know of a model: the constraints in their slots, cut into
+/// The layout of a model for the vector kernels: the constraints in their slots, cut into
 /// chunks.
 ///
 ///   constraint slots:  | batches of the ordering | hub distances | hub ropes |
@@ -62,7 +62,7 @@ struct SimdLayout {
 
 SimdLayout make_simd_layout(const Model& model);
 
-/// What sweeps that skip need to know besides.
+/// The data that sweeps that skip need besides.
 struct ChunkNeighbours {
   Lists of;  // chunks that share a slot with chunk i, and i itself
   Lists at;  // slot -> chunks

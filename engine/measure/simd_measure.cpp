@@ -30,7 +30,7 @@ simd::StrainSums SimdMeasure::sums(const simd::Geometry& g, const Chunk& chunk) 
                        : table_.strain_run(g, chunk.run, chunk.rope);
 }
 
-/// Of consecutive chunks.
+/// The range over consecutive chunks.
 simd::StretchRange SimdMeasure::stretch(const simd::Geometry& g, std::size_t first,
                                         std::size_t last) const {
   simd::StretchRange range;

@@ -19,7 +19,7 @@ class SimdMeasure {
   SimdMeasure(const Model& model, const simd::Table& table);
 
   Strain strain(kernels::VectorsView x, Team& team);
-  /// Of each chunk; valid until the next call.
+  /// The sums of each chunk; valid until the next call.
   std::span<const simd::StrainSums> strains_of_chunks(kernels::VectorsView x, Team& team);
   /// The largest of constraints at hubs, which are in no chunk.
   double max_hub_strain(kernels::VectorsView x) const;

@@ -39,12 +39,12 @@ struct SpringLaws {
   kernels::AlignedVector<double> multiplier;  // kg m, of springs; solvers write it
 };
 
-/// What is left of the laws at x, the largest of all constraints, in tolerances; infinite if one is
+/// The error of the laws at x, the largest of all constraints, in tolerances; infinite if one is
 /// not a number.
 double largest_violation(const SpringLaws& laws, const ConstraintStore& constraints,
                          kernels::VectorsView x);
-/// J, of springs by their tensions after a substep of h. Of a stiff one this says what can come
-/// back, and leaves out what is within the tolerance of its law.
+/// J, of springs by their tensions after a substep of h. For a stiff one this is the energy that
+/// can come back, without that within the tolerance of its law.
 double energy_of_tensions(const SpringLaws& laws, const ConstraintStore& constraints, double h);
 
 }  // namespace weft

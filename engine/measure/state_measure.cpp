@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-/// Of warp, weft and shear; where there is no such law, 0.
+/// Strains of warp, weft and shear; 0 where there is no such law.
 std::array<double, reference::kMembraneLaws> strains_of(const reference::MembraneElement& e,
                                                         const reference::Deformation& f) {
   std::array<double, reference::kMembraneLaws> strains{};

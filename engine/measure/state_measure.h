@@ -1,4 +1,4 @@
-/// What is measured on a state: always from positions and velocities, never from the solver.
+/// Measurements of a state: always from positions and velocities, never from the solver.
 #pragma once
 
 #include <weft/weft.h>
@@ -46,7 +46,7 @@ double energy_of_spring(const Model& m, const Vectors& x, std::size_t c, double 
   const double stretch = s.rest_length[c] * strain_of(m, x, c);
   return stretch * stretch / (2 * (s.compliance[c] + give_per_mass / s.effective_mass[c]));
 }
-/// Of all.
+/// The sum over all springs.
 template <class Vectors>
 double energy_of_springs(const Model& m, const Vectors& x, double give_per_mass = 0) {
   double sum = 0;

@@ -52,7 +52,7 @@ class Builder {
  private:
   const Face& face(const EdgeOfFace& of) const { return faces_[of.face]; }
 
-  /// Of a face's area, what is stored across this side of it.
+  /// The part of a face's area that is stored across this side of it.
   double area_across(const EdgeOfFace& of) const {
     const Face& f = face(of);
     if (f.is_quad()) {

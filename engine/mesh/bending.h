@@ -8,7 +8,7 @@
 
 namespace weft::mesh {
 
-/// What an element stores for one face: with the stiffness k, k weight d^2 / 2.
+/// The energy of an element for one face: with the stiffness k, k weight d^2 / 2.
 struct Contribution {
   std::uint32_t stencil = 0;
   std::uint32_t face = 0;

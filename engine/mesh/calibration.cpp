@@ -11,7 +11,7 @@
 namespace weft::mesh {
 namespace {
 
-/// Of the plane in which a particle's faces lie in the mean.
+/// Axes of the plane in which a particle's faces lie in the mean.
 struct Axes {
   Vec3 x, y;
 };
@@ -42,7 +42,7 @@ Turn turn_between(const Axes& from, const Axes& to) {
   return {(c * c - s * s) / size, 2 * s * c / size, mirrored};
 }
 
-/// What is stored around a particle, in its axes.
+/// The energies stored around a particle, in its axes.
 struct Patch {
   MomentMatrix stored{};  ///< row: moments of energy; column: as much of each coefficient
   double area = 0;

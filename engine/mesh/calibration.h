@@ -23,9 +23,9 @@ struct Calibrated {
 /// slowly over the mesh. Factors that fit each particle by itself would be exact there, but a sheet
 /// of them is softer as a whole, because soft elements bend more than their share (perf/tried.md).
 ///
-/// What counts is what a cylinder stores once its particles have settled (tuning::kSettlings). Held
-/// exactly on a cylinder they store more, up to a tenth in irregular triangles; where elements pull
-/// at particles evenly, as in lattices, it is the same.
+/// The energy that counts is that of a cylinder whose particles have settled (tuning::kSettlings).
+/// Held exactly on a cylinder they store more, up to a tenth in irregular triangles; where elements
+/// pull at particles evenly, as in lattices, it is the same.
 ///
 /// Where the elements store what they should without a factor, as in grids of rectangles, they keep
 /// the factor 1.

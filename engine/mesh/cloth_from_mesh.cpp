@@ -114,7 +114,7 @@ Air air_of(const SceneDescription& scene, const Material& material) {
   return air;
 }
 
-/// What is only in faces without area and in lines without length has no mass.
+/// A particle that is only in faces without area and in lines without length has no mass.
 Result<void> check_masses(const MeshDescription& mesh, const Welded& welded,
                           const std::vector<double>& masses) {
   for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {

@@ -20,7 +20,8 @@ double cotangent_against(const Face& triangle, std::size_t side) {
   return dot(u, v) / length(cross(u, v));
 }
 
-/// Of warps, or of faces without any, which are 0. Warps are lines: opposite ones are alike.
+/// The mean of two warps, 0 for faces without one. Warps are lines: opposite ones are
+/// alike.
 Vec3 mean_warp(const Face& one, const Face& two) {
   const double sign = dot(one.warp, two.warp) < 0 ? -1 : 1;
   return unit(area(one) * one.warp + sign * area(two) * two.warp);
@@ -99,8 +100,8 @@ class Flipper {
   }
 
   /// The sum of both areas as vectors is that of the four-sided outline, whichever diagonal cuts
-  /// it: what the areas have beyond that is what a fold adds. Seen in its own plane a thin triangle
-  /// may have any warp.
+  /// it: a fold adds the rest of the areas. Seen in its own plane a thin triangle may have any
+  /// warp.
   bool changes_much(const Face& one, std::size_t from, const Face& two, std::size_t far_two) const {
     const Vec3 a = one.places[from], b = one.places[one.next(from)];
     const Vec3 c = one.places[one.previous(from)], d = two.places[far_two];

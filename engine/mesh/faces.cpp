@@ -69,7 +69,7 @@ class Collector {
     return face;
   }
 
-  /// What is not convex is cut at its innermost corner.
+  /// A quad that is not convex is cut at its innermost corner.
   void add_quad(const Face& quad) {
     const auto at_corner = turns(quad);
     const auto least = std::ranges::min_element(at_corner);
@@ -107,7 +107,7 @@ std::vector<Key> sorted_keys(const std::vector<Face>& faces) {
   return keys;
 }
 
-/// Of two faces with the same particles: whether these lie at the same places.
+/// Whether two faces with the same particles have these at the same places.
 bool at_same_places(const Face& one, const Face& two, double weld_distance) {
   for (std::size_t i = 0; i < one.size; ++i) {
     const auto found = std::ranges::find(two.particles, one.particles[i]);

@@ -40,7 +40,7 @@ std::pair<double, double> run(double Vec3::*axis, const std::vector<std::uint32_
   return {sums[0], sums[1]};
 }
 
-/// What rounding makes of equal sums.
+/// The difference that rounding makes of equal sums.
 constexpr double kAlike = 1e-6;
 
 bool second_is_warp(const std::vector<std::uint32_t>& quads, const std::vector<Face>& faces,

@@ -7,7 +7,7 @@
 namespace weft::mesh {
 namespace {
 
-/// Of the angle at a corner, from 78 to 102 degrees.
+/// The largest cosine of the angle at a corner: 78 to 102 degrees.
 constexpr double kMostCosine = 0.2;
 
 constexpr std::uint32_t kNone = kNoIndex;
@@ -68,7 +68,7 @@ std::vector<Cell> possible_cells(const std::vector<Face>& faces, const Edges& ed
   return cells;
 }
 
-/// What is around a particle.
+/// The neighbours of a particle.
 struct Around {
   int quads = 0;      ///< cells and quads
   int triangles = 0;  ///< that are in no cell

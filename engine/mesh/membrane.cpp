@@ -85,8 +85,8 @@ class Springs {
   PairNumbers numbers_;
 };
 
-/// Of a spring of this length that carries the stiffness k of an area: it stretches by the
-/// fraction e with the energy k e^2 / 2 per area.
+/// Stiffness of a spring of this length that carries the stiffness k of an area: it stretches by
+/// the fraction e with the energy k e^2 / 2 per area.
 double spring(double k, double area, double length) { return k * area / square(length); }
 
 void add_sides(const Face& quad, const WovenCell& cell, Springs& springs) {

@@ -1,4 +1,4 @@
-/// Constraints: what keeps a mesh from stretching.
+/// Constraints that keep a mesh from stretching.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace weft::mesh {
 
-/// Every edge of a face and every line, rigid; then diagonals, if they are asked for. Of two that
-/// join the same particles the first counts.
+/// Every edge of a face and every line, rigid; then diagonals, if they are asked for. The first of
+/// two that join the same particles counts.
 std::vector<Constraint> rigid_constraints(const MeshDescription& mesh, const Welded& welded);
 
-/// What a material makes of faces and lines.
+/// Elements that a material makes of faces and lines.
 struct Fabric {
-  /// Of woven cells: springs, edges in the order of the faces, then diagonals.
+  /// Springs of woven cells: edges in the order of the faces, then diagonals.
   std::vector<Constraint> springs;
   std::vector<std::array<std::uint32_t, 4>> cells;  ///< their particles, as MeshCloth::cells
   /// Of other faces: one for each triangle, two for each quad, in the order of the faces. Edges

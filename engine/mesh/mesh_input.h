@@ -1,4 +1,4 @@
-/// What a mesh may say: checked field by field, before anything is made of it.
+/// Checks of a mesh, field by field, before anything is made of it.
 #pragma once
 
 #include <weft/mesh.h>

@@ -12,7 +12,7 @@ inline constexpr std::size_t kMoments = 5;
 using Moments = std::array<double, kMoments>;
 using MomentMatrix = std::array<Moments, kMoments>;
 
-/// Of (u^T M u)^2, with the unit vector u at the angle a.
+/// Moments of (u^T M u)^2, with the unit vector u at the angle a.
 inline Moments moments_of_square(double xx, double yy, double xy) {
   const double mean = (xx + yy) / 2, c = (xx - yy) / 2, s = xy;
   return {mean * mean + (c * c + s * s) / 2, 2 * mean * c, 2 * mean * s, (c * c - s * s) / 2,
@@ -32,7 +32,7 @@ struct Turn {
             m[3] * sin4 + s4 * cos4};
   }
 
-  /// Of a matrix whose rows and columns are moments.
+  /// Turns a matrix whose rows and columns are moments.
   MomentMatrix operator()(const MomentMatrix& matrix) const {
     MomentMatrix rows;
     for (std::size_t i = 0; i < kMoments; ++i) rows[i] = (*this)(matrix[i]);

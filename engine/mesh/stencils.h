@@ -47,11 +47,11 @@ double fold_of(const Stencil& hinge, const std::array<Vec3, 4>& places, double e
 /// it, with the extent of the mesh in m.
 double rest_of(const Stencil& stencil, Vec3 sum, double extent);
 
-/// Of an element that reads one curvature of a grid and stores that of an area alone.
+/// The weight of an element that reads one curvature of a grid and stores that of an area alone.
 double weight_in_grid(const Stencil& stencil, double area);
-/// Of one that shares its area with others of other directions: the mean over cylinders of all
-/// directions is that of the area. (The mean of (u^T M u)^2 over all unit vectors u of the plane is
-/// (2 |M|^2 + tr(M)^2) / 8.)
+/// The weight of one that shares its area with others of other directions: the mean over cylinders
+/// of all directions is that of the area. (The mean of (u^T M u)^2 over all unit vectors u of the
+/// plane is (2 |M|^2 + tr(M)^2) / 8.)
 double weight_among_others(const Stencil& stencil, double area);
 
 }  // namespace weft::mesh

@@ -7,8 +7,8 @@
 
 namespace weft::mesh {
 
-/// What the mesh gives to a face: a unit vector in the plane of this normal. 0 where it gives no
-/// direction, or one across the plane.
+/// The warp that the mesh gives to a face: a unit vector in the plane of this normal. 0 where it
+/// gives no direction, or one across the plane.
 Vec3 given_warp(const MeshDescription& mesh, std::size_t face, Vec3 normal);
 
 inline bool is_given(Vec3 warp) { return dot(warp, warp) > 0; }

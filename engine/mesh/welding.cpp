@@ -65,7 +65,7 @@ void join_sewn(const MeshDescription& mesh, const std::vector<bool>& used, Parti
   }
 }
 
-/// Of different places the mean; of equal ones the place itself, to the last bit.
+/// The mean of different places; of equal ones the place itself, to the last bit.
 void place_particles(const MeshDescription& mesh, Welded& welded) {
   std::vector<Vec3> sums(welded.positions.size());
   std::vector<double> counts(welded.positions.size(), 0);

@@ -1,9 +1,9 @@
 /// Models that differ from others in numbers (Cloth::change).
 ///
-/// What is prepared from constraints is shared where none of them changes. What changes of a model
-/// make is the model that build_model makes of the changed description, so that whatever is known
-/// of models holds for it. Descriptions are not kept: a model holds all that it was made of, and
-/// tells it when it is asked.
+/// Data prepared from constraints are shared where none of them changes. Changes of a model make
+/// the model that build_model makes of the changed description, so that whatever is known of models
+/// holds for it. Descriptions are not kept: a model holds all that it was made of, and tells it
+/// when it is asked.
 #pragma once
 
 #include <weft/weft.h>
@@ -17,7 +17,7 @@
 
 namespace weft {
 
-/// What the model was built from, but for the order of lists of particles.
+/// The description that the model was built from, but for the order of lists of particles.
 SceneDescription description_of(const Model& model);
 
 /// The changes must be valid for the model.
@@ -52,14 +52,14 @@ void for_each_described(const std::vector<std::uint32_t>& described_a,
   }
 }
 
-/// Of constraints.
+/// Calls work(i, j) for the constraints that both have.
 template <class Work>
 void for_each_constraint(const Model& a, const Model& b, Work&& work) {
   for_each_described(a.constraints.described, b.constraints.described,
                      b.constraints.size() + b.inert.constraints.size(), work);
 }
 
-/// Of triangles of fabric.
+/// Calls work(i, j) for the triangles of fabric that both have.
 template <class Work>
 void for_each_triangle(const Model& a, const Model& b, Work&& work) {
   for_each_described(a.membrane.described, b.membrane.described,

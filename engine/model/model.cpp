@@ -17,7 +17,7 @@ std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a
 
 }  // namespace
 
-/// What is known of the description, by its numbers, while the model is built.
+/// The known parts of the description, by its numbers, while the model is built.
 struct Model::Draft {
   const SceneDescription& description;
   std::vector<std::uint8_t> fixed, held, hub;   // per particle; held: fixed, or attached

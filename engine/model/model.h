@@ -40,10 +40,10 @@ struct YarnLayout;
 ///   [plain, bilateral)  distance, at a hub
 ///   [bilateral, size)   ropes
 ///
-/// A hub is a particle of more than kHubDegree constraints, or a sphere. What is held does not
-/// move, so that its distances need no turns among its ropes: there it counts as a hub by its
-/// distances alone. Cloth whose particles all have a rope to their pin hangs on it by its yarns as
-/// before.
+/// A hub is a particle of more than kHubDegree constraints, or a sphere. A held particle does
+/// not move, so that its distances need no turns among its ropes: it counts as a hub by its
+/// distances alone. Cloth whose particles all have a rope to their pin hangs on it by its yarns
+/// as before.
 struct ConstraintStore {
   std::size_t plain = 0, bilateral = 0;
   std::vector<std::uint32_t> a, b;  // slots
@@ -97,7 +97,8 @@ struct MembraneStore {
   }
 };
 
-/// Triangles that feel the air, between slots, and its coefficients (weft.h).
+/// Triangles subject to drag and lift, between slots, and coefficients of the air
+/// (weft.h).
 struct AirStore {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   Lists at;                          // per slot: its triangles
@@ -107,8 +108,8 @@ struct AirStore {
   kernels::Vector wind{};
 };
 
-/// What lies between fixed particles alone and waits for one of them to be released: numbers and
-/// text of the description, in its order.
+/// Elements that lie between fixed particles alone and wait for one of them to be released: numbers
+/// and text of the description, in its order.
 struct InertStore {
   template <class T>
   struct Entry {
@@ -139,7 +140,7 @@ struct SeamStore {
   std::size_t bytes() const;
 };
 
-/// Of the first `count` constraints, between slots.
+/// Links of the first `count` constraints, between slots.
 std::vector<Link> links_of(const ConstraintStore& store, std::size_t count);
 
 /// With the normal's length 1.
@@ -204,7 +205,7 @@ class Model {
   /// Whether anything obeys a law with a compliance: springs or triangles of fabric.
   bool has_laws() const { return constraints.has_springs() || membrane.size() > 0; }
   bool has_spheres() const { return !spheres.empty(); }
-  /// Of a particle; kNoIndex: none.
+  /// The anchor of a particle; kNoIndex: none.
   std::uint32_t anchor_of(std::uint32_t particle) const {
     return anchors.at.empty() ? kNoIndex : anchors.at[ordering.slot_of[particle]];
   }

@@ -39,7 +39,7 @@ class OnDemand {
   const T* if_made() const {
     return made_.load(std::memory_order_acquire) ? value_.get() : nullptr;
   }
-  /// Of memory; 0 as long as nobody has asked.
+  /// Bytes of memory; 0 as long as nobody has asked.
   std::size_t bytes() const { return made_.load(std::memory_order_acquire) ? bytes_ : 0; }
 
  private:

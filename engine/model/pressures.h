@@ -40,7 +40,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> find_border(
 /// m^3, that triangles which close enclose: more than 0 where their normals point outwards.
 double enclosed_volume(std::span<const SurfaceTriangle> triangles, const SlotPlace& place);
 
-/// Of triangles that share corners.
+/// Pieces of triangles that share corners.
 struct AirPieces {
   std::vector<std::uint32_t> of;  // of each triangle: its piece
   std::vector<bool> is_open;      // of each piece

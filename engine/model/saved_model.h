@@ -7,7 +7,7 @@
 
 namespace weft {
 
-/// Of all that the model was built from, and of where its particles stand in memory.
+/// A hash of all that the model was built from, and of where its particles stand in memory.
 std::uint64_t fingerprint(const Model& model);
 
 }  // namespace weft

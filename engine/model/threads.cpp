@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-/// What joins two slots.
+/// A link of two slots.
 struct Side {
   std::uint32_t a = 0, b = 0;
   double length = 0;  // m, at rest

@@ -1,4 +1,4 @@
-/// What is refused, and how it is said: one line of the form "field[index]: reason (value)".
+/// Refused input, in one line of the form "field[index]: reason (value)".
 #pragma once
 
 #include <weft/weft.h>
@@ -9,12 +9,12 @@ class Model;
 
 Result<void> validate(const SceneDescription& description);
 Result<void> validate(const Changes& changes, const Model& model);
-/// What a description says besides particles, constraints and spheres.
+/// Checks a description, except its particles, constraints and spheres.
 Result<void> validate_material(const SceneDescription& description);
 Result<void> validate_anchors(const SceneDescription& description);
 Result<void> validate_damping(const Damping& damping);
 Result<void> validate_seams(const SceneDescription& description);
-/// Of all anchors; normals: or none.
+/// Checks the places of all anchors; normals: or none.
 Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> points,
                                   std::span<const Vec3> normals);
 Result<void> validate_anchor_limits(const Model& model, std::span<const AnchorLimit> limits);
@@ -32,7 +32,7 @@ Result<void> validate_vector(std::string_view field, std::size_t index, Vec3 vec
 Result<void> validate_size(std::string_view field, std::size_t size, std::size_t expected);
 Result<void> validate_floats(std::string_view field, const FloatVectors& floats,
                              std::size_t expected);
-/// Of what floats are relative to.
+/// Checks the point that floats are relative to.
 Result<void> validate_origin(Vec3 origin);
 
 }  // namespace weft

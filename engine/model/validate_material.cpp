@@ -62,7 +62,7 @@ Result<void> validate_bending(std::size_t index, const BendingElement& b, std::s
   return validate_square(field + ".compliance", b.compliance);
 }
 
-/// Of twice the area of a triangle, over two of its sides: below this it is rounding.
+/// The least ratio of twice the area of a triangle to two of its sides: below this it is rounding.
 constexpr double kLeastSine = 1e-9;
 
 Result<void> validate_rest(const std::string& field, const MembraneElement& e) {

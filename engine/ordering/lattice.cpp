@@ -12,8 +12,8 @@ namespace {
 using mesh::dot;
 using mesh::operator-;
 
-/// The most frequent value, and how often it occurs. Of equally frequent values it is the lowest.
-/// Sorts the values.
+/// The most frequent value, and how often it occurs. Among equally frequent values it is the
+/// lowest. Sorts the values.
 std::pair<std::int32_t, std::size_t> most_frequent(std::vector<std::int32_t>& values) {
   std::sort(values.begin(), values.end());
   std::pair<std::int32_t, std::size_t> best{0, 0};

@@ -84,7 +84,7 @@ Placement place_nearby(const Lists& incidence, std::span<const Link> links,
   if (incidence.size() == 0) return placement;
   Bisection bisection(incidence, links);
   placement.tiles = bisection.cut(tile_count(bisection.joined(), tile_particles));
-  // Who is joined to nobody stands behind the others, and changes nothing about their order.
+  // Particles without a link stand behind the others, and change nothing about their order.
   for (std::uint32_t p = 0; p < incidence.size(); ++p) {
     if (incidence[p].empty()) placement.tiles.back().push_back(p);
   }

@@ -219,7 +219,7 @@ class TileLayout {
   std::vector<std::uint32_t> particle_at_;
 };
 
-/// Who is joined to nobody stands behind the others, and changes nothing about their order.
+/// Particles without a link stand behind the others, and change nothing about their order.
 void append_lone(const std::vector<bool>& is_joined, Placement& placement) {
   if (placement.tiles.empty() && !is_joined.empty()) placement.tiles.emplace_back();
   for (std::uint32_t p = 0; p < is_joined.size(); ++p) {

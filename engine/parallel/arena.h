@@ -13,8 +13,8 @@ namespace weft {
 /// How many threads it has, up to Team::kMaxSize; 1 where the calling thread is in none.
 int threads_of_arena();
 
-/// What arena and caller share. It outlives a run, since a task may start when that is over: it
-/// finds the run closed, and returns at once.
+/// Data that arena and caller share. They outlive a run, since a task may start when that is over:
+/// it finds the run closed, and returns at once.
 class ArenaRun {
  public:
   /// Calls job() in this thread, and in up to times - 1 others of the arena, if they come before

@@ -18,7 +18,7 @@ void Crew::work(Pieces& pieces, const JobSystem& jobs, const std::shared_ptr<Are
   const Job job{[](void* context) noexcept { static_cast<Crew*>(context)->take_part(); }, &crew};
   if (crew.wanted_ > 1 && jobs.run != nullptr) jobs.run(jobs.host, job, crew.wanted_);
   if (crew.wanted_ > 1 && jobs.run == nullptr) return ArenaRun::run(arena, job, crew.wanted_);
-  crew.take_part();  // what is left
+  crew.take_part();  // does the rest
 }
 
 Crew::Crew(Pieces& pieces, int threads)

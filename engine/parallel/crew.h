@@ -30,7 +30,7 @@ class Pieces {
   virtual int threads(std::size_t piece) const = 0;
   /// Whether it is to be done. Asked before work begins, and by the thread that takes the piece.
   virtual bool is_due(std::size_t piece) const = 0;
-  /// Of a large piece, for its team.
+  /// The shared state of a large piece, for its team.
   virtual Team::SharedState& shared(std::size_t piece) = 0;
   /// Once for each piece, in any thread.
   virtual void lead(std::size_t piece, Team& team) noexcept = 0;
@@ -38,8 +38,8 @@ class Pieces {
 
 class Crew {
  public:
-  /// Does all pieces. Of a job system that is the caller's arena `arena` is what is shared with it:
-  /// without, the calling thread works alone.
+  /// Does all pieces. If the job system is the caller's arena, `arena` is the run shared with it:
+  /// without one the calling thread works alone.
   static void work(Pieces& pieces, const JobSystem& jobs, const std::shared_ptr<ArenaRun>& arena);
 
  private:

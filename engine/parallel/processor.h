@@ -1,4 +1,4 @@
-/// What threads that work together ask of a processor beyond C++.
+/// Requests of threads that work together to a processor, beyond C++.
 #pragma once
 
 #include <cstdint>

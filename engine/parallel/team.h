@@ -34,10 +34,10 @@ class Team {
   static constexpr int kMaxSize = 64;
   struct SharedState;
 
-  /// Of one thread.
+  /// A team of one thread.
   Team() = default;
-  /// Of up to `threads` threads, this one included: others come by shared.help(). What they share
-  /// may be used again by the next team when this one is gone, and may outlive it.
+  /// A team of up to `threads` threads, this one included: others come by shared.help(). The shared
+  /// state may be used again by the next team when this one is gone, and may outlive it.
   Team(int threads, SharedState& shared);
   ~Team();
   Team(const Team&) = delete;
@@ -82,7 +82,7 @@ class Team {
   int max_workers_ = 0;
 };
 
-/// What leader and workers share.
+/// The data that leader and workers share.
 struct Team::SharedState {
   static constexpr std::size_t kCacheLine = 64;
   static constexpr std::uint32_t kEndOfTeam = 0xffu;  // in place of the number of shares
@@ -105,7 +105,7 @@ struct Team::SharedState {
   };
 
   Published published;
-  alignas(kCacheLine) Gathering workers;  // who leaves has seen the end of the team
+  alignas(kCacheLine) Gathering workers;  // those that leave have seen the end of the team
   std::uint64_t loops = 0;                // how many the leader has published
   std::array<Progress, kMaxSize> progress;
 

@@ -1,4 +1,4 @@
-/// What differs between two rows of bytes.
+/// The differences between two rows of bytes.
 #pragma once
 
 #include <weft/result.h>
@@ -26,7 +26,7 @@ struct Patch {
 /// That make `after` of `before`, in order of the places, which are those in `before`.
 std::vector<Patch> patches(std::span<const std::byte> before, std::span<const std::byte> after);
 
-/// What they make of `before`. An error means that they were not made for it.
+/// The bytes that they make of `before`. An error means that they were not made for it.
 Result<std::vector<std::byte>> patched(std::span<const std::byte> before,
                                        std::span<const Patch> patches);
 

@@ -52,7 +52,7 @@ void Recorder::add_part(std::span<const std::byte> part) {
   if (!complete) written_ = not_written(path_);
 }
 
-/// What was not written is missing for all that follows.
+/// A part that was not written is missing for all that follows.
 void Recorder::try_to(const auto& write) noexcept {
   try {
     if (written_) write();

@@ -1,4 +1,4 @@
-/// What a cloth did as bytes, to be done again elsewhere bit for bit (Cloth::begin_recording).
+/// The steps of a cloth as bytes, to be done again elsewhere bit for bit (Cloth::begin_recording).
 ///
 /// A recording is a row of parts: the start (settings, model, state), and then of each step what
 /// calls changed before it, and its status with the hash of the state that it reached. Calls are
@@ -31,7 +31,7 @@ struct RecordedStart {
 struct RecordedCalls {
   double dt = 0;                 ///< s, of the step that follows
   std::vector<std::byte> model;  ///< that replaced the one before; empty: none
-  std::vector<Patch> state;      ///< what became of the state (patched_state)
+  std::vector<Patch> state;      ///< changes of the state (patched_state)
 };
 
 struct RecordedResult {

@@ -112,7 +112,7 @@ class ArchiveReader {
   explicit ArchiveReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
   void operator()(auto&... values) { (take(values), ...); }
-  /// What was read cannot be.
+  /// The values that were read are impossible.
   void refuse() { is_good_ = false; }
   /// Whether all that was asked for was there. Once it was not, nothing more is read.
   bool is_good() const { return is_good_; }
@@ -137,7 +137,7 @@ class ArchiveReader {
     (*this)(v.x, v.y, v.z);
     if (v.y.size() != v.x.size() || v.z.size() != v.x.size()) refuse();
   }
-  /// Of elements that take so many bytes at least.
+  /// The count of elements that take so many bytes at least.
   std::uint64_t take_count(std::size_t bytes) {
     std::uint64_t count = 0;
     take(count);

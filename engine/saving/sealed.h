@@ -23,7 +23,7 @@ std::vector<std::byte> seal(const Kind& kind, std::span<const std::byte> content
 /// The content, in these bytes. An error says why it is none: "state: is damaged (...)".
 Result<std::span<const std::byte>> unseal(const Kind& kind, std::span<const std::byte> bytes);
 
-/// Of any bytes.
+/// The checksum of any bytes.
 std::uint64_t checksum(std::span<const std::byte> bytes);
 
 }  // namespace weft

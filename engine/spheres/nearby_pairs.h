@@ -18,8 +18,8 @@ class NearbySpherePairs {
   void move(double way) { spare_ -= way; }
   /// Whether these hold all pairs that may touch after one more such move.
   bool hold_after(double way) const { return way <= spare_; }
-  /// Finds all pairs that may touch after moves by up to `margin` (m) in all. Of the contacts only
-  /// the scratch is written.
+  /// Finds all pairs that may touch after moves by up to `margin` (m) in all. Only the scratch of
+  /// the contacts is written.
   void find(const Model& model, const simd::Table& kernels, kernels::VectorsView x, double margin,
             SphereContacts& contacts);
   /// Lists those of them that find_contacts() would find at x, in the same order.

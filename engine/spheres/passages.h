@@ -1,4 +1,4 @@
-/// What went through a sphere within one step.
+/// Particles that went through a sphere within one step.
 #pragma once
 
 #include "engine/model/model.h"
@@ -15,7 +15,7 @@ bool may_have_passed(const Model& model, double way);
 /// of a sphere before the step and behind it afterwards was in no contact, or in one that pushed it
 /// out on the far side. This looks at the way, which is straight within a step. Returns the slot of
 /// a particle that went through a sphere, deeper than a twentieth of the sum of their radii, or
-/// kNoIndex. Of the contacts only the scratch is written.
+/// kNoIndex. Only the scratch of the contacts is written.
 std::uint32_t find_passage(const Model& model, const simd::Table& kernels,
                            kernels::VectorsView before, kernels::VectorsView after,
                            SphereContacts& contacts);

@@ -52,7 +52,7 @@ void find_contacts(const Model& model, const simd::Table& kernels, kernels::Vect
 double reach_of(const Model& model, SpherePair pair);
 
 /// All pairs that find_contacts() would list if both came nearer by up to `margin` (m) each, in its
-/// order. Of the contacts only the scratch is written.
+/// order. Only the scratch of the contacts is written.
 void find_pairs(const Model& model, const simd::Table& kernels, kernels::VectorsView x,
                 double margin, SphereContacts& contacts, std::vector<SpherePair>& pairs);
 

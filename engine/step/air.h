@@ -53,8 +53,8 @@ struct AirPace {
 };
 /// 0 without air.
 AirPace find_air_pace(State& s);
-/// In how many parts of dt the forces are to be found anew, 1 or more. What stands across the wind
-/// and is turned along it loses its force, at once and not at the end of a step: in a part the air
+/// In how many parts of dt the forces are to be found anew, 1 or more. A triangle across the wind
+/// that is turned along it loses its force, at once and not at the end of a step: in a part the air
 /// is not to take more than the share tuning::kAirShare of a velocity.
 double parts_for_air(const AirPace& pace, double dt);
 /// State::velocity, before h.

@@ -32,7 +32,7 @@ class Anchors {
       for (auto& pose : *poses) pose = {moved(pose.point), turned(pose.normal)};
     }
   }
-  /// What all ask for from the next step on.
+  /// The limits of all from the next step on.
   void limit(std::span<const AnchorLimit> limits);
   void limit(std::uint32_t anchor, const AnchorLimit& limit);
   void scale(double scale);

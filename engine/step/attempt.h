@@ -37,7 +37,7 @@ struct Attempt {
 /// that misses that is rejected too, unless it is the shortest.
 enum class Outcome : std::uint8_t { accepted, rejected, not_finite };
 
-/// What an attempt came to.
+/// The outcome of an attempt.
 struct Trial {
   Outcome outcome = Outcome::accepted;
   Status status = Status::converged;

@@ -1,5 +1,5 @@
-/// What pulls at the cloth in a step, as far as is known when it begins: small steps choose their
-/// length by it.
+/// The loads of the cloth in a step, as far as they are known when it begins: small steps choose
+/// their length by them.
 #pragma once
 
 #include "engine/solvers/small_steps/small_steps_load.h"

@@ -18,7 +18,7 @@ bool has_ropes(const ConstraintStore& constraints) {
   return constraints.size() > constraints.bilateral;
 }
 
-/// What touches nothing changes nothing.
+/// A sphere that touches nothing changes nothing.
 std::vector<std::uint32_t> free_spheres_that_matter(const Model& model) {
   std::vector<std::uint32_t> spheres;
   std::ranges::copy_if(model.spheres, std::back_inserter(spheres), [&](std::uint32_t slot) {

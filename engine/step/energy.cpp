@@ -17,7 +17,7 @@ Vector middle(const State& s, std::size_t slot) {
   return 0.5 * (s.position[slot] + s.solved[slot]);
 }
 
-/// What flies by itself neither gains energy nor gives any.
+/// A particle that flies by itself neither gains energy nor gives any.
 bool flies_free(const State& s, std::uint32_t slot) {
   return touches_nothing(*s.model, s.contacts, slot);
 }

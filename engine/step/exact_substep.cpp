@@ -63,7 +63,7 @@ Status correct_velocities(State& s, ConstraintSolver& solver, bool exact, const 
     if (is_done || next == nullptr) continue;
     task.max_iterations = std::max(1, budget.velocities - result.iterations);
     count(result, next->correct_velocities(task, team));
-    task.exact = false;  // what was removed once is
+    task.exact = false;  // removed once already
   }
   report.velocity_iterations += result.iterations;
   report.visits += result.visits;
@@ -150,8 +150,8 @@ class ExactSubstep {
   }
 
   bool is_papers_loop() const { return s_.settings.solver == Solver::gauss_seidel; }
-  /// The paper's loop leaves errors within the tolerance. Whoever corrects in h what a longer
-  /// substep left gains energy by that.
+  /// The paper's loop leaves errors within the tolerance. A solver that corrects in h the error of
+  /// a longer substep gains energy by that.
   bool corrects_longer_substeps() const {
     return is_papers_loop() && !is_by_rattle() && h_ < s_.longest_substep;
   }
@@ -162,7 +162,7 @@ class ExactSubstep {
     return is_by_rattle() || !is_papers_loop() || !is_solved_ || corrects_longer_substeps();
   }
 
-  /// What springs have released is no gain.
+  /// Energy that springs have released is no gain.
   void release_energy() {
     elastic_energy_ = energy_of_tensions(*s_.laws, s_.model->constraints, h_);
     impulses_.gain -= 2 * (s_.elastic_energy - elastic_energy_);

@@ -17,8 +17,8 @@ Trial exact_substep(State& s, const Attempt& attempt, double h, const Budget& bu
 kernels::LoopResult solve_positions(State& s, ConstraintSolver& solver, PositionTask task,
                                     StepReport& report, Team& team);
 
-/// Brings next_velocity within the velocity tolerance, at the positions solved. What the solver
-/// leaves is for sweeps, which judge in double.
+/// Brings next_velocity within the velocity tolerance, at the positions solved. Errors that the
+/// solver leaves are for sweeps, which judge in double.
 Status correct_velocities(State& s, ConstraintSolver& solver, bool exact, const Budget& budget,
                           StepReport& report, Team& team);
 

@@ -1,4 +1,4 @@
-/// Springs and triangles of fabric that swing faster than motion is seen. Whoever puts a cloth
+/// Springs and triangles of fabric that swing faster than motion is seen. A caller who puts a cloth
 /// somewhere means its place and not the energy that its fabric would have there, so a projection
 /// puts these right as it does rigid edges (project.h).
 ///

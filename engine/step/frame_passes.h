@@ -25,7 +25,8 @@ class FramePasses {
   void begin(double most) { left_ = most; }
   double left() const { return left_; }
   double most_of_substep() const { return local_visit_ * tuning::kMostVisits; }
-  /// Of those that are left for each of the substeps to come, and for what the last one leaves.
+  /// The share left for each of the substeps to come, and for the end of the last
+  /// one.
   double share_of_substep(int substeps_left) const {
     return std::clamp(left_ / (substeps_left + 1), 0.0, most_of_substep());
   }
@@ -61,7 +62,7 @@ class FramePasses {
     left_ -= local_visit_ * passes;
     taken_ += tuning::kLocalVisit * passes;
   }
-  /// What contacts with meshes took beside a sweep.
+  /// Counts the visits of contacts with meshes beside a sweep.
   void count_contacts(double visits) {
     left_ -= tuning::kContactShare * visits / visits_of_a_pass();
   }
@@ -73,7 +74,7 @@ class FramePasses {
   void end() { report_.iterations += static_cast<std::int64_t>(std::ceil(local_passes_)); }
 
  private:
-  /// Of local passes over everything, in visits of a sweep that take as long.
+  /// The time of local passes over everything, in visits of a sweep that take as long.
   static double time_of_local_visit(const Model& model) {
     const auto triangles = static_cast<double>(model.membrane.size());
     const auto others = static_cast<double>(model.constraints.size() + model.seams.size());

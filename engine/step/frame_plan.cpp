@@ -33,8 +33,8 @@ double length_for_air(const State& s) {
 }
 
 /// s, of the longest substep that the strain tolerance, the motion tolerance and the air allow.
-/// What a frame will be like is not known: State::refinement says what the last ones were. Where
-/// that is below 0 the cloth pulls less than at the bottom of a swing.
+/// The needs of a frame are not known: State::refinement has those of the last ones. Where that is
+/// below 0 the cloth pulls less than at the bottom of a swing.
 double usual_length(State& s, double dt) {
   Burden burden = burden_of(s, dt);
   burden.weights *= std::exp2(2 * std::min(0.0, s.refinement));

@@ -1,4 +1,4 @@
-/// What a frame of small steps is to do: a step, a projection, or a look ahead.
+/// The plan of a frame of small steps: a step, a projection, or a look ahead.
 #pragma once
 
 #include "engine/solvers/small_steps/small_steps.h"
@@ -13,8 +13,8 @@ inline bool takes_over_in(const State& s) { return s.settings.solver != Solver::
 bool refines_substeps(const State& s);
 
 /// Substeps are about as long as the load allows. A step that is far shorter than the load allows
-/// is no stiffer. What is done in vain is bounded as where a number of substeps was given. This
-/// writes over solved and, with free spheres, contacts.
+/// is no stiffer. Work in vain is bounded as where a number of substeps was given. This writes over
+/// solved and, with free spheres, contacts.
 FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget& budget);
 /// From rest; springs up to the compliance `softest` have the time h to give way, and softer ones
 /// are left as they are. goes_on: from where the last projection of this step has ended.

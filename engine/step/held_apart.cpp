@@ -9,7 +9,7 @@ namespace weft {
 
 namespace {
 
-/// Of its rest length.
+/// Its strain, as a share of its rest length.
 double held_strain(const State& s, const Constraint& c) {
   const auto place = [&](std::uint32_t particle) {
     return s.position[s.model->ordering.slot_of[particle]];

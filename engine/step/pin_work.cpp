@@ -29,7 +29,7 @@ void for_each_pin(const State& s, const std::vector<std::uint32_t>& pins, double
 struct Inertia {
   Vector x{}, y{}, z{};  // columns
 
-  /// Of a unit mass at r.
+  /// Adds a unit mass at r.
   void add(Vector r) {
     const double square = dot(r, r);
     x = x + Vector{square, 0, 0} - r.x * r;

@@ -7,17 +7,17 @@
 ///
 ///     u . sum J  +  s . sum (x - c) x J
 ///
-/// Of pins that move otherwise this is the work of the rigid motion nearest to theirs (least
-/// squares, each as often as it has constraints). What they do beyond that, and what moved spheres
-/// do that touch something, is not known: `stray` says how fast they do it. Points of anchors are
-/// pins that hold one constraint, whether or not their particle is at its limit.
+/// For pins that move otherwise this is the work of the rigid motion nearest to theirs (least
+/// squares, each as often as it has constraints). Work beyond that, and that of moved spheres that
+/// touch something, is not known: `stray` says how fast they do it. Points of anchors are pins that
+/// hold one constraint, whether or not their particle is at its limit.
 #pragma once
 
 #include "engine/step/state.h"
 
 namespace weft {
 
-/// Of fixed particles and the points of anchors; 0 where none is under way.
+/// The motion of fixed particles and the points of anchors; 0 where none is under way.
 struct PinMotion {
   kernels::Vector centre{}, velocity{}, spin{};  // u + s x (x - c), as above
   double stray = 0;                              // m/s, the most by which one moves otherwise
@@ -32,8 +32,8 @@ PinMotion motion_of_pins(const State& s, double h);
 
 /// From (position, velocity) to (solved, next_velocity), J.
 double work_of(const PinMotion& pins, const State& s, double h);
-/// What hits free particles as fast as stray may give them that speed: an energy, J, to be put up
-/// with.
+/// Hits as fast as stray may give free particles that speed: an energy, J, that is
+/// accepted.
 double stray_energy(const PinMotion& pins, const State& s);
 
 }  // namespace weft

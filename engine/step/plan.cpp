@@ -39,8 +39,8 @@ double largest_change(const State& s) {
 ///
 ///     sqrt( strain / min(most, longest / n) )     n: particles of the constraint's yarn
 ///
-/// substeps, the largest of all constraints. What an edge turns by, all those behind it on its yarn
-/// are swung by: a yarn of many edges wants less.
+/// substeps, the largest of all constraints. The turn of an edge swings all edges behind it on its
+/// yarn: a yarn of many edges wants less.
 double bend_after_motion(State& s, Team& team) {
   const tuning::Bend& may =
       s.settings.scheme == Scheme::rattle ? tuning::kRattleBend : tuning::kUsualBend;
@@ -61,7 +61,7 @@ double bend_after_motion(State& s, Team& team) {
   return finer;
 }
 
-/// Of free spheres that touch something where the step would lead; kg.
+/// The mass of free spheres that touch something where the step would lead; kg.
 double heaviest_sphere(State& s) {
   const Model& model = *s.model;
   find_contacts(model, *s.kernels, s.solved.view(), s.contacts);

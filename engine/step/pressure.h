@@ -3,8 +3,8 @@
 /// A pressure p gives each corner of a triangle a third of p times its area vector. In small steps
 /// that is found anew in every substep, and held during it. Its work is that of the mean of the
 /// forces where the substep begins and ends: p times the volume that triangles sweep, up to the
-/// third order. What a force that is held does beyond that counts as gained energy, and the guard
-/// takes it. The work of a gas follows from its volumes.
+/// third order. Work of a held force beyond that counts as gained energy, and the guard takes it.
+/// The work of a gas follows from its volumes.
 ///
 /// The volume of a gas would swing far faster than a substep is long. So a substep begins with the
 /// pressure q that the last one came to, and finds another one, p, where its sweep has ended. With

@@ -65,7 +65,7 @@ double largest_way(const kernels::Vectors& from, const kernels::Vectors& to) {
 
 /// Fast springs of which a pin was put down elsewhere, or whose rest has changed. Where positions
 /// were given they are misplaced if in a moment from rest they would become fast by changing their
-/// lengths: what a cloth carries does not.
+/// lengths: the load of a cloth does not.
 bool springs_are_misplaced(State& s, Team& team) {
   if (!s.model->has_laws() || softest_of_fast(*s.model) == 0) return false;
   if (s.rests_differ) return true;
@@ -99,8 +99,8 @@ class Projection {
     if (all_finite(s_.solved)) s_.position = s_.solved;
   }
 
-  /// What the fabric carried before pins were put down pulls as before: the way that this takes in
-  /// the time of a round, from where the pins were, is taken back in each round.
+  /// The load of the fabric before pins were put down pulls as before: its way in the time of a
+  /// round, from where the pins were, is taken back in each round.
   void put_springs_right() {
     const double softest = softest_of_fast(*s_.model);
     const bool carries = s_.pins.were_put_down() && !s_.placed;

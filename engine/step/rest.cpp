@@ -43,7 +43,7 @@ bool Rest::has_moved(const kernels::Vectors& position) {
   return false;
 }
 
-/// What moves is not copied in every step.
+/// Positions of moving cloth are not copied in every step.
 bool Rest::watch(const kernels::Vectors& position, double dt) {
   time_ += dt;
   if (dt > kLookTime || (is_watching_ && has_moved(position))) {

@@ -38,7 +38,7 @@ class Seams {
   std::vector<SeamState> states_;
 };
 
-/// Of some states at x.
+/// The gaps of some states at x.
 struct SeamGaps {
   int open = 0, late = 0;
   double largest = 0;                   // m, of closed ones

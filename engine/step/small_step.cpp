@@ -49,7 +49,7 @@ class Frame {
     s_.next_velocity = kernels::Vectors(s_.next_velocity.size());
     begin(plan, s_.next_velocity.view());
   }
-  /// Of a step.
+  /// Begins the motion of a step.
   void begin_motion(const FramePlan& plan) {
     begin(plan, s_.velocity.view());
     forces_.begin();
@@ -118,8 +118,8 @@ class Frame {
     finish();
   }
 
-  /// What is under the surface of a body comes out by and by: no round would bring it out sooner.
-  /// Returns whether something is deeper than the tolerance.
+  /// A particle under the surface of a body comes out by and by: no round would bring it out
+  /// sooner. Returns whether something is deeper than the tolerance.
   bool is_in_body() {
     const double depth = solver_.deepest_in_body(team_);
     report_.max_penetration = std::max(report_.max_penetration, depth);
@@ -220,9 +220,9 @@ class Frame {
     solver_.sweep(team_);
     passes_.count_sweep();
   }
-  /// What a sweep leaves of a law the next one has again, and small steps bring it down faster than
-  /// local passes do: these wait for the last substep, and before it contacts alone are put right.
-  /// What is left of a rigid length would be let go as speed.
+  /// The next sweep has the error that a sweep leaves of a law, and small steps bring it down
+  /// faster than local passes do: these wait for the last substep, and before it contacts alone are
+  /// put right. Errors of a rigid length would be let go as speed.
   bool mends_now() const { return !s_.model->has_laws() || places_.left() == 0; }
 
   State& s_;
@@ -252,7 +252,7 @@ void timed_with_contacts(State& s, StepReport& report, Stage stage, Work&& work)
   });
 }
 
-/// What a frame leaves to those after it, besides positions and velocities.
+/// Data that a frame leaves to those after it, besides positions and velocities.
 struct Remains {
   double give_per_mass = 0, lost_energy = 0;  // State
 };

@@ -7,8 +7,8 @@
 
 namespace weft {
 
-/// Computes the next state, in solved and next_velocity; its errors are in the report. What is
-/// out of tolerance in the end is put right in rounds or, if nothing is tried after it, said.
+/// Computes the next state, in solved and next_velocity; its errors are in the report. Errors out
+/// of tolerance in the end are put right in rounds or, if nothing is tried after it, said.
 Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budget,
                  StepReport& report, Team& team);
 
@@ -17,7 +17,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
 /// where the last one of this step has ended.
 void project_by_small_steps(State& s, double softest, double h, bool goes_on, const Budget& budget,
                             StepReport& report, Team& team);
-/// solved: where a substep of h from rest leads, by its sweep alone. What is remembered stays.
+/// solved: where a substep of h from rest leads, by its sweep alone. The memory stays.
 void look_ahead_by_small_steps(State& s, double h, StepReport& report, Team& team);
 
 }  // namespace weft

@@ -93,7 +93,7 @@ void State::make_solvers() {
     direct = std::make_unique<DirectSolver>(*model, settings, *kernels);
   }
   if (settings.solver == Solver::small_steps || (exact && to_tolerance)) {
-    if (exact) own.scheme = Scheme::implicit;  // whoever takes over has no past
+    if (exact) own.scheme = Scheme::implicit;  // the stand-in has no past
     small_steps = make_small_steps(*model, own, *kernels);
     if (model->has_spheres()) substep_positions.resize(model->slots());
     if (model->heaviest_sphere > 0) inverse_mass_of_met = model->inverse_mass;
@@ -108,7 +108,7 @@ void State::make_solvers() {
   }
 }
 
-/// What needs memory first: all of it is copied or, where memory runs out, nothing.
+/// Parts that need memory come first: all is copied or, where memory runs out, nothing.
 void State::copy(const State& from) {
   LastingState its = from;
   const bool same = alike(settings, from.settings);
@@ -149,7 +149,7 @@ void State::go_on_from(const State& from) {
   take(std::move(next), from.settings);
   displaced = true;
   rests_differ = rests_differ || fast_rest_differs(*model, its_model, settings.tolerance);
-  if (!same_masses) lost_energy = 0;  // what was lost was energy of others
+  if (!same_masses) lost_energy = 0;  // the lost energy was of others
   if (alike(settings, from.settings) && small_steps)
     small_steps->go_on_from(*from.small_steps, velocity.view(), gravity);
 }

@@ -45,7 +45,7 @@ class SmallSteps;
 class Sweeps;
 class YarnSolver;
 
-/// Of the air at a corner of a triangle, kg/s (air.h).
+/// The resistance of the air at a corner of a triangle, kg/s (air.h).
 struct Resistance {
   double rate = 0;
   kernels::Vector spin{};
@@ -57,7 +57,7 @@ struct Caught {
   double area = 0, mass = 0;         // m^2, kg
 };
 
-/// What pressures do at the moment (pressure.h).
+/// The present effect of pressures (pressure.h).
 struct Pressed {
   std::vector<double> given;                  // Pa, of each of LastingState::pressures
   std::vector<double> volume, volume_before;  // m^3, of those that are of gas
@@ -76,7 +76,7 @@ struct Checkpoint {
   double lost_energy = 0, elastic_energy = 0, give_per_mass = 0, longest_substep = 0;
 };
 
-/// What carry has taken a cloth along since the last step, as a motion of all space: at x it is
+/// The way that carry has taken a cloth since the last step, as a motion of all space: at x it is
 /// moved + turned x x. It is slow, since it is of a frame: squares of angles are left out.
 struct CarriedWay {
   kernels::Vector moved{};   // m
@@ -90,8 +90,8 @@ struct CarriedWay {
   }
 };
 
-/// What goes on into the next step, and so is copied and saved, but for what solvers remember. All
-/// else of a State is made in each step, or follows from the model and the settings.
+/// Data that go on into the next step, and so are copied and saved, but for the memory of solvers.
+/// All else of a State is made in each step, or follows from the model and the settings.
 struct LastingState {
   kernels::Vectors position, velocity;
   kernels::Vectors force;  // external; empty: none
@@ -113,7 +113,7 @@ struct LastingState {
   double refinement = 0;       // log2 of the next step's parts, or how much shorter its substeps
   Lengthening lengthening;     // with refinement, of small steps without a motion_tolerance
   Rest rest;
-  StepReport asleep;  // what its steps report while the cloth sleeps
+  StepReport asleep;  // the report of its steps while the cloth sleeps
 
   explicit LastingState(const Model& model);
   /// Something was changed from outside.
@@ -164,7 +164,7 @@ struct State : LastingState {
   std::unique_ptr<Measure> measure;
   kernels::Vectors predicted;      // reference backend only
   std::optional<SpringLaws> laws;  // of the last substep; with springs, unless by small steps
-  // Those that the settings need. What a solver gives up small steps do.
+  // Those that the settings need. Small steps do the work that a solver gives up.
   std::unique_ptr<Sweeps> sweeps;
   std::unique_ptr<YarnSolver> yarn;
   std::unique_ptr<DirectSolver> direct;
@@ -180,7 +180,7 @@ struct State : LastingState {
   ~State();
   State(State&&) noexcept;
   State& operator=(State&&) noexcept;
-  /// What acts besides gravity; empty: nothing.
+  /// Forces besides gravity; empty: none.
   kernels::Vectors& forces() { return total_force.size() > 0 ? total_force : force; }
   const kernels::Vectors& forces() const { return total_force.size() > 0 ? total_force : force; }
   /// Goes on from another state of the same model.
@@ -188,8 +188,8 @@ struct State : LastingState {
   /// Goes on where another state was, whose settings were `its`; the memory of solvers is taken or
   /// forgotten by the caller.
   void take(LastingState&& from, const Settings& its);
-  /// Goes on from one of another model of the same particles. Of those that the models do not
-  /// agree on, fixed ones are at rest, and free ones have the speed of their last move.
+  /// Goes on from one of another model of the same particles. Particles that the models do not
+  /// agree on are at rest if fixed, and have the speed of their last move if free.
   void go_on_from(const State& from);
   std::size_t bytes() const;
   /// How many threads a step of it is worth, where Settings::threads allows them.
@@ -199,7 +199,7 @@ struct State : LastingState {
   void make_solvers();
 };
 
-/// What the memory of solvers, and what is known of the past, is worth something for.
+/// Settings for which the memory of solvers, and the known past, are worth something.
 template <class Any>
 auto memory_settings(Any& s) {
   return std::tie(s.solver, s.scheme, s.backend, s.iterations, s.tolerance, s.contact_tolerance,

@@ -228,8 +228,8 @@ class OneStep {
     if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
   }
 
-  /// What a substep may do, up to numbers of the report: all of it, and, but for the attempt that
-  /// nothing is tried after, half of it.
+  /// The work of a substep, up to numbers of the report: all of it, and half of it, but for the
+  /// attempt that nothing is tried after.
   struct Share {
     std::int64_t end = 0, early_end = 0;
     int left(const Attempt& attempt, std::int64_t done) const {
@@ -259,8 +259,8 @@ class OneStep {
 
 namespace {
 
-/// What moved so little that it rests is brought to rest. Its report is that of the steps to come,
-/// but for what this one did.
+/// Cloth that moved so little that it rests is brought to rest. Its report is that of the steps to
+/// come, but for the work of this one.
 void fall_asleep(State& s, StepReport& report) {
   const auto still = [&](std::size_t slot) {
     const double mass = s.model->inverse_mass[slot] > 0 ? s.model->mass[slot] : 0;
@@ -294,7 +294,7 @@ void fall_asleep(State& s, StepReport& report) {
 }
 
 /// J. Where bodies overlap, and wherever else a step misses its tolerance, they push particles to
-/// and fro. What these slide by is no motion then, and counts as far as energy was lost.
+/// and fro. Their slip is no motion then, and counts as far as energy was lost.
 double friction_work(const StepReport& report, double counted) {
   if (report.status == Status::converged) return counted;
   return std::min(counted, std::max(0.0, report.energy_lost));

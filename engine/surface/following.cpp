@@ -25,7 +25,7 @@ Edges edges_of(const Triangle& corners, std::span<const Vec3> of) {
   return {of[corners[1]] - a, of[corners[2]] - a};
 }
 
-/// Of unit length. edges: of the triangle.
+/// A normal of unit length. edges: of the triangle.
 Vec3 normal_of(const Following& point, const Edges& edges, std::span<const Quad> normals) {
   if (point.normal_b == Following::kOwn) return unit(cross(edges.to_b, edges.to_c));
   const Quad first = normals[point.corners[0]];

@@ -26,8 +26,8 @@ class NearestTriangle {
   /// Triangles without an area are left out. Both must outlive this.
   NearestTriangle(std::span<const Vec3> points, std::span<const Triangle> triangles);
   bool is_empty() const { return nodes_.empty(); }
-  /// Of several that are as near, where an edge or a corner is, that which the place is beside the
-  /// least: so that places beside a border are told by triangles before them.
+  /// Among several that are as near, where an edge or a corner is, it is that which the place is
+  /// beside the least: so that places beside a border are told by triangles before them.
   Nearest operator()(Vec3 place) const;
 
  private:

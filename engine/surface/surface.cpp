@@ -18,7 +18,7 @@
 namespace weft {
 namespace surface {
 
-/// What clones share.
+/// The data that clones share.
 struct Shape {
   DrawnMesh drawn;            // its points are the particles, or follow them
   std::size_t particles = 0;  // of the cloth

@@ -41,7 +41,7 @@ struct Box {
       holds = holds && low[k] <= other.low[k] && high[k] >= other.high[k];
     return holds;
   }
-  /// Of it that alone which the other one has, too.
+  /// Keeps only the part that the other one has, too.
   void leave(const Box& other) {
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = std::max(low[k], other.low[k]);

@@ -42,7 +42,7 @@ struct TriangleSurface {
     return triangles[triangle][1] != triangles[triangle][2];
   }
   bool is_thread_edge(std::uint32_t edge) const { return opposite[edge][0] == kNoIndex; }
-  /// Of a point that is in faces: whether these do not go all around it.
+  /// Whether the faces of a point that is in faces do not go all around it.
   bool is_on_border(std::uint32_t point) const {
     return neighbours[point].size() > triangles_at[point].size();
   }
